@@ -1,0 +1,2 @@
+//! The `foveal` program.
+fn main() {}

@@ -1,0 +1,2 @@
+//! Software occlusion culling on the CPU.
+#![forbid(unsafe_code)]

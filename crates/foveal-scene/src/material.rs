@@ -1,0 +1,86 @@
+//! Surfaces: glTF's metallic-roughness model.
+
+use glam::{Mat3, Vec3, Vec4};
+
+/// What alpha means.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AlphaMode {
+    /// Alpha is ignored.
+    Opaque,
+    /// Pixels with alpha below `cutoff` are not there.
+    Mask {
+        /// The threshold, usually 0.5.
+        cutoff: f32,
+    },
+    /// Blended over what is behind it.
+    Blend,
+}
+
+/// A texture as one material slot uses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`Scene::textures`](crate::Scene::textures).
+    pub texture: u32,
+    /// Which of a vertex's two UV sets it reads: 0 or 1 (the importer maps the file's sets to these).
+    pub uv_set: u32,
+    /// Texture coordinates from vertex coordinates (KHR_texture_transform), affine in 2-D.
+    pub uv_transform: Mat3,
+}
+
+/// One surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Material {
+    /// Its name in the file.
+    pub name: String,
+    /// Linear RGBA factor.
+    pub base_color: Vec4,
+    /// sRGB colour and alpha.
+    pub base_color_texture: Option<TextureRef>,
+    /// 0 dielectric … 1 metal.
+    pub metallic: f32,
+    /// Perceptual roughness, 0 … 1.
+    pub roughness: f32,
+    /// Green = roughness, blue = metallic, linear.
+    pub metallic_roughness_texture: Option<TextureRef>,
+    /// Tangent-space normals, linear.
+    pub normal_texture: Option<TextureRef>,
+    /// Scale of the normal's x and y.
+    pub normal_scale: f32,
+    /// Red = ambient occlusion, linear.
+    pub occlusion_texture: Option<TextureRef>,
+    /// How much of the occlusion applies, 0 … 1.
+    pub occlusion_strength: f32,
+    /// Linear radiance, KHR_materials_emissive_strength multiplied in.
+    pub emissive: Vec3,
+    /// sRGB colour, times `emissive`.
+    pub emissive_texture: Option<TextureRef>,
+    /// What alpha means.
+    pub alpha_mode: AlphaMode,
+    /// Back faces are drawn too, with the normal turned to the viewer.
+    pub double_sided: bool,
+    /// KHR_materials_unlit: base colour straight to the screen.
+    pub unlit: bool,
+}
+
+impl Default for Material {
+    /// glTF's default material, white, with roughness and metallic 1 (as the specification says).
+    fn default() -> Self {
+        Self {
+            name: "default".to_owned(),
+            base_color: Vec4::ONE,
+            base_color_texture: None,
+            metallic: 1.0,
+            roughness: 1.0,
+            metallic_roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+            occlusion_texture: None,
+            occlusion_strength: 1.0,
+            emissive: Vec3::ZERO,
+            emissive_texture: None,
+            alpha_mode: AlphaMode::Opaque,
+            double_sided: false,
+            unlit: false,
+        }
+    }
+}

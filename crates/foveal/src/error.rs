@@ -1,0 +1,64 @@
+//! What can go wrong between a scene and its picture.
+
+/// An error of the renderer. Each message is one sentence that names the place and the cause.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// No adapter matches; the text lists what there is.
+    #[error("no graphics adapter {wanted}; available: {available}")]
+    NoAdapter {
+        /// What was asked for, as in «matches 'nvidia'».
+        wanted: String,
+        /// The adapters' names, or a hint what to install.
+        available: String,
+    },
+    /// The adapter refused to open a device.
+    #[error("the adapter '{adapter}' cannot open a device: {cause}")]
+    NoDevice {
+        /// The adapter's name.
+        adapter: String,
+        /// What the driver said.
+        cause: String,
+    },
+    /// A size, count or setting lies outside what this device or this program can do.
+    #[error("{what} is {value}, the limit is {limit}{hint}")]
+    Limit {
+        /// What is too large or too small.
+        what: String,
+        /// How large it is.
+        value: u64,
+        /// The largest that fits.
+        limit: u64,
+        /// A way out, or empty; begins with «: ».
+        hint: String,
+    },
+    /// A setting has a value that makes no sense.
+    #[error("the setting {name} is {value}; it must be {expected}")]
+    Setting {
+        /// The setting's name as in the TOML file.
+        name: &'static str,
+        /// Its value.
+        value: String,
+        /// What it must be.
+        expected: &'static str,
+    },
+    /// The device ran out of memory.
+    #[error("the graphics device ran out of memory while {doing}")]
+    OutOfMemory {
+        /// The stage.
+        doing: String,
+    },
+    /// The device is gone.
+    #[error("the graphics device was lost: {reason}")]
+    DeviceLost {
+        /// What the driver said.
+        reason: String,
+    },
+    /// The graphics API refused a call: a defect of this program or of the driver.
+    #[error("the graphics API reported an error while {doing}: {cause}")]
+    Validation {
+        /// The stage.
+        doing: String,
+        /// What the API said.
+        cause: String,
+    },
+}

@@ -1,0 +1,93 @@
+//! Every choice that a user makes about a frame, as one struct that the library, the program's flags
+//! and a TOML file share. Each stage's first variant is its default.
+
+use serde::{Deserialize, Serialize};
+
+/// What the written picture shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum View {
+    /// The finished frame.
+    #[default]
+    Final,
+    /// Distance from the eye along the view axis, near = white, on a logarithmic scale.
+    Depth,
+    /// World-space shading normals, (n + 1) / 2 as RGB.
+    Normals,
+    /// Base colour without light.
+    BaseColor,
+    /// A colour per instance.
+    Instances,
+    /// Motion since the last frame: red = right, green = down, 16 pixels to full scale around mid-grey.
+    Motion,
+}
+
+/// How light is reflected.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightingModel {
+    /// glTF's metallic-roughness model: Lambert + GGX.
+    #[default]
+    Ggx,
+    /// Lambert + Blinn-Phong, as the techniques' sources use.
+    BlinnPhong,
+}
+
+/// Which lights a sample looks at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightAssignment {
+    /// Those whose range touches the sample's cluster (froxel).
+    #[default]
+    Clustered,
+    /// All of them: the reference.
+    Brute,
+}
+
+/// How scene radiance becomes display values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneMap {
+    /// A filmic curve fitted to the ACES reference transform.
+    #[default]
+    Aces,
+    /// Clipped at 1.
+    Linear,
+}
+
+/// Everything that a user chooses about a frame.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+pub struct Settings {
+    /// Width in pixels, 1 up to the device's limit.
+    pub width: u32,
+    /// Height in pixels, 1 up to the device's limit.
+    pub height: u32,
+    /// What the picture shows.
+    pub view: View,
+    /// How light is reflected.
+    pub lighting: LightingModel,
+    /// Which lights a sample looks at.
+    pub lights: LightAssignment,
+    /// Exposure in stops: radiance is multiplied by 2^exposure before the tone map.
+    pub exposure: f32,
+    /// The tone map.
+    pub tone_map: ToneMap,
+    /// Largest anisotropy of texture filtering, 1 to 16.
+    pub anisotropy: u16,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            width: 1280,
+            height: 720,
+            view: View::default(),
+            lighting: LightingModel::default(),
+            lights: LightAssignment::default(),
+            exposure: 0.0,
+            tone_map: ToneMap::default(),
+            anisotropy: 8,
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! What a frame cost: counts and times, as the program writes them to JSON.
+
+use serde::Serialize;
+
+/// The device that drew the frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AdapterStats {
+    /// The adapter's own name.
+    pub name: String,
+    /// `vulkan`, `metal`, `dx12`, `gl` or `webgpu`.
+    pub backend: String,
+    /// `discrete-gpu`, `integrated-gpu`, `virtual-gpu`, `cpu` or `other`.
+    pub kind: String,
+    /// The driver's name and version.
+    pub driver: String,
+}
+
+/// What the scene holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct SceneStats {
+    /// Meshes (one per glTF primitive).
+    pub meshes: u64,
+    /// Materials.
+    pub materials: u64,
+    /// Textures.
+    pub textures: u64,
+    /// Objects (nodes with a mesh, GPU instances counted singly).
+    pub objects: u64,
+    /// Instances (one per object and primitive).
+    pub instances: u64,
+    /// Triangles, instanced ones counted each time.
+    pub triangles: u64,
+    /// Punctual lights.
+    pub lights: u64,
+}
+
+/// One named duration.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Timing {
+    /// The stage's or the pass's name.
+    pub name: String,
+    /// Milliseconds.
+    pub ms: f64,
+}
+
+/// One frame's figures.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FrameStats {
+    /// Width in pixels.
+    pub width: u32,
+    /// Height in pixels.
+    pub height: u32,
+    /// CPU time per stage, in the order of the frame. Empty without a clock.
+    pub cpu_ms: Vec<Timing>,
+    /// GPU time per pass, in the order of the frame. Empty where the device has no timestamps.
+    pub gpu_ms: Vec<Timing>,
+    /// Draw calls issued.
+    pub draws: u64,
+    /// Triangles submitted.
+    pub triangles: u64,
+    /// Lighting evaluations of the deferred stage, backdrop included.
+    pub shaded_samples: u64,
+    /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
+    pub frame_ms: f64,
+}
