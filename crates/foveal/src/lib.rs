@@ -9,9 +9,18 @@
 pub mod gpu;
 
 mod error;
+mod forward;
+mod frame;
+mod geometry;
+mod lights;
+mod output;
 mod renderer;
+mod scene;
 mod settings;
+mod shader;
+mod shading;
 mod stats;
+mod targets;
 
 pub use error::Error;
 pub use gpu::Gpu;

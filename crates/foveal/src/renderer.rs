@@ -2,13 +2,22 @@
 
 use foveal_scene::{Camera, Scene};
 
-use crate::{Error, FrameStats, Gpu, SceneStats, Settings};
+use crate::forward::ForwardPass;
+use crate::frame::FrameUniform;
+use crate::geometry::{DrawList, GeometryPass};
+use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_texture, submitted_work_done};
+use crate::lights::{ClusterGrid, LightAssigner};
+use crate::output::{ToneMapPass, ViewPass};
+use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
+use crate::shading::{Samples, ShadingPass};
+use crate::targets::Targets;
+use crate::{Error, FrameStats, SceneStats, Settings};
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
 
 /// What changes from frame to frame besides the scene's pose.
-#[derive(Clone, Debug)]
+#[derive(Clone, Copy, Debug)]
 pub struct Frame<'a> {
     /// Where the frame is seen from.
     pub camera: &'a Camera,
@@ -19,37 +28,139 @@ pub struct Frame<'a> {
 /// Draws scenes.
 #[derive(Debug)]
 pub struct Renderer {
+    gpu: Gpu,
+    clock: Option<Clock>,
+    timer: GpuTimer,
+    frame_bindings: FrameBindings,
+    material_layout: wgpu::BindGroupLayout,
+    stages: Stages,
+    scene: SceneOnGpu,
+    draw_list: DrawList,
+}
+
+/// What depends on the settings.
+#[derive(Debug)]
+struct Stages {
     settings: Settings,
+    targets: Targets,
+    lights: LightAssigner,
+    geometry: GeometryPass,
+    shading: ShadingPass,
+    forward: ForwardPass,
+    tone_map: ToneMapPass,
+    view: Option<ViewPass>,
+}
+
+impl Stages {
+    async fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_bindings: &FrameBindings,
+        material_layout: &wgpu::BindGroupLayout,
+    ) -> Result<Self, Error> {
+        settings.validate(&gpu.device.limits())?;
+        let trap = ErrorTrap::new(gpu, "preparing the renderer");
+        let frame = frame_bindings.layout();
+        let stages = Self {
+            settings: settings.clone(),
+            targets: Targets::new(gpu, settings.width, settings.height),
+            lights: LightAssigner::new(gpu, frame),
+            geometry: GeometryPass::new(gpu, frame, material_layout),
+            shading: ShadingPass::new(gpu, settings, frame),
+            forward: ForwardPass::new(gpu, settings, frame, material_layout),
+            tone_map: ToneMapPass::new(gpu, frame),
+            view: ViewPass::new(gpu, settings.view, frame),
+        };
+        trap.finish().await?;
+        Ok(stages)
+    }
 }
 
 impl Renderer {
-    /// Builds the pipelines and the targets for `settings`.
+    /// Builds the pipelines and the targets for `settings`; the scene is empty.
     ///
     /// # Errors
     /// [`Error::Limit`] or [`Error::Setting`] where the settings cannot be met on this device;
     /// [`Error::OutOfMemory`] where the targets do not fit.
     pub async fn new(gpu: &Gpu, settings: &Settings, clock: Option<Clock>) -> Result<Self, Error> {
-        let _ = (gpu, clock);
+        let frame_bindings = FrameBindings::new(gpu);
+        let material_layout = material_layout(gpu);
+        let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout).await?;
+        let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout)?;
         Ok(Self {
-            settings: settings.clone(),
+            gpu: gpu.clone(),
+            clock,
+            timer: GpuTimer::new(gpu)?,
+            frame_bindings,
+            material_layout,
+            stages,
+            scene,
+            draw_list: DrawList::default(),
         })
     }
 
-    /// Takes over other settings; targets and pipelines are rebuilt where they must be.
+    /// The settings in force.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.stages.settings
+    }
+
+    /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
+    /// [`Settings::anisotropy`] takes effect with the next [`Renderer::set_scene`].
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.
     pub async fn set_settings(&mut self, settings: &Settings) -> Result<(), Error> {
-        self.settings = settings.clone();
+        settings.validate(&self.gpu.device.limits())?;
+        let old = &self.stages.settings;
+        if *settings == *old {
+            return Ok(());
+        }
+        if (Settings {
+            width: settings.width,
+            height: settings.height,
+            ..old.clone()
+        }) == *settings
+        {
+            let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
+            let targets = Targets::new(&self.gpu, settings.width, settings.height);
+            trap.finish().await?;
+            self.stages.targets = targets;
+            self.stages.settings = settings.clone();
+            return Ok(());
+        }
+        self.stages = Stages::new(
+            &self.gpu,
+            settings,
+            &self.frame_bindings,
+            &self.material_layout,
+        )
+        .await?;
         Ok(())
     }
 
     /// Uploads a scene in place of the last one.
     ///
     /// # Errors
-    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::OutOfMemory`].
+    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::OutOfMemory`]; the renderer
+    /// keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
-        let _ = scene;
+        let trap = ErrorTrap::new(&self.gpu, "uploading the scene");
+        let uploaded = SceneOnGpu::new(
+            &self.gpu,
+            scene,
+            &self.stages.settings,
+            &self.material_layout,
+        );
+        trap.finish().await?;
+        let uploaded = uploaded?;
+        let trap = ErrorTrap::new(&self.gpu, "uploading the scene's instances");
+        let written = self
+            .frame_bindings
+            .write_instances(&self.gpu, uploaded.instance_uniforms());
+        trap.finish().await?;
+        written?;
+        self.scene = uploaded;
         Ok(())
     }
 
@@ -59,17 +170,143 @@ impl Renderer {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
-        let _ = scene;
-        Ok(())
+        let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
+        self.scene.update_pose(&self.gpu, scene);
+        self.frame_bindings
+            .write_instances(&self.gpu, self.scene.instance_uniforms())?;
+        trap.finish().await
     }
 
-    /// Draws one frame into the renderer's own output and waits (asynchronously) for its figures.
+    /// Draws one frame into the renderer's own picture and waits until it is done.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`].
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
-        let _ = frame;
-        Ok(FrameStats::default())
+        let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
+        let mut cpu = CpuTimer::start(self.clock);
+        self.submit(frame, &mut cpu);
+        trap.finish().await?;
+        submitted_work_done(&self.gpu).await?;
+        Ok(FrameStats {
+            width: self.stages.settings.width,
+            height: self.stages.settings.height,
+            cpu_ms: cpu.stages(),
+            gpu_ms: self.timer.collect(&self.gpu),
+            draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
+            triangles: self.draw_list.triangles,
+            shaded_samples: u64::from(self.stages.settings.width)
+                * u64::from(self.stages.settings.height),
+            frame_ms: cpu.since_start_ms(),
+        })
+    }
+
+    /// The frame.
+    fn submit(&mut self, frame: &Frame<'_>, cpu: &mut CpuTimer) {
+        let Self {
+            gpu,
+            timer,
+            frame_bindings,
+            stages,
+            scene,
+            draw_list,
+            ..
+        } = self;
+        let Stages {
+            settings,
+            targets,
+            lights,
+            geometry,
+            shading,
+            forward,
+            tone_map,
+            view,
+        } = stages;
+
+        draw_list.build(scene, frame.camera.eye());
+        geometry.prepare(gpu, draw_list);
+        forward.prepare(gpu, draw_list);
+        cpu.stage("draw list");
+
+        let clusters =
+            ClusterGrid::new(settings.width, settings.height, frame.camera, &scene.lights);
+        lights.reserve(gpu, &clusters);
+        let before = frame.previous_camera.unwrap_or(frame.camera);
+        let uniform = FrameUniform::new(
+            settings,
+            frame.camera,
+            before,
+            &scene.environment,
+            &clusters,
+        );
+        frame_bindings.write_frame(gpu, &uniform);
+        frame_bindings.write_drawn(gpu, &draw_list.drawn);
+        cpu.stage("upload");
+
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let encoder_ref = &mut encoder;
+        lights.assign(
+            gpu,
+            encoder_ref,
+            timer,
+            frame_bindings,
+            &scene.light_buffer,
+            &clusters,
+        );
+        geometry.draw(
+            encoder_ref,
+            timer,
+            frame_bindings,
+            scene,
+            draw_list,
+            &targets.gbuffer,
+        );
+        if let Some(view) = view {
+            view.show(
+                gpu,
+                encoder_ref,
+                timer,
+                frame_bindings,
+                &targets.gbuffer,
+                &targets.picture_view,
+            );
+        } else {
+            let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
+            let samples = Samples::EveryPixel;
+            shading.shade(
+                gpu,
+                encoder_ref,
+                timer,
+                frame_bindings,
+                &input,
+                samples,
+                &targets.radiance_view,
+            );
+            forward.draw(
+                gpu,
+                encoder_ref,
+                timer,
+                frame_bindings,
+                scene,
+                lights.bits(),
+                draw_list,
+                &targets.gbuffer,
+                &targets.radiance_view,
+            );
+            tone_map.map(
+                gpu,
+                encoder_ref,
+                timer,
+                frame_bindings,
+                &targets.radiance_view,
+                &targets.picture_view,
+            );
+        }
+        timer.resolve(encoder_ref);
+        cpu.stage("encode");
+
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame();
+        cpu.stage("submit");
     }
 
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes, alpha 255.
@@ -77,16 +314,20 @@ impl Renderer {
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
-        Ok(vec![
-            0;
-            (self.settings.width * self.settings.height * 4)
-                as usize
-        ])
+        let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
+        let bytes = read_texture(
+            &self.gpu,
+            &self.stages.targets.picture,
+            wgpu::TextureAspect::All,
+        )
+        .await;
+        trap.finish().await?;
+        bytes
     }
 
     /// Counts of the scene that was set last.
     #[must_use]
     pub fn scene_stats(&self) -> SceneStats {
-        SceneStats::default()
+        self.scene.stats
     }
 }

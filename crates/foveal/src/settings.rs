@@ -3,6 +3,8 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::Error;
+
 /// What the written picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -89,5 +91,49 @@ impl Default for Settings {
             tone_map: ToneMap::default(),
             anisotropy: 8,
         }
+    }
+}
+
+impl Settings {
+    /// Checks that the settings make sense and that a device with these limits can meet them.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] and [`Error::Limit`].
+    pub fn validate(&self, limits: &wgpu::Limits) -> Result<(), Error> {
+        let most = limits.max_texture_dimension_2d;
+        for (name, value) in [("width", self.width), ("height", self.height)] {
+            if value == 0 {
+                return Err(Error::Setting {
+                    name,
+                    value: "0".to_owned(),
+                    expected: "at least 1",
+                });
+            }
+            if value > most {
+                return Err(Error::Limit {
+                    what: format!("the picture's {name} in pixels"),
+                    value: u64::from(value),
+                    limit: u64::from(most),
+                    hint: String::new(),
+                });
+            }
+        }
+        if !self.exposure.is_finite() || self.exposure.abs() > 64.0 {
+            let value = self.exposure.to_string();
+            return Err(Error::Setting {
+                name: "exposure",
+                value,
+                expected: "between -64 and 64",
+            });
+        }
+        if !(1..=16).contains(&self.anisotropy) {
+            let value = self.anisotropy.to_string();
+            return Err(Error::Setting {
+                name: "anisotropy",
+                value,
+                expected: "between 1 and 16",
+            });
+        }
+        Ok(())
     }
 }

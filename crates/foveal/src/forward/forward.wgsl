@@ -1,0 +1,15 @@
+// Forward pass for blended surfaces, back to front over the deferred picture.
+// After frame, surface, vertex, material and lighting.wgsl.
+
+@group(2) @binding(0) var<storage, read> lights: array<Light>;
+@group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
+
+@fragment
+fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+    let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
+    let distance = dot(in.world - frame.world_from_view[3].xyz, frame.forward);
+    let radiance = min(lit(m.surface, in.clip.xy, distance), vec3f(65504.0));
+    let alpha = saturate(m.alpha);
+    // Premultiplied.
+    return vec4f(radiance * alpha, alpha);
+}

@@ -1,0 +1,112 @@
+//! Forward pass: blended surfaces over the deferred picture, back to front.
+
+use crate::geometry::{DrawList, GBuffer, PipelineKey, PipelineRecipe, Pipelines};
+use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, storage_read};
+use crate::scene::{FrameBindings, SceneOnGpu};
+use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::{Settings, shader};
+
+/// Draws blended surfaces.
+#[derive(Debug)]
+pub(crate) struct ForwardPass {
+    pipelines: Pipelines,
+    lights_layout: wgpu::BindGroupLayout,
+}
+
+impl ForwardPass {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+        material_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let lights_layout = bind_group_layout(
+            &gpu.device,
+            "forward lights",
+            wgpu::ShaderStages::FRAGMENT,
+            &[storage_read(), storage_read()],
+        );
+        let pipelines = Pipelines::new(PipelineRecipe {
+            label: "forward",
+            module: shader::module(gpu, "forward", shader::FORWARD),
+            layout: shader::pipeline_layout(
+                gpu,
+                "forward",
+                &[frame_layout, material_layout, &lights_layout],
+            ),
+            targets: vec![Some(wgpu::ColorTargetState {
+                format: RADIANCE_FORMAT,
+                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+            writes_depth: false,
+            constants: lighting_constants(settings).to_vec(),
+            has_mask: false,
+        });
+        Self {
+            pipelines,
+            lights_layout,
+        }
+    }
+
+    /// Makes the pipelines that `list` needs.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
+        let mut keys: Vec<PipelineKey> = list.blended.iter().map(|b| b.key).collect();
+        keys.sort_unstable();
+        keys.dedup();
+        for key in keys {
+            self.pipelines.prepare(gpu, key);
+        }
+    }
+
+    /// Encodes the pass, unless nothing is blended.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a pass names all that it reads and writes"
+    )]
+    pub(crate) fn draw(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut GpuTimer,
+        frame: &FrameBindings,
+        scene: &SceneOnGpu,
+        cluster_bits: &wgpu::Buffer,
+        list: &DrawList,
+        gbuffer: &GBuffer,
+        target: &wgpu::TextureView,
+    ) {
+        if list.blended.is_empty() {
+            return;
+        }
+        let lights = bind_group(
+            &gpu.device,
+            "forward lights",
+            &self.lights_layout,
+            &[
+                scene.light_buffer.as_entire_binding(),
+                cluster_bits.as_entire_binding(),
+            ],
+        );
+        let color = wgpu::RenderPassColorAttachment {
+            view: target,
+            depth_slice: None,
+            resolve_target: None,
+            ops: wgpu::Operations {
+                load: wgpu::LoadOp::Load,
+                store: wgpu::StoreOp::Store,
+            },
+        };
+        let depth = wgpu::RenderPassDepthStencilAttachment {
+            view: &gbuffer.depth_view,
+            // Read-only: it is sampled by other passes of the frame.
+            depth_ops: None,
+            stencil_ops: None,
+        };
+        let mut pass = timer.render_pass(encoder, "forward", &[Some(color)], Some(depth));
+        pass.set_bind_group(0, frame.group(), &[]);
+        pass.set_bind_group(2, &lights, &[]);
+        scene.geometry.bind(&mut pass);
+        DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines);
+    }
+}

@@ -1,0 +1,163 @@
+//! Which draws a frame issues, and in which order.
+
+use foveal_scene::AlphaMode;
+use glam::Vec3;
+
+use super::{Faces, PipelineKey};
+use crate::scene::SceneOnGpu;
+
+/// One draw: equal meshes with equal materials, `count` instances from `first` in [`DrawList::drawn`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Batch {
+    pub(crate) key: PipelineKey,
+    pub(crate) material: u32,
+    pub(crate) mesh: u32,
+    pub(crate) first: u32,
+    pub(crate) count: u32,
+}
+
+/// The draws of one frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct DrawList {
+    /// Instance numbers in draw order.
+    pub(crate) drawn: Vec<u32>,
+    /// Opaque and masked surfaces, fewest state changes first.
+    pub(crate) solid: Vec<Batch>,
+    /// Blended surfaces, back to front.
+    pub(crate) blended: Vec<Batch>,
+    /// Triangles of all draws.
+    pub(crate) triangles: u64,
+}
+
+impl DrawList {
+    /// Lists the draws of all instances of `scene`, seen from `eye`.
+    pub(crate) fn build(&mut self, scene: &SceneOnGpu, eye: Vec3) {
+        self.drawn.clear();
+        self.solid.clear();
+        self.blended.clear();
+        self.triangles = 0;
+        let mut solid: Vec<(PipelineKey, u32, u32, u32)> =
+            Vec::with_capacity(scene.instances.len());
+        let mut blended: Vec<(f32, u32)> = Vec::new();
+        for (index, instance) in (0..).zip(&scene.instances) {
+            if scene.geometry.mesh(instance.mesh).index_count == 0 {
+                continue;
+            }
+            match instance.alpha_mode {
+                AlphaMode::Opaque | AlphaMode::Mask { .. } => {
+                    let key = PipelineKey {
+                        masked: matches!(instance.alpha_mode, AlphaMode::Mask { .. }),
+                        mirrored: instance.mirrored,
+                        faces: if instance.double_sided {
+                            Faces::Both
+                        } else {
+                            Faces::Front
+                        },
+                    };
+                    solid.push((key, instance.material, instance.mesh, index));
+                }
+                AlphaMode::Blend => {
+                    blended.push((instance.bounds.center().distance_squared(eye), index))
+                }
+            }
+        }
+        solid.sort_unstable();
+        for (key, material, mesh, index) in solid {
+            Self::push(
+                &mut self.solid,
+                &mut self.drawn,
+                scene,
+                &mut self.triangles,
+                Batch {
+                    key,
+                    material,
+                    mesh,
+                    first: 0,
+                    count: index,
+                },
+            );
+        }
+        blended.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
+        for (_, index) in blended {
+            let instance = &scene.instances[index as usize];
+            // The far side of a two-sided thing lies behind its near side.
+            let sides: &[Faces] = if instance.double_sided {
+                &[Faces::Back, Faces::Front]
+            } else {
+                &[Faces::Front]
+            };
+            for &faces in sides {
+                let key = PipelineKey {
+                    masked: false,
+                    mirrored: instance.mirrored,
+                    faces,
+                };
+                Self::push(
+                    &mut self.blended,
+                    &mut self.drawn,
+                    scene,
+                    &mut self.triangles,
+                    Batch {
+                        key,
+                        material: instance.material,
+                        mesh: instance.mesh,
+                        first: 0,
+                        count: index,
+                    },
+                );
+            }
+        }
+    }
+
+    /// Appends one instance (`batch.count` is its number), to the last draw where that is alike.
+    fn push(
+        list: &mut Vec<Batch>,
+        drawn: &mut Vec<u32>,
+        scene: &SceneOnGpu,
+        triangles: &mut u64,
+        batch: Batch,
+    ) {
+        *triangles += u64::from(scene.geometry.mesh(batch.mesh).index_count / 3);
+        let instance = batch.count;
+        match list.last_mut() {
+            Some(last)
+                if (last.key, last.material, last.mesh)
+                    == (batch.key, batch.material, batch.mesh) =>
+            {
+                last.count += 1;
+            }
+            _ => list.push(Batch {
+                first: drawn.len() as u32,
+                count: 1,
+                ..batch
+            }),
+        }
+        drawn.push(instance);
+    }
+
+    /// Issues `batches` into a pass that has bind group 0 and the geometry bound.
+    pub(crate) fn issue(
+        batches: &[Batch],
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &SceneOnGpu,
+        pipelines: &super::Pipelines,
+    ) {
+        let (mut key, mut material) = (None, None);
+        for batch in batches {
+            if key != Some(batch.key) {
+                key = Some(batch.key);
+                pass.set_pipeline(pipelines.get(batch.key));
+            }
+            if material != Some(batch.material) {
+                material = Some(batch.material);
+                pass.set_bind_group(1, scene.materials.group(batch.material), &[]);
+            }
+            let mesh = scene.geometry.mesh(batch.mesh);
+            pass.draw_indexed(
+                mesh.first_index..mesh.first_index + mesh.index_count,
+                mesh.base_vertex,
+                batch.first..batch.first + batch.count,
+            );
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! The G-buffer and the pass that fills it.
+
+use super::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
+use crate::gpu::{Gpu, GpuTimer};
+use crate::scene::{FrameBindings, SceneOnGpu};
+use crate::shader;
+
+/// Reversed: 1 at the near plane, 0 where nothing is.
+pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
+const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+const IDENTITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+
+/// What is seen at each pixel; 28 bytes a pixel.
+#[derive(Debug)]
+pub(crate) struct GBuffer {
+    /// Base colour and occlusion, normal, emissive, metallic and roughness: `pack_surface` in
+    /// `shared/surface.wgsl`.
+    pub(crate) surface: wgpu::Texture,
+    pub(crate) surface_view: wgpu::TextureView,
+    /// Instance number + 1, and motion in pixels as two halves.
+    pub(crate) identity: wgpu::Texture,
+    pub(crate) identity_view: wgpu::TextureView,
+    /// Reversed depth.
+    pub(crate) depth: wgpu::Texture,
+    pub(crate) depth_view: wgpu::TextureView,
+}
+
+impl GBuffer {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        let target = |label, format| {
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        };
+        let (surface, surface_view) = target("G-buffer surface", SURFACE_FORMAT);
+        let (identity, identity_view) = target("G-buffer identity", IDENTITY_FORMAT);
+        let (depth, depth_view) = target("G-buffer depth", DEPTH_FORMAT);
+        Self {
+            surface,
+            surface_view,
+            identity,
+            identity_view,
+            depth,
+            depth_view,
+        }
+    }
+}
+
+/// Draws opaque and masked surfaces into the G-buffer.
+#[derive(Debug)]
+pub(crate) struct GeometryPass {
+    pipelines: Pipelines,
+}
+
+impl GeometryPass {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        frame_layout: &wgpu::BindGroupLayout,
+        material_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let pipelines = Pipelines::new(PipelineRecipe {
+            label: "geometry",
+            module: shader::module(gpu, "geometry", shader::GBUFFER),
+            layout: shader::pipeline_layout(gpu, "geometry", &[frame_layout, material_layout]),
+            targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],
+            writes_depth: true,
+            constants: Vec::new(),
+            has_mask: true,
+        });
+        Self { pipelines }
+    }
+
+    /// Makes the pipelines that `list` needs.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
+        let mut keys: Vec<PipelineKey> = list.solid.iter().map(|b| b.key).collect();
+        keys.dedup();
+        for key in keys {
+            self.pipelines.prepare(gpu, key);
+        }
+    }
+
+    /// Encodes the pass.
+    pub(crate) fn draw(
+        &self,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut GpuTimer,
+        frame: &FrameBindings,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+    ) {
+        let cleared = |view| {
+            Some(wgpu::RenderPassColorAttachment {
+                view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                    store: wgpu::StoreOp::Store,
+                },
+            })
+        };
+        let depth = wgpu::RenderPassDepthStencilAttachment {
+            view: &target.depth_view,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        };
+        let colors = [
+            cleared(&target.surface_view),
+            cleared(&target.identity_view),
+        ];
+        let mut pass = timer.render_pass(encoder, "geometry", &colors, Some(depth));
+        pass.set_bind_group(0, frame.group(), &[]);
+        scene.geometry.bind(&mut pass);
+        DrawList::issue(&list.solid, &mut pass, scene, &self.pipelines);
+    }
+}

@@ -1,0 +1,9 @@
+//! Geometry: what is seen at each pixel, into a compact G-buffer.
+
+mod draw_list;
+mod gbuffer;
+mod pipelines;
+
+pub(crate) use draw_list::DrawList;
+pub(crate) use gbuffer::{GBuffer, GeometryPass};
+pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines};

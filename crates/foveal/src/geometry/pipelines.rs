@@ -1,0 +1,117 @@
+//! The few pipelines that a geometry or forward pass needs, made when first asked for.
+
+use std::collections::BTreeMap;
+
+use crate::gpu::Gpu;
+use crate::scene::VERTEX_LAYOUTS;
+
+/// Which sides of a triangle are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Faces {
+    Front,
+    Back,
+    Both,
+}
+
+/// What makes one pipeline of a pass differ from another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct PipelineKey {
+    /// Alpha cuts holes.
+    pub(crate) masked: bool,
+    /// The instance's transform turns the winding around.
+    pub(crate) mirrored: bool,
+    pub(crate) faces: Faces,
+}
+
+/// What all pipelines of a pass share.
+#[derive(Debug)]
+pub(crate) struct PipelineRecipe {
+    pub(crate) label: &'static str,
+    pub(crate) module: wgpu::ShaderModule,
+    pub(crate) layout: wgpu::PipelineLayout,
+    pub(crate) targets: Vec<Option<wgpu::ColorTargetState>>,
+    pub(crate) writes_depth: bool,
+    pub(crate) constants: Vec<(&'static str, f64)>,
+    /// The shader has the override `MASKED`.
+    pub(crate) has_mask: bool,
+}
+
+/// A pass's pipelines.
+#[derive(Debug)]
+pub(crate) struct Pipelines {
+    recipe: PipelineRecipe,
+    made: BTreeMap<PipelineKey, wgpu::RenderPipeline>,
+}
+
+impl Pipelines {
+    pub(crate) fn new(recipe: PipelineRecipe) -> Self {
+        Self {
+            recipe,
+            made: BTreeMap::new(),
+        }
+    }
+
+    /// Makes the pipeline for `key` unless it is there.
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, key: PipelineKey) {
+        let recipe = &self.recipe;
+        self.made
+            .entry(key)
+            .or_insert_with(|| make(gpu, recipe, key));
+    }
+
+    /// The pipeline for a key that was prepared.
+    pub(crate) fn get(&self, key: PipelineKey) -> &wgpu::RenderPipeline {
+        &self.made[&key]
+    }
+}
+
+fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPipeline {
+    let mut constants = recipe.constants.clone();
+    if recipe.has_mask {
+        constants.push(("MASKED", f64::from(u8::from(key.masked))));
+    }
+    let compilation_options = wgpu::PipelineCompilationOptions {
+        constants: &constants,
+        ..Default::default()
+    };
+    gpu.device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(recipe.label),
+            layout: Some(&recipe.layout),
+            vertex: wgpu::VertexState {
+                module: &recipe.module,
+                entry_point: Some("vertex"),
+                compilation_options: compilation_options.clone(),
+                buffers: &VERTEX_LAYOUTS,
+            },
+            primitive: wgpu::PrimitiveState {
+                front_face: if key.mirrored {
+                    wgpu::FrontFace::Cw
+                } else {
+                    wgpu::FrontFace::Ccw
+                },
+                cull_mode: match key.faces {
+                    Faces::Front => Some(wgpu::Face::Back),
+                    Faces::Back => Some(wgpu::Face::Front),
+                    Faces::Both => None,
+                },
+                ..Default::default()
+            },
+            depth_stencil: Some(wgpu::DepthStencilState {
+                format: super::gbuffer::DEPTH_FORMAT,
+                depth_write_enabled: Some(recipe.writes_depth),
+                depth_compare: Some(wgpu::CompareFunction::Greater),
+                stencil: wgpu::StencilState::default(),
+                bias: wgpu::DepthBiasState::default(),
+            }),
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module: &recipe.module,
+                entry_point: Some("fragment"),
+                compilation_options,
+                targets: &recipe.targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+}

@@ -1,0 +1,91 @@
+//! Which graphics adapter.
+
+use crate::{AdapterStats, Error};
+
+pub(super) async fn all() -> Vec<wgpu::Adapter> {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+        backends: wgpu::Backends::from_env()
+            .unwrap_or(wgpu::Backends::PRIMARY | wgpu::Backends::SECONDARY),
+        ..wgpu::InstanceDescriptor::new_without_display_handle()
+    });
+    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+    // A stable sort: the driver's order holds among equals.
+    adapters.sort_by_key(|a| rank(&a.get_info()));
+    adapters
+}
+
+/// Hardware before software, modern interfaces before GL.
+fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
+    let reduced = u8::from(info.backend == wgpu::Backend::Gl);
+    let kind = match info.device_type {
+        wgpu::DeviceType::DiscreteGpu => 0,
+        wgpu::DeviceType::IntegratedGpu => 1,
+        wgpu::DeviceType::VirtualGpu => 2,
+        wgpu::DeviceType::Other => 3,
+        wgpu::DeviceType::Cpu => 4,
+    };
+    (reduced, kind)
+}
+
+pub(super) async fn choose(wanted: Option<&str>) -> Result<wgpu::Adapter, Error> {
+    let adapters = all().await;
+    let names: Vec<String> = adapters
+        .iter()
+        .enumerate()
+        .map(|(i, a)| {
+            let d = describe(&a.get_info());
+            format!("{i}: {} ({}, {})", d.name, d.backend, d.driver)
+        })
+        .collect();
+    let none = |wanted: String| Error::NoAdapter {
+        wanted,
+        available: if names.is_empty() {
+            "none; install a Vulkan driver (on Debian: apt-get install mesa-vulkan-drivers)"
+                .to_owned()
+        } else {
+            names.join("; ")
+        },
+    };
+    match wanted {
+        None => adapters
+            .into_iter()
+            .next()
+            .ok_or_else(|| none("was found".to_owned())),
+        Some(text) => {
+            let by_number = text.parse::<usize>().ok();
+            let lower = text.to_lowercase();
+            adapters
+                .into_iter()
+                .enumerate()
+                .find(|(i, a)| match by_number {
+                    Some(n) => *i == n,
+                    None => {
+                        let d = describe(&a.get_info());
+                        [d.name, d.backend, d.driver]
+                            .iter()
+                            .any(|s| s.to_lowercase().contains(&lower))
+                    }
+                })
+                .map(|(_, a)| a)
+                .ok_or_else(|| none(format!("matches '{text}'")))
+        }
+    }
+}
+
+pub(super) fn describe(info: &wgpu::AdapterInfo) -> AdapterStats {
+    AdapterStats {
+        name: info.name.clone(),
+        backend: info.backend.to_str().to_owned(),
+        kind: match info.device_type {
+            wgpu::DeviceType::DiscreteGpu => "discrete-gpu",
+            wgpu::DeviceType::IntegratedGpu => "integrated-gpu",
+            wgpu::DeviceType::VirtualGpu => "virtual-gpu",
+            wgpu::DeviceType::Cpu => "cpu",
+            wgpu::DeviceType::Other => "other",
+        }
+        .to_owned(),
+        driver: format!("{} {}", info.driver, info.driver_info)
+            .trim()
+            .to_owned(),
+    }
+}

@@ -1,0 +1,74 @@
+//! Short words for bind group layouts.
+
+use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages, TextureSampleType};
+
+/// A layout whose bindings are `types` in order, each seen by `stages`.
+pub(crate) fn bind_group_layout(
+    device: &wgpu::Device,
+    label: &str,
+    stages: ShaderStages,
+    types: &[BindingType],
+) -> wgpu::BindGroupLayout {
+    let entries: Vec<_> = (0..)
+        .zip(types)
+        .map(|(binding, &ty)| BindGroupLayoutEntry {
+            binding,
+            visibility: stages,
+            ty,
+            count: None,
+        })
+        .collect();
+    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+        label: Some(label),
+        entries: &entries,
+    })
+}
+
+/// A bind group whose bindings are `resources` in order.
+pub(crate) fn bind_group(
+    device: &wgpu::Device,
+    label: &str,
+    layout: &wgpu::BindGroupLayout,
+    resources: &[wgpu::BindingResource<'_>],
+) -> wgpu::BindGroup {
+    let entries: Vec<_> = (0..)
+        .zip(resources)
+        .map(|(binding, resource)| wgpu::BindGroupEntry {
+            binding,
+            resource: resource.clone(),
+        })
+        .collect();
+    device.create_bind_group(&wgpu::BindGroupDescriptor {
+        label: Some(label),
+        layout,
+        entries: &entries,
+    })
+}
+
+const fn buffer(ty: BufferBindingType) -> BindingType {
+    BindingType::Buffer {
+        ty,
+        has_dynamic_offset: false,
+        min_binding_size: None,
+    }
+}
+
+pub(crate) const fn uniform() -> BindingType {
+    buffer(BufferBindingType::Uniform)
+}
+
+pub(crate) const fn storage_read() -> BindingType {
+    buffer(BufferBindingType::Storage { read_only: true })
+}
+
+pub(crate) const fn storage_write() -> BindingType {
+    buffer(BufferBindingType::Storage { read_only: false })
+}
+
+pub(crate) const fn sampled(sample_type: TextureSampleType) -> BindingType {
+    BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2,
+        multisampled: false,
+    }
+}

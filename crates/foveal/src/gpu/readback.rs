@@ -1,0 +1,119 @@
+//! From the device back to the caller.
+
+use std::sync::{Arc, Mutex};
+use std::task::{Poll, Waker};
+
+use super::Gpu;
+use crate::Error;
+
+/// A value that a callback hands to a future.
+struct Handover<T>(Arc<Mutex<(Option<T>, Option<Waker>)>>);
+
+impl<T> Clone for Handover<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T> Handover<T> {
+    fn new() -> Self {
+        Self(Arc::new(Mutex::new((None, None))))
+    }
+
+    fn give(&self, value: T) {
+        if let Ok(mut slot) = self.0.lock() {
+            slot.0 = Some(value);
+            if let Some(waker) = slot.1.take() {
+                waker.wake();
+            }
+        }
+    }
+
+    /// Natively someone must drive the device; a browser does it by itself.
+    async fn take(self, gpu: &Gpu) -> Result<T, Error> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Err(cause) = gpu.device.poll(wgpu::PollType::wait_indefinitely()) {
+            return Err(Error::DeviceLost {
+                reason: cause.to_string(),
+            });
+        }
+        gpu.check_alive()?;
+        std::future::poll_fn(|context| match self.0.lock() {
+            Ok(mut slot) => match slot.0.take() {
+                Some(value) => Poll::Ready(Ok(value)),
+                None => {
+                    slot.1 = Some(context.waker().clone());
+                    Poll::Pending
+                }
+            },
+            Err(_) => Poll::Ready(Err(Error::DeviceLost {
+                reason: "a callback of the driver panicked".to_owned(),
+            })),
+        })
+        .await
+    }
+}
+
+/// Resolves when everything submitted so far is done.
+pub(crate) async fn submitted_work_done(gpu: &Gpu) -> Result<(), Error> {
+    let done = Handover::new();
+    let given = done.clone();
+    gpu.queue.on_submitted_work_done(move || given.give(()));
+    done.take(gpu).await
+}
+
+/// The bytes of mip 0 of a texture, rows top to bottom without padding.
+pub(crate) async fn read_texture(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    aspect: wgpu::TextureAspect,
+) -> Result<Vec<u8>, Error> {
+    let bytes_per_texel = texture.format().block_copy_size(Some(aspect)).unwrap_or(4);
+    let row = texture.width() * bytes_per_texel;
+    let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
+    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read-back"),
+        size: u64::from(padded) * u64::from(texture.height()),
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_texture_to_buffer(
+        wgpu::TexelCopyTextureInfo {
+            texture,
+            mip_level: 0,
+            origin: wgpu::Origin3d::ZERO,
+            aspect,
+        },
+        wgpu::TexelCopyBufferInfo {
+            buffer: &buffer,
+            layout: wgpu::TexelCopyBufferLayout {
+                offset: 0,
+                bytes_per_row: Some(padded),
+                rows_per_image: None,
+            },
+        },
+        texture.size(),
+    );
+    gpu.queue.submit([encoder.finish()]);
+    let mapped = Handover::new();
+    let given = mapped.clone();
+    buffer.map_async(wgpu::MapMode::Read, .., move |result| given.give(result));
+    let failed = |cause: String| Error::Validation {
+        doing: "reading back".to_owned(),
+        cause,
+    };
+    mapped
+        .take(gpu)
+        .await?
+        .map_err(|cause| failed(cause.to_string()))?;
+    let view = buffer
+        .get_mapped_range(..)
+        .map_err(|cause| failed(cause.to_string()))?;
+    let rows: Vec<u8> = view
+        .chunks_exact(padded as usize)
+        .flat_map(|padded_row| &padded_row[..row as usize])
+        .copied()
+        .collect();
+    Ok(rows)
+}

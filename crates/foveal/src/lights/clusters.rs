@@ -1,0 +1,163 @@
+//! The cluster grid and the pass that fills it.
+
+use foveal_scene::{Camera, Projection};
+
+use super::LightUniform;
+use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, storage_read, storage_write};
+use crate::scene::FrameBindings;
+use crate::shader;
+
+/// Slices along the view axis.
+const SLICES: u32 = 24;
+/// Tiles grow until the bits of all clusters fit into this.
+const MAX_BYTES: u64 = 32 << 20;
+
+/// How the view is cut into clusters.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ClusterGrid {
+    /// Tiles across, tiles down, slices.
+    pub(crate) counts: [u32; 3],
+    /// Side of a tile in pixels.
+    pub(crate) tile_px: u32,
+    /// Distance where the second slice begins.
+    pub(crate) near_m: f32,
+    /// Slices per doubling of the distance.
+    pub(crate) slices_per_doubling: f32,
+    /// Lights that share the grid.
+    pub(crate) light_count: u32,
+}
+
+impl ClusterGrid {
+    /// A grid for a target of `width` x `height` pixels that resolves the distances at which the lights are.
+    pub(crate) fn new(width: u32, height: u32, camera: &Camera, lights: &[LightUniform]) -> Self {
+        let light_count = lights.len() as u32;
+        let words = u64::from(light_count.div_ceil(32));
+        let mut tile_px = 64;
+        let tiles = |tile: u32| (width.div_ceil(tile), height.div_ceil(tile));
+        while {
+            let (x, y) = tiles(tile_px);
+            u64::from(x) * u64::from(y) * u64::from(SLICES) * words * 4 > MAX_BYTES
+        } {
+            tile_px *= 2;
+        }
+        let (x, y) = tiles(tile_px);
+        let near_plane = match camera.projection {
+            Projection::Perspective { near_m, .. } | Projection::Orthographic { near_m, .. } => {
+                near_m
+            }
+        };
+        let near_m = near_plane.max(0.25);
+        let eye = camera.eye();
+        let far = lights
+            .iter()
+            .filter(|l| l.kind != 0)
+            .map(|l| eye.distance(l.position.into()) + l.range)
+            .filter(|d| d.is_finite())
+            .fold(near_m * 4.0, f32::max);
+        let slices_per_doubling = (SLICES - 1) as f32 / (far / near_m).log2();
+        Self {
+            counts: [x, y, SLICES],
+            tile_px,
+            near_m,
+            slices_per_doubling,
+            light_count,
+        }
+    }
+
+    /// 32-light words per cluster.
+    pub(crate) fn light_words(&self) -> u32 {
+        self.light_count.div_ceil(32)
+    }
+
+    /// Words of all clusters together.
+    pub(crate) fn total_words(&self) -> u64 {
+        self.counts.iter().map(|&c| u64::from(c)).product::<u64>() * u64::from(self.light_words())
+    }
+}
+
+/// Fills the clusters' bits on the device.
+#[derive(Debug)]
+pub(crate) struct LightAssigner {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    /// One bit per cluster and light; grows when it must.
+    bits: wgpu::Buffer,
+}
+
+impl LightAssigner {
+    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
+        let layout = bind_group_layout(
+            &gpu.device,
+            "light assignment",
+            wgpu::ShaderStages::COMPUTE,
+            &[storage_read(), storage_write()],
+        );
+        let module = shader::module(gpu, "clusters", shader::CLUSTERS);
+        let pipeline = shader::compute(
+            gpu,
+            "light assignment",
+            &module,
+            "assign",
+            &[frame_layout, &layout],
+            &[],
+        );
+        Self {
+            pipeline,
+            layout,
+            bits: bits_buffer(gpu, 1),
+        }
+    }
+
+    /// The clusters' bits, as lighting reads them.
+    pub(crate) fn bits(&self) -> &wgpu::Buffer {
+        &self.bits
+    }
+
+    /// Makes room for a grid; true when the buffer is a new one.
+    pub(crate) fn reserve(&mut self, gpu: &Gpu, grid: &ClusterGrid) -> bool {
+        let words = grid.total_words().max(1);
+        let grows = self.bits.size() < words * 4;
+        if grows {
+            self.bits = bits_buffer(gpu, words);
+        }
+        grows
+    }
+
+    /// Encodes the pass. `lights` holds `grid.light_count` lights.
+    pub(crate) fn assign(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut GpuTimer,
+        frame: &FrameBindings,
+        lights: &wgpu::Buffer,
+        grid: &ClusterGrid,
+    ) {
+        encoder.clear_buffer(&self.bits, 0, Some(grid.total_words().max(1) * 4));
+        if grid.light_count == 0 {
+            return;
+        }
+        let group = bind_group(
+            &gpu.device,
+            "light assignment",
+            &self.layout,
+            &[lights.as_entire_binding(), self.bits.as_entire_binding()],
+        );
+        let mut pass = timer.compute_pass(encoder, "light assignment");
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, frame.group(), &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.dispatch_workgroups(grid.light_count, 1, 1);
+    }
+}
+
+fn bits_buffer(gpu: &Gpu, words: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("cluster lights"),
+        size: words * 4,
+        usage: wgpu::BufferUsages::STORAGE
+            | wgpu::BufferUsages::COPY_DST
+            | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
+}

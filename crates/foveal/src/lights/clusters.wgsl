@@ -1,0 +1,80 @@
+// Light assignment: which lights reach which cluster (froxel), one bit each. After frame and
+// light.wgsl. One workgroup per light walks the clusters around the light's sphere.
+
+@group(1) @binding(0) var<storage, read> lights: array<Light>;
+@group(1) @binding(1) var<storage, read_write> cluster_bits: array<atomic<u32>>;
+
+struct Box {
+    low: vec3f,
+    high: vec3f,
+}
+
+// Distances along the view axis where a slice begins and ends.
+fn slice_span(slice: u32) -> vec2f {
+    let begin = frame.cluster_near * exp2((f32(slice) - 1.0) / frame.cluster_scale);
+    let end = frame.cluster_near * exp2(f32(slice) / frame.cluster_scale);
+    return vec2f(
+        select(begin, -1e30, slice == 0u),
+        select(end, 1e30, slice == frame.cluster_counts.z - 1u),
+    );
+}
+
+// The cluster in view space, its depth clipped to the light's: slices at both ends are infinite.
+fn cluster_box(cluster: vec3u, nearest: f32, farthest: f32) -> Box {
+    let span = slice_span(cluster.z);
+    let z = vec2f(max(span.x, nearest), min(span.y, farthest));
+    let corner = vec2f(cluster.xy) * frame.cluster_tile;
+    let a = view_position(corner, z.x).xy;
+    let b = view_position(corner + frame.cluster_tile, z.x).xy;
+    let c = view_position(corner, z.y).xy;
+    let d = view_position(corner + frame.cluster_tile, z.y).xy;
+    return Box(
+        vec3f(min(min(a, b), min(c, d)), -z.y),
+        vec3f(max(max(a, b), max(c, d)), -z.x),
+    );
+}
+
+@compute @workgroup_size(64)
+fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = group.x;
+    let light = lights[index];
+    let everywhere = light.kind == LIGHT_DIRECTIONAL;
+    // A little more than the range: rounding may err, but never to the small side.
+    let radius = light.range * 1.0001 + 1e-4;
+    let offset = light.position - frame.world_from_view[3].xyz;
+    let center = vec3f(
+        dot(frame.world_from_view[0].xyz, offset),
+        dot(frame.world_from_view[1].xyz, offset),
+        dot(frame.world_from_view[2].xyz, offset),
+    );
+    let nearest = -center.z - radius;
+    let farthest = -center.z + radius;
+    if !everywhere && farthest < 0.0 && frame.orthographic == 0u {
+        return;
+    }
+    var first = 0u;
+    var last = frame.cluster_counts.z - 1u;
+    if !everywhere {
+        first = cluster_slice(nearest);
+        last = cluster_slice(farthest);
+        // The slice is a rounded logarithm: one more on either side holds what rounding may have moved.
+        first -= min(first, 1u);
+        last = min(last + 1u, frame.cluster_counts.z - 1u);
+    }
+    let per_slice = frame.cluster_counts.x * frame.cluster_counts.y;
+    let count = per_slice * (last - first + 1u);
+    for (var i = local; i < count; i += 64u) {
+        let in_slice = i % per_slice;
+        let cluster = vec3u(in_slice % frame.cluster_counts.x, in_slice / frame.cluster_counts.x, first + i / per_slice);
+        var touches = everywhere;
+        if !everywhere {
+            let b = cluster_box(cluster, select(max(nearest, 0.0), nearest, frame.orthographic != 0u), farthest);
+            let gap = max(max(b.low - center, center - b.high), vec3f(0.0));
+            touches = dot(gap, gap) <= radius * radius;
+        }
+        if touches {
+            let flat = cluster.x + frame.cluster_counts.x * (cluster.y + frame.cluster_counts.y * cluster.z);
+            atomicOr(&cluster_bits[flat * frame.light_words + index / 32u], 1u << (index % 32u));
+        }
+    }
+}

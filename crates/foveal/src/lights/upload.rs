@@ -1,0 +1,65 @@
+//! Lights as shaders read them.
+
+use bytemuck::{Pod, Zeroable};
+use foveal_scene::{Light, LightKind};
+
+/// More lights would need more workgroups in one dispatch than devices give, many times over.
+pub(crate) const MAX_LIGHTS: usize = 16_384;
+
+/// Irradiance at which a light without a range of its own ends.
+const FAINTEST: f32 = 1.0 / 256.0;
+
+/// Mirrors `Light` in `shared/lighting.wgsl`, where the fields are explained.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+pub(crate) struct LightUniform {
+    pub(crate) position: [f32; 3],
+    pub(crate) range: f32,
+    pub(crate) radiant: [f32; 3],
+    pub(crate) kind: u32,
+    pub(crate) direction: [f32; 3],
+    pub(crate) spot_scale: f32,
+    pub(crate) spot_offset: f32,
+    pub(crate) cone_cos: f32,
+    pub(crate) cone_sin: f32,
+    pub(crate) reserved: f32,
+}
+
+impl LightUniform {
+    pub(crate) fn new(light: &Light) -> Self {
+        let radiant = light.color * light.intensity;
+        // An infinite light would be in every cluster: it ends where it has become invisible.
+        let range = light
+            .range_m
+            .unwrap_or_else(|| (radiant.max_element() / FAINTEST).max(0.0).sqrt());
+        let (kind, spot_scale, spot_offset, cone) = match light.kind {
+            LightKind::Directional => (0, 0.0, 1.0, (-1.0, 0.0)),
+            LightKind::Point => (1, 0.0, 1.0, (-1.0, 0.0)),
+            LightKind::Spot {
+                inner_rad,
+                outer_rad,
+            } => {
+                // KHR_lights_punctual, 'Inner and outer cone angles'.
+                let scale = 1.0 / (inner_rad.cos() - outer_rad.cos()).max(1e-3);
+                (
+                    2,
+                    scale,
+                    -outer_rad.cos() * scale,
+                    (outer_rad.cos(), outer_rad.sin()),
+                )
+            }
+        };
+        Self {
+            position: light.position.to_array(),
+            range: range.max(1e-4),
+            radiant: radiant.to_array(),
+            kind,
+            direction: light.direction.to_array(),
+            spot_scale,
+            spot_offset,
+            cone_cos: cone.0,
+            cone_sin: cone.1,
+            reserved: 0.0,
+        }
+    }
+}

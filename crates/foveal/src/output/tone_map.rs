@@ -1,0 +1,60 @@
+//! Tone map: radiance to display values.
+
+use super::{PICTURE_FORMAT, overwritten};
+use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, sampled};
+use crate::scene::FrameBindings;
+use crate::shader;
+
+/// Exposes, maps and encodes radiance.
+#[derive(Debug)]
+pub(crate) struct ToneMapPass {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl ToneMapPass {
+    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
+        let layout = bind_group_layout(
+            &gpu.device,
+            "tone map",
+            wgpu::ShaderStages::FRAGMENT,
+            &[sampled(wgpu::TextureSampleType::Float {
+                filterable: false,
+            })],
+        );
+        let module = shader::module(gpu, "tone map", shader::TONE_MAP);
+        let pipeline = shader::full_screen(
+            gpu,
+            "tone map",
+            &module,
+            "tone_map",
+            &[frame_layout, &layout],
+            PICTURE_FORMAT,
+            &[],
+        );
+        Self { pipeline, layout }
+    }
+
+    /// Encodes the pass.
+    pub(crate) fn map(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut GpuTimer,
+        frame: &FrameBindings,
+        radiance: &wgpu::TextureView,
+        picture: &wgpu::TextureView,
+    ) {
+        let group = bind_group(
+            &gpu.device,
+            "tone map",
+            &self.layout,
+            &[wgpu::BindingResource::TextureView(radiance)],
+        );
+        let mut pass = timer.render_pass(encoder, "tone map", &[overwritten(picture)], None);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, frame.group(), &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,78 @@
+//! Views: the G-buffer made visible.
+
+use super::{PICTURE_FORMAT, overwritten};
+use crate::geometry::GBuffer;
+use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, sampled};
+use crate::scene::FrameBindings;
+use crate::{View, shader};
+
+/// Draws one of the views other than the finished frame.
+#[derive(Debug)]
+pub(crate) struct ViewPass {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl ViewPass {
+    /// `None` for the finished frame.
+    pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
+        let number = match view {
+            View::Final => return None,
+            View::Depth => 1,
+            View::Normals => 2,
+            View::BaseColor => 3,
+            View::Instances => 4,
+            View::Motion => 5,
+        };
+        let layout = bind_group_layout(
+            &gpu.device,
+            "view",
+            wgpu::ShaderStages::FRAGMENT,
+            &[
+                sampled(wgpu::TextureSampleType::Uint),
+                sampled(wgpu::TextureSampleType::Uint),
+                sampled(wgpu::TextureSampleType::Depth),
+            ],
+        );
+        let module = shader::module(gpu, "view", shader::VIEW);
+        let constants = [("VIEW", f64::from(number))];
+        let pipeline = shader::full_screen(
+            gpu,
+            "view",
+            &module,
+            "view",
+            &[frame_layout, &layout],
+            PICTURE_FORMAT,
+            &constants,
+        );
+        Some(Self { pipeline, layout })
+    }
+
+    /// Encodes the pass.
+    pub(crate) fn show(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut GpuTimer,
+        frame: &FrameBindings,
+        gbuffer: &GBuffer,
+        picture: &wgpu::TextureView,
+    ) {
+        let group = bind_group(
+            &gpu.device,
+            "view",
+            &self.layout,
+            &[
+                &gbuffer.surface_view,
+                &gbuffer.identity_view,
+                &gbuffer.depth_view,
+            ]
+            .map(wgpu::BindingResource::TextureView),
+        );
+        let mut pass = timer.render_pass(encoder, "view", &[overwritten(picture)], None);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, frame.group(), &[]);
+        pass.set_bind_group(1, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,56 @@
+// The G-buffer made visible. After frame and surface.wgsl.
+
+// Which: 1 depth, 2 normals, 3 base colour, 4 instances, 5 motion.
+override VIEW: u32 = 1u;
+
+@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(1) var gbuffer_identity: texture_2d<u32>;
+@group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
+
+@vertex
+fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// Integer hash (Wang 2007), so that every device gives an instance the same colour.
+fn hash(value: u32) -> u32 {
+    var h = (value ^ 61u) ^ (value >> 16u);
+    h *= 9u;
+    h ^= h >> 4u;
+    h *= 0x27d4eb2du;
+    return h ^ (h >> 15u);
+}
+
+@fragment
+fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    let texel = vec2u(position.xy);
+    let depth = textureLoad(gbuffer_depth, texel, 0);
+    let identity = textureLoad(gbuffer_identity, texel, 0).xy;
+    if depth == 0.0 && VIEW != 5u {
+        return vec4f(0.0, 0.0, 0.0, 1.0);
+    }
+    let surface = unpack_surface(textureLoad(gbuffer_surface, texel, 0), vec3f(0.0));
+    switch VIEW {
+        case 1u: {
+            // One grey step per 1/16 of a doubling: white at the near plane, black 16 doublings (65 km at 1 m) on.
+            let doublings = log2(max(view_distance(depth), frame.near) / frame.near);
+            return vec4f(vec3f(1.0 - saturate(doublings / 16.0)), 1.0);
+        }
+        case 2u: {
+            return vec4f(surface.normal * 0.5 + 0.5, 1.0);
+        }
+        case 3u: {
+            // Square roots are close to sRGB; the exact curve would only recode them.
+            let encoded = unpack4x8unorm(textureLoad(gbuffer_surface, texel, 0).x).rgb;
+            return vec4f(encoded, 1.0);
+        }
+        case 4u: {
+            let h = hash(identity.x);
+            return vec4f(0.25 + 0.75 * unpack4x8unorm(h).rgb, 1.0);
+        }
+        default: {
+            let motion = select(unpack2x16float(identity.y), vec2f(0.0), identity.x == 0u);
+            return vec4f(saturate(vec3f(motion / 32.0, 0.0) + 0.5), 1.0);
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! All meshes in one vertex and one index buffer.
+
+use foveal_scene::{Scene, Vertex};
+
+use crate::Error;
+use crate::gpu::Gpu;
+
+const STRIDE: u64 = size_of::<Vertex>() as u64;
+
+/// Slot 0: a vertex; slot 1: its position in the pose of the frame before.
+pub(crate) const VERTEX_LAYOUTS: [Option<wgpu::VertexBufferLayout<'static>>; 2] = [
+    Some(wgpu::VertexBufferLayout {
+        array_stride: STRIDE,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![
+            0 => Float32x3, 1 => Float32x3, 2 => Float32x4, 3 => Float32x4, 4 => Unorm8x4
+        ],
+    }),
+    Some(wgpu::VertexBufferLayout {
+        array_stride: STRIDE,
+        step_mode: wgpu::VertexStepMode::Vertex,
+        attributes: &wgpu::vertex_attr_array![5 => Float32x3],
+    }),
+];
+
+/// Where a mesh lies in the buffers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct MeshRange {
+    pub(crate) first_index: u32,
+    pub(crate) index_count: u32,
+    pub(crate) base_vertex: i32,
+}
+
+/// The scene's vertices and indices.
+#[derive(Debug)]
+pub(crate) struct SceneGeometry {
+    vertices: wgpu::Buffer,
+    /// The pose of the frame before; the same buffer where nothing deforms.
+    previous_vertices: wgpu::Buffer,
+    indices: wgpu::Buffer,
+    meshes: Vec<MeshRange>,
+    deforms: bool,
+}
+
+impl SceneGeometry {
+    pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
+        let vertex_count: usize = scene.meshes.iter().map(|m| m.vertices.len()).sum();
+        let index_count: usize = scene.meshes.iter().map(|m| m.indices.len()).sum();
+        let limit = gpu.device.limits().max_buffer_size;
+        for (what, count, bytes) in [
+            ("vertices", vertex_count, STRIDE),
+            ("indices", index_count, 4),
+        ] {
+            if count as u64 * bytes > limit {
+                return Err(Error::Limit {
+                    what: format!("the scene's number of {what}"),
+                    value: count as u64,
+                    limit: limit / bytes,
+                    hint: String::new(),
+                });
+            }
+        }
+        let vertices = buffer(
+            gpu,
+            "vertices",
+            vertex_count as u64 * STRIDE,
+            wgpu::BufferUsages::VERTEX,
+        );
+        let indices = buffer(
+            gpu,
+            "indices",
+            index_count as u64 * 4,
+            wgpu::BufferUsages::INDEX,
+        );
+        let mut meshes = Vec::with_capacity(scene.meshes.len());
+        let (mut base_vertex, mut first_index) = (0u64, 0u64);
+        for mesh in &scene.meshes {
+            gpu.queue.write_buffer(
+                &vertices,
+                base_vertex * STRIDE,
+                bytemuck::cast_slice(&mesh.vertices),
+            );
+            gpu.queue.write_buffer(
+                &indices,
+                first_index * 4,
+                bytemuck::cast_slice(&mesh.indices),
+            );
+            meshes.push(MeshRange {
+                first_index: first_index as u32,
+                index_count: mesh.indices.len() as u32,
+                base_vertex: base_vertex as i32,
+            });
+            base_vertex += mesh.vertices.len() as u64;
+            first_index += mesh.indices.len() as u64;
+        }
+        let deforms = scene.meshes.iter().any(|m| m.deforms);
+        let previous_vertices = if deforms {
+            let previous = buffer(
+                gpu,
+                "previous vertices",
+                vertices.size(),
+                wgpu::BufferUsages::VERTEX,
+            );
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            encoder.copy_buffer_to_buffer(&vertices, 0, &previous, 0, vertices.size());
+            gpu.queue.submit([encoder.finish()]);
+            previous
+        } else {
+            vertices.clone()
+        };
+        Ok(Self {
+            vertices,
+            previous_vertices,
+            indices,
+            meshes,
+            deforms,
+        })
+    }
+
+    /// Uploads the deformed meshes; the vertices so far become the previous ones.
+    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) {
+        if !self.deforms {
+            return;
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.copy_buffer_to_buffer(
+            &self.vertices,
+            0,
+            &self.previous_vertices,
+            0,
+            self.vertices.size(),
+        );
+        gpu.queue.submit([encoder.finish()]);
+        for (mesh, range) in scene.meshes.iter().zip(&self.meshes) {
+            if mesh.deforms {
+                let offset = range.base_vertex as u64 * STRIDE;
+                gpu.queue.write_buffer(
+                    &self.vertices,
+                    offset,
+                    bytemuck::cast_slice(&mesh.vertices),
+                );
+            }
+        }
+    }
+
+    pub(crate) fn mesh(&self, mesh: u32) -> MeshRange {
+        self.meshes[mesh as usize]
+    }
+
+    /// Binds the buffers to a pass.
+    pub(crate) fn bind(&self, pass: &mut wgpu::RenderPass<'_>) {
+        pass.set_vertex_buffer(0, self.vertices.slice(..));
+        pass.set_vertex_buffer(1, self.previous_vertices.slice(..));
+        pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+}
+
+fn buffer(gpu: &Gpu, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some(label),
+        // An empty buffer cannot be bound.
+        size: bytes.max(STRIDE),
+        usage: usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+        mapped_at_creation: false,
+    })
+}

@@ -1,0 +1,141 @@
+//! A scene on the device: geometry, textures, materials, instances, lights.
+
+mod bindings;
+mod geometry;
+mod instances;
+mod materials;
+mod textures;
+
+pub(crate) use bindings::FrameBindings;
+pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS};
+pub(crate) use instances::InstanceUniform;
+#[cfg(test)]
+pub(crate) use materials::MaterialUniform;
+pub(crate) use materials::{SceneMaterials, material_layout};
+
+use foveal_scene::{Aabb, AlphaMode, Environment, Scene};
+use glam::Mat4;
+
+use crate::gpu::Gpu;
+use crate::lights::{LightUniform, MAX_LIGHTS};
+use crate::{Error, SceneStats, Settings};
+
+/// One instance as drawing sees it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct DrawnInstance {
+    pub(crate) mesh: u32,
+    pub(crate) material: u32,
+    pub(crate) bounds: Aabb,
+    /// Its transform turns front faces into clockwise ones.
+    pub(crate) mirrored: bool,
+    pub(crate) alpha_mode: AlphaMode,
+    pub(crate) double_sided: bool,
+}
+
+/// Everything of a scene that outlives a frame.
+#[derive(Debug)]
+pub(crate) struct SceneOnGpu {
+    pub(crate) geometry: SceneGeometry,
+    pub(crate) materials: SceneMaterials,
+    pub(crate) instances: Vec<DrawnInstance>,
+    pub(crate) lights: Vec<LightUniform>,
+    pub(crate) light_buffer: wgpu::Buffer,
+    pub(crate) environment: Environment,
+    pub(crate) stats: SceneStats,
+    uniforms: Vec<InstanceUniform>,
+}
+
+impl SceneOnGpu {
+    /// Uploads `scene`.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        scene: &Scene,
+        settings: &Settings,
+        material_layout: &wgpu::BindGroupLayout,
+    ) -> Result<Self, Error> {
+        if scene.lights.len() > MAX_LIGHTS {
+            return Err(Error::Limit {
+                what: "the scene's number of lights".to_owned(),
+                value: scene.lights.len() as u64,
+                limit: MAX_LIGHTS as u64,
+                hint: String::new(),
+            });
+        }
+        let lights: Vec<_> = scene.lights.iter().map(LightUniform::new).collect();
+        let light_buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("lights"),
+            size: (lights.len().max(1) * size_of::<LightUniform>()) as u64,
+            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        gpu.queue
+            .write_buffer(&light_buffer, 0, bytemuck::cast_slice(&lights));
+        Ok(Self {
+            geometry: SceneGeometry::new(gpu, scene)?,
+            materials: SceneMaterials::new(gpu, scene, settings, material_layout)?,
+            instances: drawn_instances(scene),
+            lights,
+            light_buffer,
+            environment: scene.environment,
+            stats: SceneStats {
+                meshes: scene.meshes.len() as u64,
+                materials: scene.materials.len() as u64,
+                textures: scene.textures.len() as u64,
+                objects: scene.objects.len() as u64,
+                instances: scene.instances.len() as u64,
+                triangles: scene.triangle_count(),
+                lights: scene.lights.len() as u64,
+            },
+            uniforms: scene
+                .instances
+                .iter()
+                .map(|i| InstanceUniform::still(i.world_from_object))
+                .collect(),
+        })
+    }
+
+    /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
+    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) {
+        for (uniform, instance) in self.uniforms.iter_mut().zip(&scene.instances) {
+            *uniform = uniform.moved_to(instance.world_from_object);
+        }
+        self.instances = drawn_instances(scene);
+        self.lights = scene.lights.iter().map(LightUniform::new).collect();
+        gpu.queue
+            .write_buffer(&self.light_buffer, 0, bytemuck::cast_slice(&self.lights));
+        self.geometry.update_pose(gpu, scene);
+    }
+
+    /// The instances as the vertex shader reads them.
+    pub(crate) fn instance_uniforms(&self) -> &[InstanceUniform] {
+        &self.uniforms
+    }
+}
+
+fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
+    scene
+        .instances
+        .iter()
+        .map(|i| {
+            let material = &scene.materials[i.material as usize];
+            DrawnInstance {
+                mesh: i.mesh,
+                material: i.material,
+                bounds: i.bounds,
+                mirrored: is_mirrored(i.world_from_object),
+                alpha_mode: material.alpha_mode,
+                double_sided: material.double_sided,
+            }
+        })
+        .collect()
+}
+
+fn is_mirrored(world_from_object: Mat4) -> bool {
+    let [x, y, z] = [
+        world_from_object.x_axis,
+        world_from_object.y_axis,
+        world_from_object.z_axis,
+    ]
+    .map(|c| c.truncate());
+    x.dot(y.cross(z)) < 0.0
+}

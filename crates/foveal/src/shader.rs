@@ -1,0 +1,280 @@
+//! Shaders: put together from their parts, one constant per module.
+
+use crate::gpu::Gpu;
+
+/// A shader's parts in the order in which they are joined.
+pub(crate) type Parts = &'static [&'static str];
+
+const FRAME: &str = include_str!("shared/frame.wgsl");
+const SURFACE: &str = include_str!("shared/surface.wgsl");
+const LIGHT: &str = include_str!("shared/light.wgsl");
+const LIGHTING: &str = include_str!("shared/lighting.wgsl");
+const VERTEX: &str = include_str!("shared/vertex.wgsl");
+const MATERIAL: &str = include_str!("shared/material.wgsl");
+const SHADING: &str = include_str!("shading/shading.wgsl");
+
+pub(crate) const GBUFFER: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    MATERIAL,
+    include_str!("geometry/gbuffer.wgsl"),
+];
+pub(crate) const CLUSTERS: Parts = &[FRAME, LIGHT, include_str!("lights/clusters.wgsl")];
+pub(crate) const SHADE_EVERY_PIXEL: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    include_str!("shading/every_pixel.wgsl"),
+];
+pub(crate) const SHADE_LIST: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    include_str!("shading/list.wgsl"),
+];
+pub(crate) const FORWARD: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    VERTEX,
+    MATERIAL,
+    include_str!("forward/forward.wgsl"),
+];
+pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("output/tone_map.wgsl")];
+pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];
+
+/// Joins a shader's parts.
+pub(crate) fn source(parts: Parts) -> String {
+    parts.join("\n")
+}
+
+/// Compiles a shader.
+pub(crate) fn module(gpu: &Gpu, label: &str, parts: Parts) -> wgpu::ShaderModule {
+    gpu.device
+        .create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(label),
+            source: wgpu::ShaderSource::Wgsl(source(parts).into()),
+        })
+}
+
+/// The layout of a pipeline whose bind groups are `groups` in order.
+pub(crate) fn pipeline_layout(
+    gpu: &Gpu,
+    label: &str,
+    groups: &[&wgpu::BindGroupLayout],
+) -> wgpu::PipelineLayout {
+    let groups: Vec<_> = groups.iter().map(|&g| Some(g)).collect();
+    gpu.device
+        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+            label: Some(label),
+            bind_group_layouts: &groups,
+            immediate_size: 0,
+        })
+}
+
+/// A compute pipeline; `constants` sets the module's overrides.
+pub(crate) fn compute(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    groups: &[&wgpu::BindGroupLayout],
+    constants: &[(&str, f64)],
+) -> wgpu::ComputePipeline {
+    gpu.device
+        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: Some(label),
+            layout: Some(&pipeline_layout(gpu, label, groups)),
+            module,
+            entry_point: Some(entry_point),
+            compilation_options: wgpu::PipelineCompilationOptions {
+                constants,
+                ..Default::default()
+            },
+            cache: None,
+        })
+}
+
+/// A pipeline that draws one full-screen triangle into one target.
+pub(crate) fn full_screen(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    groups: &[&wgpu::BindGroupLayout],
+    target: wgpu::TextureFormat,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
+    let compilation_options = wgpu::PipelineCompilationOptions {
+        constants,
+        ..Default::default()
+    };
+    gpu.device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(&pipeline_layout(gpu, label, groups)),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some("full_screen"),
+                compilation_options: compilation_options.clone(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil: None,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(entry_point),
+                compilation_options,
+                targets: &[Some(target.into())],
+            }),
+            multiview_mask: None,
+            cache: None,
+        })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: &[(&str, Parts)] = &[
+        ("gbuffer", GBUFFER),
+        ("clusters", CLUSTERS),
+        ("shade every pixel", SHADE_EVERY_PIXEL),
+        ("shade list", SHADE_LIST),
+        ("forward", FORWARD),
+        ("tone map", TONE_MAP),
+        ("view", VIEW),
+    ];
+
+    fn parse(name: &str, parts: Parts) -> naga::Module {
+        let source = source(parts);
+        naga::front::wgsl::parse_str(&source)
+            .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&source)))
+    }
+
+    #[test]
+    fn every_shader_validates_without_optional_capabilities() {
+        for (name, parts) in ALL {
+            let module = parse(name, parts);
+            naga::valid::Validator::new(
+                naga::valid::ValidationFlags::all(),
+                naga::valid::Capabilities::empty(),
+            )
+            .validate(&module)
+            .unwrap_or_else(|e| panic!("{name}: {}", e.emit_to_string(&source(parts))));
+        }
+    }
+
+    /// Name and offset of each member, and the size, of a WGSL struct.
+    fn layout_of(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
+        let (_, ty) = module
+            .types
+            .iter()
+            .find(|(_, t)| t.name.as_deref() == Some(name))
+            .expect("struct is there");
+        let naga::TypeInner::Struct { members, span } = &ty.inner else {
+            panic!("{name} is no struct")
+        };
+        let members = members
+            .iter()
+            .map(|m| (m.name.clone().unwrap_or_default(), m.offset))
+            .collect();
+        (members, *span)
+    }
+
+    macro_rules! assert_same_layout {
+        ($parts:expr, $wgsl:literal, $rust:ty, [$($field:ident),+ $(,)?]) => {
+            let (members, size) = layout_of(&parse($wgsl, $parts), $wgsl);
+            let ours = vec![$((stringify!($field).to_owned(), std::mem::offset_of!($rust, $field) as u32)),+];
+            assert_eq!(members, ours, "members of {}", $wgsl);
+            assert_eq!(size as usize, size_of::<$rust>(), "size of {}", $wgsl);
+        };
+    }
+
+    #[test]
+    fn shared_structs_lie_the_same_in_rust_and_wgsl() {
+        use crate::frame::FrameUniform;
+        use crate::lights::LightUniform;
+        use crate::scene::{InstanceUniform, MaterialUniform};
+        assert_same_layout!(
+            GBUFFER,
+            "Frame",
+            FrameUniform,
+            [
+                clip_from_world,
+                previous_clip_from_world,
+                world_from_view,
+                view_from_ndc,
+                eye,
+                orthographic,
+                forward,
+                exposure,
+                zenith,
+                near,
+                horizon,
+                depth_range,
+                nadir,
+                tone_map,
+                size,
+                light_count,
+                light_words,
+                cluster_counts,
+                cluster_near,
+                cluster_scale,
+                cluster_tile,
+                reserved,
+            ]
+        );
+        assert_same_layout!(
+            CLUSTERS,
+            "Light",
+            LightUniform,
+            [
+                position,
+                range,
+                radiant,
+                kind,
+                direction,
+                spot_scale,
+                spot_offset,
+                cone_cos,
+                cone_sin,
+                reserved
+            ]
+        );
+        assert_same_layout!(
+            GBUFFER,
+            "Instance",
+            InstanceUniform,
+            [
+                world_x, world_y, world_z, previous_x, previous_y, previous_z
+            ]
+        );
+        assert_same_layout!(
+            GBUFFER,
+            "Material",
+            MaterialUniform,
+            [
+                base_color,
+                emissive,
+                metallic,
+                roughness,
+                normal_scale,
+                occlusion_strength,
+                alpha_cutoff,
+                flags,
+                reserved_0,
+                reserved_1,
+                reserved_2,
+                uv,
+            ]
+        );
+    }
+}

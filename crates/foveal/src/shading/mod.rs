@@ -1,0 +1,10 @@
+//! Deferred shading: lighting evaluated at samples.
+//!
+//! What is shaded is a [`Samples`]: every pixel, or the texels of a list on the device. The lighting code is
+//! one and the same; rate, backend and anti-aliasing differ only in the samples that they ask for.
+
+mod pass;
+mod samples;
+
+pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
+pub(crate) use samples::{SampleList, Samples};

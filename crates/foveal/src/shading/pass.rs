@@ -1,0 +1,171 @@
+//! The shading pass.
+
+use super::{SampleList, Samples};
+use crate::geometry::GBuffer;
+use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, sampled, storage_read};
+use crate::scene::FrameBindings;
+use crate::{LightAssignment, LightingModel, Settings, shader};
+
+/// Linear radiance, before exposure.
+pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
+
+/// Settings that change the lighting shaders.
+pub(crate) fn lighting_constants(settings: &Settings) -> [(&'static str, f64); 2] {
+    [
+        (
+            "BLINN_PHONG",
+            f64::from(u8::from(settings.lighting == LightingModel::BlinnPhong)),
+        ),
+        (
+            "BRUTE",
+            f64::from(u8::from(settings.lights == LightAssignment::Brute)),
+        ),
+    ]
+}
+
+/// Lights samples of the G-buffer.
+#[derive(Debug)]
+pub(crate) struct ShadingPass {
+    every_pixel: wgpu::RenderPipeline,
+    list: wgpu::ComputePipeline,
+    input_layout: wgpu::BindGroupLayout,
+    list_layout: wgpu::BindGroupLayout,
+}
+
+impl ShadingPass {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let input_layout = bind_group_layout(
+            &gpu.device,
+            "shading input",
+            wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
+            &[
+                sampled(wgpu::TextureSampleType::Uint),
+                sampled(wgpu::TextureSampleType::Depth),
+                storage_read(),
+                storage_read(),
+            ],
+        );
+        let list_layout = bind_group_layout(
+            &gpu.device,
+            "sample list",
+            wgpu::ShaderStages::COMPUTE,
+            &[
+                storage_read(),
+                storage_read(),
+                wgpu::BindingType::StorageTexture {
+                    access: wgpu::StorageTextureAccess::WriteOnly,
+                    format: RADIANCE_FORMAT,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                },
+            ],
+        );
+        let constants = lighting_constants(settings);
+        let every_pixel = shader::full_screen(
+            gpu,
+            "shading",
+            &shader::module(gpu, "shading, every pixel", shader::SHADE_EVERY_PIXEL),
+            "shade_pixel",
+            &[frame_layout, &input_layout],
+            RADIANCE_FORMAT,
+            &constants,
+        );
+        let list = shader::compute(
+            gpu,
+            "shading list",
+            &shader::module(gpu, "shading, list", shader::SHADE_LIST),
+            "shade_list",
+            &[frame_layout, &input_layout, &list_layout],
+            &constants,
+        );
+        Self {
+            every_pixel,
+            list,
+            input_layout,
+            list_layout,
+        }
+    }
+
+    /// What the pass reads: the G-buffer and the lights with their clusters.
+    pub(crate) fn input(
+        &self,
+        gpu: &Gpu,
+        gbuffer: &GBuffer,
+        lights: &wgpu::Buffer,
+        cluster_bits: &wgpu::Buffer,
+    ) -> wgpu::BindGroup {
+        bind_group(
+            &gpu.device,
+            "shading input",
+            &self.input_layout,
+            &[
+                wgpu::BindingResource::TextureView(&gbuffer.surface_view),
+                wgpu::BindingResource::TextureView(&gbuffer.depth_view),
+                lights.as_entire_binding(),
+                cluster_bits.as_entire_binding(),
+            ],
+        )
+    }
+
+    /// Encodes the pass: shades `samples` into the same texels of `target`.
+    pub(crate) fn shade(
+        &self,
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        timer: &mut GpuTimer,
+        frame: &FrameBindings,
+        input: &wgpu::BindGroup,
+        samples: Samples<'_>,
+        target: &wgpu::TextureView,
+    ) {
+        match samples {
+            Samples::EveryPixel => {
+                let color = wgpu::RenderPassColorAttachment {
+                    view: target,
+                    depth_slice: None,
+                    resolve_target: None,
+                    // Every texel is written.
+                    ops: wgpu::Operations {
+                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
+                        store: wgpu::StoreOp::Store,
+                    },
+                };
+                let mut pass = timer.render_pass(encoder, "shading", &[Some(color)], None);
+                pass.set_pipeline(&self.every_pixel);
+                pass.set_bind_group(0, frame.group(), &[]);
+                pass.set_bind_group(1, input, &[]);
+                pass.draw(0..3, 0..1);
+            }
+            Samples::List(list) => {
+                let group = self.list_group(gpu, list, target);
+                let mut pass = timer.compute_pass(encoder, "shading");
+                pass.set_pipeline(&self.list);
+                pass.set_bind_group(0, frame.group(), &[]);
+                pass.set_bind_group(1, input, &[]);
+                pass.set_bind_group(2, &group, &[]);
+                pass.dispatch_workgroups_indirect(&list.dispatch, 0);
+            }
+        }
+    }
+
+    fn list_group(
+        &self,
+        gpu: &Gpu,
+        list: &SampleList,
+        target: &wgpu::TextureView,
+    ) -> wgpu::BindGroup {
+        bind_group(
+            &gpu.device,
+            "sample list",
+            &self.list_layout,
+            &[
+                list.texels.as_entire_binding(),
+                list.dispatch.as_entire_binding(),
+                wgpu::BindingResource::TextureView(target),
+            ],
+        )
+    }
+}

@@ -1,0 +1,23 @@
+// Deferred shading: one lighting evaluation per sample. After frame, surface and lighting.wgsl.
+// A sample is a texel of the G-buffer; which samples are shaded is the caller's choice: the fragments of
+// a draw, or a list.
+
+@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(2) var<storage, read> lights: array<Light>;
+@group(1) @binding(3) var<storage, read> cluster_lights: array<u32>;
+
+// Radiance at a G-buffer texel.
+fn shade(texel: vec2u) -> vec4f {
+    let pixel = vec2f(texel) + 0.5;
+    let depth = textureLoad(gbuffer_depth, texel, 0);
+    if depth == 0.0 {
+        let far = world_from_view_position(view_position(pixel, 1.0));
+        return vec4f(environment(-direction_to_eye(far)), 1.0);
+    }
+    let distance = view_distance(depth);
+    let position = world_from_view_position(view_position(pixel, distance));
+    let surface = unpack_surface(textureLoad(gbuffer_surface, texel, 0), position);
+    // The largest half: brighter would become infinite in the target.
+    return vec4f(min(lit(surface, pixel, distance), vec3f(65504.0)), 1.0);
+}

@@ -1,0 +1,28 @@
+// A light, and where along the view axis it is looked for. Needs frame.wgsl. Rust: `lights/upload.rs`.
+
+const LIGHT_DIRECTIONAL: u32 = 0u;
+const LIGHT_SPOT: u32 = 2u;
+
+struct Light {
+    position: vec3f,
+    // Metres; the light is exactly zero from here on.
+    range: f32,
+    // Colour times intensity.
+    radiant: vec3f,
+    // 0 directional, 1 point, 2 spot.
+    kind: u32,
+    // Of the rays' travel, unit.
+    direction: vec3f,
+    // KHR_lights_punctual: attenuation = saturate(cos * scale + offset)^2.
+    spot_scale: f32,
+    spot_offset: f32,
+    // Cosine and sine of the cone's half angle; (-1, 0) without a cone.
+    cone_cos: f32,
+    cone_sin: f32,
+    reserved: f32,
+}
+
+fn cluster_slice(distance: f32) -> u32 {
+    let slice = log2(max(distance / frame.cluster_near, 1e-6)) * frame.cluster_scale + 1.0;
+    return u32(clamp(slice, 0.0, f32(frame.cluster_counts.z - 1u)));
+}

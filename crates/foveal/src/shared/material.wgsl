@@ -1,0 +1,94 @@
+// The material at a rasterized point. Needs frame.wgsl and surface.wgsl. Rust: `scene/materials.rs`.
+
+const HAS_BASE_COLOR: u32 = 1u;
+const HAS_METALLIC_ROUGHNESS: u32 = 2u;
+const HAS_NORMAL: u32 = 4u;
+const HAS_OCCLUSION: u32 = 8u;
+const HAS_EMISSIVE: u32 = 16u;
+const IS_UNLIT: u32 = 32u;
+
+struct UvMap {
+    // u = dot(x.xyz, (u0, v0, 1)); x.w is the UV set.
+    x: vec4f,
+    y: vec4f,
+}
+
+struct Material {
+    base_color: vec4f,
+    emissive: vec3f,
+    metallic: f32,
+    roughness: f32,
+    normal_scale: f32,
+    occlusion_strength: f32,
+    // 0 where alpha is no mask.
+    alpha_cutoff: f32,
+    flags: u32,
+    reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
+    // Base colour, metallic-roughness, normal, occlusion, emissive.
+    uv: array<UvMap, 5>,
+}
+
+@group(1) @binding(0) var<uniform> material: Material;
+@group(1) @binding(1) var base_color_texture: texture_2d<f32>;
+@group(1) @binding(2) var base_color_sampler: sampler;
+@group(1) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
+@group(1) @binding(4) var metallic_roughness_sampler: sampler;
+@group(1) @binding(5) var normal_texture: texture_2d<f32>;
+@group(1) @binding(6) var normal_sampler: sampler;
+@group(1) @binding(7) var occlusion_texture: texture_2d<f32>;
+@group(1) @binding(8) var occlusion_sampler: sampler;
+@group(1) @binding(9) var emissive_texture: texture_2d<f32>;
+@group(1) @binding(10) var emissive_sampler: sampler;
+
+fn uv_of(slot: u32, uv: vec4f) -> vec2f {
+    let map = material.uv[slot];
+    let p = vec3f(select(uv.xy, uv.zw, map.x.w > 0.5), 1.0);
+    return vec2f(dot(map.x.xyz, p), dot(map.y.xyz, p));
+}
+
+struct Shaded {
+    surface: Surface,
+    alpha: f32,
+}
+
+// `bitangent_sign` is glTF's tangent.w; `front` tells which side is seen.
+fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color: vec4f, front: bool) -> Shaded {
+    var base = material.base_color * color;
+    if (material.flags & HAS_BASE_COLOR) != 0u {
+        base *= textureSample(base_color_texture, base_color_sampler, uv_of(0u, uv));
+    }
+    var metallic = material.metallic;
+    var roughness = material.roughness;
+    if (material.flags & HAS_METALLIC_ROUGHNESS) != 0u {
+        let texel = textureSample(metallic_roughness_texture, metallic_roughness_sampler, uv_of(1u, uv));
+        roughness *= texel.g;
+        metallic *= texel.b;
+    }
+    let facing = select(-1.0, 1.0, front);
+    var n = normalize(normal) * facing;
+    if (material.flags & HAS_NORMAL) != 0u {
+        let texel = textureSample(normal_texture, normal_sampler, uv_of(2u, uv)).xyz * 2.0 - 1.0;
+        if dot(tangent.xyz, tangent.xyz) > 0.0 {
+            // As MikkTSpace bakes: interpolated vectors, not normalized before the sum.
+            let bitangent = cross(normal, tangent.xyz) * tangent.w;
+            let scaled = vec3f(texel.xy * material.normal_scale, texel.z);
+            n = normalize(scaled.x * tangent.xyz + scaled.y * bitangent + scaled.z * normal) * facing;
+        }
+    }
+    var occlusion = 1.0;
+    if (material.flags & HAS_OCCLUSION) != 0u {
+        let texel = textureSample(occlusion_texture, occlusion_sampler, uv_of(3u, uv));
+        occlusion = 1.0 + material.occlusion_strength * (texel.r - 1.0);
+    }
+    var emissive = material.emissive;
+    if (material.flags & HAS_EMISSIVE) != 0u {
+        emissive *= textureSample(emissive_texture, emissive_sampler, uv_of(4u, uv)).rgb;
+    }
+    if (material.flags & IS_UNLIT) != 0u {
+        // Black to all light: what is left is the colour itself.
+        return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb), base.a);
+    }
+    return Shaded(Surface(position, n, base.rgb, saturate(metallic), saturate(roughness), occlusion, emissive), base.a);
+}

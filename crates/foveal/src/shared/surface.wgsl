@@ -1,0 +1,78 @@
+// A point on a surface, ready to be lit, and its packed form in the G-buffer.
+
+struct Surface {
+    // World space.
+    position: vec3f,
+    // Unit, world space, turned to the viewer.
+    normal: vec3f,
+    base_color: vec3f,
+    metallic: f32,
+    // Perceptual.
+    roughness: f32,
+    occlusion: f32,
+    emissive: vec3f,
+}
+
+fn sign_not_zero(v: vec2f) -> vec2f {
+    return select(vec2f(-1.0), vec2f(1.0), v >= vec2f(0.0));
+}
+
+// Octahedral map (Cigolle et al. 2014, 'A Survey of Efficient Representations for Independent Unit Vectors').
+fn octahedral_from_unit(n: vec3f) -> vec2f {
+    let p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    return select((1.0 - abs(p.yx)) * sign_not_zero(p), p, n.z >= 0.0);
+}
+
+fn unit_from_octahedral(e: vec2f) -> vec3f {
+    let z = 1.0 - abs(e.x) - abs(e.y);
+    let xy = select((1.0 - abs(e.yx)) * sign_not_zero(e), e, z >= 0.0);
+    return normalize(vec3f(xy, z));
+}
+
+// Shared-exponent colour: 9 bits a channel, 5 bits of exponent, as in EXT_texture_shared_exponent.
+fn pack_shared_exponent(color: vec3f) -> u32 {
+    let c = clamp(color, vec3f(0.0), vec3f(65408.0));
+    let largest = max(c.x, max(c.y, c.z));
+    // Exponent field of the float: floor(log2) without a logarithm.
+    let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
+    var exponent = max(-16, floor_log2) + 16;
+    if u32(largest * exp2_integer(24 - exponent) + 0.5) == 512u {
+        exponent += 1;
+    }
+    let m = vec3u(c * exp2_integer(24 - exponent) + 0.5);
+    return m.x | (m.y << 9u) | (m.z << 18u) | (u32(exponent) << 27u);
+}
+
+fn unpack_shared_exponent(word: u32) -> vec3f {
+    let m = vec3f(vec3u(word, word >> 9u, word >> 18u) & vec3u(511u));
+    return m * exp2_integer(i32(word >> 27u) - 24);
+}
+
+// 2^n for -126 <= n <= 127, exactly.
+fn exp2_integer(n: i32) -> f32 {
+    return bitcast<f32>(u32(n + 127) << 23u);
+}
+
+// x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic, roughness.
+fn pack_surface(s: Surface) -> vec4u {
+    return vec4u(
+        pack4x8unorm(vec4f(sqrt(saturate(s.base_color)), s.occlusion)),
+        pack2x16snorm(octahedral_from_unit(s.normal)),
+        pack_shared_exponent(s.emissive),
+        pack4x8unorm(vec4f(s.metallic, s.roughness, 0.0, 0.0)),
+    );
+}
+
+fn unpack_surface(words: vec4u, position: vec3f) -> Surface {
+    let color = unpack4x8unorm(words.x);
+    let material = unpack4x8unorm(words.w);
+    return Surface(
+        position,
+        unit_from_octahedral(unpack2x16snorm(words.y)),
+        color.rgb * color.rgb,
+        material.x,
+        material.y,
+        color.a,
+        unpack_shared_exponent(words.z),
+    );
+}

@@ -1,0 +1,60 @@
+//! What a frame is drawn into.
+
+use crate::geometry::GBuffer;
+use crate::gpu::Gpu;
+use crate::output::PICTURE_FORMAT;
+use crate::shading::RADIANCE_FORMAT;
+
+/// The targets of one frame size.
+#[derive(Debug)]
+pub(crate) struct Targets {
+    pub(crate) gbuffer: GBuffer,
+    /// Linear radiance, before exposure.
+    pub(crate) radiance: wgpu::Texture,
+    pub(crate) radiance_view: wgpu::TextureView,
+    /// The picture.
+    pub(crate) picture: wgpu::Texture,
+    pub(crate) picture_view: wgpu::TextureView,
+}
+
+impl Targets {
+    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+        let target = |label, format, usage| {
+            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+                label: Some(label),
+                size: wgpu::Extent3d {
+                    width,
+                    height,
+                    depth_or_array_layers: 1,
+                },
+                mip_level_count: 1,
+                sample_count: 1,
+                dimension: wgpu::TextureDimension::D2,
+                format,
+                usage: usage
+                    | wgpu::TextureUsages::RENDER_ATTACHMENT
+                    | wgpu::TextureUsages::COPY_SRC,
+                view_formats: &[],
+            });
+            let view = texture.create_view(&Default::default());
+            (texture, view)
+        };
+        let (radiance, radiance_view) = target(
+            "radiance",
+            RADIANCE_FORMAT,
+            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
+        );
+        let (picture, picture_view) = target(
+            "picture",
+            PICTURE_FORMAT,
+            wgpu::TextureUsages::TEXTURE_BINDING,
+        );
+        Self {
+            gbuffer: GBuffer::new(gpu, width, height),
+            radiance,
+            radiance_view,
+            picture,
+            picture_view,
+        }
+    }
+}
