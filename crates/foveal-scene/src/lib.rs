@@ -6,6 +6,8 @@
 //! faces, column vectors; matrices are named *to_from* (`world_from_object`).
 #![forbid(unsafe_code)]
 
+pub mod generate;
+
 mod bounds;
 mod camera;
 mod light;
