@@ -1,0 +1,50 @@
+//! Renders a generated scene headless: `cargo run --release -p foveal --example render_to_png -- cornell out.png`.
+
+use foveal::{Frame, Gpu, Renderer, Settings};
+use foveal_scene::generate;
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let name = arguments.next().unwrap_or_else(|| "cornell".to_owned());
+    let path = arguments.next().unwrap_or_else(|| "out.png".to_owned());
+    pollster::block_on(async {
+        let scene = generate::by_name(&name)?;
+        let camera = scene
+            .cameras
+            .first()
+            .cloned()
+            .unwrap_or_else(|| scene.overview_camera());
+        let settings = Settings {
+            width: 960,
+            height: 540,
+            ..Settings::default()
+        };
+
+        let gpu = Gpu::open(None).await?;
+        let mut renderer = Renderer::new(&gpu, &settings, None).await?;
+        renderer.set_scene(&scene).await?;
+        let stats = renderer
+            .render(&Frame {
+                camera: &camera,
+                previous_camera: None,
+            })
+            .await?;
+        let pixels = renderer.read_picture().await?;
+
+        image::save_buffer(
+            &path,
+            &pixels,
+            settings.width,
+            settings.height,
+            image::ColorType::Rgba8,
+        )?;
+        println!(
+            "{path}: {} draws, {} triangles",
+            stats.draws, stats.triangles
+        );
+        for pass in &stats.gpu_ms {
+            println!("{:>20} {:8.2} ms", pass.name, pass.ms);
+        }
+        Ok(())
+    })
+}
