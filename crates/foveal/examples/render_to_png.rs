@@ -1,5 +1,7 @@
 //! Renders a generated scene headless: `cargo run --release -p foveal --example render_to_png -- cornell out.png`.
 
+#![allow(clippy::print_stdout, reason = "an example says what it made")]
+
 use foveal::{Frame, Gpu, Renderer, Settings};
 use foveal_scene::generate;
 

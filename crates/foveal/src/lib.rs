@@ -14,6 +14,7 @@ mod frame;
 mod geometry;
 mod lights;
 mod output;
+mod recorder;
 mod renderer;
 mod scene;
 mod settings;
@@ -21,6 +22,8 @@ mod shader;
 mod shading;
 mod stats;
 mod targets;
+#[cfg(test)]
+mod testing;
 
 pub use error::Error;
 pub use gpu::Gpu;

@@ -8,6 +8,7 @@ use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_texture, submitted_work_done};
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::output::{ToneMapPass, ViewPass};
+use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{Samples, ShadingPass};
 use crate::targets::Targets;
@@ -243,65 +244,28 @@ impl Renderer {
         cpu.stage("upload");
 
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let encoder_ref = &mut encoder;
-        lights.assign(
+        let recorder = &mut Recorder {
             gpu,
-            encoder_ref,
+            encoder: &mut encoder,
             timer,
-            frame_bindings,
-            &scene.light_buffer,
-            &clusters,
-        );
-        geometry.draw(
-            encoder_ref,
-            timer,
-            frame_bindings,
-            scene,
-            draw_list,
-            &targets.gbuffer,
-        );
+            frame: frame_bindings,
+        };
+        lights.assign(recorder, &scene.light_buffer, &clusters);
+        geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
         if let Some(view) = view {
-            view.show(
-                gpu,
-                encoder_ref,
-                timer,
-                frame_bindings,
-                &targets.gbuffer,
-                &targets.picture_view,
-            );
+            view.show(recorder, &targets.gbuffer, &targets.picture_view);
         } else {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            let samples = Samples::EveryPixel;
             shading.shade(
-                gpu,
-                encoder_ref,
-                timer,
-                frame_bindings,
+                recorder,
                 &input,
-                samples,
+                Samples::EveryPixel,
                 &targets.radiance_view,
             );
-            forward.draw(
-                gpu,
-                encoder_ref,
-                timer,
-                frame_bindings,
-                scene,
-                lights.bits(),
-                draw_list,
-                &targets.gbuffer,
-                &targets.radiance_view,
-            );
-            tone_map.map(
-                gpu,
-                encoder_ref,
-                timer,
-                frame_bindings,
-                &targets.radiance_view,
-                &targets.picture_view,
-            );
+            forward.draw(recorder, scene, lights.bits(), draw_list, targets);
+            tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
         }
-        timer.resolve(encoder_ref);
+        timer.resolve(&mut encoder);
         cpu.stage("encode");
 
         gpu.queue.submit([encoder.finish()]);
@@ -315,12 +279,7 @@ impl Renderer {
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
         let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
-        let bytes = read_texture(
-            &self.gpu,
-            &self.stages.targets.picture,
-            wgpu::TextureAspect::All,
-        )
-        .await;
+        let bytes = read_texture(&self.gpu, self.stages.targets.picture_view.texture()).await;
         trap.finish().await?;
         bytes
     }
@@ -329,5 +288,52 @@ impl Renderer {
     #[must_use]
     pub fn scene_stats(&self) -> SceneStats {
         self.scene.stats
+    }
+}
+
+#[cfg(test)]
+impl Renderer {
+    pub(crate) fn targets(&self) -> &Targets {
+        &self.stages.targets
+    }
+
+    pub(crate) fn lights(&self) -> (&LightAssigner, &[crate::lights::LightUniform]) {
+        (&self.stages.lights, &self.scene.lights)
+    }
+
+    /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.
+    pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
+        let Self {
+            gpu,
+            timer,
+            frame_bindings,
+            stages,
+            scene,
+            ..
+        } = self;
+        let targets = &stages.targets;
+        let list = crate::shading::SampleList::from_texels(gpu, texels);
+        let input = stages.shading.input(
+            gpu,
+            &targets.gbuffer,
+            &scene.light_buffer,
+            stages.lights.bits(),
+        );
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorder = &mut Recorder {
+            gpu,
+            encoder: &mut encoder,
+            timer,
+            frame: frame_bindings,
+        };
+        stages.shading.shade(
+            recorder,
+            &input,
+            Samples::List(&list),
+            &targets.radiance_view,
+        );
+        timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame();
     }
 }

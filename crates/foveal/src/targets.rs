@@ -10,10 +10,8 @@ use crate::shading::RADIANCE_FORMAT;
 pub(crate) struct Targets {
     pub(crate) gbuffer: GBuffer,
     /// Linear radiance, before exposure.
-    pub(crate) radiance: wgpu::Texture,
     pub(crate) radiance_view: wgpu::TextureView,
     /// The picture.
-    pub(crate) picture: wgpu::Texture,
     pub(crate) picture_view: wgpu::TextureView,
 }
 
@@ -36,25 +34,17 @@ impl Targets {
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             });
-            let view = texture.create_view(&Default::default());
-            (texture, view)
+            texture.create_view(&Default::default())
         };
-        let (radiance, radiance_view) = target(
-            "radiance",
-            RADIANCE_FORMAT,
-            wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING,
-        );
-        let (picture, picture_view) = target(
-            "picture",
-            PICTURE_FORMAT,
-            wgpu::TextureUsages::TEXTURE_BINDING,
-        );
+        let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
         Self {
             gbuffer: GBuffer::new(gpu, width, height),
-            radiance,
-            radiance_view,
-            picture,
-            picture_view,
+            radiance_view: target(
+                "radiance",
+                RADIANCE_FORMAT,
+                sampled | wgpu::TextureUsages::STORAGE_BINDING,
+            ),
+            picture_view: target("picture", PICTURE_FORMAT, sampled),
         }
     }
 }

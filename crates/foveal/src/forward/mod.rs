@@ -1,9 +1,11 @@
 //! Forward pass: blended surfaces over the deferred picture, back to front.
 
-use crate::geometry::{DrawList, GBuffer, PipelineKey, PipelineRecipe, Pipelines};
-use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, storage_read};
-use crate::scene::{FrameBindings, SceneOnGpu};
+use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
+use crate::recorder::{Recorder, drawn_over};
+use crate::scene::SceneOnGpu;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::targets::Targets;
 use crate::{Settings, shader};
 
 /// Draws blended surfaces.
@@ -60,27 +62,19 @@ impl ForwardPass {
     }
 
     /// Encodes the pass, unless nothing is blended.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a pass names all that it reads and writes"
-    )]
     pub(crate) fn draw(
         &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: &mut GpuTimer,
-        frame: &FrameBindings,
+        recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         cluster_bits: &wgpu::Buffer,
         list: &DrawList,
-        gbuffer: &GBuffer,
-        target: &wgpu::TextureView,
+        targets: &Targets,
     ) {
         if list.blended.is_empty() {
             return;
         }
         let lights = bind_group(
-            &gpu.device,
+            &recorder.gpu.device,
             "forward lights",
             &self.lights_layout,
             &[
@@ -88,23 +82,17 @@ impl ForwardPass {
                 cluster_bits.as_entire_binding(),
             ],
         );
-        let color = wgpu::RenderPassColorAttachment {
-            view: target,
-            depth_slice: None,
-            resolve_target: None,
-            ops: wgpu::Operations {
-                load: wgpu::LoadOp::Load,
-                store: wgpu::StoreOp::Store,
-            },
-        };
         let depth = wgpu::RenderPassDepthStencilAttachment {
-            view: &gbuffer.depth_view,
+            view: &targets.gbuffer.depth_view,
             // Read-only: it is sampled by other passes of the frame.
             depth_ops: None,
             stencil_ops: None,
         };
-        let mut pass = timer.render_pass(encoder, "forward", &[Some(color)], Some(depth));
-        pass.set_bind_group(0, frame.group(), &[]);
+        let mut pass = recorder.render_pass(
+            "forward",
+            &[drawn_over(&targets.radiance_view)],
+            Some(depth),
+        );
         pass.set_bind_group(2, &lights, &[]);
         scene.geometry.bind(&mut pass);
         DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines);

@@ -1,8 +1,9 @@
 //! The G-buffer and the pass that fills it.
 
 use super::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
-use crate::gpu::{Gpu, GpuTimer};
-use crate::scene::{FrameBindings, SceneOnGpu};
+use crate::gpu::Gpu;
+use crate::recorder::{Recorder, overwritten};
+use crate::scene::SceneOnGpu;
 use crate::shader;
 
 /// Reversed: 1 at the near plane, 0 where nothing is.
@@ -15,13 +16,10 @@ const IDENTITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 pub(crate) struct GBuffer {
     /// Base colour and occlusion, normal, emissive, metallic and roughness: `pack_surface` in
     /// `shared/surface.wgsl`.
-    pub(crate) surface: wgpu::Texture,
     pub(crate) surface_view: wgpu::TextureView,
     /// Instance number + 1, and motion in pixels as two halves.
-    pub(crate) identity: wgpu::Texture,
     pub(crate) identity_view: wgpu::TextureView,
     /// Reversed depth.
-    pub(crate) depth: wgpu::Texture,
     pub(crate) depth_view: wgpu::TextureView,
 }
 
@@ -44,19 +42,12 @@ impl GBuffer {
                     | wgpu::TextureUsages::COPY_SRC,
                 view_formats: &[],
             });
-            let view = texture.create_view(&Default::default());
-            (texture, view)
+            texture.create_view(&Default::default())
         };
-        let (surface, surface_view) = target("G-buffer surface", SURFACE_FORMAT);
-        let (identity, identity_view) = target("G-buffer identity", IDENTITY_FORMAT);
-        let (depth, depth_view) = target("G-buffer depth", DEPTH_FORMAT);
         Self {
-            surface,
-            surface_view,
-            identity,
-            identity_view,
-            depth,
-            depth_view,
+            surface_view: target("G-buffer surface", SURFACE_FORMAT),
+            identity_view: target("G-buffer identity", IDENTITY_FORMAT),
+            depth_view: target("G-buffer depth", DEPTH_FORMAT),
         }
     }
 }
@@ -97,24 +88,11 @@ impl GeometryPass {
     /// Encodes the pass.
     pub(crate) fn draw(
         &self,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: &mut GpuTimer,
-        frame: &FrameBindings,
+        recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         list: &DrawList,
         target: &GBuffer,
     ) {
-        let cleared = |view| {
-            Some(wgpu::RenderPassColorAttachment {
-                view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                    store: wgpu::StoreOp::Store,
-                },
-            })
-        };
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &target.depth_view,
             depth_ops: Some(wgpu::Operations {
@@ -124,11 +102,10 @@ impl GeometryPass {
             stencil_ops: None,
         };
         let colors = [
-            cleared(&target.surface_view),
-            cleared(&target.identity_view),
+            overwritten(&target.surface_view),
+            overwritten(&target.identity_view),
         ];
-        let mut pass = timer.render_pass(encoder, "geometry", &colors, Some(depth));
-        pass.set_bind_group(0, frame.group(), &[]);
+        let mut pass = recorder.render_pass("geometry", &colors, Some(depth));
         scene.geometry.bind(&mut pass);
         DrawList::issue(&list.solid, &mut pass, scene, &self.pipelines);
     }

@@ -3,6 +3,8 @@
 mod draw_list;
 mod gbuffer;
 mod pipelines;
+#[cfg(test)]
+mod twin;
 
 pub(crate) use draw_list::DrawList;
 pub(crate) use gbuffer::{GBuffer, GeometryPass};

@@ -63,28 +63,14 @@ pub(crate) async fn submitted_work_done(gpu: &Gpu) -> Result<(), Error> {
 }
 
 /// The bytes of mip 0 of a texture, rows top to bottom without padding.
-pub(crate) async fn read_texture(
-    gpu: &Gpu,
-    texture: &wgpu::Texture,
-    aspect: wgpu::TextureAspect,
-) -> Result<Vec<u8>, Error> {
-    let bytes_per_texel = texture.format().block_copy_size(Some(aspect)).unwrap_or(4);
+pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
+    let bytes_per_texel = texture.format().block_copy_size(None).unwrap_or(4);
     let row = texture.width() * bytes_per_texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some("read-back"),
-        size: u64::from(padded) * u64::from(texture.height()),
-        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    });
+    let buffer = read_back_buffer(gpu, u64::from(padded) * u64::from(texture.height()));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        wgpu::TexelCopyTextureInfo {
-            texture,
-            mip_level: 0,
-            origin: wgpu::Origin3d::ZERO,
-            aspect,
-        },
+        texture.as_image_copy(),
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout {
@@ -96,6 +82,34 @@ pub(crate) async fn read_texture(
         texture.size(),
     );
     gpu.queue.submit([encoder.finish()]);
+    let bytes = map(gpu, &buffer).await?;
+    let rows = bytes.chunks_exact(padded as usize);
+    Ok(rows
+        .flat_map(|padded_row| &padded_row[..row as usize])
+        .copied()
+        .collect())
+}
+
+/// The bytes of a buffer that can be copied from.
+#[cfg(test)]
+pub(crate) async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
+    let copy = read_back_buffer(gpu, buffer.size());
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+    gpu.queue.submit([encoder.finish()]);
+    map(gpu, &copy).await
+}
+
+fn read_back_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("read-back"),
+        size,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
+}
+
+async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
     let mapped = Handover::new();
     let given = mapped.clone();
     buffer.map_async(wgpu::MapMode::Read, .., move |result| given.give(result));
@@ -110,10 +124,5 @@ pub(crate) async fn read_texture(
     let view = buffer
         .get_mapped_range(..)
         .map_err(|cause| failed(cause.to_string()))?;
-    let rows: Vec<u8> = view
-        .chunks_exact(padded as usize)
-        .flat_map(|padded_row| &padded_row[..row as usize])
-        .copied()
-        .collect();
-    Ok(rows)
+    Ok(view.to_vec())
 }

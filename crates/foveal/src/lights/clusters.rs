@@ -3,8 +3,8 @@
 use foveal_scene::{Camera, Projection};
 
 use super::LightUniform;
-use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, storage_read, storage_write};
-use crate::scene::FrameBindings;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, storage_write};
+use crate::recorder::Recorder;
 use crate::shader;
 
 /// Slices along the view axis.
@@ -126,26 +126,24 @@ impl LightAssigner {
     /// Encodes the pass. `lights` holds `grid.light_count` lights.
     pub(crate) fn assign(
         &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: &mut GpuTimer,
-        frame: &FrameBindings,
+        recorder: &mut Recorder<'_>,
         lights: &wgpu::Buffer,
         grid: &ClusterGrid,
     ) {
-        encoder.clear_buffer(&self.bits, 0, Some(grid.total_words().max(1) * 4));
+        recorder
+            .encoder
+            .clear_buffer(&self.bits, 0, Some(grid.total_words().max(1) * 4));
         if grid.light_count == 0 {
             return;
         }
         let group = bind_group(
-            &gpu.device,
+            &recorder.gpu.device,
             "light assignment",
             &self.layout,
             &[lights.as_entire_binding(), self.bits.as_entire_binding()],
         );
-        let mut pass = timer.compute_pass(encoder, "light assignment");
+        let mut pass = recorder.compute_pass("light assignment");
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, frame.group(), &[]);
         pass.set_bind_group(1, &group, &[]);
         pass.dispatch_workgroups(grid.light_count, 1, 1);
     }

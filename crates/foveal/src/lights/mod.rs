@@ -5,6 +5,8 @@
 //! nothing overflows, and lights come out in ascending order.
 
 mod clusters;
+#[cfg(test)]
+mod twin;
 mod upload;
 
 pub(crate) use clusters::{ClusterGrid, LightAssigner};

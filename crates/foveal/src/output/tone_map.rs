@@ -1,8 +1,8 @@
 //! Tone map: radiance to display values.
 
-use super::{PICTURE_FORMAT, overwritten};
-use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, sampled};
-use crate::scene::FrameBindings;
+use super::PICTURE_FORMAT;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
+use crate::recorder::{Recorder, overwritten};
 use crate::shader;
 
 /// Exposes, maps and encodes radiance.
@@ -38,22 +38,18 @@ impl ToneMapPass {
     /// Encodes the pass.
     pub(crate) fn map(
         &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: &mut GpuTimer,
-        frame: &FrameBindings,
+        recorder: &mut Recorder<'_>,
         radiance: &wgpu::TextureView,
         picture: &wgpu::TextureView,
     ) {
         let group = bind_group(
-            &gpu.device,
+            &recorder.gpu.device,
             "tone map",
             &self.layout,
             &[wgpu::BindingResource::TextureView(radiance)],
         );
-        let mut pass = timer.render_pass(encoder, "tone map", &[overwritten(picture)], None);
+        let mut pass = recorder.render_pass("tone map", &[overwritten(picture)], None);
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, frame.group(), &[]);
         pass.set_bind_group(1, &group, &[]);
         pass.draw(0..3, 0..1);
     }

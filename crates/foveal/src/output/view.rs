@@ -1,9 +1,9 @@
 //! Views: the G-buffer made visible.
 
-use super::{PICTURE_FORMAT, overwritten};
+use super::PICTURE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, sampled};
-use crate::scene::FrameBindings;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
+use crate::recorder::{Recorder, overwritten};
 use crate::{View, shader};
 
 /// Draws one of the views other than the finished frame.
@@ -51,15 +51,12 @@ impl ViewPass {
     /// Encodes the pass.
     pub(crate) fn show(
         &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: &mut GpuTimer,
-        frame: &FrameBindings,
+        recorder: &mut Recorder<'_>,
         gbuffer: &GBuffer,
         picture: &wgpu::TextureView,
     ) {
         let group = bind_group(
-            &gpu.device,
+            &recorder.gpu.device,
             "view",
             &self.layout,
             &[
@@ -69,9 +66,8 @@ impl ViewPass {
             ]
             .map(wgpu::BindingResource::TextureView),
         );
-        let mut pass = timer.render_pass(encoder, "view", &[overwritten(picture)], None);
+        let mut pass = recorder.render_pass("view", &[overwritten(picture)], None);
         pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, frame.group(), &[]);
         pass.set_bind_group(1, &group, &[]);
         pass.draw(0..3, 0..1);
     }

@@ -5,6 +5,8 @@
 
 mod pass;
 mod samples;
+#[cfg(test)]
+pub(crate) mod twin;
 
 pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};

@@ -2,8 +2,8 @@
 
 use super::{SampleList, Samples};
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, GpuTimer, bind_group, bind_group_layout, sampled, storage_read};
-use crate::scene::FrameBindings;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
+use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
 /// Linear radiance, before exposure.
@@ -113,37 +113,23 @@ impl ShadingPass {
     /// Encodes the pass: shades `samples` into the same texels of `target`.
     pub(crate) fn shade(
         &self,
-        gpu: &Gpu,
-        encoder: &mut wgpu::CommandEncoder,
-        timer: &mut GpuTimer,
-        frame: &FrameBindings,
+        recorder: &mut Recorder<'_>,
         input: &wgpu::BindGroup,
         samples: Samples<'_>,
         target: &wgpu::TextureView,
     ) {
         match samples {
             Samples::EveryPixel => {
-                let color = wgpu::RenderPassColorAttachment {
-                    view: target,
-                    depth_slice: None,
-                    resolve_target: None,
-                    // Every texel is written.
-                    ops: wgpu::Operations {
-                        load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT),
-                        store: wgpu::StoreOp::Store,
-                    },
-                };
-                let mut pass = timer.render_pass(encoder, "shading", &[Some(color)], None);
+                // Every texel is written.
+                let mut pass = recorder.render_pass("shading", &[overwritten(target)], None);
                 pass.set_pipeline(&self.every_pixel);
-                pass.set_bind_group(0, frame.group(), &[]);
                 pass.set_bind_group(1, input, &[]);
                 pass.draw(0..3, 0..1);
             }
             Samples::List(list) => {
-                let group = self.list_group(gpu, list, target);
-                let mut pass = timer.compute_pass(encoder, "shading");
+                let group = self.list_group(recorder.gpu, list, target);
+                let mut pass = recorder.compute_pass("shading");
                 pass.set_pipeline(&self.list);
-                pass.set_bind_group(0, frame.group(), &[]);
                 pass.set_bind_group(1, input, &[]);
                 pass.set_bind_group(2, &group, &[]);
                 pass.dispatch_workgroups_indirect(&list.dispatch, 0);

@@ -1,4 +1,11 @@
 //! Which samples are shaded.
+#![cfg_attr(
+    not(test),
+    expect(
+        dead_code,
+        reason = "the frame shades every pixel until a rate map asks for less"
+    )
+)]
 
 use crate::gpu::Gpu;
 

@@ -1,0 +1,152 @@
+//! The CPU twin of the geometry pass: a ray per pixel against every triangle.
+
+use foveal_scene::{AlphaMode, Camera, Projection, Scene, generate};
+use glam::{Mat3, Vec2, Vec3};
+
+use crate::shading::twin::{position_at, unpack_surface};
+use crate::testing::{rendered, small, texels};
+
+struct Hit {
+    distance: f32,
+    instance: u32,
+    normal: Vec3,
+    /// Distance of the hit from the triangle's edges, in barycentric units.
+    inside: f32,
+}
+
+/// Möller and Trumbore 1997; two-sided where the material is.
+fn intersect(scene: &Scene, origin: Vec3, direction: Vec3) -> Option<Hit> {
+    let mut nearest: Option<Hit> = None;
+    for (index, instance) in (1..).zip(&scene.instances) {
+        let mesh = &scene.meshes[instance.mesh as usize];
+        let material = &scene.materials[instance.material as usize];
+        if material.alpha_mode == AlphaMode::Blend {
+            continue;
+        }
+        let m = instance.world_from_object;
+        let mirrored = m.determinant() < 0.0;
+        let normals = Mat3::from_mat4(m).inverse().transpose();
+        for triangle in mesh.indices.chunks_exact(3) {
+            let v = [0, 1, 2].map(|k| &mesh.vertices[triangle[k] as usize]);
+            let p = v.map(|v| m.transform_point3(v.position.into()));
+            let (e1, e2) = (p[1] - p[0], p[2] - p[0]);
+            let q = direction.cross(e2);
+            let det = e1.dot(q);
+            let front = (det > 0.0) != mirrored;
+            if det.abs() < 1e-12 || !(front || material.double_sided) {
+                continue;
+            }
+            let s = origin - p[0];
+            let b1 = s.dot(q) / det;
+            let r = s.cross(e1);
+            let b2 = direction.dot(r) / det;
+            let t = e2.dot(r) / det;
+            let inside = b1.min(b2).min(1.0 - b1 - b2);
+            if inside < 0.0 || t <= 0.0 || nearest.as_ref().is_some_and(|n| n.distance <= t) {
+                continue;
+            }
+            // Unit vectors at the vertices, interpolated: as the vertex shader and the rasterizer do.
+            let n = v.map(|v| (normals * Vec3::from(v.normal)).normalize());
+            let normal = n[0] * (1.0 - b1 - b2) + n[1] * b1 + n[2] * b2;
+            let normal = normal.normalize() * if front { 1.0 } else { -1.0 };
+            nearest = Some(Hit {
+                distance: t,
+                instance: index,
+                normal,
+                inside,
+            });
+        }
+    }
+    nearest
+}
+
+fn assert_equals_twin(scene: &Scene, camera: &Camera) {
+    let (width, height) = (47, 33);
+    let renderer = rendered(scene, camera, &small(width, height));
+    let gbuffer = &renderer.targets().gbuffer;
+    let words: Vec<[u32; 4]> = texels(&gbuffer.surface_view);
+    let identity: Vec<[u32; 2]> = texels(&gbuffer.identity_view);
+    let depth: Vec<f32> = texels(&gbuffer.depth_view);
+    let size = Vec2::new(width as f32, height as f32);
+    let orthographic = matches!(camera.projection, Projection::Orthographic { .. });
+    let forward = -camera.world_from_view.z_axis.truncate();
+    let (mut compared, mut edges) = (0, 0);
+    for i in 0..depth.len() {
+        let pixel = Vec2::new((i as u32 % width) as f32, (i as u32 / width) as f32) + 0.5;
+        let near = position_at(camera, size, pixel, 1.0);
+        let direction = if orthographic {
+            forward
+        } else {
+            (near - camera.eye()).normalize()
+        };
+        let hit = intersect(scene, near, direction);
+        let (expected, on_edge) = hit
+            .as_ref()
+            .map_or((0, false), |h| (h.instance, h.inside < 0.02));
+        if identity[i][0] != expected {
+            // Rays and rasterizers may differ where an edge passes the pixel's centre.
+            edges += 1;
+            continue;
+        }
+        let Some(hit) = hit else { continue };
+        let position = near + direction * hit.distance;
+        let surface = unpack_surface(words[i], position_at(camera, size, pixel, depth[i]));
+        let off = surface.position.distance(position);
+        assert!(
+            off < 2e-3 * (1.0 + hit.distance) || on_edge,
+            "at {pixel}: {} not {position}",
+            surface.position
+        );
+        assert!(
+            surface.normal.dot(hit.normal) > 0.9995 || on_edge,
+            "at {pixel}: {} not {}",
+            surface.normal,
+            hit.normal
+        );
+        let material =
+            &scene.materials[scene.instances[hit.instance as usize - 1].material as usize];
+        if material.base_color_texture.is_none() && !material.unlit {
+            let roughness = surface.roughness - material.roughness;
+            assert!(roughness.abs() < 0.01 || material.metallic_roughness_texture.is_some());
+            let emissive = (surface.emissive - material.emissive).abs().max_element();
+            assert!(
+                emissive <= 0.01 * material.emissive.max_element()
+                    || material.emissive_texture.is_some()
+            );
+        }
+        compared += 1;
+    }
+    assert!(compared > 250, "only {compared} pixels see a surface");
+    assert!(
+        edges * 50 < depth.len(),
+        "{edges} pixels see another instance"
+    );
+}
+
+#[test]
+fn the_gbuffer_equals_its_twin() {
+    let scene = generate::cornell();
+    assert_equals_twin(&scene, &scene.cameras[0]);
+    let mut camera = scene.cameras[0].clone();
+    camera.projection = Projection::Orthographic {
+        height_m: 4.0,
+        near_m: 0.05,
+        far_m: 30.0,
+    };
+    assert_equals_twin(&scene, &camera);
+}
+
+#[test]
+fn mirrored_and_scaled_instances_equal_their_twins() {
+    let mut scene = generate::cornell();
+    let flip = glam::Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0));
+    for instance in &mut scene.instances {
+        instance.world_from_object = flip * instance.world_from_object;
+    }
+    assert_equals_twin(&scene, &scene.cameras[0].clone());
+    let squash = glam::Mat4::from_scale(Vec3::new(0.5, 2.0, 1.0));
+    for instance in &mut scene.instances {
+        instance.world_from_object = squash * instance.world_from_object;
+    }
+    assert_equals_twin(&scene, &scene.cameras[0].clone());
+}

@@ -1,0 +1,334 @@
+//! The CPU twin of deferred shading: `surface.wgsl`, `lighting.wgsl` and `shading.wgsl` in plain Rust.
+
+use foveal_scene::{Camera, Projection, Scene, generate};
+use glam::{Vec2, Vec2Swizzles, Vec3, Vec4};
+
+use crate::lights::LightUniform;
+use crate::testing::{f32_of_half, picture, rendered, small, texels};
+use crate::{LightAssignment, LightingModel, Renderer, Settings, View};
+
+pub(crate) struct Surface {
+    pub(crate) position: Vec3,
+    pub(crate) normal: Vec3,
+    pub(crate) base_color: Vec3,
+    pub(crate) metallic: f32,
+    pub(crate) roughness: f32,
+    pub(crate) occlusion: f32,
+    pub(crate) emissive: Vec3,
+}
+
+fn unpack_unorm4(word: u32) -> Vec4 {
+    Vec4::from_array(word.to_le_bytes().map(|b| f32::from(b) / 255.0))
+}
+
+pub(crate) fn unit_from_octahedral(word: u32) -> Vec3 {
+    let snorm = |bits: u32| (f32::from(bits as u16 as i16) / 32767.0).max(-1.0);
+    let e = Vec2::new(snorm(word), snorm(word >> 16));
+    let z = 1.0 - e.x.abs() - e.y.abs();
+    let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
+    let xy = if z >= 0.0 {
+        e
+    } else {
+        (1.0 - e.yx().abs()) * Vec2::new(sign(e.x), sign(e.y))
+    };
+    xy.extend(z).normalize()
+}
+
+fn unpack_shared_exponent(word: u32) -> Vec3 {
+    let scale = 2f32.powi((word >> 27) as i32 - 24);
+    Vec3::new(
+        (word & 511) as f32,
+        (word >> 9 & 511) as f32,
+        (word >> 18 & 511) as f32,
+    ) * scale
+}
+
+pub(crate) fn unpack_surface(words: [u32; 4], position: Vec3) -> Surface {
+    let color = unpack_unorm4(words[0]);
+    let material = unpack_unorm4(words[3]);
+    Surface {
+        position,
+        normal: unit_from_octahedral(words[1]),
+        base_color: color.truncate() * color.truncate(),
+        metallic: material.x,
+        roughness: material.y,
+        occlusion: color.w,
+        emissive: unpack_shared_exponent(words[2]),
+    }
+}
+
+/// Where the world is at a pixel position with a reversed depth.
+pub(crate) fn position_at(camera: &Camera, size: Vec2, pixel: Vec2, depth: f32) -> Vec3 {
+    let clip_from_view = camera.clip_from_view(size.x / size.y);
+    let ndc = Vec2::new(2.0, -2.0) * pixel / size + Vec2::new(-1.0, 1.0);
+    let scale = Vec2::new(clip_from_view.x_axis.x, clip_from_view.y_axis.y);
+    let view = match camera.projection {
+        Projection::Perspective { near_m, .. } => {
+            let distance = near_m / depth;
+            (ndc / scale * distance).extend(-distance)
+        }
+        Projection::Orthographic { near_m, far_m, .. } => {
+            (ndc / scale).extend(-(near_m + (1.0 - depth) * (far_m - near_m)))
+        }
+    };
+    camera.world_from_view.transform_point3(view)
+}
+
+fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
+    let e = &scene.environment;
+    if direction.y >= 0.0 {
+        e.horizon.lerp(e.zenith, direction.y.sqrt())
+    } else {
+        e.horizon.lerp(e.nadir, (-4.0 * direction.y).min(1.0))
+    }
+}
+
+fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) -> Vec3 {
+    use std::f32::consts::PI;
+    let h = (v + l).normalize();
+    let n_dot_h = s.normal.dot(h);
+    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    match model {
+        LightingModel::Ggx => {
+            let n_dot_v = s.normal.dot(v).max(1e-4);
+            let n_dot_h = n_dot_h.clamp(0.0, 1.0);
+            let v_dot_h = v.dot(h).clamp(0.0, 1.0);
+            let a2 = (s.roughness * s.roughness).max(0.002).powi(2);
+            let d = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
+            let distribution = a2 / (PI * d * d);
+            let visibility = 0.5
+                / (n_dot_l * (n_dot_v * n_dot_v * (1.0 - a2) + a2).sqrt()
+                    + n_dot_v * (n_dot_l * n_dot_l * (1.0 - a2) + a2).sqrt());
+            let fresnel = f0 + (1.0 - f0) * (1.0 - v_dot_h).powi(5);
+            (1.0 - fresnel) * (1.0 - s.metallic) * s.base_color / PI
+                + fresnel * distribution * visibility
+        }
+        LightingModel::BlinnPhong => {
+            let alpha = (s.roughness * s.roughness).max(0.03);
+            let exponent = 2.0 / (alpha * alpha) - 2.0;
+            let highlight = (exponent + 8.0) / (8.0 * PI) * n_dot_h.max(1e-6).powf(exponent);
+            s.base_color * (1.0 - s.metallic) / PI + f0 * highlight
+        }
+    }
+}
+
+fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) -> Vec3 {
+    let radiant = Vec3::from(light.radiant);
+    let (direction, irradiance) = if light.kind == 0 {
+        (-Vec3::from(light.direction), radiant)
+    } else {
+        let to_light = Vec3::from(light.position) - s.position;
+        let squared = to_light.length_squared().max(1e-4);
+        let direction = to_light / squared.sqrt();
+        let ratio = squared / (light.range * light.range);
+        let mut attenuation = (1.0 - ratio * ratio).clamp(0.0, 1.0) / squared;
+        if light.kind == 2 {
+            let cone =
+                -Vec3::from(light.direction).dot(direction) * light.spot_scale + light.spot_offset;
+            attenuation *= cone.clamp(0.0, 1.0).powi(2);
+        }
+        (direction, radiant * attenuation)
+    };
+    let n_dot_l = s.normal.dot(direction);
+    if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
+        return Vec3::ZERO;
+    }
+    reflect(model, s, v, direction, n_dot_l) * irradiance * n_dot_l
+}
+
+fn ambient(scene: &Scene, s: &Surface, v: Vec3) -> Vec3 {
+    let n_dot_v = s.normal.dot(v).clamp(0.0, 1.0);
+    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    let r =
+        s.roughness * Vec4::new(-1.0, -0.0275, -0.572, 0.022) + Vec4::new(1.0, 0.0425, 1.04, -0.04);
+    let a004 = (r.x * r.x).min((-9.28 * n_dot_v).exp2()) * r.x + r.y;
+    let (scale, bias) = (-1.04 * a004 + r.z, 1.04 * a004 + r.w);
+    let mirror = (2.0 * s.normal.dot(v) * s.normal - v).lerp(s.normal, s.roughness * s.roughness);
+    let e = &scene.environment;
+    let irradiance = e
+        .nadir
+        .lerp(e.zenith, 0.5 + 0.5 * s.normal.y)
+        .lerp(e.horizon, 0.4);
+    let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
+    (diffuse + (f0 * scale + bias) * environment(scene, mirror.normalize())) * s.occlusion
+}
+
+/// Radiance at a G-buffer texel, by every light.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "all that the shader reads, by name"
+)]
+pub(crate) fn shade(
+    scene: &Scene,
+    camera: &Camera,
+    lights: &[LightUniform],
+    model: LightingModel,
+    size: Vec2,
+    pixel: Vec2,
+    words: [u32; 4],
+    depth: f32,
+) -> Vec3 {
+    let orthographic = matches!(camera.projection, Projection::Orthographic { .. });
+    let to_eye = |position: Vec3| {
+        if orthographic {
+            camera.world_from_view.z_axis.truncate()
+        } else {
+            (camera.eye() - position).normalize()
+        }
+    };
+    if depth == 0.0 {
+        let near = match camera.projection {
+            Projection::Perspective { near_m, .. } | Projection::Orthographic { near_m, .. } => {
+                near_m
+            }
+        };
+        return environment(
+            scene,
+            -to_eye(position_at(camera, size, pixel, near.min(1.0))),
+        );
+    }
+    let s = unpack_surface(words, position_at(camera, size, pixel, depth));
+    let v = to_eye(s.position);
+    lights
+        .iter()
+        .map(|l| from_light(model, &s, v, l))
+        .sum::<Vec3>()
+        + s.emissive
+        + ambient(scene, &s, v)
+}
+
+const WIDTH: u32 = 65;
+const HEIGHT: u32 = 43;
+
+/// The radiance target's texels, red, green, blue.
+fn radiance(renderer: &Renderer) -> Vec<Vec3> {
+    texels::<[u16; 4]>(&renderer.targets().radiance_view)
+        .into_iter()
+        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
+        .collect()
+}
+
+fn assert_equals_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
+    let renderer = rendered(scene, camera, settings);
+    let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
+    let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);
+    let lights = renderer.lights().1;
+    let size = Vec2::new(settings.width as f32, settings.height as f32);
+    let mut lit = 0;
+    for (i, gpu) in radiance(&renderer).into_iter().enumerate() {
+        let pixel = Vec2::new(
+            (i as u32 % settings.width) as f32,
+            (i as u32 / settings.width) as f32,
+        ) + 0.5;
+        let cpu = shade(
+            scene,
+            camera,
+            lights,
+            settings.lighting,
+            size,
+            pixel,
+            words[i],
+            depth[i],
+        );
+        let tolerance = 0.01 * cpu.max_element().max(0.02);
+        assert!(
+            (gpu - cpu).abs().max_element() <= tolerance,
+            "at {pixel}: device {gpu}, twin {cpu}"
+        );
+        lit += u32::from(depth[i] > 0.0);
+    }
+    assert!(lit > 200, "the test must see a surface");
+}
+
+#[test]
+fn shading_equals_its_twin_for_both_lighting_models() {
+    let scene = generate::cornell();
+    for lighting in [LightingModel::Ggx, LightingModel::BlinnPhong] {
+        assert_equals_twin(
+            &scene,
+            &scene.cameras[0],
+            &Settings {
+                lighting,
+                ..small(WIDTH, HEIGHT)
+            },
+        );
+    }
+}
+
+#[test]
+fn shading_equals_its_twin_for_metals_and_an_orthographic_camera() {
+    let scene = generate::materials_grid();
+    let mut camera = scene.cameras[0].clone();
+    assert_equals_twin(&scene, &camera, &small(WIDTH, HEIGHT));
+    camera.projection = Projection::Orthographic {
+        height_m: 7.0,
+        near_m: 0.1,
+        far_m: 50.0,
+    };
+    assert_equals_twin(&scene, &camera, &small(WIDTH, HEIGHT));
+}
+
+#[test]
+fn a_list_shades_its_texels_to_the_same_bytes_as_the_draw_and_no_others() {
+    let scene = generate::cornell();
+    let camera = &scene.cameras[0];
+    let drawn = rendered(&scene, camera, &small(WIDTH, HEIGHT));
+    let drawn: Vec<[u16; 4]> = texels(&drawn.targets().radiance_view);
+    // A view leaves the radiance untouched: zero.
+    let settings = Settings {
+        view: View::Depth,
+        ..small(WIDTH, HEIGHT)
+    };
+    let mut renderer = rendered(&scene, camera, &settings);
+    let listed = |x: u32, y: u32| !(x + y).is_multiple_of(3);
+    let all = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)));
+    let list: Vec<(u32, u32)> = all.filter(|&(x, y)| listed(x, y)).collect();
+    renderer.shade_list(&list);
+    let shaded: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);
+    for (i, (shaded, drawn)) in shaded.iter().zip(&drawn).enumerate() {
+        let expected = if listed(i as u32 % WIDTH, i as u32 / WIDTH) {
+            *drawn
+        } else {
+            [0; 4]
+        };
+        assert_eq!(*shaded, expected, "texel {i}");
+    }
+}
+
+#[test]
+fn clustered_and_brute_lighting_give_the_same_bytes() {
+    let mut scene = generate::cornell();
+    generate::add_point_lights(&mut scene, 150, 7);
+    for camera in [scene.cameras[0].clone(), scene.overview_camera()] {
+        let settings = Settings {
+            width: 200,
+            height: 150,
+            ..Settings::default()
+        };
+        let clustered = rendered(&scene, &camera, &settings);
+        let brute = rendered(
+            &scene,
+            &camera,
+            &Settings {
+                lights: LightAssignment::Brute,
+                ..settings
+            },
+        );
+        assert_eq!(
+            texels::<[u16; 4]>(&clustered.targets().radiance_view),
+            texels::<[u16; 4]>(&brute.targets().radiance_view)
+        );
+        assert_eq!(picture(&clustered), picture(&brute));
+    }
+}
+
+#[test]
+fn views_do_not_shade() {
+    let scene = generate::cornell();
+    let settings = Settings {
+        view: View::Depth,
+        ..small(WIDTH, HEIGHT)
+    };
+    let renderer = rendered(&scene, &scene.cameras[0], &settings);
+    assert!(radiance(&renderer).iter().all(|r| *r == Vec3::ZERO));
+}

@@ -1,0 +1,64 @@
+//! What the tests of several stages share.
+
+use std::sync::OnceLock;
+
+use foveal_scene::{Camera, Scene};
+
+use crate::gpu::read_texture;
+use crate::{Frame, Gpu, Renderer, Settings};
+
+/// One device for all tests of the process.
+pub(crate) fn gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| {
+        pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter")
+    })
+}
+
+/// A renderer that has drawn `scene` once from `camera`.
+pub(crate) fn rendered(scene: &Scene, camera: &Camera, settings: &Settings) -> Renderer {
+    pollster::block_on(async {
+        let mut renderer = Renderer::new(gpu(), settings, None)
+            .await
+            .expect("settings fit");
+        renderer.set_scene(scene).await.expect("scene fits");
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        renderer.render(&frame).await.expect("frame is drawn");
+        renderer
+    })
+}
+
+/// The texels of a view's texture.
+pub(crate) fn texels<T: bytemuck::Pod>(view: &wgpu::TextureView) -> Vec<T> {
+    let bytes = pollster::block_on(read_texture(gpu(), view.texture())).expect("read-back works");
+    bytemuck::pod_collect_to_vec(&bytes)
+}
+
+/// A half-precision float's value.
+pub(crate) fn f32_of_half(bits: u16) -> f32 {
+    let sign = if bits & 0x8000 == 0 { 1.0 } else { -1.0 };
+    let exponent = i32::from(bits >> 10 & 31);
+    let mantissa = f32::from(bits & 1023) / 1024.0;
+    sign * match exponent {
+        0 => mantissa * 2f32.powi(-14),
+        31 => f32::INFINITY,
+        _ => (1.0 + mantissa) * 2f32.powi(exponent - 15),
+    }
+}
+
+/// The picture of a frame.
+pub(crate) fn picture(renderer: &Renderer) -> Vec<u8> {
+    pollster::block_on(renderer.read_picture()).expect("read-back works")
+}
+
+/// Settings for a small target.
+pub(crate) fn small(width: u32, height: u32) -> Settings {
+    Settings {
+        width,
+        height,
+        ..Settings::default()
+    }
+}
