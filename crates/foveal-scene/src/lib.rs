@@ -5,21 +5,35 @@
 //! [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres, counter-clockwise front
 //! faces, column vectors; matrices are named *to_from* (`world_from_object`).
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 
 pub mod generate;
 
 mod bounds;
 mod camera;
+mod cloud;
+mod error;
+mod gltf;
 mod light;
+mod load;
 mod material;
 mod mesh;
+mod mip;
+mod pose;
 mod scene;
+mod srgb;
 mod texture;
+mod threads;
+mod timings;
 
 pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
+pub use error::SceneError;
 pub use light::{Environment, Light, LightKind};
+pub use load::{LoadOptions, MissingNormals, load, load_bytes};
 pub use material::{AlphaMode, Material, TextureRef};
 pub use mesh::{Mesh, Vertex};
+pub use pose::Rig;
 pub use scene::{Instance, Object, Scene, Warning};
 pub use texture::{ColorSpace, Filter, Sampler, Texture, Wrap};
+pub use timings::LoadTimings;

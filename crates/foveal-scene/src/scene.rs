@@ -2,7 +2,7 @@
 
 use glam::{Mat4, Vec3};
 
-use crate::{Aabb, Camera, Environment, Light, Material, Mesh, Texture};
+use crate::{Aabb, Camera, Environment, Light, LoadTimings, Material, Mesh, Rig, Texture};
 
 /// One thing as the file's author sees it: a node with a mesh, or one element of its GPU instancing.
 /// It is what culling answers for; it has one [`Instance`] per primitive of its mesh.
@@ -75,6 +75,10 @@ pub struct Scene {
     pub environment: Environment,
     /// What the importer could not honour.
     pub warnings: Vec<Warning>,
+    /// How it moves; opaque, still by default. See [`Scene::pose`].
+    pub rig: Rig,
+    /// How long loading took; zero for generated scenes.
+    pub timings: LoadTimings,
 }
 
 impl Scene {

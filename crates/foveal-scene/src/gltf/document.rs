@@ -1,0 +1,201 @@
+//! The checked document: every index that another part uses is known to be in range.
+//!
+//! Reading is strict about types and references and lenient about everything else that does not
+//! stand in the way of a picture (empty arrays, missing `min`/`max`, undeclared extensions).
+
+use serde_json::Value;
+
+use super::accessor::Accessor;
+use super::animations::AnimationDef;
+use super::cameras::CameraDef;
+use super::images::{ImageDef, TextureDef};
+use super::json::Obj;
+use super::lights::LightDef;
+use super::materials::MaterialDef;
+use super::meshes::MeshDef;
+use super::nodes::NodeDef;
+use super::skins::SkinDef;
+use crate::Sampler;
+use crate::error::{Flaw, Parsed};
+
+/// How many of each thing there are; references are checked against these.
+pub(crate) struct Counts {
+    pub(crate) views: usize,
+    pub(crate) accessors: usize,
+    pub(crate) images: usize,
+    pub(crate) samplers: usize,
+    pub(crate) textures: usize,
+    pub(crate) materials: usize,
+    pub(crate) meshes: usize,
+    pub(crate) skins: usize,
+    pub(crate) cameras: usize,
+    pub(crate) nodes: usize,
+    pub(crate) scenes: usize,
+    pub(crate) lights: usize,
+}
+
+/// A buffer before its bytes are fetched.
+pub(crate) struct BufferDef {
+    pub(crate) uri: Option<String>,
+    pub(crate) len: u64,
+}
+
+/// A slice of a buffer, known to lie within the buffer's declared length.
+pub(crate) struct View {
+    pub(crate) buffer: u32,
+    pub(crate) offset: u64,
+    pub(crate) len: u64,
+    pub(crate) stride: Option<u64>,
+}
+
+/// All parts of a glTF file, in the file's order.
+pub(crate) struct Document {
+    pub(crate) buffers: Vec<BufferDef>,
+    pub(crate) views: Vec<View>,
+    pub(crate) accessors: Vec<Accessor>,
+    pub(crate) images: Vec<ImageDef>,
+    pub(crate) samplers: Vec<Sampler>,
+    pub(crate) textures: Vec<TextureDef>,
+    pub(crate) materials: Vec<MaterialDef>,
+    pub(crate) meshes: Vec<MeshDef>,
+    pub(crate) skins: Vec<SkinDef>,
+    pub(crate) cameras: Vec<CameraDef>,
+    pub(crate) lights: Vec<LightDef>,
+    pub(crate) nodes: Vec<NodeDef>,
+    pub(crate) animations: Vec<AnimationDef>,
+    /// Root nodes of the scene to show.
+    pub(crate) roots: Vec<u32>,
+}
+
+impl Document {
+    /// Reads the document; `warn` takes what is odd but harmless.
+    pub(crate) fn parse(root: &Value, warn: &mut Vec<String>) -> Parsed<Self> {
+        let root = Obj::of(root)?;
+        check_version(root)?;
+        super::extensions::check(root, warn)?;
+        let lights = root.extension("KHR_lights_punctual")?;
+        let counts = Counts {
+            views: root.len_of("bufferViews"),
+            accessors: root.len_of("accessors"),
+            images: root.len_of("images"),
+            samplers: root.len_of("samplers"),
+            textures: root.len_of("textures"),
+            materials: root.len_of("materials"),
+            meshes: root.len_of("meshes"),
+            skins: root.len_of("skins"),
+            cameras: root.len_of("cameras"),
+            nodes: root.len_of("nodes"),
+            scenes: root.len_of("scenes"),
+            lights: lights.map_or(0, |l| l.len_of("lights")),
+        };
+        let buffers = root.objects("buffers", parse_buffer)?;
+        let views = root.objects("bufferViews", |o| parse_view(o, &buffers))?;
+        let nodes: Vec<NodeDef> = root.objects("nodes", |o| NodeDef::parse(o, &counts, warn))?;
+        let light_defs = match lights {
+            Some(lights) => lights
+                .objects("lights", LightDef::parse)
+                .map_err(|e| e.under("extensions.KHR_lights_punctual"))?,
+            None => Vec::new(),
+        };
+        Ok(Self {
+            accessors: root.objects("accessors", |o| Accessor::parse(o, &counts))?,
+            images: root.objects("images", |o| ImageDef::parse(o, &counts))?,
+            samplers: root.objects("samplers", super::images::parse_sampler)?,
+            textures: root.objects("textures", |o| TextureDef::parse(o, &counts))?,
+            materials: root.objects("materials", |o| MaterialDef::parse(o, &counts))?,
+            meshes: root.objects("meshes", |o| MeshDef::parse(o, &counts))?,
+            skins: root.objects("skins", |o| SkinDef::parse(o, &counts))?,
+            cameras: root.objects("cameras", CameraDef::parse)?,
+            animations: root.objects("animations", |o| AnimationDef::parse(o, &counts))?,
+            lights: light_defs,
+            roots: parse_roots(root, &counts, warn)?,
+            buffers,
+            views,
+            nodes,
+        })
+    }
+}
+
+/// Only glTF 2 is understood; a minor version above ours may be, unless the file says otherwise.
+fn check_version(root: Obj<'_>) -> Parsed<()> {
+    let asset = root.need("asset", root.object("asset")?)?;
+    let version = |key| -> Parsed<Option<(u32, u32)>> {
+        let Some(text) = asset.string(key)? else {
+            return Ok(None);
+        };
+        let parts = text
+            .split_once('.')
+            .and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
+        match parts {
+            Some(parts) => Ok(Some(parts)),
+            None => Err(Flaw::new(format!("\"{text}\" is not a version")).under(key)),
+        }
+    };
+    let needed = version("minVersion").map_err(|e| e.under("asset"))?;
+    let written = asset
+        .need("version", version("version").map_err(|e| e.under("asset"))?)
+        .map_err(|e| e.under("asset"))?;
+    let (major, minor) = needed.unwrap_or((written.0, 0));
+    if written.0 != 2 || major != 2 || minor > 0 {
+        return Err(Flaw::new(format!(
+            "the file is glTF {}.{} and needs {major}.{minor}; only 2.0 is read",
+            written.0, written.1
+        ))
+        .under("asset"));
+    }
+    Ok(())
+}
+
+fn parse_buffer(o: Obj<'_>) -> Parsed<BufferDef> {
+    let len = o.need("byteLength", o.uint("byteLength")?)?;
+    Ok(BufferDef {
+        uri: o.string("uri")?.map(str::to_owned),
+        len,
+    })
+}
+
+fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
+    let buffer = o.need("buffer", o.index("buffer", buffers.len())?)?;
+    let offset = o.uint("byteOffset")?.unwrap_or(0);
+    let len = o.need("byteLength", o.uint("byteLength")?)?;
+    let available = buffers[buffer as usize].len;
+    if offset.checked_add(len).is_none_or(|end| end > available) {
+        return Err(Flaw::new(format!(
+            "ends beyond buffers[{buffer}], which has {available} bytes"
+        )));
+    }
+    let stride = o.uint("byteStride")?;
+    if let Some(stride) = stride
+        && !(1..=252).contains(&stride)
+    {
+        return Err(Flaw::new(format!("is {stride}, outside 4 to 252")).under("byteStride"));
+    }
+    Ok(View {
+        buffer,
+        offset,
+        len,
+        stride,
+    })
+}
+
+/// The roots of the default scene; of the first one where none is named; all parentless nodes where there is none.
+fn parse_roots(root: Obj<'_>, counts: &Counts, warn: &mut Vec<String>) -> Parsed<Vec<u32>> {
+    let scenes = root.objects("scenes", |o| o.indices("nodes", counts.nodes))?;
+    let scene = root.index("scene", counts.scenes)?;
+    if let Some(roots) = scenes.into_iter().nth(scene.unwrap_or(0) as usize) {
+        return Ok(roots);
+    }
+    if counts.nodes > 0 {
+        warn.push("the file has no scenes; all its nodes are shown".to_owned());
+    }
+    let mut is_child = vec![false; counts.nodes];
+    root.objects("nodes", |o| {
+        for child in o.indices("children", counts.nodes)? {
+            is_child[child as usize] = true;
+        }
+        Ok(())
+    })?;
+    Ok((0..counts.nodes as u32)
+        .filter(|&i| !is_child[i as usize])
+        .collect())
+}

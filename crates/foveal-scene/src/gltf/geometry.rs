@@ -1,0 +1,293 @@
+//! Vertices and indices of one primitive.
+
+use bytemuck::Zeroable;
+
+use super::accessor::{Component, Reader};
+use super::materials::UvSets;
+use super::meshes::{Mode, PrimitiveDef};
+use super::{morphs, normals, tangents, topology};
+use crate::error::{Flaw, Parsed};
+use crate::load::MissingNormals;
+use crate::pose::Shape;
+use crate::{Aabb, Mesh, Vertex};
+
+/// What a primitive's geometry depends on; equal requests share one mesh.
+#[derive(Clone, PartialEq, Eq, Hash)]
+pub(crate) struct Request {
+    pub(crate) primitive: PrimitiveDef,
+    pub(crate) uv_sets: UvSets,
+    /// The vertex's UV slot that the normal texture reads, where there is one.
+    pub(crate) tangents_for: Option<u32>,
+}
+
+/// A finished primitive.
+#[derive(Default)]
+pub(crate) struct Built {
+    pub(crate) mesh: Mesh,
+    /// What morph targets or joints need; `None` for rigid geometry.
+    pub(crate) shape: Option<Shape>,
+    pub(crate) notes: Vec<String>,
+}
+
+/// Smallest box around the vertices that `indices` name.
+pub(crate) fn used_bounds(vertices: &[Vertex], indices: &[u32]) -> Aabb {
+    let position = |&i: &u32| vertices.get(i as usize).map(|v| v.position.into());
+    Aabb::of_points(indices.iter().filter_map(position))
+}
+
+/// Builds the mesh of a primitive; empty for one that makes no triangles.
+pub(crate) fn build(
+    request: &Request,
+    reader: Reader<'_>,
+    missing_normals: MissingNormals,
+) -> Parsed<Built> {
+    let def = &request.primitive;
+    let mut notes = Vec::new();
+    if def.mode == Mode::NoTriangles {
+        notes.push("is made of points or lines, which are not drawn".to_owned());
+        return Ok(Built {
+            notes,
+            ..Built::default()
+        });
+    }
+    let Some(position) = def.attributes.position else {
+        notes.push("has no POSITION and is not drawn".to_owned());
+        return Ok(Built {
+            notes,
+            ..Built::default()
+        });
+    };
+    let positions = reader
+        .floats::<3>(position)
+        .map_err(|e| e.under("attributes.POSITION"))?;
+    let indices = match def.indices {
+        Some(accessor) => Some(
+            reader
+                .uints::<1>(accessor)
+                .map_err(|e| e.under("indices"))?
+                .into_flattened(),
+        ),
+        None => None,
+    };
+    let mut indices = topology::triangles(def.mode, indices, positions.len());
+    drop_unusable(&mut indices, &positions, &mut notes);
+
+    let mut source = compact(&mut indices, positions.len());
+    let mut vertices = assemble(request, reader, &positions, &source, &mut notes)?;
+    drop(positions);
+
+    let mut flat = false;
+    if def.attributes.normal.is_some() {
+        repair_normals(&mut vertices, &indices, &mut notes);
+    } else if missing_normals == MissingNormals::Flat {
+        let corners = normals::unweld(&mut vertices, &mut indices);
+        source = corners.iter().map(|&i| source[i as usize]).collect();
+        normals::flat(&mut vertices);
+        flat = true;
+    } else {
+        normals::smooth(&mut vertices, &indices, |_| true);
+    }
+    if let (Some(slot), None) = (request.tangents_for, def.attributes.tangent)
+        && let Some(split) = tangents::generate(&mut vertices, &mut indices, slot as usize)
+    {
+        source = split.iter().map(|&i| source[i as usize]).collect();
+    }
+    let mut shape = morphs::read_shape(def, reader, &source, &mut notes)?;
+    if let Some(shape) = &mut shape {
+        shape.rest.clone_from(&vertices);
+        shape.flat = flat;
+    }
+    let mesh = Mesh {
+        name: String::new(),
+        bounds: used_bounds(&vertices, &indices),
+        vertices,
+        indices,
+        deforms: shape.is_some(),
+    };
+    Ok(Built { mesh, shape, notes })
+}
+
+/// Leaves out triangles that name missing vertices or vertices at no place.
+fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec<String>) {
+    let finite = |p: &[f32; 3]| p.iter().all(|x| x.is_finite());
+    let all_finite = positions.iter().all(finite);
+    let all_there = indices.iter().all(|&i| (i as usize) < positions.len());
+    if all_finite && all_there {
+        return;
+    }
+    let before = indices.len();
+    let usable = |i: &u32| positions.get(*i as usize).is_some_and(finite);
+    *indices = indices
+        .chunks_exact(3)
+        .filter(|t| t.iter().all(usable))
+        .flatten()
+        .copied()
+        .collect();
+    let dropped = (before - indices.len()) / 3;
+    if dropped > 0 {
+        notes.push(format!(
+            "{dropped} of {} triangles name vertices that do not exist or lie at no finite place, and are left out",
+            before / 3
+        ));
+    }
+}
+
+/// Renumbers the indices when they use only a part of the vertices; returns each vertex's number in the file.
+///
+/// Exporters like to cut one large vertex buffer into many primitives: without this each of them
+/// would carry all of it.
+fn compact(indices: &mut [u32], vertex_count: usize) -> Vec<u32> {
+    if indices.len() >= vertex_count {
+        return (0..vertex_count as u32).collect();
+    }
+    let mut source: Vec<u32> = indices.to_vec();
+    source.sort_unstable();
+    source.dedup();
+    for index in indices {
+        // Every index is in `source`.
+        *index = source.partition_point(|s| s < index) as u32;
+    }
+    source
+}
+
+/// Vertices with every attribute that the file gives.
+fn assemble(
+    request: &Request,
+    reader: Reader<'_>,
+    positions: &[[f32; 3]],
+    source: &[u32],
+    notes: &mut Vec<String>,
+) -> Parsed<Vec<Vertex>> {
+    let attributes = &request.primitive.attributes;
+    let mut vertices: Vec<Vertex> = source
+        .iter()
+        .map(|&i| Vertex {
+            position: positions[i as usize],
+            color: [255; 4],
+            ..Vertex::zeroed()
+        })
+        .collect();
+    // Vertices that no triangle uses may still be anywhere.
+    for vertex in &mut vertices {
+        if !vertex.position.iter().all(|x| x.is_finite()) {
+            vertex.position = [0.0; 3];
+        }
+    }
+    let mut fill = Fill {
+        vertices: &mut vertices,
+        source,
+        count: positions.len(),
+    };
+    if let Some(accessor) = attributes.normal {
+        let list = reader.floats::<3>(accessor);
+        fill.with(list, "NORMAL", |v, n| v.normal = n)?;
+    }
+    if let Some(accessor) = attributes.tangent {
+        let list = reader.floats::<4>(accessor);
+        fill.with(list, "TANGENT", |v, t| v.tangent = unit_tangent(t))?;
+    }
+    for (slot, set) in request.uv_sets.iter().enumerate() {
+        let Some(set) = *set else { continue };
+        match attributes.uv.iter().find(|(number, _)| *number == set) {
+            Some(&(_, accessor)) => {
+                let list = reader.floats::<2>(accessor);
+                fill.with(list, &format!("TEXCOORD_{set}"), |v, uv| {
+                    v.uv[slot] = uv.map(|x| if x.is_finite() { x } else { 0.0 });
+                })?;
+            }
+            None if request.tangents_for.is_some() || slot > 0 || set > 0 => notes.push(format!(
+                "has no TEXCOORD_{set} although its material reads it; (0, 0) is used"
+            )),
+            None => {}
+        }
+    }
+    if let Some(accessor) = attributes.color {
+        let list = colors(reader, accessor);
+        fill.with(list, "COLOR_0", |v, c| v.color = c)?;
+    }
+    Ok(vertices)
+}
+
+/// Writes one attribute into the vertices.
+struct Fill<'a> {
+    vertices: &'a mut [Vertex],
+    source: &'a [u32],
+    count: usize,
+}
+
+impl Fill<'_> {
+    fn with<T: Copy>(
+        &mut self,
+        list: Parsed<Vec<T>>,
+        name: &str,
+        set: impl Fn(&mut Vertex, T),
+    ) -> Parsed<()> {
+        let place = |e: Flaw| e.under(format_args!("attributes.{name}"));
+        let list = list.map_err(place)?;
+        if list.len() < self.count {
+            return Err(place(Flaw::new(format!(
+                "has {} elements for {} positions",
+                list.len(),
+                self.count
+            ))));
+        }
+        for (vertex, &i) in self.vertices.iter_mut().zip(self.source) {
+            set(vertex, list[i as usize]);
+        }
+        Ok(())
+    }
+}
+
+/// Linear RGBA in 8 bits from any of glTF's colour formats.
+fn colors(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[u8; 4]>> {
+    let found = reader.accessor(accessor);
+    // Integers that forgot to say so are meant as fractions: colours have no other use for them.
+    let unit = match found.component {
+        _ if found.is_normalized() => 1.0,
+        Component::U8 => 1.0 / 255.0,
+        Component::U16 => 1.0 / 65535.0,
+        _ => 1.0,
+    };
+    let byte = |x: f32| (x * unit * 255.0).round().clamp(0.0, 255.0) as u8;
+    if found.width == 3 {
+        let list = reader.floats::<3>(accessor)?;
+        Ok(list
+            .into_iter()
+            .map(|c| {
+                let [r, g, b] = c.map(byte);
+                [r, g, b, 255]
+            })
+            .collect())
+    } else {
+        let list = reader.floats::<4>(accessor)?;
+        Ok(list.into_iter().map(|c| c.map(byte)).collect())
+    }
+}
+
+fn unit_tangent([x, y, z, w]: [f32; 4]) -> [f32; 4] {
+    let direction = glam::Vec3::new(x, y, z)
+        .try_normalize()
+        .unwrap_or(glam::Vec3::X);
+    direction
+        .extend(if w < 0.0 { -1.0 } else { 1.0 })
+        .to_array()
+}
+
+/// Makes normals unit vectors; those without a direction become those of the surface.
+fn repair_normals(vertices: &mut [Vertex], indices: &[u32], notes: &mut Vec<String>) {
+    let mut bad = Vec::new();
+    for (i, vertex) in vertices.iter_mut().enumerate() {
+        match glam::Vec3::from(vertex.normal).try_normalize() {
+            Some(normal) => vertex.normal = normal.to_array(),
+            None => bad.push(i),
+        }
+    }
+    if !bad.is_empty() {
+        notes.push(format!(
+            "{} of {} normals have no direction and are made anew",
+            bad.len(),
+            vertices.len()
+        ));
+        normals::smooth(vertices, indices, |i| bad.binary_search(&i).is_ok());
+    }
+}

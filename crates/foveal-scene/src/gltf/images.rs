@@ -1,0 +1,99 @@
+//! Definitions of images, samplers and textures.
+
+use super::document::Counts;
+use super::json::Obj;
+use crate::error::{Flaw, Parsed};
+use crate::{Filter, Sampler, Wrap};
+
+/// Where a picture's bytes are.
+#[derive(Clone, PartialEq)]
+pub(crate) enum ImageSource {
+    View(u32),
+    Uri(String),
+    Nowhere,
+}
+
+/// A picture as the file names it.
+pub(crate) struct ImageDef {
+    pub(crate) name: Option<String>,
+    pub(crate) source: ImageSource,
+}
+
+impl ImageDef {
+    pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
+        let view = o.index("bufferView", counts.views)?;
+        let uri = o.string("uri")?;
+        let source = match (view, uri) {
+            (Some(view), _) => ImageSource::View(view),
+            (None, Some(uri)) => ImageSource::Uri(uri.to_owned()),
+            (None, None) => ImageSource::Nowhere,
+        };
+        let file_name = uri.filter(|u| !u.starts_with("data:"));
+        Ok(Self {
+            name: o.string("name")?.or(file_name).map(str::to_owned),
+            source,
+        })
+    }
+
+    /// The name that users see.
+    pub(crate) fn label(&self, index: usize) -> String {
+        self.name
+            .clone()
+            .filter(|n| !n.is_empty())
+            .unwrap_or_else(|| format!("image {index}"))
+    }
+}
+
+/// A picture with a sampler.
+pub(crate) struct TextureDef {
+    pub(crate) image: Option<u32>,
+    pub(crate) sampler: Option<u32>,
+}
+
+impl TextureDef {
+    pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
+        Ok(Self {
+            image: o.index("source", counts.images)?,
+            sampler: o.index("sampler", counts.samplers)?,
+        })
+    }
+}
+
+/// glTF's OpenGL constants as a [`Sampler`].
+pub(crate) fn parse_sampler(o: Obj<'_>) -> Parsed<Sampler> {
+    let wrap = |key| -> Parsed<Wrap> {
+        Ok(match o.uint(key)? {
+            None | Some(10497) => Wrap::Repeat,
+            Some(33648) => Wrap::MirroredRepeat,
+            Some(33071) => Wrap::ClampToEdge,
+            Some(other) => {
+                return Err(Flaw::new(format!("is {other}, not a wrap mode")).under(key));
+            }
+        })
+    };
+    let mag = match o.uint("magFilter")? {
+        None | Some(9729) => Filter::Linear,
+        Some(9728) => Filter::Nearest,
+        Some(other) => {
+            return Err(Flaw::new(format!("is {other}, not a filter")).under("magFilter"));
+        }
+    };
+    let (min, mip) = match o.uint("minFilter")? {
+        Some(9728) => (Filter::Nearest, None),
+        Some(9729) => (Filter::Linear, None),
+        Some(9984) => (Filter::Nearest, Some(Filter::Nearest)),
+        Some(9985) => (Filter::Linear, Some(Filter::Nearest)),
+        Some(9986) => (Filter::Nearest, Some(Filter::Linear)),
+        None | Some(9987) => (Filter::Linear, Some(Filter::Linear)),
+        Some(other) => {
+            return Err(Flaw::new(format!("is {other}, not a filter")).under("minFilter"));
+        }
+    };
+    Ok(Sampler {
+        wrap_u: wrap("wrapS")?,
+        wrap_v: wrap("wrapT")?,
+        mag,
+        min,
+        mip,
+    })
+}

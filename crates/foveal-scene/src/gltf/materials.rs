@@ -1,0 +1,161 @@
+//! Materials: factors, texture slots, and which of a mesh's UV sets they read.
+
+use glam::{Mat3, Vec3, Vec4};
+
+use super::document::Counts;
+use super::json::Obj;
+use crate::error::{Flaw, Parsed};
+use crate::{AlphaMode, Material};
+
+/// A texture as a material slot names it, with the file's own UV set number.
+#[derive(Clone, Copy)]
+pub(crate) struct SlotDef {
+    pub(crate) texture: u32,
+    pub(crate) set: u32,
+    pub(crate) transform: Mat3,
+}
+
+/// A material whose texture slots are still numbers of the file.
+pub(crate) struct MaterialDef {
+    /// Everything but the textures.
+    pub(crate) material: Material,
+    pub(crate) base_color: Option<SlotDef>,
+    pub(crate) metallic_roughness: Option<SlotDef>,
+    pub(crate) normal: Option<SlotDef>,
+    pub(crate) occlusion: Option<SlotDef>,
+    pub(crate) emissive: Option<SlotDef>,
+}
+
+/// The file's UV sets that a material reads, in the order of a vertex's two slots.
+pub(crate) type UvSets = [Option<u32>; 2];
+
+impl MaterialDef {
+    pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
+        let slot = |of: Obj<'_>, key: &str| -> Parsed<Option<SlotDef>> {
+            match of.object(key)? {
+                Some(info) => parse_slot(info, counts).map(Some).map_err(|e| e.under(key)),
+                None => Ok(None),
+            }
+        };
+        let mut material = Material {
+            name: o.string("name")?.unwrap_or_default().to_owned(),
+            alpha_mode: parse_alpha(o)?,
+            double_sided: o.boolean("doubleSided")?.unwrap_or(false),
+            unlit: o.extension("KHR_materials_unlit")?.is_some(),
+            emissive: o.floats("emissiveFactor")?.map_or(Vec3::ZERO, Vec3::from),
+            ..Material::default()
+        };
+        if let Some(e) = o.extension("KHR_materials_emissive_strength")? {
+            let strength = e
+                .float("emissiveStrength")
+                .map_err(|e| e.under("extensions.KHR_materials_emissive_strength"))?;
+            material.emissive *= strength.unwrap_or(1.0).max(0.0);
+        }
+        let (mut base_color, mut metallic_roughness) = (None, None);
+        if let Some(pbr) = o.object("pbrMetallicRoughness")? {
+            let within = |e: Flaw| e.under("pbrMetallicRoughness");
+            let factors = || -> Parsed<(Vec4, f32, f32)> {
+                Ok((
+                    pbr.floats("baseColorFactor")?.map_or(Vec4::ONE, Vec4::from),
+                    pbr.float("metallicFactor")?.unwrap_or(1.0),
+                    pbr.float("roughnessFactor")?.unwrap_or(1.0),
+                ))
+            };
+            let (color, metallic, roughness) = factors().map_err(within)?;
+            material.base_color = color.clamp(Vec4::ZERO, Vec4::ONE);
+            material.metallic = metallic.clamp(0.0, 1.0);
+            material.roughness = roughness.clamp(0.0, 1.0);
+            base_color = slot(pbr, "baseColorTexture").map_err(within)?;
+            metallic_roughness = slot(pbr, "metallicRoughnessTexture").map_err(within)?;
+        }
+        if let Some(normal) = o.object("normalTexture")? {
+            material.normal_scale = normal.float("scale")?.unwrap_or(1.0);
+        }
+        if let Some(occlusion) = o.object("occlusionTexture")? {
+            material.occlusion_strength =
+                occlusion.float("strength")?.unwrap_or(1.0).clamp(0.0, 1.0);
+        }
+        Ok(Self {
+            material,
+            base_color,
+            metallic_roughness,
+            normal: slot(o, "normalTexture")?,
+            occlusion: slot(o, "occlusionTexture")?,
+            emissive: slot(o, "emissiveTexture")?,
+        })
+    }
+
+    /// Maps the sets in use to the two slots, lowest set first; true when some did not fit.
+    pub(crate) fn uv_sets(&self) -> (UvSets, bool) {
+        let slots = [
+            self.base_color,
+            self.metallic_roughness,
+            self.normal,
+            self.occlusion,
+            self.emissive,
+        ];
+        let mut sets: Vec<u32> = slots.iter().flatten().map(|s| s.set).collect();
+        // The most visible sets win where there are more than two: the order of `slots`.
+        let mut kept: Vec<u32> = Vec::new();
+        for set in sets.drain(..) {
+            if !kept.contains(&set) {
+                kept.push(set);
+            }
+        }
+        let overflow = kept.len() > 2;
+        kept.truncate(2);
+        kept.sort_unstable();
+        ([kept.first().copied(), kept.get(1).copied()], overflow)
+    }
+}
+
+/// The sets that a primitive without a material carries along.
+pub(crate) const DEFAULT_UV_SETS: UvSets = [Some(0), None];
+
+fn parse_alpha(o: Obj<'_>) -> Parsed<AlphaMode> {
+    Ok(match o.string("alphaMode")? {
+        None | Some("OPAQUE") => AlphaMode::Opaque,
+        Some("BLEND") => AlphaMode::Blend,
+        Some("MASK") => AlphaMode::Mask {
+            cutoff: o.float("alphaCutoff")?.unwrap_or(0.5),
+        },
+        Some(other) => {
+            return Err(Flaw::new(format!("\"{other}\" is not an alpha mode")).under("alphaMode"));
+        }
+    })
+}
+
+fn parse_slot(o: Obj<'_>, counts: &Counts) -> Parsed<SlotDef> {
+    let mut slot = SlotDef {
+        texture: o.need("index", o.index("index", counts.textures)?)?,
+        set: parse_set(o)?.unwrap_or(0),
+        transform: Mat3::IDENTITY,
+    };
+    if let Some(e) = o.extension("KHR_texture_transform")? {
+        let within = |e: Flaw| e.under("extensions.KHR_texture_transform");
+        slot.set = parse_set(e).map_err(within)?.unwrap_or(slot.set);
+        slot.transform = parse_transform(e).map_err(within)?;
+    }
+    Ok(slot)
+}
+
+fn parse_set(o: Obj<'_>) -> Parsed<Option<u32>> {
+    Ok(o.uint("texCoord")?
+        .map(|s| s.min(u64::from(u32::MAX)) as u32))
+}
+
+/// KHR_texture_transform: offset · rotation · scale.
+///
+/// The rotation is counter-clockwise as seen with v upwards. glTF's v points down, so the angle
+/// is negated; so do the reference viewer and the other engines, against the letter of the
+/// extension's GLSL.
+fn parse_transform(o: Obj<'_>) -> Parsed<Mat3> {
+    let [x, y] = o.floats("offset")?.unwrap_or([0.0, 0.0]);
+    let [sx, sy] = o.floats("scale")?.unwrap_or([1.0, 1.0]);
+    let (sin, cos) = o.float("rotation")?.unwrap_or(0.0).sin_cos();
+    Ok(Mat3::from_cols(
+        Vec3::new(cos * sx, -sin * sx, 0.0),
+        Vec3::new(sin * sy, cos * sy, 0.0),
+        Vec3::new(x, y, 1.0),
+    ))
+}

@@ -1,0 +1,382 @@
+//! Import of glTF 2.0 files.
+//!
+//! [`import`] tells the story: container, JSON, checked document, buffers, materials, geometry,
+//! textures, then nodes to objects, cameras and lights, and the rig for what moves. Nothing here
+//! opens files; what the file names is asked of a resolver.
+
+mod accessor;
+mod animations;
+mod buffers;
+mod cameras;
+mod container;
+mod document;
+mod extensions;
+mod geometry;
+mod images;
+mod json;
+mod lights;
+mod materials;
+mod meshes;
+mod morphs;
+mod nodes;
+mod normals;
+mod objects;
+mod rigging;
+mod skins;
+mod tangents;
+mod textures;
+mod topology;
+mod uri;
+
+pub(crate) use cameras::rigid;
+pub(crate) use geometry::used_bounds;
+pub(crate) use lights::place as place_light;
+pub(crate) use nodes::rotation;
+pub(crate) use normals::plane_normal;
+
+use std::collections::HashMap;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use accessor::Reader;
+use buffers::Buffers;
+use document::Document;
+use geometry::{Built, Request};
+use glam::Mat4;
+use materials::{DEFAULT_UV_SETS, UvSets};
+use nodes::Hierarchy;
+use objects::{Part, Shown};
+use textures::Wanted;
+
+use crate::error::{Flaw, Parsed};
+use crate::timings::Stopwatch;
+use crate::{LoadOptions, Material, Scene, SceneError, Warning, threads};
+
+/// Gives the bytes of an external file by its relative path, or the reason why not.
+pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
+
+/// More warnings than this say no more.
+const MAX_WARNINGS: usize = 100;
+
+/// Reads a whole file. `file` is its name for messages.
+pub(crate) fn import(
+    bytes: &[u8],
+    file: &str,
+    options: &LoadOptions,
+    resolver: &Resolver<'_>,
+) -> Result<Scene, SceneError> {
+    // The last net. Bad input is found by checks; what slips through must still not end the program.
+    catch_unwind(AssertUnwindSafe(|| {
+        import_checked(bytes, file, options, resolver)
+    }))
+    .unwrap_or_else(|panic| {
+        let text = panic
+            .downcast_ref::<String>()
+            .map(String::as_str)
+            .or_else(|| panic.downcast_ref::<&str>().copied());
+        Err(SceneError::Internal {
+            file: file.to_owned(),
+            cause: text.unwrap_or("no message").to_owned(),
+        })
+    })
+}
+
+fn import_checked(
+    bytes: &[u8],
+    file: &str,
+    options: &LoadOptions,
+    resolver: &Resolver<'_>,
+) -> Result<Scene, SceneError> {
+    let not_gltf = |cause: String| SceneError::NotGltf {
+        file: file.to_owned(),
+        cause,
+    };
+    let mut watch = Stopwatch::start();
+    let container = container::split(bytes).map_err(not_gltf)?;
+    let root = serde_json::from_slice(container.json)
+        .map_err(|e| not_gltf(format!("its JSON is broken: {e}")))?;
+    let mut warn = container.notes;
+    let document = Document::parse(&root, &mut warn).map_err(|e| e.in_file(file))?;
+    // Freeing a large JSON tree takes as long as using it: give it back before the vertices come.
+    drop(root);
+    let parse_ms = watch.lap_ms();
+    let buffers = Buffers::fetch(
+        &document.buffers,
+        container.bin,
+        resolver,
+        options.max_vertices.min(16 << 20),
+    );
+    warn.extend(buffers.faults().map(Flaw::sentence));
+    let read_ms = watch.lap_ms();
+    let reader = Reader {
+        document: &document,
+        buffers: &buffers,
+    };
+    let mut scene = build(reader, resolver, options, &mut warn).map_err(|e| e.in_file(file))?;
+    file.clone_into(&mut scene.name);
+    scene.timings.parse_ms += parse_ms;
+    scene.timings.read_ms += read_ms;
+    scene.warnings = limited(warn);
+    Ok(scene)
+}
+
+/// Each warning once, and not more than anyone reads.
+fn limited(warn: Vec<String>) -> Vec<Warning> {
+    let mut seen = std::collections::HashSet::new();
+    let mut warnings: Vec<Warning> = Vec::new();
+    for text in warn {
+        if seen.insert(text.clone()) {
+            warnings.push(Warning(text));
+        }
+    }
+    if warnings.len() > MAX_WARNINGS {
+        let more = warnings.len() - MAX_WARNINGS;
+        warnings.truncate(MAX_WARNINGS);
+        warnings.push(Warning(format!("{more} more warnings are not listed")));
+    }
+    warnings
+}
+
+/// From the checked document to the scene.
+fn build(
+    reader: Reader<'_>,
+    resolver: &Resolver<'_>,
+    options: &LoadOptions,
+    warn: &mut Vec<String>,
+) -> Parsed<Scene> {
+    let mut watch = Stopwatch::start();
+    let mut scene = Scene::default();
+    let document = reader.document;
+    let hierarchy = Hierarchy::of(document, warn)?;
+
+    let mut wanted = Wanted::default();
+    scene.materials = document
+        .materials
+        .iter()
+        .map(|def| wanted.material(def, document))
+        .collect();
+    warn_of_uv_sets(document, warn);
+    scene.timings.parse_ms = watch.lap_ms();
+
+    let mut geometry = Geometry::default();
+    let mut shown = geometry.request(document, &hierarchy, &mut scene);
+    let shapes = geometry.build(reader, options, &mut scene, warn)?;
+    for one in &mut shown {
+        let place = |e: Flaw| {
+            e.under("extensions.EXT_mesh_gpu_instancing.attributes")
+                .under(format_args!("nodes[{}]", one.node))
+        };
+        let instancing = document.nodes[one.node as usize].instancing;
+        one.elements = objects::elements(instancing, reader, options).map_err(place)?;
+        // Primitives without triangles have been noted; there is nothing to draw.
+        one.parts
+            .retain(|p| scene.meshes[p.mesh as usize].triangle_count() > 0);
+    }
+    shown.retain(|s| !s.parts.is_empty());
+    let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;
+    rig.give_own_meshes(&mut shown, &shapes, &mut scene, document, options, warn)?;
+    scene.timings.geometry_ms = watch.lap_ms();
+
+    scene.textures = textures::decode(&wanted, reader, resolver, options, warn)?;
+    scene.timings.decode_ms = watch.lap_ms();
+
+    let world = rig.world_at_rest();
+    let placed = objects::place(
+        &shown,
+        &document.nodes,
+        &world,
+        &scene.meshes,
+        options,
+        warn,
+    )?;
+    scene.objects = placed.objects;
+    scene.instances = placed.instances;
+    name_objects(&mut scene, document);
+    let cameras = place_cameras_and_lights(&mut scene, document, &hierarchy, &world, warn);
+    rig.finish(&mut scene, &shown, &placed.clouds, &cameras);
+    scene.pose(options.time_s);
+    scene.timings.bounds_ms = watch.lap_ms();
+    Ok(scene)
+}
+
+fn warn_of_uv_sets(document: &Document, warn: &mut Vec<String>) {
+    for (i, def) in document.materials.iter().enumerate() {
+        if def.uv_sets().1 {
+            warn.push(format!(
+                "materials[{i}]: reads more than two sets of texture coordinates; the others read the first"
+            ));
+        }
+    }
+}
+
+/// The meshes to build, each once however many primitives ask for it.
+#[derive(Default)]
+struct Geometry {
+    requests: Vec<(Request, String)>,
+    numbers: HashMap<Request, u32>,
+    names: Vec<String>,
+}
+
+impl Geometry {
+    /// Collects what the shown nodes need. Adds a default material when a primitive has none.
+    fn request(
+        &mut self,
+        document: &Document,
+        hierarchy: &Hierarchy,
+        scene: &mut Scene,
+    ) -> Vec<Shown> {
+        let mut default_material = None;
+        let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
+        let mut shown = Vec::new();
+        for (node, _, mesh) in objects::nodes_with_meshes(&document.nodes, hierarchy) {
+            let parts = parts_of.entry(mesh).or_insert_with(|| {
+                let def = &document.meshes[mesh as usize];
+                (0..def.primitives.len())
+                    .map(|p| Part {
+                        mesh: self.number(document, mesh, p),
+                        material: def.materials[p].unwrap_or_else(|| {
+                            *default_material.get_or_insert_with(|| {
+                                scene.materials.push(Material::default());
+                                scene.materials.len() as u32 - 1
+                            })
+                        }),
+                    })
+                    .collect()
+            });
+            shown.push(Shown {
+                node,
+                parts: parts.clone(),
+                elements: vec![Mat4::IDENTITY],
+                skinned: false,
+            });
+        }
+        shown
+    }
+
+    fn number(&mut self, document: &Document, mesh: u32, primitive: usize) -> u32 {
+        let def = &document.meshes[mesh as usize];
+        let material = def.materials[primitive].map(|m| &document.materials[m as usize]);
+        let uv_sets: UvSets = material.map_or(DEFAULT_UV_SETS, |m| m.uv_sets().0);
+        let tangents_for = material
+            .and_then(|m| m.normal)
+            .map(|slot| u32::from(uv_sets[1] == Some(slot.set)));
+        let request = Request {
+            primitive: def.primitives[primitive].clone(),
+            uv_sets,
+            tangents_for,
+        };
+        *self.numbers.entry(request.clone()).or_insert_with(|| {
+            let place = format!("meshes[{mesh}].primitives[{primitive}]");
+            self.requests.push((request, place));
+            self.names.push(def.label(mesh, primitive));
+            self.names.len() as u32 - 1
+        })
+    }
+
+    /// Builds all meshes into the scene and returns their shapes, as many as meshes.
+    fn build(
+        &mut self,
+        reader: Reader<'_>,
+        options: &LoadOptions,
+        scene: &mut Scene,
+        warn: &mut Vec<String>,
+    ) -> Parsed<Vec<Option<crate::pose::Shape>>> {
+        self.check_size(reader, options)?;
+        let built = threads::map(options.parallel, &self.requests, |(request, place)| {
+            geometry::build(request, reader, options.missing_normals).map_err(|e| e.under(place))
+        });
+        let mut shapes = Vec::with_capacity(built.len());
+        for ((built, (_, place)), name) in built.into_iter().zip(&self.requests).zip(&self.names) {
+            let Built {
+                mut mesh,
+                shape,
+                notes,
+            } = built?;
+            warn.extend(notes.into_iter().map(|note| format!("{place}: {note}")));
+            mesh.name.clone_from(name);
+            scene.meshes.push(mesh);
+            shapes.push(shape);
+        }
+        Ok(shapes)
+    }
+
+    /// Adds up the declared vertices before anything is allocated.
+    fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
+        let mut total = 0u64;
+        for (request, place) in &self.requests {
+            let primitive = &request.primitive;
+            let count = |a: u32| reader.accessor(a).count as u64;
+            let vertices = primitive.attributes.position.map_or(0, count);
+            let corners = primitive.indices.map_or(vertices, count);
+            // Flat normals and tangents may give every corner a vertex of its own.
+            let morphs = 1 + primitive.targets.len() as u64;
+            total = total.saturating_add(vertices.min(corners).saturating_mul(morphs));
+            if total > options.max_vertices || corners > options.max_vertices.saturating_mul(6) {
+                return Err(Flaw::too_large(format!(
+                    "{total} vertices and morph differences up to here, the limit is {}",
+                    options.max_vertices
+                ))
+                .under(place));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Objects without a name take their mesh's.
+fn name_objects(scene: &mut Scene, document: &Document) {
+    for object in &mut scene.objects {
+        if object.name.is_empty() {
+            let node = &document.nodes[object.node as usize];
+            let mesh = node
+                .mesh
+                .and_then(|m| document.meshes[m as usize].name.clone());
+            object.name = mesh
+                .filter(|n| !n.is_empty())
+                .unwrap_or_else(|| format!("node {}", object.node));
+        }
+    }
+}
+
+/// Places what the shown nodes carry; returns each camera's node.
+fn place_cameras_and_lights(
+    scene: &mut Scene,
+    document: &Document,
+    hierarchy: &Hierarchy,
+    world: &[Mat4],
+    warn: &mut Vec<String>,
+) -> Vec<u32> {
+    let mut camera_nodes = Vec::new();
+    let visible = document.nodes.iter().enumerate();
+    for (i, node) in visible.filter(|(i, _)| hierarchy.shown[*i]) {
+        if let Some(camera) = node.camera {
+            let def = &document.cameras[camera as usize];
+            match &def.projection {
+                Ok(projection) => {
+                    let number = scene.cameras.len();
+                    let camera = def.place(*projection, node.name.as_deref(), number, world[i]);
+                    scene.cameras.push(camera);
+                    camera_nodes.push(i as u32);
+                }
+                Err(flaw) => warn.push(format!(
+                    "cameras[{camera}].{}; this camera is left out",
+                    flaw.sentence()
+                )),
+            }
+        }
+        if let Some(light) = node.light {
+            match &document.lights[light as usize].light {
+                Ok(found) => {
+                    let mut placed = found.clone();
+                    placed.node = Some(i as u32);
+                    place_light(&mut placed, world[i]);
+                    scene.lights.push(placed);
+                }
+                Err(flaw) => warn.push(format!(
+                    "extensions.KHR_lights_punctual.lights[{light}].{}; this light is left out",
+                    flaw.sentence()
+                )),
+            }
+        }
+    }
+    camera_nodes
+}

@@ -1,0 +1,199 @@
+//! Objects and instances: nodes with meshes, GPU instancing, and their exact boxes.
+
+use std::sync::Arc;
+
+use glam::{Mat4, Quat, Vec3};
+
+use super::accessor::Reader;
+use super::nodes::{Hierarchy, Instancing, NodeDef, rotation};
+use crate::cloud::Cloud;
+use crate::error::{Flaw, Parsed};
+use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};
+
+/// A mesh with a material, as one primitive of a glTF mesh gives it.
+#[derive(Clone, Copy)]
+pub(crate) struct Part {
+    pub(crate) mesh: u32,
+    pub(crate) material: u32,
+}
+
+/// A node that shows geometry.
+pub(crate) struct Shown {
+    pub(crate) node: u32,
+    pub(crate) parts: Vec<Part>,
+    /// Transforms of its instancing elements, or one identity.
+    pub(crate) elements: Vec<Mat4>,
+    /// Its vertices are in world space already.
+    pub(crate) skinned: bool,
+}
+
+/// Elements of EXT_mesh_gpu_instancing; one identity without.
+pub(crate) fn elements(
+    instancing: Option<Instancing>,
+    reader: Reader<'_>,
+    options: &LoadOptions,
+) -> Parsed<Vec<Mat4>> {
+    let Some(found) = instancing else {
+        return Ok(vec![Mat4::IDENTITY]);
+    };
+    let accessors = [found.translation, found.rotation, found.scale, found.other];
+    let counts = accessors
+        .iter()
+        .flatten()
+        .map(|&a| reader.accessor(a).count);
+    let Some(count) = counts.min() else {
+        return Ok(vec![Mat4::IDENTITY]);
+    };
+    if count as u64 > options.max_instances {
+        return Err(too_many(count as u64, options));
+    }
+    let vectors = |accessor: Option<u32>, name: &str| -> Parsed<Option<Vec<[f32; 3]>>> {
+        let read = |a| reader.floats::<3>(a).map_err(|e| e.under(name));
+        accessor.map(read).transpose()
+    };
+    let translations = vectors(found.translation, "TRANSLATION")?;
+    let scales = vectors(found.scale, "SCALE")?;
+    let rotations = match found.rotation {
+        Some(a) => Some(reader.floats::<4>(a).map_err(|e| e.under("ROTATION"))?),
+        None => None,
+    };
+    let vector = |list: &Option<Vec<[f32; 3]>>, i: usize, default: Vec3| {
+        list.as_ref().map_or(default, |l| Vec3::from(l[i]))
+    };
+    Ok((0..count)
+        .map(|i| {
+            let turn = rotations
+                .as_ref()
+                .map_or(Quat::IDENTITY, |l| rotation(l[i]));
+            let scale = vector(&scales, i, Vec3::ONE);
+            Mat4::from_scale_rotation_translation(scale, turn, vector(&translations, i, Vec3::ZERO))
+        })
+        .collect())
+}
+
+fn too_many(count: u64, options: &LoadOptions) -> Flaw {
+    Flaw::too_large(format!(
+        "{count} instances, the limit is {}",
+        options.max_instances
+    ))
+}
+
+/// Objects with their instances, and the clouds of all meshes that they show.
+#[derive(Default)]
+pub(crate) struct Placed {
+    pub(crate) objects: Vec<Object>,
+    pub(crate) instances: Vec<Instance>,
+    pub(crate) clouds: Vec<Option<Arc<Cloud>>>,
+}
+
+/// Places every shown node's elements. What lies beyond the range of numbers is left out with a warning.
+pub(crate) fn place(
+    shown: &[Shown],
+    nodes: &[NodeDef],
+    world: &[Mat4],
+    meshes: &[Mesh],
+    options: &LoadOptions,
+    warn: &mut Vec<String>,
+) -> Parsed<Placed> {
+    let uses = count_uses(shown, meshes, options)?;
+    let numbers: Vec<u32> = (0..meshes.len() as u32).collect();
+    let clouds = threads::map(options.parallel, &numbers, |&i| {
+        let uses = uses[i as usize];
+        (uses > 0).then(|| Arc::new(Cloud::of(&meshes[i as usize], uses > 3)))
+    });
+    let spots: Vec<(&Shown, usize)> = shown
+        .iter()
+        .flat_map(|s| (0..s.elements.len()).map(move |e| (s, e)))
+        .collect();
+    let boxes = threads::map(options.parallel, &spots, |&(shown, element)| {
+        let matrix = matrix_of(shown, element, world);
+        let boxes: Vec<Aabb> = shown
+            .parts
+            .iter()
+            .map(|part| match &clouds[part.mesh as usize] {
+                Some(cloud) => cloud.bounds(matrix),
+                None => Aabb::EMPTY,
+            })
+            .collect();
+        (matrix, boxes)
+    });
+    let mut placed = Placed::default();
+    for ((shown, element), (matrix, boxes)) in spots.into_iter().zip(boxes) {
+        let usable = |b: &Aabb| b.is_empty() || (b.min.is_finite() && b.max.is_finite());
+        if !matrix.is_finite() || !boxes.iter().all(usable) {
+            let note = "lies beyond the range of 32-bit numbers and is left out";
+            warn.push(format!("nodes[{}]: {note}", shown.node));
+            continue;
+        }
+        let node = &nodes[shown.node as usize];
+        let object = placed.objects.len() as u32;
+        let first = placed.instances.len() as u32;
+        let mut bounds = Aabb::EMPTY;
+        for (part, part_bounds) in shown.parts.iter().zip(boxes) {
+            bounds = bounds.union(part_bounds);
+            placed.instances.push(Instance {
+                mesh: part.mesh,
+                material: part.material,
+                object,
+                world_from_object: matrix,
+                bounds: part_bounds,
+            });
+        }
+        placed.objects.push(Object {
+            name: node.name.clone().unwrap_or_default(),
+            node: shown.node,
+            element: element as u32,
+            occluder: node.occluder,
+            set: node.set.clone(),
+            bounds,
+            instances: first..placed.instances.len() as u32,
+        });
+    }
+    placed.clouds = clouds;
+    Ok(placed)
+}
+
+pub(crate) fn matrix_of(shown: &Shown, element: usize, world: &[Mat4]) -> Mat4 {
+    if shown.skinned {
+        shown.elements[element]
+    } else {
+        world[shown.node as usize] * shown.elements[element]
+    }
+}
+
+/// Instances per mesh, checked against the limits before anything of their number is allocated.
+fn count_uses(shown: &[Shown], meshes: &[Mesh], options: &LoadOptions) -> Parsed<Vec<u64>> {
+    let mut uses = vec![0u64; meshes.len()];
+    let (mut instances, mut triangles) = (0u64, 0u64);
+    for one in shown {
+        let elements = one.elements.len() as u64;
+        for part in &one.parts {
+            uses[part.mesh as usize] += elements;
+            instances += elements;
+            triangles += elements * meshes[part.mesh as usize].triangle_count() as u64;
+        }
+    }
+    if instances > options.max_instances {
+        return Err(too_many(instances, options).under("nodes"));
+    }
+    if triangles > options.max_triangles {
+        return Err(Flaw::too_large(format!(
+            "{triangles} triangles in all instances, the limit is {}",
+            options.max_triangles
+        ))
+        .under("nodes"));
+    }
+    Ok(uses)
+}
+
+/// Nodes that the scene shows and that have a mesh, in the file's order.
+pub(crate) fn nodes_with_meshes<'a>(
+    nodes: &'a [NodeDef],
+    hierarchy: &'a Hierarchy,
+) -> impl Iterator<Item = (u32, &'a NodeDef, u32)> {
+    nodes
+        .iter()
+        .enumerate()
+        .filter(|(i, _)| hierarchy.shown[*i])
+        .filter_map(|(i, node)| Some((i as u32, node, node.mesh?)))
+}

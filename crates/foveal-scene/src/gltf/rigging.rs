@@ -1,0 +1,238 @@
+//! From nodes, skins, morph targets and animations to the rig that [`Scene::pose`](crate::Scene::pose) plays.
+
+use std::sync::Arc;
+
+use glam::Mat4;
+
+use super::accessor::Reader;
+use super::document::Document;
+use super::nodes::Hierarchy;
+use super::objects::Shown;
+use crate::cloud::Cloud;
+use crate::error::{Flaw, Parsed};
+use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};
+use crate::{LoadOptions, Scene};
+
+/// The rig while the scene is being put together.
+pub(crate) struct Rigging {
+    data: RigData,
+    /// Nodes that an animation moves, or one above them.
+    moving: Vec<bool>,
+}
+
+impl Rigging {
+    /// Reads animations and skins.
+    pub(crate) fn begin(
+        reader: Reader<'_>,
+        hierarchy: &Hierarchy,
+        options: &LoadOptions,
+        warn: &mut Vec<String>,
+    ) -> Parsed<Self> {
+        let document = reader.document;
+        let nodes = document
+            .nodes
+            .iter()
+            .zip(&hierarchy.parent)
+            .map(|(node, parent)| Node {
+                parent: *parent,
+                local: node.local,
+                weights: Vec::new(),
+            })
+            .collect();
+        let mut animations = Vec::new();
+        for (i, def) in document.animations.iter().enumerate() {
+            let mut notes = Vec::new();
+            let targets = |node: u32| target_count(document, node);
+            let animation = def.read(reader, targets, &mut notes);
+            warn.extend(notes.into_iter().map(|n| format!("animations[{i}].{n}")));
+            if !animation.channels.is_empty() {
+                animations.push(animation);
+            }
+        }
+        let mut data = RigData {
+            nodes,
+            order: hierarchy.order.clone(),
+            animations,
+            parallel: options.parallel,
+            ..RigData::default()
+        };
+        for (i, def) in document.skins.iter().enumerate() {
+            let skin = def
+                .read(reader)
+                .map_err(|e| e.under(format_args!("skins[{i}]")))?;
+            data.skins.push(skin);
+        }
+        let moving = moving_nodes(&mut data, document, warn);
+        Ok(Self { data, moving })
+    }
+
+    /// Gives each node with a deforming mesh a mesh of its own.
+    pub(crate) fn give_own_meshes(
+        &mut self,
+        shown: &mut [Shown],
+        shapes: &[Option<Shape>],
+        scene: &mut Scene,
+        document: &Document,
+        options: &LoadOptions,
+        warn: &mut Vec<String>,
+    ) -> Parsed<()> {
+        let shapes: Vec<Option<Arc<Shape>>> =
+            shapes.iter().map(|s| s.clone().map(Arc::new)).collect();
+        let mut taken = vec![false; shapes.len()];
+        let mut vertices = 0u64;
+        for one in shown {
+            let node = one.node;
+            let def = &document.nodes[node as usize];
+            let skin = def.skin;
+            self.data.nodes[node as usize].weights = weights_at_rest(document, node);
+            for part in &mut one.parts {
+                let Some(shape) = &shapes[part.mesh as usize] else {
+                    continue;
+                };
+                let skin = skin.filter(|_| shape.influences.is_some());
+                if shape.targets.is_empty() && skin.is_none() {
+                    if shape.influences.is_some() {
+                        let note = "has joints in its mesh but no skin; it stays rigid";
+                        warn.push(format!("nodes[{node}]: {note}"));
+                    }
+                    scene.meshes[part.mesh as usize].deforms = false;
+                    continue;
+                }
+                vertices += shape.rest.len() as u64;
+                if vertices > options.max_vertices {
+                    let cause = "the deforming meshes have more vertices than the limit allows";
+                    return Err(Flaw::too_large(cause).under(format_args!("nodes[{node}]")));
+                }
+                self.check_joints(shape, skin, node, warn);
+                one.skinned |= skin.is_some();
+                let first = !std::mem::replace(&mut taken[part.mesh as usize], true);
+                if !first {
+                    let copy = scene.meshes[part.mesh as usize].clone();
+                    scene.meshes.push(copy);
+                    part.mesh = scene.meshes.len() as u32 - 1;
+                }
+                scene.meshes[part.mesh as usize].deforms = true;
+                self.data.deformers.push(Deformer {
+                    mesh: part.mesh,
+                    node,
+                    shape: Arc::clone(shape),
+                    skin,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    fn check_joints(&self, shape: &Shape, skin: Option<u32>, node: u32, warn: &mut Vec<String>) {
+        let (Some(skin), Some(influences)) = (skin, &shape.influences) else {
+            return;
+        };
+        let joints = self.data.skins[skin as usize].joints.len();
+        let lists = influences.joints.iter().zip(&influences.weights);
+        let mut pairs = lists.flat_map(|(j, w)| j.iter().zip(w));
+        if pairs.any(|(&j, &w)| w > 0.0 && j as usize >= joints) {
+            warn.push(format!(
+                "nodes[{node}]: its mesh names joints that skins[{skin}] does not have; they are ignored"
+            ));
+        }
+    }
+
+    /// World transforms of all nodes without any animation.
+    pub(crate) fn world_at_rest(&self) -> Vec<Mat4> {
+        let locals: Vec<Local> = self.data.nodes.iter().map(|n| n.local).collect();
+        world_from_nodes(|i| self.data.nodes[i].parent, &self.data.order, &locals)
+    }
+
+    /// Binds what moves to the finished scene. A scene that never moves keeps no rig.
+    pub(crate) fn finish(
+        mut self,
+        scene: &mut Scene,
+        shown: &[Shown],
+        clouds: &[Option<Arc<Cloud>>],
+        camera_nodes: &[u32],
+    ) {
+        let deforming: std::collections::HashSet<u32> =
+            self.data.deformers.iter().map(|d| d.node).collect();
+        let by_node: std::collections::HashMap<u32, &Shown> =
+            shown.iter().map(|s| (s.node, s)).collect();
+        for (i, object) in scene.objects.iter().enumerate() {
+            let moves = self.moving[object.node as usize] || deforming.contains(&object.node);
+            let Some(shown) = by_node.get(&object.node).filter(|_| moves) else {
+                continue;
+            };
+            self.data.bindings.push(Binding {
+                object: i as u32,
+                node: object.node,
+                element: shown.elements[object.element as usize],
+                skinned: shown.skinned,
+            });
+            for part in &shown.parts {
+                if !scene.meshes[part.mesh as usize].deforms
+                    && let Some(Some(cloud)) = clouds.get(part.mesh as usize)
+                {
+                    self.data.clouds.insert(part.mesh, Arc::clone(cloud));
+                }
+            }
+        }
+        for (i, &node) in camera_nodes.iter().enumerate() {
+            if self.moving[node as usize] {
+                self.data.cameras.push((i as u32, node));
+            }
+        }
+        for (i, light) in scene.lights.iter().enumerate() {
+            if let Some(node) = light.node
+                && self.moving[node as usize]
+            {
+                self.data.lights.push((i as u32, node));
+            }
+        }
+        if !self.data.deformers.is_empty() || !self.data.animations.is_empty() {
+            scene.rig = Rig(Some(Arc::new(self.data)));
+        }
+    }
+}
+
+/// Marks animated nodes and everything below them. Nodes with a matrix cannot be animated.
+fn moving_nodes(data: &mut RigData, document: &Document, warn: &mut Vec<String>) -> Vec<bool> {
+    let mut moving = vec![false; data.nodes.len()];
+    for channel in data.animations.iter().flat_map(|a| &a.channels) {
+        let node = channel.node as usize;
+        if matches!(document.nodes[node].local, Local::Matrix(_))
+            && channel.target != crate::pose::Target::Weights
+        {
+            warn.push(format!(
+                "nodes[{node}]: is animated but has a matrix; its own transform stays as it is"
+            ));
+        }
+        moving[node] = true;
+    }
+    for &i in &data.order {
+        let above = data.nodes[i as usize].parent;
+        moving[i as usize] |= above.is_some_and(|p| moving[p as usize]);
+    }
+    moving
+}
+
+/// Number of morph targets of a node's mesh.
+fn target_count(document: &Document, node: u32) -> usize {
+    document.nodes[node as usize].mesh.map_or(0, |mesh| {
+        let primitives = &document.meshes[mesh as usize].primitives;
+        primitives
+            .iter()
+            .map(|p| p.targets.len())
+            .max()
+            .unwrap_or(0)
+    })
+}
+
+/// The node's own weights, else its mesh's, else zeros.
+fn weights_at_rest(document: &Document, node: u32) -> Vec<f32> {
+    let def = &document.nodes[node as usize];
+    let of_mesh = def.mesh.map(|m| &document.meshes[m as usize].weights);
+    let mut weights = match of_mesh {
+        Some(of_mesh) if def.weights.is_empty() => of_mesh.clone(),
+        _ => def.weights.clone(),
+    };
+    weights.resize(target_count(document, node), 0.0);
+    weights
+}

@@ -1,0 +1,368 @@
+//! Textures: which ones the materials need, decoding, mip levels, and placeholders.
+//!
+//! One picture gives several [`Texture`]s when it is used with several samplers or meanings (colour,
+//! cut-out, data, normals); equal uses share one.
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+use super::Resolver;
+use super::accessor::Reader;
+use super::document::Document;
+use super::images::ImageSource;
+use super::materials::{MaterialDef, SlotDef, UvSets};
+use super::uri::{self, Uri};
+use crate::error::{Flaw, Parsed};
+use crate::mip::{self, Content};
+use crate::{AlphaMode, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, threads};
+
+/// Why a material reads a texture; what its mip levels depend on.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+enum Role {
+    Color,
+    Emissive,
+    /// The threshold's bits; `None` for blending.
+    Cutout(Option<u32>),
+    Data,
+    Normal,
+}
+
+impl Role {
+    fn content(self) -> Content {
+        match self {
+            Self::Color | Self::Emissive => Content::Color,
+            Self::Cutout(bits) => Content::Cutout {
+                threshold: bits.map(f32::from_bits),
+            },
+            Self::Data => Content::Data,
+            Self::Normal => Content::Normal,
+        }
+    }
+
+    fn color_space(self) -> ColorSpace {
+        match self {
+            Self::Data | Self::Normal => ColorSpace::Linear,
+            _ => ColorSpace::Srgb,
+        }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+struct Key {
+    image: Option<u32>,
+    sampler: Sampler,
+    role: Role,
+}
+
+/// The textures that the materials need, each once.
+#[derive(Default)]
+pub(crate) struct Wanted {
+    keys: Vec<Key>,
+    numbers: HashMap<Key, u32>,
+}
+
+impl Wanted {
+    /// The material with its texture slots filled; they refer to the textures of [`decode`].
+    pub(crate) fn material(&mut self, def: &MaterialDef, document: &Document) -> Material {
+        let (sets, _) = def.uv_sets();
+        let base_role = match def.material.alpha_mode {
+            AlphaMode::Opaque => Role::Color,
+            AlphaMode::Blend => Role::Cutout(None),
+            AlphaMode::Mask { cutoff } => {
+                // The factor scales alpha before the comparison.
+                let threshold = cutoff / def.material.base_color.w.max(1e-6);
+                Role::Cutout(Some(threshold.clamp(0.0, 1.0).to_bits()))
+            }
+        };
+        let mut slot =
+            |slot: Option<SlotDef>, role| slot.map(|s| self.slot(s, role, sets, document));
+        Material {
+            base_color_texture: slot(def.base_color, base_role),
+            metallic_roughness_texture: slot(def.metallic_roughness, Role::Data),
+            normal_texture: slot(def.normal, Role::Normal),
+            occlusion_texture: slot(def.occlusion, Role::Data),
+            emissive_texture: slot(def.emissive, Role::Emissive),
+            ..def.material.clone()
+        }
+    }
+
+    fn slot(&mut self, slot: SlotDef, role: Role, sets: UvSets, document: &Document) -> TextureRef {
+        let texture = &document.textures[slot.texture as usize];
+        let sampler = texture
+            .sampler
+            .map_or_else(Sampler::default, |s| document.samplers[s as usize]);
+        // Without mip levels only the colour space is left to differ, and with a picture the placeholder is not needed.
+        let role = match (role, sampler.mip, texture.image) {
+            (Role::Cutout(_), None, Some(_)) | (Role::Emissive, _, Some(_)) => Role::Color,
+            (Role::Normal, None, Some(_)) => Role::Data,
+            (role, ..) => role,
+        };
+        let key = Key {
+            image: texture.image,
+            sampler,
+            role,
+        };
+        let keys = &mut self.keys;
+        let number = *self.numbers.entry(key).or_insert_with(|| {
+            keys.push(key);
+            keys.len() as u32 - 1
+        });
+        TextureRef {
+            texture: number,
+            uv_set: u32::from(sets[1] == Some(slot.set)),
+            uv_transform: slot.transform,
+        }
+    }
+}
+
+/// A picture's file, or why there is none, and the textures made from it.
+type Encoded<'a> = (Parsed<Cow<'a, [u8]>>, &'a [usize]);
+
+/// RGBA8 texels.
+struct Picture {
+    width: u32,
+    height: u32,
+    pixels: Vec<u8>,
+}
+
+/// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder.
+pub(crate) fn decode(
+    wanted: &Wanted,
+    reader: Reader<'_>,
+    resolver: &Resolver<'_>,
+    options: &LoadOptions,
+    warn: &mut Vec<String>,
+) -> Parsed<Vec<Texture>> {
+    let document = reader.document;
+    // All uses of a picture together, so that it is decoded once.
+    let mut uses: Vec<(Option<u32>, Vec<usize>)> = Vec::new();
+    let mut group: HashMap<Option<u32>, usize> = HashMap::new();
+    for (i, key) in wanted.keys.iter().enumerate() {
+        let at = *group.entry(key.image).or_insert_with(|| {
+            uses.push((key.image, Vec::new()));
+            uses.len() - 1
+        });
+        uses[at].1.push(i);
+    }
+    // Files are read here, one after the other: a resolver need not be quick or parallel.
+    let encoded: Vec<Encoded<'_>> = uses
+        .iter()
+        .map(|(image, uses)| (fetch(*image, reader, resolver), uses.as_slice()))
+        .collect();
+    check_budget(&encoded, options)?;
+    let decoded = threads::map(options.parallel, &encoded, |(bytes, uses)| {
+        let picture = match bytes {
+            Ok(bytes) => read_picture(bytes),
+            Err(flaw) => Err(flaw.cause.clone()),
+        };
+        finish(picture, uses, wanted, document, options)
+    });
+    let mut textures: Vec<(usize, Texture)> = Vec::new();
+    for (one, (image, _)) in decoded.into_iter().zip(&uses) {
+        let place = match image {
+            Some(image) => {
+                let label = document.images[*image as usize].label(*image as usize);
+                format!("images[{image}] ({label})")
+            }
+            None => "textures".to_owned(),
+        };
+        warn.extend(one.notes.into_iter().map(|note| format!("{place}: {note}")));
+        textures.extend(one.textures);
+    }
+    textures.sort_unstable_by_key(|(i, _)| *i);
+    Ok(textures.into_iter().map(|(_, t)| t).collect())
+}
+
+fn fetch<'a>(
+    image: Option<u32>,
+    reader: Reader<'a>,
+    resolver: &Resolver<'_>,
+) -> Parsed<Cow<'a, [u8]>> {
+    let Some(image) = image else {
+        return Err(Flaw::new("a texture has no picture that can be read"));
+    };
+    match &reader.document.images[image as usize].source {
+        ImageSource::View(view) => reader
+            .buffers
+            .view(reader.document, *view)
+            .map(Cow::Borrowed),
+        ImageSource::Uri(text) => {
+            match uri::parse(text).map_err(|e| Flaw::new(format!("its URI {e}")))? {
+                Uri::Data(bytes) => Ok(Cow::Owned(bytes)),
+                Uri::File(path) => resolver(&path).map(Cow::Owned).map_err(Flaw::new),
+            }
+        }
+        ImageSource::Nowhere => Err(Flaw::new("has neither a URI nor a buffer view")),
+    }
+}
+
+fn open(bytes: &[u8]) -> Result<image::ImageReader<Cursor<&[u8]>>, String> {
+    let mut reader = image::ImageReader::new(Cursor::new(bytes));
+    // By content: declared MIME types are often wrong.
+    let format = match bytes {
+        [0x89, b'P', b'N', b'G', ..] => image::ImageFormat::Png,
+        [0xFF, 0xD8, ..] => image::ImageFormat::Jpeg,
+        _ => return Err("is neither PNG nor JPEG".to_owned()),
+    };
+    reader.set_format(format);
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(1 << 15);
+    limits.max_image_height = Some(1 << 15);
+    limits.max_alloc = Some(2 << 30);
+    reader.limits(limits);
+    Ok(reader)
+}
+
+/// Adds up the sizes that the headers promise before anything is decoded.
+fn check_budget(encoded: &[Encoded<'_>], options: &LoadOptions) -> Parsed<()> {
+    let mut total = 0u64;
+    for (bytes, uses) in encoded {
+        let Ok(bytes) = bytes else { continue };
+        let size = catch_unwind(AssertUnwindSafe(|| {
+            open(bytes).ok()?.into_dimensions().ok()
+        }));
+        if let Ok(Some((width, height))) = size {
+            total += u64::from(width) * u64::from(height) * 4 * uses.len() as u64;
+        }
+    }
+    if total > options.max_texture_bytes {
+        return Err(Flaw::too_large(format!(
+            "the decoded pictures take {total} bytes, the limit is {}",
+            options.max_texture_bytes
+        ))
+        .under("images"));
+    }
+    Ok(())
+}
+
+fn read_picture(bytes: &[u8]) -> Result<Picture, String> {
+    let decode = || -> Result<Picture, String> {
+        let decoded = open(bytes)?
+            .decode()
+            .map_err(|e| format!("cannot be decoded: {e}"))?;
+        let rgba = decoded.into_rgba8();
+        Ok(Picture {
+            width: rgba.width(),
+            height: rgba.height(),
+            pixels: rgba.into_raw(),
+        })
+    };
+    // A last net: a decoder's panic on a broken picture must not take the scene with it.
+    catch_unwind(AssertUnwindSafe(decode))
+        .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))
+        .and_then(|p| {
+            if p.width > 0 && p.height > 0 {
+                Ok(p)
+            } else {
+                Err("has no texels".to_owned())
+            }
+        })
+}
+
+/// What came of one picture.
+struct Finished {
+    textures: Vec<(usize, Texture)>,
+    notes: Vec<String>,
+}
+
+fn finish(
+    picture: Result<Picture, String>,
+    uses: &[usize],
+    wanted: &Wanted,
+    document: &Document,
+    options: &LoadOptions,
+) -> Finished {
+    let mut notes = Vec::new();
+    let mut textures = Vec::with_capacity(uses.len());
+    match picture {
+        Ok(Picture {
+            width,
+            height,
+            mut pixels,
+        }) => {
+            for (nth, &i) in uses.iter().enumerate() {
+                let last = nth + 1 == uses.len();
+                let pixels = if last {
+                    std::mem::take(&mut pixels)
+                } else {
+                    pixels.clone()
+                };
+                let texture = build(&wanted.keys[i], document, pixels, (width, height), options);
+                if last && texture.width < width {
+                    notes.push(format!(
+                        "is {width} x {height} texels large and reduced to {} x {}",
+                        texture.width, texture.height
+                    ));
+                }
+                textures.push((i, texture));
+            }
+        }
+        Err(cause) => {
+            notes.push(format!("{cause}; a placeholder is shown"));
+            for &i in uses {
+                let key = &wanted.keys[i];
+                let (pixels, side) = placeholder(key.role);
+                textures.push((i, build(key, document, pixels, (side, side), options)));
+            }
+        }
+    }
+    Finished { textures, notes }
+}
+
+fn build(
+    key: &Key,
+    document: &Document,
+    pixels: Vec<u8>,
+    (width, height): (u32, u32),
+    options: &LoadOptions,
+) -> Texture {
+    let largest = options.max_texture_size.max(1);
+    let mut drop = 0;
+    while width.max(height) >> drop > largest {
+        drop += 1;
+    }
+    let mut levels = if key.sampler.mip.is_some() || drop > 0 {
+        mip::chain(pixels, width, height, key.role.content())
+    } else {
+        vec![pixels]
+    };
+    levels.drain(..drop);
+    if key.sampler.mip.is_none() {
+        levels.truncate(1);
+    }
+    let name = key.image.map_or_else(
+        || "no picture".to_owned(),
+        |i| document.images[i as usize].label(i as usize),
+    );
+    Texture {
+        name,
+        width: (width >> drop).max(1),
+        height: (height >> drop).max(1),
+        color_space: key.role.color_space(),
+        sampler: key.sampler,
+        levels,
+    }
+}
+
+/// Visible as a colour, neutral as anything else; square, with its side in texels.
+fn placeholder(role: Role) -> (Vec<u8>, u32) {
+    let plain = |texel: [u8; 4]| (texel.to_vec(), 1);
+    match role {
+        Role::Color | Role::Cutout(_) => {
+            let texel = |i: usize| {
+                if (i % 8 + i / 8).is_multiple_of(2) {
+                    [255, 0, 255, 255]
+                } else {
+                    [255, 255, 255, 255]
+                }
+            };
+            ((0..64).flat_map(texel).collect(), 8)
+        }
+        // The whole scene would be lit by a bright one.
+        Role::Emissive => plain([0, 0, 0, 255]),
+        Role::Data => plain([255; 4]),
+        Role::Normal => plain([128, 128, 255, 255]),
+    }
+}

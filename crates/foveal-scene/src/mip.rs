@@ -1,0 +1,238 @@
+//! Mip chains of RGBA8 pictures.
+//!
+//! Each level is the box filter of the one before, exact in area for odd sizes too (three taps with
+//! weights that follow the texel borders). Colours are averaged as light, not as sRGB code values;
+//! intermediate levels keep 16 bits so that rounding does not add up.
+
+/// What the channels mean for filtering.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Content {
+    /// sRGB colour; alpha is ignored by the material or not there.
+    Color,
+    /// sRGB colour with a meaningful alpha: transparent texels give no colour. With a threshold, the
+    /// share of texels that pass it is kept the same on every level (Castaño 2010, 'Computing alpha mipmaps').
+    Cutout {
+        /// Alpha threshold in 0 … 1 of an alpha mask; `None` for blending.
+        threshold: Option<f32>,
+    },
+    /// Linear values.
+    Data,
+    /// Tangent-space normals; each texel is made unit length again.
+    Normal,
+}
+
+/// Number of levels down to 1 x 1.
+pub(crate) fn level_count(width: u32, height: u32) -> u32 {
+    32 - width.max(height).max(1).leading_zeros()
+}
+
+/// All levels of a picture, level 0 as given. `pixels` has `width * height * 4` bytes.
+pub(crate) fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<Vec<u8>> {
+    let (mut w, mut h) = (width as usize, height as usize);
+    let count = level_count(width, height) as usize;
+    let mut levels = Vec::with_capacity(count);
+    levels.push(pixels);
+    if count == 1 {
+        return levels;
+    }
+    let mut wide = widen(&levels[0], content);
+    let threshold = match content {
+        Content::Cutout {
+            threshold: Some(threshold),
+        } => Some((threshold, coverage(&wide, threshold, 1.0))),
+        _ => None,
+    };
+    for _ in 1..count {
+        wide = halve(&wide, w, h);
+        (w, h) = ((w / 2).max(1), (h / 2).max(1));
+        let scale = threshold.map_or(1.0, |(threshold, wanted)| {
+            alpha_scale(&wide, threshold, wanted)
+        });
+        levels.push(narrow(&wide, content, scale));
+    }
+    levels
+}
+
+/// Texels as 16-bit numbers in the space where they may be averaged. Normals are offset by one half.
+type Wide = Vec<[u16; 4]>;
+
+fn widen(pixels: &[u8], content: Content) -> Wide {
+    let texels = pixels.as_chunks::<4>().0.iter();
+    match content {
+        Content::Color => {
+            let linear = crate::srgb::to_linear16();
+            texels
+                .map(|&[r, g, b, a]| {
+                    [
+                        linear[r as usize],
+                        linear[g as usize],
+                        linear[b as usize],
+                        u16::from(a) * 257,
+                    ]
+                })
+                .collect()
+        }
+        Content::Cutout { .. } => {
+            let linear = crate::srgb::to_linear16();
+            texels
+                .map(|&[r, g, b, a]| {
+                    let alpha = u32::from(a) * 257;
+                    let weigh =
+                        |c: u8| ((u32::from(linear[c as usize]) * alpha + 32767) / 65535) as u16;
+                    [weigh(r), weigh(g), weigh(b), alpha as u16]
+                })
+                .collect()
+        }
+        Content::Data | Content::Normal => texels.map(|t| t.map(|c| u16::from(c) * 257)).collect(),
+    }
+}
+
+fn narrow(wide: &[[u16; 4]], content: Content, alpha_scale: f32) -> Vec<u8> {
+    let byte = |x: u16| ((u32::from(x) + 128) / 257) as u8;
+    let mut out = Vec::with_capacity(wide.len() * 4);
+    match content {
+        Content::Color => {
+            let srgb = crate::srgb::from_linear16();
+            for &[r, g, b, a] in wide {
+                out.extend([
+                    srgb[r as usize],
+                    srgb[g as usize],
+                    srgb[b as usize],
+                    byte(a),
+                ]);
+            }
+        }
+        Content::Cutout { .. } => {
+            let srgb = crate::srgb::from_linear16();
+            for &[r, g, b, a] in wide {
+                let alpha = u32::from(a).max(1);
+                let plain = |c: u16| {
+                    let c = (u32::from(c) * 65535 + alpha / 2) / alpha;
+                    srgb[c.min(65535) as usize]
+                };
+                let scaled = (f32::from(a) / 65535.0 * alpha_scale).min(1.0);
+                out.extend([plain(r), plain(g), plain(b), (scaled * 255.0 + 0.5) as u8]);
+            }
+        }
+        Content::Data => {
+            for texel in wide {
+                out.extend(texel.map(byte));
+            }
+        }
+        Content::Normal => {
+            for &[x, y, z, a] in wide {
+                let [x, y, z] = [x, y, z].map(|c| f32::from(c) / 32767.5 - 1.0);
+                let length = (x * x + y * y + z * z).sqrt();
+                // Opposite normals may cancel out; straight up is the neutral answer.
+                let [x, y, z] = if length > 1e-3 {
+                    [x, y, z].map(|c| c / length)
+                } else {
+                    [0.0, 0.0, 1.0]
+                };
+                let code = |c: f32| ((c * 0.5 + 0.5) * 255.0 + 0.5) as u8;
+                out.extend([code(x), code(y), code(z), byte(a)]);
+            }
+        }
+    }
+    out
+}
+
+/// Half the size, rounded down, at least one texel each way.
+fn halve(wide: &[[u16; 4]], width: usize, height: usize) -> Wide {
+    let (w, h) = ((width / 2).max(1), (height / 2).max(1));
+    if width.is_multiple_of(2) && height.is_multiple_of(2) {
+        return halve_even(wide, width);
+    }
+    let columns: Vec<Taps> = (0..w).map(|i| Taps::of(i, width)).collect();
+    let mut out = Vec::with_capacity(w * h);
+    for y in 0..h {
+        let rows = Taps::of(y, height);
+        for taps in &columns {
+            let mut sum = [0f64; 4];
+            for (row, weight_y) in rows.iter() {
+                for (column, weight_x) in taps.iter() {
+                    let texel = wide[row * width + column];
+                    for (s, c) in sum.iter_mut().zip(texel) {
+                        *s += weight_y * weight_x * f64::from(c);
+                    }
+                }
+            }
+            out.push(sum.map(|s| (s + 0.5) as u16));
+        }
+    }
+    out
+}
+
+/// The common case: four texels of equal weight.
+fn halve_even(wide: &[[u16; 4]], width: usize) -> Wide {
+    let mut out = Vec::with_capacity(wide.len() / 4);
+    for rows in wide.chunks_exact(width * 2) {
+        let (upper, lower) = rows.split_at(width);
+        let pairs = upper
+            .as_chunks::<2>()
+            .0
+            .iter()
+            .zip(lower.as_chunks::<2>().0);
+        out.extend(pairs.map(|([a, b], [c, d])| {
+            std::array::from_fn(|k| {
+                ((u32::from(a[k]) + u32::from(b[k]) + u32::from(c[k]) + u32::from(d[k]) + 2) / 4)
+                    as u16
+            })
+        }));
+    }
+    out
+}
+
+/// The texels under one texel of the next level, along one axis, and the share of each.
+struct Taps {
+    first: usize,
+    count: usize,
+    weights: [f64; 3],
+}
+
+impl Taps {
+    fn of(i: usize, size: usize) -> Self {
+        let n = size / 2;
+        let (count, weights) = match size {
+            1 => (1, [1.0, 0.0, 0.0]),
+            _ if size.is_multiple_of(2) => (2, [0.5, 0.5, 0.0]),
+            _ => {
+                let whole = size as f64;
+                let share = |x: usize| x as f64 / whole;
+                (3, [share(n - i), share(n), share(i + 1)])
+            }
+        };
+        Self {
+            first: if size == 1 { 0 } else { 2 * i },
+            count,
+            weights,
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = (usize, f64)> {
+        (self.first..).zip(self.weights).take(self.count)
+    }
+}
+
+/// Share of texels whose scaled alpha reaches the threshold.
+fn coverage(wide: &[[u16; 4]], threshold: f32, scale: f32) -> f32 {
+    let least = threshold * 65535.0 / scale;
+    let passed = wide.iter().filter(|t| f32::from(t[3]) >= least).count();
+    passed as f32 / wide.len() as f32
+}
+
+/// The factor on alpha that brings the coverage back to `wanted`.
+fn alpha_scale(wide: &[[u16; 4]], threshold: f32, wanted: f32) -> f32 {
+    if threshold <= 0.0 || wanted <= 0.0 || wanted >= 1.0 {
+        return 1.0;
+    }
+    // The alpha that exactly the wanted share of texels reaches must become the threshold.
+    let mut alphas: Vec<u16> = wide.iter().map(|t| t[3]).collect();
+    let passing = (wanted * alphas.len() as f32).round() as usize;
+    if passing == 0 {
+        return 1.0;
+    }
+    let (_, &mut least, _) = alphas.select_nth_unstable_by(passing - 1, |a, b| b.cmp(a));
+    let scale = threshold * 65535.0 / f32::from(least.max(1));
+    scale.clamp(0.25, 4.0)
+}

@@ -1,0 +1,134 @@
+//! Morph targets and skins: deformed vertices from a shape at rest.
+
+use glam::{Mat3, Mat4, Vec3, Vec4};
+
+use crate::Vertex;
+
+/// Joints of a skin.
+#[derive(Clone, Debug)]
+pub(crate) struct Skin {
+    /// Node indices.
+    pub(crate) joints: Vec<u32>,
+    /// Joint space from the mesh's object space; at least one per joint.
+    pub(crate) inverse_bind: Vec<Mat4>,
+}
+
+/// Per-vertex differences; an empty list means none.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MorphTarget {
+    pub(crate) positions: Vec<Vec3>,
+    pub(crate) normals: Vec<Vec3>,
+    pub(crate) tangents: Vec<Vec3>,
+}
+
+/// Up to eight joints per vertex.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Influences {
+    pub(crate) joints: Vec<[u16; 8]>,
+    /// Not negative, sum 1.
+    pub(crate) weights: Vec<[f32; 8]>,
+}
+
+/// What deforms of one primitive, shared by all nodes that show it.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Shape {
+    /// Vertices at rest.
+    pub(crate) rest: Vec<Vertex>,
+    pub(crate) targets: Vec<MorphTarget>,
+    pub(crate) influences: Option<Influences>,
+    /// Every triangle has three vertices of its own and its normal is that of its plane, deformed too.
+    pub(crate) flat: bool,
+}
+
+/// A shape at a node.
+#[derive(Clone, Debug)]
+pub(crate) struct Deformer {
+    /// Index into the scene's meshes; that mesh belongs to this deformer alone.
+    pub(crate) mesh: u32,
+    pub(crate) node: u32,
+    pub(crate) shape: std::sync::Arc<Shape>,
+    /// Index into the rig's skins.
+    pub(crate) skin: Option<u32>,
+}
+
+impl Shape {
+    /// Writes the vertices deformed by morph `weights` and then by `joint_matrices` (world from
+    /// object). Without joint matrices the result is in object space, else in world space.
+    pub(crate) fn deform(
+        &self,
+        weights: &[f32],
+        joint_matrices: Option<&[Mat4]>,
+        out: &mut [Vertex],
+    ) {
+        let active: Vec<(&MorphTarget, f32)> = self
+            .targets
+            .iter()
+            .zip(weights.iter().copied())
+            .filter(|(_, w)| *w != 0.0)
+            .collect();
+        let skinning = joint_matrices.zip(self.influences.as_ref());
+        for (i, (vertex, rest)) in out.iter_mut().zip(&self.rest).enumerate() {
+            let mut position = Vec3::from(rest.position);
+            let mut normal = Vec3::from(rest.normal);
+            let mut tangent = Vec4::from(rest.tangent);
+            for (target, weight) in &active {
+                let add = |list: &[Vec3]| list.get(i).map_or(Vec3::ZERO, |d| *d * *weight);
+                position += add(&target.positions);
+                normal += add(&target.normals);
+                tangent += add(&target.tangents).extend(0.0);
+            }
+            if let Some((matrices, influences)) = skinning {
+                let matrix = blend(matrices, influences, i);
+                position = matrix.transform_point3(position);
+                normal = cofactor(matrix) * normal;
+                tangent = matrix
+                    .transform_vector3(tangent.truncate())
+                    .extend(tangent.w);
+            }
+            vertex.position = position.to_array();
+            vertex.normal = unit(normal, rest.normal);
+            vertex.tangent = tangent
+                .truncate()
+                .try_normalize()
+                .map_or(rest.tangent, |t| t.extend(tangent.w).to_array());
+        }
+        if self.flat {
+            for triangle in out.chunks_exact_mut(3) {
+                let normal = crate::gltf::plane_normal(
+                    triangle[0].position,
+                    triangle[1].position,
+                    triangle[2].position,
+                );
+                triangle.iter_mut().for_each(|v| v.normal = normal);
+            }
+        }
+    }
+}
+
+fn unit(v: Vec3, fallback: [f32; 3]) -> [f32; 3] {
+    v.try_normalize().map_or(fallback, |v| v.to_array())
+}
+
+fn blend(matrices: &[Mat4], influences: &Influences, vertex: usize) -> Mat4 {
+    let (Some(joints), Some(weights)) = (
+        influences.joints.get(vertex),
+        influences.weights.get(vertex),
+    ) else {
+        return Mat4::IDENTITY;
+    };
+    let mut sum = Mat4::ZERO;
+    for (&joint, &weight) in joints.iter().zip(weights) {
+        if weight > 0.0
+            && let Some(matrix) = matrices.get(joint as usize)
+        {
+            sum += *matrix * weight;
+        }
+    }
+    sum
+}
+
+/// The matrix that carries normals: the inverse transpose up to a factor, but safe for singular ones.
+fn cofactor(matrix: Mat4) -> Mat3 {
+    let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
+    Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y))
+}

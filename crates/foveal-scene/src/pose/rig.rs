@@ -1,0 +1,225 @@
+//! The rig of a scene and how it poses it.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use glam::Mat4;
+
+use super::{Animation, Deformer, Local, Skin, Target};
+use crate::cloud::Cloud;
+use crate::{Aabb, Scene, Vertex, gltf, threads};
+
+/// How a scene moves: node hierarchy, animations, skins, morph targets. Opaque; the default does not move.
+#[derive(Clone, Debug, Default)]
+pub struct Rig(pub(crate) Option<Arc<RigData>>);
+
+/// A node at rest.
+#[derive(Clone, Debug)]
+pub(crate) struct Node {
+    pub(crate) parent: Option<u32>,
+    pub(crate) local: Local,
+    /// Morph weights, as many as its mesh has targets.
+    pub(crate) weights: Vec<f32>,
+}
+
+/// An object that moves or deforms.
+#[derive(Clone, Debug)]
+pub(crate) struct Binding {
+    pub(crate) object: u32,
+    pub(crate) node: u32,
+    /// Transform of its EXT_mesh_gpu_instancing element.
+    pub(crate) element: Mat4,
+    /// Its vertices are in world space already: the node's transform does not apply.
+    pub(crate) skinned: bool,
+}
+
+/// Everything a rig knows.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct RigData {
+    pub(crate) nodes: Vec<Node>,
+    /// Parents first.
+    pub(crate) order: Vec<u32>,
+    pub(crate) animations: Vec<Animation>,
+    pub(crate) skins: Vec<Skin>,
+    pub(crate) deformers: Vec<Deformer>,
+    pub(crate) bindings: Vec<Binding>,
+    /// (camera, node).
+    pub(crate) cameras: Vec<(u32, u32)>,
+    /// (light, node).
+    pub(crate) lights: Vec<(u32, u32)>,
+    /// Bounding points of rigid meshes that move, by mesh.
+    pub(crate) clouds: HashMap<u32, Arc<Cloud>>,
+    pub(crate) parallel: bool,
+}
+
+/// World transforms of all nodes, from their local ones.
+pub(crate) fn world_from_nodes(
+    parent: impl Fn(usize) -> Option<u32>,
+    order: &[u32],
+    locals: &[Local],
+) -> Vec<Mat4> {
+    let mut world = vec![Mat4::IDENTITY; locals.len()];
+    for &i in order {
+        let i = i as usize;
+        let local = locals[i].matrix();
+        world[i] = match parent(i) {
+            Some(p) => world[p as usize] * local,
+            None => local,
+        };
+    }
+    world
+}
+
+impl RigData {
+    /// Local transforms and morph weights at a time.
+    fn sample(&self, time_s: f32) -> (Vec<Local>, HashMap<u32, Vec<f32>>) {
+        let mut locals: Vec<Local> = self.nodes.iter().map(|n| n.local).collect();
+        let mut weights: HashMap<u32, Vec<f32>> = HashMap::new();
+        for animation in &self.animations {
+            let time = animation.looped(time_s);
+            for channel in &animation.channels {
+                let mut value = [0.0; 4];
+                let Some(local) = locals.get_mut(channel.node as usize) else {
+                    continue;
+                };
+                if channel.target == Target::Weights {
+                    let mut list = vec![0.0; channel.width];
+                    channel.sample(time, &mut list);
+                    weights.insert(channel.node, list);
+                    continue;
+                }
+                channel.sample(time, &mut value[..channel.width]);
+                if let Local::Trs {
+                    translation,
+                    rotation,
+                    scale,
+                } = local
+                {
+                    let [x, y, z, _] = value;
+                    match channel.target {
+                        Target::Translation => *translation = [x, y, z].into(),
+                        Target::Scale => *scale = [x, y, z].into(),
+                        Target::Rotation => *rotation = gltf::rotation(value),
+                        Target::Weights => {}
+                    }
+                }
+            }
+        }
+        (locals, weights)
+    }
+
+    fn pose(&self, scene: &mut Scene, time_s: f32) {
+        let (locals, weights) = self.sample(time_s);
+        let world = world_from_nodes(|i| self.nodes[i].parent, &self.order, &locals);
+        self.deform(scene, &world, &weights);
+        self.place_objects(scene, &world);
+        for &(camera, node) in &self.cameras {
+            if let Some(camera) = scene.cameras.get_mut(camera as usize) {
+                camera.world_from_view = gltf::rigid(world[node as usize]);
+            }
+        }
+        for &(light, node) in &self.lights {
+            if let Some(light) = scene.lights.get_mut(light as usize) {
+                gltf::place_light(light, world[node as usize]);
+            }
+        }
+    }
+
+    fn deform(&self, scene: &mut Scene, world: &[Mat4], weights: &HashMap<u32, Vec<f32>>) {
+        let joints: Vec<Vec<Mat4>> = self
+            .skins
+            .iter()
+            .map(|skin| {
+                let joints = skin.joints.iter().zip(&skin.inverse_bind);
+                joints.map(|(&j, bind)| world[j as usize] * *bind).collect()
+            })
+            .collect();
+        let posed: Vec<(Vec<Vertex>, Aabb)> =
+            threads::map(self.parallel, &self.deformers, |deformer| {
+                let mut vertices = deformer.shape.rest.clone();
+                let weights = weights
+                    .get(&deformer.node)
+                    .unwrap_or(&self.nodes[deformer.node as usize].weights);
+                let matrices = deformer.skin.map(|s| joints[s as usize].as_slice());
+                deformer.shape.deform(weights, matrices, &mut vertices);
+                let bounds = match scene.meshes.get(deformer.mesh as usize) {
+                    Some(mesh) => gltf::used_bounds(&vertices, &mesh.indices),
+                    None => Aabb::EMPTY,
+                };
+                (vertices, bounds)
+            });
+        for (deformer, (vertices, bounds)) in self.deformers.iter().zip(posed) {
+            if let Some(mesh) = scene.meshes.get_mut(deformer.mesh as usize) {
+                mesh.vertices = vertices;
+                mesh.bounds = bounds;
+            }
+        }
+    }
+
+    fn place_objects(&self, scene: &mut Scene, world: &[Mat4]) {
+        let shown: &Scene = scene;
+        let placed = threads::map(self.parallel, &self.bindings, |binding| {
+            let matrix = if binding.skinned {
+                binding.element
+            } else {
+                world[binding.node as usize] * binding.element
+            };
+            let instances = shown
+                .objects
+                .get(binding.object as usize)
+                .map_or(0..0, |o| o.instances.clone());
+            let boxes: Vec<Aabb> = instances
+                .map(|i| {
+                    let Some(instance) = shown.instances.get(i as usize) else {
+                        return Aabb::EMPTY;
+                    };
+                    match (
+                        self.clouds.get(&instance.mesh),
+                        shown.meshes.get(instance.mesh as usize),
+                    ) {
+                        (Some(cloud), _) => cloud.bounds(matrix),
+                        (None, Some(mesh)) => Cloud::of(mesh, false).bounds(matrix),
+                        (None, None) => Aabb::EMPTY,
+                    }
+                })
+                .collect();
+            (matrix, boxes)
+        });
+        for (binding, (matrix, boxes)) in self.bindings.iter().zip(placed) {
+            let Some(object) = scene.objects.get_mut(binding.object as usize) else {
+                continue;
+            };
+            object.bounds = boxes.iter().fold(Aabb::EMPTY, |all, b| all.union(*b));
+            for (i, bounds) in object.instances.clone().zip(boxes) {
+                if let Some(instance) = scene.instances.get_mut(i as usize) {
+                    instance.world_from_object = matrix;
+                    instance.bounds = bounds;
+                }
+            }
+        }
+    }
+}
+
+impl Scene {
+    /// True when [`Scene::pose`] at different times gives different scenes.
+    #[must_use]
+    pub fn is_animated(&self) -> bool {
+        self.animation_duration_s() > 0.0
+    }
+
+    /// Length in seconds of the longest animation; 0 without any. Each one loops over its own length.
+    #[must_use]
+    pub fn animation_duration_s(&self) -> f32 {
+        let animations = self.rig.0.iter().flat_map(|rig| &rig.animations);
+        animations.map(|a| a.duration_s).fold(0.0, f32::max)
+    }
+
+    /// Moves everything that moves to where it is at `time_s` seconds: instance matrices, boxes of
+    /// instances and objects, vertices of deforming meshes, lights and cameras. All animations of the
+    /// file play together. Does nothing for a scene that does not move.
+    pub fn pose(&mut self, time_s: f32) {
+        if let Some(rig) = self.rig.0.clone() {
+            rig.pose(self, time_s);
+        }
+    }
+}
