@@ -1,2 +1,34 @@
-//! The `foveal` program.
-fn main() {}
+//! The `foveal` program: draws scenes, compares pictures, and says what there is to draw and to draw with.
+//!
+//! Each subcommand has its own module with its arguments and its `run`. What fails comes back here as one
+//! error, is printed as one paragraph, and decides the exit code: 0 done, 1 failed, 2 wrong usage.
+#![forbid(unsafe_code)]
+
+mod adapters;
+mod atomic_file;
+mod cli;
+mod compare;
+mod console;
+mod failure;
+mod gpu;
+mod picture;
+mod render;
+mod scene_info;
+mod scene_source;
+mod values;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+use cli::{Cli, Command, SceneCommand};
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let name = cli.command.name();
+    failure::report(name, || match cli.command {
+        Command::Render(args) => render::run(&args),
+        Command::Compare(args) => compare::run(&args),
+        Command::Adapters(args) => adapters::run(&args),
+        Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
+    })
+}

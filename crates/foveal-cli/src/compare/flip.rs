@@ -1,0 +1,34 @@
+//! FLIP: the difference that a viewer sees when two pictures are shown in turn at the same place (Andersson et
+//! al. 2020, «FLIP: A Difference Evaluator for Alternating Images»), by NVIDIA's own code.
+//!
+//! The viewer sits as the paper assumes: 0.7 m from a display 0.7 m wide with 3840 pixels, 67 pixels per degree.
+
+use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8};
+
+use crate::picture::Picture;
+
+/// FLIP's error per pixel, 0 to 1.
+pub(super) struct ErrorMap(FlipImageFloat);
+
+impl ErrorMap {
+    /// The map between two pictures of the same size.
+    pub(super) fn between(reference: &Picture, test: &Picture) -> Self {
+        let image = |p: &Picture| FlipImageRgb8::with_data(p.width, p.height, &p.rgb_bytes());
+        Self(nv_flip::flip(
+            image(reference),
+            image(test),
+            DEFAULT_PIXELS_PER_DEGREE,
+        ))
+    }
+
+    /// The mean over all pixels.
+    pub(super) fn mean(&self) -> f64 {
+        let errors = self.0.to_vec();
+        errors.iter().map(|&e| f64::from(e)).sum::<f64>() / errors.len() as f64
+    }
+
+    /// The map in the magma colours, RGB8 rows.
+    pub(super) fn heat_rgb(&self) -> Vec<u8> {
+        self.0.apply_color_lut(&nv_flip::magma_lut()).to_vec()
+    }
+}

@@ -1,0 +1,158 @@
+//! `foveal compare`: how far two pictures are apart, as eyes and as numbers see it.
+
+mod flip;
+mod numeric;
+mod ssim;
+
+use std::fmt::Write;
+use std::path::PathBuf;
+
+use anyhow::bail;
+use serde::Serialize;
+
+use crate::picture::Picture;
+use crate::{atomic_file, console, picture, values};
+
+/// Arguments of `foveal compare`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The reference, a PNG file
+    a: PathBuf,
+
+    /// The picture under test, a PNG file of the same size
+    b: PathBuf,
+
+    /// Write FLIP's error map: black where no eye sees a difference, through magenta to yellow
+    #[arg(long, value_name = "FILE.png")]
+    diff: Option<PathBuf>,
+
+    /// Exit with code 1 where the mean FLIP error is above X (0: equal to the eye, 1: as different as can be)
+    #[arg(long, value_name = "X", value_parser = values::threshold)]
+    max_flip: Option<f64>,
+
+    /// Exit with code 1 where the PSNR is below X decibels
+    #[arg(long, value_name = "X", value_parser = values::threshold)]
+    min_psnr: Option<f64>,
+
+    /// Print JSON instead of text
+    #[arg(long)]
+    json: bool,
+}
+
+/// The JSON's fields; docs/program.md describes them.
+#[derive(Debug, PartialEq, Serialize)]
+struct Comparison {
+    width: u32,
+    height: u32,
+    /// Mean of FLIP's error map, 0 to 1.
+    flip: f64,
+    /// Decibels; `None` for equal colours, where it is infinite.
+    psnr_db: Option<f64>,
+    /// Mean structural similarity; `None` for pictures smaller than its window.
+    ssim: Option<f64>,
+    max_difference: u8,
+    differing_pixels: u64,
+    /// Both thresholds are met, or none were given.
+    passed: bool,
+}
+
+/// Compares, prints, and fails where a threshold is not met.
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    if let Some(diff) = &args.diff {
+        atomic_file::check_writable(diff)?;
+    }
+    let (a, b) = (Picture::read(&args.a)?, Picture::read(&args.b)?);
+    if (a.width, a.height) != (b.width, b.height) {
+        bail!(
+            "pictures of different sizes cannot be compared: '{}' is {}x{}, '{}' is {}x{}",
+            args.a.display(),
+            a.width,
+            a.height,
+            args.b.display(),
+            b.width,
+            b.height,
+        );
+    }
+    let (map, mut comparison) = compare(&a, &b);
+    let failures = args.failures(&comparison);
+    comparison.passed = failures.is_empty();
+
+    if let Some(diff) = &args.diff {
+        picture::write_rgb(diff, a.width, a.height, &map.heat_rgb())?;
+    }
+    let text = if args.json {
+        serde_json::to_string_pretty(&comparison)? + "\n"
+    } else {
+        comparison.text()
+    };
+    console::print_result(&text)?;
+    if !failures.is_empty() {
+        bail!(
+            "'{}' differs too much from '{}': {}",
+            args.b.display(),
+            args.a.display(),
+            failures.join(", ")
+        );
+    }
+    Ok(())
+}
+
+fn compare(a: &Picture, b: &Picture) -> (flip::ErrorMap, Comparison) {
+    let map = flip::ErrorMap::between(a, b);
+    let comparison = Comparison {
+        width: a.width,
+        height: a.height,
+        flip: map.mean(),
+        psnr_db: numeric::psnr_db(&a.pixels, &b.pixels),
+        ssim: ssim::mean_ssim(a, b),
+        max_difference: numeric::max_difference(&a.pixels, &b.pixels),
+        differing_pixels: numeric::differing_pixels(&a.pixels, &b.pixels),
+        passed: true,
+    };
+    (map, comparison)
+}
+
+impl Args {
+    fn failures(&self, comparison: &Comparison) -> Vec<String> {
+        let mut failures = Vec::new();
+        if let Some(most) = self.max_flip
+            && comparison.flip > most
+        {
+            failures.push(format!("FLIP is {:.6}, --max-flip {most}", comparison.flip));
+        }
+        if let (Some(least), Some(psnr_db)) = (self.min_psnr, comparison.psnr_db)
+            && psnr_db < least
+        {
+            failures.push(format!("PSNR is {psnr_db:.3} dB, --min-psnr {least}"));
+        }
+        failures
+    }
+}
+
+impl Comparison {
+    fn text(&self) -> String {
+        let pixels = u64::from(self.width) * u64::from(self.height);
+        let share = 100.0 * self.differing_pixels as f64 / pixels as f64;
+        let mut text = String::new();
+        let _ = writeln!(text, "FLIP        {:.6}", self.flip);
+        let _ = match self.psnr_db {
+            Some(psnr_db) => writeln!(text, "PSNR        {psnr_db:.3} dB"),
+            None => writeln!(text, "PSNR        infinite"),
+        };
+        let _ = match self.ssim {
+            Some(ssim) => writeln!(text, "SSIM        {ssim:.6}"),
+            None => writeln!(
+                text,
+                "SSIM        none: smaller than its window of {0}x{0}",
+                ssim::WINDOW
+            ),
+        };
+        let _ = writeln!(text, "largest     {} of 255", self.max_difference);
+        let _ = writeln!(
+            text,
+            "differing   {} of {pixels} pixels ({share:.3} %)",
+            self.differing_pixels
+        );
+        text
+    }
+}

@@ -1,0 +1,62 @@
+//! A scene on a device, drawn moment by moment.
+
+use foveal::{Frame, FrameStats, Renderer};
+use foveal_scene::Scene;
+use pollster::block_on;
+
+use super::frame_files::FrameJob;
+use super::viewpoint::Viewpoint;
+use crate::picture::Picture;
+
+/// Everything that one frame needs, ready.
+pub(super) struct Drawing {
+    pub(super) renderer: Renderer,
+    pub(super) scene: Scene,
+    pub(super) viewpoint: Viewpoint,
+    /// Time of the renderer's current pose; `None` where it is not known, or does not matter.
+    posed_s: Option<f32>,
+}
+
+impl Drawing {
+    /// `renderer` holds `scene`, posed at time 0.
+    pub(super) fn new(renderer: Renderer, scene: Scene, viewpoint: Viewpoint) -> Self {
+        Self {
+            renderer,
+            scene,
+            viewpoint,
+            posed_s: Some(0.0),
+        }
+    }
+
+    /// Draws one frame. Its picture depends on the job alone, not on the frames drawn before: the pose and the
+    /// camera before it, from which motion is taken, are those of the moment before it.
+    pub(super) fn draw(&mut self, job: &FrameJob) -> anyhow::Result<FrameStats> {
+        if self.posed_s != Some(job.previous_time_s) {
+            self.pose(job.previous_time_s)?;
+        }
+        let previous_camera = self.viewpoint.at(&self.scene, job.previous_time_s);
+        self.pose(job.time_s)?;
+        let camera = self.viewpoint.at(&self.scene, job.time_s);
+        let frame = Frame {
+            camera: &camera,
+            previous_camera: Some(&previous_camera),
+        };
+        Ok(block_on(self.renderer.render(&frame))?)
+    }
+
+    /// The last frame.
+    pub(super) fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
+        let bytes = block_on(self.renderer.read_picture())?;
+        Picture::from_rgba(stats.width, stats.height, &bytes)
+    }
+
+    fn pose(&mut self, time_s: f32) -> anyhow::Result<()> {
+        if crate::scene_source::is_animated(&self.scene) {
+            self.posed_s = None;
+            crate::scene_source::pose(&mut self.scene, time_s);
+            block_on(self.renderer.update_pose(&self.scene))?;
+            self.posed_s = Some(time_s);
+        }
+        Ok(())
+    }
+}

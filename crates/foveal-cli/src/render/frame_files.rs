@@ -1,0 +1,143 @@
+//! The files of an image sequence: which frame goes where.
+
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use crate::failure::usage;
+
+/// A file name with a place for the frame's number.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct FramePattern {
+    folder: PathBuf,
+    before: String,
+    after: String,
+    /// Least number of digits.
+    digits: usize,
+}
+
+impl FramePattern {
+    /// From a path whose last part has one run of `#` (one per digit) or one `{frame}` in it.
+    pub(super) fn parse(path: &Path) -> anyhow::Result<Self> {
+        let Some(name) = path.file_name().and_then(|name| name.to_str()) else {
+            return usage(format!(
+                "'{}' is no file name for a sequence",
+                path.display()
+            ));
+        };
+        let (start, end, digits) = match (name.find("{frame}"), name.find('#')) {
+            (Some(start), None) => (start, start + "{frame}".len(), 1),
+            (None, Some(start)) => {
+                let digits = name[start..].bytes().take_while(|&b| b == b'#').count();
+                (start, start + digits, digits)
+            }
+            _ => {
+                return usage(format!(
+                    "with --frames the output's file name needs one place for the number, as in frame_####.png \
+                     or {{frame}}.png; '{name}' has none or several"
+                ));
+            }
+        };
+        let (before, after) = (&name[..start], &name[end..]);
+        if after.contains('#') || after.contains("{frame}") {
+            return usage(format!(
+                "'{name}' has several places for the frame's number"
+            ));
+        }
+        Ok(Self {
+            folder: path.parent().unwrap_or(Path::new("")).to_owned(),
+            before: before.to_owned(),
+            after: after.to_owned(),
+            digits,
+        })
+    }
+
+    /// The file of one frame.
+    pub(super) fn file(&self, frame: u32) -> PathBuf {
+        let Self {
+            folder,
+            before,
+            after,
+            digits,
+        } = self;
+        folder.join(format!("{before}{frame:0digits$}{after}"))
+    }
+}
+
+/// One picture to draw: its number, its moment, the moment before it, its file.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct FrameJob {
+    pub(super) frame: u32,
+    pub(super) time_s: f32,
+    pub(super) previous_time_s: f32,
+    pub(super) file: PathBuf,
+}
+
+/// The frames of a range. Each depends on its own number alone, so that any sub-range gives the same files.
+pub(super) fn sequence(range: Range<u32>, fps: f32, pattern: &FramePattern) -> Vec<FrameJob> {
+    // In f64: exact for every frame number, so that the moment does not depend on how it was reached.
+    let time = |frame: u32| (f64::from(frame) / f64::from(fps)) as f32;
+    range
+        .map(|frame| FrameJob {
+            frame,
+            time_s: time(frame),
+            previous_time_s: time(frame.saturating_sub(1)),
+            file: pattern.file(frame),
+        })
+        .collect()
+}
+
+/// A single picture at a moment.
+pub(super) fn still(time_s: f32, fps: f32, file: &Path) -> FrameJob {
+    let previous_time_s = (f64::from(time_s) - 1.0 / f64::from(fps)).max(0.0) as f32;
+    FrameJob {
+        frame: 0,
+        time_s,
+        previous_time_s,
+        file: file.to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn patterns_number_the_files() {
+        let file =
+            |pattern: &str, frame| FramePattern::parse(Path::new(pattern)).unwrap().file(frame);
+        assert_eq!(
+            file("out/frame_####.png", 7),
+            Path::new("out/frame_0007.png")
+        );
+        assert_eq!(file("frame_##.png", 12345), Path::new("frame_12345.png"));
+        assert_eq!(file("{frame}.png", 12), Path::new("12.png"));
+        assert_eq!(file("a#b/f#.png", 3), Path::new("a#b/f3.png"));
+    }
+
+    #[test]
+    fn names_without_one_place_are_refused() {
+        for pattern in [
+            "frame.png",
+            "#_#.png",
+            "#{frame}.png",
+            "{frame}{frame}.png",
+            "a#/f.png",
+            "..",
+        ] {
+            assert!(
+                FramePattern::parse(Path::new(pattern)).is_err(),
+                "{pattern}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_frame_depends_on_its_number_alone() {
+        let pattern = FramePattern::parse(Path::new("#.png")).unwrap();
+        let whole = sequence(0..50, 29.97, &pattern);
+        let part = sequence(20..30, 29.97, &pattern);
+        assert_eq!(whole[20..30], part);
+        assert_eq!(part[1].previous_time_s, part[0].time_s);
+        assert_eq!(whole[0].previous_time_s, 0.0);
+    }
+}

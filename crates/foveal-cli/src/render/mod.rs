@@ -1,0 +1,215 @@
+//! `foveal render`: from a scene to pictures on the disk.
+//!
+//! In the order of a run: the arguments are checked, the places for the files are tried, the scene loads while
+//! the device opens, the scene goes onto the device, each frame is drawn and written, the figures are written.
+
+mod args;
+mod camera_path;
+mod clock;
+mod drawing;
+mod frame_files;
+mod inside;
+mod settings;
+mod stats;
+mod summary;
+mod viewpoint;
+
+use std::thread;
+
+use anyhow::{Context, anyhow};
+use foveal::{AdapterStats, Renderer, Settings, Timing};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use pollster::block_on;
+
+pub(crate) use args::Args;
+pub(crate) use summary::grouped;
+
+use crate::{atomic_file, console, gpu, scene_source};
+use clock::{now_ms, timed};
+use drawing::Drawing;
+use frame_files::{FrameJob, FramePattern};
+use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};
+use viewpoint::Viewpoint;
+
+/// Draws what the arguments ask for.
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    now_ms();
+    args.check()?;
+    let settings = args.settings.resolve()?;
+    let wanted = jobs(args)?;
+    let total = wanted.len();
+    let jobs: Vec<FrameJob> = wanted
+        .into_iter()
+        .filter(|job| !(args.frames.skip_existing && atomic_file::is_finished(&job.file)))
+        .collect();
+    let skipped_frames = (total - jobs.len()) as u64;
+    for file in jobs
+        .first()
+        .map(|job| &job.file)
+        .into_iter()
+        .chain(&args.stats)
+    {
+        atomic_file::check_writable(file)?;
+    }
+    if jobs.is_empty() {
+        if !args.quiet {
+            eprintln!("all {total} frames are there already; nothing to draw");
+        }
+        return Ok(());
+    }
+
+    let mut load_ms = Vec::new();
+    let (mut drawing, adapter) = prepare(args, &settings, &mut load_ms)?;
+    let scene = NamedSceneStats {
+        name: drawing.scene.name.clone(),
+        animated: scene_source::is_animated(&drawing.scene),
+        warnings: drawing.scene.warnings.len() as u64,
+        counts: drawing.renderer.scene_stats(),
+    };
+    for _ in 0..args.warmup {
+        drawing.draw(&jobs[0])?;
+    }
+    let (frames, first_picture_ms) = draw_all(&mut drawing, &jobs, &mut load_ms, args.quiet)?;
+
+    let run = RunStats {
+        schema: "foveal-render-stats",
+        schema_version: stats::SCHEMA_VERSION,
+        program_version: env!("CARGO_PKG_VERSION"),
+        command: CommandStats {
+            scene: args.scene.clone(),
+            output: args.output.display().to_string(),
+            fps: args.frames.fps,
+            point_lights: args.point_lights,
+            light_seed: args.light_seed,
+            warmup: args.warmup,
+        },
+        settings,
+        adapter,
+        scene,
+        load_ms,
+        first_picture_ms,
+        skipped_frames,
+        median: MedianStats::of(&frames),
+        frames,
+    };
+    if let Some(path) = &args.stats {
+        atomic_file::write(
+            path,
+            (serde_json::to_string_pretty(&run)? + "\n").as_bytes(),
+        )?;
+    }
+    if !args.quiet {
+        eprint!("{}", summary::text(&run));
+    }
+    Ok(())
+}
+
+/// The pictures to draw.
+fn jobs(args: &Args) -> anyhow::Result<Vec<FrameJob>> {
+    let fps = args.frames.fps;
+    match &args.frames.frames {
+        Some(range) => {
+            let pattern = FramePattern::parse(&args.output)?;
+            Ok(frame_files::sequence(range.clone(), fps, &pattern))
+        }
+        None => Ok(vec![frame_files::still(
+            args.frames.time.unwrap_or(0.0),
+            fps,
+            &args.output,
+        )]),
+    }
+}
+
+/// Loads the scene while the device opens, and puts the one onto the other.
+fn prepare(
+    args: &Args,
+    settings: &Settings,
+    load_ms: &mut Vec<Timing>,
+) -> anyhow::Result<(Drawing, AdapterStats)> {
+    let name = args.scene.clone();
+    let loading = thread::Builder::new()
+        .name("load".to_owned())
+        // Debug builds decode deep files with large frames.
+        .stack_size(16 << 20)
+        .spawn(move || {
+            let mut load_ms = Vec::new();
+            scene_source::load_timed(&name, &mut load_ms).map(|scene| (scene, load_ms))
+        })
+        .context("cannot start a thread")?;
+
+    // Fails before the scene is there where the size is beyond the device: the thread then ends with the program.
+    let mut device_ms = Vec::new();
+    let gpu = timed(&mut device_ms, "device", || {
+        gpu::open(args.adapter.as_deref())
+    })?;
+    let mut renderer = timed(&mut device_ms, "pipelines", || {
+        block_on(Renderer::new(&gpu, settings, Some(now_ms)))
+    })?;
+
+    let (mut scene, scene_ms) = loading
+        .join()
+        .unwrap_or_else(|panic| std::panic::resume_unwind(panic))?;
+    load_ms.extend(scene_ms);
+    load_ms.extend(device_ms);
+    if args.point_lights > 0 {
+        scene_source::add_point_lights(&mut scene, args.point_lights, args.light_seed);
+    }
+    if !args.quiet {
+        scene
+            .warnings
+            .iter()
+            .for_each(|warning| console::warn(&warning.0));
+    }
+    let viewpoint = Viewpoint::choose(&args.camera, &scene, &args.scene)?;
+    timed(load_ms, "upload", || block_on(renderer.set_scene(&scene)))
+        .with_context(|| format!("cannot draw the scene '{}'", scene.name))?;
+    Ok((
+        Drawing::new(renderer, scene, viewpoint),
+        gpu.adapter_stats(),
+    ))
+}
+
+/// Draws and writes each frame; gives the figures and when the first picture was on the disk.
+fn draw_all(
+    drawing: &mut Drawing,
+    jobs: &[FrameJob],
+    load_ms: &mut Vec<Timing>,
+    quiet: bool,
+) -> anyhow::Result<(Vec<NumberedFrameStats>, f64)> {
+    let progress = progress_bar(jobs.len() as u64, quiet);
+    let mut frames = Vec::with_capacity(jobs.len());
+    let mut first_picture_ms = 0.0;
+    for job in jobs {
+        let mut stages = Vec::new();
+        let figures = timed(&mut stages, "first_frame", || drawing.draw(job))
+            .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
+        let picture = timed(&mut stages, "read_back", || drawing.picture(&figures))?;
+        timed(&mut stages, "write", || picture.write_rgb(&job.file))?;
+        if frames.is_empty() {
+            load_ms.extend(stages);
+            first_picture_ms = now_ms();
+        }
+        frames.push(NumberedFrameStats {
+            frame: job.frame,
+            time_s: job.time_s,
+            file: job.file.display().to_string(),
+            camera: drawing.viewpoint.at(&drawing.scene, job.time_s).name,
+            figures,
+        });
+        progress.inc(1);
+    }
+    progress.finish_and_clear();
+    Ok((frames, first_picture_ms))
+}
+
+/// On a terminal only, and only for sequences.
+fn progress_bar(frames: u64, quiet: bool) -> ProgressBar {
+    if quiet || frames < 2 {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(Some(frames), ProgressDrawTarget::stderr());
+    match ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

@@ -1,0 +1,250 @@
+//! Settings from three places: the defaults, below a TOML file, below the flags.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, anyhow};
+use foveal::{LightAssignment, LightingModel, Settings, ToneMap, View};
+
+use crate::values::{self, VariantParser};
+
+/// A flag for each field of [`Settings`]; what is not given stays as the file or the default says.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Settings")]
+pub(crate) struct SettingsArgs {
+    /// Read settings from a TOML file; flags win over it
+    #[arg(long = "settings", value_name = "FILE.toml")]
+    file: Option<PathBuf>,
+
+    /// Width and height in pixels [default: 1280x720]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    size: Option<(u32, u32)>,
+
+    /// What the picture shows [default: final]
+    #[arg(long, value_parser = VariantParser::<View>::new())]
+    view: Option<View>,
+
+    /// How surfaces reflect light [default: ggx]
+    #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
+    lighting: Option<LightingModel>,
+
+    /// Which lights a sample looks at: those that reach its cluster, or all of them (the reference)
+    /// [default: clustered]
+    #[arg(long, value_name = "WHICH", value_parser = VariantParser::<LightAssignment>::new())]
+    lights: Option<LightAssignment>,
+
+    /// Exposure in stops; +1 doubles the light [default: 0]
+    #[arg(long, value_name = "EV", value_parser = values::finite, allow_hyphen_values = true)]
+    exposure: Option<f32>,
+
+    /// How radiance becomes display values [default: aces]
+    #[arg(long, value_name = "CURVE", value_parser = VariantParser::<ToneMap>::new())]
+    tone_map: Option<ToneMap>,
+
+    /// Largest anisotropy of texture filtering, 1 to 16 [default: 8]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
+    anisotropy: Option<u16>,
+}
+
+impl SettingsArgs {
+    /// The settings that hold.
+    ///
+    /// # Errors
+    /// Where the file cannot be read, and where a value makes no sense whatever the device is.
+    pub(super) fn resolve(&self) -> anyhow::Result<Settings> {
+        let mut settings = match &self.file {
+            Some(path) => read(path)?,
+            None => Settings::default(),
+        };
+        self.apply(&mut settings);
+        check(&settings)?;
+        Ok(settings)
+    }
+
+    fn apply(&self, settings: &mut Settings) {
+        // Taken apart without `..`, so that a flag that is added but not applied does not compile.
+        let Self {
+            file: _,
+            size,
+            view,
+            lighting,
+            lights,
+            exposure,
+            tone_map,
+            anisotropy,
+        } = self.clone();
+        if let Some((width, height)) = size {
+            (settings.width, settings.height) = (width, height);
+        }
+        set(&mut settings.view, view);
+        set(&mut settings.lighting, lighting);
+        set(&mut settings.lights, lights);
+        set(&mut settings.exposure, exposure);
+        set(&mut settings.tone_map, tone_map);
+        set(&mut settings.anisotropy, anisotropy);
+    }
+}
+
+fn set<T>(setting: &mut T, flag: Option<T>) {
+    if let Some(value) = flag {
+        *setting = value;
+    }
+}
+
+/// What is wrong on every device; each device's own limits are the renderer's to check.
+fn check(settings: &Settings) -> anyhow::Result<()> {
+    let boundless = wgpu::Limits {
+        max_texture_dimension_2d: u32::MAX,
+        ..wgpu::Limits::default()
+    };
+    Ok(settings.validate(&boundless)?)
+}
+
+fn read(path: &Path) -> anyhow::Result<Settings> {
+    let text = std::fs::read_to_string(path)
+        .with_context(|| format!("cannot read the settings file '{}'", path.display()))?;
+    parse(&text).map_err(|error| {
+        let place = match error.span() {
+            Some(span) => place(&text, span.start),
+            None => String::new(),
+        };
+        anyhow!(
+            "the settings file '{}' is wrong{place}: {}",
+            path.display(),
+            error.message()
+        )
+    })
+}
+
+fn parse(text: &str) -> Result<Settings, toml::de::Error> {
+    toml::from_str(text)
+}
+
+/// «in line 3, key 'exposure'» for a byte offset.
+fn place(text: &str, offset: usize) -> String {
+    let before = &text[..text.floor_char_boundary(offset)];
+    let number = before.matches('\n').count() + 1;
+    let line = text.lines().nth(number - 1).unwrap_or_default();
+    match line.split_once('=') {
+        Some((key, _)) if !key.trim().is_empty() => {
+            format!(" in line {number}, key '{}'", key.trim())
+        }
+        _ => format!(" in line {number}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        settings: SettingsArgs,
+    }
+
+    fn from_flags(flags: &[&str]) -> Settings {
+        let line = Line::try_parse_from([&["x"], flags].concat()).unwrap();
+        line.settings.resolve().unwrap()
+    }
+
+    /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
+    const KEYS: [(&str, &str, &[&str]); 8] = [
+        ("width", "33", &["--size", "33x720"]),
+        ("height", "44", &["--size", "1280x44"]),
+        ("view", "\"normals\"", &["--view", "normals"]),
+        (
+            "lighting",
+            "\"blinn-phong\"",
+            &["--lighting", "blinn-phong"],
+        ),
+        ("lights", "\"brute\"", &["--lights", "brute"]),
+        ("exposure", "-1.5", &["--exposure", "-1.5"]),
+        ("tone-map", "\"linear\"", &["--tone-map", "linear"]),
+        ("anisotropy", "2", &["--anisotropy", "2"]),
+    ];
+
+    #[test]
+    fn every_setting_has_a_key_and_a_flag_that_agree() {
+        let default = serde_json::to_value(Settings::default()).unwrap();
+        let mut keys: Vec<&str> = default
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(String::as_str)
+            .collect();
+        let mut tested = KEYS.map(|(key, ..)| key).to_vec();
+        keys.sort_unstable();
+        tested.sort_unstable();
+        assert_eq!(
+            keys, tested,
+            "each setting needs a flag in SettingsArgs and a line in this test"
+        );
+        for (key, value, flags) in KEYS {
+            let by_file = parse(&format!("{key} = {value}")).unwrap();
+            assert_eq!(by_file, from_flags(flags), "{key}");
+            assert_ne!(by_file, Settings::default(), "{key}");
+        }
+    }
+
+    #[test]
+    fn settings_survive_the_file_format() {
+        let settings = Settings {
+            exposure: -0.1,
+            view: View::BaseColor,
+            ..Settings::default()
+        };
+        assert_eq!(
+            parse(&toml::to_string(&settings).unwrap()).unwrap(),
+            settings
+        );
+    }
+
+    #[test]
+    fn flags_win_over_the_file_and_the_file_over_the_defaults() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        std::fs::write(&path, "width = 10\nheight = 20\nexposure = 3.0\n").unwrap();
+        let settings = from_flags(&["--settings", path.to_str().unwrap(), "--exposure", "1"]);
+        assert_eq!(
+            (settings.width, settings.height, settings.exposure),
+            (10, 20, 1.0)
+        );
+        assert_eq!(settings.anisotropy, Settings::default().anisotropy);
+    }
+
+    #[test]
+    fn a_wrong_settings_file_is_named_with_line_and_key() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("s.toml");
+        for (text, line, key) in [
+            ("width = 10\nexposure = \"bright\"\n", 2, "exposure"),
+            ("\n\ngamma = 2.2\n", 3, "gamma"),
+            ("view = \"sideways\"", 1, "view"),
+            ("width = -3", 1, "width"),
+            ("width = ", 1, "width"),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let error = read(&path).unwrap_err().to_string();
+            assert!(error.contains("s.toml"), "{error}");
+            assert!(
+                error.contains(&format!("line {line}, key '{key}'")),
+                "{error}"
+            );
+        }
+    }
+
+    #[test]
+    fn senseless_values_are_refused() {
+        for text in [
+            "width = 0",
+            "exposure = nan",
+            "exposure = inf",
+            "anisotropy = 0",
+            "anisotropy = 17",
+        ] {
+            assert!(check(&parse(text).unwrap()).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,161 @@
+//! `--stats`: what the pictures cost, as JSON. docs/stats.schema.json describes each field; a change that breaks
+//! a reader of it raises [`SCHEMA_VERSION`].
+
+use foveal::{AdapterStats, FrameStats, SceneStats, Settings, Timing};
+use serde::Serialize;
+
+/// Version of the JSON's shape.
+pub(super) const SCHEMA_VERSION: u32 = 1;
+
+/// One run of `foveal render`.
+#[derive(Debug, Serialize)]
+pub(super) struct RunStats {
+    pub(super) schema: &'static str,
+    pub(super) schema_version: u32,
+    pub(super) program_version: &'static str,
+    pub(super) command: CommandStats,
+    pub(super) settings: Settings,
+    pub(super) adapter: AdapterStats,
+    pub(super) scene: NamedSceneStats,
+    /// What happened until the first frame was drawn, in order; loading and opening the device overlap.
+    pub(super) load_ms: Vec<Timing>,
+    /// From the program's start until the first picture was on the disk.
+    pub(super) first_picture_ms: f64,
+    pub(super) skipped_frames: u64,
+    pub(super) frames: Vec<NumberedFrameStats>,
+    /// Medians over `frames`.
+    pub(super) median: MedianStats,
+}
+
+/// What was asked for, besides the settings.
+#[derive(Debug, Serialize)]
+pub(super) struct CommandStats {
+    pub(super) scene: String,
+    pub(super) output: String,
+    pub(super) fps: f32,
+    pub(super) point_lights: u32,
+    pub(super) light_seed: u64,
+    pub(super) warmup: u32,
+}
+
+/// The scene's counts under its name.
+#[derive(Debug, Serialize)]
+pub(super) struct NamedSceneStats {
+    pub(super) name: String,
+    pub(super) animated: bool,
+    pub(super) warnings: u64,
+    #[serde(flatten)]
+    pub(super) counts: SceneStats,
+}
+
+/// One frame.
+#[derive(Debug, Serialize)]
+pub(super) struct NumberedFrameStats {
+    pub(super) frame: u32,
+    pub(super) time_s: f32,
+    pub(super) file: String,
+    pub(super) camera: String,
+    #[serde(flatten)]
+    pub(super) figures: FrameStats,
+}
+
+/// The middle of all frames, figure by figure.
+#[derive(Debug, Default, PartialEq, Serialize)]
+pub(super) struct MedianStats {
+    pub(super) cpu_ms: Vec<Timing>,
+    pub(super) gpu_ms: Vec<Timing>,
+    pub(super) draws: f64,
+    pub(super) triangles: f64,
+    pub(super) shaded_samples: f64,
+    pub(super) frame_ms: f64,
+}
+
+impl MedianStats {
+    pub(super) fn of(frames: &[NumberedFrameStats]) -> Self {
+        let median = |figure: fn(&FrameStats) -> f64| {
+            median(frames.iter().map(|frame| figure(&frame.figures)).collect())
+        };
+        Self {
+            cpu_ms: medians(frames, |figures| &figures.cpu_ms),
+            gpu_ms: medians(frames, |figures| &figures.gpu_ms),
+            draws: median(|f| f.draws as f64),
+            triangles: median(|f| f.triangles as f64),
+            shaded_samples: median(|f| f.shaded_samples as f64),
+            frame_ms: median(|f| f.frame_ms),
+        }
+    }
+}
+
+/// The median of each stage over the frames that have it, in the order of their first appearance.
+fn medians(frames: &[NumberedFrameStats], timings: fn(&FrameStats) -> &[Timing]) -> Vec<Timing> {
+    let mut stages: Vec<(&str, Vec<f64>)> = Vec::new();
+    for timing in frames.iter().flat_map(|frame| timings(&frame.figures)) {
+        match stages.iter_mut().find(|(name, _)| *name == timing.name) {
+            Some((_, ms)) => ms.push(timing.ms),
+            None => stages.push((&timing.name, vec![timing.ms])),
+        }
+    }
+    stages
+        .into_iter()
+        .map(|(name, ms)| Timing {
+            name: name.to_owned(),
+            ms: median(ms),
+        })
+        .collect()
+}
+
+/// The middle value, or the mean of the two in the middle; 0 of nothing.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    match values.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => values[middle],
+        _ => 0.5 * (values[middle - 1] + values[middle]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame(frame_ms: f64, gpu: &[(&str, f64)]) -> NumberedFrameStats {
+        let gpu_ms = gpu
+            .iter()
+            .map(|&(name, ms)| Timing {
+                name: name.to_owned(),
+                ms,
+            })
+            .collect();
+        let figures = FrameStats {
+            frame_ms,
+            gpu_ms,
+            ..FrameStats::default()
+        };
+        NumberedFrameStats {
+            frame: 0,
+            time_s: 0.0,
+            file: String::new(),
+            camera: String::new(),
+            figures,
+        }
+    }
+
+    #[test]
+    fn medians_are_taken_figure_by_figure() {
+        let frames = [
+            frame(9.0, &[("geometry", 1.0), ("lighting", 5.0)]),
+            frame(2.0, &[("geometry", 3.0)]),
+            frame(4.0, &[("geometry", 2.0), ("lighting", 7.0)]),
+        ];
+        let median = MedianStats::of(&frames);
+        assert_eq!(median.frame_ms, 4.0);
+        let gpu: Vec<_> = median
+            .gpu_ms
+            .iter()
+            .map(|t| (t.name.as_str(), t.ms))
+            .collect();
+        assert_eq!(gpu, [("geometry", 2.0), ("lighting", 6.0)]);
+        assert_eq!(MedianStats::of(&[]), MedianStats::default());
+    }
+}

@@ -1,0 +1,106 @@
+//! The few lines for a human after the work is done.
+
+use std::fmt::Write;
+
+use foveal::Timing;
+
+use super::stats::RunStats;
+
+/// What was drawn, with what, how long it took, and where it is.
+pub(super) fn text(run: &RunStats) -> String {
+    let mut text = String::new();
+    let counts = &run.scene.counts;
+    let _ = writeln!(
+        text,
+        "{}: {} objects, {} triangles, {} lights; {} ({})",
+        run.scene.name,
+        grouped(counts.objects),
+        grouped(counts.triangles),
+        grouped(counts.lights),
+        run.adapter.name,
+        run.adapter.backend,
+    );
+    let _ = writeln!(
+        text,
+        "first picture after {}: {}",
+        ms(run.first_picture_ms),
+        stages(&run.load_ms)
+    );
+    let median = &run.median;
+    let _ = write!(text, "frame {}", ms(median.frame_ms));
+    if !median.gpu_ms.is_empty() {
+        let _ = write!(text, " (GPU: {})", stages(&median.gpu_ms));
+    }
+    let _ = writeln!(
+        text,
+        ", {} draws, {} triangles, {} samples shaded",
+        grouped(median.draws as u64),
+        grouped(median.triangles as u64),
+        grouped(median.shaded_samples as u64),
+    );
+    let [first, .., last] = &run.frames[..] else {
+        let file = run.frames.first().map_or("nothing", |frame| &frame.file);
+        let _ = writeln!(text, "wrote {file}");
+        return text;
+    };
+    let _ = write!(
+        text,
+        "wrote {} frames, {} to {}",
+        run.frames.len(),
+        first.file,
+        last.file
+    );
+    if run.skipped_frames > 0 {
+        let _ = write!(text, "; {} were there already", run.skipped_frames);
+    }
+    let _ = writeln!(text, "; figures above are medians");
+    text
+}
+
+fn stages(timings: &[Timing]) -> String {
+    let stages: Vec<String> = timings
+        .iter()
+        .map(|t| format!("{} {}", t.name.replace('_', " "), ms(t.ms)))
+        .collect();
+    stages.join(", ")
+}
+
+/// Milliseconds with three significant digits, seconds from ten on.
+fn ms(ms: f64) -> String {
+    match ms {
+        ms if ms < 10.0 => format!("{ms:.2} ms"),
+        ms if ms < 100.0 => format!("{ms:.1} ms"),
+        ms if ms < 10_000.0 => format!("{ms:.0} ms"),
+        ms => format!("{:.1} s", ms / 1e3),
+    }
+}
+
+/// 1234567 as 1,234,567.
+pub(crate) fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_readable() {
+        assert_eq!(
+            [0, 999, 1000, 1_234_567].map(grouped),
+            ["0", "999", "1,000", "1,234,567"]
+        );
+        assert_eq!(
+            [0.123, 56.78, 999.6, 12_345.0].map(ms),
+            ["0.12 ms", "56.8 ms", "1000 ms", "12.3 s"]
+        );
+    }
+}

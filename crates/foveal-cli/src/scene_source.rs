@@ -1,0 +1,111 @@
+//! From the word on the command line to a scene: the name of a generated scene, or a file's path.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::bail;
+use foveal::Timing;
+use foveal_scene::generate::{self, DemoOptions, GenerateError};
+use foveal_scene::{Camera, Scene};
+
+/// What is drawn without SCENE.
+pub(crate) const DEFAULT_SCENE: &str = "demo";
+
+/// A camera for every moment, in seconds.
+pub(crate) type TimedCamera = Box<dyn Fn(f32) -> Camera>;
+
+/// Loads or generates the scene called `name`, posed at time 0, and adds the time of each stage to `load_ms`.
+///
+/// A generated scene's name wins over a file of the same name; `./demo` means the file.
+pub(crate) fn load_timed(name: &str, load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
+    let start = Instant::now();
+    match generate::by_name(name) {
+        Ok(scene) => {
+            load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
+            Ok(scene)
+        }
+        Err(GenerateError::UnknownScene { .. }) => from_file(name, load_ms),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// As [`load_timed`], for commands to which the time is all one.
+pub(crate) fn load(name: &str) -> anyhow::Result<Scene> {
+    load_timed(name, &mut Vec::new())
+}
+
+fn from_file(name: &str, _load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
+    if !Path::new(name).exists() {
+        bail!(
+            "there is no scene '{name}': neither a file of that name nor a generated scene; generated are {}",
+            generate::NAMES.join(", ")
+        );
+    }
+    bail!("cannot load '{name}': glTF files cannot be read yet")
+}
+
+/// Seconds that the walk through the demo scene takes.
+const DEMO_WALK_S: f32 = 30.0;
+
+/// The camera path that belongs to a generated scene.
+pub(crate) fn camera_path(name: &str) -> Option<TimedCamera> {
+    let options = demo_options(name)?;
+    Some(Box::new(move |time_s| {
+        let mut camera = generate::demo_path(&options, (time_s / DEMO_WALK_S).clamp(0.0, 1.0));
+        camera.name = "demo path".to_owned();
+        camera
+    }))
+}
+
+/// The options behind `demo` and `demo:INSTANCES`.
+fn demo_options(name: &str) -> Option<DemoOptions> {
+    let options = DemoOptions::default();
+    match name.split_once(':') {
+        None if name == "demo" => Some(options),
+        Some(("demo", instances)) => Some(DemoOptions {
+            instances: instances.parse().ok()?,
+            ..options
+        }),
+        _ => None,
+    }
+}
+
+/// Adds coloured point lights, the same ones for the same scene and seed.
+pub(crate) fn add_point_lights(scene: &mut Scene, count: u32, seed: u64) {
+    generate::add_point_lights(scene, count, seed);
+}
+
+/// The scene changes with time.
+pub(crate) fn is_animated(_scene: &Scene) -> bool {
+    false
+}
+
+/// Poses the scene at `time_s` seconds.
+pub(crate) fn pose(_scene: &mut Scene, _time_s: f32) {}
+
+fn timing(name: &str, ms: f64) -> Timing {
+    Timing {
+        name: name.to_owned(),
+        ms,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_scene_lists_those_that_can_be_generated() {
+        let error = load("castle.glb").unwrap_err().to_string();
+        assert!(
+            error.contains("'castle.glb'") && error.contains("cornell"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn only_the_demo_scene_has_a_path() {
+        assert!(camera_path("demo").is_some() && camera_path("demo:2000").is_some());
+        assert!(camera_path("cornell").is_none() && camera_path("demo.glb").is_none());
+    }
+}

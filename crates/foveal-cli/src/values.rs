@@ -1,0 +1,124 @@
+//! Values as the command line spells them. Each parser's message completes clap's «invalid value '…' for
+//! '--flag'».
+
+mod variants;
+
+pub(crate) use variants::VariantParser;
+
+use glam::Vec3;
+
+/// Width and height in pixels: `1920x1080`.
+pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
+    let number = |text: &str| {
+        text.parse::<u32>()
+            .map_err(|_| format!("'{text}' is not a number of pixels; a size looks like 1920x1080"))
+    };
+    match text.split_once(['x', 'X']) {
+        Some((width, height)) => Ok((number(width)?, number(height)?)),
+        None => Err("a size looks like 1920x1080".to_owned()),
+    }
+}
+
+/// Any finite number.
+pub(crate) fn finite(text: &str) -> Result<f32, String> {
+    match text.trim().parse::<f32>() {
+        Ok(value) if value.is_finite() => Ok(value),
+        Ok(_) => Err("the number must be finite".to_owned()),
+        Err(_) => Err("not a number".to_owned()),
+    }
+}
+
+/// A point or a direction: `x,y,z`.
+pub(crate) fn vec3(text: &str) -> Result<Vec3, String> {
+    let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
+    match numbers[..] {
+        [x, y, z] => Ok(Vec3::new(x, y, z)),
+        _ => Err("three numbers are needed: x,y,z".to_owned()),
+    }
+}
+
+/// A vertical field of view in degrees, in (0, 180).
+pub(crate) fn fov_deg(text: &str) -> Result<f32, String> {
+    let degrees = finite(text)?;
+    if degrees > 0.0 && degrees < 180.0 {
+        Ok(degrees)
+    } else {
+        Err("the field of view must lie between 0 and 180 degrees".to_owned())
+    }
+}
+
+/// A time in seconds, 0 or later.
+pub(crate) fn time_s(text: &str) -> Result<f32, String> {
+    match finite(text)? {
+        seconds if seconds >= 0.0 => Ok(seconds),
+        _ => Err("the time must be 0 or later".to_owned()),
+    }
+}
+
+/// A positive number.
+pub(crate) fn positive(text: &str) -> Result<f32, String> {
+    match finite(text)? {
+        value if value > 0.0 => Ok(value),
+        _ => Err("the number must be greater than 0".to_owned()),
+    }
+}
+
+/// A number of 0 or more; `inf` is allowed.
+pub(crate) fn threshold(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(value) if value >= 0.0 => Ok(value),
+        _ => Err("a number of 0 or more is needed".to_owned()),
+    }
+}
+
+/// Frame numbers `A..B`, without B, or `N` for `0..N`. Never empty.
+pub(crate) fn frames(text: &str) -> Result<std::ops::Range<u32>, String> {
+    let number = |text: &str| {
+        text.trim()
+            .parse::<u32>()
+            .map_err(|_| format!("'{text}' is not a frame number; try 0..100 or 100"))
+    };
+    let range = match text.split_once("..") {
+        Some((first, end)) => number(first)?..number(end)?,
+        None => 0..number(text)?,
+    };
+    if range.is_empty() {
+        return Err("the range holds no frame; its end is not part of it".to_owned());
+    }
+    Ok(range)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn good_values_are_read() {
+        assert_eq!(size("1920x1080"), Ok((1920, 1080)));
+        assert_eq!(vec3("-1, 2.5,3e1"), Ok(Vec3::new(-1.0, 2.5, 30.0)));
+        assert_eq!(frames("7"), Ok(0..7));
+        assert_eq!(frames("5..7"), Ok(5..7));
+        assert_eq!(threshold("inf"), Ok(f64::INFINITY));
+        assert_eq!(fov_deg("60"), Ok(60.0));
+    }
+
+    #[test]
+    fn bad_values_are_refused() {
+        for text in ["", "12", "x", "1x", "-1x2", "1.5x2", "1x2x3"] {
+            assert!(size(text).is_err(), "{text}");
+        }
+        for text in [
+            "", "1,2", "1,2,3,4", "1,2,nan", "inf,0,0", "1,,2", "1e99,0,0",
+        ] {
+            assert!(vec3(text).is_err(), "{text}");
+        }
+        for text in ["0", "180", "-5", "nan"] {
+            assert!(fov_deg(text).is_err(), "{text}");
+        }
+        for text in ["", "0", "5..5", "7..5", "..", "1..", "-1..3", "1..=3"] {
+            assert!(frames(text).is_err(), "{text}");
+        }
+        assert!(threshold("-1").is_err() && threshold("nan").is_err());
+        assert!(positive("0").is_err() && time_s("-1").is_err());
+    }
+}
