@@ -200,7 +200,7 @@ impl<'a> Reader<'a> {
             decode::<N>(&source, accessor.component, accessor.normalized, count)
         };
         self.dense(accessor, read, [0.0; N])
-            .map_err(|e| e.under(format_args!("accessors[{index}]")))
+            .map_err(|e| within_accessor(e, index))
     }
 
     /// Elements of `N` whole numbers.
@@ -218,7 +218,7 @@ impl<'a> Reader<'a> {
         let read =
             |source: Strided<'_>, count| decode_uints::<N>(&source, accessor.component, count);
         self.dense(accessor, read, [0; N])
-            .map_err(|e| e.under(format_args!("accessors[{index}]")))
+            .map_err(|e| within_accessor(e, index))
     }
 
     /// The base elements with sparse substitution applied.
@@ -229,6 +229,8 @@ impl<'a> Reader<'a> {
         zero: T,
     ) -> Parsed<Vec<T>> {
         let size = accessor.component.size() * accessor.width;
+        self.buffers
+            .take_numbers(accessor.count as u64 * accessor.width as u64)?;
         let mut elements = match accessor.view {
             Some(view) => {
                 let source = self.strided(view, accessor.offset, accessor.count, size)?;
@@ -265,6 +267,14 @@ impl<'a> Reader<'a> {
         }
         Ok(elements)
     }
+}
+
+/// The fault of an accessor, told at the place that refers to it.
+fn within_accessor(mut flaw: Flaw, index: u32) -> Flaw {
+    let inner = std::mem::take(&mut flaw.place);
+    let dot = if inner.is_empty() { "" } else { "." };
+    flaw.cause = format!("accessors[{index}]{dot}{inner} {}", flaw.cause);
+    flaw
 }
 
 /// Little-endian numbers as the file stores them.

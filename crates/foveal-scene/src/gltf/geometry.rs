@@ -102,7 +102,8 @@ pub(crate) fn build(
         bounds: used_bounds(&vertices, &indices),
         vertices,
         indices,
-        deforms: shape.is_some(),
+        // Until a node gives it a skin or weights.
+        deforms: false,
     };
     Ok(Built { mesh, shape, notes })
 }

@@ -28,6 +28,9 @@ mod textures;
 mod topology;
 mod uri;
 
+#[cfg(test)]
+mod tests;
+
 pub(crate) use cameras::rigid;
 pub(crate) use geometry::used_bounds;
 pub(crate) use lights::place as place_light;
@@ -48,6 +51,7 @@ use objects::{Part, Shown};
 use textures::Wanted;
 
 use crate::error::{Flaw, Parsed};
+use crate::pose::Shape;
 use crate::timings::Stopwatch;
 use crate::{LoadOptions, Material, Scene, SceneError, Warning, threads};
 
@@ -160,18 +164,20 @@ fn build(
     let mut geometry = Geometry::default();
     let mut shown = geometry.request(document, &hierarchy, &mut scene);
     let shapes = geometry.build(reader, options, &mut scene, warn)?;
+    let mut elements_left = options.max_instances;
     for one in &mut shown {
         let place = |e: Flaw| {
             e.under("extensions.EXT_mesh_gpu_instancing.attributes")
                 .under(format_args!("nodes[{}]", one.node))
         };
         let instancing = document.nodes[one.node as usize].instancing;
-        one.elements = objects::elements(instancing, reader, options).map_err(place)?;
-        // Primitives without triangles have been noted; there is nothing to draw.
-        one.parts
-            .retain(|p| scene.meshes[p.mesh as usize].triangle_count() > 0);
+        one.elements =
+            objects::elements(instancing, reader, &mut elements_left, options).map_err(place)?;
     }
-    shown.retain(|s| !s.parts.is_empty());
+    let shapes = drop_empty_meshes(&mut shown, shapes, &mut scene);
+    if shown.is_empty() {
+        warn.push("the scene shows no triangles".to_owned());
+    }
     let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;
     rig.give_own_meshes(&mut shown, &shapes, &mut scene, document, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
@@ -279,7 +285,7 @@ impl Geometry {
         options: &LoadOptions,
         scene: &mut Scene,
         warn: &mut Vec<String>,
-    ) -> Parsed<Vec<Option<crate::pose::Shape>>> {
+    ) -> Parsed<Vec<Option<Shape>>> {
         self.check_size(reader, options)?;
         let built = threads::map(options.parallel, &self.requests, |(request, place)| {
             geometry::build(request, reader, options.missing_normals).map_err(|e| e.under(place))
@@ -320,6 +326,33 @@ impl Geometry {
         }
         Ok(())
     }
+}
+
+/// Forgets meshes without triangles: they have been noted, and there is nothing to draw.
+fn drop_empty_meshes(
+    shown: &mut Vec<Shown>,
+    shapes: Vec<Option<Shape>>,
+    scene: &mut Scene,
+) -> Vec<Option<Shape>> {
+    let meshes = std::mem::take(&mut scene.meshes);
+    let mut kept = Vec::new();
+    let mut number: Vec<Option<u32>> = Vec::with_capacity(meshes.len());
+    for (mesh, shape) in meshes.into_iter().zip(shapes) {
+        number.push((mesh.triangle_count() > 0).then_some(kept.len() as u32));
+        if mesh.triangle_count() > 0 {
+            scene.meshes.push(mesh);
+            kept.push(shape);
+        }
+    }
+    for one in shown.iter_mut() {
+        let renumber = |part: &Part| {
+            let mesh = number[part.mesh as usize]?;
+            Some(Part { mesh, ..*part })
+        };
+        one.parts = one.parts.iter().filter_map(renumber).collect();
+    }
+    shown.retain(|s| !s.parts.is_empty());
+    kept
 }
 
 /// Objects without a name take their mesh's.

@@ -181,7 +181,7 @@ fn fetch<'a>(
     resolver: &Resolver<'_>,
 ) -> Parsed<Cow<'a, [u8]>> {
     let Some(image) = image else {
-        return Err(Flaw::new("a texture has no picture that can be read"));
+        return Err(Flaw::new("a texture names no PNG or JPEG picture"));
     };
     match &reader.document.images[image as usize].source {
         ImageSource::View(view) => reader
@@ -215,15 +215,33 @@ fn open(bytes: &[u8]) -> Result<image::ImageReader<Cursor<&[u8]>>, String> {
     Ok(reader)
 }
 
+/// Most texels that a byte of a file can stand for: one-bit PNG at deflate's best ratio.
+const MAX_TEXELS_PER_BYTE: u64 = 8 * 1032;
+
+/// The size that a picture's header promises, if its file is long enough to keep the promise.
+fn promised_size(bytes: &[u8]) -> Result<(u32, u32), String> {
+    let read = || {
+        open(bytes)?
+            .into_dimensions()
+            .map_err(|e| format!("cannot be decoded: {e}"))
+    };
+    let (width, height) = catch_unwind(AssertUnwindSafe(read))
+        .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))?;
+    if u64::from(width) * u64::from(height) > bytes.len() as u64 * MAX_TEXELS_PER_BYTE {
+        return Err(format!(
+            "promises {width} x {height} texels in {} bytes",
+            bytes.len()
+        ));
+    }
+    Ok((width, height))
+}
+
 /// Adds up the sizes that the headers promise before anything is decoded.
 fn check_budget(encoded: &[Encoded<'_>], options: &LoadOptions) -> Parsed<()> {
     let mut total = 0u64;
     for (bytes, uses) in encoded {
         let Ok(bytes) = bytes else { continue };
-        let size = catch_unwind(AssertUnwindSafe(|| {
-            open(bytes).ok()?.into_dimensions().ok()
-        }));
-        if let Ok(Some((width, height))) = size {
+        if let Ok((width, height)) = promised_size(bytes) {
             total += u64::from(width) * u64::from(height) * 4 * uses.len() as u64;
         }
     }
@@ -238,6 +256,7 @@ fn check_budget(encoded: &[Encoded<'_>], options: &LoadOptions) -> Parsed<()> {
 }
 
 fn read_picture(bytes: &[u8]) -> Result<Picture, String> {
+    promised_size(bytes)?;
     let decode = || -> Result<Picture, String> {
         let decoded = open(bytes)?
             .decode()
