@@ -1,8 +1,25 @@
 //! Pictures made by code: each surface is a function from a place to a texel, baked into colour,
 //! normal and occlusion-roughness-metallic textures with full mip chains.
 
+mod cloth;
+mod glow;
+mod leaf;
+mod metal;
 mod mip;
 mod noise;
+mod plaster;
+mod roof;
+mod stone;
+mod wood;
+
+pub(super) use cloth::{canvas, rug, stripes};
+pub(super) use glow::{clock, moon, steam, window};
+pub(super) use leaf::leaves;
+pub(super) use metal::{hammered, iron};
+pub(super) use plaster::{clay, plaster};
+pub(super) use roof::roof_tiles;
+pub(super) use stone::{ashlar, bricks, cobbles};
+pub(super) use wood::{planks, wicker};
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
@@ -105,7 +122,11 @@ pub(super) fn paint_masked(
     surface: impl Fn(Vec2) -> Texel + Sync,
 ) -> Texture {
     let bytes = color_bytes(&evaluate(size, surface));
-    let mut texture = picture(name, size, bytes, Content::MaskedColor);
+    picture_clamped(picture(name, size, bytes, Content::MaskedColor))
+}
+
+/// The texture, not repeating.
+fn picture_clamped(mut texture: Texture) -> Texture {
     texture.sampler.wrap_u = Wrap::ClampToEdge;
     texture.sampler.wrap_v = Wrap::ClampToEdge;
     texture
