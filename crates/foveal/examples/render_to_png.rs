@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let path = arguments.next().unwrap_or_else(|| "out.png".to_owned());
     pollster::block_on(async {
         let file = std::path::Path::new(&name);
-        let scene = if file.exists() {
+        let mut scene = if file.exists() {
             foveal_scene::load(file, &LoadOptions::default())?
         } else {
             generate::by_name(&name)?
