@@ -69,7 +69,7 @@ impl Stages {
             geometry: GeometryPass::new(gpu, frame, material_layout),
             shading: ShadingPass::new(gpu, settings, frame),
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
-            tone_map: ToneMapPass::new(gpu, frame),
+            tone_map: ToneMapPass::new(gpu, settings, frame),
             view: ViewPass::new(gpu, settings.view, frame),
         };
         trap.finish().await?;
