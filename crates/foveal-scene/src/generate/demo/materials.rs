@@ -29,6 +29,8 @@ pub(super) struct Materials {
     pub(super) brass: u32,
     pub(super) copper: u32,
     pub(super) produce: u32,
+    pub(super) fruits: [u32; 4],
+    pub(super) spices: [u32; 4],
     pub(super) leaves: u32,
     pub(super) bark: u32,
     pub(super) rope: u32,
@@ -120,6 +122,21 @@ const AWNINGS: [(&str, [f32; 3], [f32; 3]); 6] = [
     ("awning indigo", [0.16, 0.17, 0.42], [0.84, 0.80, 0.74]),
     ("awning plum", [0.46, 0.13, 0.34], [0.86, 0.72, 0.52]),
     ("awning green", [0.18, 0.36, 0.17], [0.88, 0.83, 0.68]),
+];
+
+/// Fruit: name, linear colour, roughness.
+const FRUITS: [(&str, [f32; 3], f32); 4] = [
+    ("oranges", [0.90, 0.30, 0.02], 0.45),
+    ("apples", [0.68, 0.04, 0.03], 0.25),
+    ("limes", [0.42, 0.58, 0.05], 0.40),
+    ("aubergines", [0.16, 0.03, 0.20], 0.20),
+];
+
+const SPICES: [(&str, [f32; 3]); 4] = [
+    ("paprika", [0.62, 0.09, 0.02]),
+    ("turmeric", [0.85, 0.42, 0.02]),
+    ("grain", [0.72, 0.50, 0.24]),
+    ("indigo", [0.06, 0.08, 0.36]),
 ];
 
 const RUGS: [[[f32; 3]; 4]; 3] = [
@@ -269,6 +286,8 @@ impl Materials {
             brass: add(hammered.material("brass", [0.90, 0.66, 0.28])),
             copper: add(hammered.material("copper", [0.90, 0.48, 0.32])),
             produce: add(plain("produce", [1.0; 3], 0.45)),
+            fruits: FRUITS.map(|(name, color, roughness)| add(plain(name, color, roughness))),
+            spices: SPICES.map(|(name, color)| add(plain(name, color, 0.95))),
             leaves: add(Material {
                 base_color_texture: leaves,
                 alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
@@ -291,12 +310,12 @@ impl Materials {
             flame: add(glowing("flame", [1.0, 0.62, 0.22], 14.0)),
             bulb: add(glowing("bulb", [1.0, 0.72, 0.36], 9.0)),
             papers: [
-                add(glowing("paper amber", [1.0, 0.52, 0.16], 3.2)),
-                add(glowing("paper red", [1.0, 0.20, 0.10], 2.8)),
-                add(glowing("paper teal", [0.10, 0.80, 0.78], 2.4)),
-                add(glowing("paper magenta", [1.0, 0.16, 0.55], 2.6)),
+                add(glowing("paper amber", [1.0, 0.40, 0.08], 2.6)),
+                add(glowing("paper red", [1.0, 0.10, 0.04], 2.4)),
+                add(glowing("paper teal", [0.03, 0.72, 0.66], 2.0)),
+                add(glowing("paper magenta", [1.0, 0.06, 0.40], 2.2)),
             ],
-            lit_windows: [3.2, 1.5].map(|radiance| {
+            lit_windows: [4.5, 1.8].map(|radiance| {
                 add(Material {
                     emissive: Vec3::splat(radiance),
                     emissive_texture: window,
@@ -305,7 +324,7 @@ impl Materials {
             }),
             dark_window: add(plain("dark window", [0.02, 0.025, 0.035], 0.08)),
             clock: add(Material {
-                emissive: Vec3::splat(2.2),
+                emissive: Vec3::splat(2.6),
                 emissive_texture: clock,
                 ..plain("clock", [0.1; 3], 0.5)
             }),

@@ -123,9 +123,9 @@ pub fn demo(options: &DemoOptions) -> Result<Scene, GenerateError> {
     }
     let mut scene = scene.finish();
     scene.environment = Environment {
-        zenith: Vec3::new(0.010, 0.018, 0.052),
-        horizon: Vec3::new(0.050, 0.044, 0.060),
-        nadir: Vec3::new(0.016, 0.013, 0.014),
+        zenith: Vec3::new(0.022, 0.042, 0.125),
+        horizon: Vec3::new(0.130, 0.110, 0.150),
+        nadir: Vec3::new(0.060, 0.046, 0.042),
     };
     Ok(scene)
 }
@@ -151,6 +151,6 @@ fn moonlight() -> Light {
         kind: LightKind::Directional,
         direction: Vec3::new(-0.32, -0.72, 0.61).normalize(),
         range_m: None,
-        ..point(Vec3::ZERO, Vec3::new(0.55, 0.70, 1.0), 0.16, 0.0)
+        ..point(Vec3::ZERO, Vec3::new(0.45, 0.62, 1.0), 0.8, 0.0)
     }
 }
