@@ -127,7 +127,7 @@ fn square<'a>(market: &mut Market<'a>, kit: &'a Kit, seed: u64) {
             None,
             Shine {
                 color: [1.0, 0.74, 0.46],
-                intensity: 60.0,
+                intensity: 42.0,
                 range_m: 10.0,
             },
             0.0,
@@ -142,14 +142,7 @@ fn square<'a>(market: &mut Market<'a>, kit: &'a Kit, seed: u64) {
         let bench = stand(Vec3::new(4.6 * sin, 0.0, 4.6 * cos), turns);
         market.put(&kit.furniture.bench, bench, Rank::Goods(2));
     }
-    for (x, z, facing) in [
-        (-3.2, -23.9, 0.0),
-        (3.2, -23.9, 0.0),
-        (-3.2, -30.1, 0.5),
-        (3.2, -30.1, 0.5),
-    ] {
-        wall_lantern(market, kit, shift(x, 3.9, z) * yaw(facing), 0.3);
-    }
+    tower_lanterns(market, kit);
 }
 
 /// Lanterns beside both mouths of the clock tower's gate, on its shaft and in its belfry.

@@ -124,6 +124,9 @@ const AWNINGS: [(&str, [f32; 3], [f32; 3]); 6] = [
     ("awning green", [0.18, 0.36, 0.17], [0.88, 0.83, 0.68]),
 ];
 
+/// From pole to pole of a paper lantern, along the paper.
+const PAPER_M: f32 = 0.62;
+
 /// Fruit: name, linear colour, roughness.
 const FRUITS: [(&str, [f32; 3], f32); 4] = [
     ("oranges", [0.90, 0.30, 0.02], 0.45),
@@ -179,12 +182,13 @@ fn bake_surfaces() -> Vec<Baked> {
 }
 
 fn paint_pictures() -> Vec<Texture> {
-    let pictures: [fn() -> Texture; 5] = [
+    let pictures: [fn() -> Texture; 6] = [
         texture::leaves,
         texture::window,
         texture::clock,
         texture::moon,
         texture::steam,
+        texture::paper,
     ];
     pictures.into_par_iter().map(|paint| paint()).collect()
 }
@@ -213,9 +217,10 @@ impl Materials {
         ] = std::array::from_fn(|i| surfaces[i]);
         let pictures: Vec<_> = paint_pictures()
             .into_iter()
-            .map(|picture| slot(scene.texture(picture), 1.0))
+            .zip([1.0, 1.0, 1.0, 1.0, 1.0, PAPER_M])
+            .map(|(picture, tile_m)| slot(scene.texture(picture), tile_m))
             .collect();
-        let [leaves, window, clock, moon, steam] = std::array::from_fn(|i| pictures[i]);
+        let [leaves, window, clock, moon, steam, paper] = std::array::from_fn(|i| pictures[i]);
         let awnings = AWNINGS.map(|(name, color, ground)| {
             let cloth = slot(scene.texture(texture::stripes(name, color, ground)), 1.6);
             let material = Material {
@@ -296,12 +301,13 @@ impl Materials {
             }),
             bark: add(planks.material("bark", [0.26, 0.19, 0.13])),
             rope: add(plain("rope", [0.36, 0.28, 0.18], 0.95)),
+            // Frosted: its own flame stands behind it, so that it must shine by itself.
             glass: add(Material {
-                double_sided: true,
-                ..clear("lantern glass", [1.0, 0.86, 0.62, 0.16], 0.08)
+                emissive: Vec3::new(1.0, 0.50, 0.16) * 2.0,
+                ..clear("lantern glass", [1.0, 0.80, 0.50, 0.45], 0.15)
             }),
             bottles: add(clear("bottle glass", [0.10, 0.45, 0.32, 0.55], 0.06)),
-            water: add(clear("water", [0.05, 0.20, 0.24, 0.72], 0.04)),
+            water: add(clear("water", [0.20, 0.40, 0.46, 0.55], 0.05)),
             steam: add(Material {
                 base_color_texture: steam,
                 double_sided: true,
@@ -310,11 +316,17 @@ impl Materials {
             flame: add(glowing("flame", [1.0, 0.62, 0.22], 14.0)),
             bulb: add(glowing("bulb", [1.0, 0.72, 0.36], 9.0)),
             papers: [
-                add(glowing("paper amber", [1.0, 0.40, 0.08], 2.6)),
-                add(glowing("paper red", [1.0, 0.10, 0.04], 2.4)),
-                add(glowing("paper teal", [0.03, 0.72, 0.66], 2.0)),
-                add(glowing("paper magenta", [1.0, 0.06, 0.40], 2.2)),
-            ],
+                ("paper amber", [1.0, 0.42, 0.09], 2.6),
+                ("paper red", [1.0, 0.10, 0.04], 1.9),
+                ("paper teal", [0.03, 0.72, 0.66], 1.5),
+                ("paper magenta", [1.0, 0.05, 0.36], 1.6),
+            ]
+            .map(|(name, color, radiance)| {
+                add(Material {
+                    emissive_texture: paper,
+                    ..glowing(name, color, radiance)
+                })
+            }),
             lit_windows: [4.5, 1.8].map(|radiance| {
                 add(Material {
                     emissive: Vec3::splat(radiance),

@@ -12,7 +12,7 @@ mod stone;
 mod wood;
 
 pub(super) use cloth::{canvas, rug, stripes};
-pub(super) use glow::{clock, moon, steam, window};
+pub(super) use glow::{clock, moon, paper, steam, window};
 pub(super) use leaf::leaves;
 pub(super) use metal::{hammered, iron};
 pub(super) use plaster::{clay, plaster};
@@ -112,6 +112,12 @@ pub(super) fn bake(
 pub(super) fn paint(name: &str, size: u32, surface: impl Fn(Vec2) -> Texel + Sync) -> Texture {
     let bytes = color_bytes(&evaluate(size, surface));
     picture(name, size, bytes, Content::Color)
+}
+
+/// A colour picture whose alpha is for blending.
+fn paint_clear(name: &str, size: u32, surface: impl Fn(Vec2) -> Texel + Sync) -> Texture {
+    let bytes = color_bytes(&evaluate(size, surface));
+    picture(name, size, bytes, Content::Cutout { threshold: None })
 }
 
 /// A colour picture with a cut-out, not repeating.
