@@ -177,7 +177,7 @@ fn frontage<'a>(market: &mut Market<'a>, kit: &'a Kit, lot: &Lot, seed: u64) {
     let place = lot_place(lot);
     let main = lot.lane == 0;
     // Side lanes are narrow: stalls on alternating sides only.
-    let sells = main || (lot.number % 2 == 0) == (lot.side > 0.0);
+    let sells = main || lot.number.is_multiple_of(2) == (lot.side > 0.0);
     for bay in [-1.0f32, 0.0, 1.0] {
         let at = place * shift(bay * BAY_M, 0.0, 1.38);
         let chance = match (lot.on_square, sells) {
@@ -328,7 +328,7 @@ fn over_lane<'a>(market: &mut Market<'a>, kit: &'a Kit, lot: &Lot, seed: u64) {
     let middle = Vec3::new(Plan::lane_x(lot.lane), 0.0, lot.z);
     let main = lot.lane == 0;
     let stretch = Mat4::from_scale(Vec3::new(span / ROPE_M, 1.0, 1.0));
-    if lot.number % 2 == 0 && !lot.ends[1] && rng.chance(if main { 1.0 } else { 0.5 }) {
+    if lot.number.is_multiple_of(2) && !lot.ends[1] && rng.chance(if main { 1.0 } else { 0.5 }) {
         let at = middle + Vec3::Z * (0.5 * WIDTH_M + 0.42);
         market.put(&kit.houses.bridge, stand(at, 0.0) * stretch, Rank::Needed);
     }

@@ -126,7 +126,7 @@ fn water(b: &mut MeshBuilder) {
         b.lathe(&[(radius, y), (0.0, y)], 28);
     }
     // Jets arc outwards from each rim and fall into the bowl below.
-    for (count, top_r, top_y, r, y) in [(10u8, 0.56, 3.14, 0.86, 2.1), (18, 1.18, 2.1, 1.75, 0.77)]
+    for (count, top_r, top_y, r, y) in [(10u8, 0.56, 3.13, 0.86, 2.1), (18, 1.18, 2.1, 1.75, 0.77)]
     {
         for jet in 0..count {
             let (sin, cos) = sin_cos_turns(f32::from(jet) / f32::from(count));
