@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (mut drawing, adapter) = prepare(args, &settings, &mut load_ms)?;
     let scene = NamedSceneStats {
         name: drawing.scene.name.clone(),
-        animated: scene_source::is_animated(&drawing.scene),
+        animated: drawing.scene.is_animated(),
         warnings: drawing.scene.warnings.len() as u64,
         counts: drawing.renderer.scene_stats(),
     };
