@@ -154,6 +154,8 @@ fn prepare(
     if args.point_lights > 0 {
         scene_source::add_point_lights(&mut scene, args.point_lights, args.light_seed);
     }
+    // A file without lights would be seen by the sky's light alone.
+    scene.light_by_default();
     if !args.quiet {
         scene
             .warnings
