@@ -1,0 +1,144 @@
+//! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
+
+use crate::simd::Lanes;
+
+/// Eight boxes by coordinate.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Boxes8 {
+    pub(crate) center: [[f32; 8]; 3],
+    pub(crate) half: [[f32; 8]; 3],
+}
+
+impl Boxes8 {
+    /// NaN boxes: never culled.
+    pub(crate) const NONE: Self = Self {
+        center: [[f32::NAN; 8]; 3],
+        half: [[f32::NAN; 8]; 3],
+    };
+
+    pub(crate) fn set(&mut self, lane: usize, center: glam::Vec3, half: glam::Vec3) {
+        for axis in 0..3 {
+            self.center[axis][lane] = center[axis];
+            self.half[axis][lane] = half[axis];
+        }
+    }
+}
+
+/// What is known of eight boxes on the screen. Rectangles are samples, already dilated.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(crate) struct Projected8 {
+    pub(crate) x0: [f32; 8],
+    pub(crate) x1: [f32; 8],
+    pub(crate) y0: [f32; 8],
+    pub(crate) y1: [f32; 8],
+    /// Nearest depth, raised for rounding.
+    pub(crate) depth: [f32; 8],
+    /// Smallest W: distance for perspective views.
+    pub(crate) distance: [f32; 8],
+    /// Bit per box: certainly outside the frustum.
+    pub(crate) outside: u32,
+    /// Bit per box: in front of the near plane in part, or not a volume; the other fields mean nothing.
+    pub(crate) crossing: u32,
+}
+
+impl Projected8 {
+    pub(crate) const NONE: Self = Self {
+        x0: [0.0; 8],
+        x1: [0.0; 8],
+        y0: [0.0; 8],
+        y1: [0.0; 8],
+        depth: [0.0; 8],
+        distance: [0.0; 8],
+        outside: 0,
+        crossing: 0,
+    };
+}
+
+/// What boxes are projected with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Screen {
+    /// Clip rows in the space of the boxes.
+    pub(crate) rows: [[f32; 4]; 4],
+    /// Samples.
+    pub(crate) width: f32,
+    pub(crate) height: f32,
+    /// Depth of the far plane, lowered a little; 0 when infinite.
+    pub(crate) far_depth: f32,
+    /// By how much rectangles grow on each side, samples.
+    pub(crate) dilate: f32,
+}
+
+#[inline(always)]
+pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 {
+    let c = boxes.center.each_ref().map(|v| l.load(v));
+    let h = boxes.half.each_ref().map(|v| l.load(v));
+    let dot = |r: &[f32; 4]| {
+        l.add(
+            l.add(l.mul(c[0], l.splat(r[0])), l.mul(c[1], l.splat(r[1]))),
+            l.add(l.mul(c[2], l.splat(r[2])), l.splat(r[3])),
+        )
+    };
+    let edges = |r: &[f32; 4]| {
+        [
+            l.mul(h[0], l.splat(r[0])),
+            l.mul(h[1], l.splat(r[1])),
+            l.mul(h[2], l.splat(r[2])),
+        ]
+    };
+    let reach = |e: &[L::F; 3]| l.add(l.add(l.abs(e[0]), l.abs(e[1])), l.abs(e[2]));
+    let (zc, ze) = (dot(&s.rows[2]), edges(&s.rows[2]));
+    let (wc, we) = (dot(&s.rows[3]), edges(&s.rows[3]));
+    let (zr, wr) = (reach(&ze), reach(&we));
+    let (w_near, w_far) = (l.sub(wc, wr), l.add(wc, wr));
+    let z_near = l.add(zc, zr);
+    // Wholly nearer than the near plane, or not certainly beyond it.
+    let behind = l.lt(w_far, l.sub(zc, zr));
+    let beyond = l.lt(z_near, w_near);
+    let depth = l.mul(l.div(z_near, w_near), l.splat(1.0 + 1e-6));
+
+    let corners = |r: &[f32; 4]| {
+        let (m, e) = (dot(r), edges(r));
+        let (a, b) = (l.add(e[0], e[1]), l.sub(e[0], e[1]));
+        let quad = [l.add(m, a), l.add(m, b), l.sub(m, b), l.sub(m, a)];
+        (quad, e[2])
+    };
+    let (xq, xz) = corners(&s.rows[0]);
+    let (yq, yz) = corners(&s.rows[1]);
+    let (wq, wz) = corners(&s.rows[3]);
+    let one = l.splat(1.0);
+    let mut box2 = None;
+    for k in 0..4 {
+        for up in [false, true] {
+            let pick = |q: L::F, z: L::F| if up { l.add(q, z) } else { l.sub(q, z) };
+            let inv = l.div(one, pick(wq[k], wz));
+            let x = l.mul(pick(xq[k], xz), inv);
+            let y = l.mul(pick(yq[k], yz), inv);
+            box2 = Some(match box2 {
+                None => (x, x, y, y),
+                Some((x0, x1, y0, y1)) => (l.min(x0, x), l.max(x1, x), l.min(y0, y), l.max(y1, y)),
+            });
+        }
+    }
+    let (x0, x1, y0, y1) = box2.unwrap_or((one, one, one, one));
+    let grow = l.splat(s.dilate);
+    let (x0, y0) = (l.sub(x0, grow), l.sub(y0, grow));
+    let (x1, y1) = (l.add(x1, grow), l.add(y1, grow));
+    let zero = l.splat(0.0);
+    let off = l.ior(
+        l.ior(l.lt(x1, zero), l.lt(l.splat(s.width), x0)),
+        l.ior(l.lt(y1, zero), l.lt(l.splat(s.height), y0)),
+    );
+    let off = l.iand(beyond, l.ior(off, l.lt(depth, l.splat(s.far_depth))));
+    let mut p = Projected8::NONE;
+    l.store(x0, &mut p.x0);
+    l.store(x1, &mut p.x1);
+    l.store(y0, &mut p.y0);
+    l.store(y1, &mut p.y1);
+    l.store(depth, &mut p.depth);
+    l.store(w_near, &mut p.distance);
+    p.outside = l.movemask(l.ior(behind, off));
+    p.crossing = !l.movemask(beyond) & !p.outside & 0xff;
+    p
+}
