@@ -41,6 +41,8 @@ mod raster;
 mod simd;
 mod stats;
 mod threads;
+#[cfg(any(test, feature = "truth"))]
+pub mod truth;
 mod view;
 
 pub use bounds::Aabb;

@@ -1,6 +1,6 @@
 //! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
 
-use crate::simd::Lanes;
+use crate::simd::{Lanes, four};
 
 /// Eight boxes by coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -72,25 +72,11 @@ pub(crate) struct Screen {
 
 #[inline(always)]
 pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 {
-    let c = boxes.center.each_ref().map(|v| l.load(v));
-    let h = boxes.half.each_ref().map(|v| l.load(v));
-    let dot = |r: &[f32; 4]| {
-        l.add(
-            l.add(l.mul(c[0], l.splat(r[0])), l.mul(c[1], l.splat(r[1]))),
-            l.add(l.mul(c[2], l.splat(r[2])), l.splat(r[3])),
-        )
-    };
-    let edges = |r: &[f32; 4]| {
-        [
-            l.mul(h[0], l.splat(r[0])),
-            l.mul(h[1], l.splat(r[1])),
-            l.mul(h[2], l.splat(r[2])),
-        ]
-    };
-    let reach = |e: &[L::F; 3]| l.add(l.add(l.abs(e[0]), l.abs(e[1])), l.abs(e[2]));
-    let (zc, ze) = (dot(&s.rows[2]), edges(&s.rows[2]));
-    let (wc, we) = (dot(&s.rows[3]), edges(&s.rows[3]));
-    let (zr, wr) = (reach(&ze), reach(&we));
+    let c = [l.load(&boxes.center[0]), l.load(&boxes.center[1]), l.load(&boxes.center[2])];
+    let h = [l.load(&boxes.half[0]), l.load(&boxes.half[1]), l.load(&boxes.half[2])];
+    let (zc, ze) = (dot(l, &c, &s.rows[2]), edges(l, &h, &s.rows[2]));
+    let (wc, we) = (dot(l, &c, &s.rows[3]), edges(l, &h, &s.rows[3]));
+    let (zr, wr) = (reach(l, &ze), reach(l, &we));
     let (w_near, w_far) = (l.sub(wc, wr), l.add(wc, wr));
     let z_near = l.add(zc, zr);
     // Wholly nearer than the near plane, or not certainly beyond it.
@@ -98,30 +84,14 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
     let beyond = l.lt(z_near, w_near);
     let depth = l.mul(l.div(z_near, w_near), l.splat(1.0 + 1e-6));
 
-    let corners = |r: &[f32; 4]| {
-        let (m, e) = (dot(r), edges(r));
-        let (a, b) = (l.add(e[0], e[1]), l.sub(e[0], e[1]));
-        let quad = [l.add(m, a), l.add(m, b), l.sub(m, b), l.sub(m, a)];
-        (quad, e[2])
-    };
-    let (xq, xz) = corners(&s.rows[0]);
-    let (yq, yz) = corners(&s.rows[1]);
-    let (wq, wz) = corners(&s.rows[3]);
+    let (xq, xz) = corners(l, &c, &h, &s.rows[0]);
+    let (yq, yz) = corners(l, &c, &h, &s.rows[1]);
+    let (wq, wz) = corners(l, &c, &h, &s.rows[3]);
     let one = l.splat(1.0);
-    let mut box2 = None;
-    for k in 0..4 {
-        for up in [false, true] {
-            let pick = |q: L::F, z: L::F| if up { l.add(q, z) } else { l.sub(q, z) };
-            let inv = l.div(one, pick(wq[k], wz));
-            let x = l.mul(pick(xq[k], xz), inv);
-            let y = l.mul(pick(yq[k], yz), inv);
-            box2 = Some(match box2 {
-                None => (x, x, y, y),
-                Some((x0, x1, y0, y1)) => (l.min(x0, x), l.max(x1, x), l.min(y0, y), l.max(y1, y)),
-            });
-        }
-    }
-    let (x0, x1, y0, y1) = box2.unwrap_or((one, one, one, one));
+    let low = four!(k => l.div(one, l.sub(wq[k], wz)));
+    let high = four!(k => l.div(one, l.add(wq[k], wz)));
+    let (x0, x1) = extent(l, four!(k => l.mul(l.sub(xq[k], xz), low[k])), four!(k => l.mul(l.add(xq[k], xz), high[k])));
+    let (y0, y1) = extent(l, four!(k => l.mul(l.sub(yq[k], yz), low[k])), four!(k => l.mul(l.add(yq[k], yz), high[k])));
     let grow = l.splat(s.dilate);
     let (x0, y0) = (l.sub(x0, grow), l.sub(y0, grow));
     let (x1, y1) = (l.add(x1, grow), l.add(y1, grow));
@@ -141,4 +111,34 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
     p.outside = l.movemask(l.ior(behind, off));
     p.crossing = !l.movemask(beyond) & !p.outside & 0xff;
     p
+}
+
+#[inline(always)]
+fn dot<L: Lanes>(l: L, c: &[L::F; 3], r: &[f32; 4]) -> L::F {
+    l.add(l.add(l.mul(c[0], l.splat(r[0])), l.mul(c[1], l.splat(r[1]))), l.add(l.mul(c[2], l.splat(r[2])), l.splat(r[3])))
+}
+
+#[inline(always)]
+fn edges<L: Lanes>(l: L, h: &[L::F; 3], r: &[f32; 4]) -> [L::F; 3] {
+    [l.mul(h[0], l.splat(r[0])), l.mul(h[1], l.splat(r[1])), l.mul(h[2], l.splat(r[2]))]
+}
+
+#[inline(always)]
+fn reach<L: Lanes>(l: L, e: &[L::F; 3]) -> L::F {
+    l.add(l.add(l.abs(e[0]), l.abs(e[1])), l.abs(e[2]))
+}
+
+/// A row at the four corners of the middle section, and its change to the upper ones.
+#[inline(always)]
+fn corners<L: Lanes>(l: L, c: &[L::F; 3], h: &[L::F; 3], r: &[f32; 4]) -> ([L::F; 4], L::F) {
+    let (m, e) = (dot(l, c, r), edges(l, h, r));
+    let (a, b) = (l.add(e[0], e[1]), l.sub(e[0], e[1]));
+    ([l.add(m, a), l.add(m, b), l.sub(m, b), l.sub(m, a)], e[2])
+}
+
+#[inline(always)]
+fn extent<L: Lanes>(l: L, a: [L::F; 4], b: [L::F; 4]) -> (L::F, L::F) {
+    let lo = l.min(l.min(l.min(a[0], a[1]), l.min(a[2], a[3])), l.min(l.min(b[0], b[1]), l.min(b[2], b[3])));
+    let hi = l.max(l.max(l.max(a[0], a[1]), l.max(a[2], a[3])), l.max(l.max(b[0], b[1]), l.max(b[2], b[3])));
+    (lo, hi)
 }

@@ -10,7 +10,7 @@ use super::polygon::Polygon;
 use crate::depth::{
     BLOCK, BLOCK_SAMPLES, Band, CODE_OFFSET, EMPTY, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
 };
-use crate::simd::Lanes;
+use crate::simd::{Lanes, four};
 
 /// Depth of a polygon as an affine function of pixels, lowered to hold for whole pixels.
 #[derive(Clone, Copy, Debug)]
@@ -96,15 +96,16 @@ fn bounds<L: Lanes, const LEFT: bool>(
     for (i, e) in slopes.iter().enumerate() {
         let x = at[i] - (left - 0.5);
         let s = e.slope;
-        let v = [x, x + s, x + 2.0 * s, x + 3.0 * s].map(|x| l.add(l.splat(x), lanes[i]));
+        let at = [x, x + s, x + 2.0 * s, x + 3.0 * s];
+        let v = four!(k => l.add(l.splat(at[k]), lanes[i]));
         let c = l.add(l.splat(x + 1.5 * s), lanes[i]);
         if i == 0 {
             b = Bounds { rows: v, center: c };
         } else if LEFT {
-            b.rows = core::array::from_fn(|k| l.max(b.rows[k], v[k]));
+            b.rows = four!(k => l.max(b.rows[k], v[k]));
             b.center = l.max(b.center, c);
         } else {
-            b.rows = core::array::from_fn(|k| l.min(b.rows[k], v[k]));
+            b.rows = four!(k => l.min(b.rows[k], v[k]));
             b.center = l.min(b.center, c);
         }
     }
@@ -115,7 +116,7 @@ fn bounds<L: Lanes, const LEFT: bool>(
 #[inline(always)]
 fn planes<L: Lanes>(l: L, b: &Bounds<L>) -> ([L::B; 4], u64) {
     let (zero, end) = (l.splat(0.0), l.splat(32.0));
-    let n = l.pack8(b.rows.map(|v| l.trunc(l.min(l.max(v, zero), end))));
+    let n = l.pack8(four!(k => l.trunc(l.min(l.max(b.rows[k], zero), end))));
     let whole = l.blookup(&FROM, l.bshr2(n));
     let next = l.badd(whole, whole);
     let part = l.band(n, l.bsplat(3));
@@ -129,6 +130,14 @@ fn planes<L: Lanes>(l: L, b: &Bounds<L>) -> ([L::B; 4], u64) {
     let c = l.trunc(l.min(l.max(c, zero), l.splat(8.0)));
     let c = l.blookup(&FROM, l.pack8([c; 4]));
     (columns, l.band_fold(c))
+}
+
+/// Moves the left border out of sight on rows outside the limits; `y` is the first of the eight rows.
+#[inline(always)]
+fn limit<L: Lanes>(l: L, lo: L::F, y: f32, (y0, y1): (f32, f32)) -> L::F {
+    let y = l.add(l.load(&LANE_ROWS), l.splat(y));
+    let inside = l.iandnot(l.lt(l.splat(y1), y), l.lt(l.splat(y0), y));
+    l.select(inside, lo, l.splat(1e6))
 }
 
 #[inline(always)]
@@ -147,28 +156,22 @@ fn mask<L: Lanes>(l: L, polygon: &Polygon, spans: &Spans<L>, left: f32) -> Mask<
         &spans.right_lanes,
         left,
     );
-    if let Some((y0, y1)) = polygon.rows {
-        let far = l.splat(1e6);
-        let rows = l.add(l.load(&LANE_ROWS), l.splat(spans.top + 0.5));
-        let limit = |lo: L::F, offset: f32| {
-            let y = l.add(rows, l.splat(offset));
-            let inside = l.iandnot(l.lt(l.splat(y1), y), l.lt(l.splat(y0), y));
-            l.select(inside, lo, far)
-        };
-        lo.rows = [
-            limit(lo.rows[0], 0.0),
-            limit(lo.rows[1], 1.0),
-            limit(lo.rows[2], 2.0),
-            limit(lo.rows[3], 3.0),
-        ];
-        lo.center = limit(lo.center, 1.5);
+    if let Some(limits) = polygon.rows {
+        lo.rows = four!(k => limit(l, lo.rows[k], spans.top + 0.5 + k as f32, limits));
+        lo.center = limit(l, lo.center, spans.top + 2.0, limits);
     }
     let (a, ca) = planes(l, &lo);
     let (b, cb) = planes(l, &hi);
     Mask {
-        planes: core::array::from_fn(|c| l.bandnot(b[c], a[c])),
+        planes: four!(c => l.bandnot(b[c], a[c])),
         center: ca & !cb,
     }
+}
+
+#[inline(always)]
+fn depth_row<L: Lanes>(l: L, columns: L::F, floor: L::F, offset: L::I, down: f32) -> L::I {
+    let d = l.max(l.add(columns, l.splat(down)), floor);
+    l.isub(l.isra12(l.bits(d)), offset)
 }
 
 /// Depth codes of the block's 64 pixels.
@@ -181,13 +184,9 @@ fn depth<L: Lanes>(l: L, plane: &Plane, bx: u32, by: u32) -> [L::H; 4] {
     let (dx, dy) = (plane.dx * 4.0, plane.dy * 4.0);
     let columns = l.add(l.splat(first), l.mul(l.load(&LANE_COLUMNS), l.splat(dx)));
     let (floor, offset) = (l.splat(plane.min), l.isplat(CODE_OFFSET));
-    let row = |r: usize| {
-        let d = l.max(l.add(columns, l.splat(dy * r as f32)), floor);
-        l.isub(l.isra12(l.bits(d)), offset)
-    };
     // Never nearer than the nearest vertex, so that what is skipped as hidden would have changed nothing.
     let nearest = l.hsplat(plane.max_code);
-    core::array::from_fn(|i| l.hmin(l.pack16(row(2 * i), row(2 * i + 1)), nearest))
+    four!(i => l.hmin(l.pack16(depth_row(l, columns, floor, offset, dy * (2 * i) as f32), depth_row(l, columns, floor, offset, dy * (2 * i + 1) as f32)), nearest))
 }
 
 #[inline(always)]
@@ -197,7 +196,8 @@ fn spread<L: Lanes>(l: L, bits: u64, i: usize) -> L::H {
 
 #[inline(always)]
 fn gather_bits<L: Lanes>(l: L, masks: [L::H; 4]) -> u64 {
-    (0..4).fold(0, |m, i| m | (u64::from(l.hbits(masks[i])) << (16 * i)))
+    let m = four!(i => u64::from(l.hbits(masks[i])) << (16 * i));
+    (m[0] | m[1]) | (m[2] | m[3])
 }
 
 #[inline(always)]
@@ -237,7 +237,7 @@ pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, 
 fn forget_hidden<L: Lanes>(l: L, partial: &mut crate::depth::PartialBlock, d: &[L::H; 4]) {
     let kept = gather_bits(
         l,
-        core::array::from_fn(|k| l.hgt(l.hload(&partial.depth[k]), d[k])),
+        four!(k => l.hgt(l.hload(&partial.depth[k]), d[k])),
     );
     let keep = l.bsplat64(kept);
     for c in 0..4 {
@@ -278,12 +278,12 @@ pub(crate) fn cover_partial<L: Lanes>(
     let old: [L::H; 4] = if state == STATE_EMPTY {
         [l.hsplat(EMPTY); 4]
     } else {
-        core::array::from_fn(|k| l.hload(&block[k]))
+        four!(k => l.hload(&block[k]))
     };
     // Only pixels where the polygon is nearer than what is proven already.
-    let nearer = gather_bits(l, core::array::from_fn(|k| l.hgt(d[k], old[k])));
+    let nearer = gather_bits(l, four!(k => l.hgt(d[k], old[k])));
     let near = l.bsplat64(nearer);
-    planes = planes.map(|p| l.band(p, near));
+    planes = four!(c => l.band(planes[c], near));
     center &= nearer;
     let touched =
         l.bor_fold(l.bor(l.bor(planes[0], planes[1]), l.bor(planes[2], planes[3]))) | center;
@@ -301,7 +301,7 @@ pub(crate) fn cover_partial<L: Lanes>(
             new[k] = l.hselect(spread(l, alone, k), d[k], old[k]);
         }
         let others = l.bsplat64(!alone);
-        planes = planes.map(|p| l.band(p, others));
+        planes = four!(c => l.band(planes[c], others));
         center &= !alone;
     }
     let mut depths: [L::H; 4] = [far; 4];
@@ -310,7 +310,7 @@ pub(crate) fn cover_partial<L: Lanes>(
             planes[c] = l.bor(planes[c], l.bload(&partial.planes[c]));
         }
         center |= partial.center;
-        depths = core::array::from_fn(|k| l.hload(&partial.depth[k]));
+        depths = four!(k => l.hload(&partial.depth[k]));
     }
     let joined = touched & !alone;
     for k in 0..4 {
@@ -325,9 +325,9 @@ pub(crate) fn cover_partial<L: Lanes>(
         }
         band.min[i] = reduce(l, &new);
         // Forget what is complete, or hidden by now.
-        let kept = gather_bits(l, core::array::from_fn(|k| l.hgt(depths[k], new[k])));
+        let kept = gather_bits(l, four!(k => l.hgt(depths[k], new[k])));
         let keep = l.bsplat64(kept);
-        planes = planes.map(|p| l.band(p, keep));
+        planes = four!(c => l.band(planes[c], keep));
         center &= kept;
         for k in 0..4 {
             depths[k] = l.hselect(spread(l, kept, k), depths[k], far);

@@ -6,7 +6,7 @@
 use super::setup::{Facing, GUARD, Scratch, draw_eight};
 use crate::depth::Band;
 use crate::occluder::{Cluster, OccluderMesh};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, four};
 use glam::DVec4;
 
 /// A convex polygon of up to nine corners (three, and one per plane), in clip space.
@@ -70,6 +70,7 @@ const PLANES: [DVec4; 5] = {
 };
 
 /// Draws the triangles of a cluster that have a vertex which [`super::setup`] refused.
+#[inline(always)]
 pub(crate) fn draw_clipped<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -115,6 +116,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
     }
 }
 
+#[inline(always)]
 fn draw_fan<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
@@ -145,6 +147,12 @@ fn draw_fan<L: Lanes>(
             }
         }
     }
-    let [x, y, z] = lanes.map(|axis| axis.map(|v| l.load(&v)));
-    scratch.polygons += draw_eight(l, band, x, y, || z, two_sided);
+    let x = four!(k => l.load(&lanes[0][k]));
+    let y = four!(k => l.load(&lanes[1][k]));
+    let depths = &mut scratch.clipped;
+    for k in 0..4 {
+        depths[8 * k..8 * k + 8].copy_from_slice(&lanes[2][k]);
+    }
+    const INDEX: [[u8; 8]; 4] = [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 10, 11, 12, 13, 14, 15], [16, 17, 18, 19, 20, 21, 22, 23], [24, 25, 26, 27, 28, 29, 30, 31]];
+    scratch.polygons += draw_eight(l, band, x, y, &scratch.clipped, four!(k => &INDEX[k]), two_sided);
 }

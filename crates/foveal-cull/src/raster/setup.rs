@@ -9,7 +9,7 @@ use super::clip;
 use super::polygon::{self, Polygon};
 use crate::depth::{BLOCK_SAMPLES, Band, encode};
 use crate::occluder::{Cluster, OccluderMesh};
-use crate::simd::Lanes;
+use crate::simd::{Lanes, four};
 
 /// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
 pub(crate) const GUARD: f32 = 32768.0;
@@ -20,6 +20,8 @@ pub(crate) struct Scratch {
     pub(crate) x: [f32; 256],
     pub(crate) y: [f32; 256],
     pub(crate) d: [f32; 256],
+    /// Depths of a clipped polygon's fan.
+    pub(crate) clipped: [f32; 256],
     /// Polygons that were set up, for the statistics.
     pub(crate) polygons: u64,
     /// Clusters drawn.
@@ -32,6 +34,7 @@ impl Default for Scratch {
             x: [0.0; 256],
             y: [0.0; 256],
             d: [0.0; 256],
+            clipped: [0.0; 256],
             polygons: 0,
             clusters: 0,
         }
@@ -63,17 +66,10 @@ pub(crate) fn draw_cluster<L: Lanes>(
     for group in &mesh.quads[first..first + groups] {
         let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
-        let x = order.map(|c| l.gather(&scratch.x, &group[c]));
-        let y = order.map(|c| l.gather(&scratch.y, &group[c]));
-        let depths = &scratch.d;
-        scratch.polygons += draw_eight(
-            l,
-            band,
-            x,
-            y,
-            || order.map(|c| l.gather(depths, &group[c])),
-            facing.two_sided,
-        );
+        let index = four!(c => &group[order[c]]);
+        let x = four!(c => l.gather(&scratch.x, index[c]));
+        let y = four!(c => l.gather(&scratch.y, index[c]));
+        scratch.polygons += draw_eight(l, band, x, y, &scratch.d, index, facing.two_sided);
     }
     if clipped {
         clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
@@ -92,7 +88,7 @@ fn transform<L: Lanes>(
     let first = cluster.first_vertex as usize;
     let n = usize::from(cluster.vertex_count).next_multiple_of(8);
     let v = &mesh.vertices;
-    let r = rows.map(|row| row.map(|v| l.splat(v)));
+    let r = four!(i => four!(k => l.splat(rows[i][k])));
     let (xs, _) = v.x[first..first + n].as_chunks::<8>();
     let (ys, _) = v.y[first..first + n].as_chunks::<8>();
     let (zs, _) = v.z[first..first + n].as_chunks::<8>();
@@ -109,13 +105,10 @@ fn transform<L: Lanes>(
         .zip(out_y.iter_mut().zip(out_d))
     {
         let (x, y, z) = (l.load(x), l.load(y), l.load(z));
-        let dot = |r: [L::F; 4]| {
-            l.add(
-                l.add(l.mul(x, r[0]), l.mul(y, r[1])),
-                l.add(l.mul(z, r[2]), r[3]),
-            )
-        };
-        let (cx, cy, cz, cw) = (dot(r[0]), dot(r[1]), dot(r[2]), dot(r[3]));
+        let [cx, cy, cz, cw] = four!(i => l.add(
+            l.add(l.mul(x, r[i][0]), l.mul(y, r[i][1])),
+            l.add(l.mul(z, r[i][2]), r[i][3]),
+        ));
         let inv = l.div(one, cw);
         let (sx, sy, d) = (l.mul(cx, inv), l.mul(cy, inv), l.mul(cz, inv));
         // Beyond the near plane (Z < W, W above zero with it) and within the guard band.
@@ -138,32 +131,21 @@ pub(crate) fn draw_eight<L: Lanes>(
     band: &mut Band<'_>,
     mut x: [L::F; 4],
     mut y: [L::F; 4],
-    depths: impl FnOnce() -> [L::F; 4],
+    depths: &[f32; 256],
+    index: [&[u8; 8]; 4],
     two_sided: bool,
 ) -> u64 {
     let zero = l.splat(0.0);
-    // Twice the signed area, positive when facing the eye (y points down).
-    let area = |x: &[L::F; 4], y: &[L::F; 4], a: usize, b: usize, c: usize| {
-        l.sub(
-            l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])),
-            l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])),
-        )
-    };
-    let mut f0 = area(&x, &y, 0, 1, 2);
-    let mut f1 = area(&x, &y, 0, 2, 3);
+    let mut f0 = area(l, &x, &y, 0, 1, 2);
+    let mut f1 = area(l, &x, &y, 0, 2, 3);
     let mut reversed = l.isplat(0);
     if two_sided {
         // The larger triangle decides the side; its partner on the other side, if any, is dropped.
         reversed = l.lt(l.add(f0, f1), zero);
-        let swap = |v: &mut [L::F; 4]| {
-            let (a, b) = (v[1], v[3]);
-            v[1] = l.select(reversed, b, a);
-            v[3] = l.select(reversed, a, b);
-        };
-        swap(&mut x);
-        swap(&mut y);
-        f0 = area(&x, &y, 0, 1, 2);
-        f1 = area(&x, &y, 0, 2, 3);
+        x = swap(l, reversed, x);
+        y = swap(l, reversed, y);
+        f0 = area(l, &x, &y, 0, 1, 2);
+        f1 = area(l, &x, &y, 0, 2, 3);
     }
     let front0 = l.lt(zero, f0);
     let front1 = l.lt(zero, f1);
@@ -171,9 +153,7 @@ pub(crate) fn draw_eight<L: Lanes>(
     if l.movemask(front) == 0 {
         return 0;
     }
-    let lowest = |v: &[L::F; 4]| l.min(l.min(v[0], v[1]), l.min(v[2], v[3]));
-    let highest = |v: &[L::F; 4]| l.max(l.max(v[0], v[1]), l.max(v[2], v[3]));
-    let (x_lo, x_hi, y_lo, y_hi) = (lowest(&x), highest(&x), lowest(&y), highest(&y));
+    let (x_lo, x_hi, y_lo, y_hi) = (lowest(l, &x), highest(l, &x), lowest(l, &y), highest(l, &y));
     // Half-sample steps strictly above the minimum and up to the maximum: every sample and pixel centre lies
     // on one. Clamping to the band drops what is outside.
     let size = BLOCK_SAMPLES as f32;
@@ -182,48 +162,33 @@ pub(crate) fn draw_eight<L: Lanes>(
         band.first_row as f32 * size,
         (band.first_row + band.rows) as f32 * size,
     );
-    let steps = |v: L::F, lo: f32, hi: f32| {
-        let c = l.min(l.max(v, l.splat(lo)), l.splat(hi));
-        l.trunc(l.add(c, c))
-    };
-    let (nx0, nx1) = (steps(x_lo, 0.0, right), steps(x_hi, 0.0, right));
-    let (ny0, ny1) = (steps(y_lo, top, bottom), steps(y_hi, top, bottom));
+    let (nx0, nx1) = (steps(l, x_lo, 0.0, right), steps(l, x_hi, 0.0, right));
+    let (ny0, ny1) = (steps(l, y_lo, top, bottom), steps(l, y_hi, top, bottom));
     // `a - b` is negative where a < b.
     let live = l.iand(front, l.iand(l.isub(nx0, nx1), l.isub(ny0, ny1)));
     let mut live = l.movemask(live);
     if live == 0 {
         return 0;
     }
-    let f3 = area(&x, &y, 0, 1, 3);
+    let f3 = area(l, &x, &y, 0, 1, 3);
     let f2 = l.sub(l.add(f0, f1), f3);
     let convex = l.movemask(l.iand(
         l.iand(front0, front1),
         l.iand(l.lt(zero, f2), l.lt(zero, f3)),
     ));
-    let (front0, front1, reversed) = (front0, front1, reversed);
-
-    let mut z = depths();
+    let mut z = four!(c => l.gather(depths, index[c]));
     if two_sided {
-        let (a, b) = (z[1], z[3]);
-        z[1] = l.select(reversed, b, a);
-        z[3] = l.select(reversed, a, b);
+        z = swap(l, reversed, z);
     }
-    let (z_lo, z_hi) = (lowest(&z), highest(&z));
+    let (z_lo, z_hi) = (lowest(l, &z), highest(l, &z));
     // The plane through v0 and the larger (or only) front triangle.
     let second = l.ior(
         l.iandnot(front0, l.isplat(-1)),
         l.iand(front1, l.lt(f0, f1)),
     );
-    let pick = |v: &[L::F; 4]| {
-        (
-            l.select(second, v[2], v[1]),
-            l.select(second, v[3], v[2]),
-            l.select(second, v[1], v[3]),
-        )
-    };
-    let (bx, cx, ox) = pick(&x);
-    let (by, cy, oy) = pick(&y);
-    let (bz, cz, oz) = pick(&z);
+    let (bx, cx, ox) = pick(l, second, &x);
+    let (by, cy, oy) = pick(l, second, &y);
+    let (bz, cz, oz) = pick(l, second, &z);
     let f = l.select(second, f1, f0);
     let (bx, by, bz) = (l.sub(bx, x[0]), l.sub(by, y[0]), l.sub(bz, z[0]));
     let (cx, cy, cz) = (l.sub(cx, x[0]), l.sub(cy, y[0]), l.sub(cz, z[0]));
@@ -253,32 +218,15 @@ pub(crate) fn draw_eight<L: Lanes>(
     let slack = l.add(l.add(fold, rounding), l.mul(l.splat(2.0), l.add(ax, ay)));
     let base = l.sub(z[0], slack);
 
-    let slope = |a: usize, b: usize| l.div(l.sub(x[b], x[a]), l.sub(y[b], y[a]));
-    let slopes = [
-        slope(0, 1),
-        slope(1, 2),
-        slope(2, 3),
-        slope(3, 0),
-        slope(2, 0),
-    ];
+    let around = four!(k => l.div(l.sub(x[(k + 1) % 4], x[k]), l.sub(y[(k + 1) % 4], y[k])));
+    let diagonal = l.div(l.sub(x[2], x[0]), l.sub(y[2], y[0]));
 
     // One at a time from here.
-    let out = |v: L::F| {
-        let mut a = [0.0; 8];
-        l.store(v, &mut a);
-        a
-    };
-    let (xs, ys, slopes) = (x.map(out), y.map(out), slopes.map(out));
+    let (xs, ys) = (four!(k => out(l, x[k])), four!(k => out(l, y[k])));
+    let [s0, s1, s2, s3] = four!(k => out(l, around[k]));
+    let slopes = [s0, s1, s2, s3, out(l, diagonal)];
     let (base, gx, gy, z_lo, z_hi, y_lo, y_hi, x_lo, x_hi) = (
-        out(base),
-        out(gx),
-        out(gy),
-        out(z_lo),
-        out(z_hi),
-        out(y_lo),
-        out(y_hi),
-        out(x_lo),
-        out(x_hi),
+        out(l, base), out(l, gx), out(l, gy), out(l, z_lo), out(l, z_hi), out(l, y_lo), out(l, y_hi), out(l, x_lo), out(l, x_hi),
     );
     let (front0, front1) = (l.movemask(front0), l.movemask(front1));
     let mut drawn = 0;
@@ -296,42 +244,89 @@ pub(crate) fn draw_eight<L: Lanes>(
             max_code: encode(z_hi[i]),
         };
         // Blocks that hold a half-sample step.
-        let block =
-            |v: f32, last: u32| (((v * 2.0).max(0.0) as u32) / (2 * BLOCK_SAMPLES)).min(last);
+        let last_row = band.first_row + band.rows - 1;
         let blocks = [
-            block(x_lo[i], band.blocks_x - 1),
-            block(y_lo[i], band.first_row + band.rows - 1).max(band.first_row),
-            block(x_hi[i], band.blocks_x - 1),
-            block(y_hi[i], band.first_row + band.rows - 1).max(band.first_row),
+            block_of(x_lo[i], 0, band.blocks_x - 1),
+            block_of(y_lo[i], band.first_row, last_row),
+            block_of(x_hi[i], 0, band.blocks_x - 1),
+            block_of(y_hi[i], band.first_row, last_row),
         ];
-        let mut draw = |corners: &[usize], edges: &[usize]| {
+        let (first, last) = if convex & bit != 0 { (2, 2) } else { (usize::from(front0 & bit == 0), usize::from(front1 & bit != 0)) };
+        for shape in &SHAPES[first..=last] {
+            drawn += 1;
             let mut polygon = Polygon::new(plane, blocks);
-            let mut flat = false;
-            for (k, &a) in corners.iter().enumerate() {
-                let b = corners[(k + 1) % corners.len()];
-                flat |= polygon.edge(xs[a][i], ys[a][i], xs[b][i], ys[b][i], slopes[edges[k]][i]);
+            let (mut flat, mut lo, mut hi) = (false, f32::INFINITY, f32::NEG_INFINITY);
+            for k in 0..shape.count {
+                let (a, b, e) = (shape.corners[k], shape.corners[k + 1], shape.edges[k]);
+                flat |= polygon.edge(xs[a][i], ys[a][i], xs[b][i], ys[b][i], slopes[e][i]);
+                lo = lo.min(ys[a][i]);
+                hi = hi.max(ys[a][i]);
             }
             if flat {
-                let (lo, hi) = corners
-                    .iter()
-                    .fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), &c| {
-                        (lo.min(ys[c][i]), hi.max(ys[c][i]))
-                    });
                 polygon.rows = Some((lo, hi));
             }
             polygon::draw(l, band, &polygon);
-            drawn += 1;
-        };
-        if convex & bit != 0 {
-            draw(&[0, 1, 2, 3], &[0, 1, 2, 3]);
-        } else {
-            if front0 & bit != 0 {
-                draw(&[0, 1, 2], &[0, 1, 4]);
-            }
-            if front1 & bit != 0 {
-                draw(&[0, 2, 3], &[4, 2, 3]);
-            }
         }
     }
     drawn
+}
+
+/// A part of a quad: its corners (the first again at the end) and the slopes of its edges.
+struct Shape {
+    corners: [usize; 5],
+    edges: [usize; 4],
+    count: usize,
+}
+
+/// First triangle, second triangle, both as one.
+const SHAPES: [Shape; 3] = [
+    Shape { corners: [0, 1, 2, 0, 0], edges: [0, 1, 4, 0], count: 3 },
+    Shape { corners: [0, 2, 3, 0, 0], edges: [4, 2, 3, 0], count: 3 },
+    Shape { corners: [0, 1, 2, 3, 0], edges: [0, 1, 2, 3], count: 4 },
+];
+
+#[inline(always)]
+fn block_of(v: f32, first: u32, last: u32) -> u32 {
+    (((v * 2.0).max(0.0) as u32) / (2 * BLOCK_SAMPLES)).clamp(first, last)
+}
+
+/// Twice the signed area, positive when facing the eye (y points down).
+#[inline(always)]
+fn area<L: Lanes>(l: L, x: &[L::F; 4], y: &[L::F; 4], a: usize, b: usize, c: usize) -> L::F {
+    l.sub(l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])), l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])))
+}
+
+#[inline(always)]
+fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
+    [v[0], l.select(reversed, v[3], v[1]), v[2], l.select(reversed, v[1], v[3])]
+}
+
+#[inline(always)]
+fn lowest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
+    l.min(l.min(v[0], v[1]), l.min(v[2], v[3]))
+}
+
+#[inline(always)]
+fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
+    l.max(l.max(v[0], v[1]), l.max(v[2], v[3]))
+}
+
+/// Half-sample steps up to `v`, clamped.
+#[inline(always)]
+fn steps<L: Lanes>(l: L, v: L::F, lo: f32, hi: f32) -> L::I {
+    let c = l.min(l.max(v, l.splat(lo)), l.splat(hi));
+    l.trunc(l.add(c, c))
+}
+
+/// Second, third and left-over corner of the triangle that gives the plane.
+#[inline(always)]
+fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
+    (l.select(second, v[2], v[1]), l.select(second, v[3], v[2]), l.select(second, v[1], v[3]))
+}
+
+#[inline(always)]
+fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
+    let mut a = [0.0; 8];
+    l.store(v, &mut a);
+    a
 }

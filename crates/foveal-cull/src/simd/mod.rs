@@ -13,6 +13,32 @@ pub(crate) mod portable;
 )]
 pub(crate) mod avx2;
 
+/// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of closures: what
+/// is not inlined loses the instruction set.
+macro_rules! four {
+    ($k:ident => $e:expr) => {
+        [
+            {
+                let $k = 0usize;
+                $e
+            },
+            {
+                let $k = 1usize;
+                $e
+            },
+            {
+                let $k = 2usize;
+                $e
+            },
+            {
+                let $k = 3usize;
+                $e
+            },
+        ]
+    };
+}
+pub(crate) use four;
+
 /// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.
 pub(crate) trait Kernel {
     /// What it gives back.
