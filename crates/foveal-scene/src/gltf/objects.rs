@@ -100,7 +100,7 @@ pub(crate) fn place(
     let numbers: Vec<u32> = (0..meshes.len() as u32).collect();
     let clouds = threads::map(options.parallel, &numbers, |&i| {
         let uses = uses[i as usize];
-        (uses > 0).then(|| Arc::new(Cloud::of(&meshes[i as usize], uses > 3)))
+        (uses > 0).then(|| Arc::new(Cloud::of(&meshes[i as usize], uses)))
     });
     let spots: Vec<(&Shown, usize)> = shown
         .iter()

@@ -158,6 +158,9 @@ impl Rigging {
         clouds: &[Option<Arc<Cloud>>],
         camera_nodes: &[u32],
     ) {
+        if self.data.deformers.is_empty() && self.data.animations.is_empty() {
+            return;
+        }
         let deforming: std::collections::HashSet<u32> =
             self.data.deformers.iter().map(|d| d.node).collect();
         let by_node: std::collections::HashMap<u32, &Shown> =
@@ -193,9 +196,7 @@ impl Rigging {
                 self.data.lights.push((i as u32, node));
             }
         }
-        if !self.data.deformers.is_empty() || !self.data.animations.is_empty() {
-            scene.rig = Rig(Some(Arc::new(self.data)));
-        }
+        scene.rig = Rig(Some(Arc::new(self.data)));
     }
 }
 

@@ -178,7 +178,7 @@ impl RigData {
                         shown.meshes.get(instance.mesh as usize),
                     ) {
                         (Some(cloud), _) => cloud.bounds(matrix),
-                        (None, Some(mesh)) => Cloud::of(mesh, false).bounds(matrix),
+                        (None, Some(mesh)) => Cloud::of(mesh, 1).bounds(matrix),
                         (None, None) => Aabb::EMPTY,
                     }
                 })
