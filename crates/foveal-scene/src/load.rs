@@ -34,7 +34,7 @@ pub struct LoadOptions {
     pub max_texture_size: u32,
     /// Most bytes of all decoded pictures together, without their mip levels.
     pub max_texture_bytes: u64,
-    /// Most vertices of all meshes together, and most elements that the file declares without storing them.
+    /// Most vertices of all meshes together.
     pub max_vertices: u64,
     /// Most [`Instance`](crate::Instance)s: primitives times nodes times instancing elements.
     pub max_instances: u64,

@@ -102,12 +102,7 @@ fn import_checked(
     // Freeing a large JSON tree takes as long as using it: give it back before the vertices come.
     drop(root);
     let parse_ms = watch.lap_ms();
-    let buffers = Buffers::fetch(
-        &document.buffers,
-        container.bin,
-        resolver,
-        options.max_vertices.min(16 << 20),
-    );
+    let buffers = Buffers::fetch(&document.buffers, container.bin, resolver);
     warn.extend(buffers.faults().map(Flaw::sentence));
     let read_ms = watch.lap_ms();
     let reader = Reader {

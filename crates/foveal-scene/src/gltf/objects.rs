@@ -10,6 +10,9 @@ use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};
 
+/// An object takes hundreds of bytes: a file that stores none of them does not get many.
+const MAX_UNBACKED_INSTANCES: usize = 1 << 16;
+
 /// A mesh with a material, as one primitive of a glTF mesh gives it.
 #[derive(Clone, Copy)]
 pub(crate) struct Part {
@@ -45,6 +48,12 @@ pub(crate) fn elements(
     let Some(count) = counts.min() else {
         return Ok(vec![Mat4::IDENTITY]);
     };
+    let mut used = accessors.iter().flatten();
+    if count > MAX_UNBACKED_INSTANCES && used.all(|&a| reader.accessor(a).unbacked() > 0) {
+        return Err(Flaw::too_large(format!(
+            "{count} instances without stored values, the limit is {MAX_UNBACKED_INSTANCES}"
+        )));
+    }
     *left = left
         .checked_sub(count as u64)
         .ok_or_else(|| too_many(count as u64, options))?;

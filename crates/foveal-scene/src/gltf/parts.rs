@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use glam::Mat4;
 
+use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
 use super::materials::{DEFAULT_UV_SETS, UvSets};
-use super::meshes::Mode;
+use super::meshes::{Mode, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
 use super::reader::Reader;
@@ -108,7 +109,7 @@ impl Geometry {
 
     /// Adds up the vertices and corners that will come of it before anything is allocated.
     fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
-        let (mut vertices, mut corners) = (0u64, 0u64);
+        let (mut vertices, mut corners, mut unbacked) = (0u64, 0u64, 0u64);
         for (request, place) in &self.requests {
             let def = &request.primitive;
             let count = |a: u32| reader.accessor(a).count as u64;
@@ -129,6 +130,15 @@ impl Geometry {
             let morphs = 1 + def.targets.len() as u64;
             vertices = vertices.saturating_add(made.saturating_mul(morphs));
             corners = corners.saturating_add(of_triangles);
+            if positions_are_unbacked(reader, def) {
+                unbacked = unbacked.saturating_add(made);
+            }
+            if unbacked > MAX_UNBACKED {
+                return Err(Flaw::too_large(format!(
+                    "{unbacked} vertices without stored positions, the limit is {MAX_UNBACKED}"
+                ))
+                .under(place));
+            }
             let (limit, most) = (options.max_vertices, vertices.max(corners / 6));
             if most > limit {
                 return Err(Flaw::too_large(format!(
@@ -140,6 +150,11 @@ impl Geometry {
         }
         Ok(())
     }
+}
+
+fn positions_are_unbacked(reader: Reader<'_>, def: &PrimitiveDef) -> bool {
+    let position = def.attributes.position;
+    position.is_some_and(|a| reader.accessor(a).unbacked() > 0)
 }
 
 /// Forgets meshes without triangles: they have been noted, and there is nothing to draw.

@@ -92,7 +92,7 @@ impl Rigging {
             let node = one.node;
             let def = &document.nodes[node as usize];
             let skin = def.skin;
-            self.data.nodes[node as usize].weights = weights_at_rest(document, node);
+            self.data.nodes[node as usize].weights = weights_at_rest(document, node, warn);
             for part in &mut one.parts {
                 let Some(shape) = &shapes[part.mesh as usize] else {
                     continue;
@@ -234,13 +234,20 @@ fn target_count(document: &Document, node: u32) -> usize {
 }
 
 /// The node's own weights, else its mesh's, else zeros.
-fn weights_at_rest(document: &Document, node: u32) -> Vec<f32> {
+fn weights_at_rest(document: &Document, node: u32, warn: &mut Vec<String>) -> Vec<f32> {
     let def = &document.nodes[node as usize];
     let of_mesh = def.mesh.map(|m| &document.meshes[m as usize].weights);
     let mut weights = match of_mesh {
         Some(of_mesh) if def.weights.is_empty() => of_mesh.clone(),
         _ => def.weights.clone(),
     };
-    weights.resize(target_count(document, node), 0.0);
+    let count = target_count(document, node);
+    if !weights.is_empty() && weights.len() != count {
+        warn.push(format!(
+            "nodes[{node}]: has {} weights for {count} morph targets",
+            weights.len()
+        ));
+    }
+    weights.resize(count, 0.0);
     weights
 }

@@ -186,6 +186,11 @@ impl RigData {
             (matrix, boxes)
         });
         for (binding, (matrix, boxes)) in self.bindings.iter().zip(placed) {
+            // Key frames may lead beyond the range of numbers; what goes there stays where it was.
+            let finite = |b: &Aabb| b.is_empty() || (b.min.is_finite() && b.max.is_finite());
+            if !matrix.is_finite() || !boxes.iter().all(finite) {
+                continue;
+            }
             let Some(object) = scene.objects.get_mut(binding.object as usize) else {
                 continue;
             };
