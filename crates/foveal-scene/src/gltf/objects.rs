@@ -81,7 +81,7 @@ pub(crate) fn elements(
         .collect())
 }
 
-fn too_many(count: u64, options: &LoadOptions) -> Flaw {
+pub(crate) fn too_many(count: u64, options: &LoadOptions) -> Flaw {
     Flaw::too_large(format!(
         "{count} instances are more than the limit of {} in all leaves",
         options.max_instances

@@ -30,11 +30,13 @@ impl Geometry {
         &mut self,
         document: &Document,
         hierarchy: &Hierarchy,
+        options: &LoadOptions,
         scene: &mut Scene,
-    ) -> Vec<Shown> {
+    ) -> Parsed<Vec<Shown>> {
         let mut default_material = None;
         let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
         let mut shown = Vec::new();
+        let mut instances = 0u64;
         for (node, _, mesh) in objects::nodes_with_meshes(&document.nodes, hierarchy) {
             let parts = parts_of.entry(mesh).or_insert_with(|| {
                 let def = &document.meshes[mesh as usize];
@@ -50,6 +52,11 @@ impl Geometry {
                     })
                     .collect()
             });
+            // Before the list is copied: few bytes can name many primitives in many nodes.
+            instances += parts.len() as u64;
+            if instances > options.max_instances {
+                return Err(objects::too_many(instances, options).under("nodes"));
+            }
             shown.push(Shown {
                 node,
                 parts: parts.clone(),
@@ -57,7 +64,7 @@ impl Geometry {
                 skinned: false,
             });
         }
-        shown
+        Ok(shown)
     }
 
     fn number(&mut self, document: &Document, mesh: u32, primitive: usize) -> u32 {

@@ -13,6 +13,9 @@ use crate::error::{Flaw, Parsed};
 use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};
 use crate::{LoadOptions, Scene};
 
+/// Each pose writes all of these anew, and each node has its own: more would not move in real time.
+const MAX_DEFORMING: u64 = 16 << 20;
+
 /// The rig while the scene is being put together.
 pub(crate) struct Rigging {
     data: RigData,
@@ -106,7 +109,7 @@ impl Rigging {
                     continue;
                 }
                 vertices += shape.rest.len() as u64;
-                if vertices > options.max_vertices {
+                if vertices > options.max_vertices.min(MAX_DEFORMING) {
                     let cause = "the deforming meshes have more vertices than the limit allows";
                     return Err(Flaw::too_large(cause).under(format_args!("nodes[{node}]")));
                 }

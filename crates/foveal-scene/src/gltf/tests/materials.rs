@@ -257,4 +257,17 @@ fn large_pictures_are_halved_until_they_fit() {
     assert_eq!(t.levels.len(), 3);
     assert_eq!(t.levels[0], [10, 20, 30, 255].repeat(10));
     assert!(warnings(&scene).contains("is 20 x 9 texels large and reduced to 5 x 2"));
+
+    // 720 bytes do not fit, 10 x 4 texels do.
+    let options = LoadOptions {
+        max_texture_bytes: 200,
+        ..LoadOptions::default()
+    };
+    let scene = file.load_with(&options).unwrap();
+    assert_eq!((scene.textures[0].width, scene.textures[0].height), (10, 4));
+    assert!(
+        warnings(&scene).contains("images: take 720 bytes"),
+        "{}",
+        warnings(&scene)
+    );
 }
