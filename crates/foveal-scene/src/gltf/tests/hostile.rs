@@ -285,6 +285,31 @@ fn sparse_morph_targets_without_a_base_are_cheap_to_declare() {
 }
 
 #[test]
+fn tangents_of_extreme_geometry_are_unit_vectors() {
+    for (size, uv) in [(1e38, 1.), (1., 1e38), (1e-38, 1e-38), (1e38, 0.)] {
+        let mut file = File::with_mesh();
+        file.attribute(
+            "POSITION",
+            &[-size, 0., 0., size, 0., 0., 0., size, 0.],
+            "VEC3",
+        );
+        file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
+        file.attribute("TEXCOORD_0", &[-uv, 0., uv, 0., 0., uv], "VEC2");
+        let texture = file.texture(&image::RgbaImage::new(1, 1));
+        file.material(json!({ "normalTexture": { "index": texture } }));
+        for v in &file.load().meshes[0].vertices {
+            let [x, y, z, w] = v.tangent;
+            let length = (x * x + y * y + z * z).sqrt();
+            assert!(
+                (length - 1.).abs() < 1e-3 && w.abs() == 1.,
+                "{size} {uv}: {:?}",
+                v.tangent
+            );
+        }
+    }
+}
+
+#[test]
 fn key_frames_beyond_the_numbers_leave_things_where_they_are() {
     let mut file = File::with_triangle();
     file.push(
