@@ -40,7 +40,7 @@ pub(super) fn square<'a>(market: &mut Market<'a>, kit: &'a Kit, seed: u64) {
             None,
             Shine {
                 color: [1.0, 0.74, 0.46],
-                intensity: 42.0,
+                intensity: 28.0,
                 range_m: 10.0,
             },
             0.0,
