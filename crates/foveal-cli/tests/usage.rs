@@ -10,7 +10,7 @@ fn wrong_words_are_usage_errors() {
         "",
         "paint",
         "render",
-        "render -o a.png --culling off",
+        "render -o a.png --shading coarse",
         "render -o a.png --view sideways",
         "render -o a.png --lighting phong",
         "render -o a.png --size 12",
