@@ -1,5 +1,7 @@
 //! `foveal compare` on small pictures.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use std::path::Path;

@@ -2,6 +2,8 @@
 //!
 //! These tests draw, and need a graphics adapter; Mesa's lavapipe will do.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use std::fs;

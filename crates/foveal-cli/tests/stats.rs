@@ -1,5 +1,7 @@
 //! `--stats` and `adapters --json` write what their documentation says. They need a graphics adapter.
 
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
 mod common;
 
 use std::fs;

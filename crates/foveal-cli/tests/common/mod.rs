@@ -1,8 +1,9 @@
 //! Running the program, and small things to run it on.
 
 #![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
-pub mod schema;
+pub(crate) mod schema;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -10,7 +11,7 @@ use std::process::{Command, Output};
 use tempfile::TempDir;
 
 /// Runs `foveal` with these words in `folder`.
-pub fn foveal_in(folder: &Path, words: &[&str]) -> Output {
+pub(crate) fn foveal_in(folder: &Path, words: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_foveal"))
         .args(words)
         .current_dir(folder)
@@ -21,17 +22,17 @@ pub fn foveal_in(folder: &Path, words: &[&str]) -> Output {
 }
 
 /// What the program said on stderr.
-pub fn stderr(output: &Output) -> String {
+pub(crate) fn stderr(output: &Output) -> String {
     String::from_utf8(output.stderr.clone()).unwrap()
 }
 
 /// What the program said on stdout.
-pub fn stdout(output: &Output) -> String {
+pub(crate) fn stdout(output: &Output) -> String {
     String::from_utf8(output.stdout.clone()).unwrap()
 }
 
 /// Runs `foveal` in `folder` and expects it to succeed.
-pub fn succeed(folder: &Path, words: &[&str]) -> Output {
+pub(crate) fn succeed(folder: &Path, words: &[&str]) -> Output {
     let output = foveal_in(folder, words);
     assert_eq!(
         output.status.code(),
@@ -44,7 +45,7 @@ pub fn succeed(folder: &Path, words: &[&str]) -> Output {
 }
 
 /// Runs `foveal` in `folder` and expects one paragraph that names `causes`, with exit code 1.
-pub fn fail(folder: &Path, words: &[&str], causes: &[&str]) {
+pub(crate) fn fail(folder: &Path, words: &[&str], causes: &[&str]) {
     let output = foveal_in(folder, words);
     let said = stderr(&output);
     let line = words.join(" ");
@@ -62,7 +63,7 @@ pub fn fail(folder: &Path, words: &[&str], causes: &[&str]) {
 }
 
 /// The names of the files in a folder, sorted.
-pub fn names(folder: &Path) -> Vec<String> {
+pub(crate) fn names(folder: &Path) -> Vec<String> {
     let mut names: Vec<String> = std::fs::read_dir(folder)
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -72,12 +73,12 @@ pub fn names(folder: &Path) -> Vec<String> {
 }
 
 /// An empty folder that goes away with the test.
-pub fn folder() -> TempDir {
+pub(crate) fn folder() -> TempDir {
     tempfile::tempdir().unwrap()
 }
 
 /// Writes a PNG of `width` x `height` pixels.
-pub fn png(
+pub(crate) fn png(
     folder: &Path,
     name: &str,
     width: u32,
@@ -89,7 +90,7 @@ pub fn png(
 }
 
 /// Writes a glTF file of one triangle that moves from left to right in two seconds, and its buffer.
-pub fn moving_triangle(folder: &Path) -> PathBuf {
+pub(crate) fn moving_triangle(folder: &Path) -> PathBuf {
     let positions = [-1.0f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.5, 0.0];
     let times = [0.0f32, 2.0];
     let places = [-1.0f32, 0.0, 0.0, 1.0, 0.5, 0.0];

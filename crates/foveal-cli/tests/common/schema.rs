@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 /// Everything in `value` that the schema does not allow, as sentences.
-pub fn violations(schema: &Value, value: &Value) -> Vec<String> {
+pub(crate) fn violations(schema: &Value, value: &Value) -> Vec<String> {
     let mut found = Vec::new();
     Checker {
         root: schema,
