@@ -8,12 +8,14 @@
 
 pub mod gpu;
 
+mod composite;
 mod error;
 mod forward;
 mod frame;
 mod geometry;
 mod lights;
 mod output;
+mod rate;
 mod recorder;
 mod renderer;
 mod scene;
@@ -27,6 +29,10 @@ mod testing;
 
 pub use error::Error;
 pub use gpu::Gpu;
+pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
-pub use settings::{LightAssignment, LightingModel, Settings, ToneMap, View};
-pub use stats::{AdapterStats, FrameStats, SceneStats, Timing};
+pub use settings::{
+    Backend, COARSEST_LEVEL, CoarseSample, Composite, LightAssignment, LightingModel, RateCombine,
+    RateSource, RefineEdges, Settings, Shading, ToneMap, View,
+};
+pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};
