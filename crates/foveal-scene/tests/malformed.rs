@@ -109,6 +109,12 @@ const HARMLESS: &[(&str, &str)] = &[
     ),
 ];
 
+/// Files that the validator lets pass and we refuse, each with the reason.
+const REFUSED: &[(&str, &str)] = &[(
+    "asset/min_version_valid.gltf",
+    "it says that glTF 2.1 is needed to understand it, and we know 2.0",
+)];
+
 /// What is known of one file.
 struct Expected {
     file: String,
@@ -162,8 +168,18 @@ fn load_within(path: PathBuf, limit: Duration) -> Result<Result<Scene, SceneErro
 /// Why an outcome contradicts what is known of the file.
 fn contradiction(expected: &Expected, outcome: &Result<Scene, SceneError>) -> Option<String> {
     match (expected.errors?, outcome) {
+        (0, Err(error))
+            if REFUSED
+                .iter()
+                .any(|(file, _)| expected.file.ends_with(file)) =>
+        {
+            println!("         ^ refused on purpose: {error}");
+            None
+        }
         (0, Err(error)) => Some(format!("a valid file is refused: {error}")),
         (0, Ok(_)) | (_, Err(_)) => None,
+        // Nothing is shown, which a warning says; what is wrong with parts that nobody sees is not judged.
+        (_, Ok(scene)) if scene.objects.is_empty() => None,
         (_, Ok(scene)) => {
             let harmless = |code: &String| HARMLESS.iter().any(|(known, _)| known == code);
             let silent = scene.warnings.is_empty();

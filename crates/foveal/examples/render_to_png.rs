@@ -17,6 +17,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         } else {
             generate::by_name(&name)?
         };
+        scene.light_by_default();
         let camera = scene
             .cameras
             .first()

@@ -107,7 +107,7 @@ impl Stages {
                 .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
             shading,
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
-            tone_map: ToneMapPass::new(gpu, frame),
+            tone_map: ToneMapPass::new(gpu, settings, frame),
             view: ViewPass::new(gpu, settings.view, frame),
         };
         trap.finish().await?;

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::{Mat4, Quat, Vec3};
 
-use super::accessor::Reader;
 use super::nodes::{Hierarchy, Instancing, NodeDef, rotation};
+use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};

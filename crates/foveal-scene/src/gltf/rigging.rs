@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
-use super::accessor::Reader;
 use super::document::Document;
 use super::nodes::Hierarchy;
 use super::objects::Shown;
+use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};

@@ -16,7 +16,7 @@ pub(super) const WARM: [f32; 3] = [1.0, 0.60, 0.28];
 
 const ARCADE_SHINE: Shine = Shine {
     color: WARM,
-    intensity: 11.0,
+    intensity: 24.0,
     range_m: 8.0,
 };
 

@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3};
 
 use super::Kit;
-use super::build_houses::{house, order, wall_lantern};
+use super::build_houses::{WARM, house, order, wall_lantern};
 use super::build_stalls::{PAPER_SHINES, stall};
 use super::houses::{ARCADE_M, BAY_M, DEPTH_M, WIDTH_M};
 use super::lanterns::{ROPE_M, rope_point};
@@ -16,6 +16,8 @@ use crate::generate::trig::{shift, sin_cos_turns, stand, yaw};
 
 /// Height at which ropes span the lanes.
 const ROPE_Y: f32 = 5.7;
+/// Where the clock tower stands across the alley.
+const CLOCK_TOWER_Z: f32 = -27.0;
 
 /// The whole quarter, `lights` lanterns at least.
 pub(super) fn quarter<'a>(kit: &'a Kit, plan: Plan, lights: usize, seed: u64) -> Market<'a> {
@@ -81,7 +83,7 @@ fn enclosure<'a>(market: &mut Market<'a>, kit: &'a Kit, plan: Plan) {
         }
     }
     // North of the square, low above the alley: turned towards who enters from the south.
-    let moon = Vec3::new(17.0, 66.0, -108.0);
+    let moon = Vec3::new(19.0, 45.0, -108.0);
     let to_eye = (Vec3::new(0.0, 1.7, 46.0) - moon).normalize();
     let right = Vec3::Y.cross(to_eye).normalize();
     let place = Mat4::from_cols(
@@ -91,7 +93,11 @@ fn enclosure<'a>(market: &mut Market<'a>, kit: &'a Kit, plan: Plan) {
         moon.extend(1.0),
     );
     market.put(&walls.moon, place, Rank::Needed);
-    market.put(&walls.clock_tower, shift(0.0, 0.0, -27.0), Rank::Needed);
+    market.put(
+        &walls.clock_tower,
+        shift(0.0, 0.0, CLOCK_TOWER_Z),
+        Rank::Needed,
+    );
 }
 
 fn square<'a>(market: &mut Market<'a>, kit: &'a Kit, seed: u64) {
@@ -121,7 +127,7 @@ fn square<'a>(market: &mut Market<'a>, kit: &'a Kit, seed: u64) {
             None,
             Shine {
                 color: [1.0, 0.74, 0.46],
-                intensity: 22.0,
+                intensity: 42.0,
                 range_m: 10.0,
             },
             0.0,
@@ -136,14 +142,33 @@ fn square<'a>(market: &mut Market<'a>, kit: &'a Kit, seed: u64) {
         let bench = stand(Vec3::new(4.6 * sin, 0.0, 4.6 * cos), turns);
         market.put(&kit.furniture.bench, bench, Rank::Goods(2));
     }
-    for (x, z, facing) in [
-        (-3.2, -23.9, 0.0),
-        (3.2, -23.9, 0.0),
-        (-3.2, -30.1, 0.5),
-        (3.2, -30.1, 0.5),
-    ] {
-        wall_lantern(market, kit, shift(x, 3.9, z) * yaw(facing), 0.3);
+    tower_lanterns(market, kit);
+}
+
+/// Lanterns beside both mouths of the clock tower's gate, on its shaft and in its belfry.
+fn tower_lanterns<'a>(market: &mut Market<'a>, kit: &'a Kit) {
+    let tower = shift(0.0, 0.0, CLOCK_TOWER_Z);
+    for facing in [0.0f32, 0.5] {
+        let face = tower * yaw(facing);
+        for x in [-3.3f32, 3.3] {
+            wall_lantern(market, kit, face * shift(x, 3.9, 3.0), 0.3);
+        }
+        for (x, y) in [(-1.2f32, 10.6f32), (1.2, 10.6), (-1.7, 14.6), (1.7, 14.6)] {
+            wall_lantern(market, kit, face * shift(x, y, 2.6), 0.4);
+        }
     }
+    market.put_lamp(
+        (&kit.lanterns.iron, Vec3::ZERO),
+        tower * shift(0.0, 23.6, 0.0),
+        Rank::Goods(0),
+        None,
+        Shine {
+            color: WARM,
+            intensity: 40.0,
+            range_m: 9.0,
+        },
+        0.0,
+    );
 }
 
 /// Stalls, plants and goods before and within a house's arcade.
@@ -152,7 +177,7 @@ fn frontage<'a>(market: &mut Market<'a>, kit: &'a Kit, lot: &Lot, seed: u64) {
     let place = lot_place(lot);
     let main = lot.lane == 0;
     // Side lanes are narrow: stalls on alternating sides only.
-    let sells = main || (lot.number % 2 == 0) == (lot.side > 0.0);
+    let sells = main || lot.number.is_multiple_of(2) == (lot.side > 0.0);
     for bay in [-1.0f32, 0.0, 1.0] {
         let at = place * shift(bay * BAY_M, 0.0, 1.38);
         let chance = match (lot.on_square, sells) {
@@ -303,7 +328,7 @@ fn over_lane<'a>(market: &mut Market<'a>, kit: &'a Kit, lot: &Lot, seed: u64) {
     let middle = Vec3::new(Plan::lane_x(lot.lane), 0.0, lot.z);
     let main = lot.lane == 0;
     let stretch = Mat4::from_scale(Vec3::new(span / ROPE_M, 1.0, 1.0));
-    if lot.number % 2 == 0 && !lot.ends[1] && rng.chance(if main { 1.0 } else { 0.5 }) {
+    if lot.number.is_multiple_of(2) && !lot.ends[1] && rng.chance(if main { 1.0 } else { 0.5 }) {
         let at = middle + Vec3::Z * (0.5 * WIDTH_M + 0.42);
         market.put(&kit.houses.bridge, stand(at, 0.0) * stretch, Rank::Needed);
     }

@@ -12,7 +12,7 @@ use crate::generate::trig::{pitch, shift, yaw};
 
 const STALL_SHINE: Shine = Shine {
     color: WARM,
-    intensity: 7.0,
+    intensity: 17.0,
     range_m: 6.0,
 };
 
@@ -20,22 +20,22 @@ const STALL_SHINE: Shine = Shine {
 pub(super) const PAPER_SHINES: [Shine; 4] = [
     Shine {
         color: [1.0, 0.56, 0.22],
-        intensity: 8.0,
+        intensity: 20.0,
         range_m: 7.0,
     },
     Shine {
         color: [1.0, 0.30, 0.16],
-        intensity: 7.0,
+        intensity: 17.0,
         range_m: 7.0,
     },
     Shine {
         color: [0.14, 0.85, 0.85],
-        intensity: 7.0,
+        intensity: 17.0,
         range_m: 7.0,
     },
     Shine {
         color: [1.0, 0.22, 0.58],
-        intensity: 7.0,
+        intensity: 17.0,
         range_m: 7.0,
     },
 ];
@@ -82,7 +82,7 @@ pub(super) fn stall<'a>(market: &mut Market<'a>, kit: &'a Kit, place: Mat4, rng:
     } else {
         let color = wares.rng.pick([0usize, 0, 1, 2, 3]);
         let shine = Shine {
-            intensity: 5.0,
+            intensity: 13.0,
             range_m: 5.5,
             ..PAPER_SHINES[color]
         };

@@ -34,17 +34,10 @@ pub(super) struct Goods {
     pub(super) steam: Thing,
 }
 
-const FRUITS: [[u8; 3]; 4] = [[230, 92, 8], [170, 18, 14], [120, 150, 18], [52, 14, 60]];
-const SPICES: [[u8; 3]; 4] = [[165, 30, 8], [210, 120, 6], [190, 140, 75], [22, 26, 90]];
-
 impl Goods {
     pub(super) fn new(scene: &mut SceneBuilder, m: &Materials) -> Self {
         let slats = model(scene, "crate", slats);
-        let fruits: [u32; 4] = from_fn(|i| {
-            model(scene, &format!("fruit {i}"), |b| {
-                fruit(b, FRUITS[i], i as u64)
-            })
-        });
+        let fruit = model(scene, "fruit", layers_of_fruit);
         let staves = model(scene, "barrel", staves);
         let hoops = model(scene, "barrel hoops", hoops);
         let basket = model(scene, "basket", |b| {
@@ -125,13 +118,11 @@ impl Goods {
                 14,
             );
         });
-        let mounds: [u32; 4] = from_fn(|i| {
-            model(scene, &format!("spice {i}"), |b| {
-                b.tint(SPICES[i]).lathe(
-                    &[(0.235, 0.45), (0.14, 0.55), (0.05, 0.62), (0.0, 0.635)],
-                    14,
-                );
-            })
+        let mound = model(scene, "spice", |b| {
+            b.lathe(
+                &[(0.235, 0.45), (0.14, 0.55), (0.05, 0.62), (0.0, 0.635)],
+                14,
+            );
         });
         let tray = model(scene, "tray", |b| {
             b.at(pitch(-0.22)).lathe(
@@ -179,7 +170,7 @@ impl Goods {
         let metals = [m.brass, m.copper];
         Self {
             fruit_crates: from_fn(|i| {
-                goods("crate of fruit", &[(slats, m.wood), (fruits[i], m.produce)])
+                goods("crate of fruit", &[(slats, m.wood), (fruit, m.fruits[i])])
             }),
             crate_empty: goods("crate", &[(slats, m.wood)]),
             barrel: goods("barrel", &[(staves, m.timber), (hoops, m.iron)]),
@@ -195,7 +186,7 @@ impl Goods {
             bowls: from_fn(|i| goods("bowl", &[(bowl, clays[i])])),
             rug_rolls: from_fn(|i| goods("rolled rug", &[(rug_roll, m.rugs[i])])),
             hung_rugs: from_fn(|i| goods("hung rug", &[(hung, m.rugs[i])])),
-            sacks: from_fn(|i| goods("sack", &[(sack, m.canvas), (mounds[i], m.produce)])),
+            sacks: from_fn(|i| goods("sack", &[(sack, m.canvas), (mound, m.spices[i])])),
             trays: from_fn(|i| goods("tray", &[(tray, metals[i])])),
             pots: from_fn(|i| goods("pot", &[(pot, metals[i])])),
             bottles: goods("bottles", &[(bottles, m.bottles)]),
@@ -234,8 +225,8 @@ fn vary(color: [u8; 3], rng: &mut Rng) -> [u8; 3] {
 }
 
 /// Round fruit that fills a crate in two layers.
-fn fruit(b: &mut MeshBuilder, color: [u8; 3], key: u64) {
-    let mut rng = Rng::new(301, key);
+fn layers_of_fruit(b: &mut MeshBuilder) {
+    let mut rng = Rng::new(301, 0);
     for layer in 0..2u8 {
         let (columns, rows) = if layer == 0 { (5u8, 4u8) } else { (4, 3) };
         for i in 0..columns * rows {
@@ -246,7 +237,7 @@ fn fruit(b: &mut MeshBuilder, color: [u8; 3], key: u64) {
                 step(i / columns, rows, 0.094) + rng.range(-0.012, 0.012),
             );
             let r = rng.range(0.044, 0.052);
-            let tint = vary(color, &mut rng);
+            let tint = vary([205; 3], &mut rng);
             b.tint(tint)
                 .ellipsoid(place, Vec3::new(r, r * 0.94, r), 7, 5);
         }

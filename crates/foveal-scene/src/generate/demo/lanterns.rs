@@ -71,7 +71,7 @@ impl Lanterns {
         let bulbs = model(scene, "bulbs", |b| {
             for i in 1..18u8 {
                 let place = rope_point(f32::from(i) / 18.0) - Vec3::Y * 0.07;
-                b.ellipsoid(place, Vec3::new(0.038, 0.05, 0.038), 7, 5);
+                b.ellipsoid(place, Vec3::new(0.05, 0.065, 0.05), 7, 5);
             }
         });
         let pennants = model(scene, "pennants", pennants);

@@ -29,6 +29,8 @@ pub(super) struct Materials {
     pub(super) brass: u32,
     pub(super) copper: u32,
     pub(super) produce: u32,
+    pub(super) fruits: [u32; 4],
+    pub(super) spices: [u32; 4],
     pub(super) leaves: u32,
     pub(super) bark: u32,
     pub(super) rope: u32,
@@ -122,6 +124,24 @@ const AWNINGS: [(&str, [f32; 3], [f32; 3]); 6] = [
     ("awning green", [0.18, 0.36, 0.17], [0.88, 0.83, 0.68]),
 ];
 
+/// From pole to pole of a paper lantern, along the paper.
+const PAPER_M: f32 = 0.62;
+
+/// Fruit: name, linear colour, roughness.
+const FRUITS: [(&str, [f32; 3], f32); 4] = [
+    ("oranges", [0.90, 0.30, 0.02], 0.45),
+    ("apples", [0.68, 0.04, 0.03], 0.25),
+    ("limes", [0.42, 0.58, 0.05], 0.40),
+    ("aubergines", [0.16, 0.03, 0.20], 0.20),
+];
+
+const SPICES: [(&str, [f32; 3]); 4] = [
+    ("paprika", [0.62, 0.09, 0.02]),
+    ("turmeric", [0.85, 0.42, 0.02]),
+    ("grain", [0.72, 0.50, 0.24]),
+    ("indigo", [0.06, 0.08, 0.36]),
+];
+
 const RUGS: [[[f32; 3]; 4]; 3] = [
     [
         [0.50, 0.09, 0.10],
@@ -162,12 +182,13 @@ fn bake_surfaces() -> Vec<Baked> {
 }
 
 fn paint_pictures() -> Vec<Texture> {
-    let pictures: [fn() -> Texture; 5] = [
+    let pictures: [fn() -> Texture; 6] = [
         texture::leaves,
         texture::window,
         texture::clock,
         texture::moon,
         texture::steam,
+        texture::paper,
     ];
     pictures.into_par_iter().map(|paint| paint()).collect()
 }
@@ -196,9 +217,10 @@ impl Materials {
         ] = std::array::from_fn(|i| surfaces[i]);
         let pictures: Vec<_> = paint_pictures()
             .into_iter()
-            .map(|picture| slot(scene.texture(picture), 1.0))
+            .zip([1.0, 1.0, 1.0, 1.0, 1.0, PAPER_M])
+            .map(|(picture, tile_m)| slot(scene.texture(picture), tile_m))
             .collect();
-        let [leaves, window, clock, moon, steam] = std::array::from_fn(|i| pictures[i]);
+        let [leaves, window, clock, moon, steam, paper] = std::array::from_fn(|i| pictures[i]);
         let awnings = AWNINGS.map(|(name, color, ground)| {
             let cloth = slot(scene.texture(texture::stripes(name, color, ground)), 1.6);
             let material = Material {
@@ -269,6 +291,8 @@ impl Materials {
             brass: add(hammered.material("brass", [0.90, 0.66, 0.28])),
             copper: add(hammered.material("copper", [0.90, 0.48, 0.32])),
             produce: add(plain("produce", [1.0; 3], 0.45)),
+            fruits: FRUITS.map(|(name, color, roughness)| add(plain(name, color, roughness))),
+            spices: SPICES.map(|(name, color)| add(plain(name, color, 0.95))),
             leaves: add(Material {
                 base_color_texture: leaves,
                 alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
@@ -277,12 +301,13 @@ impl Materials {
             }),
             bark: add(planks.material("bark", [0.26, 0.19, 0.13])),
             rope: add(plain("rope", [0.36, 0.28, 0.18], 0.95)),
+            // Frosted: its own flame stands behind it, so that it must shine by itself.
             glass: add(Material {
-                double_sided: true,
-                ..clear("lantern glass", [1.0, 0.86, 0.62, 0.16], 0.08)
+                emissive: Vec3::new(1.0, 0.50, 0.16) * 2.0,
+                ..clear("lantern glass", [1.0, 0.80, 0.50, 0.45], 0.15)
             }),
             bottles: add(clear("bottle glass", [0.10, 0.45, 0.32, 0.55], 0.06)),
-            water: add(clear("water", [0.05, 0.20, 0.24, 0.72], 0.04)),
+            water: add(clear("water", [0.20, 0.40, 0.46, 0.55], 0.05)),
             steam: add(Material {
                 base_color_texture: steam,
                 double_sided: true,
@@ -291,12 +316,18 @@ impl Materials {
             flame: add(glowing("flame", [1.0, 0.62, 0.22], 14.0)),
             bulb: add(glowing("bulb", [1.0, 0.72, 0.36], 9.0)),
             papers: [
-                add(glowing("paper amber", [1.0, 0.52, 0.16], 3.2)),
-                add(glowing("paper red", [1.0, 0.20, 0.10], 2.8)),
-                add(glowing("paper teal", [0.10, 0.80, 0.78], 2.4)),
-                add(glowing("paper magenta", [1.0, 0.16, 0.55], 2.6)),
-            ],
-            lit_windows: [3.2, 1.5].map(|radiance| {
+                ("paper amber", [1.0, 0.42, 0.09], 2.6),
+                ("paper red", [1.0, 0.10, 0.04], 1.9),
+                ("paper teal", [0.03, 0.72, 0.66], 1.5),
+                ("paper magenta", [1.0, 0.05, 0.36], 1.6),
+            ]
+            .map(|(name, color, radiance)| {
+                add(Material {
+                    emissive_texture: paper,
+                    ..glowing(name, color, radiance)
+                })
+            }),
+            lit_windows: [4.5, 1.8].map(|radiance| {
                 add(Material {
                     emissive: Vec3::splat(radiance),
                     emissive_texture: window,
@@ -305,7 +336,7 @@ impl Materials {
             }),
             dark_window: add(plain("dark window", [0.02, 0.025, 0.035], 0.08)),
             clock: add(Material {
-                emissive: Vec3::splat(2.2),
+                emissive: Vec3::splat(2.6),
                 emissive_texture: clock,
                 ..plain("clock", [0.1; 3], 0.5)
             }),

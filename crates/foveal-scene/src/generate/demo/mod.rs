@@ -123,9 +123,9 @@ pub fn demo(options: &DemoOptions) -> Result<Scene, GenerateError> {
     }
     let mut scene = scene.finish();
     scene.environment = Environment {
-        zenith: Vec3::new(0.010, 0.018, 0.052),
-        horizon: Vec3::new(0.050, 0.044, 0.060),
-        nadir: Vec3::new(0.016, 0.013, 0.014),
+        zenith: Vec3::new(0.022, 0.042, 0.125),
+        horizon: Vec3::new(0.130, 0.110, 0.150),
+        nadir: Vec3::new(0.052, 0.046, 0.052),
     };
     Ok(scene)
 }
@@ -133,7 +133,7 @@ pub fn demo(options: &DemoOptions) -> Result<Scene, GenerateError> {
 /// The smallest quarter with at least the wanted number of instances.
 fn fitting_quarter<'a>(kit: &'a Kit, options: &DemoOptions) -> market::Market<'a> {
     /// A house with its stalls has more instances than this, so the first guess is too small.
-    const MOST_PER_LOT: u32 = 95;
+    const MOST_PER_LOT: u32 = 110;
     let (wanted, lights) = (options.instances as usize, options.lights as usize);
     let mut plan = Plan::with_lots(options.instances / MOST_PER_LOT);
     loop {
@@ -151,6 +151,9 @@ fn moonlight() -> Light {
         kind: LightKind::Directional,
         direction: Vec3::new(-0.32, -0.72, 0.61).normalize(),
         range_m: None,
-        ..point(Vec3::ZERO, Vec3::new(0.55, 0.70, 1.0), 0.16, 0.0)
+        ..point(Vec3::ZERO, Vec3::new(0.45, 0.62, 1.0), 1.3, 0.0)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -120,20 +120,26 @@ fn basin(b: &mut MeshBuilder) {
     b.lathe(&baluster, 24);
 }
 
-/// Three surfaces and the curtains that fall between them.
+/// Three surfaces and the jets that fall between them.
 fn water(b: &mut MeshBuilder) {
     for (radius, y) in [(2.25, 0.76), (1.08, 2.095), (0.5, 3.128)] {
         b.lathe(&[(radius, y), (0.0, y)], 28);
     }
-    for (top_r, top_y, r, y) in [(0.58, 3.14, 0.85, 2.1), (1.2, 2.1, 1.65, 0.77)] {
-        let fall: Vec<(f32, f32)> = (0..=6u8)
-            .map(|i| {
-                // Out at an even pace, down at a growing one; the profile runs upwards.
-                let t = 1.0 - f32::from(i) / 6.0;
-                (top_r + (r - top_r) * t, top_y + (y - top_y) * t * t)
-            })
-            .collect();
-        b.lathe(&fall, 28);
+    // Jets arc outwards from each rim and fall into the bowl below.
+    for (count, top_r, top_y, r, y) in [(10u8, 0.56, 3.13, 0.86, 2.1), (18, 1.18, 2.1, 1.75, 0.77)]
+    {
+        for jet in 0..count {
+            let (sin, cos) = sin_cos_turns(f32::from(jet) / f32::from(count));
+            let arc: Vec<Vec3> = (0..=8u8)
+                .map(|i| {
+                    // Out at an even pace, down at a growing one.
+                    let t = f32::from(i) / 8.0;
+                    let out = top_r + (r - top_r) * t;
+                    Vec3::new(out * sin, top_y + (y - top_y) * t * t, out * cos)
+                })
+                .collect();
+            b.tube(&arc, 0.022, 5);
+        }
     }
 }
 

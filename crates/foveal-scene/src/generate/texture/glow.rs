@@ -1,9 +1,9 @@
-//! Pictures of light: lit windows, the clock's face, the moon, steam.
+//! Pictures of light: lit windows, lantern paper, the clock's face, the moon, steam.
 
 use glam::{Vec2, Vec3};
 
-use super::noise::{fractal, step};
-use super::{Texel, paint, picture_clamped};
+use super::noise::{fractal, step, value_2};
+use super::{Texel, paint, paint_clear, picture_clamped};
 use crate::Texture;
 use crate::generate::hash::{lattice, unit};
 use crate::generate::trig::sin_cos_turns;
@@ -65,7 +65,7 @@ pub(in crate::generate) fn moon() -> Texture {
 
 /// A wisp of steam that fades at all edges; v runs down.
 pub(in crate::generate) fn steam() -> Texture {
-    picture_clamped(paint("steam", 128, |p| {
+    picture_clamped(paint_clear("steam", 128, |p| {
         let curl = (fractal(p, 3, 3, 271) - 0.5) * 0.35 * (1.0 - p.y);
         let narrow = 0.14 + 0.24 * (1.0 - p.y);
         let side = 1.0 - step(0.0, narrow, (p.x - 0.5 + curl).abs());
@@ -74,4 +74,19 @@ pub(in crate::generate) fn steam() -> Texture {
         texel.alpha = side * ends * (0.15 + 0.85 * fractal(p, 5, 4, 272));
         texel
     }))
+}
+
+/// Paper over bamboo hoops, brightest around the flame; v runs from pole to pole.
+pub(in crate::generate) fn paper() -> Texture {
+    paint("lantern paper", 128, |p| {
+        let hoop = (p.y * 12.0).fract();
+        let rib = step(0.0, 0.16, hoop.min(1.0 - hoop));
+        // The flame stands a little below the middle.
+        let far = (p.y - 0.56).abs() * 2.0;
+        let glow = 1.0 - 0.72 * step(0.1, 1.0, far);
+        let fibre = value_2(p, 6, 24, 281);
+        Texel::new(Vec3::splat(
+            glow * (0.72 + 0.28 * rib) * (0.9 + 0.12 * fibre),
+        ))
+    })
 }

@@ -1,8 +1,8 @@
 //! Plaster and clay: walls that are tinted by their material's colour.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
-use super::noise::{cellular, fractal, step, value_2};
+use super::noise::{cellular, fractal, step, value, value_2};
 use super::{Baked, Texel, bake};
 
 /// Lime plaster with stains, streaks of rain and hair cracks, 4 m; nearly white.
@@ -11,10 +11,13 @@ pub(in crate::generate) fn plaster() -> Baked {
         let broad = fractal(p, 3, 5, 101);
         let fine = fractal(p, 40, 3, 111);
         let streak = value_2(p, 48, 3, 121) * fractal(p, 4, 2, 131);
+        // Cracks wander, and only some places are cracked at all.
+        let wander = Vec2::new(value(p, 24, 142), value(p, 24, 143)) * 0.03;
+        let sound = 1.0 - step(0.52, 0.60, fractal(p, 4, 3, 144));
         let crack = step(
             0.0,
-            0.02,
-            cellular(p, 5, 0.9, 141).border + 0.05 * step(0.45, 0.5, broad),
+            0.016,
+            cellular(p + wander, 9, 0.95, 141).border + 0.05 * sound,
         );
         let worn = step(0.62, 0.70, broad + 0.12 * (fine - 0.5));
         let shade =

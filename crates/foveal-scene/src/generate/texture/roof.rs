@@ -21,11 +21,11 @@ pub(in crate::generate) fn roof_tiles() -> Baked {
         let lip = step(0.0, 0.06, 1.0 - along);
         let fine = fractal(p, 24, 3, 193);
         let moss = step(0.58, 0.75, fractal(p, 5, 4, 194)) * (1.0 - cover);
-        let tone = 0.62 + 0.26 * unit(id) + 0.25 * (fine - 0.5);
+        let tone = 0.74 + 0.26 * unit(id) + 0.25 * (fine - 0.5);
         let clay =
             Vec3::new(0.78, 0.44, 0.30).lerp(Vec3::new(0.66, 0.46, 0.36), unit(lattice(id, 1, 1)));
         let color = (clay * tone).lerp(Vec3::new(0.20, 0.22, 0.13), 0.7 * moss);
-        let mut texel = Texel::new(color * (0.45 + 0.55 * cover.max(0.25)) * (0.6 + 0.4 * lip));
+        let mut texel = Texel::new(color * (0.6 + 0.4 * cover.max(0.25)) * (0.7 + 0.3 * lip));
         texel.height_m = 0.05 * cover + 0.025 * along * lip + 0.003 * fine;
         texel.roughness = 0.8 + 0.15 * fine;
         texel.open = (0.4 + 0.6 * cover) * (0.6 + 0.4 * lip);

@@ -15,10 +15,10 @@ pub(in crate::generate) fn cobbles() -> Baked {
         let dome = step(0.0, 0.55, cell.border);
         let broad = fractal(p, 4, 4, 31);
         let fine = fractal(p, 64, 3, 41);
-        let shade = 0.30 + 0.16 * unit(cell.id) + 0.08 * (fine - 0.5);
+        let shade = 0.40 + 0.17 * unit(cell.id) + 0.08 * (fine - 0.5);
         let warm = unit(lattice(cell.id, 3, 5)) - 0.5;
         let top = Vec3::new(1.03 + 0.10 * warm, 0.98, 0.93 - 0.12 * warm) * shade;
-        let joint = Vec3::new(0.16, 0.14, 0.12) * (0.7 + 0.5 * fine);
+        let joint = Vec3::new(0.22, 0.19, 0.16) * (0.7 + 0.5 * fine);
         let puddle = step(0.60, 0.68, broad) * (1.0 - 0.55 * dome);
         let mut texel = Texel::new(joint.lerp(top, stone) * (1.0 - 0.45 * puddle));
         let tilt = (unit(lattice(cell.id, 7, 5)) - 0.5) * 0.006;

@@ -157,8 +157,10 @@ fn a_broken_picture_is_a_warning_and_a_placeholder() {
     file.material(json!({
         "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
         "normalTexture": { "index": 1 },
+        "emissiveTexture": { "index": 1 },
     }));
     let scene = file.load();
+    assert_eq!(scene.textures[2].levels, [[0, 0, 0, 255]]);
     assert_eq!(
         scene.textures[0].levels[0][..8],
         [255, 0, 255, 255, 255, 255, 255, 255]
