@@ -106,7 +106,7 @@ pub struct Settings {
     pub fovea_inner: f32,
     /// Radius from which on the coarsest level is wished, as a fraction of the picture's height.
     pub fovea_outer: f32,
-    /// How levels grow between the radii: 1 evenly, less sooner, more later.
+    /// How levels follow between the radii: 1 in even steps, above 1 in steps that widen outwards.
     pub fovea_curve: f32,
     /// Neighbouring blocks differ by one level at most.
     pub rate_balance: bool,
@@ -140,8 +140,8 @@ impl Default for Settings {
             gaze: [0.5, 0.5],
             fovea_inner: 0.125,
             fovea_outer: 0.9,
-            fovea_curve: 0.6,
-            rate_balance: false,
+            fovea_curve: 1.5,
+            rate_balance: true,
             refine_edges: RefineEdges::default(),
             coarse_sample: CoarseSample::default(),
             composite: Composite::default(),

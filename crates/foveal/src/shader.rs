@@ -89,12 +89,43 @@ pub(crate) const COARSE_SHADE_LIST: Parts = &[
     include_str!("shading/coarse/block.wgsl"),
     include_str!("shading/coarse/shade_list.wgsl"),
 ];
+const TILING: &str = include_str!("composite/tiling.wgsl");
+const SEEN: &str = include_str!("composite/seen.wgsl");
+const PATCHES: &str = include_str!("composite/patches.wgsl");
+
 pub(crate) const COMPOSITE_NEAREST: Parts = &[
     FRAME,
     LEVEL,
     BLOCKS,
-    include_str!("composite/tiling.wgsl"),
+    TILING,
     include_str!("composite/nearest.wgsl"),
+];
+pub(crate) const COMPOSITE_PAPER: Parts = &[
+    FRAME,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    include_str!("composite/paper.wgsl"),
+];
+pub(crate) const COMPOSITE_PATCH: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    SEEN,
+    PATCHES,
+    include_str!("composite/patch.wgsl"),
+];
+pub(crate) const COMPOSITE_SMOOTH: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    SEEN,
+    PATCHES,
+    include_str!("composite/smooth.wgsl"),
 ];
 
 /// Joins a shader's parts.
@@ -247,6 +278,9 @@ mod tests {
         ("coarse shade draw", COARSE_SHADE_DRAW),
         ("coarse shade list", COARSE_SHADE_LIST),
         ("composite nearest", COMPOSITE_NEAREST),
+        ("composite paper", COMPOSITE_PAPER),
+        ("composite patch", COMPOSITE_PATCH),
+        ("composite smooth", COMPOSITE_SMOOTH),
     ];
 
     fn parse(name: &str, parts: Parts) -> naga::Module {
@@ -506,11 +540,11 @@ mod tests {
                 eye_width,
                 coarsest,
                 constant_level,
-                source,
-                other,
-                combine,
                 refine_up_to,
-                find_edges
+                edges_up_to,
+                reserved_0,
+                reserved_1,
+                reserved_2
             ]
         );
         assert_same_layout!(

@@ -1,19 +1,28 @@
 //! Composite: the samples of a tiling become one radiance per pixel.
+//!
+//! All three take level-0 tiles, which are pixels, as they are. `nearest` repeats a tile's sample; `paper` is the
+//! interpolation of the technique's source; `smooth` is continuous, exact where radiance is an affine function
+//! of the position, and reads the G-buffer so as not to mix surfaces.
 
-mod nearest;
+mod smooth;
+mod taps;
 
-pub(crate) use nearest::NearestComposite;
+pub(crate) use smooth::PatchTargets;
+
+use smooth::SmoothComposite;
+use taps::TapComposite;
 
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::shading::CoarseTargets;
 use crate::targets::Targets;
-use crate::{Composite, Settings};
+use crate::{Composite, Settings, shader};
 
 /// The composite that the settings ask for.
 #[derive(Debug)]
 pub(crate) enum CompositePass {
-    Nearest(NearestComposite),
+    Taps(TapComposite),
+    Smooth(SmoothComposite),
 }
 
 impl CompositePass {
@@ -22,10 +31,14 @@ impl CompositePass {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
+        let taps = |parts, entry| Self::Taps(TapComposite::new(gpu, frame_layout, parts, entry));
         match settings.composite {
-            Composite::Nearest | Composite::Paper | Composite::Smooth => {
-                Self::Nearest(NearestComposite::new(gpu, frame_layout))
+            // Where all tiles are pixels there is nothing to smooth.
+            Composite::Smooth if settings.coarsest_level > 0 => {
+                Self::Smooth(SmoothComposite::new(gpu, frame_layout))
             }
+            Composite::Paper => taps(shader::COMPOSITE_PAPER, "paper"),
+            Composite::Nearest | Composite::Smooth => taps(shader::COMPOSITE_NEAREST, "nearest"),
         }
     }
 
@@ -36,9 +49,11 @@ impl CompositePass {
         targets: &Targets,
         from: &CoarseTargets,
     ) {
-        let radiance = &targets.radiance_view;
-        match self {
-            Self::Nearest(nearest) => nearest.join(recorder, from, radiance),
+        match (self, &from.patches) {
+            (Self::Taps(taps), _) => taps.join(recorder, from, &targets.radiance_view),
+            (Self::Smooth(smooth), Some(patches)) => smooth.join(recorder, targets, from, patches),
+            // Targets and passes are made for the same settings.
+            (Self::Smooth(_), None) => {}
         }
     }
 }

@@ -12,21 +12,22 @@ const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
 /// The rate map of one frame size.
 #[derive(Debug)]
 pub(crate) struct RateTargets {
-    /// Minimum of the wishes per block; mip 0 holds the wishes.
+    /// Minimum of the wishes per block, from level 1 on.
     pub(crate) pyramid: MipChain,
-    /// Owner level per pixel.
+    /// Owner level of 2 x 2 pixels each: a single level, 1.
     pub(crate) owner: MipChain,
 }
 
 impl RateTargets {
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let size = (settings.width, settings.height);
-        let coarsest = u32::from(settings.coarsest_level);
+        // Level 0 tiles are found by their parent, so there is always one.
+        let coarsest = u32::from(settings.coarsest_level).max(1);
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        let chain = |label, last| MipChain::new(gpu, label, size, 0..=last, CELL_FORMAT, usage);
+        let chain = |label, last| MipChain::new(gpu, label, size, 1..=last, CELL_FORMAT, usage);
         Self {
             pyramid: chain("rate pyramid", coarsest),
-            owner: chain("owner levels", 0),
+            owner: chain("owner levels", 1),
         }
     }
 }
@@ -85,7 +86,7 @@ impl RateMapPass {
                 shader::RATE_WISH,
                 "wish_level",
                 &wish_layout,
-                &[],
+                &super::wish::wish_constants(settings),
             ),
             pyramid: pipeline(
                 "rate pyramid",
@@ -154,13 +155,13 @@ impl RateMapPass {
             chain.draw(&mut pass, level);
         };
         let pyramid = &target.pyramid;
-        fill("rate wish", pyramid, 0, &self.wish, &wish_group);
+        fill("rate wish", pyramid, 1, &self.wish, &wish_group);
         for level in pyramid.range().skip(1) {
             let below = cells(pyramid.level(level - 1));
             fill("rate pyramid", pyramid, level, &self.pyramid, &below);
         }
         let whole = cells(&pyramid.whole);
-        fill("rate owner", &target.owner, 0, &self.owner, &whole);
+        fill("rate owner", &target.owner, 1, &self.owner, &whole);
     }
 }
 

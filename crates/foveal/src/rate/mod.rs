@@ -6,7 +6,7 @@
 //! block's pixels and more, so allowed blocks are nested and each pixel has exactly one owner.
 //!
 //! Passes: wish (`wish.wgsl`), pyramid (`pyramid.wgsl`), owner (`owner.wgsl`); [`MinPyramid`] is their twin on
-//! the CPU.
+//! the CPU. On the device the pyramid begins with the wishes of 2 x 2 pixels: finer is only the pixel itself.
 
 mod image;
 mod map;

@@ -4,7 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(test)]
 use super::RateImage;
-use crate::{RateCombine, RateSource, RefineEdges, Settings};
+use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
 
 /// Mirrors `Wish` in `rate/wish.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -15,11 +15,11 @@ pub(crate) struct WishUniform {
     pub(crate) eye_width: f32,
     pub(crate) coarsest: u32,
     pub(crate) constant_level: u32,
-    pub(crate) source: u32,
-    pub(crate) other: u32,
-    pub(crate) combine: u32,
     pub(crate) refine_up_to: u32,
-    pub(crate) find_edges: u32,
+    pub(crate) edges_up_to: u32,
+    pub(crate) reserved_0: u32,
+    pub(crate) reserved_1: u32,
+    pub(crate) reserved_2: u32,
 }
 
 impl WishUniform {
@@ -38,23 +38,22 @@ impl WishUniform {
             eye_width: width,
             coarsest: u32::from(s.coarsest_level),
             constant_level: u32::from(s.rate_level),
-            source: source_number(s.rate),
-            other: source_number(s.rate_other),
-            combine: match s.rate_combine {
-                RateCombine::First => 0,
-                RateCombine::Coarser => 1,
-                RateCombine::Finer => 2,
-            },
             refine_up_to: u32::from(refine_up_to),
-            find_edges: u32::from(finds_edges(s)),
+            edges_up_to: u32::from(match s.composite {
+                Composite::Smooth => s.coarsest_level,
+                Composite::Nearest | Composite::Paper => refine_up_to,
+            }),
+            reserved_0: 0,
+            reserved_1: 0,
+            reserved_2: 0,
         }
     }
 
     /// The level that the pixel at (x, y) wishes, edges aside.
     #[cfg(test)]
-    pub(crate) fn level(&self, x: u32, y: u32, size: (u32, u32), image: Option<&RateImage>) -> u8 {
-        let from = |source: u32| match source {
-            0 => {
+    pub(crate) fn level(&self, s: &Settings, x: u32, y: u32, image: Option<&RateImage>) -> u8 {
+        let from = |source| match source {
+            RateSource::Foveated => {
                 let eye = usize::from(x as f32 + 0.5 >= self.eye_width);
                 let dx = x as f32 + 0.5 - self.gaze[eye][0];
                 let dy = y as f32 + 0.5 - self.gaze[eye][1];
@@ -62,34 +61,40 @@ impl WishUniform {
                 let radii = self.squared_radii.as_flattened();
                 radii.iter().filter(|&&r| squared >= r).count() as u32
             }
-            1 => self.constant_level,
-            _ => image.map_or(0, |i| {
+            RateSource::Constant => self.constant_level,
+            RateSource::Image => image.map_or(0, |i| {
                 let (w, h) = i.size();
-                let texel = y * h / size.1 * w + x * w / size.0;
+                let texel = y * h / s.height * w + x * w / s.width;
                 u32::from(i.levels()[texel as usize])
             }),
         };
-        let first = from(self.source);
-        let level = match self.combine {
-            0 => first,
-            1 => first.max(from(self.other)),
-            _ => first.min(from(self.other)),
+        let first = from(s.rate);
+        let level = match s.rate_combine {
+            RateCombine::First => first,
+            RateCombine::Coarser => first.max(from(s.rate_other)),
+            RateCombine::Finer => first.min(from(s.rate_other)),
         };
         level.min(self.coarsest) as u8
     }
 }
 
-/// Whether some later pass asks where surfaces end.
-fn finds_edges(s: &Settings) -> bool {
-    s.refine_edges != RefineEdges::Off || s.composite == crate::Composite::Smooth
-}
-
-fn source_number(source: RateSource) -> u32 {
-    match source {
-        RateSource::Foveated => 0,
-        RateSource::Constant => 1,
-        RateSource::Image => 2,
-    }
+/// Overrides of the wish pass's shader.
+pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
+    let number = |source| match source {
+        RateSource::Foveated => 0.0,
+        RateSource::Constant => 1.0,
+        RateSource::Image => 2.0,
+    };
+    let combine = match s.rate_combine {
+        RateCombine::First => 0.0,
+        RateCombine::Coarser => 1.0,
+        RateCombine::Finer => 2.0,
+    };
+    [
+        ("SOURCE", number(s.rate)),
+        ("OTHER", number(s.rate_other)),
+        ("COMBINE", combine),
+    ]
 }
 
 /// Squared radii in pixels from which on levels 1, 2, ... are wished; out of reach beyond the coarsest. They come
@@ -123,9 +128,7 @@ mod tests {
             ..Settings::default()
         };
         let uniform = WishUniform::new(&s);
-        let along: Vec<u8> = (0..1000)
-            .map(|x| uniform.level(x, 0, (1000, 1000), None))
-            .collect();
+        let along: Vec<u8> = (0..1000).map(|x| uniform.level(&s, x, 0, None)).collect();
         assert!(along[..100].iter().all(|&l| l == 0));
         assert!(along[101..].iter().all(|&l| l > 0));
         assert!(along[801..].iter().all(|&l| l == 8));
@@ -142,9 +145,11 @@ mod tests {
                 rate_level: 3,
                 rate_other: RateSource::Image,
                 rate_combine: combine,
+                width: 10,
+                height: 1,
                 ..Settings::default()
             };
-            [0, 9].map(|x| WishUniform::new(&s).level(x, 0, (10, 1), image.as_ref()))
+            [0, 9].map(|x| WishUniform::new(&s).level(&s, x, 0, image.as_ref()))
         };
         assert_eq!(level(RateCombine::First), [3, 3]);
         assert_eq!(level(RateCombine::Coarser), [3, 8]);

@@ -1,5 +1,11 @@
-// The level that each pixel wishes, and whether it lies at a geometric edge. After frame, surface, level and
-// blocks.wgsl. Rust: `rate/wish.rs`.
+// The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level 1 of the
+// min-pyramid. After frame, surface, level and blocks.wgsl. Rust: `rate/wish.rs`.
+
+// 0 foveated, 1 constant, 2 image.
+override SOURCE: u32 = 0u;
+override OTHER: u32 = 1u;
+// 0 the first source alone, 1 the coarser of both, 2 the finer.
+override COMBINE: u32 = 0u;
 
 struct Wish {
     // Gaze of the left and of the right eye, xy in pixels of the target.
@@ -11,15 +17,14 @@ struct Wish {
     coarsest: u32,
     // Level of the constant source.
     constant_level: u32,
-    // 0 foveated, 1 constant, 2 image.
-    source: u32,
-    other: u32,
-    // 0 the first source alone, 1 the coarser of both, 2 the finer.
-    combine: u32,
-    // Edge pixels that wish 1 up to this level are shaded one by one.
+    // Pixels at edges that wish 1 up to this level are shaded one by one.
     refine_up_to: u32,
-    // Whether edges are looked for at all.
-    find_edges: u32,
+    // Edges are looked for where the wish is 1 up to this level.
+    edges_up_to: u32,
+    // Keep the size a multiple of 16 bytes.
+    reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
 }
 
 @group(1) @binding(0) var<uniform> wish: Wish;
@@ -45,50 +50,71 @@ fn level_from(source: u32, texel: vec2u) -> u32 {
     }
 }
 
+fn pixel_level(texel: vec2u) -> u32 {
+    let level = level_from(SOURCE, texel);
+    if COMBINE == 1u {
+        return max(level, level_from(OTHER, texel));
+    } else if COMBINE == 2u {
+        return min(level, level_from(OTHER, texel));
+    }
+    return level;
+}
+
+fn instance_at(texel: vec2i) -> u32 {
+    return textureLoad(gbuffer_identity, texel, 0).x;
+}
+
+fn depth_at(texel: vec2i) -> f32 {
+    return textureLoad(gbuffer_depth, texel, 0);
+}
+
 fn normal_at(texel: vec2i) -> vec3f {
     return unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y));
 }
 
-// Whether a surface ends between this pixel and its four neighbours: another instance, a crease of more than
-// 45 degrees, or a jump in depth. Reversed depth is affine in screen space along a plane however it is tilted,
-// so a jump shows as a second difference.
-fn is_edge(texel: vec2i) -> bool {
+// Whether a surface ends within a block of 2 x 2 pixels or between it and the blocks to its right and below:
+// another instance, a crease of more than 45 degrees, or a jump in depth. Reversed depth is affine in screen space
+// along a plane however it is tilted, so a jump shows as a second difference.
+fn holds_edge(block: vec2u) -> bool {
+    let first = vec2i(block) * 2;
     let last = vec2i(picture_size()) - 1;
-    let right = vec2i(min(texel.x + 1, last.x), texel.y);
-    let down = vec2i(texel.x, min(texel.y + 1, last.y));
-    let left = vec2i(max(texel.x - 1, 0), texel.y);
-    let up = vec2i(texel.x, max(texel.y - 1, 0));
-    let own = textureLoad(gbuffer_identity, texel, 0).x;
-    if own != textureLoad(gbuffer_identity, right, 0).x || own != textureLoad(gbuffer_identity, down, 0).x {
+    let right = vec2i(min(first.x + 2, last.x), first.y);
+    let down = vec2i(first.x, min(first.y + 2, last.y));
+    let instance = instance_at(first);
+    let same = vec3u(instance_at(right), instance_at(down), instance_at(min(first + 1, last))) == vec3u(instance);
+    if !all(same) {
         return true;
     }
-    if own == 0u {
+    if instance == 0u {
         return false;
     }
-    let depth = textureLoad(gbuffer_depth, texel, 0);
-    let across = textureLoad(gbuffer_depth, left, 0) + textureLoad(gbuffer_depth, right, 0);
-    let along = textureLoad(gbuffer_depth, up, 0) + textureLoad(gbuffer_depth, down, 0);
-    // At the picture's border one neighbour is the pixel itself; the difference is then a slope: let pass.
-    let inner = vec2f(select(vec2i(0), vec2i(1), texel > vec2i(0) & texel < last));
-    let bend = abs(vec2f(across, along) - 2.0 * depth) * inner;
-    if max(bend.x, bend.y) > 0.02 * depth {
-        return true;
+    // At the picture's border the three pixels in a row are not three: their bend is unknown.
+    let depth = depth_at(first);
+    if first.x + 2 <= last.x {
+        let bend = depth - 2.0 * depth_at(first + vec2i(1, 0)) + depth_at(right);
+        if abs(bend) > 0.02 * depth {
+            return true;
+        }
     }
-    let normal = normal_at(texel);
+    if first.y + 2 <= last.y {
+        let bend = depth - 2.0 * depth_at(first + vec2i(0, 1)) + depth_at(down);
+        if abs(bend) > 0.02 * depth {
+            return true;
+        }
+    }
+    let normal = normal_at(first);
     return min(dot(normal, normal_at(right)), dot(normal, normal_at(down))) < 0.7;
 }
 
 @fragment
 fn wish_level(in: LevelVertex) -> @location(0) u32 {
-    let texel = vec2u(in.position.xy);
-    var level = level_from(wish.source, texel);
-    if wish.combine == 1u {
-        level = max(level, level_from(wish.other, texel));
-    } else if wish.combine == 2u {
-        level = min(level, level_from(wish.other, texel));
+    let block = vec2u(in.position.xy);
+    let last = picture_size() - 1u;
+    var level = wish.coarsest;
+    for (var i = 0u; i < 4u; i++) {
+        level = min(level, pixel_level(min(block * 2u + vec2u(i & 1u, i >> 1u), last)));
     }
-    level = min(level, wish.coarsest);
-    if level == 0u || wish.find_edges == 0u || !is_edge(vec2i(texel)) {
+    if level == 0u || level > wish.edges_up_to || !holds_edge(block) {
         return level;
     }
     return select(level, 0u, level <= wish.refine_up_to) | CELL_EDGE;

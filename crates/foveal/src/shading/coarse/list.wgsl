@@ -7,6 +7,7 @@ struct Level {
 }
 
 @group(1) @binding(0) var<uniform> current: Level;
+// Mip l is level l + 1.
 @group(1) @binding(1) var pyramid: texture_2d<u32>;
 // Tiles of each level; zeroed before.
 @group(1) @binding(2) var<storage, read_write> counts: array<atomic<u32>, 9>;
@@ -17,10 +18,13 @@ var<workgroup> found: atomic<u32>;
 var<workgroup> first: u32;
 
 fn is_tile(block: vec2u, level: u32) -> bool {
-    if any(block >= blocks_at(level)) || (textureLoad(pyramid, block, level).x & CELL_LEVEL) < level {
+    if any(block >= blocks_at(level)) {
         return false;
     }
-    return level == COARSEST || (textureLoad(pyramid, block / 2u, level + 1u).x & CELL_LEVEL) <= level;
+    if level > 0u && (textureLoad(pyramid, block, level - 1u).x & CELL_LEVEL) < level {
+        return false;
+    }
+    return level == COARSEST || (textureLoad(pyramid, block / 2u, level).x & CELL_LEVEL) <= level;
 }
 
 // A workgroup looks at 16 x 16 blocks, a thread at 2 x 2 of them, and takes room for what it finds at once.

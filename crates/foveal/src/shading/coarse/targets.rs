@@ -1,10 +1,11 @@
 //! What coarse shading works on, for one frame size.
 
 use super::LEVELS;
+use crate::composite::PatchTargets;
 use crate::gpu::{Gpu, MipChain};
 use crate::rate::RateTargets;
 use crate::shading::RADIANCE_FORMAT;
-use crate::{Backend, Settings};
+use crate::{Backend, Composite, Settings};
 
 pub(super) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
 
@@ -14,6 +15,8 @@ pub(crate) struct CoarseTargets {
     pub(crate) rate: RateTargets,
     /// Mip l holds the samples of level l: linear radiance, and 1 + the sample's candidate in alpha.
     pub(crate) samples: MipChain,
+    /// For the smooth composite.
+    pub(crate) patches: Option<PatchTargets>,
     /// Nonzero where a level has a tile; for the stencil backend.
     pub(super) stencil: Option<MipChain>,
     /// Tiles of each level as x | y << 16; for the compute backend.
@@ -53,6 +56,10 @@ impl CoarseTargets {
                     | wgpu::TextureUsages::STORAGE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
             ),
+            patches: match settings.composite {
+                Composite::Smooth => PatchTargets::new(gpu, settings),
+                Composite::Nearest | Composite::Paper => None,
+            },
             stencil: (settings.backend != Backend::Compute).then(|| {
                 MipChain::new(
                     gpu,

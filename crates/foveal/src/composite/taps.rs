@@ -5,19 +5,15 @@ use crate::recorder::{Recorder, overwritten};
 use crate::shader;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
 
-/// Each pixel takes its tile's sample.
+/// A pixel's radiance from a few taps.
 #[derive(Debug)]
-pub(crate) struct NearestComposite {
+pub(crate) struct TapComposite {
     pipeline: wgpu::RenderPipeline,
     layout: wgpu::BindGroupLayout,
 }
 
-impl NearestComposite {
-    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
-        Self::with_shader(gpu, frame_layout, shader::COMPOSITE_NEAREST, "nearest")
-    }
-
-    pub(super) fn with_shader(
+impl TapComposite {
+    pub(super) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         parts: shader::Parts,
