@@ -8,6 +8,7 @@
 
 pub mod gpu;
 
+mod composite;
 mod culling;
 mod error;
 mod forward;
@@ -15,6 +16,7 @@ mod frame;
 mod geometry;
 mod lights;
 mod output;
+mod rate;
 mod recorder;
 mod renderer;
 mod scene;
@@ -28,6 +30,10 @@ mod testing;
 
 pub use error::Error;
 pub use gpu::Gpu;
+pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
-pub use settings::{Culling, LightAssignment, LightingModel, Settings, ToneMap, View};
-pub use stats::{AdapterStats, FrameStats, SceneStats, Timing};
+pub use settings::{
+    Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, LightAssignment, LightingModel,
+    RateCombine, RateSource, RefineEdges, Settings, Shading, ToneMap, View,
+};
+pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};

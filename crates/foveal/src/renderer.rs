@@ -2,18 +2,22 @@
 
 use foveal_scene::{Camera, Scene};
 
+use crate::composite::CompositePass;
 use crate::culling::{CullingCounts, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
 use crate::geometry::{DrawList, GeometryPass};
-use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_texture, submitted_work_done};
+use crate::gpu::{
+    CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
+};
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::output::{ToneMapPass, ViewPass};
+use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{Samples, ShadingPass};
+use crate::shading::{CoarseShading, CountPass, Samples, ShadingPass};
 use crate::targets::Targets;
-use crate::{Error, FrameStats, SceneStats, Settings};
+use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing};
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -36,6 +40,7 @@ pub struct Renderer {
     frame_bindings: FrameBindings,
     material_layout: wgpu::BindGroupLayout,
     stages: Stages,
+    rate_image: Option<RateImage>,
     scene: SceneOnGpu,
     draw_list: DrawList,
 }
@@ -49,9 +54,38 @@ struct Stages {
     lights: LightAssigner,
     geometry: GeometryPass,
     shading: ShadingPass,
+    coarse: Option<CoarseStages>,
     forward: ForwardPass,
     tone_map: ToneMapPass,
     view: Option<ViewPass>,
+}
+
+/// What stands in for shading every pixel.
+#[derive(Debug)]
+struct CoarseStages {
+    rate_map: RateMapPass,
+    shading: CoarseShading,
+    composite: CompositePass,
+}
+
+impl CoarseStages {
+    fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        full: &ShadingPass,
+        image: Option<&RateImage>,
+    ) -> Self {
+        let mut rate_map = RateMapPass::new(gpu, settings, frame);
+        if let Some(image) = image {
+            rate_map.set_image(gpu, image);
+        }
+        Self {
+            rate_map,
+            shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
+            composite: CompositePass::new(gpu, settings, frame),
+        }
+    }
 }
 
 impl Stages {
@@ -60,17 +94,21 @@ impl Stages {
         settings: &Settings,
         frame_bindings: &FrameBindings,
         material_layout: &wgpu::BindGroupLayout,
+        rate_image: Option<&RateImage>,
     ) -> Result<Self, Error> {
         settings.validate(&gpu.device.limits())?;
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let frame = frame_bindings.layout();
+        let shading = ShadingPass::new(gpu, settings, frame);
         let stages = Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings.culling, settings.width, settings.height)?,
-            targets: Targets::new(gpu, settings.width, settings.height),
+            targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
             geometry: GeometryPass::new(gpu, frame, material_layout),
-            shading: ShadingPass::new(gpu, settings, frame),
+            coarse: (settings.shading == Shading::Coarse)
+                .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
+            shading,
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
             tone_map: ToneMapPass::new(gpu, settings, frame),
             view: ViewPass::new(gpu, settings.view, frame),
@@ -89,7 +127,7 @@ impl Renderer {
     pub async fn new(gpu: &Gpu, settings: &Settings, clock: Option<Clock>) -> Result<Self, Error> {
         let frame_bindings = FrameBindings::new(gpu);
         let material_layout = material_layout(gpu);
-        let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout).await?;
+        let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout, None).await?;
         let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout)?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -98,6 +136,7 @@ impl Renderer {
             frame_bindings,
             material_layout,
             stages,
+            rate_image: None,
             scene,
             draw_list: DrawList::default(),
         })
@@ -128,7 +167,7 @@ impl Renderer {
         {
             let culling = CullingStage::new(settings.culling, settings.width, settings.height)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
-            let targets = Targets::new(&self.gpu, settings.width, settings.height);
+            let targets = Targets::new(&self.gpu, settings);
             trap.finish().await?;
             self.stages.culling = culling;
             self.stages.targets = targets;
@@ -140,9 +179,18 @@ impl Renderer {
             settings,
             &self.frame_bindings,
             &self.material_layout,
+            self.rate_image.as_ref(),
         )
         .await?;
         Ok(())
+    }
+
+    /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source wishes every pixel.
+    pub fn set_rate_image(&mut self, image: RateImage) {
+        if let Some(coarse) = &mut self.stages.coarse {
+            coarse.rate_map.set_image(&self.gpu, &image);
+        }
+        self.rate_image = Some(image);
     }
 
     /// Uploads a scene in place of the last one.
@@ -193,21 +241,43 @@ impl Renderer {
         let culled = self.submit(frame, &mut cpu);
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
+        let frame_ms = cpu.since_start_ms();
+        let gpu_ms = self.timer.collect(&self.gpu);
+        let pixels = u64::from(self.stages.settings.width) * u64::from(self.stages.settings.height);
+        let coarse = self.coarse_stats(&gpu_ms).await?;
         Ok(FrameStats {
             width: self.stages.settings.width,
             height: self.stages.settings.height,
             cpu_ms: cpu.stages(),
-            gpu_ms: self.timer.collect(&self.gpu),
             objects_visible: culled.visible,
             objects_outside: culled.outside,
             objects_occluded: culled.occluded,
             occluder_triangles: culled.occluder_triangles,
             draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
             triangles: self.draw_list.triangles,
-            shaded_samples: u64::from(self.stages.settings.width)
-                * u64::from(self.stages.settings.height),
-            frame_ms: cpu.since_start_ms(),
+            shaded_samples: coarse.as_ref().map_or(pixels, CoarseStats::shaded_samples),
+            coarse,
+            gpu_ms,
+            frame_ms,
         })
+    }
+
+    /// What coarse shading did in the last frame, whose passes took `gpu_ms`; tells the choice of the backend.
+    async fn coarse_stats(&mut self, gpu_ms: &[Timing]) -> Result<Option<CoarseStats>, Error> {
+        let Stages {
+            settings,
+            targets,
+            coarse,
+            view,
+            ..
+        } = &mut self.stages;
+        let (Some(coarse), Some(tiles), None) = (coarse, &targets.coarse, view) else {
+            return Ok(None);
+        };
+        let counts = read_buffer(&self.gpu, &tiles.counts).await?;
+        let tiles = CountPass::tiles(&counts, settings.coarsest_level);
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        Ok(Some(coarse.shading.stats(tiles, pixels, gpu_ms)))
     }
 
     /// The frame.
@@ -228,6 +298,7 @@ impl Renderer {
             lights,
             geometry,
             shading,
+            coarse,
             forward,
             tone_map,
             view,
@@ -281,12 +352,20 @@ impl Renderer {
             view.show(recorder, &targets.gbuffer, &targets.picture_view);
         } else {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            shading.shade(
-                recorder,
-                &input,
-                Samples::EveryPixel,
-                &targets.radiance_view,
-            );
+            if let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) {
+                coarse
+                    .rate_map
+                    .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
+                coarse.shading.shade(recorder, &input, tiles);
+                coarse.composite.join(recorder, targets, tiles);
+            } else {
+                shading.shade(
+                    recorder,
+                    &input,
+                    Samples::EveryPixel,
+                    &targets.radiance_view,
+                );
+            }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
             tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
         }

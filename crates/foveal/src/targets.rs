@@ -3,7 +3,8 @@
 use crate::geometry::GBuffer;
 use crate::gpu::Gpu;
 use crate::output::PICTURE_FORMAT;
-use crate::shading::RADIANCE_FORMAT;
+use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
+use crate::{Settings, Shading};
 
 /// The targets of one frame size.
 #[derive(Debug)]
@@ -13,10 +14,13 @@ pub(crate) struct Targets {
     pub(crate) radiance_view: wgpu::TextureView,
     /// The picture.
     pub(crate) picture_view: wgpu::TextureView,
+    /// With coarse shading.
+    pub(crate) coarse: Option<CoarseTargets>,
 }
 
 impl Targets {
-    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
+        let (width, height) = (settings.width, settings.height);
         let target = |label, format, usage| {
             let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -45,6 +49,8 @@ impl Targets {
                 sampled | wgpu::TextureUsages::STORAGE_BINDING,
             ),
             picture_view: target("picture", PICTURE_FORMAT, sampled),
+            coarse: (settings.shading == Shading::Coarse)
+                .then(|| CoarseTargets::new(gpu, settings)),
         }
     }
 }
