@@ -2,14 +2,15 @@
 
 use crate::depth::{DepthBuffer, EMPTY, SAMPLES, decode, encode};
 use crate::query::near::{Clipped, clip_box};
-use crate::query::project::{Boxes8, Screen, project};
+use crate::query::project::{Boxes8, Projected8, Screen, project};
 use crate::query::test::{PixelRect, hidden};
+use crate::query::tree::{OccludeeTree, Walk};
 use crate::raster::frame::{Draw, FrameScratch, Select};
-use crate::raster::setup::Scratch;
+use crate::raster::setup::{Radius, Scratch};
 use crate::simd::{Kernel, Lanes};
-use crate::view::Camera;
+use crate::view::{Camera, frustum_planes};
 use crate::{Aabb, CullError, CullStats, InstructionSet, OccluderSet, Threads, View};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::sync::Mutex;
 
 /// What became of a box.
@@ -100,6 +101,7 @@ pub struct Culler {
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     camera: Camera,
+    view: View,
     occludee_size_threshold: f32,
     occlusion: bool,
 }
@@ -164,9 +166,10 @@ impl Culler {
             (self.buffer.height * SAMPLES) as f32,
         );
         let camera = Camera::new(view, f64::from(width), f64::from(height))?;
-        let occlusion = options.occlusion && camera.radius == 0.0;
+        let occlusion = options.occlusion;
         self.view = Some(Frame {
             camera,
+            view: *view,
             occludee_size_threshold: options.occludee_size_threshold,
             occlusion,
         });
@@ -182,11 +185,21 @@ impl Culler {
             height,
             size_threshold: options.occluder_size_threshold,
         });
-        self.draw(occluders, options.budget, threads);
+        let radius = (camera.radius > 0.0 && !camera.orthographic).then(|| Radius {
+            shift: (camera.radius * camera.shift_per_metre) as f32,
+            per_depth: (camera.radius / camera.near) as f32,
+        });
+        self.draw(occluders, options.budget, radius, threads);
         Ok(())
     }
 
-    fn draw(&mut self, set: &OccluderSet, budget: Option<Budget<'_>>, threads: &dyn Threads) {
+    fn draw(
+        &mut self,
+        set: &OccluderSet,
+        budget: Option<Budget<'_>>,
+        radius: Option<Radius>,
+        threads: &dyn Threads,
+    ) {
         let rows = self.buffer.blocks_y;
         let bands = match threads.count() {
             0 | 1 => 1,
@@ -226,6 +239,7 @@ impl Culler {
                     scratch,
                     drawn: Some(drawn),
                     budget,
+                    radius,
                 });
                 skipped.fetch_max(left_out, core::sync::atomic::Ordering::Relaxed);
             }
@@ -288,6 +302,36 @@ impl Culler {
         self.instruction_set.run(Flat {
             query: &q,
             boxes,
+            results,
+        });
+        Ok(())
+    }
+
+    /// Tests a whole tree of occludees: one answer per object, in the order of the boxes it was built from.
+    /// Equal to [`Culler::query`] on the same boxes but for objects whose own rectangle is larger than it
+    /// needs to be: a hidden group answers for its members, and it is hidden only if they are.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] when `results` is not as long as the tree.
+    pub fn query_tree(
+        &self,
+        tree: &OccludeeTree,
+        results: &mut [Visibility],
+    ) -> Result<(), CullError> {
+        if results.len() != tree.len() {
+            return Err(CullError::LengthMismatch {
+                expected: tree.len(),
+                found: results.len(),
+            });
+        }
+        let Some(frame) = self.view else {
+            results.fill(Visibility::Visible);
+            return Ok(());
+        };
+        let query = Query::new(&self.buffer, &frame, tree.origin());
+        self.instruction_set.run(Walk {
+            query: &query,
+            tree,
             results,
         });
         Ok(())
@@ -361,9 +405,8 @@ pub(crate) struct Query<'a> {
     pub(crate) occlusion: bool,
     /// `threshold² * tan(fov / 2)`.
     pub(crate) small: f32,
-    /// Growth of boxes against rounding, per metre of coordinate.
-    rounding: f32,
-    origin_distance: f32,
+    /// For a result that holds around the eye.
+    around: Option<Around>,
 }
 
 impl<'a> Query<'a> {
@@ -385,6 +428,7 @@ impl<'a> Query<'a> {
             height: (buffer.height * SAMPLES) as f32,
             far_depth: (camera.far_depth * (1.0 - 1e-5)) as f32,
             dilate: DILATE,
+            grow: 6e-7 * from_origin.length() as f32,
         };
         let t = f64::from(frame.occludee_size_threshold);
         Self {
@@ -392,73 +436,138 @@ impl<'a> Query<'a> {
             screen,
             occlusion: frame.occlusion,
             small: (t * t * camera.tan_half_fov_y) as f32,
-            rounding: 6e-7,
-            origin_distance: from_origin.length() as f32,
+            around: (camera.radius > 0.0).then(|| Around {
+                planes: [Some(frame.view.eye), frame.view.second_eye].map(|eye| {
+                    eye.map(|e| frustum_planes(&e, frame.view.validity_radius_m, origin))
+                }),
+                clamp_depth: camera.clamp_depth as f32,
+            }),
         }
     }
 
     /// Centre and half extent for the kernels, grown against rounding; NaN for what is not a volume.
     #[inline(always)]
-    pub(crate) fn prepare(&self, b: &Aabb) -> (glam::Vec3, glam::Vec3) {
+    pub(crate) fn prepare(b: &Aabb) -> (Vec3, Vec3) {
         let (center, half) = (b.center(), b.half_extent());
-        let reach = center.abs().max_element() + half.max_element() + self.origin_distance;
+        let reach = center.abs().max_element() + half.max_element();
         let valid = b.min.cmple(b.max).all();
         (
             center,
             if valid {
-                half + self.rounding * reach
+                half + 6e-7 * reach
             } else {
-                glam::Vec3::NAN
+                Vec3::NAN
             },
         )
     }
 
-    /// Answers for one of eight projected boxes.
+    /// Answers for one of eight projected boxes. `object`: a single one, which may be too small.
     #[inline(always)]
     pub(crate) fn answer(
         &self,
-        p: &crate::query::project::Projected8,
+        p: &Projected8,
         i: usize,
         boxes: &Boxes8,
+        object: bool,
     ) -> Visibility {
+        if self.around.is_some() {
+            return self.answer_around(p, i, boxes, object);
+        }
         if p.outside >> i & 1 != 0 {
             return Visibility::Outside;
         }
-        let center = || glam::Vec3::from_array(boxes.center.map(|v| v[i]));
-        let half = || glam::Vec3::from_array(boxes.half.map(|v| v[i]));
-        if self.small > 0.0 {
-            let [x, y, z, w] = self.screen.rows[3];
-            let distance = center().dot(glam::Vec3::new(x, y, z)) + w;
-            if distance > 1.0 && half().length_squared() < distance * self.small {
-                return Visibility::Small;
-            }
+        if self.is_small(i, boxes, object) {
+            return Visibility::Small;
         }
-        let (rect, depth) = if p.crossing >> i & 1 != 0 {
-            match clip_box(&self.screen, center(), half()) {
-                Clipped::Outside => return Visibility::Outside,
-                Clipped::Visible => return Visibility::Visible,
-                Clipped::Rect(r, d) => (r, d),
-            }
-        } else {
-            ([p.x0[i], p.y0[i], p.x1[i], p.y1[i]], p.depth[i])
-        };
+        if p.crossing >> i & 1 != 0 {
+            return self.answer_crossing(i, boxes);
+        }
+        self.answer_rect([p.x0[i], p.y0[i], p.x1[i], p.y1[i]], p.depth[i])
+    }
+
+    #[inline(always)]
+    fn is_small(&self, i: usize, boxes: &Boxes8, object: bool) -> bool {
+        if !(object && self.small > 0.0) {
+            return false;
+        }
+        let (c, h) = place(boxes, i);
+        let [x, y, z, w] = self.screen.rows[3];
+        let distance = c.dot(Vec3::new(x, y, z)) + w;
+        distance > 1.0 && h.length_squared() < distance * self.small
+    }
+
+    #[inline(always)]
+    fn answer_rect(&self, [x0, y0, x1, y1]: [f32; 4], depth: f32) -> Visibility {
         if !self.occlusion {
             return Visibility::Visible;
         }
-        let rect = PixelRect::from_samples(
-            rect[0],
-            rect[1],
-            rect[2],
-            rect[3],
-            self.buffer.width,
-            self.buffer.height,
-        );
+        let rect = PixelRect::from_samples(x0, y0, x1, y1, self.buffer.width, self.buffer.height);
         if hidden(self.buffer, rect, encode(depth)) {
             Visibility::Occluded
         } else {
             Visibility::Visible
         }
     }
+
+    #[cold]
+    fn answer_crossing(&self, i: usize, boxes: &Boxes8) -> Visibility {
+        let (center, half) = place(boxes, i);
+        match clip_box(&self.screen, center, half + self.screen.grow) {
+            Clipped::Outside => Visibility::Outside,
+            Clipped::Visible => Visibility::Visible,
+            Clipped::Rect(rect, depth) => self.answer_rect(rect, depth),
+        }
+    }
+
+    /// The same for two eyes or a validity radius: the frusta are tested one by one, and what the buffer of
+    /// the middle cannot answer for all of them is visible.
+    fn answer_around(&self, p: &Projected8, i: usize, boxes: &Boxes8, object: bool) -> Visibility {
+        let Some(around) = &self.around else {
+            return Visibility::Visible;
+        };
+        let (center, half) = place(boxes, i);
+        let half = half + self.screen.grow;
+        let outside = |planes: &[[f32; 4]; 6]| {
+            planes.iter().any(|&[x, y, z, w]| {
+                let n = Vec3::new(x, y, z);
+                n.dot(center) + n.abs().dot(half) + w + 1e-6 * n.abs().dot(center.abs()) < 0.0
+            })
+        };
+        if around.planes.iter().flatten().all(outside) {
+            return Visibility::Outside;
+        }
+        if self.is_small(i, boxes, object) {
+            return Visibility::Small;
+        }
+        if (p.outside | p.crossing) >> i & 1 != 0 {
+            return Visibility::Visible;
+        }
+        let (w, h) = (self.screen.width, self.screen.height);
+        let cut = p.x0[i] < 0.0 || p.y0[i] < 0.0 || p.x1[i] > w || p.y1[i] > h;
+        if cut && p.depth[i] >= around.clamp_depth {
+            return Visibility::Visible;
+        }
+        self.answer_rect([p.x0[i], p.y0[i], p.x1[i], p.y1[i]], p.depth[i])
+    }
+}
+
+/// What a result that holds around the eye needs.
+#[derive(Clone, Copy, Debug)]
+struct Around {
+    /// Of one or two eyes.
+    planes: [Option<[[f32; 4]; 6]>; 2],
+    clamp_depth: f32,
+}
+
+/// Centre and half extent of one of eight.
+#[inline(always)]
+fn place(boxes: &Boxes8, i: usize) -> (Vec3, Vec3) {
+    let [cx, cy, cz] = boxes.center;
+    let [hx, hy, hz] = boxes.half;
+    (
+        Vec3::new(cx[i], cy[i], cz[i]),
+        Vec3::new(hx[i], hy[i], hz[i]),
+    )
 }
 
 /// All boxes, eight at a time.
@@ -476,12 +585,12 @@ impl Kernel for Flat<'_> {
         for (boxes, results) in self.boxes.chunks(8).zip(self.results.chunks_mut(8)) {
             let mut eight = Boxes8::NONE;
             for (i, b) in boxes.iter().enumerate() {
-                let (c, h) = self.query.prepare(b);
+                let (c, h) = Query::prepare(b);
                 eight.set(i, c, h);
             }
             let p = project(l, &self.query.screen, &eight);
             for (i, r) in results.iter_mut().enumerate() {
-                *r = self.query.answer(&p, i, &eight);
+                *r = self.query.answer(&p, i, &eight, true);
             }
         }
     }

@@ -49,9 +49,10 @@ pub use bounds::Aabb;
 pub use culler::{Budget, Culler, FrameOptions, Visibility};
 pub use error::CullError;
 pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet};
+pub use query::tree::OccludeeTree;
 pub use simd::InstructionSet;
 pub use stats::CullStats;
 #[cfg(feature = "rayon")]
 pub use threads::Rayon;
-pub use threads::{SingleThread, Threads};
+pub use threads::{Pool, SingleThread, Threads};
 pub use view::{Eye, Projection, View};

@@ -255,6 +255,9 @@ pub(crate) struct Camera {
     pub(crate) far_depth: f64,
     /// Radius around `eye` for which the result must hold, metres.
     pub(crate) radius: f64,
+    /// A box that is nowhere nearer than this depth may be cut at the borders of the buffer: what lies
+    /// beyond them no eye within the radius can see.
+    pub(crate) clamp_depth: f64,
     /// Samples per unit of `1 / distance` and metre: how far a point at depth 1 shifts for one metre of eye
     /// movement, samples.
     pub(crate) shift_per_metre: f64,
@@ -270,18 +273,18 @@ impl Camera {
         if !(view.validity_radius_m.is_finite() && view.validity_radius_m >= 0.0) {
             return Err(CullError::NotFinite);
         }
-        let (eye, radius) = match view.second_eye {
-            None => (view.eye, view.validity_radius_m),
+        let (eye, eyes_apart) = match view.second_eye {
+            None => (view.eye, 0.0),
             Some(second) => {
                 second.check()?;
-                let (eye, radius) = join_eyes(&view.eye, &second)?;
-                (eye, radius + view.validity_radius_m)
+                join_eyes(&view.eye, &second)?
             }
         };
-        let projection = if radius > 0.0 {
+        let radius = eyes_apart + view.validity_radius_m;
+        let (projection, clamp_depth) = if radius > 0.0 {
             widen(eye.projection, radius)
         } else {
-            eye.projection
+            (eye.projection, f64::INFINITY)
         };
         let [l, r, b, t] = projection.extents();
         let [near, far] = projection.near_far();
@@ -318,7 +321,15 @@ impl Camera {
             forward,
             far_depth,
             radius,
-            shift_per_metre: sx.max(sy) / near,
+            // Moving sideways by e shifts a point at tangent x and distance z against infinity by e / z, moving
+            // forward by e x / z; together at most e / z * sqrt(1 + x² + y²).
+            shift_per_metre: if projection.is_orthographic() {
+                0.0
+            } else {
+                let (x, y) = (l.abs().max(r.abs()), b.abs().max(t.abs()));
+                sx.max(sy) * (1.0 + x * x + y * y).sqrt() / near
+            },
+            clamp_depth,
             tan_half_fov_y: (t - b) * 0.5,
             near,
         })
@@ -365,7 +376,7 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, f64), CullError> {
         f64::INFINITY,
         f64::NEG_INFINITY,
     ];
-    let (mut near, mut far) = (f64::INFINITY, 0.0f64);
+    let (mut near, mut far) = (0.0f64, 0.0f64);
     for eye in [a, b] {
         let [l, r, bottom, top] = eye.projection.extents();
         let [n, f] = eye.projection.near_far();
@@ -381,9 +392,9 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, f64), CullError> {
                 extents[2].min(ty),
                 extents[3].max(ty),
             ];
-            // The near and far planes of a canted eye, measured along the middle axis.
-            near = near.min(n * -ray.z);
-            far = far.max(f * -ray.z);
+            // Beyond every eye's near plane, and no nearer than any far plane, along the middle axis.
+            near = near.max(n * -ray.z).max(n);
+            far = far.max(f * -ray.z).max(f);
         }
     }
     let projection = Projection::Perspective {
@@ -403,10 +414,12 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, f64), CullError> {
     ))
 }
 
-/// The frustum of the middle, so wide that what an eye within `radius` sees at `near` or beyond it projects
-/// into it. A point at distance d shifts by at most radius / d <= radius / near tangents; beyond that the
-/// tangents only need the borders' own movement.
-fn widen(projection: Projection, radius: f64) -> Projection {
+/// The frustum of the middle for all eyes within `radius`: somewhat wider, and with a near plane beyond every
+/// eye's own (an occluder that one eye's near plane cuts must not count). Second, the depth up to which the
+/// wider borders hold.
+fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
+    /// Tangents.
+    const MARGIN: f64 = 0.04;
     match projection {
         Projection::Perspective {
             left,
@@ -416,19 +429,21 @@ fn widen(projection: Projection, radius: f64) -> Projection {
             near,
             far,
         } => {
-            // The near plane may come closer to the middle by the radius; what is nearer than half of it is
-            // given up (reported visible by the clipper).
-            let near = (near - radius).max(near * 0.25);
-            let tilt = 1.0 + left.abs().max(right).max(bottom.abs()).max(top);
-            let d = (radius * tilt / near).min(tilt);
-            Projection::Perspective {
-                left: left - d,
-                right: right + d,
-                bottom: bottom - d,
-                top: top + d,
-                near,
-                far: far + radius,
-            }
+            let (x, y) = (left.abs().max(right.abs()), bottom.abs().max(top.abs()));
+            let tilt = (1.0 + x * x + y * y).sqrt();
+            let near = near + radius;
+            let holds_from = radius * tilt / MARGIN + radius;
+            (
+                Projection::Perspective {
+                    left: left - MARGIN,
+                    right: right + MARGIN,
+                    bottom: bottom - MARGIN,
+                    top: top + MARGIN,
+                    near,
+                    far: f64::INFINITY.min(far + radius),
+                },
+                near / holds_from,
+            )
         }
         Projection::Orthographic {
             left,
@@ -437,13 +452,60 @@ fn widen(projection: Projection, radius: f64) -> Projection {
             top,
             near,
             far,
-        } => Projection::Orthographic {
-            left: left - radius,
-            right: right + radius,
-            bottom: bottom - radius,
-            top: top + radius,
-            near: near - radius,
-            far: far + radius,
-        },
+        } => (
+            Projection::Orthographic {
+                left: left - radius,
+                right: right + radius,
+                bottom: bottom - radius,
+                top: top + radius,
+                near: near + radius,
+                far: far + 2.0 * radius,
+            },
+            f64::INFINITY,
+        ),
     }
+}
+
+/// The six planes of one eye's frustum, pushed outwards by `radius` (and by the rounding of boxes): a box that
+/// is wholly behind one of them is outside. World space relative to `origin`: `n . p + d >= 0` is inside.
+pub(crate) fn frustum_planes(eye: &Eye, radius: f64, origin: DVec3) -> [[f32; 4]; 6] {
+    let [l, r, b, t] = eye.projection.extents();
+    let [near, far] = eye.projection.near_far();
+    let m = eye.world_from_eye.matrix3;
+    let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
+    let far_plane = if far.is_finite() {
+        (-forward, far)
+    } else {
+        (DVec3::ZERO, 1.0)
+    };
+    let planes = if eye.projection.is_orthographic() {
+        [
+            (right, -l),
+            (-right, r),
+            (up, -b),
+            (-up, t),
+            (forward, -near),
+            far_plane,
+        ]
+    } else {
+        [
+            (right - forward * l, 0.0),
+            (forward * r - right, 0.0),
+            (up - forward * b, 0.0),
+            (forward * t - up, 0.0),
+            (forward, -near),
+            far_plane,
+        ]
+    };
+    planes.map(|(n, d)| {
+        let from_eye = origin - eye.position();
+        let push = n.length() * (radius + 1e-6 * from_eye.length());
+        let d = d + n.dot(from_eye) + push;
+        [
+            n.x as f32,
+            n.y as f32,
+            n.z as f32,
+            (d + d.abs() * 1e-6) as f32,
+        ]
+    })
 }

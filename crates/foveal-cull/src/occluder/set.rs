@@ -24,8 +24,6 @@ pub(crate) struct Instance {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
     pub(crate) mirrored: bool,
-    /// Largest factor by which the transform stretches a length.
-    pub(crate) scale: f64,
     /// Takes the eye to the mesh, where cones are tested; NaN for a singular transform.
     pub(crate) mesh_from_world: DAffine3,
     pub(crate) hash: u32,
@@ -132,10 +130,6 @@ impl Instance {
             return Err(CullError::NotFinite);
         }
         let m = world_from_mesh.matrix3;
-        let gram = m.transpose() * m;
-        // The largest absolute row sum bounds the largest squared stretch.
-        let rows = [gram.row(0), gram.row(1), gram.row(2)].map(|r| r.abs().element_sum());
-        let scale = rows.into_iter().fold(0.0, f64::max).sqrt();
         let center = world_from_mesh.transform_point3(mesh.center);
         let half = mesh.half.as_dvec3();
         let extent = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
@@ -150,7 +144,6 @@ impl Instance {
             radius: extent.length(),
             center,
             mirrored: m.determinant() < 0.0,
-            scale,
             mesh_from_world: world_from_mesh.inverse(),
             hash,
             mesh: Some(mesh),

@@ -3,3 +3,4 @@
 pub(crate) mod near;
 pub(crate) mod project;
 pub(crate) mod test;
+pub(crate) mod tree;

@@ -95,7 +95,7 @@ pub(crate) fn clip_box(s: &Screen, center: Vec3, half: Vec3) -> Clipped {
         };
     }
     // At the near plane nothing can be in front.
-    if !(depth < 1.0 - 1e-5) {
+    if depth >= 1.0 - 1e-5 {
         return Clipped::Visible;
     }
     Clipped::Rect(

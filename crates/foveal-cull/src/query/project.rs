@@ -68,6 +68,8 @@ pub(crate) struct Screen {
     pub(crate) far_depth: f32,
     /// By how much rectangles grow on each side, samples.
     pub(crate) dilate: f32,
+    /// By how much boxes grow on each side, metres.
+    pub(crate) grow: f32,
 }
 
 #[inline(always)]
@@ -77,10 +79,11 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
         l.load(&boxes.center[1]),
         l.load(&boxes.center[2]),
     ];
+    let grow = l.splat(s.grow);
     let h = [
-        l.load(&boxes.half[0]),
-        l.load(&boxes.half[1]),
-        l.load(&boxes.half[2]),
+        l.add(l.load(&boxes.half[0]), grow),
+        l.add(l.load(&boxes.half[1]), grow),
+        l.add(l.load(&boxes.half[2]), grow),
     ];
     let (zc, ze) = (dot(l, &c, &s.rows[2]), edges(l, &h, &s.rows[2]));
     let (wc, we) = (dot(l, &c, &s.rows[3]), edges(l, &h, &s.rows[3]));
@@ -108,9 +111,9 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
         four!(k => l.mul(l.sub(yq[k], yz), low[k])),
         four!(k => l.mul(l.add(yq[k], yz), high[k])),
     );
-    let grow = l.splat(s.dilate);
-    let (x0, y0) = (l.sub(x0, grow), l.sub(y0, grow));
-    let (x1, y1) = (l.add(x1, grow), l.add(y1, grow));
+    let dilate = l.splat(s.dilate);
+    let (x0, y0) = (l.sub(x0, dilate), l.sub(y0, dilate));
+    let (x1, y1) = (l.add(x1, dilate), l.add(y1, dilate));
     let zero = l.splat(0.0);
     let off = l.ior(
         l.ior(l.lt(x1, zero), l.lt(l.splat(s.width), x0)),

@@ -204,6 +204,7 @@ fn reduce<L: Lanes>(l: L, d: &[L::H; 4]) -> i16 {
 }
 
 /// Merges a polygon that covers the whole block.
+#[allow(clippy::needless_range_loop, reason = "four parallel arrays, unrolled")]
 #[inline(always)]
 pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, plane: &Plane) {
     let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
@@ -250,6 +251,7 @@ fn forget_hidden<L: Lanes>(l: L, partial: &mut crate::depth::PartialBlock, d: &[
 }
 
 /// Merges a polygon that covers a part of the block.
+#[allow(clippy::needless_range_loop, reason = "four parallel arrays, unrolled")]
 #[inline(always)]
 pub(crate) fn cover_partial<L: Lanes>(
     l: L,
@@ -312,9 +314,7 @@ pub(crate) fn cover_partial<L: Lanes>(
     }
     let mut depths: [L::H; 4] = [far; 4];
     if state == STATE_PARTIAL {
-        for c in 0..4 {
-            planes[c] = l.bor(planes[c], l.bload(&partial.planes[c]));
-        }
+        planes = four!(c => l.bor(planes[c], l.bload(&partial.planes[c])));
         center |= partial.center;
         depths = four!(k => l.hload(&partial.depth[k]));
     }

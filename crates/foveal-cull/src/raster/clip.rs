@@ -142,7 +142,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
             for plane in PLANES {
                 polygon.clip(plane);
             }
-            draw_fan(l, band, scratch, &polygon, facing.two_sided);
+            draw_fan(l, band, scratch, &polygon, facing);
         }
     }
 }
@@ -153,7 +153,7 @@ fn draw_fan<L: Lanes>(
     band: &mut Band<'_>,
     scratch: &mut Scratch,
     polygon: &ClipPolygon,
-    two_sided: bool,
+    facing: Facing,
 ) {
     if polygon.count < 3 {
         return;
@@ -197,6 +197,6 @@ fn draw_fan<L: Lanes>(
         y,
         &scratch.clipped,
         four!(k => &INDEX[k]),
-        two_sided,
+        facing,
     );
 }

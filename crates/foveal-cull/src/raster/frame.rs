@@ -5,7 +5,7 @@
 //! does not depend on the order in which occluders were added. Just before a cluster is drawn, its rectangle
 //! is tested against the depth so far; one that is hidden there could not have changed anything.
 
-use super::setup::{Facing, Scratch, draw_cluster};
+use super::setup::{Facing, Radius, Scratch, draw_cluster};
 use crate::depth::{BLOCK_SAMPLES, Band, encode};
 use crate::occluder::{Instance, OccluderSet};
 use crate::query::project::{Projected8, Screen, project};
@@ -81,6 +81,7 @@ impl Kernel for Select<'_> {
                 height,
                 far_depth: camera.far_depth as f32 * 0.999_99,
                 dilate: 0.0,
+                grow: 0.0,
             };
             let eye = instance.mesh_from_world.transform_point3(camera.eye) - mesh.center;
             let forward = instance.mesh_from_world.transform_vector3(camera.forward);
@@ -186,6 +187,7 @@ pub(crate) struct Draw<'a, 'b> {
     pub(crate) scratch: &'a mut Scratch,
     pub(crate) drawn: Option<&'a mut Vec<u32>>,
     pub(crate) budget: Option<Budget<'a>>,
+    pub(crate) radius: Option<Radius>,
 }
 
 impl Kernel for Draw<'_, '_> {
@@ -201,6 +203,7 @@ impl Kernel for Draw<'_, '_> {
             scratch,
             mut drawn,
             budget,
+            radius,
         } = self;
         let (row0, row1) = (
             band.first_row as u16,
@@ -228,6 +231,7 @@ impl Kernel for Draw<'_, '_> {
             let facing = Facing {
                 mirrored: instance.mirrored,
                 two_sided: mesh.two_sided,
+                radius,
             };
             draw_cluster(
                 l,

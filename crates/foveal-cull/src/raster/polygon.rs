@@ -85,6 +85,20 @@ impl Polygon {
 const SLACK: f32 = 1.0;
 
 impl Polygon {
+    /// Moves every border inwards by `by` samples.
+    #[inline(always)]
+    pub(crate) fn shrink(&mut self, by: f32, top: f32, bottom: f32) {
+        for e in &mut self.left.edges {
+            e.x += by * (1.0 + e.slope * e.slope).sqrt();
+        }
+        for e in &mut self.right.edges {
+            e.x -= by * (1.0 + e.slope * e.slope).sqrt();
+        }
+        if self.rows.is_some() {
+            self.rows = Some((top + by, bottom - by));
+        }
+    }
+
     /// Whether each side has one or two borders. A quadrilateral with three on one side must be drawn as two
     /// triangles; one without a side has no area.
     #[inline(always)]

@@ -50,6 +50,17 @@ pub(crate) struct Facing {
     /// The transform mirrors, so winding is reversed.
     pub(crate) mirrored: bool,
     pub(crate) two_sided: bool,
+    /// For a result that holds around the eye.
+    pub(crate) radius: Option<Radius>,
+}
+
+/// A validity radius, in units of the set-up.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Radius {
+    /// Samples that a point at depth 1 shifts by.
+    pub(crate) shift: f32,
+    /// The radius as a part of the near distance.
+    pub(crate) per_depth: f32,
 }
 
 #[inline(always)]
@@ -72,7 +83,7 @@ pub(crate) fn draw_cluster<L: Lanes>(
         let index = four!(c => &group[order[c]]);
         let x = four!(c => l.gather(&scratch.x, index[c]));
         let y = four!(c => l.gather(&scratch.y, index[c]));
-        scratch.polygons += draw_eight(l, band, x, y, &scratch.d, index, facing.two_sided);
+        scratch.polygons += draw_eight(l, band, x, y, &scratch.d, index, facing);
     }
     if clipped {
         clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
@@ -136,8 +147,9 @@ pub(crate) fn draw_eight<L: Lanes>(
     mut y: [L::F; 4],
     depths: &[f32; 256],
     index: [&[u8; 8]; 4],
-    two_sided: bool,
+    facing: Facing,
 ) -> u64 {
+    let (two_sided, radius) = (facing.two_sided, facing.radius);
     let zero = l.splat(0.0);
     let mut f0 = area(l, &x, &y, 0, 1, 2);
     let mut f1 = area(l, &x, &y, 0, 2, 3);
@@ -283,6 +295,15 @@ pub(crate) fn draw_eight<L: Lanes>(
                 polygon.rows = Some((lo, hi));
             }
             if polygon.is_drawable() {
+                if let Some(radius) = radius {
+                    // Every point that stays is hidden for all eyes within the radius: their rays to what lies
+                    // behind it cross this very polygon (Wonka et al. 2000, with a polygon for the occluder).
+                    let near = z_hi[i] * radius.per_depth;
+                    if near > 0.5 {
+                        continue;
+                    }
+                    polygon.shrink(z_hi[i] * radius.shift / (1.0 - near) * 1.001 + 0.01, lo, hi);
+                }
                 drawn += 1;
                 polygon::draw(l, band, &polygon);
                 if first + n == 2 {

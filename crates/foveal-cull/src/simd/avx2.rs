@@ -125,10 +125,6 @@ impl Lanes for Avx2 {
         avx2!(_mm256_or_si256(a, b))
     }
     #[inline(always)]
-    fn ixor(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_xor_si256(a, b))
-    }
-    #[inline(always)]
     fn iandnot(self, a: __m256i, b: __m256i) -> __m256i {
         avx2!(_mm256_andnot_si256(a, b))
     }

@@ -116,7 +116,6 @@ pub(crate) trait Lanes: Copy {
     fn isub(self, a: Self::I, b: Self::I) -> Self::I;
     fn iand(self, a: Self::I, b: Self::I) -> Self::I;
     fn ior(self, a: Self::I, b: Self::I) -> Self::I;
-    fn ixor(self, a: Self::I, b: Self::I) -> Self::I;
     /// `!a & b`.
     fn iandnot(self, a: Self::I, b: Self::I) -> Self::I;
     /// Arithmetic shift right by 12.

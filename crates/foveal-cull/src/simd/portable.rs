@@ -97,10 +97,6 @@ impl Lanes for Portable {
         from_fn(|i| a[i] | b[i])
     }
     #[inline(always)]
-    fn ixor(self, a: Self::I, b: Self::I) -> Self::I {
-        from_fn(|i| a[i] ^ b[i])
-    }
-    #[inline(always)]
     fn iandnot(self, a: Self::I, b: Self::I) -> Self::I {
         from_fn(|i| !a[i] & b[i])
     }

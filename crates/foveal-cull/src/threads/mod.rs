@@ -1,5 +1,9 @@
 //! Who does the work: this thread, the caller's pool, or rayon.
 
+mod pool;
+
+pub use pool::Pool;
+
 /// Runs tasks on several threads. Implement it for your own pool; the crate never starts threads itself
 /// unless you make a [`Pool`].
 pub trait Threads: Sync {

@@ -1,0 +1,176 @@
+//! A small pool: the calling thread and helpers that wait for work.
+//!
+//! A task lives on the caller's stack, so helpers reach it through a pointer; the caller does not return
+//! before the last helper has let go of it.
+#![allow(
+    unsafe_code,
+    reason = "helpers outlive the borrow of a task; see the SAFETY line"
+)]
+
+use super::Threads;
+use core::sync::atomic::{AtomicUsize, Ordering};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread::JoinHandle;
+
+/// Its own threads, made once. One [`Threads::run`] at a time; a second one from another thread waits its
+/// turn. A task must not call `run` on the pool that runs it.
+#[derive(Debug)]
+pub struct Pool {
+    shared: Arc<Shared>,
+    helpers: Vec<JoinHandle<()>>,
+    turn: Mutex<()>,
+}
+
+#[derive(Debug, Default)]
+struct Shared {
+    state: Mutex<State>,
+    changed: Condvar,
+    next: AtomicUsize,
+}
+
+#[derive(Debug, Default)]
+struct State {
+    task: Option<Task>,
+    tasks: usize,
+    round: u64,
+    /// Helpers that hold the task.
+    active: usize,
+    panicked: bool,
+    stop: bool,
+}
+
+#[derive(Clone, Copy)]
+struct Task(*const (dyn Fn(usize) + Sync));
+
+impl core::fmt::Debug for Task {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.write_str("Task")
+    }
+}
+
+// SAFETY: what it points to is `Sync`, so it may be used from any thread while it lives.
+unsafe impl Send for Task {}
+
+impl Shared {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn wait<'a>(&self, state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
+        self.changed
+            .wait(state)
+            .unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn help(&self) {
+        let mut seen = 0;
+        loop {
+            let mut state = self.lock();
+            while !state.stop && (state.round == seen || state.task.is_none()) {
+                state = self.wait(state);
+            }
+            if state.stop {
+                return;
+            }
+            let (Some(task), tasks) = (state.task, state.tasks) else {
+                continue;
+            };
+            seen = state.round;
+            state.active += 1;
+            drop(state);
+            let ended = catch_unwind(AssertUnwindSafe(|| {
+                // SAFETY: `active` was raised under the lock while the task was posted, and `Pool::run` keeps
+                // the task alive until it is zero again.
+                let task = unsafe { &*task.0 };
+                self.work(tasks, task);
+            }));
+            let mut state = self.lock();
+            state.active -= 1;
+            state.panicked |= ended.is_err();
+            drop(state);
+            self.changed.notify_all();
+        }
+    }
+
+    fn work(&self, tasks: usize, task: &(dyn Fn(usize) + Sync)) {
+        loop {
+            let i = self.next.fetch_add(1, Ordering::Relaxed);
+            if i >= tasks {
+                return;
+            }
+            task(i);
+        }
+    }
+}
+
+/// Takes the task back, whatever happens.
+struct Posted<'a>(&'a Shared);
+
+impl Drop for Posted<'_> {
+    fn drop(&mut self) {
+        let mut state = self.0.lock();
+        state.task = None;
+        while state.active > 0 {
+            state = self.0.wait(state);
+        }
+    }
+}
+
+impl Pool {
+    /// A pool of `threads` threads, the caller's included.
+    #[must_use]
+    pub fn new(threads: usize) -> Self {
+        let shared = Arc::new(Shared::default());
+        let helpers = (1..threads)
+            .filter_map(|_| {
+                let shared = Arc::clone(&shared);
+                std::thread::Builder::new()
+                    .name("foveal-cull".into())
+                    .spawn(move || shared.help())
+                    .ok()
+            })
+            .collect();
+        Self {
+            shared,
+            helpers,
+            turn: Mutex::new(()),
+        }
+    }
+}
+
+impl Threads for Pool {
+    fn count(&self) -> usize {
+        self.helpers.len() + 1
+    }
+
+    fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync)) {
+        let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
+        let pointer: *const (dyn Fn(usize) + Sync + '_) = task;
+        // SAFETY: only the lifetime changes; `Posted` ends every use before `task` does.
+        let pointer: *const (dyn Fn(usize) + Sync + 'static) =
+            unsafe { core::mem::transmute(pointer) };
+        {
+            let mut state = self.shared.lock();
+            self.shared.next.store(0, Ordering::Relaxed);
+            (state.task, state.tasks, state.panicked) = (Some(Task(pointer)), tasks, false);
+            state.round += 1;
+        }
+        let posted = Posted(&self.shared);
+        self.shared.changed.notify_all();
+        self.shared.work(tasks, task);
+        drop(posted);
+        let panicked = self.shared.lock().panicked;
+        assert!(!panicked, "a task panicked");
+    }
+}
+
+impl Drop for Pool {
+    fn drop(&mut self) {
+        self.shared.lock().stop = true;
+        self.shared.changed.notify_all();
+        for helper in self.helpers.drain(..) {
+            let _ = helper.join();
+        }
+    }
+}

@@ -1,0 +1,170 @@
+//! What is culled is never visible, whatever the scene, the view, the resolution or the order.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{Random, answers, eye, occluders, scene, wrongly_culled};
+use foveal_cull::{
+    Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, Pool, SingleThread, View, Visibility,
+};
+use glam::{DAffine3, DVec3};
+use proptest::prelude::*;
+
+fn size(r: &mut Random) -> (u32, u32) {
+    (8 + r.below(90) as u32, 8 + r.below(60) as u32)
+}
+
+fn culls_nothing_visible(
+    seed: u64,
+    orthographic: bool,
+    origin: DVec3,
+) -> Result<usize, TestCaseError> {
+    let mut r = Random::new(seed);
+    let objects = 1 + r.below(7);
+    let scene = scene(&mut r, objects, 150, origin);
+    let eye = eye(&mut r, origin, orthographic);
+    let (w, h) = size(&mut r);
+    let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
+    let results = answers(
+        &mut Culler::new(w, h).unwrap(),
+        &View::mono(eye),
+        &set,
+        &scene,
+        &SingleThread,
+    );
+    for n in [1, 4] {
+        let wrong = wrongly_culled(&scene, &eye, (w, h), n, &results);
+        prop_assert!(
+            wrong.is_empty(),
+            "{}x: {:?} {:?}",
+            n,
+            &wrong,
+            wrong
+                .iter()
+                .map(|&i| (scene.boxes[i], results[i]))
+                .collect::<Vec<_>>()
+        );
+    }
+    Ok(results
+        .iter()
+        .filter(|r| **r == Visibility::Occluded)
+        .count())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(150))]
+
+    #[test]
+    fn perspective_views_cull_nothing_visible(seed in any::<u64>()) {
+        culls_nothing_visible(seed, false, DVec3::ZERO)?;
+    }
+
+    #[test]
+    fn orthographic_views_cull_nothing_visible(seed in any::<u64>()) {
+        culls_nothing_visible(seed, true, DVec3::ZERO)?;
+    }
+
+    #[test]
+    fn a_million_metres_from_the_origin_nothing_visible_is_culled(seed in any::<u64>()) {
+        culls_nothing_visible(seed, seed % 4 == 0, DVec3::new(1e6, -2e5, 3e6))?;
+    }
+
+    #[test]
+    fn order_threads_instruction_set_and_tree_change_nothing(seed in any::<u64>()) {
+        let mut r = Random::new(seed);
+        let objects = 1 + r.below(9);
+        let scene = scene(&mut r, objects, 200, DVec3::ZERO);
+        let view = View::mono(eye(&mut r, DVec3::ZERO, seed % 4 == 0));
+        let (w, h) = size(&mut r);
+        let mut order: Vec<usize> = (0..objects).collect();
+        let mut culler = Culler::new(w, h).unwrap();
+        let depth = |c: &Culler| { let mut d = vec![0.0; (w * h) as usize]; c.read_depth(&mut d).unwrap(); d };
+        let reference = answers(&mut culler, &view, &occluders(&scene, &order), &scene, &SingleThread);
+        let image = depth(&culler);
+        order.reverse();
+        let reversed = occluders(&scene, &order);
+        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
+        prop_assert_eq!(&image, &depth(&culler));
+        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &Pool::new(2)));
+        prop_assert_eq!(&image, &depth(&culler));
+        let tree = OccludeeTree::build(&scene.boxes, scene.origin);
+        let mut by_tree = vec![Visibility::Outside; scene.boxes.len()];
+        culler.query_tree(&tree, &mut by_tree).unwrap();
+        for (flat, tree) in reference.iter().zip(&by_tree) {
+            prop_assert_eq!(flat.is_visible(), tree.is_visible());
+        }
+        culler.set_instruction_set(InstructionSet::Portable);
+        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
+        prop_assert_eq!(&image, &depth(&culler));
+    }
+
+    #[test]
+    fn within_the_validity_radius_nothing_visible_is_culled(seed in any::<u64>()) {
+        let mut r = Random::new(seed);
+        let objects = 1 + r.below(6);
+        let scene = scene(&mut r, objects, 150, DVec3::ZERO);
+        let middle = eye(&mut r, DVec3::ZERO, seed % 5 == 0);
+        let (w, h) = size(&mut r);
+        let radius = [0.005, 0.03, 0.2][r.below(3)];
+        let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
+        let view = View::mono(middle).with_validity_radius(radius);
+        let results = answers(&mut Culler::new(w, h).unwrap(), &view, &set, &scene, &SingleThread);
+        for k in 0..3 {
+            let step = r.vec(1.0).normalize() * (radius * if k == 0 { 1.0 } else { r.next() });
+            let moved = Eye { world_from_eye: DAffine3::from_translation(step) * middle.world_from_eye, ..middle };
+            for n in [1, 4] {
+                let wrong = wrongly_culled(&scene, &moved, (w, h), n, &results);
+                prop_assert!(wrong.is_empty(), "{}x: {:?} {:?}", n, &wrong, wrong.iter().map(|&i| (scene.boxes[i], results[i])).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn what_either_eye_sees_is_not_culled(seed in any::<u64>()) {
+        let mut r = Random::new(seed);
+        let objects = 1 + r.below(6);
+        let scene = scene(&mut r, objects, 150, DVec3::ZERO);
+        let left = eye(&mut r, DVec3::ZERO, false);
+        // The other eye: beside it, turned a little outwards, with its own asymmetric frustum.
+        let cant = DAffine3::from_rotation_y(r.range(-0.15, 0.15));
+        let apart = DAffine3::from_translation(DVec3::new(0.063, 0.0, 0.0));
+        let mut right = eye(&mut r, DVec3::ZERO, false);
+        right.world_from_eye = left.world_from_eye * apart * cant;
+        let (w, h) = size(&mut r);
+        let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
+        let results = answers(&mut Culler::new(w, h).unwrap(), &View::stereo(left, right), &set, &scene, &SingleThread);
+        for eye in [left, right] {
+            for n in [1, 4] {
+                let wrong = wrongly_culled(&scene, &eye, (w, h), n, &results);
+                prop_assert!(wrong.is_empty(), "{}x: {:?} {:?}", n, &wrong, wrong.iter().map(|&i| (scene.boxes[i], results[i])).collect::<Vec<_>>());
+            }
+        }
+    }
+
+    #[test]
+    fn a_spent_budget_only_makes_more_visible(seed in any::<u64>()) {
+        let mut r = Random::new(seed);
+        let scene = scene(&mut r, 8, 100, DVec3::ZERO);
+        let view = View::mono(eye(&mut r, DVec3::ZERO, false));
+        let set = occluders(&scene, &(0..8).collect::<Vec<_>>());
+        let mut culler = Culler::new(64, 48).unwrap();
+        let all = answers(&mut culler, &view, &set, &scene, &SingleThread);
+        let ticks = core::sync::atomic::AtomicU64::new(0);
+        let clock = || ticks.fetch_add(1, core::sync::atomic::Ordering::Relaxed);
+        let budget = Some(foveal_cull::Budget { clock: &clock, deadline_ns: seed % 3 });
+        culler.rasterize(&view, &set, &FrameOptions { budget, ..FrameOptions::default() }, &SingleThread).unwrap();
+        let mut some = vec![Visibility::Visible; scene.boxes.len()];
+        culler.query(&scene.boxes, scene.origin, &mut some).unwrap();
+        for (all, some) in all.iter().zip(&some) {
+            prop_assert!(!all.is_visible() || some.is_visible());
+        }
+    }
+}
+
+#[test]
+fn random_scenes_do_hide_something() {
+    let hidden: usize = (0..40)
+        .map(|seed| culls_nothing_visible(seed, seed % 4 == 0, DVec3::ZERO).unwrap())
+        .sum();
+    assert!(hidden > 100, "{hidden}");
+}
