@@ -2,6 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
+use crate::bench::BenchCommand;
 use crate::{adapters, compare, render, scene_info};
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
@@ -30,6 +31,9 @@ pub(crate) enum Command {
     /// Look into a scene without drawing it
     #[command(subcommand)]
     Scene(SceneCommand),
+    /// Measure what a technique costs and gains
+    #[command(subcommand)]
+    Bench(BenchCommand),
 }
 
 /// What to do with a scene.
@@ -47,6 +51,7 @@ impl Command {
             Self::Compare(_) => "compare",
             Self::Adapters(_) => "adapters",
             Self::Scene(SceneCommand::Info(_)) => "scene info",
+            Self::Bench(command) => command.name(),
         }
     }
 }

@@ -6,6 +6,7 @@
 
 mod adapters;
 mod atomic_file;
+mod bench;
 mod cli;
 mod compare;
 mod console;
@@ -30,5 +31,6 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Adapters(args) => adapters::run(&args),
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
+        Command::Bench(command) => command.run(),
     })
 }
