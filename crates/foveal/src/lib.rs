@@ -8,6 +8,7 @@
 
 pub mod gpu;
 
+mod culling;
 mod error;
 mod forward;
 mod frame;
@@ -28,5 +29,5 @@ mod testing;
 pub use error::Error;
 pub use gpu::Gpu;
 pub use renderer::{Clock, Frame, Renderer};
-pub use settings::{LightAssignment, LightingModel, Settings, ToneMap, View};
+pub use settings::{Culling, LightAssignment, LightingModel, Settings, ToneMap, View};
 pub use stats::{AdapterStats, FrameStats, SceneStats, Timing};
