@@ -2,7 +2,8 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::{adapters, compare, render, scene_info};
+use crate::bench::BenchCommand;
+use crate::{adapters, compare, cull, render, scene_info};
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
 #[derive(Debug, Parser)]
@@ -30,6 +31,11 @@ pub(crate) enum Command {
     /// Look into a scene without drawing it
     #[command(subcommand)]
     Scene(SceneCommand),
+    /// Cull a scene on the CPU: what is visible, occluded, outside or too small, and what that costs
+    Cull(Box<cull::Args>),
+    /// Measure what a technique costs and gains
+    #[command(subcommand)]
+    Bench(BenchCommand),
 }
 
 /// What to do with a scene.
@@ -47,6 +53,8 @@ impl Command {
             Self::Compare(_) => "compare",
             Self::Adapters(_) => "adapters",
             Self::Scene(SceneCommand::Info(_)) => "scene info",
+            Self::Cull(_) => "cull",
+            Self::Bench(command) => command.name(),
         }
     }
 }

@@ -6,9 +6,11 @@
 
 mod adapters;
 mod atomic_file;
+mod bench;
 mod cli;
 mod compare;
 mod console;
+mod cull;
 mod failure;
 mod gpu;
 mod picture;
@@ -30,5 +32,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::run(&args),
         Command::Adapters(args) => adapters::run(&args),
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
+        Command::Cull(args) => cull::run(&args),
+        Command::Bench(command) => command.run(),
     })
 }

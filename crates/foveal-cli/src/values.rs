@@ -63,6 +63,14 @@ pub(crate) fn positive(text: &str) -> Result<f32, String> {
     }
 }
 
+/// A finite number of 0 or more.
+pub(crate) fn non_negative(text: &str) -> Result<f32, String> {
+    match finite(text)? {
+        value if value >= 0.0 => Ok(value),
+        _ => Err("the number must be 0 or more".to_owned()),
+    }
+}
+
 /// A number of 0 or more; `inf` is allowed.
 pub(crate) fn threshold(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

@@ -1,0 +1,164 @@
+//! Frames of one eye: culled, timed, counted.
+
+use std::time::Instant;
+
+use anyhow::Context;
+use foveal_cull::{Culler, Eye, FrameOptions, View, Visibility};
+use serde::Serialize;
+
+use super::args::CullingArgs;
+use super::subject::{Occludees, Subject};
+use super::workers::Workers;
+
+/// The figures of one eye, those that Intel's occlusion culling sample shows. Times are medians.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct Figures {
+    pub(crate) occluders: OccluderFigures,
+    pub(crate) occludees: OccludeeFigures,
+    pub(crate) draw_calls: DrawCalls,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct OccluderFigures {
+    pub(crate) models: u64,
+    pub(crate) rasterized_models: u64,
+    pub(crate) triangles: u64,
+    pub(crate) rasterized_triangles: u64,
+    pub(crate) rasterize_ms: f64,
+    pub(crate) size_threshold: f32,
+}
+
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub(crate) struct OccludeeFigures {
+    pub(crate) models: u64,
+    pub(crate) culled: u64,
+    pub(crate) culled_by_frustum: u64,
+    pub(crate) culled_by_size: u64,
+    pub(crate) culled_by_occlusion: u64,
+    pub(crate) visible: u64,
+    pub(crate) triangles: u64,
+    pub(crate) culled_triangles: u64,
+    pub(crate) visible_triangles: u64,
+    pub(crate) test_ms: f64,
+    pub(crate) size_threshold: f32,
+}
+
+/// How many draws are issued without culling, with the frustum alone, and with everything.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct DrawCalls {
+    pub(crate) off: u64,
+    pub(crate) frustum: u64,
+    pub(crate) occlusion: u64,
+}
+
+/// What one eye gave.
+#[derive(Debug, Clone)]
+pub(crate) struct Outcome {
+    pub(crate) figures: Figures,
+    /// One per occludee.
+    pub(crate) results: Vec<Visibility>,
+}
+
+/// Culls `frames` times (and once before, to warm up) and takes the medians.
+pub(crate) fn measure(
+    culler: &mut Culler,
+    workers: &Workers,
+    subject: &Subject,
+    eye: &Eye,
+    culling: &CullingArgs,
+    frames: u32,
+) -> anyhow::Result<Outcome> {
+    let view = View::mono(*eye);
+    let options = FrameOptions {
+        occluder_size_threshold: culling.occluder_size_threshold,
+        occludee_size_threshold: culling.occludee_size_threshold,
+        ..FrameOptions::default()
+    };
+    let Occludees {
+        boxes,
+        triangles,
+        draws,
+        ..
+    } = &subject.occludees;
+    let mut results = vec![Visibility::Visible; boxes.len()];
+    let (mut rasterize_ms, mut test_ms) = (Vec::new(), Vec::new());
+    workers
+        .enter(|| -> Result<(), foveal_cull::CullError> {
+            for frame in 0..=frames {
+                let start = Instant::now();
+                workers.rasterize(culler, &view, &subject.occluders.set, &options)?;
+                let between = Instant::now();
+                workers.query(culler, boxes, &mut results)?;
+                if frame > 0 {
+                    rasterize_ms.push((between - start).as_secs_f64() * 1e3);
+                    test_ms.push(between.elapsed().as_secs_f64() * 1e3);
+                }
+            }
+            Ok(())
+        })
+        .context("this view cannot be culled")?;
+    culler.count(&results, Some(triangles));
+    let stats = culler.stats();
+    let figures = Figures {
+        occluders: OccluderFigures {
+            models: subject.occluders.set.len() as u64,
+            rasterized_models: stats.occluder_models_rasterized,
+            triangles: subject.occluders.set.triangle_count() as u64,
+            rasterized_triangles: stats.occluder_triangles_rasterized,
+            rasterize_ms: median(&mut rasterize_ms),
+            size_threshold: culling.occluder_size_threshold,
+        },
+        occludees: OccludeeFigures {
+            models: stats.occludees,
+            culled: stats.occludees_culled(),
+            culled_by_frustum: stats.occludees_outside,
+            culled_by_size: stats.occludees_small,
+            culled_by_occlusion: stats.occludees_occluded,
+            visible: stats.occludees_visible,
+            triangles: stats.occludee_triangles,
+            culled_triangles: stats.occludee_triangles_culled(),
+            visible_triangles: stats.occludee_triangles_visible,
+            test_ms: median(&mut test_ms),
+            size_threshold: culling.occludee_size_threshold,
+        },
+        draw_calls: draw_calls(draws, &results),
+    };
+    Ok(Outcome { figures, results })
+}
+
+fn draw_calls(draws: &[u32], results: &[Visibility]) -> DrawCalls {
+    let mut calls = DrawCalls::default();
+    for (&draws, result) in draws.iter().zip(results) {
+        let draws = u64::from(draws);
+        calls.off += draws;
+        calls.frustum += if *result == Visibility::Outside {
+            0
+        } else {
+            draws
+        };
+        calls.occlusion += if result.is_visible() { draws } else { 0 };
+    }
+    calls
+}
+
+/// The middle value, of an even number the mean of the two in the middle; 0 of none.
+pub(crate) fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    match values.len() {
+        0 => 0.0,
+        n if n % 2 == 1 => values[n / 2],
+        n => (values[n / 2 - 1] + values[n / 2]) * 0.5,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_the_middle() {
+        assert_eq!(median(&mut []), 0.0);
+        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
+        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
+    }
+}

@@ -1,0 +1,100 @@
+//! Comparison with the exact reference: was anything culled that can be seen, was anything kept that cannot.
+
+use anyhow::Context;
+use foveal_cull::truth::{Seen, Truth};
+use foveal_cull::{Aabb, Eye, Visibility};
+use glam::DVec3;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::occluders::Occluders;
+
+/// How the culler's answers compare with what is really visible.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+pub(crate) struct Check {
+    /// Culled as occluded or outside, yet seen by a reference of the depth buffer's own resolution.
+    pub(crate) false_occluded: u64,
+    /// The same against four times the resolution in each axis.
+    pub(crate) false_occluded_4x: u64,
+    /// Hidden in the reference of the same resolution.
+    pub(crate) hidden: u64,
+    /// Of these, kept.
+    pub(crate) missed: u64,
+    /// Hidden in the reference of four times the resolution.
+    pub(crate) hidden_4x: u64,
+    /// Of these, kept.
+    pub(crate) missed_4x: u64,
+}
+
+impl Check {
+    /// Whether nothing visible was culled.
+    pub(crate) fn is_safe(&self) -> bool {
+        self.false_occluded == 0 && self.false_occluded_4x == 0
+    }
+
+    /// Compares `results`, one per box.
+    pub(crate) fn new(
+        occluders: &Occluders,
+        eye: &Eye,
+        (width, height): (u32, u32),
+        boxes: &[Aabb],
+        results: &[Visibility],
+    ) -> anyhow::Result<Self> {
+        let same = compare(&reference(occluders, eye, width, height)?, boxes, results);
+        let fine = compare(
+            &reference(occluders, eye, 4 * width, 4 * height)?,
+            boxes,
+            results,
+        );
+        Ok(Self {
+            false_occluded: same.culled_but_seen,
+            false_occluded_4x: fine.culled_but_seen,
+            hidden: same.hidden,
+            missed: same.hidden_but_kept,
+            hidden_4x: fine.hidden,
+            missed_4x: fine.hidden_but_kept,
+        })
+    }
+}
+
+fn reference(occluders: &Occluders, eye: &Eye, width: u32, height: u32) -> anyhow::Result<Truth> {
+    let mut truth = Truth::new(eye, width, height).context("the exact reference")?;
+    for &(shape, world_from_mesh) in &occluders.placed {
+        let shape = &occluders.shapes[shape];
+        truth.add(
+            &shape.positions,
+            &shape.indices,
+            &world_from_mesh,
+            shape.two_sided,
+        );
+    }
+    truth.finish();
+    Ok(truth)
+}
+
+#[derive(Default)]
+struct Counts {
+    culled_but_seen: u64,
+    hidden: u64,
+    hidden_but_kept: u64,
+}
+
+fn compare(truth: &Truth, boxes: &[Aabb], results: &[Visibility]) -> Counts {
+    boxes
+        .par_iter()
+        .zip(results)
+        .map(|(bounds, result)| {
+            let seen = truth.seen(bounds, DVec3::ZERO);
+            let culled = matches!(result, Visibility::Occluded | Visibility::Outside);
+            Counts {
+                culled_but_seen: u64::from(culled && seen == Seen::Visible),
+                hidden: u64::from(seen == Seen::Hidden),
+                hidden_but_kept: u64::from(result.is_visible() && seen == Seen::Hidden),
+            }
+        })
+        .reduce(Counts::default, |a, b| Counts {
+            culled_but_seen: a.culled_but_seen + b.culled_but_seen,
+            hidden: a.hidden + b.hidden,
+            hidden_but_kept: a.hidden_but_kept + b.hidden_but_kept,
+        })
+}
