@@ -185,9 +185,13 @@ impl Culler {
             height,
             size_threshold: options.occluder_size_threshold,
         });
-        let radius = (camera.radius > 0.0 && !camera.orthographic).then(|| Radius {
+        let radius = (camera.radius > 0.0).then(|| Radius {
             shift: (camera.radius * camera.shift_per_metre) as f32,
-            per_depth: (camera.radius / camera.near) as f32,
+            per_depth: if camera.orthographic {
+                0.0
+            } else {
+                (camera.radius / camera.near) as f32
+            },
         });
         self.draw(occluders, options.budget, radius, threads);
         Ok(())

@@ -52,7 +52,7 @@ fn culls_nothing_visible(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(150))]
+    #![proptest_config(ProptestConfig::with_cases(60))]
 
     #[test]
     fn perspective_views_cull_nothing_visible(seed in any::<u64>()) {
@@ -91,7 +91,11 @@ proptest! {
         let mut by_tree = vec![Visibility::Outside; scene.boxes.len()];
         culler.query_tree(&tree, &mut by_tree).unwrap();
         for (flat, tree) in reference.iter().zip(&by_tree) {
-            prop_assert_eq!(flat.is_visible(), tree.is_visible());
+            // A group may prove more than its member's own, slightly grown box; never less.
+            prop_assert!(flat.is_visible() || !tree.is_visible());
+        }
+        for n in [1, 4] {
+            prop_assert!(wrongly_culled(&scene, &view.eye, (w, h), n, &by_tree).is_empty());
         }
         culler.set_instruction_set(InstructionSet::Portable);
         prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));

@@ -86,13 +86,12 @@ pub(crate) fn clip_box(s: &Screen, center: Vec3, half: Vec3) -> Clipped {
             depth = depth.max(d);
         }
     }
+    // The whole near rectangle may be inside the box, and then none of the faces meets it.
+    if contains_near_center(s, &rows, center, half) {
+        return Clipped::Visible;
+    }
     if depth == f64::NEG_INFINITY {
-        // No face inside the frustum: the box is beside a corner of it, or contains all of it.
-        return if contains_near_center(s, &rows, center, half) {
-            Clipped::Visible
-        } else {
-            Clipped::Outside
-        };
+        return Clipped::Outside;
     }
     // At the near plane nothing can be in front.
     if depth >= 1.0 - 1e-5 {

@@ -14,6 +14,10 @@ use crate::simd::{Lanes, four};
 /// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
 pub(crate) const GUARD: f32 = 32768.0;
 
+/// No point of a pixel is farther from the nearest of its grid points (half the diagonal of a sample, and a
+/// bit): polygons that shrink by this cover every point between the samples that they cover.
+const BETWEEN_SAMPLES: f32 = 0.72;
+
 /// Working memory of one thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
@@ -302,7 +306,11 @@ pub(crate) fn draw_eight<L: Lanes>(
                     if near > 0.5 {
                         continue;
                     }
-                    polygon.shrink(z_hi[i] * radius.shift / (1.0 - near) * 1.001 + 0.01, lo, hi);
+                    polygon.shrink(
+                        z_hi[i] * radius.shift / (1.0 - near) * 1.001 + BETWEEN_SAMPLES,
+                        lo,
+                        hi,
+                    );
                 }
                 drawn += 1;
                 polygon::draw(l, band, &polygon);

@@ -1,0 +1,65 @@
+//! Culling without a renderer: a street of houses, and which of the things in it can be seen.
+//!
+//! `cargo run --release -p foveal-cull --example cull_only`
+#![allow(clippy::print_stdout, reason = "the table is what the example is for")]
+
+use foveal_cull::{
+    Aabb, CullError, Culler, FrameOptions, OccludeeTree, OccluderMesh, OccluderSet, SingleThread,
+    View, Visibility,
+};
+use glam::{DAffine3, DVec3, Vec3};
+use std::sync::Arc;
+
+fn main() -> Result<(), CullError> {
+    // One mesh, placed many times.
+    let Some(house) = OccluderMesh::from_box(Aabb::new(
+        Vec3::new(-4.0, 0.0, -3.0),
+        Vec3::new(4.0, 6.0, 3.0),
+    )) else {
+        return Ok(());
+    };
+    let house = Arc::new(house);
+    let mut occluders = OccluderSet::new();
+    let mut things = Vec::new();
+    for row in 0..20 {
+        for column in 0..20 {
+            let at = DVec3::new(
+                f64::from(column) * 11.0 - 105.0,
+                0.0,
+                -10.0 - f64::from(row) * 10.0,
+            );
+            occluders.add(Arc::clone(&house), DAffine3::from_translation(at))?;
+            // A cart behind every house, and one on the street.
+            for side in [-4.5, 5.5] {
+                let c = at.as_vec3() + Vec3::new(side, 0.5, -4.5);
+                things.push(Aabb::new(c - 0.5, c + 0.5));
+            }
+        }
+    }
+    let tree = OccludeeTree::build(&things, DVec3::ZERO);
+
+    let view = View::perspective(
+        DVec3::new(0.0, 1.7, 0.0),
+        DVec3::new(0.0, 1.5, -10.0),
+        DVec3::Y,
+        1.0,
+        16.0 / 9.0,
+        0.1,
+    );
+    let mut culler = Culler::new(480, 270)?;
+    culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
+    let mut results = vec![Visibility::Visible; things.len()];
+    culler.query_tree(&tree, &mut results)?;
+    culler.count(&results, None);
+
+    let s = culler.stats();
+    println!(
+        "occluders  {:6} models, {:6} drawn, {:6} triangles drawn",
+        s.occluder_models, s.occluder_models_rasterized, s.occluder_triangles_rasterized
+    );
+    println!(
+        "things     {:6}, outside {:6}, hidden {:6}, visible {:6}",
+        s.occludees, s.occludees_outside, s.occludees_occluded, s.occludees_visible
+    );
+    Ok(())
+}
