@@ -8,7 +8,7 @@ use clap::Subcommand;
 #[derive(Debug, Subcommand)]
 pub(crate) enum BenchCommand {
     /// Rasterizing occluders and testing boxes on the CPU
-    Culling(culling::Args),
+    Culling(Box<culling::Args>),
 }
 
 impl BenchCommand {

@@ -24,7 +24,7 @@ use anyhow::{Context, bail};
 use foveal_cull::Culler;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-pub(crate) use args::Args;
+pub(crate) use args::{Args, CullingArgs};
 
 use crate::{atomic_file, console, scene_source};
 use measure::measure;
