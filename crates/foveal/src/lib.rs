@@ -8,6 +8,7 @@
 
 pub mod gpu;
 
+mod antialias;
 mod error;
 mod forward;
 mod frame;
@@ -28,5 +29,7 @@ mod testing;
 pub use error::Error;
 pub use gpu::Gpu;
 pub use renderer::{Clock, Frame, Renderer};
-pub use settings::{LightAssignment, LightingModel, Settings, ToneMap, View};
+pub use settings::{
+    Antialiasing, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings, ToneMap, View,
+};
 pub use stats::{AdapterStats, FrameStats, SceneStats, Timing};

@@ -2,9 +2,10 @@
 
 use foveal_scene::{Camera, Scene};
 
+use crate::antialias::AntialiasStage;
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
-use crate::geometry::{DrawList, GeometryPass};
+use crate::geometry::{DrawList, FaceNormals, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_texture, submitted_work_done};
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::output::{ToneMapPass, ViewPass};
@@ -12,7 +13,7 @@ use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{Samples, ShadingPass};
 use crate::targets::Targets;
-use crate::{Error, FrameStats, SceneStats, Settings};
+use crate::{Error, FrameStats, SceneStats, Settings, View};
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -47,6 +48,7 @@ struct Stages {
     lights: LightAssigner,
     geometry: GeometryPass,
     shading: ShadingPass,
+    antialias: Option<AntialiasStage>,
     forward: ForwardPass,
     tone_map: ToneMapPass,
     view: Option<ViewPass>,
@@ -62,12 +64,15 @@ impl Stages {
         settings.validate(&gpu.device.limits())?;
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let frame = frame_bindings.layout();
+        let shading = ShadingPass::new(gpu, settings, frame);
+        let face_normals = FaceNormals::wanted_by(settings);
         let stages = Self {
             settings: settings.clone(),
-            targets: Targets::new(gpu, settings.width, settings.height),
+            targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
-            geometry: GeometryPass::new(gpu, frame, material_layout),
-            shading: ShadingPass::new(gpu, settings, frame),
+            geometry: GeometryPass::new(gpu, frame, material_layout, face_normals),
+            antialias: AntialiasStage::new(gpu, settings, frame, &shading),
+            shading,
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
             tone_map: ToneMapPass::new(gpu, frame),
             view: ViewPass::new(gpu, settings.view, frame),
@@ -124,7 +129,7 @@ impl Renderer {
         }) == *settings
         {
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
-            let targets = Targets::new(&self.gpu, settings.width, settings.height);
+            let targets = Targets::new(&self.gpu, settings);
             trap.finish().await?;
             self.stages.targets = targets;
             self.stages.settings = settings.clone();
@@ -188,16 +193,32 @@ impl Renderer {
         self.submit(frame, &mut cpu);
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
+        let frame_ms = cpu.since_start_ms();
+        let Stages {
+            settings,
+            targets,
+            antialias,
+            ..
+        } = &self.stages;
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let mut shaded_samples = pixels;
+        let mut edge_fraction = 0.0;
+        if let Some(antialias) = antialias {
+            let counts = antialias.counts(&self.gpu, targets).await?;
+            shaded_samples = counts.shaded_samples;
+            edge_fraction = counts.edge_pixels as f64 / pixels as f64;
+        }
         Ok(FrameStats {
-            width: self.stages.settings.width,
-            height: self.stages.settings.height,
+            width: settings.width,
+            height: settings.height,
             cpu_ms: cpu.stages(),
             gpu_ms: self.timer.collect(&self.gpu),
             draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
             triangles: self.draw_list.triangles,
-            shaded_samples: u64::from(self.stages.settings.width)
-                * u64::from(self.stages.settings.height),
-            frame_ms: cpu.since_start_ms(),
+            shaded_samples,
+            edge_fraction,
+            target_bytes: targets.bytes(),
+            frame_ms,
         })
     }
 
@@ -218,6 +239,7 @@ impl Renderer {
             lights,
             geometry,
             shading,
+            antialias,
             forward,
             tone_map,
             view,
@@ -251,17 +273,31 @@ impl Renderer {
             frame: frame_bindings,
         };
         lights.assign(recorder, &scene.light_buffer, &clusters);
-        geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
+        if let Some(antialias) = antialias {
+            let shade = settings.view == View::Final;
+            antialias.draw(
+                recorder, scene, draw_list, geometry, shading, lights, targets, shade,
+            );
+        } else {
+            geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
+        }
         if let Some(view) = view {
             view.show(recorder, &targets.gbuffer, &targets.picture_view);
-        } else {
+        } else if !antialias
+            .as_ref()
+            .is_some_and(|a| a.show(recorder, targets))
+        {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            shading.shade(
-                recorder,
-                &input,
-                Samples::EveryPixel,
-                &targets.radiance_view,
-            );
+            let shaded = targets.shaded_view();
+            if antialias
+                .as_ref()
+                .is_none_or(AntialiasStage::needs_ordinary)
+            {
+                shading.shade(recorder, &input, Samples::EveryPixel, shaded);
+            }
+            if let Some(antialias) = antialias {
+                antialias.combine(recorder, targets);
+            }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
             tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
         }
@@ -299,6 +335,23 @@ impl Renderer {
 
     pub(crate) fn lights(&self) -> (&LightAssigner, &[crate::lights::LightUniform]) {
         (&self.stages.lights, &self.scene.lights)
+    }
+
+    /// Draws the frame again.
+    pub(crate) fn redraw(&mut self, camera: &Camera) -> FrameStats {
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        pollster::block_on(self.render(&frame)).expect("frame is drawn")
+    }
+
+    /// Draws the frame again in bands of `rows` rows.
+    pub(crate) fn redraw_in_bands(&mut self, camera: &Camera, rows: u32) -> FrameStats {
+        let settings = &self.stages.settings;
+        let targets = crate::antialias::SampleTargets::in_bands(&self.gpu, settings, rows);
+        self.stages.targets.samples = Some(targets);
+        self.redraw(camera)
     }
 
     /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.

@@ -48,6 +48,33 @@ pub(crate) const FORWARD: Parts = &[
 ];
 pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("output/tone_map.wgsl")];
 pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];
+const AA_SAMPLES: &str = include_str!("antialias/samples.wgsl");
+const AA_SURFACES: &str = include_str!("antialias/surfaces.wgsl");
+const AA_WEIGHT: &str = include_str!("antialias/weight.wgsl");
+pub(crate) const AA_MERGE: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    AA_SAMPLES,
+    AA_SURFACES,
+    include_str!("antialias/merge.wgsl"),
+];
+pub(crate) const AA_EDGES: Parts = &[include_str!("antialias/edges.wgsl")];
+pub(crate) const AA_SHADE: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    AA_SAMPLES,
+    AA_SURFACES,
+    AA_WEIGHT,
+    include_str!("antialias/shade.wgsl"),
+];
+pub(crate) const AA_COMBINE: Parts = &[FRAME, AA_WEIGHT, include_str!("antialias/combine.wgsl")];
+pub(crate) const AA_VIEW: Parts = &[include_str!("antialias/view.wgsl")];
 
 /// Joins a shader's parts.
 pub(crate) fn source(parts: Parts) -> String {
@@ -151,6 +178,11 @@ mod tests {
         ("forward", FORWARD),
         ("tone map", TONE_MAP),
         ("view", VIEW),
+        ("merge", AA_MERGE),
+        ("edge list", AA_EDGES),
+        ("edge shading", AA_SHADE),
+        ("combination", AA_COMBINE),
+        ("tally", AA_VIEW),
     ];
 
     fn parse(name: &str, parts: Parts) -> naga::Module {
@@ -230,6 +262,12 @@ mod tests {
                 cluster_tile,
                 reserved,
             ]
+        );
+        assert_same_layout!(
+            AA_MERGE,
+            "Band",
+            crate::antialias::BandUniform,
+            [count, side, first_row, rows, offsets]
         );
         assert_same_layout!(
             CLUSTERS,

@@ -1,9 +1,14 @@
 //! What a frame is drawn into.
 
+use crate::antialias::SampleTargets;
 use crate::geometry::GBuffer;
 use crate::gpu::Gpu;
 use crate::output::PICTURE_FORMAT;
 use crate::shading::RADIANCE_FORMAT;
+use crate::{Antialiasing, Settings};
+
+/// G-buffer, radiance, picture.
+const BYTES_PER_PIXEL: u64 = 28 + 8 + 4;
 
 /// The targets of one frame size.
 #[derive(Debug)]
@@ -13,10 +18,14 @@ pub(crate) struct Targets {
     pub(crate) radiance_view: wgpu::TextureView,
     /// The picture.
     pub(crate) picture_view: wgpu::TextureView,
+    /// What anti-aliasing needs besides.
+    pub(crate) samples: Option<SampleTargets>,
 }
 
 impl Targets {
-    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+    /// The targets for settings that were found valid.
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
+        let (width, height) = (settings.width, settings.height);
         let target = |label, format, usage| {
             let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
                 label: Some(label),
@@ -45,6 +54,21 @@ impl Targets {
                 sampled | wgpu::TextureUsages::STORAGE_BINDING,
             ),
             picture_view: target("picture", PICTURE_FORMAT, sampled),
+            samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
         }
+    }
+
+    /// What the shading of the ordinary G-buffer is written to: the radiance, or what it is made from.
+    pub(crate) fn shaded_view(&self) -> &wgpu::TextureView {
+        self.samples
+            .as_ref()
+            .map_or(&self.radiance_view, |s| &s.ordinary_view)
+    }
+
+    /// Bytes of all targets.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.picture_view.texture().size();
+        u64::from(size.width) * u64::from(size.height) * BYTES_PER_PIXEL
+            + self.samples.as_ref().map_or(0, SampleTargets::bytes)
     }
 }

@@ -9,9 +9,7 @@ mod trap;
 pub(crate) use layout::{
     bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
 };
-#[cfg(test)]
-pub(crate) use readback::read_buffer;
-pub(crate) use readback::{read_texture, submitted_work_done};
+pub(crate) use readback::{read_buffer, read_texture, submitted_work_done};
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;
 

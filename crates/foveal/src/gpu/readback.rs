@@ -91,7 +91,6 @@ pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<V
 }
 
 /// The bytes of a buffer that can be copied from.
-#[cfg(test)]
 pub(crate) async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
     let copy = read_back_buffer(gpu, buffer.size());
     let mut encoder = gpu.device.create_command_encoder(&Default::default());

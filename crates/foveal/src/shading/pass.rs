@@ -89,6 +89,11 @@ impl ShadingPass {
         }
     }
 
+    /// The layout of [`ShadingPass::input`].
+    pub(crate) fn input_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.input_layout
+    }
+
     /// What the pass reads: the G-buffer and the lights with their clusters.
     pub(crate) fn input(
         &self,
