@@ -91,7 +91,7 @@ impl SceneInfo {
             triangles: scene.triangle_count(),
             vertices: scene.meshes.iter().map(|m| m.vertices.len() as u64).sum(),
             lights: scene.lights.len(),
-            animated: scene_source::is_animated(scene),
+            animated: scene.is_animated(),
             bounds: (!bounds.is_empty()).then(|| Bounds {
                 min: bounds.min.into(),
                 max: bounds.max.into(),

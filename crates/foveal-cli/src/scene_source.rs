@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::bail;
 use foveal::Timing;
 use foveal_scene::generate::{self, DemoOptions, GenerateError};
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{Camera, LoadOptions, LoadTimings, Scene};
 
 /// What is drawn without SCENE.
 pub(crate) const DEFAULT_SCENE: &str = "demo";
@@ -34,14 +34,31 @@ pub(crate) fn load(name: &str) -> anyhow::Result<Scene> {
     load_timed(name, &mut Vec::new())
 }
 
-fn from_file(name: &str, _load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
-    if !Path::new(name).exists() {
+fn from_file(name: &str, load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
+    let path = Path::new(name);
+    if !path.exists() {
         bail!(
             "there is no scene '{name}': neither a file of that name nor a generated scene; generated are {}",
             generate::NAMES.join(", ")
         );
     }
-    bail!("cannot load '{name}': glTF files cannot be read yet")
+    let scene = foveal_scene::load(path, &LoadOptions::default())?;
+    let LoadTimings {
+        read_ms,
+        parse_ms,
+        geometry_ms,
+        decode_ms,
+        bounds_ms,
+    } = scene.timings;
+    let stages = [
+        ("read", read_ms),
+        ("parse", parse_ms),
+        ("geometry", geometry_ms),
+        ("decode", decode_ms),
+        ("bounds", bounds_ms),
+    ];
+    load_ms.extend(stages.map(|(name, ms)| timing(name, f64::from(ms))));
+    Ok(scene)
 }
 
 /// Seconds that the walk through the demo scene takes.
@@ -74,14 +91,6 @@ fn demo_options(name: &str) -> Option<DemoOptions> {
 pub(crate) fn add_point_lights(scene: &mut Scene, count: u32, seed: u64) {
     generate::add_point_lights(scene, count, seed);
 }
-
-/// The scene changes with time.
-pub(crate) fn is_animated(_scene: &Scene) -> bool {
-    false
-}
-
-/// Poses the scene at `time_s` seconds.
-pub(crate) fn pose(_scene: &mut Scene, _time_s: f32) {}
 
 fn timing(name: &str, ms: f64) -> Timing {
     Timing {

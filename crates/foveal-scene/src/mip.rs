@@ -39,7 +39,7 @@ pub(crate) fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) 
     let threshold = match content {
         Content::Cutout {
             threshold: Some(threshold),
-        } => Some((threshold, coverage(&wide, threshold, 1.0))),
+        } => Some((threshold, coverage(&wide, threshold))),
         _ => None,
     };
     for _ in 1..count {
@@ -214,25 +214,153 @@ impl Taps {
     }
 }
 
-/// Share of texels whose scaled alpha reaches the threshold.
-fn coverage(wide: &[[u16; 4]], threshold: f32, scale: f32) -> f32 {
-    let least = threshold * 65535.0 / scale;
+/// The smallest 16-bit alpha that is stored as a code which passes the threshold.
+fn least_passing(threshold: f32) -> f32 {
+    let code = (threshold * 255.0 - 1e-3).ceil().max(0.0);
+    code * 257.0 - 128.0
+}
+
+/// Share of texels that pass the threshold.
+fn coverage(wide: &[[u16; 4]], threshold: f32) -> f32 {
+    let least = least_passing(threshold);
     let passed = wide.iter().filter(|t| f32::from(t[3]) >= least).count();
     passed as f32 / wide.len() as f32
 }
 
-/// The factor on alpha that brings the coverage back to `wanted`.
+/// The factor on alpha that brings the coverage as near to `wanted` as it can come.
 fn alpha_scale(wide: &[[u16; 4]], threshold: f32, wanted: f32) -> f32 {
     if threshold <= 0.0 || wanted <= 0.0 || wanted >= 1.0 {
         return 1.0;
     }
-    // The alpha that exactly the wanted share of texels reaches must become the threshold.
     let mut alphas: Vec<u16> = wide.iter().map(|t| t[3]).collect();
-    let passing = (wanted * alphas.len() as f32).round() as usize;
-    if passing == 0 {
-        return 1.0;
+    alphas.sort_unstable_by(|a, b| b.cmp(a));
+    let passing = ((wanted * alphas.len() as f32).round() as usize).max(1);
+    // The smallest alpha that is to pass. Where many texels share it, all of them pass or none does:
+    // whichever is nearer, but never nothing at all.
+    let mut least = alphas[passing - 1];
+    let above = alphas.partition_point(|&a| a > least);
+    let with_ties = alphas.partition_point(|&a| a >= least);
+    if above > 0 && with_ties - passing > passing - above {
+        least = alphas[above - 1];
     }
-    let (_, &mut least, _) = alphas.select_nth_unstable_by(passing - 1, |a, b| b.cmp(a));
-    let scale = threshold * 65535.0 / f32::from(least.max(1));
+    let scale = (least_passing(threshold) + 1.0) / f32::from(least.max(1));
     scale.clamp(0.25, 4.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn grey(values: &[u8]) -> Vec<u8> {
+        values.iter().flat_map(|&v| [v, v, v, 255]).collect()
+    }
+
+    fn reds(level: &[u8]) -> Vec<u8> {
+        level.iter().step_by(4).copied().collect()
+    }
+
+    #[test]
+    fn sizes_go_down_to_one_texel() {
+        for (w, h, levels) in [
+            (1, 1, 1),
+            (2, 1, 2),
+            (8, 8, 4),
+            (5, 3, 3),
+            (1, 9, 4),
+            (1023, 7, 10),
+        ] {
+            let chain = chain(vec![128; (w * h * 4) as usize], w, h, Content::Data);
+            assert_eq!(chain.len() as u32, levels);
+            assert_eq!(level_count(w, h), levels);
+            for (k, level) in chain.iter().enumerate() {
+                let texels = (w >> k).max(1) * (h >> k).max(1);
+                assert_eq!(level.len() as u32, texels * 4, "{w} x {h} level {k}");
+                assert!(level.iter().all(|&b| b == 128), "{w} x {h} level {k}");
+            }
+        }
+    }
+
+    #[test]
+    fn even_sizes_average_four_texels_and_do_not_round_twice() {
+        let data = chain(grey(&[0, 10, 20, 33]), 2, 2, Content::Data);
+        assert_eq!(reds(&data[1]), [16]);
+        // Four averages of 0.25 each would all round to 0, their sum is 0.25 again.
+        let mut values = [0; 16];
+        values[0] = 8;
+        let chain = chain(grey(&values), 4, 4, Content::Data);
+        assert_eq!(reds(&chain[1]), [2, 0, 0, 0]);
+        assert_eq!(reds(&chain[2]), [1]);
+    }
+
+    #[test]
+    fn odd_sizes_share_texels_by_area() {
+        // Three texels to one: equal thirds.
+        assert_eq!(
+            reds(&chain(grey(&[0, 30, 90]), 3, 1, Content::Data)[1]),
+            [40]
+        );
+        // Five to two: weights (2, 2, 1) / 5 and (1, 2, 2) / 5.
+        let five = chain(grey(&[0, 50, 100, 150, 200]), 5, 1, Content::Data);
+        assert_eq!(reds(&five[1]), [40, 160]);
+        // Both axes: a 3 x 3 picture becomes its mean.
+        let nine = chain(grey(&[0, 0, 0, 0, 90, 0, 0, 0, 0]), 3, 3, Content::Data);
+        assert_eq!(reds(&nine[1]), [10]);
+    }
+
+    #[test]
+    fn colours_are_averaged_as_light() {
+        let half = chain(grey(&[0, 255]), 2, 1, Content::Color);
+        assert_eq!(half[1], [188, 188, 188, 255]);
+        let alpha = chain(vec![0, 0, 0, 0, 255, 255, 255, 255], 2, 1, Content::Color);
+        assert_eq!(alpha[1], [188, 188, 188, 128]);
+    }
+
+    #[test]
+    fn transparent_texels_give_no_colour() {
+        let pixels = vec![200, 100, 50, 255, 0, 255, 0, 0];
+        let blended = chain(pixels, 2, 1, Content::Cutout { threshold: None });
+        assert_eq!(blended[1], [200, 100, 50, 128]);
+    }
+
+    #[test]
+    fn normals_stay_unit_vectors() {
+        // Straight up and 90 degrees to the side give 45 degrees.
+        let pixels = vec![128, 128, 255, 255, 255, 128, 128, 255];
+        let level = &chain(pixels, 2, 1, Content::Normal)[1];
+        let decode = |c: u8| f32::from(c) / 127.5 - 1.0;
+        let [x, y, z] = [level[0], level[1], level[2]].map(decode);
+        assert!((x * x + y * y + z * z - 1.0).abs() < 0.02);
+        assert!((x - z).abs() < 0.02 && y.abs() < 0.02);
+    }
+
+    #[test]
+    fn alpha_masks_keep_their_coverage() {
+        // Noise that passes a threshold of 0.7 on 30 % of the picture.
+        let side = 64u32;
+        let noise =
+            |i: u32| (i.wrapping_mul(0x9E37_79B1) ^ i.rotate_left(16)).wrapping_mul(0x85EB_CA6B);
+        let pixels: Vec<u8> = (0..side * side)
+            .flat_map(|i| [80, 160, 40, (noise(i) >> 24) as u8])
+            .collect();
+        let share = |level: &[u8]| {
+            let passed = level.iter().skip(3).step_by(4).filter(|a| **a >= 179);
+            passed.count() as f32 / (level.len() / 4) as f32
+        };
+        let content = |threshold| Content::Cutout { threshold };
+        let kept = chain(pixels.clone(), side, side, content(Some(0.7)));
+        let lost = chain(pixels, side, side, content(None));
+        let wanted = share(&kept[0]);
+        assert!((wanted - 0.3).abs() < 0.02, "{wanted}");
+        assert!(share(&lost[3]) < 0.02, "{}", share(&lost[3]));
+        for (level, tolerance) in kept.iter().zip([0.0, 0.02, 0.02, 0.03, 0.05]) {
+            assert!(
+                (share(level) - wanted).abs() <= tolerance,
+                "{}",
+                share(level)
+            );
+        }
+        // A whole picture of one alpha does not vanish.
+        let even = chain([9, 9, 9, 180].repeat(16), 4, 4, content(Some(0.7)));
+        assert!(even.iter().all(|l| share(l) == 1.0));
+    }
 }

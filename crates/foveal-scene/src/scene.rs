@@ -2,7 +2,9 @@
 
 use glam::{Mat4, Vec3};
 
-use crate::{Aabb, Camera, Environment, Light, LoadTimings, Material, Mesh, Rig, Texture};
+use crate::{
+    Aabb, Camera, Environment, Light, LightKind, LoadTimings, Material, Mesh, Rig, Texture,
+};
 
 /// One thing as the file's author sees it: a node with a mesh, or one element of its GPU instancing.
 /// It is what culling answers for; it has one [`Instance`] per primitive of its mesh.
@@ -99,23 +101,118 @@ impl Scene {
             .sum()
     }
 
-    /// A camera that sees the whole scene: from the front, a little above, 60° high.
+    /// Adds a sun where the scene has no punctual light of its own, so that it is not seen in the dark;
+    /// true if it did. It stands high, to the left of and behind a viewer who looks down -z.
+    pub fn light_by_default(&mut self) -> bool {
+        let needed = self.lights.is_empty();
+        if needed {
+            self.lights.push(Light {
+                kind: LightKind::Directional,
+                color: Vec3::new(1.0, 0.96, 0.9),
+                intensity: 3.0,
+                position: Vec3::ZERO,
+                direction: Vec3::new(0.45, -0.8, -0.5).normalize(),
+                range_m: None,
+                node: None,
+            });
+        }
+        needed
+    }
+
+    /// A camera that sees the whole scene in a picture at least 6:5 wide: from the front, a little above and
+    /// to the right, 45° high.
     #[must_use]
     pub fn overview_camera(&self) -> Camera {
-        let bounds = self.bounds();
-        let (center, radius) = if bounds.is_empty() {
-            (Vec3::ZERO, 1.0)
-        } else {
-            (bounds.center(), (0.5 * bounds.size().length()).max(1e-3))
+        const TAN_HALF_FOV: f32 = 0.414_213_57;
+        const WIDTH_TO_HEIGHT: f32 = 1.2;
+        const MARGIN: f32 = 1.08;
+        let bounds = match self.bounds() {
+            empty if empty.is_empty() => Aabb {
+                min: -Vec3::ONE,
+                max: Vec3::ONE,
+            },
+            bounds => bounds,
         };
-        let fov_y_rad = 60f32.to_radians();
-        let distance = 0.85 * radius / (0.5 * fov_y_rad).sin();
-        let eye = center + Vec3::new(0.25, 0.3, 1.0).normalize() * distance;
-        let mut camera = Camera::look_at(eye, center, Vec3::Y, fov_y_rad);
+        let center = bounds.center();
+        let backward = Vec3::new(0.4, 0.35, 1.0).normalize();
+        let right = Vec3::Y.cross(backward).normalize();
+        let up = backward.cross(right);
+        // Far enough back that each corner of the box lies within the frame.
+        let distance = bounds
+            .corners()
+            .map(|corner| {
+                let p = corner - center;
+                let half_extent = (p.dot(right).abs() / WIDTH_TO_HEIGHT).max(p.dot(up).abs());
+                half_extent * MARGIN / TAN_HALF_FOV + p.dot(backward)
+            })
+            .into_iter()
+            .fold(1e-3, f32::max);
+        let fov_y_rad = 2.0 * TAN_HALF_FOV.atan();
+        let mut camera = Camera::look_at(center + backward * distance, center, Vec3::Y, fov_y_rad);
         camera.name = "overview".to_owned();
         if let crate::Projection::Perspective { near_m, .. } = &mut camera.projection {
-            *near_m = distance * 0.005;
+            *near_m = distance * 0.002;
         }
         camera
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene_of_box(min: Vec3, max: Vec3) -> Scene {
+        let object = Object {
+            name: "box".to_owned(),
+            node: 0,
+            element: 0,
+            occluder: None,
+            set: None,
+            bounds: Aabb { min, max },
+            instances: 0..0,
+        };
+        Scene {
+            objects: vec![object],
+            ..Scene::default()
+        }
+    }
+
+    #[test]
+    fn the_overview_camera_frames_the_scene() {
+        for size in [
+            Vec3::new(10.0, 1.0, 3.0),
+            Vec3::new(1.0, 20.0, 1.0),
+            Vec3::splat(1e-3),
+            Vec3::splat(1e5),
+        ] {
+            let scene = scene_of_box(Vec3::splat(7.0), Vec3::splat(7.0) + size);
+            let clip_from_world = scene.overview_camera().clip_from_world(1.2);
+            let corners = scene
+                .bounds()
+                .corners()
+                .map(|c| clip_from_world.project_point3(c));
+            let extent = corners
+                .iter()
+                .map(|c| c.x.abs().max(c.y.abs()))
+                .fold(0.0, f32::max);
+            assert!((0.85..1.0).contains(&extent), "{size}: {extent}");
+            assert!(
+                corners.iter().all(|c| (0.0..1.0).contains(&c.z)),
+                "{size}: {corners:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_scene_without_geometry_has_an_overview_too() {
+        assert!(Scene::default().overview_camera().eye().is_finite());
+    }
+
+    #[test]
+    fn a_sun_rises_only_where_there_is_no_light() {
+        let mut scene = Scene::default();
+        assert!(scene.light_by_default());
+        assert!(!scene.light_by_default());
+        assert_eq!(scene.lights.len(), 1);
     }
 }

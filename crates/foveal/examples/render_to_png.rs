@@ -1,16 +1,23 @@
-//! Renders a generated scene headless: `cargo run --release -p foveal --example render_to_png -- cornell out.png`.
+//! Renders a scene headless: `cargo run --release -p foveal --example render_to_png -- cornell out.png`.
+//! The scene is a glTF file or the name of a generated one.
 
 #![allow(clippy::print_stdout, reason = "an example says what it made")]
 
 use foveal::{Frame, Gpu, Renderer, Settings};
-use foveal_scene::generate;
+use foveal_scene::{LoadOptions, generate};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
     let name = arguments.next().unwrap_or_else(|| "cornell".to_owned());
     let path = arguments.next().unwrap_or_else(|| "out.png".to_owned());
     pollster::block_on(async {
-        let scene = generate::by_name(&name)?;
+        let file = std::path::Path::new(&name);
+        let mut scene = if file.exists() {
+            foveal_scene::load(file, &LoadOptions::default())?
+        } else {
+            generate::by_name(&name)?
+        };
+        scene.light_by_default();
         let camera = scene
             .cameras
             .first()

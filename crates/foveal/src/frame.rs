@@ -4,8 +4,8 @@ use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Camera, Environment, Projection};
 use glam::{Mat4, Vec3};
 
+use crate::Settings;
 use crate::lights::ClusterGrid;
-use crate::{Settings, ToneMap};
 
 /// Mirrors `Frame` in `shared/frame.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -24,15 +24,12 @@ pub(crate) struct FrameUniform {
     pub(crate) horizon: [f32; 3],
     pub(crate) depth_range: f32,
     pub(crate) nadir: [f32; 3],
-    pub(crate) tone_map: u32,
-    pub(crate) size: [f32; 2],
-    pub(crate) light_count: u32,
-    pub(crate) light_words: u32,
-    pub(crate) cluster_counts: [u32; 3],
     pub(crate) cluster_near: f32,
+    pub(crate) cluster_counts: [u32; 3],
     pub(crate) cluster_scale: f32,
+    pub(crate) size: [f32; 2],
     pub(crate) cluster_tile: f32,
-    pub(crate) reserved: [f32; 2],
+    pub(crate) reserved: f32,
 }
 
 impl FrameUniform {
@@ -66,18 +63,12 @@ impl FrameUniform {
             horizon: environment.horizon.to_array(),
             depth_range,
             nadir: environment.nadir.to_array(),
-            tone_map: match settings.tone_map {
-                ToneMap::Aces => 0,
-                ToneMap::Linear => 1,
-            },
-            size: [settings.width as f32, settings.height as f32],
-            light_count: clusters.light_count,
-            light_words: clusters.light_words(),
-            cluster_counts: clusters.counts,
             cluster_near: clusters.near_m,
+            cluster_counts: clusters.counts,
             cluster_scale: clusters.slices_per_doubling,
+            size: [settings.width as f32, settings.height as f32],
             cluster_tile: clusters.tile_px as f32,
-            reserved: [0.0; 2],
+            reserved: 0.0,
         }
     }
 }

@@ -74,7 +74,7 @@ impl Stages {
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             shading,
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
-            tone_map: ToneMapPass::new(gpu, frame),
+            tone_map: ToneMapPass::new(gpu, settings, frame),
             view: ViewPass::new(gpu, settings.view, frame),
         };
         trap.finish().await?;

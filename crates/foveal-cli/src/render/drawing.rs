@@ -51,9 +51,9 @@ impl Drawing {
     }
 
     fn pose(&mut self, time_s: f32) -> anyhow::Result<()> {
-        if crate::scene_source::is_animated(&self.scene) {
+        if self.scene.is_animated() {
             self.posed_s = None;
-            crate::scene_source::pose(&mut self.scene, time_s);
+            self.scene.pose(time_s);
             block_on(self.renderer.update_pose(&self.scene))?;
             self.posed_s = Some(time_s);
         }

@@ -1,10 +1,10 @@
 //! A good view for scenes that bring no camera and are buildings: from within.
 //!
 //! An overview from outside shows a building's outer walls only. So the scene is put into a coarse voxel grid, and
-//! a place is *inside* when every horizontal ray from it meets a surface, nearly all of them the front of one, and
+//! a place in it is *inside* when every horizontal ray from it meets a surface, nearly all of them the front of one, and
 //! the floor is below: in a room the walls face the viewer, whereas inside a solid thing (a helmet, a duck) one
 //! sees backs of surfaces. Fronts go by the winding, even of double-sided materials: a solid that is drawn from
-//! both sides is still solid. Among the places inside the camera takes the one with the longest view.
+//! both sides is still solid. Among the places inside the camera takes one that is roomy and has a long view.
 
 use foveal_scene::{Aabb, AlphaMode, Camera, Scene};
 use glam::{IVec3, Vec3};
@@ -17,6 +17,10 @@ const PLACES: [i32; 3] = [16, 8, 16];
 const HEADINGS: usize = 16;
 /// Slopes (rise per run) of the rays that judge a view: a picture is wider than high.
 const SLOPES: [f32; 3] = [-0.25, 0.0, 0.35];
+/// Least width and depth in metres of a scene that one can be in, and least room around the eye. A helmet with
+/// a modelled lining has an inside too, but nobody wants to look at it from there.
+const LEAST_SIZE_M: f32 = 3.0;
+const LEAST_ROOM_M: f32 = 0.4;
 /// Of a view's rays, how many may meet the back of a surface (a curtain's, say).
 const MOST_BACKS: usize = HEADINGS * SLOPES.len() / 6;
 
@@ -67,7 +71,8 @@ impl Grid {
         let bounds = scene.bounds();
         let size = bounds.size();
         let cell_m = size.max_element() / RESOLUTION;
-        if !(size.min_element() > 0.0 && cell_m.is_finite()) {
+        if !(size.x >= LEAST_SIZE_M && size.z >= LEAST_SIZE_M && size.y > 0.0 && cell_m.is_finite())
+        {
             return None;
         }
         let cells = (size / cell_m).ceil().as_ivec3().max(IVec3::ONE);
@@ -186,19 +191,32 @@ impl Grid {
                     Hit::Nothing(distance_m) if slope > 0.0 => distance_m,
                     Hit::Nothing(_) => return None,
                 };
-                if distance_m < 2.0 * self.cell_m || backs > MOST_BACKS {
+                if distance_m < LEAST_ROOM_M.max(2.0 * self.cell_m) || backs > MOST_BACKS {
                     return None;
                 }
                 *sight_m += distance_m;
             }
         }
+        let room_m: f32 = sight_m.iter().sum();
         (0..HEADINGS)
             .map(|heading| {
-                let beside = sight_m[(heading + 1) % HEADINGS]
-                    + sight_m[(heading + HEADINGS - 1) % HEADINGS];
-                (sight_m[heading] + beside, heading_direction(heading))
+                let forward = heading_direction(heading);
+                let view_m: f32 = [HEADINGS - 1, 0, 1]
+                    .map(|turn| sight_m[(heading + turn) % HEADINGS])
+                    .iter()
+                    .sum();
+                let middle = eye + forward * (0.5 * view_m / (3 * SLOPES.len()) as f32);
+                (view_m * room_m.sqrt() * self.centrality(middle), forward)
             })
             .max_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// 1 in the middle of the ground, less towards the walls and the roof: the way around a building gives long
+    /// views as well, but the building is what the scene is about.
+    fn centrality(&self, point: Vec3) -> f32 {
+        let place = (point - self.bounds.min) / self.bounds.size();
+        let across = (1.0 - (2.0 * place - 1.0).abs()).max(Vec3::splat(0.05));
+        across.x * across.z * (1.2 - place.y)
     }
 }
 

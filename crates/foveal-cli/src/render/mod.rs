@@ -62,7 +62,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (mut drawing, adapter) = prepare(args, &settings, &mut load_ms)?;
     let scene = NamedSceneStats {
         name: drawing.scene.name.clone(),
-        animated: scene_source::is_animated(&drawing.scene),
+        animated: drawing.scene.is_animated(),
         warnings: drawing.scene.warnings.len() as u64,
         counts: drawing.renderer.scene_stats(),
     };
@@ -154,6 +154,8 @@ fn prepare(
     if args.point_lights > 0 {
         scene_source::add_point_lights(&mut scene, args.point_lights, args.light_seed);
     }
+    // A file without lights would be seen by the sky's light alone.
+    scene.light_by_default();
     if !args.quiet {
         scene
             .warnings

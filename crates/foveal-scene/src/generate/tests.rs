@@ -1,12 +1,20 @@
 //! What holds for every generated scene.
 
+use std::sync::LazyLock;
+
 use glam::Vec3;
 
 use super::*;
 use crate::{Aabb, Scene};
 
-fn all() -> Vec<Scene> {
+fn generate_all() -> Vec<Scene> {
     NAMES.iter().map(|name| by_name(name).unwrap()).collect()
+}
+
+/// All scenes, made once for all tests.
+fn all() -> &'static [Scene] {
+    static ALL: LazyLock<Vec<Scene>> = LazyLock::new(generate_all);
+    &ALL
 }
 
 #[test]
@@ -120,7 +128,7 @@ fn textures_are_powers_of_two_with_whole_chains() {
 
 #[test]
 fn scenes_come_out_the_same_twice() {
-    for (a, b) in all().into_iter().zip(all()) {
+    for (a, b) in all().iter().zip(generate_all()) {
         assert_eq!(a.meshes, b.meshes);
         assert_eq!(a.materials, b.materials);
         assert_eq!(a.textures, b.textures);

@@ -2,9 +2,9 @@
 //!
 //! A channel that cannot be played is left out with a warning: the rest of the scene still moves.
 
-use super::accessor::Reader;
 use super::document::Counts;
 use super::json::Obj;
+use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Animation, Channel, Interpolation, Target};
 

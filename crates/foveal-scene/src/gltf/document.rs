@@ -97,11 +97,17 @@ impl Document {
                 .map_err(|e| e.under("extensions.KHR_lights_punctual"))?,
             None => Vec::new(),
         };
+        let images = root.objects("images", |o| ImageDef::parse(o, &counts))?;
+        let mut textures = root.objects("textures", |o| TextureDef::parse(o, &counts))?;
+        let first = super::images::first_of_equal(&images);
+        for texture in &mut textures {
+            texture.image = texture.image.map(|i| first[i as usize]);
+        }
         Ok(Self {
             accessors: root.objects("accessors", |o| Accessor::parse(o, &counts))?,
-            images: root.objects("images", |o| ImageDef::parse(o, &counts))?,
+            images,
             samplers: root.objects("samplers", super::images::parse_sampler)?,
-            textures: root.objects("textures", |o| TextureDef::parse(o, &counts))?,
+            textures,
             materials: root.objects("materials", |o| MaterialDef::parse(o, &counts))?,
             meshes: root.objects("meshes", |o| MeshDef::parse(o, &counts))?,
             skins: root.objects("skins", |o| SkinDef::parse(o, &counts))?,

@@ -2,9 +2,10 @@
 
 use bytemuck::Zeroable;
 
-use super::accessor::{Component, Reader};
+use super::accessor::Component;
 use super::materials::UvSets;
 use super::meshes::{Mode, PrimitiveDef};
+use super::reader::Reader;
 use super::{morphs, normals, tangents, topology};
 use crate::error::{Flaw, Parsed};
 use crate::load::MissingNormals;
@@ -102,7 +103,8 @@ pub(crate) fn build(
         bounds: used_bounds(&vertices, &indices),
         vertices,
         indices,
-        deforms: shape.is_some(),
+        // Until a node gives it a skin or weights.
+        deforms: false,
     };
     Ok(Built { mesh, shape, notes })
 }
@@ -243,7 +245,7 @@ fn colors(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[u8; 4]>> {
     let found = reader.accessor(accessor);
     // Integers that forgot to say so are meant as fractions: colours have no other use for them.
     let unit = match found.component {
-        _ if found.is_normalized() => 1.0,
+        _ if found.normalized => 1.0,
         Component::U8 => 1.0 / 255.0,
         Component::U16 => 1.0 / 65535.0,
         _ => 1.0,

@@ -6,7 +6,7 @@ use crate::error::{Flaw, Parsed};
 use crate::{Filter, Sampler, Wrap};
 
 /// Where a picture's bytes are.
-#[derive(Clone, PartialEq)]
+#[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) enum ImageSource {
     View(u32),
     Uri(String),
@@ -42,6 +42,16 @@ impl ImageDef {
             .filter(|n| !n.is_empty())
             .unwrap_or_else(|| format!("image {index}"))
     }
+}
+
+/// For each image the first one with the same source: what is named twice is decoded once.
+pub(crate) fn first_of_equal(images: &[ImageDef]) -> Vec<u32> {
+    let mut first = std::collections::HashMap::new();
+    let number = |(i, image): (usize, &ImageDef)| match image.source {
+        ImageSource::Nowhere => i as u32,
+        _ => *first.entry(image.source.clone()).or_insert(i as u32),
+    };
+    images.iter().enumerate().map(number).collect()
 }
 
 /// A picture with a sampler.

@@ -44,7 +44,7 @@ fn to_uint(value: &Value) -> Parsed<u64> {
         .or_else(|| value.as_f64().and_then(whole))
         .ok_or_else(|| {
             if value.is_number() {
-                Flaw::new(format!("is {value} instead of a whole number"))
+                Flaw::new(format!("is {value} instead of a whole number from 0 on"))
             } else {
                 wrong(value, "a whole number")
             }

@@ -21,6 +21,9 @@ mod morphs;
 mod nodes;
 mod normals;
 mod objects;
+mod parts;
+mod pictures;
+mod reader;
 mod rigging;
 mod skins;
 mod tangents;
@@ -28,28 +31,28 @@ mod textures;
 mod topology;
 mod uri;
 
+#[cfg(test)]
+mod tests;
+
 pub(crate) use cameras::rigid;
 pub(crate) use geometry::used_bounds;
 pub(crate) use lights::place as place_light;
 pub(crate) use nodes::rotation;
 pub(crate) use normals::plane_normal;
 
-use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use accessor::Reader;
 use buffers::Buffers;
 use document::Document;
-use geometry::{Built, Request};
 use glam::Mat4;
-use materials::{DEFAULT_UV_SETS, UvSets};
 use nodes::Hierarchy;
-use objects::{Part, Shown};
+use parts::Geometry;
+use reader::Reader;
 use textures::Wanted;
 
 use crate::error::{Flaw, Parsed};
 use crate::timings::Stopwatch;
-use crate::{LoadOptions, Material, Scene, SceneError, Warning, threads};
+use crate::{LoadOptions, Scene, SceneError, Warning};
 
 /// Gives the bytes of an external file by its relative path, or the reason why not.
 pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
@@ -160,18 +163,20 @@ fn build(
     let mut geometry = Geometry::default();
     let mut shown = geometry.request(document, &hierarchy, &mut scene);
     let shapes = geometry.build(reader, options, &mut scene, warn)?;
+    let mut elements_left = options.max_instances;
     for one in &mut shown {
         let place = |e: Flaw| {
             e.under("extensions.EXT_mesh_gpu_instancing.attributes")
                 .under(format_args!("nodes[{}]", one.node))
         };
         let instancing = document.nodes[one.node as usize].instancing;
-        one.elements = objects::elements(instancing, reader, options).map_err(place)?;
-        // Primitives without triangles have been noted; there is nothing to draw.
-        one.parts
-            .retain(|p| scene.meshes[p.mesh as usize].triangle_count() > 0);
+        one.elements =
+            objects::elements(instancing, reader, &mut elements_left, options).map_err(place)?;
     }
-    shown.retain(|s| !s.parts.is_empty());
+    let shapes = parts::drop_empty_meshes(&mut shown, shapes, &mut scene);
+    if shown.is_empty() {
+        warn.push("the scene shows no triangles".to_owned());
+    }
     let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;
     rig.give_own_meshes(&mut shown, &shapes, &mut scene, document, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
@@ -205,120 +210,6 @@ fn warn_of_uv_sets(document: &Document, warn: &mut Vec<String>) {
                 "materials[{i}]: reads more than two sets of texture coordinates; the others read the first"
             ));
         }
-    }
-}
-
-/// The meshes to build, each once however many primitives ask for it.
-#[derive(Default)]
-struct Geometry {
-    requests: Vec<(Request, String)>,
-    numbers: HashMap<Request, u32>,
-    names: Vec<String>,
-}
-
-impl Geometry {
-    /// Collects what the shown nodes need. Adds a default material when a primitive has none.
-    fn request(
-        &mut self,
-        document: &Document,
-        hierarchy: &Hierarchy,
-        scene: &mut Scene,
-    ) -> Vec<Shown> {
-        let mut default_material = None;
-        let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
-        let mut shown = Vec::new();
-        for (node, _, mesh) in objects::nodes_with_meshes(&document.nodes, hierarchy) {
-            let parts = parts_of.entry(mesh).or_insert_with(|| {
-                let def = &document.meshes[mesh as usize];
-                (0..def.primitives.len())
-                    .map(|p| Part {
-                        mesh: self.number(document, mesh, p),
-                        material: def.materials[p].unwrap_or_else(|| {
-                            *default_material.get_or_insert_with(|| {
-                                scene.materials.push(Material::default());
-                                scene.materials.len() as u32 - 1
-                            })
-                        }),
-                    })
-                    .collect()
-            });
-            shown.push(Shown {
-                node,
-                parts: parts.clone(),
-                elements: vec![Mat4::IDENTITY],
-                skinned: false,
-            });
-        }
-        shown
-    }
-
-    fn number(&mut self, document: &Document, mesh: u32, primitive: usize) -> u32 {
-        let def = &document.meshes[mesh as usize];
-        let material = def.materials[primitive].map(|m| &document.materials[m as usize]);
-        let uv_sets: UvSets = material.map_or(DEFAULT_UV_SETS, |m| m.uv_sets().0);
-        let tangents_for = material
-            .and_then(|m| m.normal)
-            .map(|slot| u32::from(uv_sets[1] == Some(slot.set)));
-        let request = Request {
-            primitive: def.primitives[primitive].clone(),
-            uv_sets,
-            tangents_for,
-        };
-        *self.numbers.entry(request.clone()).or_insert_with(|| {
-            let place = format!("meshes[{mesh}].primitives[{primitive}]");
-            self.requests.push((request, place));
-            self.names.push(def.label(mesh, primitive));
-            self.names.len() as u32 - 1
-        })
-    }
-
-    /// Builds all meshes into the scene and returns their shapes, as many as meshes.
-    fn build(
-        &mut self,
-        reader: Reader<'_>,
-        options: &LoadOptions,
-        scene: &mut Scene,
-        warn: &mut Vec<String>,
-    ) -> Parsed<Vec<Option<crate::pose::Shape>>> {
-        self.check_size(reader, options)?;
-        let built = threads::map(options.parallel, &self.requests, |(request, place)| {
-            geometry::build(request, reader, options.missing_normals).map_err(|e| e.under(place))
-        });
-        let mut shapes = Vec::with_capacity(built.len());
-        for ((built, (_, place)), name) in built.into_iter().zip(&self.requests).zip(&self.names) {
-            let Built {
-                mut mesh,
-                shape,
-                notes,
-            } = built?;
-            warn.extend(notes.into_iter().map(|note| format!("{place}: {note}")));
-            mesh.name.clone_from(name);
-            scene.meshes.push(mesh);
-            shapes.push(shape);
-        }
-        Ok(shapes)
-    }
-
-    /// Adds up the declared vertices before anything is allocated.
-    fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
-        let mut total = 0u64;
-        for (request, place) in &self.requests {
-            let primitive = &request.primitive;
-            let count = |a: u32| reader.accessor(a).count as u64;
-            let vertices = primitive.attributes.position.map_or(0, count);
-            let corners = primitive.indices.map_or(vertices, count);
-            // Flat normals and tangents may give every corner a vertex of its own.
-            let morphs = 1 + primitive.targets.len() as u64;
-            total = total.saturating_add(vertices.min(corners).saturating_mul(morphs));
-            if total > options.max_vertices || corners > options.max_vertices.saturating_mul(6) {
-                return Err(Flaw::too_large(format!(
-                    "{total} vertices and morph differences up to here, the limit is {}",
-                    options.max_vertices
-                ))
-                .under(place));
-            }
-        }
-        Ok(())
     }
 }
 

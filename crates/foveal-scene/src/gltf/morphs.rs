@@ -2,8 +2,9 @@
 
 use glam::Vec3;
 
-use super::accessor::{Component, Reader};
+use super::accessor::Component;
 use super::meshes::PrimitiveDef;
+use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Influences, MorphTarget, Shape};
 

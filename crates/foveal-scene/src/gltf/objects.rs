@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use glam::{Mat4, Quat, Vec3};
 
-use super::accessor::Reader;
 use super::nodes::{Hierarchy, Instancing, NodeDef, rotation};
+use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};
@@ -31,6 +31,7 @@ pub(crate) struct Shown {
 pub(crate) fn elements(
     instancing: Option<Instancing>,
     reader: Reader<'_>,
+    left: &mut u64,
     options: &LoadOptions,
 ) -> Parsed<Vec<Mat4>> {
     let Some(found) = instancing else {
@@ -44,9 +45,9 @@ pub(crate) fn elements(
     let Some(count) = counts.min() else {
         return Ok(vec![Mat4::IDENTITY]);
     };
-    if count as u64 > options.max_instances {
-        return Err(too_many(count as u64, options));
-    }
+    *left = left
+        .checked_sub(count as u64)
+        .ok_or_else(|| too_many(count as u64, options))?;
     let vectors = |accessor: Option<u32>, name: &str| -> Parsed<Option<Vec<[f32; 3]>>> {
         let read = |a| reader.floats::<3>(a).map_err(|e| e.under(name));
         accessor.map(read).transpose()
@@ -73,7 +74,7 @@ pub(crate) fn elements(
 
 fn too_many(count: u64, options: &LoadOptions) -> Flaw {
     Flaw::too_large(format!(
-        "{count} instances, the limit is {}",
+        "{count} instances are more than the limit of {} in all leaves",
         options.max_instances
     ))
 }

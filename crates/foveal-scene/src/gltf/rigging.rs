@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::Mat4;
 
-use super::accessor::Reader;
 use super::document::Document;
 use super::nodes::Hierarchy;
 use super::objects::Shown;
+use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};
@@ -78,7 +78,15 @@ impl Rigging {
     ) -> Parsed<()> {
         let shapes: Vec<Option<Arc<Shape>>> =
             shapes.iter().map(|s| s.clone().map(Arc::new)).collect();
+        // A mesh that a rigid node shows too stays as it is for that one.
         let mut taken = vec![false; shapes.len()];
+        for one in shown.iter() {
+            let skinned = document.nodes[one.node as usize].skin.is_some();
+            for part in &one.parts {
+                let rigid = |s: &Arc<Shape>| s.targets.is_empty() && !skinned;
+                taken[part.mesh as usize] |= shapes[part.mesh as usize].as_ref().is_some_and(rigid);
+            }
+        }
         let mut vertices = 0u64;
         for one in shown {
             let node = one.node;
@@ -95,7 +103,6 @@ impl Rigging {
                         let note = "has joints in its mesh but no skin; it stays rigid";
                         warn.push(format!("nodes[{node}]: {note}"));
                     }
-                    scene.meshes[part.mesh as usize].deforms = false;
                     continue;
                 }
                 vertices += shape.rest.len() as u64;

@@ -2,9 +2,10 @@
 
 use glam::Mat4;
 
-use super::accessor::{Component, Reader};
+use super::accessor::Component;
 use super::document::Counts;
 use super::json::Obj;
+use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::pose::Skin;
 

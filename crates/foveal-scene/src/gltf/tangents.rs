@@ -1,13 +1,25 @@
 //! Tangents by MikkTSpace, the method that glTF prescribes and normal maps are baked for.
+//!
+//! The implementation at hand takes time in the square of the triangles around a vertex, recurses
+//! over them, and searches the whole mesh for each triangle without area. So the latter are kept from
+//! it, and meshes with excessive fans get the same angle-weighted means without the search for
+//! connected fans, which is what MikkTSpace yields for clean surfaces.
 
 use std::collections::HashMap;
 
 use bevy_mikktspace::{Geometry, TangentSpace};
+use glam::{Vec2, Vec3};
 
 use crate::Vertex;
 
+/// Most triangles around a vertex: bounds the recursion.
+const MAX_FAN: u64 = 1024;
+/// Most squares of fans, summed over the mesh: bounds the time (about 10 ns each).
+const MAX_WORK: u64 = 50_000_000;
+
 struct Corners<'a> {
     vertices: &'a [Vertex],
+    /// Corners of the triangles with area.
     indices: &'a [u32],
     uv_slot: usize,
     tangents: Vec<[f32; 4]>,
@@ -54,39 +66,156 @@ pub(crate) fn generate(
     indices: &mut [u32],
     uv_slot: usize,
 ) -> Option<Vec<u32>> {
-    let mut corners = Corners {
-        vertices,
-        indices,
-        uv_slot,
-        tangents: vec![[1.0, 0.0, 0.0, 1.0]; indices.len()],
+    let at = |i: u32| vertices[i as usize].position;
+    let has_area = |t: &[u32]| {
+        let [a, b, c] = [at(t[0]), at(t[1]), at(t[2])];
+        a != b && b != c && c != a
     };
-    // The error type has no values.
-    let _ = bevy_mikktspace::generate_tangents(&mut corners);
-    let tangents = corners.tangents;
-
-    let before = vertices.len();
-    let mut given = vec![false; before];
-    let mut twins: HashMap<(u32, [u32; 4]), u32> = HashMap::new();
-    let mut source: Vec<u32> = Vec::new();
-    for (index, tangent) in indices.iter_mut().zip(tangents) {
-        let at = *index as usize;
-        if !given[at] {
-            given[at] = true;
-            vertices[at].tangent = tangent;
-        } else if vertices[at].tangent != tangent {
-            let key = (*index, tangent.map(f32::to_bits));
-            *index = *twins.entry(key).or_insert_with(|| {
-                vertices.push(Vertex {
-                    tangent,
-                    ..vertices[at]
-                });
-                source.push(at as u32);
-                vertices.len() as u32 - 1
-            });
+    let solid: Vec<u32> = indices
+        .chunks_exact(3)
+        .filter(|t| has_area(t))
+        .flatten()
+        .copied()
+        .collect();
+    let tangents = if is_tame(vertices, &solid, uv_slot) {
+        let mut corners = Corners {
+            vertices,
+            indices: &solid,
+            uv_slot,
+            tangents: vec![[1.0, 0.0, 0.0, 1.0]; solid.len()],
+        };
+        // The error type has no values.
+        let _ = bevy_mikktspace::generate_tangents(&mut corners);
+        corners.tangents
+    } else {
+        means(vertices, &solid, uv_slot)
+    };
+    let mut of_solid = tangents.into_iter();
+    let mut split = Split::new(vertices.len());
+    for triangle in indices.chunks_exact_mut(3) {
+        if has_area_of(vertices, triangle) {
+            for (index, tangent) in triangle.iter_mut().zip(&mut of_solid) {
+                *index = split.assign(vertices, *index, tangent);
+            }
         }
     }
-    if source.is_empty() {
-        return None;
+    // What only triangles without area use is never seen, but must be a unit vector.
+    for (vertex, given) in vertices.iter_mut().zip(&split.given) {
+        if !given {
+            let normal = Vec3::from(vertex.normal);
+            vertex.tangent = normal.any_orthonormal_vector().extend(1.0).to_array();
+        }
     }
-    Some((0..before as u32).chain(source).collect())
+    split.sources()
+}
+
+fn has_area_of(vertices: &[Vertex], t: &[u32]) -> bool {
+    let [a, b, c] = [t[0], t[1], t[2]].map(|i| vertices[i as usize].position);
+    a != b && b != c && c != a
+}
+
+/// Hands out tangents to vertices and makes a twin where one has another already.
+struct Split {
+    given: Vec<bool>,
+    twins: HashMap<(u32, [u32; 4]), u32>,
+    source: Vec<u32>,
+}
+
+impl Split {
+    fn new(count: usize) -> Self {
+        Self {
+            given: vec![false; count],
+            twins: HashMap::new(),
+            source: Vec::new(),
+        }
+    }
+
+    fn assign(&mut self, vertices: &mut Vec<Vertex>, index: u32, tangent: [f32; 4]) -> u32 {
+        let at = index as usize;
+        if !self.given[at] {
+            self.given[at] = true;
+            vertices[at].tangent = tangent;
+            return index;
+        }
+        if vertices[at].tangent == tangent {
+            return index;
+        }
+        let key = (index, tangent.map(f32::to_bits));
+        *self.twins.entry(key).or_insert_with(|| {
+            vertices.push(Vertex {
+                tangent,
+                ..vertices[at]
+            });
+            self.source.push(index);
+            vertices.len() as u32 - 1
+        })
+    }
+
+    fn sources(self) -> Option<Vec<u32>> {
+        let before = self.given.len() as u32;
+        (!self.source.is_empty()).then(|| (0..before).chain(self.source).collect())
+    }
+}
+
+/// Position, normal and UV, by which MikkTSpace joins corners.
+fn weld_key(vertex: &Vertex, uv_slot: usize) -> [u32; 8] {
+    let ([a, b, c], [d, e, f]) = (vertex.position, vertex.normal);
+    let [u, v] = vertex.uv[uv_slot];
+    [a, b, c, d, e, f, u, v].map(f32::to_bits)
+}
+
+/// Whether the implementation's worst cases are far away.
+fn is_tame(vertices: &[Vertex], solid: &[u32], uv_slot: usize) -> bool {
+    let mut corners = vec![0u64; vertices.len()];
+    solid.iter().for_each(|&i| corners[i as usize] += 1);
+    // Only when single vertices could add up to a large fan must they be welded to know.
+    let mut keys: Vec<([u32; 8], u64)> = vertices
+        .iter()
+        .zip(&corners)
+        .filter(|(_, n)| **n > 0)
+        .map(|(v, n)| (weld_key(v, uv_slot), *n))
+        .collect();
+    keys.sort_unstable();
+    let mut work = 0u64;
+    for group in keys.chunk_by(|a, b| a.0 == b.0) {
+        let fan: u64 = group.iter().map(|(_, n)| n).sum();
+        work = work.saturating_add(fan.saturating_mul(fan));
+        if fan > MAX_FAN {
+            return false;
+        }
+    }
+    work <= MAX_WORK.max(solid.len() as u64 * 64)
+}
+
+/// Angle-weighted means per welded vertex and orientation; one tangent per corner.
+fn means(vertices: &[Vertex], solid: &[u32], uv_slot: usize) -> Vec<[f32; 4]> {
+    let mut sums: HashMap<([u32; 8], bool), Vec3> = HashMap::new();
+    let mut corners = Vec::with_capacity(solid.len());
+    for t in solid.chunks_exact(3) {
+        let of = [t[0], t[1], t[2]].map(|i| &vertices[i as usize]);
+        let p = of.map(|v| Vec3::from(v.position));
+        let uv = of.map(|v| Vec2::from(v.uv[uv_slot]));
+        let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
+        let area = d1.perp_dot(d2);
+        let along = ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * area.signum();
+        for k in 0..3 {
+            let normal = Vec3::from(of[k].normal);
+            let flat = |v: Vec3| v.reject_from_normalized(normal).normalize_or_zero();
+            let (e1, e2) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
+            let angle = flat(e1).dot(flat(e2)).clamp(-1.0, 1.0).acos();
+            let key = (weld_key(of[k], uv_slot), area > 0.0);
+            *sums.entry(key).or_default() += flat(along) * angle;
+            corners.push((key, normal));
+        }
+    }
+    corners
+        .into_iter()
+        .map(|(key, normal)| {
+            let tangent = sums
+                .get(&key)
+                .and_then(|s| s.try_normalize())
+                .unwrap_or_else(|| normal.any_orthonormal_vector());
+            tangent.extend(if key.1 { -1.0 } else { 1.0 }).to_array()
+        })
+        .collect()
 }

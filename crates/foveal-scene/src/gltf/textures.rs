@@ -5,15 +5,12 @@
 
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use super::Resolver;
-use super::accessor::Reader;
 use super::document::Document;
-use super::images::ImageSource;
-use super::materials::{MaterialDef, SlotDef, UvSets};
-use super::uri::{self, Uri};
+use super::materials::{MaterialDef, SlotDef};
+use super::pictures::{self, Picture};
+use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::mip::{self, Content};
 use crate::{AlphaMode, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, threads};
@@ -22,7 +19,6 @@ use crate::{AlphaMode, ColorSpace, LoadOptions, Material, Sampler, Texture, Text
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 enum Role {
     Color,
-    Emissive,
     /// The threshold's bits; `None` for blending.
     Cutout(Option<u32>),
     Data,
@@ -32,7 +28,7 @@ enum Role {
 impl Role {
     fn content(self) -> Content {
         match self {
-            Self::Color | Self::Emissive => Content::Color,
+            Self::Color => Content::Color,
             Self::Cutout(bits) => Content::Cutout {
                 threshold: bits.map(f32::from_bits),
             },
@@ -60,6 +56,8 @@ struct Key {
 #[derive(Default)]
 pub(crate) struct Wanted {
     keys: Vec<Key>,
+    /// Per key: nothing but emission reads it.
+    only_emissive: Vec<bool>,
     numbers: HashMap<Key, u32>,
 }
 
@@ -76,26 +74,36 @@ impl Wanted {
                 Role::Cutout(Some(threshold.clamp(0.0, 1.0).to_bits()))
             }
         };
-        let mut slot =
-            |slot: Option<SlotDef>, role| slot.map(|s| self.slot(s, role, sets, document));
+        let mut slot = |slot: Option<SlotDef>, role, emissive| {
+            let slot = slot?;
+            let texture = self.number(slot, role, document);
+            // Emission shares textures with colours but has a placeholder of its own.
+            self.only_emissive[texture as usize] &= emissive;
+            Some(TextureRef {
+                texture,
+                uv_set: u32::from(sets[1] == Some(slot.set)),
+                uv_transform: slot.transform,
+            })
+        };
         Material {
-            base_color_texture: slot(def.base_color, base_role),
-            metallic_roughness_texture: slot(def.metallic_roughness, Role::Data),
-            normal_texture: slot(def.normal, Role::Normal),
-            occlusion_texture: slot(def.occlusion, Role::Data),
-            emissive_texture: slot(def.emissive, Role::Emissive),
+            base_color_texture: slot(def.base_color, base_role, false),
+            metallic_roughness_texture: slot(def.metallic_roughness, Role::Data, false),
+            normal_texture: slot(def.normal, Role::Normal, false),
+            occlusion_texture: slot(def.occlusion, Role::Data, false),
+            emissive_texture: slot(def.emissive, Role::Color, true),
             ..def.material.clone()
         }
     }
 
-    fn slot(&mut self, slot: SlotDef, role: Role, sets: UvSets, document: &Document) -> TextureRef {
+    /// The texture's number in the scene.
+    fn number(&mut self, slot: SlotDef, role: Role, document: &Document) -> u32 {
         let texture = &document.textures[slot.texture as usize];
         let sampler = texture
             .sampler
             .map_or_else(Sampler::default, |s| document.samplers[s as usize]);
         // Without mip levels only the colour space is left to differ, and with a picture the placeholder is not needed.
         let role = match (role, sampler.mip, texture.image) {
-            (Role::Cutout(_), None, Some(_)) | (Role::Emissive, _, Some(_)) => Role::Color,
+            (Role::Cutout(_), None, Some(_)) => Role::Color,
             (Role::Normal, None, Some(_)) => Role::Data,
             (role, ..) => role,
         };
@@ -104,28 +112,17 @@ impl Wanted {
             sampler,
             role,
         };
-        let keys = &mut self.keys;
-        let number = *self.numbers.entry(key).or_insert_with(|| {
+        let (keys, only_emissive) = (&mut self.keys, &mut self.only_emissive);
+        *self.numbers.entry(key).or_insert_with(|| {
             keys.push(key);
+            only_emissive.push(true);
             keys.len() as u32 - 1
-        });
-        TextureRef {
-            texture: number,
-            uv_set: u32::from(sets[1] == Some(slot.set)),
-            uv_transform: slot.transform,
-        }
+        })
     }
 }
 
 /// A picture's file, or why there is none, and the textures made from it.
 type Encoded<'a> = (Parsed<Cow<'a, [u8]>>, &'a [usize]);
-
-/// RGBA8 texels.
-struct Picture {
-    width: u32,
-    height: u32,
-    pixels: Vec<u8>,
-}
 
 /// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder.
 pub(crate) fn decode(
@@ -149,12 +146,12 @@ pub(crate) fn decode(
     // Files are read here, one after the other: a resolver need not be quick or parallel.
     let encoded: Vec<Encoded<'_>> = uses
         .iter()
-        .map(|(image, uses)| (fetch(*image, reader, resolver), uses.as_slice()))
+        .map(|(image, uses)| (pictures::fetch(*image, reader, resolver), uses.as_slice()))
         .collect();
     check_budget(&encoded, options)?;
     let decoded = threads::map(options.parallel, &encoded, |(bytes, uses)| {
         let picture = match bytes {
-            Ok(bytes) => read_picture(bytes),
+            Ok(bytes) => pictures::decode(bytes),
             Err(flaw) => Err(flaw.cause.clone()),
         };
         finish(picture, uses, wanted, document, options)
@@ -175,55 +172,12 @@ pub(crate) fn decode(
     Ok(textures.into_iter().map(|(_, t)| t).collect())
 }
 
-fn fetch<'a>(
-    image: Option<u32>,
-    reader: Reader<'a>,
-    resolver: &Resolver<'_>,
-) -> Parsed<Cow<'a, [u8]>> {
-    let Some(image) = image else {
-        return Err(Flaw::new("a texture has no picture that can be read"));
-    };
-    match &reader.document.images[image as usize].source {
-        ImageSource::View(view) => reader
-            .buffers
-            .view(reader.document, *view)
-            .map(Cow::Borrowed),
-        ImageSource::Uri(text) => {
-            match uri::parse(text).map_err(|e| Flaw::new(format!("its URI {e}")))? {
-                Uri::Data(bytes) => Ok(Cow::Owned(bytes)),
-                Uri::File(path) => resolver(&path).map(Cow::Owned).map_err(Flaw::new),
-            }
-        }
-        ImageSource::Nowhere => Err(Flaw::new("has neither a URI nor a buffer view")),
-    }
-}
-
-fn open(bytes: &[u8]) -> Result<image::ImageReader<Cursor<&[u8]>>, String> {
-    let mut reader = image::ImageReader::new(Cursor::new(bytes));
-    // By content: declared MIME types are often wrong.
-    let format = match bytes {
-        [0x89, b'P', b'N', b'G', ..] => image::ImageFormat::Png,
-        [0xFF, 0xD8, ..] => image::ImageFormat::Jpeg,
-        _ => return Err("is neither PNG nor JPEG".to_owned()),
-    };
-    reader.set_format(format);
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(1 << 15);
-    limits.max_image_height = Some(1 << 15);
-    limits.max_alloc = Some(2 << 30);
-    reader.limits(limits);
-    Ok(reader)
-}
-
 /// Adds up the sizes that the headers promise before anything is decoded.
 fn check_budget(encoded: &[Encoded<'_>], options: &LoadOptions) -> Parsed<()> {
     let mut total = 0u64;
     for (bytes, uses) in encoded {
         let Ok(bytes) = bytes else { continue };
-        let size = catch_unwind(AssertUnwindSafe(|| {
-            open(bytes).ok()?.into_dimensions().ok()
-        }));
-        if let Ok(Some((width, height))) = size {
+        if let Ok((width, height)) = pictures::promised_size(bytes) {
             total += u64::from(width) * u64::from(height) * 4 * uses.len() as u64;
         }
     }
@@ -235,30 +189,6 @@ fn check_budget(encoded: &[Encoded<'_>], options: &LoadOptions) -> Parsed<()> {
         .under("images"));
     }
     Ok(())
-}
-
-fn read_picture(bytes: &[u8]) -> Result<Picture, String> {
-    let decode = || -> Result<Picture, String> {
-        let decoded = open(bytes)?
-            .decode()
-            .map_err(|e| format!("cannot be decoded: {e}"))?;
-        let rgba = decoded.into_rgba8();
-        Ok(Picture {
-            width: rgba.width(),
-            height: rgba.height(),
-            pixels: rgba.into_raw(),
-        })
-    };
-    // A last net: a decoder's panic on a broken picture must not take the scene with it.
-    catch_unwind(AssertUnwindSafe(decode))
-        .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))
-        .and_then(|p| {
-            if p.width > 0 && p.height > 0 {
-                Ok(p)
-            } else {
-                Err("has no texels".to_owned())
-            }
-        })
 }
 
 /// What came of one picture.
@@ -303,7 +233,7 @@ fn finish(
             notes.push(format!("{cause}; a placeholder is shown"));
             for &i in uses {
                 let key = &wanted.keys[i];
-                let (pixels, side) = placeholder(key.role);
+                let (pixels, side) = placeholder(key.role, wanted.only_emissive[i]);
                 textures.push((i, build(key, document, pixels, (side, side), options)));
             }
         }
@@ -347,9 +277,11 @@ fn build(
 }
 
 /// Visible as a colour, neutral as anything else; square, with its side in texels.
-fn placeholder(role: Role) -> (Vec<u8>, u32) {
+fn placeholder(role: Role, only_emissive: bool) -> (Vec<u8>, u32) {
     let plain = |texel: [u8; 4]| (texel.to_vec(), 1);
     match role {
+        // What glows must not outshine the rest.
+        Role::Color if only_emissive => plain([0, 0, 0, 255]),
         Role::Color | Role::Cutout(_) => {
             let texel = |i: usize| {
                 if (i % 8 + i / 8).is_multiple_of(2) {
@@ -360,8 +292,6 @@ fn placeholder(role: Role) -> (Vec<u8>, u32) {
             };
             ((0..64).flat_map(texel).collect(), 8)
         }
-        // The whole scene would be lit by a bright one.
-        Role::Emissive => plain([0, 0, 0, 255]),
         Role::Data => plain([255; 4]),
         Role::Normal => plain([128, 128, 255, 255]),
     }

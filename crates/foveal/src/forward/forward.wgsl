@@ -1,7 +1,7 @@
 // Forward pass for blended surfaces, back to front over the deferred picture.
 // After frame, surface, vertex, material and lighting.wgsl.
 
-@group(2) @binding(0) var<storage, read> lights: array<Light>;
+@group(2) @binding(0) var<storage, read> lights: Lights;
 @group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
 
 @fragment

@@ -1,5 +1,8 @@
 //! Forward pass: blended surfaces over the deferred picture, back to front.
 
+#[cfg(test)]
+pub(crate) mod twin;
+
 use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
 use crate::recorder::{Recorder, drawn_over};

@@ -46,6 +46,7 @@ impl DrawList {
             match instance.alpha_mode {
                 AlphaMode::Opaque | AlphaMode::Mask { .. } => {
                     let key = PipelineKey {
+                        class: instance.material_class,
                         masked: matches!(instance.alpha_mode, AlphaMode::Mask { .. }),
                         mirrored: instance.mirrored,
                         faces: if instance.double_sided {
@@ -88,6 +89,7 @@ impl DrawList {
             };
             for &faces in sides {
                 let key = PipelineKey {
+                    class: instance.material_class,
                     masked: false,
                     mirrored: instance.mirrored,
                     faces,

@@ -16,6 +16,8 @@ pub(crate) enum Faces {
 /// What makes one pipeline of a pass differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PipelineKey {
+    /// What the material has: `MATERIAL_CLASS` in `shared/material.wgsl`.
+    pub(crate) class: u32,
     /// Alpha cuts holes.
     pub(crate) masked: bool,
     /// The instance's transform turns the winding around.
@@ -67,6 +69,7 @@ impl Pipelines {
 
 fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPipeline {
     let mut constants = recipe.constants.clone();
+    constants.push(("MATERIAL_CLASS", f64::from(key.class)));
     if recipe.has_mask {
         constants.push(("MASKED", f64::from(u8::from(key.masked))));
     }

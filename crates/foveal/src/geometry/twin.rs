@@ -1,8 +1,12 @@
 //! The CPU twin of the geometry pass: a ray per pixel against every triangle.
 
-use foveal_scene::{AlphaMode, Camera, Projection, Scene, generate};
+use foveal_scene::{
+    AlphaMode, Camera, ColorSpace, Filter, Material, Projection, Sampler, Scene, Texture,
+    TextureRef, generate,
+};
 use glam::{Mat3, Vec2, Vec3};
 
+use crate::forward::twin::{front, quads};
 use crate::shading::twin::{position_at, unpack_surface};
 use crate::testing::{rendered, small, texels};
 
@@ -149,4 +153,101 @@ fn mirrored_and_scaled_instances_equal_their_twins() {
         instance.world_from_object = squash * instance.world_from_object;
     }
     assert_equals_twin(&scene, &scene.cameras[0].clone());
+}
+
+/// A texture of 4 x 2 texels, each its own colour, without mips or filtering.
+fn tiny_texture(color_space: ColorSpace) -> Texture {
+    let nearest = Filter::Nearest;
+    Texture {
+        name: "tiny".to_owned(),
+        width: 4,
+        height: 2,
+        color_space,
+        sampler: Sampler {
+            mag: nearest,
+            min: nearest,
+            mip: None,
+            ..Sampler::default()
+        },
+        levels: vec![
+            (0..8u8)
+                .flat_map(|i| [i * 30, 255 - i * 30, i * 16, if i == 3 { 0 } else { 255 }])
+                .collect(),
+        ],
+    }
+}
+
+#[test]
+fn textures_are_read_where_the_uv_map_says_and_decoded_as_the_colour_space_says() {
+    // Turned by a quarter, doubled, shifted; the mask cuts out texel 3.
+    let uv_transform = Mat3::from_translation(Vec2::new(0.25, 0.5))
+        * Mat3::from_angle(std::f32::consts::FRAC_PI_2)
+        * Mat3::from_scale(Vec2::splat(2.0));
+    let slot = |texture| {
+        Some(TextureRef {
+            texture,
+            uv_set: 1,
+            uv_transform,
+        })
+    };
+    let material = Material {
+        base_color_texture: slot(0),
+        metallic_roughness_texture: slot(1),
+        alpha_mode: AlphaMode::Mask { cutoff: 0.5 },
+        ..Material::default()
+    };
+    let mut scene = quads(vec![material], &[0.0]);
+    scene.textures = vec![
+        tiny_texture(ColorSpace::Srgb),
+        tiny_texture(ColorSpace::Linear),
+    ];
+    let (width, height) = (64, 64);
+    let camera = front();
+    let renderer = rendered(&scene, &camera, &small(width, height));
+    let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
+    let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);
+    let size = Vec2::new(width as f32, height as f32);
+    let (mut compared, mut holes) = (0, 0);
+    for i in 0..depth.len() {
+        let pixel = Vec2::new((i as u32 % width) as f32, (i as u32 / width) as f32) + 0.5;
+        let at_quad = position_at(&camera, size, pixel, 0.05 / 4.0);
+        if at_quad.truncate().abs().max_element() > 0.99 {
+            continue;
+        }
+        let uv = Vec2::new(0.5 + 0.5 * at_quad.x, 0.5 - 0.5 * at_quad.y);
+        let texel = uv_transform.transform_point2(uv) * Vec2::new(4.0, 2.0);
+        if (texel - texel.round()).abs().min_element() < 0.02 {
+            continue;
+        }
+        let index =
+            texel.x.floor().rem_euclid(4.0) as usize + 4 * texel.y.floor().rem_euclid(2.0) as usize;
+        let [r, g, b, a] = [0, 1, 2, 3].map(|c| scene.textures[0].levels[0][index * 4 + c]);
+        assert_eq!(depth[i] == 0.0, a == 0, "at {pixel}, texel {index}");
+        if a == 0 {
+            holes += 1;
+            continue;
+        }
+        let surface = unpack_surface(words[i], Vec3::ZERO);
+        let linear = Vec3::new(r.into(), g.into(), b.into())
+            .map(|v| ((v / 255.0 + 0.055) / 1.055).powf(2.4));
+        let off = (surface.base_color - linear).abs().max_element();
+        assert!(
+            off < 0.01,
+            "at {pixel}: {} not {linear}",
+            surface.base_color
+        );
+        assert!(
+            (surface.roughness - f32::from(g) / 255.0).abs() < 0.004,
+            "at {pixel}: green is the roughness"
+        );
+        assert!(
+            (surface.metallic - f32::from(b) / 255.0).abs() < 0.004,
+            "at {pixel}: blue is the metallic"
+        );
+        compared += 1;
+    }
+    assert!(
+        compared > 500 && holes > 50,
+        "{compared} texels, {holes} holes"
+    );
 }

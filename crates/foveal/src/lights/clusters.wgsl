@@ -1,7 +1,7 @@
 // Light assignment: which lights reach which cluster (froxel), one bit each. After frame and
 // light.wgsl. One workgroup per light walks the clusters around the light's sphere.
 
-@group(1) @binding(0) var<storage, read> lights: array<Light>;
+@group(1) @binding(0) var<storage, read> lights: Lights;
 @group(1) @binding(1) var<storage, read_write> cluster_bits: array<atomic<u32>>;
 
 struct Box {
@@ -37,7 +37,7 @@ fn cluster_box(cluster: vec3u, nearest: f32, farthest: f32) -> Box {
 @compute @workgroup_size(64)
 fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = group.x;
-    let light = lights[index];
+    let light = lights.items[index];
     let everywhere = light.kind == LIGHT_DIRECTIONAL;
     // A little more than the range: rounding may err, but never to the small side.
     let radius = light.range * 1.0001 + 1e-4;
@@ -74,7 +74,7 @@ fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         }
         if touches {
             let flat = cluster.x + frame.cluster_counts.x * (cluster.y + frame.cluster_counts.y * cluster.z);
-            atomicOr(&cluster_bits[flat * frame.light_words + index / 32u], 1u << (index % 32u));
+            atomicOr(&cluster_bits[flat * lights.words + index / 32u], 1u << (index % 32u));
         }
     }
 }

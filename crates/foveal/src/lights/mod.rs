@@ -10,4 +10,4 @@ mod twin;
 mod upload;
 
 pub(crate) use clusters::{ClusterGrid, LightAssigner};
-pub(crate) use upload::{LightUniform, MAX_LIGHTS};
+pub(crate) use upload::{LightUniform, LightsHeader, MAX_LIGHTS};

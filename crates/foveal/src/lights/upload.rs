@@ -25,6 +25,26 @@ pub(crate) struct LightUniform {
     pub(crate) reserved: f32,
 }
 
+/// What precedes the lights in their buffer: mirrors the head of `Lights` in `shared/light.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LightsHeader {
+    count: u32,
+    words: u32,
+    reserved: [u32; 2],
+}
+
+impl LightsHeader {
+    pub(crate) fn new(lights: usize) -> Self {
+        let count = lights as u32;
+        Self {
+            count,
+            words: count.div_ceil(32),
+            reserved: [0; 2],
+        }
+    }
+}
+
 impl LightUniform {
     pub(crate) fn new(light: &Light) -> Self {
         let radiant = light.color * light.intensity;

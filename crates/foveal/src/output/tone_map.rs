@@ -3,7 +3,7 @@
 use super::PICTURE_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
-use crate::shader;
+use crate::{Settings, ToneMap, shader};
 
 /// Exposes, maps and encodes radiance.
 #[derive(Debug)]
@@ -13,7 +13,11 @@ pub(crate) struct ToneMapPass {
 }
 
 impl ToneMapPass {
-    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
         let layout = bind_group_layout(
             &gpu.device,
             "tone map",
@@ -30,7 +34,10 @@ impl ToneMapPass {
             "tone_map",
             &[frame_layout, &layout],
             PICTURE_FORMAT,
-            &[],
+            &[(
+                "CLIPPED",
+                f64::from(u8::from(settings.tone_map == ToneMap::Linear)),
+            )],
         );
         Self { pipeline, layout }
     }

@@ -1,5 +1,8 @@
 // Radiance to display values. After frame.wgsl.
 
+// Clipped at 1, else a filmic curve.
+override CLIPPED: bool = false;
+
 @group(1) @binding(0) var radiance: texture_2d<f32>;
 
 @vertex
@@ -34,7 +37,7 @@ fn srgb(linear: vec3f) -> vec3f {
 fn tone_map(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let exposed = textureLoad(radiance, vec2u(position.xy), 0).rgb * frame.exposure;
     var mapped = saturate(exposed);
-    if frame.tone_map == 0u {
+    if !CLIPPED {
         // Far beyond white; keeps the fraction finite.
         mapped = aces(min(exposed, vec3f(1e6)));
     }

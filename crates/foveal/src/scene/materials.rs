@@ -18,10 +18,6 @@ pub(crate) struct MaterialUniform {
     pub(crate) normal_scale: f32,
     pub(crate) occlusion_strength: f32,
     pub(crate) alpha_cutoff: f32,
-    pub(crate) flags: u32,
-    pub(crate) reserved_0: u32,
-    pub(crate) reserved_1: u32,
-    pub(crate) reserved_2: u32,
     pub(crate) uv: [[[f32; 4]; 2]; 5],
 }
 
@@ -38,14 +34,19 @@ fn slots(material: &Material) -> [Option<TextureRef>; 5] {
 
 const IS_UNLIT: u32 = 32;
 
+/// What the shader is specialized to: one bit per texture slot in use, and one for unlit.
+pub(crate) fn material_class(material: &Material) -> u32 {
+    let slots = slots(material);
+    let textures = slots
+        .iter()
+        .enumerate()
+        .map(|(i, slot)| u32::from(slot.is_some()) << i);
+    textures.sum::<u32>() | if material.unlit { IS_UNLIT } else { 0 }
+}
+
 impl MaterialUniform {
     pub(crate) fn new(material: &Material) -> Self {
         let slots = slots(material);
-        let flags = slots
-            .iter()
-            .enumerate()
-            .map(|(i, slot)| u32::from(slot.is_some()) << i)
-            .sum::<u32>();
         Self {
             base_color: material.base_color.to_array(),
             emissive: material.emissive.to_array(),
@@ -57,10 +58,6 @@ impl MaterialUniform {
                 AlphaMode::Mask { cutoff } => cutoff,
                 AlphaMode::Opaque | AlphaMode::Blend => 0.0,
             },
-            flags: flags | if material.unlit { IS_UNLIT } else { 0 },
-            reserved_0: 0,
-            reserved_1: 0,
-            reserved_2: 0,
             uv: slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
         }
     }

@@ -11,13 +11,14 @@ pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS};
 pub(crate) use instances::InstanceUniform;
 #[cfg(test)]
 pub(crate) use materials::MaterialUniform;
+use materials::material_class;
 pub(crate) use materials::{SceneMaterials, material_layout};
 
 use foveal_scene::{Aabb, AlphaMode, Environment, Scene};
 use glam::Mat4;
 
 use crate::gpu::Gpu;
-use crate::lights::{LightUniform, MAX_LIGHTS};
+use crate::lights::{LightUniform, LightsHeader, MAX_LIGHTS};
 use crate::{Error, SceneStats, Settings};
 
 /// One instance as drawing sees it.
@@ -30,6 +31,8 @@ pub(crate) struct DrawnInstance {
     pub(crate) mirrored: bool,
     pub(crate) alpha_mode: AlphaMode,
     pub(crate) double_sided: bool,
+    /// [`material_class`].
+    pub(crate) material_class: u32,
 }
 
 /// Everything of a scene that outlives a frame.
@@ -64,12 +67,12 @@ impl SceneOnGpu {
         let lights: Vec<_> = scene.lights.iter().map(LightUniform::new).collect();
         let light_buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("lights"),
-            size: (lights.len().max(1) * size_of::<LightUniform>()) as u64,
+            size: (size_of::<LightsHeader>() + lights.len().max(1) * size_of::<LightUniform>())
+                as u64,
             usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
-        gpu.queue
-            .write_buffer(&light_buffer, 0, bytemuck::cast_slice(&lights));
+        write_lights(gpu, &light_buffer, &lights);
         Ok(Self {
             geometry: SceneGeometry::new(gpu, scene)?,
             materials: SceneMaterials::new(gpu, scene, settings, material_layout)?,
@@ -101,8 +104,7 @@ impl SceneOnGpu {
         }
         self.instances = drawn_instances(scene);
         self.lights = scene.lights.iter().map(LightUniform::new).collect();
-        gpu.queue
-            .write_buffer(&self.light_buffer, 0, bytemuck::cast_slice(&self.lights));
+        write_lights(gpu, &self.light_buffer, &self.lights);
         self.geometry.update_pose(gpu, scene);
     }
 
@@ -112,7 +114,19 @@ impl SceneOnGpu {
     }
 }
 
+fn write_lights(gpu: &Gpu, buffer: &wgpu::Buffer, lights: &[LightUniform]) {
+    let header = LightsHeader::new(lights.len());
+    gpu.queue
+        .write_buffer(buffer, 0, bytemuck::bytes_of(&header));
+    gpu.queue.write_buffer(
+        buffer,
+        size_of::<LightsHeader>() as u64,
+        bytemuck::cast_slice(lights),
+    );
+}
+
 fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
+    let classes: Vec<u32> = scene.materials.iter().map(material_class).collect();
     scene
         .instances
         .iter()
@@ -125,6 +139,7 @@ fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
                 mirrored: is_mirrored(i.world_from_object),
                 alpha_mode: material.alpha_mode,
                 double_sided: material.double_sided,
+                material_class: classes[i.material as usize],
             }
         })
         .collect()

@@ -4,7 +4,7 @@
 
 @group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
-@group(1) @binding(2) var<storage, read> lights: array<Light>;
+@group(1) @binding(2) var<storage, read> lights: Lights;
 @group(1) @binding(3) var<storage, read> cluster_lights: array<u32>;
 
 // Radiance at a position in pixels, from what the G-buffer holds there.

@@ -1,4 +1,5 @@
 // What every pass knows of the frame. Rust: `frame.rs`, `FrameUniform`.
+// Nothing here may decide a branch by itself: `select`, or an override (ARCHITECTURE.md says why).
 
 struct Frame {
     clip_from_world: mat4x4f,
@@ -20,31 +21,25 @@ struct Frame {
     // Far plane's distance minus the near plane's; orthographic only.
     depth_range: f32,
     nadir: vec3f,
-    tone_map: u32,
-    // Pixels.
-    size: vec2f,
-    light_count: u32,
-    // 32-light words per cluster.
-    light_words: u32,
-    cluster_counts: vec3u,
-    // Distance along the view axis where the second slice begins.
+    // Distance along the view axis where the second slice of clusters begins.
     cluster_near: f32,
+    // Tiles across, tiles down, slices.
+    cluster_counts: vec3u,
     // Slices per doubling of the distance.
     cluster_scale: f32,
+    // Pixels.
+    size: vec2f,
     // Side of a cluster's tile in pixels.
     cluster_tile: f32,
     // Unused; keeps the size a multiple of 16 bytes.
-    reserved: vec2f,
+    reserved: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
 
 // Distance along the view axis from reversed depth.
 fn view_distance(depth: f32) -> f32 {
-    if frame.orthographic != 0u {
-        return frame.near + (1.0 - depth) * frame.depth_range;
-    }
-    return frame.near / depth;
+    return select(frame.near / depth, frame.near + (1.0 - depth) * frame.depth_range, frame.orthographic != 0u);
 }
 
 // Normalized device coordinates of a position in pixels, y up.
@@ -64,10 +59,7 @@ fn world_from_view_position(view: vec3f) -> vec3f {
 
 // Unit vector from a world position to the eye.
 fn direction_to_eye(position: vec3f) -> vec3f {
-    if frame.orthographic != 0u {
-        return -frame.forward;
-    }
-    return normalize(frame.eye - position);
+    return select(normalize(frame.eye - position), -frame.forward, frame.orthographic != 0u);
 }
 
 // Radiance of the surroundings in a direction: the backdrop and the ambient term.

@@ -22,6 +22,14 @@ struct Light {
     reserved: f32,
 }
 
+struct Lights {
+    count: u32,
+    // 32-light words per cluster.
+    words: u32,
+    reserved: vec2u,
+    items: array<Light>,
+}
+
 fn cluster_slice(distance: f32) -> u32 {
     let slice = log2(max(distance / frame.cluster_near, 1e-6)) * frame.cluster_scale + 1.0;
     return u32(clamp(slice, 0.0, f32(frame.cluster_counts.z - 1u)));

@@ -92,7 +92,7 @@ fn ambient(s: Surface, v: vec3f) -> vec3f {
 fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
     let tile = min(vec2u(pixel / frame.cluster_tile), frame.cluster_counts.xy - 1u);
     let cluster = tile.x + frame.cluster_counts.x * (tile.y + frame.cluster_counts.y * cluster_slice(distance));
-    return cluster * frame.light_words;
+    return cluster * lights.words;
 }
 
 // Radiance that leaves a surface towards the eye. Lights are summed in ascending order whichever way they
@@ -101,8 +101,8 @@ fn lit(s: Surface, pixel: vec2f, distance: f32) -> vec3f {
     let v = direction_to_eye(s.position);
     var sum = s.emissive + ambient(s, v);
     let first = cluster_words_at(pixel, distance);
-    for (var word = 0u; word < frame.light_words; word++) {
-        let valid = min(frame.light_count - word * 32u, 32u);
+    for (var word = 0u; word < lights.words; word++) {
+        let valid = min(lights.count - word * 32u, 32u);
         var bits = select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
         if !BRUTE {
             bits = cluster_lights[first + word];
@@ -110,7 +110,7 @@ fn lit(s: Surface, pixel: vec2f, distance: f32) -> vec3f {
         while bits != 0u {
             let bit = firstTrailingBit(bits);
             bits &= bits - 1u;
-            sum += reflect_light(s, v, lights[word * 32u + bit]);
+            sum += reflect_light(s, v, lights.items[word * 32u + bit]);
         }
     }
     return sum;

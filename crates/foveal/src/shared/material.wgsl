@@ -1,5 +1,8 @@
 // The material at a rasterized point. Needs frame.wgsl and surface.wgsl. Rust: `scene/materials.rs`.
 
+// What the material has, known when the pipeline is made: bits as below.
+override MATERIAL_CLASS: u32 = 0u;
+
 const HAS_BASE_COLOR: u32 = 1u;
 const HAS_METALLIC_ROUGHNESS: u32 = 2u;
 const HAS_NORMAL: u32 = 4u;
@@ -22,10 +25,6 @@ struct Material {
     occlusion_strength: f32,
     // 0 where alpha is no mask.
     alpha_cutoff: f32,
-    flags: u32,
-    reserved_0: u32,
-    reserved_1: u32,
-    reserved_2: u32,
     // Base colour, metallic-roughness, normal, occlusion, emissive.
     uv: array<UvMap, 5>,
 }
@@ -56,19 +55,19 @@ struct Shaded {
 // `bitangent_sign` is glTF's tangent.w; `front` tells which side is seen.
 fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color: vec4f, front: bool) -> Shaded {
     var base = material.base_color * color;
-    if (material.flags & HAS_BASE_COLOR) != 0u {
+    if (MATERIAL_CLASS & HAS_BASE_COLOR) != 0u {
         base *= textureSample(base_color_texture, base_color_sampler, uv_of(0u, uv));
     }
     var metallic = material.metallic;
     var roughness = material.roughness;
-    if (material.flags & HAS_METALLIC_ROUGHNESS) != 0u {
+    if (MATERIAL_CLASS & HAS_METALLIC_ROUGHNESS) != 0u {
         let texel = textureSample(metallic_roughness_texture, metallic_roughness_sampler, uv_of(1u, uv));
         roughness *= texel.g;
         metallic *= texel.b;
     }
     let facing = select(-1.0, 1.0, front);
     var n = normalize(normal) * facing;
-    if (material.flags & HAS_NORMAL) != 0u {
+    if (MATERIAL_CLASS & HAS_NORMAL) != 0u {
         let texel = textureSample(normal_texture, normal_sampler, uv_of(2u, uv)).xyz * 2.0 - 1.0;
         if dot(tangent.xyz, tangent.xyz) > 0.0 {
             // As MikkTSpace bakes: interpolated vectors, not normalized before the sum.
@@ -78,15 +77,15 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
         }
     }
     var occlusion = 1.0;
-    if (material.flags & HAS_OCCLUSION) != 0u {
+    if (MATERIAL_CLASS & HAS_OCCLUSION) != 0u {
         let texel = textureSample(occlusion_texture, occlusion_sampler, uv_of(3u, uv));
         occlusion = 1.0 + material.occlusion_strength * (texel.r - 1.0);
     }
     var emissive = material.emissive;
-    if (material.flags & HAS_EMISSIVE) != 0u {
+    if (MATERIAL_CLASS & HAS_EMISSIVE) != 0u {
         emissive *= textureSample(emissive_texture, emissive_sampler, uv_of(4u, uv)).rgb;
     }
-    if (material.flags & IS_UNLIT) != 0u {
+    if (MATERIAL_CLASS & IS_UNLIT) != 0u {
         // Black to all light: what is left is the colour itself.
         return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb), base.a);
     }

@@ -1,14 +1,30 @@
 //! Pictures made by code: each surface is a function from a place to a texel, baked into colour,
 //! normal and occlusion-roughness-metallic textures with full mip chains.
 
-mod mip;
+mod cloth;
+mod glow;
+mod leaf;
+mod metal;
 mod noise;
+mod plaster;
+mod roof;
+mod stone;
+mod wood;
+
+pub(super) use cloth::{canvas, rug, stripes};
+pub(super) use glow::{clock, moon, paper, steam, window};
+pub(super) use leaf::leaves;
+pub(super) use metal::{hammered, iron};
+pub(super) use plaster::{clay, plaster};
+pub(super) use roof::roof_tiles;
+pub(super) use stone::{ashlar, bricks, cobbles};
+pub(super) use wood::{planks, wicker};
 
 use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
-use crate::{Sampler, Texture, Wrap};
-use mip::Content;
+use crate::mip::{self, Content};
+use crate::{ColorSpace, Sampler, Texture, Wrap};
 
 /// One point of a surface.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +103,7 @@ pub(super) fn bake(
             &format!("{name} occlusion-roughness-metallic"),
             size,
             orm,
-            Content::Linear,
+            Content::Data,
         ),
     }
 }
@@ -98,6 +114,12 @@ pub(super) fn paint(name: &str, size: u32, surface: impl Fn(Vec2) -> Texel + Syn
     picture(name, size, bytes, Content::Color)
 }
 
+/// A colour picture whose alpha is for blending.
+fn paint_clear(name: &str, size: u32, surface: impl Fn(Vec2) -> Texel + Sync) -> Texture {
+    let bytes = color_bytes(&evaluate(size, surface));
+    picture(name, size, bytes, Content::Cutout { threshold: None })
+}
+
 /// A colour picture with a cut-out, not repeating.
 pub(super) fn paint_masked(
     name: &str,
@@ -105,7 +127,18 @@ pub(super) fn paint_masked(
     surface: impl Fn(Vec2) -> Texel + Sync,
 ) -> Texture {
     let bytes = color_bytes(&evaluate(size, surface));
-    let mut texture = picture(name, size, bytes, Content::MaskedColor);
+    picture_clamped(picture(
+        name,
+        size,
+        bytes,
+        Content::Cutout {
+            threshold: Some(0.5),
+        },
+    ))
+}
+
+/// The texture, not repeating.
+fn picture_clamped(mut texture: Texture) -> Texture {
     texture.sampler.wrap_u = Wrap::ClampToEdge;
     texture.sampler.wrap_v = Wrap::ClampToEdge;
     texture
@@ -145,9 +178,12 @@ fn picture(name: &str, size: u32, level_0: Vec<u8>, content: Content) -> Texture
         name: name.to_owned(),
         width: size,
         height: size,
-        color_space: content.color_space(),
+        color_space: match content {
+            Content::Color | Content::Cutout { .. } => ColorSpace::Srgb,
+            Content::Data | Content::Normal => ColorSpace::Linear,
+        },
         sampler: Sampler::default(),
-        levels: mip::chain(level_0, size, content),
+        levels: mip::chain(level_0, size, size, content),
     }
 }
 

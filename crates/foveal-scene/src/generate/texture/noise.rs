@@ -44,8 +44,6 @@ pub(super) fn fractal(p: Vec2, cells: u32, octaves: u32, seed: u32) -> f32 {
 /// What [`cellular`] knows of a point.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Cell {
-    /// Distance to the nearest feature point, in cells.
-    pub(super) near: f32,
     /// Distance to the border with the neighbour, in cells.
     pub(super) border: f32,
     /// A hash of the nearest point.
@@ -79,7 +77,6 @@ pub(super) fn cellular(p: Vec2, cells: u32, jitter: f32, seed: u32) -> Cell {
         })
         .fold(f32::INFINITY, f32::min);
     Cell {
-        near: nearest.0.sqrt(),
         border,
         id: nearest.2,
     }

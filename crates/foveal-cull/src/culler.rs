@@ -1,0 +1,488 @@
+//! The culler: one depth buffer, one frame at a time.
+
+use crate::depth::{DepthBuffer, EMPTY, SAMPLES, decode, encode};
+use crate::query::near::{Clipped, clip_box};
+use crate::query::project::{Boxes8, Screen, project};
+use crate::query::test::{PixelRect, hidden};
+use crate::raster::frame::{Draw, FrameScratch, Select};
+use crate::raster::setup::Scratch;
+use crate::simd::{Kernel, Lanes};
+use crate::view::Camera;
+use crate::{Aabb, CullError, CullStats, InstructionSet, OccluderSet, Threads, View};
+use glam::DVec3;
+use std::sync::Mutex;
+
+/// What became of a box.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u8)]
+pub enum Visibility {
+    /// May be seen: draw it.
+    Visible = 0,
+    /// Outside the view frustum (or beyond the far plane, or nearer than the near plane).
+    Outside = 1,
+    /// Below the size threshold.
+    Small = 2,
+    /// Hidden behind occluders.
+    Occluded = 3,
+}
+
+impl Visibility {
+    /// Whether it must be drawn.
+    #[must_use]
+    pub fn is_visible(self) -> bool {
+        self == Self::Visible
+    }
+}
+
+/// A time limit for rasterizing, by the caller's own clock (this crate reads none).
+#[derive(Clone, Copy)]
+pub struct Budget<'a> {
+    /// Reads the clock, nanoseconds from any fixed start.
+    pub clock: &'a (dyn Fn() -> u64 + Sync),
+    /// No occluder is begun at or after this reading. Nearer occluders come first, so the most useful ones
+    /// are there; results stay safe, only more is reported visible.
+    pub deadline_ns: u64,
+}
+
+impl core::fmt::Debug for Budget<'_> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("Budget")
+            .field("deadline_ns", &self.deadline_ns)
+            .finish_non_exhaustive()
+    }
+}
+
+/// Switches and thresholds of a frame.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameOptions<'a> {
+    /// Occluder models with `radius² < distance * threshold² * tan(fov_y / 2)` (distance above 1 m) are left
+    /// out, as in Intel's sample (1.5 there). 0 takes all.
+    pub occluder_size_threshold: f32,
+    /// The same for occludees ([`Visibility::Small`]; 0.01 in the sample). 0 culls none by size.
+    pub occludee_size_threshold: f32,
+    /// Whether occluders are drawn; off, only frustum and size are tested.
+    pub occlusion: bool,
+    /// Time limit for rasterizing.
+    pub budget: Option<Budget<'a>>,
+}
+
+impl Default for FrameOptions<'_> {
+    fn default() -> Self {
+        Self {
+            occluder_size_threshold: 0.0,
+            occludee_size_threshold: 0.0,
+            occlusion: true,
+            budget: None,
+        }
+    }
+}
+
+/// Boxes grow by this on the screen before they are tested, samples (a quarter pixel each): more than all
+/// rounding, and enough that a box which reaches an occluder's border also asks what is behind it.
+const DILATE: f32 = 1.0;
+/// Most bands a frame is split into.
+const MAX_BANDS: usize = 64;
+
+/// Rasterizes occluders and answers queries. Allocates when made and while its lists still grow, then no
+/// more. `Sync`: queries may run from many threads at once on a shared reference.
+#[derive(Debug)]
+pub struct Culler {
+    buffer: DepthBuffer,
+    instruction_set: InstructionSet,
+    frame: FrameScratch,
+    scratch: Vec<Scratch>,
+    drawn: Vec<Vec<u32>>,
+    seen: Vec<(u32, u32)>,
+    view: Option<Frame>,
+    stats: CullStats,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    camera: Camera,
+    occludee_size_threshold: f32,
+    occlusion: bool,
+}
+
+impl Culler {
+    /// A culler with a depth buffer of `width` x `height` pixels. A quarter of the picture's size per axis
+    /// is the natural choice: coverage is sampled 4x4 per pixel, that is, at the picture's own pixels.
+    ///
+    /// # Errors
+    /// [`CullError::BadSize`] for 0 or more than 4096 pixels in an axis.
+    pub fn new(width: u32, height: u32) -> Result<Self, CullError> {
+        if !(1..=4096).contains(&width) || !(1..=4096).contains(&height) {
+            return Err(CullError::BadSize { width, height });
+        }
+        Ok(Self {
+            buffer: DepthBuffer::new(width, height),
+            instruction_set: InstructionSet::detect(),
+            frame: FrameScratch::default(),
+            scratch: Vec::new(),
+            drawn: Vec::new(),
+            seen: Vec::new(),
+            view: None,
+            stats: CullStats::default(),
+        })
+    }
+
+    /// Forces an instruction set (all give equal results; for tests and measurements). One that the CPU
+    /// lacks falls back to the portable one.
+    pub fn set_instruction_set(&mut self, instruction_set: InstructionSet) {
+        self.instruction_set = instruction_set;
+    }
+
+    /// The instruction set in use.
+    #[must_use]
+    pub fn instruction_set(&self) -> InstructionSet {
+        self.instruction_set
+    }
+
+    /// Size of the depth buffer, pixels.
+    #[must_use]
+    pub fn size(&self) -> (u32, u32) {
+        (self.buffer.width, self.buffer.height)
+    }
+
+    /// Begins a frame: clears the buffer, draws the occluders that `view` can see, resets the statistics.
+    ///
+    /// # Errors
+    /// [`CullError::NotFinite`] or [`CullError::BadProjection`] for a bad view; the culler then answers
+    /// "visible" to everything until the next good frame.
+    pub fn rasterize(
+        &mut self,
+        view: &View,
+        occluders: &OccluderSet,
+        options: &FrameOptions<'_>,
+        threads: &dyn Threads,
+    ) -> Result<(), CullError> {
+        self.view = None;
+        self.stats = CullStats::default();
+        self.buffer.clear();
+        let (width, height) = (
+            (self.buffer.width * SAMPLES) as f32,
+            (self.buffer.height * SAMPLES) as f32,
+        );
+        let camera = Camera::new(view, f64::from(width), f64::from(height))?;
+        let occlusion = options.occlusion && camera.radius == 0.0;
+        self.view = Some(Frame {
+            camera,
+            occludee_size_threshold: options.occludee_size_threshold,
+            occlusion,
+        });
+        if !occlusion {
+            return Ok(());
+        }
+        self.instruction_set.run(Select {
+            camera: &camera,
+            set: occluders,
+            scratch: &mut self.frame,
+            stats: &mut self.stats,
+            width,
+            height,
+            size_threshold: options.occluder_size_threshold,
+        });
+        self.draw(occluders, options.budget, threads);
+        Ok(())
+    }
+
+    fn draw(&mut self, set: &OccluderSet, budget: Option<Budget<'_>>, threads: &dyn Threads) {
+        let rows = self.buffer.blocks_y;
+        let bands = match threads.count() {
+            0 | 1 => 1,
+            n => (n * 4).min(rows as usize).min(MAX_BANDS),
+        };
+        self.scratch
+            .resize_with(self.scratch.len().max(bands), Scratch::default);
+        self.drawn
+            .resize_with(self.drawn.len().max(bands), Vec::new);
+        type Job<'a> = Option<(crate::depth::Band<'a>, &'a mut Scratch, &'a mut Vec<u32>)>;
+        let mut jobs: [Mutex<Job<'_>>; MAX_BANDS] = [const { Mutex::new(None) }; MAX_BANDS];
+        let mut rest = self.buffer.band();
+        for (i, ((job, scratch), drawn)) in jobs
+            .iter_mut()
+            .zip(&mut self.scratch)
+            .zip(&mut self.drawn)
+            .take(bands)
+            .enumerate()
+        {
+            (scratch.polygons, scratch.clusters) = (0, 0);
+            drawn.clear();
+            let end = rows as usize * (i + 1) / bands;
+            let (band, after) = rest.split(end as u32 - rest_first(rows, i, bands));
+            rest = after;
+            *job = Mutex::new(Some((band, scratch, drawn)));
+        }
+        let frame = &self.frame;
+        let isa = self.instruction_set;
+        let skipped = core::sync::atomic::AtomicU64::new(0);
+        let task = |i: usize| {
+            let job = jobs[i].lock().ok().and_then(|mut j| j.take());
+            if let Some((band, scratch, drawn)) = job {
+                let left_out = isa.run(Draw {
+                    set,
+                    frame,
+                    band,
+                    scratch,
+                    drawn: Some(drawn),
+                    budget,
+                });
+                skipped.fetch_max(left_out, core::sync::atomic::Ordering::Relaxed);
+            }
+        };
+        if bands == 1 {
+            task(0)
+        } else {
+            threads.run(bands, &task)
+        }
+        self.stats.clusters_over_budget = skipped.into_inner();
+        self.count_drawn(set, bands);
+    }
+
+    fn count_drawn(&mut self, set: &OccluderSet, bands: usize) {
+        self.seen.clear();
+        for drawn in &self.drawn[..bands] {
+            self.seen.extend(
+                drawn
+                    .iter()
+                    .map(|&n| self.frame.candidates[n as usize].place()),
+            );
+        }
+        self.seen.sort_unstable();
+        self.seen.dedup();
+        self.stats.polygons_rasterized = self.scratch[..bands].iter().map(|s| s.polygons).sum();
+        self.stats.clusters_rasterized = self.seen.len() as u64;
+        let mut last = None;
+        for &(instance, cluster) in &self.seen {
+            self.stats.occluder_models_rasterized += u64::from(last != Some(instance));
+            last = Some(instance);
+            if let Some(mesh) = set.instances[instance as usize].mesh.as_deref() {
+                self.stats.occluder_triangles_rasterized +=
+                    u64::from(mesh.clusters[cluster as usize].triangle_count);
+            }
+        }
+    }
+
+    /// Tests boxes against the frame: one answer per box, in order. Boxes are in metres relative to
+    /// `origin` (world). A box that is not a volume (NaN, inside out) is visible.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] when `results` is not as long as `boxes`.
+    pub fn query(
+        &self,
+        boxes: &[Aabb],
+        origin: DVec3,
+        results: &mut [Visibility],
+    ) -> Result<(), CullError> {
+        if results.len() != boxes.len() {
+            return Err(CullError::LengthMismatch {
+                expected: boxes.len(),
+                found: results.len(),
+            });
+        }
+        let Some(frame) = self.view else {
+            results.fill(Visibility::Visible);
+            return Ok(());
+        };
+        let q = Query::new(&self.buffer, &frame, origin);
+        self.instruction_set.run(Flat {
+            query: &q,
+            boxes,
+            results,
+        });
+        Ok(())
+    }
+
+    /// Adds answers to the statistics; `triangles` per occludee where known.
+    pub fn count(&mut self, results: &[Visibility], triangles: Option<&[u32]>) {
+        let s = &mut self.stats;
+        for (i, r) in results.iter().enumerate() {
+            s.occludees += 1;
+            match r {
+                Visibility::Visible => s.occludees_visible += 1,
+                Visibility::Outside => s.occludees_outside += 1,
+                Visibility::Small => s.occludees_small += 1,
+                Visibility::Occluded => s.occludees_occluded += 1,
+            }
+            let t = triangles
+                .and_then(|t| t.get(i))
+                .copied()
+                .map_or(0, u64::from);
+            s.occludee_triangles += t;
+            if r.is_visible() {
+                s.occludee_triangles_visible += t;
+            }
+        }
+    }
+
+    /// The figures of the frame so far.
+    #[must_use]
+    pub fn stats(&self) -> CullStats {
+        self.stats
+    }
+
+    /// Copies the depth buffer, row by row from the top left: `near / distance` for perspective views, 1 at
+    /// the near plane to 0 at the far plane for orthographic ones; 0 where nothing is proven.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] when `pixels` is not `width * height` long.
+    pub fn read_depth(&self, pixels: &mut [f32]) -> Result<(), CullError> {
+        let (w, h) = self.size();
+        let expected = (w * h) as usize;
+        if pixels.len() != expected {
+            return Err(CullError::LengthMismatch {
+                expected,
+                found: pixels.len(),
+            });
+        }
+        for (y, row) in (0..h).zip(pixels.chunks_exact_mut(w as usize)) {
+            for (x, pixel) in (0..w).zip(row) {
+                *pixel = decode(self.buffer.pixel(x, y));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether the pixel at (x, y) is proven to be covered by occluders.
+    #[must_use]
+    pub fn is_covered(&self, x: u32, y: u32) -> bool {
+        x < self.buffer.width && y < self.buffer.height && self.buffer.pixel(x, y) != EMPTY
+    }
+}
+
+fn rest_first(rows: u32, i: usize, bands: usize) -> u32 {
+    (rows as usize * i / bands) as u32
+}
+
+/// A frame, as queries see it.
+pub(crate) struct Query<'a> {
+    pub(crate) buffer: &'a DepthBuffer,
+    pub(crate) screen: Screen,
+    pub(crate) occlusion: bool,
+    /// `threshold² * tan(fov / 2)`.
+    pub(crate) small: f32,
+    /// Growth of boxes against rounding, per metre of coordinate.
+    rounding: f32,
+    origin_distance: f32,
+}
+
+impl<'a> Query<'a> {
+    fn new(buffer: &'a DepthBuffer, frame: &Frame, origin: DVec3) -> Self {
+        let camera = &frame.camera;
+        let from_origin = origin - camera.eye;
+        let rows = camera.rows.map(|r| {
+            let t = r.truncate();
+            [
+                t.x as f32,
+                t.y as f32,
+                t.z as f32,
+                (t.dot(from_origin) + r.w) as f32,
+            ]
+        });
+        let screen = Screen {
+            rows,
+            width: (buffer.width * SAMPLES) as f32,
+            height: (buffer.height * SAMPLES) as f32,
+            far_depth: (camera.far_depth * (1.0 - 1e-5)) as f32,
+            dilate: DILATE,
+        };
+        let t = f64::from(frame.occludee_size_threshold);
+        Self {
+            buffer,
+            screen,
+            occlusion: frame.occlusion,
+            small: (t * t * camera.tan_half_fov_y) as f32,
+            rounding: 6e-7,
+            origin_distance: from_origin.length() as f32,
+        }
+    }
+
+    /// Centre and half extent for the kernels, grown against rounding; NaN for what is not a volume.
+    #[inline(always)]
+    pub(crate) fn prepare(&self, b: &Aabb) -> (glam::Vec3, glam::Vec3) {
+        let (center, half) = (b.center(), b.half_extent());
+        let reach = center.abs().max_element() + half.max_element() + self.origin_distance;
+        let valid = b.min.cmple(b.max).all();
+        (
+            center,
+            if valid {
+                half + self.rounding * reach
+            } else {
+                glam::Vec3::NAN
+            },
+        )
+    }
+
+    /// Answers for one of eight projected boxes.
+    #[inline(always)]
+    pub(crate) fn answer(
+        &self,
+        p: &crate::query::project::Projected8,
+        i: usize,
+        boxes: &Boxes8,
+    ) -> Visibility {
+        if p.outside >> i & 1 != 0 {
+            return Visibility::Outside;
+        }
+        let center = || glam::Vec3::from_array(boxes.center.map(|v| v[i]));
+        let half = || glam::Vec3::from_array(boxes.half.map(|v| v[i]));
+        if self.small > 0.0 {
+            let [x, y, z, w] = self.screen.rows[3];
+            let distance = center().dot(glam::Vec3::new(x, y, z)) + w;
+            if distance > 1.0 && half().length_squared() < distance * self.small {
+                return Visibility::Small;
+            }
+        }
+        let (rect, depth) = if p.crossing >> i & 1 != 0 {
+            match clip_box(&self.screen, center(), half()) {
+                Clipped::Outside => return Visibility::Outside,
+                Clipped::Visible => return Visibility::Visible,
+                Clipped::Rect(r, d) => (r, d),
+            }
+        } else {
+            ([p.x0[i], p.y0[i], p.x1[i], p.y1[i]], p.depth[i])
+        };
+        if !self.occlusion {
+            return Visibility::Visible;
+        }
+        let rect = PixelRect::from_samples(
+            rect[0],
+            rect[1],
+            rect[2],
+            rect[3],
+            self.buffer.width,
+            self.buffer.height,
+        );
+        if hidden(self.buffer, rect, encode(depth)) {
+            Visibility::Occluded
+        } else {
+            Visibility::Visible
+        }
+    }
+}
+
+/// All boxes, eight at a time.
+struct Flat<'a> {
+    query: &'a Query<'a>,
+    boxes: &'a [Aabb],
+    results: &'a mut [Visibility],
+}
+
+impl Kernel for Flat<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        for (boxes, results) in self.boxes.chunks(8).zip(self.results.chunks_mut(8)) {
+            let mut eight = Boxes8::NONE;
+            for (i, b) in boxes.iter().enumerate() {
+                let (c, h) = self.query.prepare(b);
+                eight.set(i, c, h);
+            }
+            let p = project(l, &self.query.screen, &eight);
+            for (i, r) in results.iter_mut().enumerate() {
+                *r = self.query.answer(&p, i, &eight);
+            }
+        }
+    }
+}

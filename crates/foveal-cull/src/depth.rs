@@ -1,0 +1,171 @@
+//! The hierarchical depth buffer.
+//!
+//! 8x8-pixel blocks of 16-bit depth. A pixel's value is a *proof*: every point of a 4x4 grid over the pixel,
+//! and its centre, is covered by occluders at that depth or nearer. Partly covered pixels keep what they
+//! have so far (which grid points, and the farthest depth among them) until the rest arrives. Every block
+//! also keeps its farthest depth, which answers most questions alone.
+//!
+//! Depth is `near / distance` (or linear, for orthographic views), stored as a shortened float with five
+//! bits of exponent and eleven of mantissa, always rounded away from the eye. Larger is nearer.
+
+/// Grid points per pixel and axis.
+pub(crate) const SAMPLES: u32 = 4;
+/// Pixels per block side.
+pub(crate) const BLOCK: u32 = 8;
+/// Samples per block side.
+pub(crate) const BLOCK_SAMPLES: u32 = BLOCK * SAMPLES;
+/// Nothing known: infinitely far.
+pub(crate) const EMPTY: i16 = i16::MIN;
+/// `to_bits(1.0) >> 12`, which becomes the largest code.
+const ONE_BITS: i32 = 0x3f800;
+/// What is subtracted from the shifted bits.
+pub(crate) const CODE_OFFSET: i32 = ONE_BITS - i16::MAX as i32;
+
+/// The code of a depth, rounded down (away from the eye).
+#[inline]
+pub(crate) fn encode(depth: f32) -> i16 {
+    ((depth.max(0.0).to_bits() >> 12) as i32 - CODE_OFFSET).clamp(-32768, 32767) as i16
+}
+
+/// The depth of a code.
+#[inline]
+pub(crate) fn decode(code: i16) -> f32 {
+    if code == EMPTY {
+        0.0
+    } else {
+        f32::from_bits(((i32::from(code) + CODE_OFFSET) << 12) as u32)
+    }
+}
+
+/// Depth of 64 pixels, row by row.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct DepthBlock(pub(crate) [[i16; 16]; 4]);
+
+/// What partly covered pixels of a block have so far. Bit `8 * row + column` of a plane is a pixel.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct PartialBlock {
+    /// Planes by sample column, then sample row.
+    pub(crate) planes: [[u64; 4]; 4],
+    /// Farthest depth so far.
+    pub(crate) depth: [[i16; 16]; 4],
+    /// The plane of pixel centres.
+    pub(crate) center: u64,
+}
+
+/// Block holds nothing; its memory is stale.
+pub(crate) const STATE_EMPTY: u8 = 0;
+/// Block has depth.
+pub(crate) const STATE_DEPTH: u8 = 1;
+/// Block has depth and partly covered pixels.
+pub(crate) const STATE_PARTIAL: u8 = 2;
+
+/// The buffer. See the module.
+#[derive(Clone, Debug)]
+pub(crate) struct DepthBuffer {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    pub(crate) blocks_x: u32,
+    pub(crate) blocks_y: u32,
+    pub(crate) depth: Vec<DepthBlock>,
+    pub(crate) partial: Vec<PartialBlock>,
+    /// Farthest depth per block.
+    pub(crate) min: Vec<i16>,
+    pub(crate) state: Vec<u8>,
+}
+
+impl DepthBuffer {
+    pub(crate) fn new(width: u32, height: u32) -> Self {
+        let (blocks_x, blocks_y) = (width.div_ceil(BLOCK), height.div_ceil(BLOCK));
+        let n = (blocks_x * blocks_y) as usize;
+        Self {
+            width,
+            height,
+            blocks_x,
+            blocks_y,
+            depth: vec![DepthBlock([[EMPTY; 16]; 4]); n],
+            partial: vec![
+                PartialBlock {
+                    planes: [[0; 4]; 4],
+                    depth: [[i16::MAX; 16]; 4],
+                    center: 0
+                };
+                n
+            ],
+            min: vec![EMPTY; n],
+            state: vec![STATE_EMPTY; n],
+        }
+    }
+
+    pub(crate) fn clear(&mut self) {
+        self.min.fill(EMPTY);
+        self.state.fill(STATE_EMPTY);
+    }
+
+    /// Splits into horizontal bands of block rows that threads own.
+    pub(crate) fn band(&mut self) -> Band<'_> {
+        Band {
+            blocks_x: self.blocks_x,
+            first_row: 0,
+            rows: self.blocks_y,
+            depth: &mut self.depth,
+            partial: &mut self.partial,
+            min: &mut self.min,
+            state: &mut self.state,
+        }
+    }
+
+    /// Code of one pixel.
+    pub(crate) fn pixel(&self, x: u32, y: u32) -> i16 {
+        let b = (y / BLOCK * self.blocks_x + x / BLOCK) as usize;
+        if self.state[b] == STATE_EMPTY {
+            return EMPTY;
+        }
+        let i = (y % BLOCK * BLOCK + x % BLOCK) as usize;
+        self.depth[b].0[i / 16][i % 16]
+    }
+}
+
+/// Some block rows of the buffer, exclusively.
+pub(crate) struct Band<'a> {
+    pub(crate) blocks_x: u32,
+    pub(crate) first_row: u32,
+    pub(crate) rows: u32,
+    pub(crate) depth: &'a mut [DepthBlock],
+    pub(crate) partial: &'a mut [PartialBlock],
+    pub(crate) min: &'a mut [i16],
+    pub(crate) state: &'a mut [u8],
+}
+
+impl<'a> Band<'a> {
+    /// The first `rows` block rows, and the rest.
+    pub(crate) fn split(self, rows: u32) -> (Band<'a>, Band<'a>) {
+        let rows = rows.min(self.rows);
+        let at = (rows * self.blocks_x) as usize;
+        let (d0, d1) = self.depth.split_at_mut(at);
+        let (p0, p1) = self.partial.split_at_mut(at);
+        let (m0, m1) = self.min.split_at_mut(at);
+        let (s0, s1) = self.state.split_at_mut(at);
+        (
+            Band {
+                blocks_x: self.blocks_x,
+                first_row: self.first_row,
+                rows,
+                depth: d0,
+                partial: p0,
+                min: m0,
+                state: s0,
+            },
+            Band {
+                blocks_x: self.blocks_x,
+                first_row: self.first_row + rows,
+                rows: self.rows - rows,
+                depth: d1,
+                partial: p1,
+                min: m1,
+                state: s1,
+            },
+        )
+    }
+}

@@ -1,0 +1,181 @@
+//! Clusters: quads that lie together and look the same way.
+//!
+//! A recursive median split over six coordinates, position and normal, so that clusters are compact and
+//! their normal cones narrow. Each cluster gets its own vertex list (numbers fit a byte).
+
+use super::quads::Quad;
+use super::{Cluster, OccluderMesh, hash_words};
+use crate::query::project::Boxes8;
+use glam::Vec3;
+
+const MAX_QUADS: usize = 64;
+/// Weight of the normal against position, as a part of the node's diagonal.
+const NORMAL_WEIGHT: f32 = 0.35;
+
+struct Item {
+    quad: Quad,
+    center: Vec3,
+    normal: Vec3,
+}
+
+pub(crate) fn build(mesh: &mut OccluderMesh, points: &[Vec3], quads: Vec<Quad>) {
+    let mut items: Vec<Item> = quads
+        .into_iter()
+        .map(|quad| {
+            let p = quad.map(|i| points[i as usize]);
+            let (lo, hi) = p
+                .iter()
+                .fold((p[0], p[0]), |(lo, hi), &q| (lo.min(q), hi.max(q)));
+            let normal = quad_normals(p)
+                .into_iter()
+                .flatten()
+                .sum::<Vec3>()
+                .normalize_or_zero();
+            Item {
+                quad,
+                center: (lo + hi) * 0.5,
+                normal,
+            }
+        })
+        .collect();
+    split(mesh, points, &mut items);
+    mesh.half = mesh
+        .clusters
+        .iter()
+        .fold(Vec3::ZERO, |h, c| h.max(c.center.abs() + c.half));
+    mesh.bounds8 = mesh
+        .clusters
+        .chunks(8)
+        .map(|eight| {
+            let mut boxes = Boxes8::NONE;
+            eight
+                .iter()
+                .enumerate()
+                .for_each(|(i, c)| boxes.set(i, c.center, c.half));
+            boxes
+        })
+        .collect();
+    mesh.hash = hash_words(
+        mesh.quads.len() as u32,
+        mesh.clusters.iter().map(|c| c.hash),
+    );
+}
+
+/// Unit normals of the one or two triangles.
+fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
+    let n = |a: Vec3, b: Vec3, c: Vec3| {
+        let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
+        (b - a).cross(c - a).try_normalize().map(|n| n.as_vec3())
+    };
+    [n(p[0], p[1], p[2]), n(p[0], p[2], p[3])]
+}
+
+fn split(mesh: &mut OccluderMesh, points: &[Vec3], items: &mut [Item]) {
+    if items.is_empty() {
+        return;
+    }
+    if items.len() <= MAX_QUADS && emit(mesh, points, items) {
+        return;
+    }
+    let spread = |f: &dyn Fn(&Item) -> Vec3| {
+        let (lo, hi) = items
+            .iter()
+            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), i| {
+                (lo.min(f(i)), hi.max(f(i)))
+            });
+        hi - lo
+    };
+    let size = spread(&|i| i.center);
+    let turn = spread(&|i| i.normal) * (size.length() * NORMAL_WEIGHT);
+    let axes = [size.x, size.y, size.z, turn.x, turn.y, turn.z];
+    let axis = (0..6).fold(0, |best, a| if axes[a] > axes[best] { a } else { best });
+    let key = |i: &Item| {
+        if axis < 3 {
+            i.center[axis]
+        } else {
+            i.normal[axis - 3]
+        }
+    };
+    // Full leaves: split at a multiple of the cluster size nearest to the middle.
+    let half = items.len() / 2;
+    let middle = if items.len() > MAX_QUADS {
+        (half.div_ceil(MAX_QUADS) * MAX_QUADS).min(items.len() - 1)
+    } else {
+        half
+    };
+    items.select_nth_unstable_by(middle, |a, b| {
+        key(a).total_cmp(&key(b)).then_with(|| a.quad.cmp(&b.quad))
+    });
+    let (left, right) = items.split_at_mut(middle);
+    split(mesh, points, left);
+    split(mesh, points, right);
+}
+
+/// Appends one cluster; false when its vertices do not fit a byte.
+fn emit(mesh: &mut OccluderMesh, points: &[Vec3], items: &[Item]) -> bool {
+    let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
+    used.sort_unstable();
+    used.dedup();
+    if used.len() > 256 {
+        return false;
+    }
+    let first_vertex = mesh.vertices.x.len() as u32;
+    let first_group = mesh.quads.len() as u32;
+    let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    for &v in &used {
+        let p = points[v as usize];
+        (lo, hi) = (lo.min(p), hi.max(p));
+        mesh.vertices.x.push(p.x);
+        mesh.vertices.y.push(p.y);
+        mesh.vertices.z.push(p.z);
+    }
+    let pad = used.len().next_multiple_of(8) - used.len();
+    for list in [
+        &mut mesh.vertices.x,
+        &mut mesh.vertices.y,
+        &mut mesh.vertices.z,
+    ] {
+        let last = list.last().copied().unwrap_or(0.0);
+        list.extend(core::iter::repeat_n(last, pad));
+    }
+    let mut triangles = 0u8;
+    let mut normals = Vec::with_capacity(items.len() * 2);
+    // Whole groups of eight for the set-up; padding repeats a vertex and has no area.
+    mesh.quads
+        .extend(core::iter::repeat_n([[0u8; 8]; 4], items.len().div_ceil(8)));
+    for (i, item) in items.iter().enumerate() {
+        for corner in 0..4 {
+            let local = used.binary_search(&item.quad[corner]).unwrap_or(0) as u8;
+            mesh.quads[first_group as usize + i / 8][corner][i % 8] = local;
+        }
+        triangles += if item.quad[2] == item.quad[3] { 1 } else { 2 };
+        normals.extend(
+            quad_normals(item.quad.map(|v| points[v as usize]))
+                .into_iter()
+                .flatten(),
+        );
+    }
+    let axis = normals.iter().sum::<Vec3>().normalize_or_zero();
+    let cos = normals.iter().fold(1.0f32, |m, n| m.min(n.dot(axis)));
+    // A little wider than measured, for rounding.
+    let cos = if axis == Vec3::ZERO { -1.0 } else { cos - 1e-4 };
+    mesh.clusters.push(Cluster {
+        center: (lo + hi) * 0.5,
+        half: (hi - lo) * 0.5 * (1.0 + 1e-6) + (lo.abs().max(hi.abs())) * 1e-6,
+        cone_axis: axis,
+        cone_sin: (1.0 - cos * cos).max(0.0).sqrt(),
+        cone_cos: cos,
+        first_vertex,
+        first_group,
+        vertex_count: used.len() as u16,
+        quad_count: items.len() as u8,
+        triangle_count: triangles,
+        hash: hash_words(
+            items.len() as u32,
+            used.iter()
+                .flat_map(|&v| points[v as usize].to_array().map(f32::to_bits))
+                .chain(items.iter().flat_map(|i| i.quad)),
+        ),
+    });
+    true
+}

@@ -1,0 +1,158 @@
+//! The slow path: triangles that cross the near plane or leave the guard band.
+//!
+//! Sutherland-Hodgman in homogeneous coordinates and `f64`, then the ordinary set-up. What is nearer than
+//! the near plane is not drawn by a renderer and so occludes nothing.
+
+use super::setup::{Facing, GUARD, Scratch, draw_eight};
+use crate::depth::Band;
+use crate::occluder::{Cluster, OccluderMesh};
+use crate::simd::{Lanes, four};
+use glam::DVec4;
+
+/// A convex polygon of up to nine corners (three, and one per plane), in clip space.
+#[derive(Clone, Copy)]
+pub(crate) struct ClipPolygon {
+    pub(crate) corners: [DVec4; 12],
+    pub(crate) count: usize,
+}
+
+impl ClipPolygon {
+    pub(crate) fn new(corners: &[DVec4]) -> Self {
+        let mut p = Self {
+            corners: [DVec4::ZERO; 12],
+            count: 0,
+        };
+        corners.iter().for_each(|&c| p.push(c));
+        p
+    }
+
+    fn push(&mut self, c: DVec4) {
+        if let Some(slot) = self.corners.get_mut(self.count) {
+            *slot = c;
+            self.count += 1;
+        }
+    }
+
+    /// Keeps the side where `plane . corner >= 0`.
+    pub(crate) fn clip(&mut self, plane: DVec4) {
+        let input = *self;
+        self.count = 0;
+        for i in 0..input.count {
+            let (a, b) = (input.corners[i], input.corners[(i + 1) % input.count]);
+            let (da, db) = (plane.dot(a), plane.dot(b));
+            if da >= 0.0 {
+                self.push(a);
+            }
+            if (da >= 0.0) != (db >= 0.0) {
+                // From the inner to the outer end, so that both neighbours of an edge cut it alike.
+                let (p, q, dp, dq) = if da >= 0.0 {
+                    (a, b, da, db)
+                } else {
+                    (b, a, db, da)
+                };
+                self.push(p + (q - p) * (dp / (dp - dq)));
+            }
+        }
+    }
+}
+
+/// Near plane (`W - Z >= 0`) and guard band.
+pub(crate) const NEAR: DVec4 = DVec4::new(0.0, 0.0, -1.0, 1.0);
+const PLANES: [DVec4; 5] = {
+    let g = GUARD as f64 * 0.999;
+    [
+        NEAR,
+        DVec4::new(1.0, 0.0, 0.0, g),
+        DVec4::new(-1.0, 0.0, 0.0, g),
+        DVec4::new(0.0, 1.0, 0.0, g),
+        DVec4::new(0.0, -1.0, 0.0, g),
+    ]
+};
+
+/// Draws the triangles of a cluster that have a vertex which [`super::setup`] refused.
+#[inline(always)]
+pub(crate) fn draw_clipped<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    scratch: &mut Scratch,
+    mesh: &OccluderMesh,
+    cluster: &Cluster,
+    rows: &[[f32; 4]; 4],
+    facing: Facing,
+) {
+    let rows = rows.map(|r| DVec4::from_array(r.map(f64::from)));
+    let corner = |v: u8| {
+        let i = cluster.first_vertex as usize + usize::from(v);
+        let p = DVec4::new(
+            f64::from(mesh.vertices.x[i]),
+            f64::from(mesh.vertices.y[i]),
+            f64::from(mesh.vertices.z[i]),
+            1.0,
+        );
+        DVec4::new(
+            rows[0].dot(p),
+            rows[1].dot(p),
+            rows[2].dot(p),
+            rows[3].dot(p),
+        )
+    };
+    for q in 0..usize::from(cluster.quad_count) {
+        let group = &mesh.quads[cluster.first_group as usize + q / 8];
+        let v: [u8; 4] = core::array::from_fn(|c| group[c][q % 8]);
+        if !v.iter().any(|&v| scratch.x[usize::from(v)].is_nan()) {
+            continue;
+        }
+        for [a, b, c] in [[v[0], v[1], v[2]], [v[0], v[2], v[3]]] {
+            if a == b || b == c || a == c {
+                continue;
+            }
+            let (b, c) = if facing.mirrored { (c, b) } else { (b, c) };
+            let mut polygon = ClipPolygon::new(&[corner(a), corner(b), corner(c)]);
+            for plane in PLANES {
+                polygon.clip(plane);
+            }
+            draw_fan(l, band, scratch, &polygon, facing.two_sided);
+        }
+    }
+}
+
+#[inline(always)]
+fn draw_fan<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    scratch: &mut Scratch,
+    polygon: &ClipPolygon,
+    two_sided: bool,
+) {
+    if polygon.count < 3 {
+        return;
+    }
+    let screen = |i: usize| {
+        let c = polygon.corners[i];
+        let inv = 1.0 / c.w;
+        [
+            (c.x * inv) as f32,
+            (c.y * inv) as f32,
+            ((c.z * inv) as f32).min(1.0),
+        ]
+    };
+    // Lanes that are not used repeat one point and have no area.
+    let mut lanes = [[[0.0f32; 8]; 4]; 3];
+    let origin = screen(0);
+    for i in 1..polygon.count - 1 {
+        let triangle = [origin, screen(i), screen(i + 1), screen(i + 1)];
+        for (k, p) in triangle.iter().enumerate() {
+            for axis in 0..3 {
+                lanes[axis][k][(i - 1) % 8] = p[axis];
+            }
+        }
+    }
+    let x = four!(k => l.load(&lanes[0][k]));
+    let y = four!(k => l.load(&lanes[1][k]));
+    let depths = &mut scratch.clipped;
+    for k in 0..4 {
+        depths[8 * k..8 * k + 8].copy_from_slice(&lanes[2][k]);
+    }
+    const INDEX: [[u8; 8]; 4] = [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 10, 11, 12, 13, 14, 15], [16, 17, 18, 19, 20, 21, 22, 23], [24, 25, 26, 27, 28, 29, 30, 31]];
+    scratch.polygons += draw_eight(l, band, x, y, &scratch.clipped, four!(k => &INDEX[k]), two_sided);
+}

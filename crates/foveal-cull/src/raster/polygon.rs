@@ -1,0 +1,137 @@
+//! One convex polygon on the screen: which blocks it touches and how.
+//!
+//! The polygon is the intersection of half-planes, left and right borders `x = f(y)`. Two polygons that
+//! share an edge evaluate the same line with the same arithmetic, one as left and one as right border, so
+//! that no sample between them is lost or counted twice. Per row of blocks the borders give the span of
+//! touched and of fully covered blocks.
+
+use super::block::{self, Plane, Spans};
+use crate::depth::{BLOCK_SAMPLES, Band};
+use crate::simd::Lanes;
+
+/// A border line through (x, y), samples, with dx/dy `slope`.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Edge {
+    pub(crate) x: f32,
+    pub(crate) y: f32,
+    pub(crate) slope: f32,
+}
+
+/// Borders of one side; a convex quadrilateral has up to three on one side.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Side {
+    pub(crate) edges: [Edge; 3],
+    pub(crate) count: usize,
+}
+
+impl Side {
+    #[inline(always)]
+    fn push(&mut self, edge: Edge) {
+        if let Some(slot) = self.edges.get_mut(self.count) {
+            *slot = edge;
+            self.count += 1;
+        }
+    }
+
+    #[inline(always)]
+    pub(crate) fn edges(&self) -> &[Edge] {
+        &self.edges[..self.count]
+    }
+}
+
+/// A front-facing convex polygon.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Polygon {
+    pub(crate) left: Side,
+    pub(crate) right: Side,
+    /// Rows strictly below `.0` and not below `.1` count; only set where an edge is horizontal.
+    pub(crate) rows: Option<(f32, f32)>,
+    pub(crate) plane: Plane,
+    /// First and last block, inclusive.
+    pub(crate) blocks: [u32; 4],
+}
+
+impl Polygon {
+    pub(crate) fn new(plane: Plane, blocks: [u32; 4]) -> Self {
+        Self {
+            left: Side::default(),
+            right: Side::default(),
+            rows: None,
+            plane,
+            blocks,
+        }
+    }
+
+    /// Adds the edge from (x0, y0) to (x1, y1); `slope` is its dx/dy.
+    #[inline(always)]
+    pub(crate) fn edge(&mut self, x0: f32, y0: f32, x1: f32, y1: f32, slope: f32) -> bool {
+        if y1 > y0 {
+            self.left.push(Edge {
+                x: x0,
+                y: y0,
+                slope,
+            });
+        } else if y1 < y0 {
+            self.right.push(Edge {
+                x: x1,
+                y: y1,
+                slope,
+            });
+        } else {
+            return x0 != x1;
+        }
+        false
+    }
+}
+
+/// Slack of the block classification against the rounding of row ends, samples.
+const SLACK: f32 = 1.0;
+
+#[inline(always)]
+pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon) {
+    if polygon.left.count == 0 || polygon.right.count == 0 {
+        return;
+    }
+    let [bx0, by0, bx1, by1] = polygon.blocks;
+    let size = BLOCK_SAMPLES as f32;
+    for by in by0..=by1 {
+        let top = (by * BLOCK_SAMPLES) as f32;
+        let spans = Spans::new(l, polygon, top);
+        let (mut first, mut last) = (bx0, bx1);
+        let (mut inner_left, mut inner_right) = (f32::INFINITY, f32::NEG_INFINITY);
+        if bx0 != bx1 {
+            let (mut outer_left, mut outer_right) = (f32::NEG_INFINITY, f32::INFINITY);
+            (inner_left, inner_right) = (f32::NEG_INFINITY, f32::INFINITY);
+            for (e, &a) in polygon.left.edges().iter().zip(&spans.left) {
+                let b = a + e.slope * (size - 1.0);
+                outer_left = outer_left.max(a.min(b));
+                inner_left = inner_left.max(a.max(b));
+            }
+            for (e, &a) in polygon.right.edges().iter().zip(&spans.right) {
+                let b = a + e.slope * (size - 1.0);
+                outer_right = outer_right.min(a.max(b));
+                inner_right = inner_right.min(a.min(b));
+            }
+            if let Some((y0, y1)) = polygon.rows
+                && (top < y0 || top + size > y1)
+            {
+                inner_left = f32::INFINITY;
+            }
+            // Casts saturate; borders far off the screen stay far off.
+            first = first.max(((outer_left - SLACK) * (1.0 / size)) as u32);
+            let end = (outer_right + SLACK) * (1.0 / size);
+            if end < 0.0 {
+                continue;
+            }
+            last = last.min(end as u32);
+        }
+        for bx in first..=last {
+            let left = (bx * BLOCK_SAMPLES) as f32;
+            if left >= inner_left + SLACK && left + size <= inner_right - SLACK {
+                block::cover_full(l, band, bx, by, &polygon.plane);
+            } else {
+                block::cover_partial(l, band, bx, by, polygon, &spans);
+            }
+        }
+    }
+}

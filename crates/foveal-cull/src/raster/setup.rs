@@ -1,0 +1,332 @@
+//! Set-up: a cluster's vertices to the screen, then eight quads at once.
+//!
+//! A quad is drawn whole where both triangles face the eye and the outline is convex on the screen;
+//! otherwise triangle by triangle. Its depth is the plane of its larger triangle, lowered by how far the
+//! fourth vertex lies behind it, by half a pixel of slope, and by a bound on the rounding of the gradient.
+
+use super::block::Plane;
+use super::clip;
+use super::polygon::{self, Polygon};
+use crate::depth::{BLOCK_SAMPLES, Band, encode};
+use crate::occluder::{Cluster, OccluderMesh};
+use crate::simd::{Lanes, four};
+
+/// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
+pub(crate) const GUARD: f32 = 32768.0;
+
+/// Working memory of one thread.
+#[derive(Clone, Debug)]
+pub(crate) struct Scratch {
+    pub(crate) x: [f32; 256],
+    pub(crate) y: [f32; 256],
+    pub(crate) d: [f32; 256],
+    /// Depths of a clipped polygon's fan.
+    pub(crate) clipped: [f32; 256],
+    /// Polygons that were set up, for the statistics.
+    pub(crate) polygons: u64,
+    /// Clusters drawn.
+    pub(crate) clusters: u64,
+}
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self {
+            x: [0.0; 256],
+            y: [0.0; 256],
+            d: [0.0; 256],
+            clipped: [0.0; 256],
+            polygons: 0,
+            clusters: 0,
+        }
+    }
+}
+
+/// How an instance is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Facing {
+    /// The transform mirrors, so winding is reversed.
+    pub(crate) mirrored: bool,
+    pub(crate) two_sided: bool,
+}
+
+#[inline(always)]
+pub(crate) fn draw_cluster<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    scratch: &mut Scratch,
+    mesh: &OccluderMesh,
+    cluster: &Cluster,
+    rows: &[[f32; 4]; 4],
+    facing: Facing,
+) {
+    scratch.clusters += 1;
+    let clipped = transform(l, scratch, mesh, cluster, rows);
+    let groups = usize::from(cluster.quad_count).div_ceil(8);
+    let first = cluster.first_group as usize;
+    for group in &mesh.quads[first..first + groups] {
+        let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
+        let order = [0, i1, 2, i3];
+        let index = four!(c => &group[order[c]]);
+        let x = four!(c => l.gather(&scratch.x, index[c]));
+        let y = four!(c => l.gather(&scratch.y, index[c]));
+        scratch.polygons += draw_eight(l, band, x, y, &scratch.d, index, facing.two_sided);
+    }
+    if clipped {
+        clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
+    }
+}
+
+/// Fills `scratch`; vertices for the clipper get NaN, which no test accepts. True if there are any.
+#[inline(always)]
+fn transform<L: Lanes>(
+    l: L,
+    scratch: &mut Scratch,
+    mesh: &OccluderMesh,
+    cluster: &Cluster,
+    rows: &[[f32; 4]; 4],
+) -> bool {
+    let first = cluster.first_vertex as usize;
+    let n = usize::from(cluster.vertex_count).next_multiple_of(8);
+    let v = &mesh.vertices;
+    let r = four!(i => four!(k => l.splat(rows[i][k])));
+    let (xs, _) = v.x[first..first + n].as_chunks::<8>();
+    let (ys, _) = v.y[first..first + n].as_chunks::<8>();
+    let (zs, _) = v.z[first..first + n].as_chunks::<8>();
+    let (out_x, _) = scratch.x.as_chunks_mut::<8>();
+    let (out_y, _) = scratch.y.as_chunks_mut::<8>();
+    let (out_d, _) = scratch.d.as_chunks_mut::<8>();
+    let (one, guard, nan) = (l.splat(1.0), l.splat(GUARD), l.splat(f32::NAN));
+    let mut inside_all = l.isplat(-1);
+    for ((((x, y), z), ox), (oy, od)) in xs
+        .iter()
+        .zip(ys)
+        .zip(zs)
+        .zip(out_x)
+        .zip(out_y.iter_mut().zip(out_d))
+    {
+        let (x, y, z) = (l.load(x), l.load(y), l.load(z));
+        let [cx, cy, cz, cw] = four!(i => l.add(
+            l.add(l.mul(x, r[i][0]), l.mul(y, r[i][1])),
+            l.add(l.mul(z, r[i][2]), r[i][3]),
+        ));
+        let inv = l.div(one, cw);
+        let (sx, sy, d) = (l.mul(cx, inv), l.mul(cy, inv), l.mul(cz, inv));
+        // Beyond the near plane (Z < W, W above zero with it) and within the guard band.
+        let inside = l.iand(
+            l.lt(cz, cw),
+            l.iand(l.lt(l.abs(sx), guard), l.lt(l.abs(sy), guard)),
+        );
+        inside_all = l.iand(inside_all, inside);
+        l.store(l.select(inside, sx, nan), ox);
+        l.store(sy, oy);
+        l.store(d, od);
+    }
+    l.movemask(inside_all) != 0xff
+}
+
+/// Sets up and draws eight quads from screen positions; gives the number of polygons drawn.
+#[inline(always)]
+pub(crate) fn draw_eight<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    mut x: [L::F; 4],
+    mut y: [L::F; 4],
+    depths: &[f32; 256],
+    index: [&[u8; 8]; 4],
+    two_sided: bool,
+) -> u64 {
+    let zero = l.splat(0.0);
+    let mut f0 = area(l, &x, &y, 0, 1, 2);
+    let mut f1 = area(l, &x, &y, 0, 2, 3);
+    let mut reversed = l.isplat(0);
+    if two_sided {
+        // The larger triangle decides the side; its partner on the other side, if any, is dropped.
+        reversed = l.lt(l.add(f0, f1), zero);
+        x = swap(l, reversed, x);
+        y = swap(l, reversed, y);
+        f0 = area(l, &x, &y, 0, 1, 2);
+        f1 = area(l, &x, &y, 0, 2, 3);
+    }
+    let front0 = l.lt(zero, f0);
+    let front1 = l.lt(zero, f1);
+    let front = l.ior(front0, front1);
+    if l.movemask(front) == 0 {
+        return 0;
+    }
+    let (x_lo, x_hi, y_lo, y_hi) = (lowest(l, &x), highest(l, &x), lowest(l, &y), highest(l, &y));
+    // Half-sample steps strictly above the minimum and up to the maximum: every sample and pixel centre lies
+    // on one. Clamping to the band drops what is outside.
+    let size = BLOCK_SAMPLES as f32;
+    let right = band.blocks_x as f32 * size;
+    let (top, bottom) = (
+        band.first_row as f32 * size,
+        (band.first_row + band.rows) as f32 * size,
+    );
+    let (nx0, nx1) = (steps(l, x_lo, 0.0, right), steps(l, x_hi, 0.0, right));
+    let (ny0, ny1) = (steps(l, y_lo, top, bottom), steps(l, y_hi, top, bottom));
+    // `a - b` is negative where a < b.
+    let live = l.iand(front, l.iand(l.isub(nx0, nx1), l.isub(ny0, ny1)));
+    let mut live = l.movemask(live);
+    if live == 0 {
+        return 0;
+    }
+    let f3 = area(l, &x, &y, 0, 1, 3);
+    let f2 = l.sub(l.add(f0, f1), f3);
+    let convex = l.movemask(l.iand(
+        l.iand(front0, front1),
+        l.iand(l.lt(zero, f2), l.lt(zero, f3)),
+    ));
+    let mut z = four!(c => l.gather(depths, index[c]));
+    if two_sided {
+        z = swap(l, reversed, z);
+    }
+    let (z_lo, z_hi) = (lowest(l, &z), highest(l, &z));
+    // The plane through v0 and the larger (or only) front triangle.
+    let second = l.ior(
+        l.iandnot(front0, l.isplat(-1)),
+        l.iand(front1, l.lt(f0, f1)),
+    );
+    let (bx, cx, ox) = pick(l, second, &x);
+    let (by, cy, oy) = pick(l, second, &y);
+    let (bz, cz, oz) = pick(l, second, &z);
+    let f = l.select(second, f1, f0);
+    let (bx, by, bz) = (l.sub(bx, x[0]), l.sub(by, y[0]), l.sub(bz, z[0]));
+    let (cx, cy, cz) = (l.sub(cx, x[0]), l.sub(cy, y[0]), l.sub(cz, z[0]));
+    let inv = l.div(l.splat(1.0), f);
+    let gx = l.mul(l.sub(l.mul(cz, by), l.mul(bz, cy)), inv);
+    let gy = l.mul(l.sub(l.mul(bz, cx), l.mul(cz, bx)), inv);
+    let at_other = l.add(
+        z[0],
+        l.add(l.mul(gx, l.sub(ox, x[0])), l.mul(gy, l.sub(oy, y[0]))),
+    );
+    let both = l.iand(front0, front1);
+    let fold = l.select(both, l.max(l.sub(at_other, oz), zero), zero);
+    let (w, h) = (l.sub(x_hi, x_lo), l.sub(y_hi, y_lo));
+    let (ax, ay) = (l.abs(gx), l.abs(gy));
+    let relative = l.add(
+        l.splat(1.0 / 262_144.0),
+        l.mul(l.mul(l.splat(1.0 / 256.0), l.add(w, h)), inv),
+    );
+    let variation = l.add(
+        l.mul(ax, l.add(w, l.splat(4.0))),
+        l.mul(ay, l.add(h, l.splat(4.0))),
+    );
+    let rounding = l.add(
+        l.mul(relative, variation),
+        l.mul(z_hi, l.splat(1.0 / 1_048_576.0)),
+    );
+    let slack = l.add(l.add(fold, rounding), l.mul(l.splat(2.0), l.add(ax, ay)));
+    let base = l.sub(z[0], slack);
+
+    let around = four!(k => l.div(l.sub(x[(k + 1) % 4], x[k]), l.sub(y[(k + 1) % 4], y[k])));
+    let diagonal = l.div(l.sub(x[2], x[0]), l.sub(y[2], y[0]));
+
+    // One at a time from here.
+    let (xs, ys) = (four!(k => out(l, x[k])), four!(k => out(l, y[k])));
+    let [s0, s1, s2, s3] = four!(k => out(l, around[k]));
+    let slopes = [s0, s1, s2, s3, out(l, diagonal)];
+    let (base, gx, gy, z_lo, z_hi, y_lo, y_hi, x_lo, x_hi) = (
+        out(l, base), out(l, gx), out(l, gy), out(l, z_lo), out(l, z_hi), out(l, y_lo), out(l, y_hi), out(l, x_lo), out(l, x_hi),
+    );
+    let (front0, front1) = (l.movemask(front0), l.movemask(front1));
+    let mut drawn = 0;
+    while live != 0 {
+        let i = live.trailing_zeros() as usize;
+        live &= live - 1;
+        let bit = 1u32 << i;
+        let plane = Plane {
+            x: xs[0][i],
+            y: ys[0][i],
+            depth: base[i],
+            dx: gx[i],
+            dy: gy[i],
+            min: z_lo[i].max(0.0),
+            max_code: encode(z_hi[i]),
+        };
+        // Blocks that hold a half-sample step.
+        let last_row = band.first_row + band.rows - 1;
+        let blocks = [
+            block_of(x_lo[i], 0, band.blocks_x - 1),
+            block_of(y_lo[i], band.first_row, last_row),
+            block_of(x_hi[i], 0, band.blocks_x - 1),
+            block_of(y_hi[i], band.first_row, last_row),
+        ];
+        let (first, last) = if convex & bit != 0 { (2, 2) } else { (usize::from(front0 & bit == 0), usize::from(front1 & bit != 0)) };
+        for shape in &SHAPES[first..=last] {
+            drawn += 1;
+            let mut polygon = Polygon::new(plane, blocks);
+            let (mut flat, mut lo, mut hi) = (false, f32::INFINITY, f32::NEG_INFINITY);
+            for k in 0..shape.count {
+                let (a, b, e) = (shape.corners[k], shape.corners[k + 1], shape.edges[k]);
+                flat |= polygon.edge(xs[a][i], ys[a][i], xs[b][i], ys[b][i], slopes[e][i]);
+                lo = lo.min(ys[a][i]);
+                hi = hi.max(ys[a][i]);
+            }
+            if flat {
+                polygon.rows = Some((lo, hi));
+            }
+            polygon::draw(l, band, &polygon);
+        }
+    }
+    drawn
+}
+
+/// A part of a quad: its corners (the first again at the end) and the slopes of its edges.
+struct Shape {
+    corners: [usize; 5],
+    edges: [usize; 4],
+    count: usize,
+}
+
+/// First triangle, second triangle, both as one.
+const SHAPES: [Shape; 3] = [
+    Shape { corners: [0, 1, 2, 0, 0], edges: [0, 1, 4, 0], count: 3 },
+    Shape { corners: [0, 2, 3, 0, 0], edges: [4, 2, 3, 0], count: 3 },
+    Shape { corners: [0, 1, 2, 3, 0], edges: [0, 1, 2, 3], count: 4 },
+];
+
+#[inline(always)]
+fn block_of(v: f32, first: u32, last: u32) -> u32 {
+    (((v * 2.0).max(0.0) as u32) / (2 * BLOCK_SAMPLES)).clamp(first, last)
+}
+
+/// Twice the signed area, positive when facing the eye (y points down).
+#[inline(always)]
+fn area<L: Lanes>(l: L, x: &[L::F; 4], y: &[L::F; 4], a: usize, b: usize, c: usize) -> L::F {
+    l.sub(l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])), l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])))
+}
+
+#[inline(always)]
+fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
+    [v[0], l.select(reversed, v[3], v[1]), v[2], l.select(reversed, v[1], v[3])]
+}
+
+#[inline(always)]
+fn lowest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
+    l.min(l.min(v[0], v[1]), l.min(v[2], v[3]))
+}
+
+#[inline(always)]
+fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
+    l.max(l.max(v[0], v[1]), l.max(v[2], v[3]))
+}
+
+/// Half-sample steps up to `v`, clamped.
+#[inline(always)]
+fn steps<L: Lanes>(l: L, v: L::F, lo: f32, hi: f32) -> L::I {
+    let c = l.min(l.max(v, l.splat(lo)), l.splat(hi));
+    l.trunc(l.add(c, c))
+}
+
+/// Second, third and left-over corner of the triangle that gives the plane.
+#[inline(always)]
+fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
+    (l.select(second, v[2], v[1]), l.select(second, v[3], v[2]), l.select(second, v[1], v[3]))
+}
+
+#[inline(always)]
+fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
+    let mut a = [0.0; 8];
+    l.store(v, &mut a);
+    a
+}

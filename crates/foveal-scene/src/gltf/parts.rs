@@ -1,0 +1,170 @@
+//! Which primitives the shown nodes need, each built once however many ask for it.
+
+use std::collections::HashMap;
+
+use glam::Mat4;
+
+use super::document::Document;
+use super::geometry::{self, Built, Request};
+use super::materials::{DEFAULT_UV_SETS, UvSets};
+use super::meshes::Mode;
+use super::nodes::Hierarchy;
+use super::objects::{self, Part, Shown};
+use super::reader::Reader;
+use crate::error::{Flaw, Parsed};
+use crate::pose::Shape;
+use crate::{LoadOptions, Material, MissingNormals, Scene, threads};
+
+/// The meshes to build, each once however many primitives ask for it.
+#[derive(Default)]
+pub(crate) struct Geometry {
+    requests: Vec<(Request, String)>,
+    numbers: HashMap<Request, u32>,
+    names: Vec<String>,
+}
+
+impl Geometry {
+    /// Collects what the shown nodes need. Adds a default material when a primitive has none.
+    pub(crate) fn request(
+        &mut self,
+        document: &Document,
+        hierarchy: &Hierarchy,
+        scene: &mut Scene,
+    ) -> Vec<Shown> {
+        let mut default_material = None;
+        let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
+        let mut shown = Vec::new();
+        for (node, _, mesh) in objects::nodes_with_meshes(&document.nodes, hierarchy) {
+            let parts = parts_of.entry(mesh).or_insert_with(|| {
+                let def = &document.meshes[mesh as usize];
+                (0..def.primitives.len())
+                    .map(|p| Part {
+                        mesh: self.number(document, mesh, p),
+                        material: def.materials[p].unwrap_or_else(|| {
+                            *default_material.get_or_insert_with(|| {
+                                scene.materials.push(Material::default());
+                                scene.materials.len() as u32 - 1
+                            })
+                        }),
+                    })
+                    .collect()
+            });
+            shown.push(Shown {
+                node,
+                parts: parts.clone(),
+                elements: vec![Mat4::IDENTITY],
+                skinned: false,
+            });
+        }
+        shown
+    }
+
+    fn number(&mut self, document: &Document, mesh: u32, primitive: usize) -> u32 {
+        let def = &document.meshes[mesh as usize];
+        let material = def.materials[primitive].map(|m| &document.materials[m as usize]);
+        let uv_sets: UvSets = material.map_or(DEFAULT_UV_SETS, |m| m.uv_sets().0);
+        let tangents_for = material
+            .and_then(|m| m.normal)
+            .map(|slot| u32::from(uv_sets[1] == Some(slot.set)));
+        let request = Request {
+            primitive: def.primitives[primitive].clone(),
+            uv_sets,
+            tangents_for,
+        };
+        *self.numbers.entry(request.clone()).or_insert_with(|| {
+            let place = format!("meshes[{mesh}].primitives[{primitive}]");
+            self.requests.push((request, place));
+            self.names.push(def.label(mesh, primitive));
+            self.names.len() as u32 - 1
+        })
+    }
+
+    /// Builds all meshes into the scene and returns their shapes, as many as meshes.
+    pub(crate) fn build(
+        &mut self,
+        reader: Reader<'_>,
+        options: &LoadOptions,
+        scene: &mut Scene,
+        warn: &mut Vec<String>,
+    ) -> Parsed<Vec<Option<Shape>>> {
+        self.check_size(reader, options)?;
+        let built = threads::map(options.parallel, &self.requests, |(request, place)| {
+            geometry::build(request, reader, options.missing_normals).map_err(|e| e.under(place))
+        });
+        let mut shapes = Vec::with_capacity(built.len());
+        for ((built, (_, place)), name) in built.into_iter().zip(&self.requests).zip(&self.names) {
+            let Built {
+                mut mesh,
+                shape,
+                notes,
+            } = built?;
+            warn.extend(notes.into_iter().map(|note| format!("{place}: {note}")));
+            mesh.name.clone_from(name);
+            scene.meshes.push(mesh);
+            shapes.push(shape);
+        }
+        Ok(shapes)
+    }
+
+    /// Adds up the vertices and corners that will come of it before anything is allocated.
+    fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
+        let (mut vertices, mut corners) = (0u64, 0u64);
+        for (request, place) in &self.requests {
+            let def = &request.primitive;
+            let count = |a: u32| reader.accessor(a).count as u64;
+            let positions = def.attributes.position.map_or(0, count);
+            let named = def.indices.map_or(positions, count);
+            let of_triangles = match def.mode {
+                Mode::Strip | Mode::Fan => named.saturating_mul(3),
+                _ => named,
+            };
+            // Flat shading gives every corner a vertex of its own.
+            let flat =
+                def.attributes.normal.is_none() && options.missing_normals == MissingNormals::Flat;
+            let made = if flat {
+                of_triangles
+            } else {
+                positions.min(of_triangles)
+            };
+            let morphs = 1 + def.targets.len() as u64;
+            vertices = vertices.saturating_add(made.saturating_mul(morphs));
+            corners = corners.saturating_add(of_triangles);
+            let (limit, most) = (options.max_vertices, vertices.max(corners / 6));
+            if most > limit {
+                return Err(Flaw::too_large(format!(
+                    "{vertices} vertices with morph differences and {corners} indices up to here; \
+                     the limit is {limit} vertices and six times as many indices"
+                ))
+                .under(place));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Forgets meshes without triangles: they have been noted, and there is nothing to draw.
+pub(crate) fn drop_empty_meshes(
+    shown: &mut Vec<Shown>,
+    shapes: Vec<Option<Shape>>,
+    scene: &mut Scene,
+) -> Vec<Option<Shape>> {
+    let meshes = std::mem::take(&mut scene.meshes);
+    let mut kept = Vec::new();
+    let mut number: Vec<Option<u32>> = Vec::with_capacity(meshes.len());
+    for (mesh, shape) in meshes.into_iter().zip(shapes) {
+        number.push((mesh.triangle_count() > 0).then_some(kept.len() as u32));
+        if mesh.triangle_count() > 0 {
+            scene.meshes.push(mesh);
+            kept.push(shape);
+        }
+    }
+    for one in shown.iter_mut() {
+        let renumber = |part: &Part| {
+            let mesh = number[part.mesh as usize]?;
+            Some(Part { mesh, ..*part })
+        };
+        one.parts = one.parts.iter().filter_map(renumber).collect();
+    }
+    shown.retain(|s| !s.parts.is_empty());
+    kept
+}

@@ -1,0 +1,271 @@
+//! Vertices, indices, normals, tangents.
+
+use glam::Vec3;
+use serde_json::json;
+
+use super::{File, near, warnings};
+use crate::{Aabb, LoadOptions, MissingNormals};
+
+#[test]
+fn flat_normals_give_each_triangle_its_own_vertices() {
+    let mut file = File::with_mesh();
+    let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0., 0., 0., 1.];
+    file.attribute("POSITION", &corners, "VEC3");
+    file.indices(&[0, 1, 2, 0, 2, 3]);
+    let scene = file.load();
+    let mesh = &scene.meshes[0];
+    assert_eq!(mesh.indices, [0, 1, 2, 3, 4, 5]);
+    assert!(mesh.vertices[..3].iter().all(|v| v.normal == [0., 0., 1.]));
+    assert!(mesh.vertices[3..].iter().all(|v| v.normal == [1., 0., 0.]));
+    assert!(
+        mesh.vertices
+            .iter()
+            .all(|v| v.tangent == [0.; 4] && v.color == [255; 4])
+    );
+
+    let options = LoadOptions {
+        missing_normals: MissingNormals::Smooth,
+        ..LoadOptions::default()
+    };
+    let mesh = &file.load_with(&options).unwrap().meshes[0];
+    assert_eq!(mesh.vertices.len(), 4);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    assert!(near(&mesh.vertices[0].normal, &[half, 0., half]));
+    assert!(near(&mesh.vertices[1].normal, &[0., 0., 1.]));
+}
+
+#[test]
+fn strips_and_fans_become_lists_and_points_a_warning() {
+    for (mode, expected) in [(5, [0, 1, 2, 1, 3, 2]), (6, [1, 2, 0, 2, 3, 0])] {
+        let mut file = File::with_mesh();
+        let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 0.];
+        file.attribute("POSITION", &corners, "VEC3");
+        file.attribute("NORMAL", &[0., 0., 1.].repeat(4), "VEC3");
+        file.primitive()["mode"] = json!(mode);
+        assert_eq!(file.load().meshes[0].indices, expected);
+    }
+    let mut points = File::with_triangle();
+    points.primitive()["mode"] = json!(0);
+    let scene = points.load();
+    assert!(scene.meshes.is_empty() && scene.objects.is_empty());
+    assert!(warnings(&scene).contains("meshes[0].primitives[0]: is made of points or lines"));
+}
+
+#[test]
+fn sparse_accessors_replace_single_elements() {
+    let mut file = File::with_triangle();
+    let at = file.view(&[2]);
+    let values: Vec<u8> = [5f32, 6., 7.]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    let values = file.view(&values);
+    file.json["accessors"][0]["sparse"] = json!({
+        "count": 1,
+        "indices": { "bufferView": at, "componentType": 5121 },
+        "values": { "bufferView": values },
+    });
+    assert_eq!(file.load().meshes[0].vertices[2].position, [5., 6., 7.]);
+
+    // Without a base everything else is zero.
+    file.json["accessors"][0]
+        .as_object_mut()
+        .unwrap()
+        .remove("bufferView");
+    assert_eq!(file.load().meshes[0].vertices[1].position, [0., 0., 0.]);
+
+    file.json["accessors"][0]["count"] = json!(2);
+    let error = file.refusal();
+    assert!(
+        error.contains("attributes.POSITION") && error.contains("element 2"),
+        "{error}"
+    );
+}
+
+#[test]
+fn quantized_attributes_are_understood() {
+    let mut file = File::with_mesh();
+    let positions: [i16; 12] = [0, 0, 0, 0, 100, 0, 0, 0, 0, -100, 0, 0];
+    let bytes: Vec<u8> = positions.iter().flat_map(|v| v.to_le_bytes()).collect();
+    let position = file.accessor(&bytes, 5122, "VEC3", 3);
+    file.json["bufferViews"][0]["byteStride"] = json!(8);
+    let normal = file.accessor(&[0, 0, 127, 0, 0, 129, 129, 0, 0, 0, 0, 0], 5120, "VEC3", 3);
+    file.json["accessors"][normal]["normalized"] = json!(true);
+    file.json["bufferViews"][1]["byteStride"] = json!(4);
+    let uv: Vec<u8> = [0u16, 0, 65535, 0, 0, 32768]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    let uv = file.accessor(&uv, 5123, "VEC2", 3);
+    file.json["accessors"][uv]["normalized"] = json!(true);
+    file.primitive()["attributes"] =
+        json!({ "POSITION": position, "NORMAL": normal, "TEXCOORD_0": uv });
+    file.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    let scene = file.load();
+    let v = &scene.meshes[0].vertices;
+    assert_eq!(v[1].position, [100., 0., 0.]);
+    assert_eq!(v[2].position, [0., -100., 0.]);
+    assert_eq!(v[0].normal, [0., 0., 1.]);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    assert!(near(&v[1].normal, &[0., -half, -half]), "{:?}", v[1].normal);
+    assert_eq!(v[1].uv[0], [1., 0.]);
+    assert!(near(&v[2].uv[0], &[0., 0.500_007_6]));
+}
+
+#[test]
+fn vertex_colours_come_in_every_format() {
+    let cases: [(&[u8], u32, &str, bool); 4] = [
+        (&[255, 0, 51, 0].repeat(3), 5121, "VEC4", true),
+        (
+            &[0xFF, 0xFF, 0, 0, 0x33, 0x33, 0, 0].repeat(3),
+            5123,
+            "VEC4",
+            true,
+        ),
+        (
+            &[1f32, 0., 0.2].map(f32::to_le_bytes).concat().repeat(3),
+            5126,
+            "VEC3",
+            false,
+        ),
+        (
+            &[1f32, 0., 0.2, 0.].map(f32::to_le_bytes).concat().repeat(3),
+            5126,
+            "VEC4",
+            false,
+        ),
+    ];
+    for (bytes, code, kind, normalized) in cases {
+        let mut file = File::with_triangle();
+        let accessor = file.accessor(bytes, code, kind, 3);
+        file.json["accessors"][accessor]["normalized"] = json!(normalized);
+        file.primitive()["attributes"]["COLOR_0"] = json!(accessor);
+        let alpha = if kind == "VEC3" { 255 } else { 0 };
+        let color = file.load().meshes[0].vertices[1].color;
+        assert_eq!(color, [255, 0, 51, alpha], "{code} {kind}");
+    }
+}
+
+#[test]
+fn unused_vertices_do_not_count_and_large_shared_buffers_are_cut() {
+    let mut file = File::with_mesh();
+    let mut corners = [0., 0., 0., 1., 0., 0., 0., 1., 0.].to_vec();
+    corners.extend([9e9; 30]);
+    file.attribute("POSITION", &corners, "VEC3");
+    file.attribute("NORMAL", &[0., 0., 1.].repeat(13), "VEC3");
+    file.indices(&[2, 0, 1]);
+    let scene = file.load();
+    let mesh = &scene.meshes[0];
+    assert_eq!(mesh.vertices.len(), 3);
+    assert_eq!(
+        mesh.vertices[mesh.indices[0] as usize].position,
+        [0., 1., 0.]
+    );
+    let unit = Aabb {
+        min: Vec3::ZERO,
+        max: Vec3::new(1., 1., 0.),
+    };
+    assert_eq!(mesh.bounds, unit);
+    assert_eq!(scene.objects[0].bounds, unit);
+}
+
+#[test]
+fn triangles_beyond_the_vertices_or_at_no_place_are_left_out() {
+    let mut file = File::with_mesh();
+    let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0., f32::NAN, 0., 0.];
+    file.attribute("POSITION", &corners, "VEC3");
+    file.indices(&[0, 1, 2, 0, 1, 3, 0, 1, 9]);
+    let scene = file.load();
+    assert_eq!(scene.triangle_count(), 1);
+    assert!(warnings(&scene).contains("2 of 3 triangles"));
+    assert!(scene.bounds().max.is_finite());
+}
+
+#[test]
+fn normals_without_direction_are_made_anew() {
+    let mut file = File::with_triangle();
+    file.attribute(
+        "NORMAL",
+        &[0., 0., 2., 0., 0., 0., f32::NAN, 0., 0.],
+        "VEC3",
+    );
+    let scene = file.load();
+    assert!(
+        scene.meshes[0]
+            .vertices
+            .iter()
+            .all(|v| v.normal == [0., 0., 1.])
+    );
+    assert!(warnings(&scene).contains("2 of 3 normals"));
+}
+
+#[test]
+fn tangents_point_along_u_and_bitangents_against_v() {
+    for mirrored in [false, true] {
+        let mut file = File::with_mesh();
+        let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0.];
+        file.attribute("POSITION", &corners, "VEC3");
+        file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
+        // The picture upright on the surface: v falls where y rises.
+        let u = |x: f32| if mirrored { 1. - x } else { x };
+        file.attribute("TEXCOORD_0", &[u(0.), 1., u(1.), 1., u(0.), 0.], "VEC2");
+        let texture = file.texture(&image::RgbaImage::from_pixel(
+            1,
+            1,
+            [128, 128, 255, 255].into(),
+        ));
+        file.material(json!({ "normalTexture": { "index": texture } }));
+        let scene = file.load();
+        let sign = if mirrored { -1. } else { 1. };
+        for v in &scene.meshes[0].vertices {
+            assert!(near(&v.tangent, &[sign, 0., 0., sign]), "{:?}", v.tangent);
+            let bitangent =
+                Vec3::from(v.normal).cross(Vec3::new(v.tangent[0], 0., 0.)) * v.tangent[3];
+            assert!(bitangent.abs_diff_eq(Vec3::Y, 1e-5));
+        }
+    }
+}
+
+#[test]
+fn a_huge_fan_and_many_triangles_without_area_do_not_stall_tangents() {
+    let mut file = File::with_mesh();
+    let count = 60_000u16;
+    let mut corners = vec![0.; 3];
+    let mut uv = vec![0.5; 2];
+    for i in 0..count {
+        let (sin, cos) = (f32::from(i) * 1e-4).sin_cos();
+        corners.extend([cos, sin, 0.]);
+        uv.extend([0.5 + 0.5 * cos, 0.5 - 0.5 * sin]);
+    }
+    file.attribute("POSITION", &corners, "VEC3");
+    file.attribute(
+        "NORMAL",
+        &[0., 0., 1.].repeat(usize::from(count) + 1),
+        "VEC3",
+    );
+    file.attribute("TEXCOORD_0", &uv, "VEC2");
+    let fan = (1..count).flat_map(|i| [0, i, i + 1]);
+    let nothing = (1..count).flat_map(|i| [i, i, 0]);
+    let indices: Vec<u16> = fan.chain(nothing).collect();
+    file.indices(&indices);
+    let texture = file.texture(&image::RgbaImage::from_pixel(
+        1,
+        1,
+        [128, 128, 255, 255].into(),
+    ));
+    file.material(json!({ "normalTexture": { "index": texture } }));
+    let scene = file.load();
+    let v = &scene.meshes[0].vertices[0];
+    assert!(near(&v.tangent, &[1., 0., 0., 1.]), "{:?}", v.tangent);
+}
+
+#[test]
+fn equal_primitives_share_a_mesh() {
+    let mut file = File::with_triangle();
+    let twin = file.json["meshes"][0].clone();
+    file.push("meshes", twin);
+    file.push("nodes", json!({ "mesh": 1, "translation": [5, 0, 0] }));
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let scene = file.load();
+    assert_eq!((scene.meshes.len(), scene.objects.len()), (1, 2));
+}

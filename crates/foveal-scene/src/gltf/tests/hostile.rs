@@ -1,0 +1,250 @@
+//! Input that means harm, or might as well.
+
+use proptest::prelude::*;
+use serde_json::json;
+
+use super::{File, warnings};
+use crate::{LoadOptions, SceneError, load_bytes};
+
+fn ask(bytes: &[u8]) -> Result<crate::Scene, SceneError> {
+    let options = LoadOptions {
+        max_vertices: 1 << 20,
+        max_texture_bytes: 1 << 24,
+        ..LoadOptions::default()
+    };
+    load_bytes(bytes, "x", &options, &|_| Err("no files".into()))
+}
+
+fn is_internal(error: &SceneError) -> bool {
+    matches!(error, SceneError::Internal { .. })
+}
+
+/// A small file with a little of everything.
+fn rich() -> File {
+    let mut file = File::with_triangle();
+    file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
+    file.indices(&[0, 1, 2]);
+    let texture = file.texture(&image::RgbaImage::from_pixel(5, 3, [9, 8, 7, 6].into()));
+    let joints = file.accessor(&[0; 12], 5121, "VEC4", 3);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+    file.attribute("WEIGHTS_0", &[1., 0., 0., 0.].repeat(3), "VEC4");
+    let delta = file.floats(&[0.5; 9], "VEC3");
+    file.primitive()["targets"] = json!([{ "POSITION": delta }]);
+    file.material(json!({
+        "alphaMode": "MASK",
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } },
+        "normalTexture": { "index": texture },
+    }));
+    let times = file.floats(&[0., 1.], "SCALAR");
+    let moves = file.floats(&[0., 0., 0., 1., 1., 1.], "VEC3");
+    file.push(
+        "animations",
+        json!({
+            "samplers": [{ "input": times, "output": moves }],
+            "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }],
+        }),
+    );
+    file.push("nodes", json!({ "camera": 0, "children": [2] }));
+    file.push("nodes", json!({ "mesh": 0, "skin": 0 }));
+    file.push("skins", json!({ "joints": [1] }));
+    file.json["cameras"] =
+        json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    file
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 400, ..ProptestConfig::default() })]
+
+    #[test]
+    fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..300), glb: bool) {
+        let mut bytes = bytes;
+        if glb {
+            let mut header = b"glTF\x02\0\0\0".to_vec();
+            header.extend((bytes.len() as u32 + 12).to_le_bytes());
+            header.append(&mut bytes);
+            bytes = header;
+        }
+        let internal = matches!(ask(&bytes), Err(SceneError::Internal { .. }));
+        prop_assert!(!internal);
+    }
+
+    #[test]
+    fn random_changes_to_a_good_file_never_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..6),
+        cut in prop::option::weighted(0.1, any::<prop::sample::Index>()),
+    ) {
+        let mut bytes = rich().glb();
+        for (at, value) in changes {
+            let at = at.index(bytes.len());
+            bytes[at] = value;
+        }
+        if let Some(cut) = cut {
+            bytes.truncate(cut.index(bytes.len()));
+        }
+        match ask(&bytes) {
+            Ok(mut scene) => scene.pose(0.3),
+            Err(error) => prop_assert!(!is_internal(&error), "{}", error),
+        }
+    }
+
+    #[test]
+    fn random_numbers_in_the_json_never_panic(
+        change in any::<prop::sample::Index>(),
+        number in prop::sample::select(vec![
+            "-1", "0", "1", "3", "5", "255", "65536", "4294967295", "4294967296",
+            "9223372036854775807", "18446744073709551615", "1e300", "0.5", "null", "[]", "{}",
+        ]),
+    ) {
+        let json = serde_json::to_string(&rich().json).unwrap();
+        let starts: Vec<usize> = json
+            .char_indices()
+            .zip(json.chars().skip(1))
+            .filter(|((_, a), b)| ":[,".contains(*a) && (b.is_ascii_digit() || *b == '-'))
+            .map(|((i, _), _)| i + 1)
+            .collect();
+        let start = starts[change.index(starts.len())];
+        let len = json[start..].find([',', ']', '}']).unwrap();
+        let changed = format!("{}{number}{}", &json[..start], &json[start + len..]);
+        let mut file = rich();
+        file.json = serde_json::from_str(&changed).unwrap();
+        match ask(&file.glb()) {
+            Ok(mut scene) => scene.pose(0.3),
+            Err(error) => prop_assert!(!is_internal(&error), "{}", error),
+        }
+    }
+}
+
+#[test]
+fn the_rich_file_is_good() {
+    let scene = rich().load();
+    assert!(scene.is_animated() && scene.cameras.len() == 1 && scene.objects.len() == 2);
+}
+
+#[test]
+fn a_hundred_thousand_nodes_deep_is_no_stack_overflow() {
+    let mut file = File::with_triangle();
+    let depth = 100_000;
+    let nodes: Vec<_> = (0..depth)
+        .map(|i| {
+            if i + 1 == depth {
+                json!({ "mesh": 0 })
+            } else {
+                json!({ "children": [i + 1], "translation": [0, 0, 1] })
+            }
+        })
+        .collect();
+    file.json["nodes"] = json!(nodes);
+    let scene = file.load();
+    assert_eq!(scene.objects[0].bounds.min.z, (depth - 1) as f32);
+}
+
+#[test]
+fn cycles_and_shared_children_are_refused() {
+    let mut file = File::with_triangle();
+    file.node()["children"] = json!([0]);
+    assert!(file.refusal().contains("nodes[0]: is its own ancestor"));
+    let mut file = File::with_triangle();
+    file.push("nodes", json!({ "children": [0] }));
+    file.push("nodes", json!({ "children": [0] }));
+    let text = file.refusal();
+    assert!(
+        text.contains("nodes[2].children[0]: node 0 is already a child of node 1"),
+        "{text}"
+    );
+}
+
+#[test]
+fn short_files_cannot_ask_for_much_memory() {
+    let mut zeros = File::with_triangle();
+    zeros.json["accessors"][0] =
+        json!({ "componentType": 5126, "type": "VEC3", "count": 4_000_000_000_u32 });
+    assert!(zeros.refusal().contains("too large"), "{}", zeros.refusal());
+
+    let mut instances = File::with_triangle();
+    let many = instances.push(
+        "accessors",
+        json!({ "componentType": 5126, "type": "VEC3", "count": 4_000_000 }),
+    );
+    let node = json!({ "mesh": 0, "extensions": { "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": many } } } });
+    instances.json["nodes"] = json!(vec![node; 30]);
+    instances.json["scenes"][0]["nodes"] = json!((0..30).collect::<Vec<_>>());
+    assert!(
+        instances.refusal().contains("too large"),
+        "{}",
+        instances.refusal()
+    );
+}
+
+#[test]
+fn accessors_stay_within_their_views() {
+    for (key, value) in [
+        ("byteOffset", json!(u64::MAX)),
+        ("byteOffset", json!(30)),
+        ("count", json!(1000)),
+        ("type", json!("MAT4")),
+    ] {
+        let mut file = File::with_triangle();
+        file.json["accessors"][0][key] = value;
+        let text = file.refusal();
+        assert!(
+            text.contains("meshes[0].primitives[0].attributes.POSITION"),
+            "{text}"
+        );
+        assert!(text.contains("accessors[0]"), "{text}");
+    }
+}
+
+#[test]
+fn a_picture_that_promises_too_much_is_not_decoded() {
+    let mut png = std::io::Cursor::new(Vec::new());
+    image::GrayImage::new(1, 1)
+        .write_to(&mut png, image::ImageFormat::Png)
+        .unwrap();
+    let mut bytes = png.into_inner();
+    // Width and height in the header chunk; its checksum must be mended.
+    bytes[16..20].copy_from_slice(&20_000u32.to_be_bytes());
+    bytes[20..24].copy_from_slice(&20_000u32.to_be_bytes());
+    let crc = crc32(&bytes[12..29]);
+    bytes[29..33].copy_from_slice(&crc.to_be_bytes());
+    let mut file = File::with_triangle();
+    let view = file.view(&bytes);
+    file.push("images", json!({ "bufferView": view }));
+    file.push("textures", json!({ "source": 0 }));
+    file.material(json!({ "emissiveTexture": { "index": 0 } }));
+    let scene = file.load();
+    assert!(
+        warnings(&scene).contains("promises 20000 x 20000 texels"),
+        "{}",
+        warnings(&scene)
+    );
+}
+
+fn crc32(bytes: &[u8]) -> u32 {
+    !bytes.iter().fold(u32::MAX, |crc, b| {
+        (0..8).fold(crc ^ u32::from(*b), |c, _| {
+            (c >> 1) ^ (0xEDB8_8320 & (c & 1).wrapping_neg())
+        })
+    })
+}
+
+#[test]
+fn required_extensions_that_are_unknown_are_named() {
+    for name in [
+        "KHR_draco_mesh_compression",
+        "KHR_texture_basisu",
+        "EXT_meshopt_compression",
+        "ACME_magic",
+    ] {
+        let mut file = File::with_triangle();
+        file.json["extensionsUsed"] = json!([name]);
+        assert!(warnings(&file.load()).contains(name));
+        file.json["extensionsRequired"] = json!([name]);
+        let text = file.refusal();
+        assert!(
+            text.contains(name) && text.contains("extensionsRequired[0]"),
+            "{text}"
+        );
+    }
+}

@@ -1,0 +1,244 @@
+//! Materials, textures, samplers, UV sets.
+
+use glam::{Vec2, Vec3, Vec4};
+use image::{Rgba, RgbaImage};
+use serde_json::json;
+
+use super::{File, warnings};
+use crate::{AlphaMode, ColorSpace, Filter, LoadOptions, Wrap};
+
+fn checker() -> RgbaImage {
+    RgbaImage::from_fn(4, 4, |x, y| {
+        let on = (x + y) % 2 == 0;
+        Rgba(if on { [255; 4] } else { [0, 0, 0, 255] })
+    })
+}
+
+#[test]
+fn factors_and_modes_are_read() {
+    let mut file = File::with_triangle();
+    file.material(json!({
+        "name": "shiny",
+        "pbrMetallicRoughness": { "baseColorFactor": [0.1, 0.2, 0.3, 0.4], "metallicFactor": 0.5, "roughnessFactor": 0.25 },
+        "emissiveFactor": [1, 0.5, 0],
+        "alphaMode": "MASK",
+        "doubleSided": true,
+        "extensions": { "KHR_materials_emissive_strength": { "emissiveStrength": 4 }, "KHR_materials_unlit": {} },
+    }));
+    let scene = file.load();
+    let m = &scene.materials[0];
+    assert_eq!(m.name, "shiny");
+    assert_eq!(m.base_color, Vec4::new(0.1, 0.2, 0.3, 0.4));
+    assert_eq!((m.metallic, m.roughness), (0.5, 0.25));
+    assert_eq!(m.emissive, Vec3::new(4., 2., 0.));
+    assert_eq!(m.alpha_mode, AlphaMode::Mask { cutoff: 0.5 });
+    assert!(m.double_sided && m.unlit);
+    assert!(scene.warnings.is_empty());
+}
+
+#[test]
+fn a_primitive_without_material_gets_the_default_one() {
+    let scene = File::with_triangle().load();
+    assert_eq!(scene.materials, [crate::Material::default()]);
+    assert_eq!(scene.instances[0].material, 0);
+}
+
+#[test]
+fn texture_transforms_turn_counter_clockwise_as_seen() {
+    let mut file = File::with_triangle();
+    let texture = file.texture(&checker());
+    file.material(json!({ "pbrMetallicRoughness": { "baseColorTexture": {
+        "index": texture,
+        "extensions": { "KHR_texture_transform": {
+            "offset": [0.5, 0.25], "rotation": std::f32::consts::FRAC_PI_2, "scale": [2, 3], "texCoord": 1,
+        } },
+    } } }));
+    file.attribute("TEXCOORD_1", &[0.25; 6], "VEC2");
+    let scene = file.load();
+    let slot = scene.materials[0].base_color_texture.unwrap();
+    let at = |u, v| slot.uv_transform.transform_point2(Vec2::new(u, v));
+    assert!(at(0., 0.).abs_diff_eq(Vec2::new(0.5, 0.25), 1e-6));
+    assert!(at(1., 0.).abs_diff_eq(Vec2::new(0.5, 0.25 - 2.), 1e-6));
+    assert!(at(0., 1.).abs_diff_eq(Vec2::new(0.5 + 3., 0.25), 1e-6));
+    // The overriding set is the only one in use, so it sits in the first slot.
+    assert_eq!(slot.uv_set, 0);
+    assert_eq!(scene.meshes[0].vertices[0].uv, [[0.25; 2], [0.; 2]]);
+}
+
+#[test]
+fn uv_sets_in_use_are_mapped_to_the_two_slots() {
+    let mut file = File::with_triangle();
+    let texture = file.texture(&checker());
+    let on = |set| json!({ "index": texture, "texCoord": set });
+    file.material(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": on(3), "metallicRoughnessTexture": on(1) },
+        "occlusionTexture": on(7),
+    }));
+    for set in [0, 1, 3, 7] {
+        file.attribute(&format!("TEXCOORD_{set}"), &[set as f32; 6], "VEC2");
+    }
+    let scene = file.load();
+    let m = &scene.materials[0];
+    assert_eq!(scene.meshes[0].vertices[0].uv, [[1.; 2], [3.; 2]]);
+    assert_eq!(m.base_color_texture.unwrap().uv_set, 1);
+    assert_eq!(m.metallic_roughness_texture.unwrap().uv_set, 0);
+    assert_eq!(m.occlusion_texture.unwrap().uv_set, 0);
+    assert!(warnings(&scene).contains("materials[0]: reads more than two sets"));
+}
+
+#[test]
+fn equal_uses_share_a_texture_and_different_meanings_do_not() {
+    let mut file = File::with_triangle();
+    let texture = file.texture(&checker());
+    // The same picture under another number.
+    let twin = file.json["images"][0].clone();
+    let image = file.push("images", twin);
+    let second = file.push("textures", json!({ "source": image }));
+    file.material(json!({
+        "pbrMetallicRoughness": {
+            "baseColorTexture": { "index": texture },
+            "metallicRoughnessTexture": { "index": texture },
+        },
+        "occlusionTexture": { "index": second },
+        "emissiveTexture": { "index": second },
+    }));
+    let scene = file.load();
+    let m = &scene.materials[0];
+    let number = |slot: Option<crate::TextureRef>| slot.unwrap().texture;
+    assert_eq!(scene.textures.len(), 2);
+    assert_eq!(number(m.base_color_texture), number(m.emissive_texture));
+    assert_eq!(
+        number(m.metallic_roughness_texture),
+        number(m.occlusion_texture)
+    );
+    let spaces: Vec<_> = scene.textures.iter().map(|t| t.color_space).collect();
+    assert_eq!(spaces, [ColorSpace::Srgb, ColorSpace::Linear]);
+    // Half of the light is sRGB 188; half of the number is 128.
+    assert_eq!(scene.textures[0].levels[1][..4], [188, 188, 188, 255]);
+    assert_eq!(scene.textures[1].levels[1][..4], [128, 128, 128, 255]);
+}
+
+#[test]
+fn samplers_say_whether_there_are_mip_levels() {
+    for (min, mip, levels) in [
+        (None, Some(Filter::Linear), 3),
+        (Some(9728), None, 1),
+        (Some(9729), None, 1),
+        (Some(9984), Some(Filter::Nearest), 3),
+    ] {
+        let mut file = File::with_triangle();
+        let texture = file.texture(&checker());
+        let mut sampler = json!({ "wrapS": 33071, "wrapT": 33648, "magFilter": 9728 });
+        if let Some(min) = min {
+            sampler["minFilter"] = json!(min);
+        }
+        file.push("samplers", sampler);
+        file.json["textures"][texture]["sampler"] = json!(0);
+        file.material(json!({ "emissiveTexture": { "index": texture } }));
+        let scene = file.load();
+        let t = &scene.textures[0];
+        assert_eq!((t.sampler.mip, t.levels.len()), (mip, levels), "{min:?}");
+        assert_eq!(
+            (t.sampler.wrap_u, t.sampler.wrap_v),
+            (Wrap::ClampToEdge, Wrap::MirroredRepeat)
+        );
+        assert_eq!(t.sampler.mag, Filter::Nearest);
+    }
+}
+
+#[test]
+fn a_broken_picture_is_a_warning_and_a_placeholder() {
+    let mut file = File::with_triangle();
+    let view = file.view(b"\x89PNG not really");
+    let image = file.push("images", json!({ "bufferView": view, "name": "wood" }));
+    let missing = file.push("images", json!({ "uri": "nowhere/stone.png" }));
+    file.push("textures", json!({ "source": image }));
+    file.push("textures", json!({ "source": missing }));
+    file.material(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+        "normalTexture": { "index": 1 },
+        "emissiveTexture": { "index": 1 },
+    }));
+    let scene = file.load();
+    assert_eq!(scene.textures[2].levels, [[0, 0, 0, 255]]);
+    assert_eq!(
+        scene.textures[0].levels[0][..8],
+        [255, 0, 255, 255, 255, 255, 255, 255]
+    );
+    assert_eq!(scene.textures[1].levels, [[128, 128, 255, 255]]);
+    let text = warnings(&scene);
+    assert!(
+        text.contains("images[0] (wood): cannot be decoded"),
+        "{text}"
+    );
+    assert!(
+        text.contains("images[1] (nowhere/stone.png): no files"),
+        "{text}"
+    );
+}
+
+#[test]
+fn every_pixel_format_becomes_rgba8() {
+    use image::{DynamicImage, GrayImage, ImageBuffer, Luma, LumaA, Rgb, RgbImage};
+    let pictures: [(DynamicImage, [u8; 4]); 5] = [
+        (
+            GrayImage::from_pixel(2, 2, Luma([7])).into(),
+            [7, 7, 7, 255],
+        ),
+        (
+            ImageBuffer::from_pixel(2, 2, LumaA([7u8, 9])).into(),
+            [7, 7, 7, 9],
+        ),
+        (
+            RgbImage::from_pixel(2, 2, Rgb([1, 2, 3])).into(),
+            [1, 2, 3, 255],
+        ),
+        (
+            ImageBuffer::from_pixel(2, 2, Luma([257u16 * 80])).into(),
+            [80, 80, 80, 255],
+        ),
+        (
+            ImageBuffer::from_pixel(2, 2, Rgba([257u16, 514, 65535, 0])).into(),
+            [1, 2, 255, 0],
+        ),
+    ];
+    for (picture, expected) in pictures {
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        picture
+            .write_to(&mut bytes, image::ImageFormat::Png)
+            .unwrap();
+        let mut file = File::with_triangle();
+        let view = file.view(bytes.get_ref());
+        // The MIME type lies; the content decides.
+        file.push(
+            "images",
+            json!({ "bufferView": view, "mimeType": "image/jpeg" }),
+        );
+        file.push("textures", json!({ "source": 0 }));
+        file.material(json!({ "occlusionTexture": { "index": 0 } }));
+        let scene = file.load();
+        assert_eq!(
+            scene.textures[0].levels[0][..4],
+            expected,
+            "{:?}",
+            picture.color()
+        );
+    }
+}
+
+#[test]
+fn large_pictures_are_halved_until_they_fit() {
+    let mut file = File::with_triangle();
+    let texture = file.texture(&RgbaImage::from_pixel(20, 9, Rgba([10, 20, 30, 255])));
+    file.material(json!({ "emissiveTexture": { "index": texture } }));
+    let options = LoadOptions {
+        max_texture_size: 8,
+        ..LoadOptions::default()
+    };
+    let scene = file.load_with(&options).unwrap();
+    let t = &scene.textures[0];
+    assert_eq!((t.width, t.height), (5, 2));
+    assert_eq!(t.levels.len(), 3);
+    assert_eq!(t.levels[0], [10, 20, 30, 255].repeat(10));
+    assert!(warnings(&scene).contains("is 20 x 9 texels large and reduced to 5 x 2"));
+}

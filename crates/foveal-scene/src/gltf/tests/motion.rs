@@ -1,0 +1,191 @@
+//! Animations, morph targets, skins.
+
+use glam::{Mat4, Quat, Vec3};
+use serde_json::{Value, json};
+
+use super::{File, near, warnings};
+
+/// Adds an animation with one channel.
+fn animate(file: &mut File, target: Value, mode: &str, times: &[f32], values: &[f32], kind: &str) {
+    let input = file.floats(times, "SCALAR");
+    let output = file.floats(values, kind);
+    file.push(
+        "animations",
+        json!({
+            "samplers": [{ "input": input, "output": output, "interpolation": mode }],
+            "channels": [{ "sampler": 0, "target": target }],
+        }),
+    );
+}
+
+#[test]
+fn a_still_scene_has_no_rig() {
+    let mut scene = File::with_triangle().load();
+    assert!(!scene.is_animated() && scene.rig.0.is_none());
+    let before = scene.instances.clone();
+    scene.pose(1.0);
+    assert_eq!(scene.instances, before);
+}
+
+#[test]
+fn animated_nodes_carry_objects_cameras_and_lights() {
+    let mut file = File::with_triangle();
+    *file.node() = json!({ "children": [1, 2, 3] });
+    file.push("nodes", json!({ "mesh": 0 }));
+    file.push("nodes", json!({ "camera": 0 }));
+    file.push(
+        "nodes",
+        json!({ "extensions": { "KHR_lights_punctual": { "light": 0 } } }),
+    );
+    file.push("nodes", json!({ "mesh": 0, "name": "still" }));
+    file.json["scenes"][0]["nodes"] = json!([0, 4]);
+    file.json["cameras"] =
+        json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
+    file.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
+    let target = json!({ "node": 0, "path": "translation" });
+    animate(
+        &mut file,
+        target,
+        "LINEAR",
+        &[0., 2.],
+        &[0., 0., 0., 8., 0., 0.],
+        "VEC3",
+    );
+    let mut scene = file.load();
+    assert!(scene.is_animated());
+    assert_eq!(scene.animation_duration_s(), 2.0);
+    scene.pose(0.5);
+    assert_eq!(scene.objects[0].bounds.min, Vec3::new(2., 0., 0.));
+    assert_eq!(scene.instances[0].bounds.max, Vec3::new(3., 1., 0.));
+    assert_eq!(scene.instances[0].world_from_object.w_axis.x, 2.);
+    assert_eq!(scene.cameras[0].eye(), Vec3::new(2., 0., 0.));
+    assert_eq!(scene.lights[0].position, Vec3::new(2., 0., 0.));
+    assert_eq!(scene.objects[1].bounds.min, Vec3::ZERO);
+    // It loops; poses do not build upon each other.
+    scene.pose(2.25);
+    assert_eq!(scene.objects[0].bounds.min, Vec3::new(1., 0., 0.));
+    let options = crate::LoadOptions {
+        time_s: 1.0,
+        ..Default::default()
+    };
+    let posed = file.load_with(&options).unwrap();
+    assert_eq!(posed.objects[0].bounds.min, Vec3::new(4., 0., 0.));
+}
+
+#[test]
+fn rotations_and_scales_are_played_and_pointers_are_not() {
+    let mut file = File::with_triangle();
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    let turn = json!({ "node": 0, "path": "rotation" });
+    animate(
+        &mut file,
+        turn,
+        "LINEAR",
+        &[0., 1.],
+        &[0., 0., 0., 1., 0., 0., 1., 0.],
+        "VEC4",
+    );
+    let scale = json!({ "node": 0, "path": "scale" });
+    animate(
+        &mut file,
+        scale,
+        "STEP",
+        &[0., 1.],
+        &[1., 1., 1., 2., 2., 2.],
+        "VEC3",
+    );
+    let pointer = json!({ "path": "pointer" });
+    animate(&mut file, pointer, "STEP", &[0.], &[1., 1., 1.], "VEC3");
+    let mut scene = file.load();
+    scene.pose(0.5);
+    let matrix = scene.instances[0].world_from_object;
+    let expected = Mat4::from_quat(Quat::from_xyzw(0., 0., half, half));
+    assert!(matrix.abs_diff_eq(expected, 1e-5), "{matrix}");
+    scene.pose(1.0);
+    assert!((scene.instances[0].world_from_object.x_axis.length() - 2.).abs() < 1e-5);
+    assert!(warnings(&scene).contains("animations[2].channels[0].target.path: is a pointer"));
+}
+
+#[test]
+fn morph_targets_move_vertices_and_flat_normals_follow() {
+    let mut file = File::with_triangle();
+    let up = file.floats(&[0., 0., 0., 0., 0., 0., 0., 0., 1.], "VEC3");
+    let right = file.floats(&[2., 0., 0.].repeat(3), "VEC3");
+    file.primitive()["targets"] = json!([{ "POSITION": up }, { "POSITION": right }]);
+    file.json["meshes"][0]["weights"] = json!([0, 0.5]);
+    let target = json!({ "node": 0, "path": "weights" });
+    animate(
+        &mut file,
+        target,
+        "LINEAR",
+        &[0., 1.],
+        &[0., 0., 1., 0.],
+        "SCALAR",
+    );
+    // A second node shows the same mesh with its own weights, and does not move.
+    file.push("nodes", json!({ "mesh": 0, "weights": [0, 1] }));
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let mut scene = file.load();
+    assert_eq!(scene.meshes.len(), 2);
+    scene.pose(1.0);
+    let [moved, other] = &scene.meshes[..] else {
+        panic!()
+    };
+    assert!(moved.deforms && other.deforms);
+    assert_eq!(moved.vertices[2].position, [0., 1., 1.]);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    assert!(near(&moved.vertices[0].normal, &[0., -half, half]));
+    assert_eq!(scene.objects[0].bounds.max, Vec3::new(1., 1., 1.));
+    assert_eq!(other.vertices[0].position, [2., 0., 0.]);
+    assert_eq!(scene.objects[1].bounds.min, Vec3::new(2., 0., 0.));
+}
+
+#[test]
+fn a_skin_follows_its_joints_and_ignores_its_own_node() {
+    let mut file = File::with_triangle();
+    file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
+    let joints = file.accessor(&[0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0], 5121, "VEC4", 3);
+    file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+    // Vertex 0 follows joint 0, vertex 1 joint 1, vertex 2 both in equal parts (not normalized in the file).
+    file.attribute(
+        "WEIGHTS_0",
+        &[1., 0., 0., 0., 1., 0., 0., 0., 2., 2., 0., 0.],
+        "VEC4",
+    );
+    let back = Mat4::from_translation(Vec3::new(-1., 0., 0.));
+    let bind: Vec<f32> = [Mat4::IDENTITY.to_cols_array(), back.to_cols_array()].concat();
+    let bind = file.floats(&bind, "MAT4");
+    file.push("nodes", json!({ "children": [2] }));
+    file.push("nodes", json!({ "translation": [1, 0, 0] }));
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    file.push(
+        "skins",
+        json!({ "joints": [1, 2], "inverseBindMatrices": bind }),
+    );
+    file.node()["skin"] = json!(0);
+    file.node()["translation"] = json!([100, 100, 100]);
+    let target = json!({ "node": 2, "path": "translation" });
+    animate(
+        &mut file,
+        target,
+        "LINEAR",
+        &[0., 1.],
+        &[1., 0., 0., 1., 0., 4.],
+        "VEC3",
+    );
+    // A rigid node shows the same mesh.
+    file.push("nodes", json!({ "mesh": 0, "name": "rigid" }));
+    file.json["scenes"][0]["nodes"] = json!([0, 1, 3]);
+    let mut scene = file.load();
+    scene.pose(1.0);
+    let at = |i: usize| scene.meshes[scene.instances[0].mesh as usize].vertices[i].position;
+    assert_eq!(at(0), [0., 0., 0.]);
+    assert_eq!(at(1), [1., 0., 4.]);
+    assert_eq!(at(2), [0., 1., 2.]);
+    assert_eq!(scene.instances[0].world_from_object, Mat4::IDENTITY);
+    assert_eq!(scene.objects[0].bounds.max, Vec3::new(1., 1., 4.));
+    let rigid = &scene.meshes[scene.instances[1].mesh as usize];
+    assert_eq!(rigid.vertices[1].position, [1., 0., 0.]);
+    assert!(!rigid.deforms);
+    assert!(warnings(&scene).contains("no skin; it stays rigid"));
+}

@@ -1,0 +1,136 @@
+//! Whole frames of the generated scenes against small committed pictures.
+//!
+//! `UPDATE_GOLDEN=1 cargo test -p foveal --test golden` writes them anew; look at them before you commit.
+//! Adapters round differently, so the comparison is perceptual: mean FLIP (Andersson et al. 2020).
+
+use std::path::PathBuf;
+
+use foveal::{Frame, Gpu, LightingModel, Renderer, Settings, View};
+use foveal_scene::generate;
+
+/// Two adapters that draw the same picture differ by less, a missing light or texture by far more.
+const MAX_FLIP: f32 = 0.01;
+const WIDTH: u32 = 192;
+const HEIGHT: u32 = 108;
+
+fn folder() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/golden")
+}
+
+fn draw(scene: &str, settings: &Settings) -> Vec<u8> {
+    pollster::block_on(async {
+        let scene = generate::by_name(scene).expect("a generated scene");
+        let gpu = Gpu::open(None)
+            .await
+            .expect("the tests need a graphics adapter");
+        let mut renderer = Renderer::new(&gpu, settings, None)
+            .await
+            .expect("settings fit");
+        renderer.set_scene(&scene).await.expect("scene fits");
+        let frame = Frame {
+            camera: &scene.cameras[0],
+            previous_camera: None,
+        };
+        renderer.render(&frame).await.expect("drawn");
+        renderer.read_picture().await.expect("read back")
+    })
+}
+
+fn flip_image(rgba: &[u8]) -> nv_flip::FlipImageRgb8 {
+    let rgb: Vec<u8> = rgba
+        .chunks_exact(4)
+        .flat_map(|p| [p[0], p[1], p[2]])
+        .collect();
+    nv_flip::FlipImageRgb8::with_data(WIDTH, HEIGHT, &rgb)
+}
+
+fn flip(a: &[u8], b: &[u8]) -> f32 {
+    let map = nv_flip::flip(
+        flip_image(a),
+        flip_image(b),
+        nv_flip::DEFAULT_PIXELS_PER_DEGREE,
+    );
+    nv_flip::FlipPool::from_image(&map).mean()
+}
+
+fn assert_golden(name: &str, scene: &str, settings: Settings) {
+    let settings = Settings {
+        width: WIDTH,
+        height: HEIGHT,
+        ..settings
+    };
+    let drawn = draw(scene, &settings);
+    let golden = folder().join(format!("{name}.png"));
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        image::save_buffer(&golden, &drawn, WIDTH, HEIGHT, image::ColorType::Rgba8)
+            .expect("written");
+        return;
+    }
+    let expected = image::open(&golden)
+        .expect("the golden picture is there")
+        .into_rgba8();
+    let difference = flip(&expected, &drawn);
+    if difference > MAX_FLIP {
+        let actual = std::env::temp_dir().join(format!("foveal-golden-{name}.png"));
+        image::save_buffer(&actual, &drawn, WIDTH, HEIGHT, image::ColorType::Rgba8)
+            .expect("written");
+        panic!(
+            "{name}: mean FLIP {difference} is above {MAX_FLIP}; the picture drawn is {}",
+            actual.display()
+        );
+    }
+}
+
+#[test]
+fn cornell_looks_as_it_should() {
+    assert_golden("cornell", "cornell", Settings::default());
+}
+
+#[test]
+fn blinn_phong_looks_as_it_should() {
+    let settings = Settings {
+        lighting: LightingModel::BlinnPhong,
+        ..Settings::default()
+    };
+    assert_golden("cornell-blinn-phong", "cornell", settings);
+}
+
+#[test]
+fn metals_and_roughness_look_as_they_should() {
+    assert_golden("materials-grid", "materials-grid", Settings::default());
+}
+
+#[test]
+fn masks_blending_and_mirroring_look_as_they_should() {
+    assert_golden("alpha", "alpha", Settings::default());
+}
+
+#[test]
+fn normals_look_as_they_should() {
+    assert_golden(
+        "alpha-normals",
+        "alpha",
+        Settings {
+            view: View::Normals,
+            ..Settings::default()
+        },
+    );
+}
+
+#[test]
+fn different_pictures_are_told_apart() {
+    let settings = Settings {
+        width: WIDTH,
+        height: HEIGHT,
+        ..Settings::default()
+    };
+    let cornell = draw("cornell", &settings);
+    let brighter = draw(
+        "cornell",
+        &Settings {
+            exposure: 0.3,
+            ..settings
+        },
+    );
+    assert!(flip(&cornell, &brighter) > MAX_FLIP);
+}
