@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::{adapters, compare, render, scene_info};
+use crate::{adapters, bench, compare, render, scene_info};
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
 #[derive(Debug, Parser)]
@@ -25,6 +25,9 @@ pub(crate) enum Command {
     Render(Box<render::Args>),
     /// Measure how far two pictures of the same size are apart
     Compare(compare::Args),
+    /// Measure what a technique costs and gains
+    #[command(subcommand)]
+    Bench(bench::Command),
     /// List the graphics adapters of this machine
     Adapters(adapters::Args),
     /// Look into a scene without drawing it
@@ -46,6 +49,7 @@ impl Command {
             Self::Render(_) => "render",
             Self::Compare(_) => "compare",
             Self::Adapters(_) => "adapters",
+            Self::Bench(command) => command.name(),
             Self::Scene(SceneCommand::Info(_)) => "scene info",
         }
     }

@@ -6,6 +6,7 @@
 
 mod adapters;
 mod atomic_file;
+mod bench;
 mod cli;
 mod compare;
 mod console;
@@ -29,6 +30,7 @@ fn main() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Adapters(args) => adapters::run(&args),
+        Command::Bench(command) => bench::run(&command),
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
     })
 }

@@ -288,12 +288,12 @@ impl Renderer {
             .is_some_and(|a| a.show(recorder, targets))
         {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            let shaded = targets.shaded_view();
             if antialias
                 .as_ref()
                 .is_none_or(AntialiasStage::needs_ordinary)
             {
-                shading.shade(recorder, &input, Samples::EveryPixel, shaded);
+                let target = &targets.radiance_view;
+                shading.shade(recorder, &input, Samples::EveryPixel, target);
             }
             if let Some(antialias) = antialias {
                 antialias.combine(recorder, targets);

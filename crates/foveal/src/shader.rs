@@ -51,6 +51,7 @@ pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl"
 const AA_SAMPLES: &str = include_str!("antialias/samples.wgsl");
 const AA_SURFACES: &str = include_str!("antialias/surfaces.wgsl");
 const AA_WEIGHT: &str = include_str!("antialias/weight.wgsl");
+const AA_QUEUE: &str = include_str!("antialias/queue.wgsl");
 pub(crate) const AA_MERGE: Parts = &[
     FRAME,
     SURFACE,
@@ -59,9 +60,9 @@ pub(crate) const AA_MERGE: Parts = &[
     SHADING,
     AA_SAMPLES,
     AA_SURFACES,
+    AA_QUEUE,
     include_str!("antialias/merge.wgsl"),
 ];
-pub(crate) const AA_EDGES: Parts = &[include_str!("antialias/edges.wgsl")];
 pub(crate) const AA_SHADE: Parts = &[
     FRAME,
     SURFACE,
@@ -71,9 +72,16 @@ pub(crate) const AA_SHADE: Parts = &[
     AA_SAMPLES,
     AA_SURFACES,
     AA_WEIGHT,
+    AA_QUEUE,
     include_str!("antialias/shade.wgsl"),
 ];
-pub(crate) const AA_COMBINE: Parts = &[FRAME, AA_WEIGHT, include_str!("antialias/combine.wgsl")];
+pub(crate) const AA_COMBINE: Parts = &[
+    FRAME,
+    AA_WEIGHT,
+    AA_QUEUE,
+    include_str!("antialias/combine.wgsl"),
+];
+pub(crate) const AA_STORE: Parts = &[AA_QUEUE, include_str!("antialias/store.wgsl")];
 pub(crate) const AA_VIEW: Parts = &[include_str!("antialias/view.wgsl")];
 
 /// Joins a shader's parts.
@@ -179,9 +187,9 @@ mod tests {
         ("tone map", TONE_MAP),
         ("view", VIEW),
         ("merge", AA_MERGE),
-        ("edge list", AA_EDGES),
         ("edge shading", AA_SHADE),
         ("combination", AA_COMBINE),
+        ("combination, store", AA_STORE),
         ("tally", AA_VIEW),
     ];
 
@@ -435,7 +443,21 @@ mod tests {
             AA_MERGE,
             "Band",
             crate::antialias::BandUniform,
-            [count, side, first_row, rows, offsets]
+            [first_row, rows, reserved, offsets]
+        );
+        assert_same_layout!(
+            AA_SHADE,
+            "Queue",
+            crate::antialias::QueueUniform,
+            [
+                band_groups,
+                start,
+                all_groups,
+                total,
+                edge_pixels,
+                evaluations,
+                reserved
+            ]
         );
         assert_same_layout!(
             CLUSTERS,

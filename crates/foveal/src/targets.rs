@@ -58,13 +58,6 @@ impl Targets {
         }
     }
 
-    /// What the shading of the ordinary G-buffer is written to: the radiance, or what it is made from.
-    pub(crate) fn shaded_view(&self) -> &wgpu::TextureView {
-        self.samples
-            .as_ref()
-            .map_or(&self.radiance_view, |s| &s.ordinary_view)
-    }
-
     /// Bytes of all targets.
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.picture_view.texture().size();

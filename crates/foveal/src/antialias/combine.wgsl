@@ -1,30 +1,36 @@
-// Combination: the ordinary path's radiance with what was shaded besides. After frame.wgsl and weight.wgsl.
+// Combination: what the entries of a pixel came to, with the ordinary path's radiance for the rest of its
+// coverage. The result stays in the sums: no texture is read and written in one step, so store.wgsl follows.
+// After frame.wgsl, weight.wgsl and queue.wgsl.
 
-// The sums hold all of an edge pixel; else the largest surface is the ordinary path's.
+// The entries hold all of a pixel; else the largest surface is the ordinary path's.
 override ALL: bool = false;
 // Sub-samples per pixel.
 override COUNT: u32 = 4u;
 
-@group(1) @binding(0) var ordinary: texture_2d<f32>;
-@group(1) @binding(1) var sums: texture_2d<f32>;
-@group(1) @binding(2) var tally: texture_2d<u32>;
+@group(1) @binding(0) var<storage, read> queue: Queue;
+@group(1) @binding(1) var<storage, read> entries: array<Entry>;
+@group(1) @binding(2) var<storage, read_write> sums: array<vec2u>;
+@group(1) @binding(3) var ordinary: texture_2d<f32>;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
-@fragment
-fn combine(@builtin(position) position: vec4f) -> @location(0) vec4f {
-    let pixel = vec2u(position.xy);
-    let times = textureLoad(tally, pixel, 0).xy;
-    if times.x <= 1u {
-        return textureLoad(ordinary, pixel, 0);
+@compute @workgroup_size(64)
+fn combine(@builtin(global_invocation_id) id: vec3u) {
+    let end = min(queue.total, arrayLength(&entries));
+    for (var i = id.x; i < end; i += queue.all_groups.x * 64u) {
+        let entry = entries[i];
+        if !is_first_of_its_pixel(entry) {
+            continue;
+        }
+        var sum = vec4f(0.0);
+        var rest = COUNT;
+        let of_pixel = entry.samples >> 24u;
+        for (var k = 0u; k < of_pixel; k++) {
+            sum += unpack_half4(sums[i + k]);
+            rest -= countOneBits(entries[i + k].samples & 0xffffu);
+        }
+        if !ALL {
+            let largest = textureLoad(ordinary, pixel_of(entry), 0).rgb;
+            sum += vec4f(largest, 1.0) * (weight_of(largest) * f32(rest) / f32(COUNT));
+        }
+        sums[i] = pack_half4(vec4f(sum.rgb / sum.a, 1.0));
     }
-    var sum = textureLoad(sums, pixel, 0);
-    if !ALL {
-        let radiance = textureLoad(ordinary, pixel, 0).rgb;
-        sum += vec4f(radiance, 1.0) * (weight_of(radiance) * f32(times.y) / f32(COUNT));
-    }
-    return vec4f(sum.rgb / sum.a, 1.0);
 }

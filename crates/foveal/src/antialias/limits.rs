@@ -1,5 +1,6 @@
 //! Which anti-aliasing settings make sense, and which fit a device.
 
+use super::targets::most_entries;
 use crate::{Antialiasing, Error, SamplePattern, Settings, View};
 
 /// Largest side of a grid.
@@ -21,6 +22,18 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
             }),
             _ => Ok(()),
         };
+    }
+    // Shading every sub-sample lists every pixel.
+    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let most = most_entries(limits);
+    if settings.aa == Antialiasing::Ssaa && pixels > most {
+        return Err(Error::Limit {
+            what: "the picture's number of pixels with ssaa".to_owned(),
+            value: pixels,
+            limit: most,
+            hint: ": that is the device's largest storage buffer; msaa takes larger pictures"
+                .to_owned(),
+        });
     }
     let samples = settings.samples;
     let wrong = |expected| {
@@ -70,6 +83,8 @@ mod tests {
     fn message(settings: &Settings) -> String {
         let limits = wgpu::Limits {
             max_texture_dimension_2d: 16_384,
+            max_storage_buffer_binding_size: 1 << 30,
+            max_buffer_size: 1 << 30,
             ..wgpu::Limits::default()
         };
         match settings.validate(&limits) {
@@ -133,6 +148,28 @@ mod tests {
             ..settings
         };
         assert!(message(&settings).contains("rotated pattern only"));
+    }
+
+    #[test]
+    fn ssaa_of_more_pixels_than_a_buffer_holds_is_refused() {
+        let settings = Settings {
+            width: 7680,
+            height: 4320,
+            aa: Antialiasing::Ssaa,
+            ..Settings::default()
+        };
+        let error = validate(
+            &settings,
+            &wgpu::Limits {
+                max_texture_dimension_2d: 16_384,
+                ..wgpu::Limits::default()
+            },
+        );
+        let text = error.unwrap_err().to_string();
+        assert!(
+            text.contains("33177600") && text.contains("16777216"),
+            "{text}"
+        );
     }
 
     #[test]

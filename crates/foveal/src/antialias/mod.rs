@@ -19,4 +19,6 @@ pub(crate) use limits::validate;
 #[cfg(test)]
 pub(crate) use pattern::BandUniform;
 pub(crate) use stage::AntialiasStage;
+#[cfg(test)]
+pub(crate) use targets::QueueUniform;
 pub(crate) use targets::SampleTargets;

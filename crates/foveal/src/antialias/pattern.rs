@@ -58,6 +58,18 @@ impl Pattern {
         }
     }
 
+    /// The overrides of `antialias/samples.wgsl`.
+    pub(crate) fn constants(&self) -> [(&'static str, f64); 2] {
+        let side = match self {
+            Self::Grid { side } => *side,
+            Self::Rotated(_) => 0,
+        };
+        [
+            ("COUNT", f64::from(self.count())),
+            ("SIDE", f64::from(side)),
+        ]
+    }
+
     /// Texels across and down that a block of pixels needs.
     pub(crate) fn texels(&self, width: u32, rows: u32) -> (u32, u32) {
         match self {
@@ -132,31 +144,25 @@ impl Band {
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct BandUniform {
-    pub(crate) count: u32,
-    pub(crate) side: u32,
     pub(crate) first_row: u32,
     pub(crate) rows: u32,
+    pub(crate) reserved: [u32; 2],
     pub(crate) offsets: [[f32; 4]; 4],
 }
 
 impl BandUniform {
     pub(crate) fn new(pattern: &Pattern, band: Band) -> Self {
         let mut offsets = [[0.0; 4]; 4];
-        let side = match pattern {
-            Pattern::Grid { side } => *side,
-            Pattern::Rotated(sixteenths) => {
-                let parts = sixteenths.iter().flatten().map(|&v| f32::from(v) / 16.0);
-                for (slot, part) in offsets.iter_mut().flatten().zip(parts) {
-                    *slot = part;
-                }
-                0
+        if let Pattern::Rotated(sixteenths) = pattern {
+            let parts = sixteenths.iter().flatten().map(|&v| f32::from(v) / 16.0);
+            for (slot, part) in offsets.iter_mut().flatten().zip(parts) {
+                *slot = part;
             }
-        };
+        }
         Self {
-            count: pattern.count(),
-            side,
             first_row: band.first_row,
             rows: band.rows,
+            reserved: [0; 2],
             offsets,
         }
     }

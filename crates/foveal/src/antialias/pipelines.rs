@@ -38,12 +38,12 @@ impl Edges {
 pub(super) struct AntialiasPipelines {
     pub(super) merge: wgpu::RenderPipeline,
     pub(super) merge_layout: wgpu::BindGroupLayout,
-    pub(super) compact: wgpu::ComputePipeline,
-    pub(super) compact_layout: wgpu::BindGroupLayout,
     pub(super) shade: wgpu::ComputePipeline,
     pub(super) shade_layout: wgpu::BindGroupLayout,
-    pub(super) combine: wgpu::RenderPipeline,
+    pub(super) combine: wgpu::ComputePipeline,
     pub(super) combine_layout: wgpu::BindGroupLayout,
+    pub(super) store: wgpu::ComputePipeline,
+    pub(super) store_layout: wgpu::BindGroupLayout,
 }
 
 impl AntialiasPipelines {
@@ -55,7 +55,7 @@ impl AntialiasPipelines {
     ) -> Self {
         let edges = Edges::of(settings);
         let all = f64::from(u8::from(edges.shade_all()));
-        let count = f64::from(Pattern::of(settings).count());
+        let [count, side] = Pattern::of(settings).constants();
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let layout =
@@ -63,71 +63,73 @@ impl AntialiasPipelines {
         let compute = wgpu::ShaderStages::COMPUTE;
         let fragment = wgpu::ShaderStages::FRAGMENT;
 
-        let merge_layout = layout("merge", fragment, &[uniform(), uint]);
-        let compact_layout = layout(
-            "edge list",
+        let (read, write) = (storage_read(), storage_write());
+        let merge_layout = layout("merge", fragment, &[uniform(), uint, write, write]);
+        let shade_layout = layout(
+            "edge shading",
             compute,
-            &[
-                uniform(),
-                uint,
-                storage_write(),
-                storage_write(),
-                storage_write(),
-            ],
+            &[uniform(), uint, read, read, write],
         );
-        let sums = wgpu::BindingType::StorageTexture {
+        let combine_layout = layout("combination", compute, &[read, read, write, float]);
+        let radiance = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: RADIANCE_FORMAT,
             view_dimension: wgpu::TextureViewDimension::D2,
         };
-        let shade_layout = layout(
-            "edge shading",
+        let store_layout = layout(
+            "combination, store",
             compute,
-            &[uniform(), uint, storage_read(), storage_read(), sums],
+            &[read, read, write, radiance],
         );
-        let combine_layout = layout("combination", fragment, &[float, float, uint]);
+        let combination = shader::module(gpu, "combination", shader::AA_COMBINE);
 
         let [model, brute] = lighting_constants(settings);
         Self {
-            merge: merge(gpu, &[frame, shading_input, &merge_layout], edges),
-            compact: shader::compute(
+            merge: merge(
                 gpu,
-                "edge list",
-                &shader::module(gpu, "edge list", shader::AA_EDGES),
-                "compact",
-                &[frame, &compact_layout],
-                &[("DONE", 1.0 - all)],
+                &[frame, shading_input, &merge_layout],
+                &[count, side, ("EDGES", f64::from(edges as u8))],
             ),
             shade: shader::compute(
                 gpu,
                 "edge shading",
                 &shader::module(gpu, "edge shading", shader::AA_SHADE),
-                "shade_edges",
+                "shade_entries",
                 &[frame, shading_input, &shade_layout],
-                &[model, brute, ("ALL", all)],
+                &[model, brute, count, side, ("ALL", all)],
             ),
-            combine: shader::full_screen(
+            combine: shader::compute(
                 gpu,
                 "combination",
-                &shader::module(gpu, "combination", shader::AA_COMBINE),
+                &combination,
                 "combine",
                 &[frame, &combine_layout],
-                RADIANCE_FORMAT,
-                &[("ALL", all), ("COUNT", count)],
+                &[count, ("ALL", all)],
+            ),
+            store: shader::compute(
+                gpu,
+                "combination, store",
+                &shader::module(gpu, "combination, store", shader::AA_STORE),
+                "store",
+                &[frame, &store_layout],
+                &[],
             ),
             merge_layout,
-            compact_layout,
             shade_layout,
             combine_layout,
+            store_layout,
         }
     }
 }
 
-fn merge(gpu: &Gpu, groups: &[&wgpu::BindGroupLayout], edges: Edges) -> wgpu::RenderPipeline {
+fn merge(
+    gpu: &Gpu,
+    groups: &[&wgpu::BindGroupLayout],
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
     let module = shader::module(gpu, "merge", shader::AA_MERGE);
-    let constants = [("EDGES", f64::from(edges as u8))];
     let compilation_options = wgpu::PipelineCompilationOptions {
-        constants: &constants,
+        constants,
         ..Default::default()
     };
     let targets = [SURFACE_FORMAT, IDENTITY_FORMAT, TALLY_FORMAT].map(|f| Some(f.into()));

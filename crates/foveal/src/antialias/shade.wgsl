@@ -1,22 +1,21 @@
-// Shading of edge pixels from the list: once per further surface, or once per sub-sample. One thread a pixel.
-// After surfaces.wgsl and weight.wgsl.
+// Shading of the queue's entries: a further surface, or every sub-sample of a pixel. After surfaces.wgsl,
+// weight.wgsl and queue.wgsl.
 
-// Every sub-sample is shaded; else the surfaces besides the largest, which the ordinary path shades.
+// An entry stands for every sub-sample of its pixel, else for those of one surface.
 override ALL: bool = false;
 
-@group(2) @binding(2) var<storage, read> list: array<u32>;
-// Workgroups in x, y, z and the number of pixels.
-@group(2) @binding(3) var<storage, read> dispatch: array<u32, 4>;
-// Sums over what is shaded: weighted radiance, and weights in alpha.
-@group(2) @binding(4) var sums: texture_storage_2d<rgba16float, write>;
+@group(2) @binding(2) var<storage, read> queue: Queue;
+@group(2) @binding(3) var<storage, read> entries: array<Entry>;
+// Per entry: weighted radiance, and the weight in alpha; halves.
+@group(2) @binding(4) var<storage, read_write> sums: array<vec2u>;
 
 fn weighted(radiance: vec3f, coverage: u32) -> vec4f {
-    return vec4f(radiance, 1.0) * (weight_of(radiance) * f32(coverage) / f32(band.count));
+    return vec4f(radiance, 1.0) * (weight_of(radiance) * f32(coverage) / f32(COUNT));
 }
 
 fn all_of(pixel: vec2u) -> vec4f {
     var sum = vec4f(0.0);
-    for (var i = 0u; i < band.count; i++) {
+    for (var i = 0u; i < COUNT; i++) {
         let texel = sample_texel(pixel, i);
         let depth = textureLoad(gbuffer_depth, texel, 0);
         let words = textureLoad(gbuffer_surface, texel, 0);
@@ -25,28 +24,24 @@ fn all_of(pixel: vec2u) -> vec4f {
     return sum;
 }
 
-fn further_surfaces_of(pixel: vec2u) -> vec4f {
-    let largest = largest_surface(pixel).x;
-    var sum = vec4f(0.0);
-    for (var left = all_samples() & ~largest; left != 0u;) {
-        let members = surface_of_first(pixel, left);
-        left &= ~members;
-        let mean = blend_of(pixel, members);
-        sum += weighted(radiance_at(mean.position, mean.depth, mean.words).rgb, countOneBits(members));
-    }
-    return sum;
+fn surface_of(pixel: vec2u, members: u32) -> vec4f {
+    let mean = blend_of(pixel, members);
+    return weighted(radiance_at(mean.position, mean.depth, mean.words).rgb, countOneBits(members));
 }
 
 @compute @workgroup_size(64)
-fn shade_edges(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = group.x * 64u + local;
-    if index >= dispatch[3] {
+fn shade_entries(@builtin(global_invocation_id) id: vec3u) {
+    let index = queue.start + id.x;
+    if index >= min(queue.total, arrayLength(&entries)) {
         return;
     }
-    let pixel = vec2u(list[index] & 0xffffu, list[index] >> 16u);
+    let entry = entries[index];
+    if entry.samples == 0u {
+        return;
+    }
     if ALL {
-        textureStore(sums, pixel, all_of(pixel));
+        sums[index] = pack_half4(all_of(pixel_of(entry)));
     } else {
-        textureStore(sums, pixel, further_surfaces_of(pixel));
+        sums[index] = pack_half4(surface_of(pixel_of(entry), entry.samples & 0xffffu));
     }
 }

@@ -12,7 +12,11 @@ use crate::{Antialiasing, Error, Settings, View, shader};
 
 use super::pattern::{Band, Pattern};
 use super::pipelines::{AntialiasPipelines, Edges};
-use super::targets::SampleTargets;
+use super::targets::{QueueUniform, SampleTargets};
+
+/// Where the queue holds the workgroups of a band, and of all entries.
+const BAND_GROUPS: u64 = std::mem::offset_of!(QueueUniform, band_groups) as u64;
+const ALL_GROUPS: u64 = std::mem::offset_of!(QueueUniform, all_groups) as u64;
 
 /// Lighting evaluations of a frame, and where they went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -70,14 +74,14 @@ impl AntialiasStage {
         let Some(t) = &targets.samples else { return };
         let size = targets.picture_view.texture().size();
         let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights.bits());
-        recorder.encoder.clear_buffer(&t.counters, 0, None);
+        t.begin_frame(recorder.encoder);
         for (band, uniform) in &t.bands {
             let windows = band.windows(&t.pattern, size.width, size.height);
             geometry.draw_windows(recorder, scene, list, &t.samples, &windows);
+            t.begin_band(recorder.encoder);
             self.merge(recorder, &input, t, targets, *band, uniform);
             if shade && self.edges != Edges::None {
-                self.list_edges(recorder, t, *band, uniform);
-                self.shade_edges(recorder, &input, t, uniform);
+                self.shade_entries(recorder, &input, t, uniform);
             }
         }
     }
@@ -98,6 +102,8 @@ impl AntialiasStage {
             &[
                 uniform.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&t.samples.identity_view),
+                t.queue.as_entire_binding(),
+                t.entries.as_entire_binding(),
             ],
         );
         let gbuffer = &targets.gbuffer;
@@ -119,36 +125,7 @@ impl AntialiasStage {
         pass.draw(0..3, 0..1);
     }
 
-    fn list_edges(
-        &self,
-        recorder: &mut Recorder<'_>,
-        t: &SampleTargets,
-        band: Band,
-        uniform: &wgpu::Buffer,
-    ) {
-        recorder
-            .encoder
-            .copy_buffer_to_buffer(&t.empty_dispatch, 0, &t.dispatch, 0, 16);
-        let group = bind_group(
-            &recorder.gpu.device,
-            "edge list",
-            &self.pipelines.compact_layout,
-            &[
-                uniform.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&t.tally_view),
-                t.list.as_entire_binding(),
-                t.dispatch.as_entire_binding(),
-                t.counters.as_entire_binding(),
-            ],
-        );
-        let pixels = t.tally_view.texture().width() * band.rows;
-        let mut pass = recorder.compute_pass("edge list");
-        pass.set_pipeline(&self.pipelines.compact);
-        pass.set_bind_group(1, &group, &[]);
-        pass.dispatch_workgroups(pixels.div_ceil(256), 1, 1);
-    }
-
-    fn shade_edges(
+    fn shade_entries(
         &self,
         recorder: &mut Recorder<'_>,
         input: &wgpu::BindGroup,
@@ -162,16 +139,16 @@ impl AntialiasStage {
             &[
                 uniform.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&t.samples.identity_view),
-                t.list.as_entire_binding(),
-                t.dispatch.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&t.sums_view),
+                t.queue.as_entire_binding(),
+                t.entries.as_entire_binding(),
+                t.sums.as_entire_binding(),
             ],
         );
         let mut pass = recorder.compute_pass("edge shading");
         pass.set_pipeline(&self.pipelines.shade);
         pass.set_bind_group(1, input, &[]);
         pass.set_bind_group(2, &group, &[]);
-        pass.dispatch_workgroups_indirect(&t.dispatch, 0);
+        pass.dispatch_workgroups_indirect(&t.queue, BAND_GROUPS);
     }
 
     /// Whether the ordinary path's radiance is seen anywhere: not where every sub-sample is shaded.
@@ -179,21 +156,31 @@ impl AntialiasStage {
         self.edges != Edges::All
     }
 
-    /// Joins the ordinary path's radiance with the sums, into the radiance target.
+    /// Joins the entries with the ordinary path's radiance, in the radiance target.
     pub(crate) fn combine(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
         let Some(t) = &targets.samples else { return };
-        let group = bind_group(
-            &recorder.gpu.device,
-            "combination",
-            &self.pipelines.combine_layout,
-            &[&t.ordinary_view, &t.sums_view, &t.tally_view]
-                .map(wgpu::BindingResource::TextureView),
-        );
-        let target = [overwritten(&targets.radiance_view)];
-        let mut pass = recorder.render_pass("combination", &target, None);
-        pass.set_pipeline(&self.pipelines.combine);
-        pass.set_bind_group(1, &group, &[]);
-        pass.draw(0..3, 0..1);
+        if self.edges == Edges::None {
+            return;
+        }
+        let p = &self.pipelines;
+        let steps = [(&p.combine, &p.combine_layout), (&p.store, &p.store_layout)];
+        for (pipeline, layout) in steps {
+            let group = bind_group(
+                &recorder.gpu.device,
+                "combination",
+                layout,
+                &[
+                    t.queue.as_entire_binding(),
+                    t.entries.as_entire_binding(),
+                    t.sums.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&targets.radiance_view),
+                ],
+            );
+            let mut pass = recorder.compute_pass("combination");
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &group, &[]);
+            pass.dispatch_workgroups_indirect(&t.queue, ALL_GROUPS);
+        }
     }
 
     /// Draws the view of the tally that the settings ask for; `false` where they ask for none.
@@ -219,16 +206,17 @@ impl AntialiasStage {
         let Some(t) = &targets.samples else {
             return Ok(EdgeCounts::default());
         };
-        let bytes = read_buffer(gpu, &t.counters).await?;
-        let counters: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-        let [edge_pixels, extra] = [0, 1].map(|i| u64::from(counters[i]));
+        let bytes = read_buffer(gpu, &t.queue).await?;
+        let queue: QueueUniform = bytemuck::pod_read_unaligned(&bytes);
         let size = targets.picture_view.texture().size();
         let pixels = u64::from(size.width) * u64::from(size.height);
+        let ordinary = if self.needs_ordinary() { pixels } else { 0 };
         Ok(EdgeCounts {
-            edge_pixels,
+            edge_pixels: u64::from(queue.edge_pixels),
+            // The device's own sum may have wrapped around.
             shaded_samples: match self.edges {
                 Edges::All => pixels * u64::from(t.pattern.count()),
-                _ => pixels + extra,
+                _ => ordinary + u64::from(queue.evaluations),
             },
         })
     }

@@ -78,7 +78,8 @@ fn surface_of_first(pixel: vec2u, candidates: u32) -> u32 {
 }
 
 fn all_samples() -> u32 {
-    return (1u << band.count) - 1u;
+    // More than 16 are never sorted into surfaces; the shift must be valid all the same.
+    return (1u << min(COUNT, 16u)) - 1u;
 }
 
 // The largest of the pixel's surfaces as bits (the earliest of equals), and how many there are.
@@ -115,7 +116,9 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
     for (var left = members; left != 0u; left &= left - 1u) {
         let index = firstTrailingBit(left);
         let texel = sample_texel(pixel, index);
-        let s = unpack_surface(textureLoad(gbuffer_surface, texel, 0), vec3f(0.0));
+        // Without the face normal.
+        let words = textureLoad(gbuffer_surface, texel, 0) & vec4u(vec3u(0xffffffffu), 0xffffu);
+        let s = unpack_surface(words, vec3f(0.0));
         sum.normal += s.normal;
         sum.base_color += s.base_color;
         sum.metallic += s.metallic;
@@ -128,7 +131,7 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
     let part = 1.0 / f32(countOneBits(members));
     let mean = Surface(
         vec3f(0.0),
-        // Opposite normals may cancel: then either is as good.
+        // Opposite normals may cancel: then any is as good.
         sum.normal + vec3f(0.0, 1e-6, 0.0),
         sum.base_color * part,
         sum.metallic * part,
@@ -136,5 +139,9 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         sum.occlusion * part,
         sum.emissive * part,
     );
-    return Blend(pack_surface(mean), depth * part, position * part);
+    var words = pack_surface(mean);
+    let color = vec3u(round(sqrt(saturate(mean.base_color)) * 4080.0));
+    words.x = (words.x & 0xff000000u) | (color.r >> 4u) | ((color.g >> 4u) << 8u) | ((color.b >> 4u) << 16u);
+    words.w |= ((color.r & 15u) << 16u) | ((color.g & 15u) << 20u) | ((color.b & 15u) << 24u);
+    return Blend(words, depth * part, position * part);
 }
