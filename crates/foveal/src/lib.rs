@@ -9,6 +9,7 @@
 pub mod gpu;
 
 mod antialias;
+mod culling;
 mod error;
 mod forward;
 mod frame;
@@ -30,6 +31,7 @@ pub use error::Error;
 pub use gpu::Gpu;
 pub use renderer::{Clock, Frame, Renderer};
 pub use settings::{
-    Antialiasing, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings, ToneMap, View,
+    Antialiasing, Culling, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings,
+    ToneMap, View,
 };
 pub use stats::{AdapterStats, FrameStats, SceneStats, Timing};

@@ -3,6 +3,7 @@
 use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
+use crate::culling::{CullingCounts, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
 use crate::geometry::{DrawList, FaceNormals, GeometryPass};
@@ -44,6 +45,7 @@ pub struct Renderer {
 #[derive(Debug)]
 struct Stages {
     settings: Settings,
+    culling: Option<CullingStage>,
     targets: Targets,
     lights: LightAssigner,
     geometry: GeometryPass,
@@ -68,6 +70,7 @@ impl Stages {
         let face_normals = FaceNormals::wanted_by(settings);
         let stages = Self {
             settings: settings.clone(),
+            culling: CullingStage::new(settings.culling, settings.width, settings.height)?,
             targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
             geometry: GeometryPass::new(gpu, frame, material_layout, face_normals),
@@ -128,9 +131,11 @@ impl Renderer {
             ..old.clone()
         }) == *settings
         {
+            let culling = CullingStage::new(settings.culling, settings.width, settings.height)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
             let targets = Targets::new(&self.gpu, settings);
             trap.finish().await?;
+            self.stages.culling = culling;
             self.stages.targets = targets;
             self.stages.settings = settings.clone();
             return Ok(());
@@ -190,7 +195,7 @@ impl Renderer {
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
-        self.submit(frame, &mut cpu);
+        let culled = self.submit(frame, &mut cpu);
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
@@ -213,6 +218,10 @@ impl Renderer {
             height: settings.height,
             cpu_ms: cpu.stages(),
             gpu_ms: self.timer.collect(&self.gpu),
+            objects_visible: culled.visible,
+            objects_outside: culled.outside,
+            objects_occluded: culled.occluded,
+            occluder_triangles: culled.occluder_triangles,
             draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
             triangles: self.draw_list.triangles,
             shaded_samples,
@@ -223,7 +232,7 @@ impl Renderer {
     }
 
     /// The frame.
-    fn submit(&mut self, frame: &Frame<'_>, cpu: &mut CpuTimer) {
+    fn submit(&mut self, frame: &Frame<'_>, cpu: &mut CpuTimer) -> CullingCounts {
         let Self {
             gpu,
             timer,
@@ -235,6 +244,7 @@ impl Renderer {
         } = self;
         let Stages {
             settings,
+            culling,
             targets,
             lights,
             geometry,
@@ -245,7 +255,22 @@ impl Renderer {
             view,
         } = stages;
 
-        draw_list.build(scene, frame.camera.eye());
+        let culled = match culling {
+            Some(culling) => culling.cull(
+                &scene.culling,
+                frame.camera,
+                settings.width,
+                settings.height,
+            ),
+            None => CullingCounts {
+                visible: scene.stats.objects,
+                ..CullingCounts::default()
+            },
+        };
+        cpu.stage("culling");
+
+        let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
+        draw_list.build(scene, frame.camera.eye(), is_visible);
         geometry.prepare(gpu, draw_list);
         forward.prepare(gpu, draw_list);
         cpu.stage("draw list");
@@ -307,6 +332,7 @@ impl Renderer {
         gpu.queue.submit([encoder.finish()]);
         timer.end_frame();
         cpu.stage("submit");
+        culled
     }
 
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes, alpha 255.

@@ -4,7 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use foveal::{
-    Antialiasing, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings, ToneMap, View,
+    Antialiasing, Culling, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings,
+    ToneMap, View,
 };
 
 use crate::values::{self, VariantParser};
@@ -24,6 +25,11 @@ pub(crate) struct SettingsArgs {
     /// What the picture shows [default: final]
     #[arg(long, value_parser = VariantParser::<View>::new())]
     view: Option<View>,
+
+    /// Which objects are drawn: those that are seen, those in the frustum, or all (the reference); the picture
+    /// is the same [default: occlusion]
+    #[arg(long, value_name = "WHICH", value_parser = VariantParser::<Culling>::new())]
+    culling: Option<Culling>,
 
     /// How surfaces reflect light [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
@@ -87,6 +93,7 @@ impl SettingsArgs {
             file: _,
             size,
             view,
+            culling,
             lighting,
             lights,
             exposure,
@@ -101,6 +108,7 @@ impl SettingsArgs {
             (settings.width, settings.height) = (width, height);
         }
         set(&mut settings.view, view);
+        set(&mut settings.culling, culling);
         set(&mut settings.lighting, lighting);
         set(&mut settings.lights, lights);
         set(&mut settings.exposure, exposure);
@@ -179,10 +187,11 @@ mod tests {
     }
 
     /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
-    const KEYS: [(&str, &str, &[&str]); 12] = [
+    const KEYS: [(&str, &str, &[&str]); 13] = [
         ("width", "33", &["--size", "33x720"]),
         ("height", "44", &["--size", "1280x44"]),
         ("view", "\"normals\"", &["--view", "normals"]),
+        ("culling", "\"off\"", &["--culling", "off"]),
         (
             "lighting",
             "\"blinn-phong\"",
