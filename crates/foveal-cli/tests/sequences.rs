@@ -8,8 +8,9 @@ mod common;
 
 use std::fs;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
-use common::{folder, moving_triangle, names, stderr, succeed};
+use common::{folder, moving_triangle, names, spawn_in, stderr, succeed};
 
 const SIZE: [&str; 2] = ["--size", "48x32"];
 
@@ -108,6 +109,12 @@ fn finished_frames_are_left_out_and_the_rest_is_whole() {
         "{}",
         stderr(&output)
     );
+    // Not a terminal, hence no progress bar.
+    assert!(
+        !stderr(&output).contains(['\r', '\x1b']),
+        "{}",
+        stderr(&output)
+    );
     assert_eq!(names(here), ["f0.png", "f1.png", "f2.png"]);
     assert_eq!(bytes(here, "f1.png"), b"finished elsewhere");
     // A still camera before a still scene.
@@ -118,6 +125,38 @@ fn finished_frames_are_left_out_and_the_rest_is_whole() {
         "{}",
         stderr(&output)
     );
+}
+
+#[test]
+fn a_killed_run_leaves_whole_files_only() {
+    let folder = folder();
+    let here = folder.path();
+    let words = [
+        "render",
+        "cornell",
+        "-o",
+        "f####.png",
+        "--frames",
+        "5000",
+        "-q",
+    ];
+    let mut child = spawn_in(here, &[&words[..], &SIZE].concat());
+    let started = Instant::now();
+    while !here.join("f0002.png").exists() {
+        assert!(started.elapsed().as_secs() < 60 && child.try_wait().unwrap().is_none());
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    // Harder than Ctrl-C: the program has no chance to tidy up.
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let frames: Vec<String> = names(here)
+        .into_iter()
+        .filter(|name| !name.starts_with('.'))
+        .collect();
+    assert!((3..5000).contains(&frames.len()));
+    for name in frames {
+        assert_eq!(image::open(here.join(&name)).unwrap().width(), 48, "{name}");
+    }
 }
 
 #[test]

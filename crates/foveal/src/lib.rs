@@ -9,6 +9,7 @@
 pub mod gpu;
 
 mod antialias;
+mod composite;
 mod culling;
 mod error;
 mod forward;
@@ -16,6 +17,7 @@ mod frame;
 mod geometry;
 mod lights;
 mod output;
+mod rate;
 mod recorder;
 mod renderer;
 mod scene;
@@ -29,9 +31,11 @@ mod testing;
 
 pub use error::Error;
 pub use gpu::Gpu;
+pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
 pub use settings::{
-    Antialiasing, Culling, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings,
-    ToneMap, View,
+    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest,
+    LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern, Settings,
+    Shading, ToneMap, View,
 };
-pub use stats::{AdapterStats, FrameStats, SceneStats, Timing};
+pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};

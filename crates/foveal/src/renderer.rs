@@ -3,18 +3,22 @@
 use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
+use crate::composite::CompositePass;
 use crate::culling::{CullingCounts, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
 use crate::geometry::{DrawList, FaceNormals, GeometryPass};
-use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_texture, submitted_work_done};
+use crate::gpu::{
+    CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
+};
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::output::{ToneMapPass, ViewPass};
+use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{Samples, ShadingPass};
+use crate::shading::{CoarseShading, CountPass, Samples, ShadingPass};
 use crate::targets::Targets;
-use crate::{Error, FrameStats, SceneStats, Settings, View};
+use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing, View};
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -37,6 +41,7 @@ pub struct Renderer {
     frame_bindings: FrameBindings,
     material_layout: wgpu::BindGroupLayout,
     stages: Stages,
+    rate_image: Option<RateImage>,
     scene: SceneOnGpu,
     draw_list: DrawList,
 }
@@ -51,9 +56,38 @@ struct Stages {
     geometry: GeometryPass,
     shading: ShadingPass,
     antialias: Option<AntialiasStage>,
+    coarse: Option<CoarseStages>,
     forward: ForwardPass,
     tone_map: ToneMapPass,
     view: Option<ViewPass>,
+}
+
+/// What stands in for shading every pixel.
+#[derive(Debug)]
+struct CoarseStages {
+    rate_map: RateMapPass,
+    shading: CoarseShading,
+    composite: CompositePass,
+}
+
+impl CoarseStages {
+    fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        full: &ShadingPass,
+        image: Option<&RateImage>,
+    ) -> Self {
+        let mut rate_map = RateMapPass::new(gpu, settings, frame);
+        if let Some(image) = image {
+            rate_map.set_image(gpu, image);
+        }
+        Self {
+            rate_map,
+            shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
+            composite: CompositePass::new(gpu, settings, frame),
+        }
+    }
 }
 
 impl Stages {
@@ -62,6 +96,7 @@ impl Stages {
         settings: &Settings,
         frame_bindings: &FrameBindings,
         material_layout: &wgpu::BindGroupLayout,
+        rate_image: Option<&RateImage>,
     ) -> Result<Self, Error> {
         settings.validate(&gpu.device.limits())?;
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
@@ -75,6 +110,8 @@ impl Stages {
             lights: LightAssigner::new(gpu, frame),
             geometry: GeometryPass::new(gpu, frame, material_layout, face_normals),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
+            coarse: (settings.shading == Shading::Coarse)
+                .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
             shading,
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
             tone_map: ToneMapPass::new(gpu, settings, frame),
@@ -94,7 +131,7 @@ impl Renderer {
     pub async fn new(gpu: &Gpu, settings: &Settings, clock: Option<Clock>) -> Result<Self, Error> {
         let frame_bindings = FrameBindings::new(gpu);
         let material_layout = material_layout(gpu);
-        let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout).await?;
+        let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout, None).await?;
         let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout)?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -103,6 +140,7 @@ impl Renderer {
             frame_bindings,
             material_layout,
             stages,
+            rate_image: None,
             scene,
             draw_list: DrawList::default(),
         })
@@ -145,9 +183,18 @@ impl Renderer {
             settings,
             &self.frame_bindings,
             &self.material_layout,
+            self.rate_image.as_ref(),
         )
         .await?;
         Ok(())
+    }
+
+    /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source wishes every pixel.
+    pub fn set_rate_image(&mut self, image: RateImage) {
+        if let Some(coarse) = &mut self.stages.coarse {
+            coarse.rate_map.set_image(&self.gpu, &image);
+        }
+        self.rate_image = Some(image);
     }
 
     /// Uploads a scene in place of the last one.
@@ -199,6 +246,8 @@ impl Renderer {
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
+        let gpu_ms = self.timer.collect(&self.gpu);
+        let coarse = self.coarse_stats(&gpu_ms).await?;
         let Stages {
             settings,
             targets,
@@ -206,18 +255,20 @@ impl Renderer {
             ..
         } = &self.stages;
         let pixels = u64::from(settings.width) * u64::from(settings.height);
-        let mut shaded_samples = pixels;
+        let mut shaded_samples = coarse.as_ref().map_or(pixels, CoarseStats::shaded_samples);
         let mut edge_fraction = 0.0;
         if let Some(antialias) = antialias {
             let counts = antialias.counts(&self.gpu, targets).await?;
-            shaded_samples = counts.shaded_samples;
+            if !antialias.needs_ordinary() && coarse.is_none() {
+                shaded_samples = 0;
+            }
+            shaded_samples += counts.evaluations;
             edge_fraction = counts.edge_pixels as f64 / pixels as f64;
         }
         Ok(FrameStats {
             width: settings.width,
             height: settings.height,
             cpu_ms: cpu.stages(),
-            gpu_ms: self.timer.collect(&self.gpu),
             objects_visible: culled.visible,
             objects_outside: culled.outside,
             objects_occluded: culled.occluded,
@@ -227,8 +278,28 @@ impl Renderer {
             shaded_samples,
             edge_fraction,
             target_bytes: targets.bytes(),
+            coarse,
+            gpu_ms,
             frame_ms,
         })
+    }
+
+    /// What coarse shading did in the last frame, whose passes took `gpu_ms`; tells the choice of the backend.
+    async fn coarse_stats(&mut self, gpu_ms: &[Timing]) -> Result<Option<CoarseStats>, Error> {
+        let Stages {
+            settings,
+            targets,
+            coarse,
+            view,
+            ..
+        } = &mut self.stages;
+        let (Some(coarse), Some(tiles), None) = (coarse, &targets.coarse, view) else {
+            return Ok(None);
+        };
+        let counts = read_buffer(&self.gpu, &tiles.counts).await?;
+        let tiles = CountPass::tiles(&counts, settings.coarsest_level);
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        Ok(Some(coarse.shading.stats(tiles, pixels, gpu_ms)))
     }
 
     /// The frame.
@@ -250,6 +321,7 @@ impl Renderer {
             geometry,
             shading,
             antialias,
+            coarse,
             forward,
             tone_map,
             view,
@@ -313,7 +385,13 @@ impl Renderer {
             .is_some_and(|a| a.show(recorder, targets))
         {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            if antialias
+            if let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) {
+                coarse
+                    .rate_map
+                    .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
+                coarse.shading.shade(recorder, &input, tiles);
+                coarse.composite.join(recorder, targets, tiles);
+            } else if antialias
                 .as_ref()
                 .is_none_or(AntialiasStage::needs_ordinary)
             {

@@ -5,6 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::Error;
 
+mod coarse;
+
+pub use coarse::{
+    Backend, COARSEST_LEVEL, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Shading,
+};
+
 /// Which objects are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -143,6 +149,39 @@ pub struct Settings {
     pub pattern: SamplePattern,
     /// Which pixels msaa takes for edges.
     pub edge_test: EdgeTest,
+    /// How many samples the deferred stage shades. All settings below are of coarse shading.
+    pub shading: Shading,
+    /// By what means coarse samples are visited.
+    pub backend: Backend,
+    /// Coarsest level in use, 0 to 8: blocks have at most 2^level pixels a side.
+    pub coarsest_level: u8,
+    /// Where wished levels come from.
+    pub rate: RateSource,
+    /// A second source of wishes.
+    pub rate_other: RateSource,
+    /// What becomes of the second source.
+    pub rate_combine: RateCombine,
+    /// The level of the constant source, 0 to 8.
+    pub rate_level: u8,
+    /// The image source's file. The library opens no files: its caller hands the pixels to
+    /// [`crate::Renderer::set_rate_image`].
+    pub rate_image: String,
+    /// Where the eye looks, as fractions of the picture from its top left corner.
+    pub gaze: [f32; 2],
+    /// Radius around the gaze within which every pixel is shaded, as a fraction of the picture's height.
+    pub fovea_inner: f32,
+    /// Radius from which on the coarsest level is wished, as a fraction of the picture's height.
+    pub fovea_outer: f32,
+    /// How levels follow between the radii: 1 in even steps, above 1 in steps that widen outwards.
+    pub fovea_curve: f32,
+    /// Neighbouring blocks differ by one level at most.
+    pub rate_balance: bool,
+    /// Where pixels at geometric edges are shaded one by one.
+    pub refine_edges: RefineEdges,
+    /// Which of its pixels a block's sample looks at.
+    pub coarse_sample: CoarseSample,
+    /// How samples become pixels.
+    pub composite: Composite,
 }
 
 impl Default for Settings {
@@ -161,6 +200,22 @@ impl Default for Settings {
             samples: 4,
             pattern: SamplePattern::default(),
             edge_test: EdgeTest::default(),
+            shading: Shading::default(),
+            backend: Backend::default(),
+            coarsest_level: COARSEST_LEVEL,
+            rate: RateSource::default(),
+            rate_other: RateSource::Constant,
+            rate_combine: RateCombine::default(),
+            rate_level: 0,
+            rate_image: String::new(),
+            gaze: [0.5, 0.5],
+            fovea_inner: 0.125,
+            fovea_outer: 0.9,
+            fovea_curve: 1.5,
+            rate_balance: true,
+            refine_edges: RefineEdges::default(),
+            coarse_sample: CoarseSample::default(),
+            composite: Composite::default(),
         }
     }
 }
@@ -205,6 +260,7 @@ impl Settings {
                 expected: "between 1 and 16",
             });
         }
+        coarse::validate(self)?;
         crate::antialias::validate(self, limits)
     }
 }

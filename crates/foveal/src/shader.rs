@@ -84,6 +84,86 @@ pub(crate) const AA_COMBINE: Parts = &[
 pub(crate) const AA_STORE: Parts = &[AA_QUEUE, include_str!("antialias/store.wgsl")];
 pub(crate) const AA_VIEW: Parts = &[include_str!("antialias/view.wgsl")];
 
+const LEVEL: &str = include_str!("shared/level.wgsl");
+const BLOCKS: &str = include_str!("shared/blocks.wgsl");
+
+pub(crate) const RATE_WISH: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    include_str!("rate/wish.wgsl"),
+];
+pub(crate) const RATE_PYRAMID: Parts = &[FRAME, LEVEL, BLOCKS, include_str!("rate/pyramid.wgsl")];
+pub(crate) const RATE_OWNER: Parts = &[FRAME, LEVEL, BLOCKS, include_str!("rate/owner.wgsl")];
+pub(crate) const COARSE_MARK: Parts = &[
+    FRAME,
+    LEVEL,
+    BLOCKS,
+    include_str!("shading/coarse/mark.wgsl"),
+];
+pub(crate) const COARSE_LIST: Parts = &[FRAME, BLOCKS, include_str!("shading/coarse/list.wgsl")];
+pub(crate) const COARSE_DISPATCH: Parts = &[include_str!("shading/coarse/dispatch.wgsl")];
+pub(crate) const COARSE_SHADE_DRAW: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    LEVEL,
+    BLOCKS,
+    include_str!("shading/coarse/block.wgsl"),
+    include_str!("shading/coarse/shade_draw.wgsl"),
+];
+pub(crate) const COARSE_SHADE_LIST: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    BLOCKS,
+    include_str!("shading/coarse/block.wgsl"),
+    include_str!("shading/coarse/shade_list.wgsl"),
+];
+const TILING: &str = include_str!("composite/tiling.wgsl");
+const SEEN: &str = include_str!("composite/seen.wgsl");
+const PATCHES: &str = include_str!("composite/patches.wgsl");
+
+pub(crate) const COMPOSITE_NEAREST: Parts = &[
+    FRAME,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    include_str!("composite/nearest.wgsl"),
+];
+pub(crate) const COMPOSITE_PAPER: Parts = &[
+    FRAME,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    include_str!("composite/paper.wgsl"),
+];
+pub(crate) const COMPOSITE_PATCH: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    SEEN,
+    PATCHES,
+    include_str!("composite/patch.wgsl"),
+];
+pub(crate) const COMPOSITE_SMOOTH: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    SEEN,
+    PATCHES,
+    include_str!("composite/smooth.wgsl"),
+];
+
 /// Joins a shader's parts.
 pub(crate) fn source(parts: Parts) -> String {
     parts.join("\n")
@@ -132,6 +212,45 @@ pub(crate) fn compute(
                 constants,
                 ..Default::default()
             },
+            cache: None,
+        })
+}
+
+/// A pipeline that draws one level of a mip chain (`shared/level.wgsl`).
+pub(crate) fn level_screen(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    entry_point: &str,
+    groups: &[&wgpu::BindGroupLayout],
+    targets: &[Option<wgpu::ColorTargetState>],
+    depth_stencil: Option<wgpu::DepthStencilState>,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
+    let compilation_options = wgpu::PipelineCompilationOptions {
+        constants,
+        ..Default::default()
+    };
+    gpu.device
+        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: Some(label),
+            layout: Some(&pipeline_layout(gpu, label, groups)),
+            vertex: wgpu::VertexState {
+                module,
+                entry_point: Some("level_screen"),
+                compilation_options: compilation_options.clone(),
+                buffers: &[],
+            },
+            primitive: wgpu::PrimitiveState::default(),
+            depth_stencil,
+            multisample: wgpu::MultisampleState::default(),
+            fragment: Some(wgpu::FragmentState {
+                module,
+                entry_point: Some(entry_point),
+                compilation_options,
+                targets,
+            }),
+            multiview_mask: None,
             cache: None,
         })
 }
@@ -191,6 +310,18 @@ mod tests {
         ("combination", AA_COMBINE),
         ("combination, store", AA_STORE),
         ("tally", AA_VIEW),
+        ("rate wish", RATE_WISH),
+        ("rate pyramid", RATE_PYRAMID),
+        ("rate owner", RATE_OWNER),
+        ("coarse mark", COARSE_MARK),
+        ("coarse list", COARSE_LIST),
+        ("coarse dispatch", COARSE_DISPATCH),
+        ("coarse shade draw", COARSE_SHADE_DRAW),
+        ("coarse shade list", COARSE_SHADE_LIST),
+        ("composite nearest", COMPOSITE_NEAREST),
+        ("composite paper", COMPOSITE_PAPER),
+        ("composite patch", COMPOSITE_PATCH),
+        ("composite smooth", COMPOSITE_SMOOTH),
     ];
 
     fn parse(name: &str, parts: Parts) -> naga::Module {
@@ -412,6 +543,7 @@ mod tests {
     fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         use crate::frame::FrameUniform;
         use crate::lights::LightUniform;
+        use crate::rate::WishUniform;
         use crate::scene::{InstanceUniform, MaterialUniform};
         assert_same_layout!(
             GBUFFER,
@@ -457,6 +589,23 @@ mod tests {
                 edge_pixels,
                 evaluations,
                 reserved
+            ]
+        );
+        assert_same_layout!(
+            RATE_WISH,
+            "Wish",
+            WishUniform,
+            [
+                gaze,
+                squared_radii,
+                eye_width,
+                coarsest,
+                constant_level,
+                refine_up_to,
+                edges_up_to,
+                reserved_0,
+                reserved_1,
+                reserved_2
             ]
         );
         assert_same_layout!(

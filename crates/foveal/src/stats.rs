@@ -43,6 +43,27 @@ pub struct Timing {
     pub ms: f64,
 }
 
+/// What coarse shading did in a frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct CoarseStats {
+    /// Samples of each level, finest first.
+    pub samples_per_level: Vec<u64>,
+    /// All samples by all pixels.
+    pub shaded_fraction: f64,
+    /// The backend that shaded this frame: `stencil` or `compute`.
+    pub backend: String,
+    /// Why it is this backend: `asked for`, `measuring`, or what was measured.
+    pub backend_reason: String,
+}
+
+impl CoarseStats {
+    /// Samples of all levels.
+    #[must_use]
+    pub fn shaded_samples(&self) -> u64 {
+        self.samples_per_level.iter().sum()
+    }
+}
+
 /// One frame's figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FrameStats {
@@ -72,6 +93,8 @@ pub struct FrameStats {
     pub edge_fraction: f64,
     /// Bytes of all targets that depend on the frame's size: G-buffers, radiance, picture, lists.
     pub target_bytes: u64,
+    /// With coarse shading.
+    pub coarse: Option<CoarseStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
     pub frame_ms: f64,
 }

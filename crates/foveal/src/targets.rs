@@ -4,8 +4,8 @@ use crate::antialias::SampleTargets;
 use crate::geometry::GBuffer;
 use crate::gpu::Gpu;
 use crate::output::PICTURE_FORMAT;
-use crate::shading::RADIANCE_FORMAT;
-use crate::{Antialiasing, Settings};
+use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
+use crate::{Antialiasing, Settings, Shading};
 
 /// G-buffer, radiance, picture.
 const BYTES_PER_PIXEL: u64 = 28 + 8 + 4;
@@ -20,6 +20,8 @@ pub(crate) struct Targets {
     pub(crate) picture_view: wgpu::TextureView,
     /// What anti-aliasing needs besides.
     pub(crate) samples: Option<SampleTargets>,
+    /// With coarse shading.
+    pub(crate) coarse: Option<CoarseTargets>,
 }
 
 impl Targets {
@@ -55,6 +57,8 @@ impl Targets {
             ),
             picture_view: target("picture", PICTURE_FORMAT, sampled),
             samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
+            coarse: (settings.shading == Shading::Coarse)
+                .then(|| CoarseTargets::new(gpu, settings)),
         }
     }
 

@@ -64,6 +64,10 @@ pub(super) struct NumberedFrameStats {
 pub(super) struct MedianStats {
     pub(super) cpu_ms: Vec<Timing>,
     pub(super) gpu_ms: Vec<Timing>,
+    pub(super) objects_visible: f64,
+    pub(super) objects_outside: f64,
+    pub(super) objects_occluded: f64,
+    pub(super) occluder_triangles: f64,
     pub(super) draws: f64,
     pub(super) triangles: f64,
     pub(super) shaded_samples: f64,
@@ -78,6 +82,10 @@ impl MedianStats {
         Self {
             cpu_ms: medians(frames, |figures| &figures.cpu_ms),
             gpu_ms: medians(frames, |figures| &figures.gpu_ms),
+            objects_visible: median(|f| f.objects_visible as f64),
+            objects_outside: median(|f| f.objects_outside as f64),
+            objects_occluded: median(|f| f.objects_occluded as f64),
+            occluder_triangles: median(|f| f.occluder_triangles as f64),
             draws: median(|f| f.draws as f64),
             triangles: median(|f| f.triangles as f64),
             shaded_samples: median(|f| f.shaded_samples as f64),

@@ -33,7 +33,10 @@ pub(super) fn text(run: &RunStats) -> String {
     }
     let _ = writeln!(
         text,
-        ", {} draws, {} triangles, {} samples shaded",
+        ": {} objects seen, {} outside, {} hidden; {} draws, {} triangles, {} samples shaded",
+        grouped(median.objects_visible as u64),
+        grouped(median.objects_outside as u64),
+        grouped(median.objects_occluded as u64),
         grouped(median.draws as u64),
         grouped(median.triangles as u64),
         grouped(median.shaded_samples as u64),

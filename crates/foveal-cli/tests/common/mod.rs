@@ -6,19 +6,28 @@
 pub(crate) mod schema;
 
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::{Child, Command, Output};
 
 use tempfile::TempDir;
 
 /// Runs `foveal` with these words in `folder`.
 pub(crate) fn foveal_in(folder: &Path, words: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_foveal"))
+    command(folder, words).output().unwrap()
+}
+
+/// Starts `foveal` with these words in `folder`.
+pub(crate) fn spawn_in(folder: &Path, words: &[&str]) -> Child {
+    command(folder, words).spawn().unwrap()
+}
+
+fn command(folder: &Path, words: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_foveal"));
+    // Graphics drivers complain on stderr without a runtime folder.
+    command
         .args(words)
         .current_dir(folder)
-        // Graphics drivers complain on stderr without one.
-        .env("XDG_RUNTIME_DIR", std::env::temp_dir())
-        .output()
-        .unwrap()
+        .env("XDG_RUNTIME_DIR", std::env::temp_dir());
+    command
 }
 
 /// What the program said on stderr.

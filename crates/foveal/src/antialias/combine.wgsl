@@ -10,6 +10,9 @@ override COUNT: u32 = 4u;
 @group(1) @binding(0) var<storage, read> queue: Queue;
 @group(1) @binding(1) var<storage, read> entries: array<Entry>;
 @group(1) @binding(2) var<storage, read_write> sums: array<vec2u>;
+// Owner levels of 2 x 2 pixels each: coarse pixels stay as they are.
+override COARSE: bool = false;
+@group(1) @binding(4) var owner_levels: texture_2d<u32>;
 @group(1) @binding(3) var ordinary: texture_2d<f32>;
 
 @compute @workgroup_size(64)
@@ -18,6 +21,10 @@ fn combine(@builtin(global_invocation_id) id: vec3u) {
     for (var i = id.x; i < end; i += queue.all_groups.x * 64u) {
         let entry = entries[i];
         if !is_first_of_its_pixel(entry) {
+            continue;
+        }
+        if COARSE && (textureLoad(owner_levels, pixel_of(entry) / 2u, 0).x & 0xfu) != 0u {
+            sums[i] = pack_half4(vec4f(0.0));
             continue;
         }
         var sum = vec4f(0.0);
@@ -31,6 +38,7 @@ fn combine(@builtin(global_invocation_id) id: vec3u) {
             let largest = textureLoad(ordinary, pixel_of(entry), 0).rgb;
             sum += vec4f(largest, 1.0) * (weight_of(largest) * f32(rest) / f32(COUNT));
         }
+        // Alpha says that there is something to store.
         sums[i] = pack_half4(vec4f(sum.rgb / sum.a, 1.0));
     }
 }

@@ -3,7 +3,7 @@
 use crate::geometry::{DEPTH_FORMAT, IDENTITY_FORMAT, SURFACE_FORMAT};
 use crate::gpu::{Gpu, bind_group_layout, sampled, storage_read, storage_write, uniform};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
-use crate::{Antialiasing, EdgeTest, Settings, shader};
+use crate::{Antialiasing, EdgeTest, Settings, Shading, shader};
 
 use super::pattern::Pattern;
 use super::targets::TALLY_FORMAT;
@@ -70,7 +70,8 @@ impl AntialiasPipelines {
             compute,
             &[uniform(), uint, read, read, write],
         );
-        let combine_layout = layout("combination", compute, &[read, read, write, float]);
+        let combine_layout = layout("combination", compute, &[read, read, write, float, uint]);
+        let coarse = f64::from(u8::from(settings.shading == Shading::Coarse));
         let radiance = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: RADIANCE_FORMAT,
@@ -104,7 +105,7 @@ impl AntialiasPipelines {
                 &combination,
                 "combine",
                 &[frame, &combine_layout],
-                &[count, ("ALL", all)],
+                &[count, ("ALL", all), ("COARSE", coarse)],
             ),
             store: shader::compute(
                 gpu,

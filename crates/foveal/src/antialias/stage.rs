@@ -23,8 +23,8 @@ const ALL_GROUPS: u64 = std::mem::offset_of!(QueueUniform, all_groups) as u64;
 pub(crate) struct EdgeCounts {
     /// Pixels that were shaded more than once.
     pub(crate) edge_pixels: u64,
-    /// Evaluations in all.
-    pub(crate) shaded_samples: u64,
+    /// Evaluations besides the ordinary path's.
+    pub(crate) evaluations: u64,
 }
 
 /// Fills the G-buffer from sub-samples, and shades what one evaluation per pixel leaves out.
@@ -163,19 +163,24 @@ impl AntialiasStage {
             return;
         }
         let p = &self.pipelines;
-        let steps = [(&p.combine, &p.combine_layout), (&p.store, &p.store_layout)];
-        for (pipeline, layout) in steps {
-            let group = bind_group(
-                &recorder.gpu.device,
-                "combination",
-                layout,
-                &[
-                    t.queue.as_entire_binding(),
-                    t.entries.as_entire_binding(),
-                    t.sums.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(&targets.radiance_view),
-                ],
-            );
+        // Without a rate map it is not looked at.
+        let owners = targets
+            .coarse
+            .as_ref()
+            .map_or(&t.tally_view, |c| &c.rate.owner.whole);
+        let bindings = [
+            t.queue.as_entire_binding(),
+            t.entries.as_entire_binding(),
+            t.sums.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&targets.radiance_view),
+            wgpu::BindingResource::TextureView(owners),
+        ];
+        let steps = [
+            (&p.combine, &p.combine_layout, &bindings[..]),
+            (&p.store, &p.store_layout, &bindings[..4]),
+        ];
+        for (pipeline, layout, bindings) in steps {
+            let group = bind_group(&recorder.gpu.device, "combination", layout, bindings);
             let mut pass = recorder.compute_pass("combination");
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &group, &[]);
@@ -210,13 +215,12 @@ impl AntialiasStage {
         let queue: QueueUniform = bytemuck::pod_read_unaligned(&bytes);
         let size = targets.picture_view.texture().size();
         let pixels = u64::from(size.width) * u64::from(size.height);
-        let ordinary = if self.needs_ordinary() { pixels } else { 0 };
         Ok(EdgeCounts {
             edge_pixels: u64::from(queue.edge_pixels),
             // The device's own sum may have wrapped around.
-            shaded_samples: match self.edges {
+            evaluations: match self.edges {
                 Edges::All => pixels * u64::from(t.pattern.count()),
-                _ => ordinary + u64::from(queue.evaluations),
+                _ => u64::from(queue.evaluations),
             },
         })
     }

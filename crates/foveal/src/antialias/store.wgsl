@@ -11,7 +11,10 @@ fn store(@builtin(global_invocation_id) id: vec3u) {
     for (var i = id.x; i < end; i += queue.all_groups.x * 64u) {
         let entry = entries[i];
         if is_first_of_its_pixel(entry) {
-            textureStore(radiance, pixel_of(entry), unpack_half4(sums[i]));
+            let sum = unpack_half4(sums[i]);
+            if sum.a > 0.0 {
+                textureStore(radiance, pixel_of(entry), sum);
+            }
         }
     }
 }

@@ -238,3 +238,39 @@ fn two_by_two_at_1080p_stays_under_250_megabytes() {
     let bytes = crate::targets::Targets::new(crate::testing::gpu(), &settings).bytes();
     assert!(bytes < 250_000_000, "{bytes}");
 }
+
+#[test]
+fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
+    use crate::{RateSource, RefineEdges, Shading};
+    let scene = generate::cornell();
+    let coarse = Settings {
+        shading: Shading::Coarse,
+        rate: RateSource::Foveated,
+        refine_edges: RefineEdges::Off,
+        ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
+    };
+    let draw = |settings: &Settings| rendered(&scene, &scene.cameras[0], settings);
+    let radiance =
+        |renderer: &Renderer| -> Vec<[u16; 4]> { texels(&renderer.targets().radiance_view) };
+    let both = draw(&coarse);
+    let antialiased = radiance(&draw(&settings(Antialiasing::Msaa, EdgeTest::Surface, 4)));
+    let owners = &both.targets().coarse.as_ref().expect("coarse").rate.owner;
+    let across = owners.texture.width();
+    let levels: Vec<u8> = texels(&owners.whole);
+    let (mut fine, mut kept) = (0, 0);
+    let tally = tally(&both);
+    let both = radiance(&both);
+    for (i, (x, y)) in pixels().enumerate() {
+        let level = levels[(y / 2 * across + x / 2) as usize] & 15;
+        if level == 0 {
+            assert_eq!(both[i], antialiased[i], "at {x}, {y}");
+            fine += usize::from(tally[i][0] > 1);
+        } else {
+            kept += usize::from(tally[i][0] > 1);
+        }
+    }
+    assert!(
+        fine > 5 && kept > 5,
+        "{fine} fine edges, {kept} coarse ones"
+    );
+}

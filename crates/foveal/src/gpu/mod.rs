@@ -2,6 +2,7 @@
 
 mod adapter;
 mod layout;
+mod mips;
 mod readback;
 mod timing;
 mod trap;
@@ -9,6 +10,9 @@ mod trap;
 pub(crate) use layout::{
     bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
 };
+pub(crate) use mips::MipChain;
+#[cfg(test)]
+pub(crate) use readback::read_level;
 pub(crate) use readback::{read_buffer, read_texture, submitted_work_done};
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;

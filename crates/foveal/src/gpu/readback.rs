@@ -64,13 +64,26 @@ pub(crate) async fn submitted_work_done(gpu: &Gpu) -> Result<(), Error> {
 
 /// The bytes of mip 0 of a texture, rows top to bottom without padding.
 pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
+    read_level(gpu, texture, 0, (texture.width(), texture.height())).await
+}
+
+/// The bytes of the upper left `width` x `height` texels of a mip, rows top to bottom without padding.
+pub(crate) async fn read_level(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    mip_level: u32,
+    (width, height): (u32, u32),
+) -> Result<Vec<u8>, Error> {
     let bytes_per_texel = texture.format().block_copy_size(None).unwrap_or(4);
-    let row = texture.width() * bytes_per_texel;
+    let row = width * bytes_per_texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = read_back_buffer(gpu, u64::from(padded) * u64::from(texture.height()));
+    let buffer = read_back_buffer(gpu, u64::from(padded) * u64::from(height));
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
-        texture.as_image_copy(),
+        wgpu::TexelCopyTextureInfo {
+            mip_level,
+            ..texture.as_image_copy()
+        },
         wgpu::TexelCopyBufferInfo {
             buffer: &buffer,
             layout: wgpu::TexelCopyBufferLayout {
@@ -79,7 +92,11 @@ pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<V
                 rows_per_image: None,
             },
         },
-        texture.size(),
+        wgpu::Extent3d {
+            width,
+            height,
+            depth_or_array_layers: 1,
+        },
     );
     gpu.queue.submit([encoder.finish()]);
     let bytes = map(gpu, &buffer).await?;

@@ -3,10 +3,12 @@
 //! What is shaded is a [`Samples`]: every pixel, or the texels of a list on the device. The lighting code is
 //! one and the same; rate, backend and anti-aliasing differ only in the samples that they ask for.
 
+mod coarse;
 mod pass;
 mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
 
-pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
+pub(crate) use coarse::{CoarseShading, CoarseTargets, CountPass};
+pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants, typical_constant};
 pub(crate) use samples::{SampleList, Samples};

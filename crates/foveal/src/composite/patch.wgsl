@@ -1,0 +1,155 @@
+// The corners of each tile's patch. After seen.wgsl. CPU twin: `composite/patch.rs`.
+//
+// Radiance at a corner is the affine least-squares fit through the samples of the tiles that touch it, so that
+// affine radiance comes out exactly, and all tiles around a corner find the same value. A corner that lies within the
+// edge of a coarser tile takes that edge's value instead, so that patches meet without a gap; levels are therefore
+// drawn coarsest first. Tiles that show another surface than this one's sample are left out.
+
+// Corners of the coarser levels, finest of them in mip 0.
+@group(1) @binding(5) var coarser_0: texture_2d<f32>;
+@group(1) @binding(6) var coarser_1: texture_2d<f32>;
+@group(1) @binding(7) var coarser_2: texture_2d<f32>;
+
+struct PatchOut {
+    @location(0) part_0: vec4f,
+    @location(1) part_1: vec4f,
+    @location(2) part_2: vec4f,
+}
+
+fn is_inside(texel: vec2i) -> bool {
+    return all(texel >= vec2i(0)) && all(texel < vec2i(picture_size()));
+}
+
+// The texel of a quadrant around a corner; beyond the picture's border instead one in the next tile inwards, so
+// that the fit goes on through the border. Outside the picture where there is none.
+fn quadrant_texel(corner: vec2i, quadrant: u32) -> vec2i {
+    let last = vec2i(picture_size()) - 1;
+    var texel = corner - 1 + vec2i(vec2u(quadrant, quadrant >> 1u) & vec2u(1u));
+    for (var axis = 0u; axis < 2u; axis++) {
+        if texel[axis] < 0 || texel[axis] > last[axis] {
+            let touching = tile_at(vec2u(clamp(texel, vec2i(0), last)));
+            if texel[axis] < 0 {
+                texel[axis] = i32(tile_high(touching)[axis]);
+            } else {
+                texel[axis] = i32(tile_low(touching)[axis]) - 1;
+            }
+            if texel[axis] < 0 || texel[axis] > last[axis] {
+                return vec2i(-1);
+            }
+        }
+    }
+    return texel;
+}
+
+fn coarser_patch(tile: Tile, drawn: u32) -> Patch {
+    let mip = tile.level - drawn - 1u;
+    return unpack_patch(
+        textureLoad(coarser_0, tile.block, mip),
+        textureLoad(coarser_1, tile.block, mip),
+        textureLoad(coarser_2, tile.block, mip),
+    );
+}
+
+fn corner_radiance(corner: vec2i, own: Tile) -> vec3f {
+    var tiles: array<Tile, 4>;
+    var valid: array<bool, 4>;
+    var all_pure = true;
+    var all_touch = true;
+    for (var i = 0u; i < 4u; i++) {
+        let texel = quadrant_texel(corner, i);
+        valid[i] = is_inside(texel);
+        all_touch = all_touch && all(abs(2 * (texel - corner) + 1) == vec2i(1));
+        if valid[i] {
+            tiles[i] = tile_at(vec2u(texel));
+            all_pure = all_pure && !tiles[i].has_edge && tiles[i].level > 0u;
+        }
+    }
+    let own_sample = sample_of(own);
+    let own_seen = seen_at(sample_texel(own.block, own.level, u32(own_sample.a + 0.5) - 1u));
+
+    var offsets: array<vec2f, 4>;
+    var radiance: array<vec3f, 4>;
+    var weights = vec4f(0.0);
+    var least = own_sample.rgb;
+    var most = own_sample.rgb;
+    for (var i = 0u; i < 4u; i++) {
+        if !valid[i] {
+            continue;
+        }
+        let tile = tiles[i];
+        let value = sample_of(tile);
+        let texel = sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u);
+        let is_own = all(tile.block == own.block) && tile.level == own.level;
+        if !(all_pure || is_own) && !same_surface(own_seen, seen_at(texel)) {
+            all_touch = false;
+            continue;
+        }
+        if tile.level > own.level {
+            let low = vec2i(tile_low(tile));
+            let high = vec2i(tile_high(tile));
+            if any(corner > low & corner < high) && all(corner >= low & corner <= high) {
+                return patch_at(coarser_patch(tile, own.level), within(tile, vec2f(corner)));
+            }
+        }
+        offsets[i] = vec2f(texel) + 0.5 - vec2f(corner);
+        radiance[i] = value.rgb;
+        // All then pull alike at their gradient: a near sample is worth as much as a far one is not.
+        weights[i] = 1.0 / (dot(offsets[i], offsets[i]) + 0.25);
+        least = min(least, value.rgb);
+        most = max(most, value.rgb);
+    }
+
+    var s = 0.0;
+    var sx = 0.0;
+    var sy = 0.0;
+    var sxx = 0.0;
+    var sxy = 0.0;
+    var syy = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        let w = weights[i];
+        let d = offsets[i];
+        s += w;
+        sx += w * d.x;
+        sy += w * d.y;
+        sxx += w * d.x * d.x;
+        sxy += w * d.x * d.y;
+        syy += w * d.y * d.y;
+    }
+    // Few or collinear samples leave gradients undetermined: a little of the identity makes them small.
+    let ridge = 1e-4 * (sxx + syy);
+    sxx += ridge;
+    syy += ridge;
+    // First row of the inverse of the normal matrix, up to a factor.
+    let row = vec3f(sxx * syy - sxy * sxy, sxy * sy - sx * syy, sx * sxy - sxx * sy);
+    var sum = vec3f(0.0);
+    var total = 0.0;
+    for (var i = 0u; i < 4u; i++) {
+        let part = weights[i] * (row.x + dot(row.yz, offsets[i]));
+        total += part;
+        sum += part * radiance[i];
+    }
+    let fitted = sum / total;
+    // Four samples around a corner enclose it: an affine fit stays between them, and others shall. Past the
+    // border or an edge the fit runs on, but not away.
+    let slack = select((most - least) * 1.5, vec3f(0.0), all_touch);
+    return clamp(fitted, max(least - slack, vec3f(0.0)), most + slack);
+}
+
+@fragment
+fn fit_corners(in: LevelVertex) -> PatchOut {
+    let block = vec2u(in.position.xy);
+    let first = block << vec2u(in.level);
+    let own = tile_at(min(first, picture_size() - 1u));
+    if own.level != in.level {
+        return PatchOut(vec4f(0.0), vec4f(0.0), vec4f(0.0));
+    }
+    let low = vec2i(tile_low(own));
+    let high = vec2i(tile_high(own));
+    var corners: array<vec3f, 4>;
+    for (var i = 0u; i < 4u; i++) {
+        let far = (vec2u(i, i >> 1u) & vec2u(1u)) == vec2u(1u);
+        corners[i] = corner_radiance(select(low, high, far), own);
+    }
+    let last = corners[3];
+    return PatchOut(vec4f(corners[0], last.r), vec4f(corners[1], last.g), vec4f(corners[2], last.b));
+}

@@ -1,0 +1,36 @@
+// What is seen at a texel of the G-buffer, and whether two texels show the same surface. After surface.wgsl and
+// tiling.wgsl.
+
+@group(1) @binding(2) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(3) var gbuffer_identity: texture_2d<u32>;
+@group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
+
+struct Seen {
+    // 0 is the backdrop.
+    instance: u32,
+    // World space.
+    position: vec3f,
+    normal: vec3f,
+}
+
+fn seen_at(texel: vec2u) -> Seen {
+    let distance = view_distance(max(textureLoad(gbuffer_depth, texel, 0), 1e-20));
+    return Seen(
+        textureLoad(gbuffer_identity, texel, 0).x,
+        world_from_view_position(view_position(vec2f(texel) + 0.5, distance)),
+        unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y)),
+    );
+}
+
+// Neither leaves the other's tangent plane by much: 27 degrees of arc, 60 of the normal (which may be bumpy).
+fn same_surface(a: Seen, b: Seen) -> bool {
+    if a.instance != b.instance {
+        return false;
+    }
+    if a.instance == 0u {
+        return true;
+    }
+    let between = b.position - a.position;
+    let away = max(abs(dot(between, a.normal)), abs(dot(between, b.normal)));
+    return away <= 0.45 * length(between) && dot(a.normal, b.normal) > 0.5;
+}

@@ -1,0 +1,195 @@
+//! The rate map's passes and targets.
+
+use super::{RateImage, WishUniform};
+use crate::geometry::GBuffer;
+use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, uniform};
+use crate::recorder::{Recorder, overwritten};
+use crate::{Settings, shader};
+
+/// A level, and whether a geometric edge lies in the block.
+const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
+
+/// The rate map of one frame size.
+#[derive(Debug)]
+pub(crate) struct RateTargets {
+    /// Minimum of the wishes per block, from level 1 on.
+    pub(crate) pyramid: MipChain,
+    /// Owner level of 2 x 2 pixels each: a single level, 1.
+    pub(crate) owner: MipChain,
+}
+
+impl RateTargets {
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
+        let size = (settings.width, settings.height);
+        // Level 0 tiles are found by their parent, so there is always one.
+        let coarsest = u32::from(settings.coarsest_level).max(1);
+        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
+        let chain = |label, last| MipChain::new(gpu, label, size, 1..=last, CELL_FORMAT, usage);
+        Self {
+            pyramid: chain("rate pyramid", coarsest),
+            owner: chain("owner levels", 1),
+        }
+    }
+}
+
+/// Fills the rate map.
+#[derive(Debug)]
+pub(crate) struct RateMapPass {
+    wish: wgpu::RenderPipeline,
+    wish_layout: wgpu::BindGroupLayout,
+    wish_uniform: wgpu::Buffer,
+    image: wgpu::TextureView,
+    pyramid: wgpu::RenderPipeline,
+    owner: wgpu::RenderPipeline,
+    cells_layout: wgpu::BindGroupLayout,
+}
+
+impl RateMapPass {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let cells = sampled(wgpu::TextureSampleType::Uint);
+        let depth = sampled(wgpu::TextureSampleType::Depth);
+        let stage = wgpu::ShaderStages::FRAGMENT;
+        let wish_layout = bind_group_layout(
+            &gpu.device,
+            "rate wish",
+            stage,
+            &[uniform(), cells, cells, cells, depth],
+        );
+        let cells_layout = bind_group_layout(&gpu.device, "rate cells", stage, &[cells]);
+        let pipeline = |label, parts, entry, layout, constant: &[(&str, f64)]| {
+            shader::level_screen(
+                gpu,
+                label,
+                &shader::module(gpu, label, parts),
+                entry,
+                &[frame_layout, layout],
+                &[Some(CELL_FORMAT.into())],
+                None,
+                constant,
+            )
+        };
+        let coarsest = f64::from(settings.coarsest_level);
+        let balance = f64::from(u8::from(settings.rate_balance));
+        let wish_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("rate wish"),
+            size: size_of::<WishUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        Self {
+            wish: pipeline(
+                "rate wish",
+                shader::RATE_WISH,
+                "wish_level",
+                &wish_layout,
+                &super::wish::wish_constants(settings),
+            ),
+            pyramid: pipeline(
+                "rate pyramid",
+                shader::RATE_PYRAMID,
+                "reduce",
+                &cells_layout,
+                &[("BALANCE", balance)],
+            ),
+            owner: pipeline(
+                "rate owner",
+                shader::RATE_OWNER,
+                "owner_level",
+                &cells_layout,
+                &[("COARSEST", coarsest)],
+            ),
+            wish_layout,
+            wish_uniform,
+            // One texel of level 0: without a picture every pixel is wished.
+            image: image_texture(gpu, (1, 1), &[0]),
+            cells_layout,
+        }
+    }
+
+    /// Takes over the picture of the image source.
+    pub(crate) fn set_image(&mut self, gpu: &Gpu, image: &RateImage) {
+        self.image = image_texture(gpu, image.size(), &image.levels());
+    }
+
+    /// Encodes the passes.
+    pub(crate) fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        settings: &Settings,
+        gbuffer: &GBuffer,
+        target: &RateTargets,
+    ) {
+        let gpu = recorder.gpu;
+        let uniform = WishUniform::new(settings);
+        gpu.queue
+            .write_buffer(&self.wish_uniform, 0, bytemuck::bytes_of(&uniform));
+        let wish_group = bind_group(
+            &gpu.device,
+            "rate wish",
+            &self.wish_layout,
+            &[
+                self.wish_uniform.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&self.image),
+                wgpu::BindingResource::TextureView(&gbuffer.surface_view),
+                wgpu::BindingResource::TextureView(&gbuffer.identity_view),
+                wgpu::BindingResource::TextureView(&gbuffer.depth_view),
+            ],
+        );
+        let cells = |view| {
+            bind_group(
+                &gpu.device,
+                "rate cells",
+                &self.cells_layout,
+                &[wgpu::BindingResource::TextureView(view)],
+            )
+        };
+        let mut fill = |label, chain: &MipChain, level, pipeline, group: &wgpu::BindGroup| {
+            let color = overwritten(chain.level(level));
+            let mut pass = recorder.render_pass(label, &[color], None);
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, group, &[]);
+            chain.draw(&mut pass, level);
+        };
+        let pyramid = &target.pyramid;
+        fill("rate wish", pyramid, 1, &self.wish, &wish_group);
+        for level in pyramid.range().skip(1) {
+            let below = cells(pyramid.level(level - 1));
+            fill("rate pyramid", pyramid, level, &self.pyramid, &below);
+        }
+        let whole = cells(&pyramid.whole);
+        fill("rate owner", &target.owner, 1, &self.owner, &whole);
+    }
+}
+
+fn image_texture(gpu: &Gpu, (width, height): (u32, u32), levels: &[u8]) -> wgpu::TextureView {
+    let size = wgpu::Extent3d {
+        width,
+        height,
+        depth_or_array_layers: 1,
+    };
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("rate image"),
+        size,
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: CELL_FORMAT,
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    gpu.queue.write_texture(
+        texture.as_image_copy(),
+        levels,
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(width),
+            rows_per_image: None,
+        },
+        size,
+    );
+    texture.create_view(&Default::default())
+}

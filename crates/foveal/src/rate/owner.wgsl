@@ -1,0 +1,27 @@
+// Owner level of 2 x 2 pixels, and whether the owner holds a geometric edge. Tiles of level 1 and up hold such
+// quads whole, so the pixels of one agree. After frame, level and blocks.wgsl. CPU twin: `rate/pyramid.rs`,
+// `owner_level`.
+
+override COARSEST: u32 = 8u;
+
+// Mip l is level l + 1.
+@group(1) @binding(0) var pyramid: texture_2d<u32>;
+
+@fragment
+fn owner_level(in: LevelVertex) -> @location(0) u32 {
+    let quad = vec2u(in.position.xy);
+    var owner = textureLoad(pyramid, quad, 0).x;
+    if (owner & CELL_LEVEL) == 0u {
+        return owner;
+    }
+    var level = 1u;
+    while level < COARSEST {
+        let cell = textureLoad(pyramid, quad >> vec2u(level), level).x;
+        if (cell & CELL_LEVEL) <= level {
+            break;
+        }
+        level++;
+        owner = cell;
+    }
+    return level | (owner & CELL_EDGE);
+}

@@ -1,0 +1,219 @@
+//! The exact tiling on the CPU: the passes' twin, and what tests and tools ask about a tiling.
+
+/// The minimum of the wishes over each block of each level, and the tiling that follows from it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct MinPyramid {
+    levels: Vec<Grid>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Grid {
+    width: u32,
+    height: u32,
+    cells: Vec<u8>,
+}
+
+/// Bit of a cell that says that its block holds a geometric edge.
+pub(crate) const EDGE: u8 = 0x80;
+/// Bits of a cell that hold the level.
+pub(crate) const LEVEL: u8 = 0x0f;
+
+impl Grid {
+    fn at(&self, x: u32, y: u32) -> u8 {
+        self.cells[(y * self.width + x) as usize]
+    }
+}
+
+impl MinPyramid {
+    /// Builds the pyramid over `wishes`, rows of `width` (at least 1) levels; wishes above `coarsest` count as
+    /// `coarsest`. With `balance`, neighbouring blocks differ by one level at most.
+    #[must_use]
+    pub fn new(width: u32, wishes: &[u8], coarsest: u8, balance: bool) -> Self {
+        let width = width.max(1);
+        let cells = wishes
+            .iter()
+            .map(|&w| (w & LEVEL).min(coarsest) | w & EDGE)
+            .collect();
+        let mut levels = vec![Grid {
+            width,
+            height: wishes.len() as u32 / width,
+            cells,
+        }];
+        for level in 1..=coarsest {
+            let next = reduce(&levels[usize::from(level) - 1], level, balance);
+            levels.push(next);
+        }
+        Self { levels }
+    }
+
+    /// The coarsest level.
+    #[must_use]
+    pub fn coarsest(&self) -> u8 {
+        self.levels.len() as u8 - 1
+    }
+
+    /// Blocks across and down at a level; those at the right and the bottom may reach beyond the picture.
+    #[must_use]
+    pub fn size(&self, level: u8) -> (u32, u32) {
+        let grid = &self.levels[usize::from(level)];
+        (grid.width, grid.height)
+    }
+
+    /// The cells of a level as the passes write them, row by row.
+    #[must_use]
+    pub fn cells(&self, level: u8) -> &[u8] {
+        &self.levels[usize::from(level)].cells
+    }
+
+    /// Whether a block is allowed at its level.
+    fn allows(&self, level: u8, x: u32, y: u32) -> bool {
+        self.levels[usize::from(level)].at(x, y) & LEVEL >= level
+    }
+
+    /// Whether a block is a tile of the tiling.
+    #[must_use]
+    pub fn owns(&self, level: u8, x: u32, y: u32) -> bool {
+        self.allows(level, x, y)
+            && (level == self.coarsest() || !self.allows(level + 1, x / 2, y / 2))
+    }
+
+    /// The level of the tile that holds a pixel.
+    #[must_use]
+    pub fn owner_level(&self, x: u32, y: u32) -> u8 {
+        let mut level = 0;
+        while level < self.coarsest() && self.allows(level + 1, x >> (level + 1), y >> (level + 1))
+        {
+            level += 1;
+        }
+        level
+    }
+
+    /// Tiles per level.
+    #[must_use]
+    pub fn tiles(&self) -> Vec<u64> {
+        (0..=self.coarsest())
+            .map(|level| {
+                let (width, height) = self.size(level);
+                (0..height)
+                    .flat_map(|y| (0..width).map(move |x| (x, y)))
+                    .filter(|&(x, y)| self.owns(level, x, y))
+                    .count() as u64
+            })
+            .collect()
+    }
+}
+
+/// The grid of `level` from the one below: the minimum of the four children inside the picture. For a balanced
+/// tiling a block is allowed only where all blocks around its children are allowed at the children's level.
+fn reduce(below: &Grid, level: u8, balance: bool) -> Grid {
+    let (width, height) = (below.width.div_ceil(2), below.height.div_ceil(2));
+    let cell = |x: u32, y: u32| {
+        let mut least = LEVEL;
+        let mut edge = 0;
+        let ring = u32::from(balance);
+        for cy in (2 * y).saturating_sub(ring)..(2 * y + 2 + ring).min(below.height) {
+            for cx in (2 * x).saturating_sub(ring)..(2 * x + 2 + ring).min(below.width) {
+                let child = below.at(cx, cy);
+                if cx / 2 == x && cy / 2 == y {
+                    least = least.min(child & LEVEL);
+                    edge |= child & EDGE;
+                } else if child & LEVEL < level - 1 {
+                    least = least.min(level - 1);
+                }
+            }
+        }
+        least | edge
+    };
+    Grid {
+        width,
+        height,
+        cells: (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| cell(x, y))
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// A map whose wishes come in patches of 2^patch pixels, so that coarse levels occur at all.
+    fn patches(width: u32, height: u32, patch: u32, seed: u32) -> Vec<u8> {
+        (0..height)
+            .flat_map(|y| (0..width).map(move |x| (x, y)))
+            .map(|(x, y)| {
+                let h = ((x >> patch) ^ seed)
+                    .wrapping_mul(0x9e37_79b1)
+                    .wrapping_add((y >> patch).wrapping_mul(0x85eb_ca6b));
+                (((h ^ h >> 15).wrapping_mul(0x2c1b_3c6d) >> 20) % 9) as u8
+            })
+            .collect()
+    }
+
+    /// Sizes from 1 x 1 to 4096 in one direction.
+    fn maps() -> impl Strategy<Value = (u32, u32, Vec<u8>)> {
+        let size = prop_oneof![
+            (1..300u32, 1..300u32),
+            (1..4097u32, 1..20u32),
+            (1..20u32, 1..4097u32)
+        ];
+        (size, 0..9u32, any::<u32>())
+            .prop_map(|((w, h), patch, seed)| (w, h, patches(w, h, patch, seed)))
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(48))]
+
+        #[test]
+        fn every_pixel_has_exactly_one_owner((w, _, wishes) in maps(), coarsest in 0..9u8, balance: bool) {
+            let pyramid = MinPyramid::new(w, &wishes, coarsest, balance);
+            for (index, &wish) in (0..).zip(&wishes) {
+                let (x, y) = (index % w, index / w);
+                let owners: Vec<u8> =
+                    (0..=coarsest).filter(|&l| pyramid.owns(l, x >> l, y >> l)).collect();
+                prop_assert_eq!(&owners, &vec![pyramid.owner_level(x, y)]);
+                prop_assert!(owners[0] <= wish, "never coarser than wished");
+            }
+        }
+
+        #[test]
+        fn tiles_cover_the_picture_once((w, h, wishes) in maps(), balance: bool) {
+            let pyramid = MinPyramid::new(w, &wishes, 8, balance);
+            let mut area = 0;
+            for level in 0..=8u8 {
+                let (bw, bh) = pyramid.size(level);
+                for (x, y) in (0..bh).flat_map(|y| (0..bw).map(move |x| (x, y))) {
+                    if pyramid.owns(level, x, y) {
+                        let across = ((x + 1) << level).min(w) - (x << level);
+                        let down = ((y + 1) << level).min(h) - (y << level);
+                        area += across * down;
+                    }
+                }
+            }
+            prop_assert_eq!(area, w * h);
+        }
+
+        #[test]
+        fn balanced_neighbours_differ_by_one_level_at_most((w, h, wishes) in maps()) {
+            let pyramid = MinPyramid::new(w, &wishes, 8, true);
+            for y in 0..h {
+                for x in 0..w {
+                    let here = pyramid.owner_level(x, y);
+                    for (nx, ny) in [(x + 1, y), (x, y + 1), (x + 1, y + 1), (x.wrapping_sub(1), y + 1)] {
+                        if nx < w && ny < h {
+                            prop_assert!(here.abs_diff(pyramid.owner_level(nx, ny)) <= 1);
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_uniform_wish_is_met_even_at_odd_borders() {
+        let pyramid = MinPyramid::new(513, &vec![8; 513 * 257], 8, false);
+        assert_eq!(pyramid.tiles(), [0, 0, 0, 0, 0, 0, 0, 0, 6]);
+    }
+}

@@ -1,0 +1,33 @@
+// One level of the min-pyramid from the one below, from level 2 on. After frame, level and blocks.wgsl. CPU twin:
+// `rate/pyramid.rs`, `reduce`.
+
+// Neighbouring tiles differ by one level at most: a block is allowed only where all blocks around its children are
+// allowed at their level.
+override BALANCE: bool = false;
+
+@group(1) @binding(0) var below: texture_2d<u32>;
+
+@fragment
+fn reduce(in: LevelVertex) -> @location(0) u32 {
+    let first = vec2i(in.position.xy) * 2;
+    let size = vec2i(blocks_at(in.level - 1u));
+    var least = CELL_LEVEL;
+    var edge = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        let child = textureLoad(below, min(first + vec2i(vec2u(i & 1u, i >> 1u)), size - 1), 0).x;
+        least = min(least, child & CELL_LEVEL);
+        edge |= child & CELL_EDGE;
+    }
+    if BALANCE && least >= in.level {
+        for (var i = 0; i < 12; i++) {
+            // Around the 2 x 2 children: four above, four below, two on either side.
+            let beside = vec2i(select(-1, 2, i > 9), (i - 8) & 1);
+            let row = vec2i((i & 3) - 1, select(-1, 2, i > 3));
+            let at = first + select(beside, row, i < 8);
+            if all(at >= vec2i(0)) && all(at < size) && (textureLoad(below, at, 0).x & CELL_LEVEL) < in.level - 1u {
+                least = in.level - 1u;
+            }
+        }
+    }
+    return least | edge;
+}

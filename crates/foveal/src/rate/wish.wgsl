@@ -1,0 +1,121 @@
+// The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level 1 of the
+// min-pyramid. After frame, surface, level and blocks.wgsl. Rust: `rate/wish.rs`.
+
+// 0 foveated, 1 constant, 2 image.
+override SOURCE: u32 = 0u;
+override OTHER: u32 = 1u;
+// 0 the first source alone, 1 the coarser of both, 2 the finer.
+override COMBINE: u32 = 0u;
+
+struct Wish {
+    // Gaze of the left and of the right eye, xy in pixels of the target.
+    gaze: array<vec4f, 2>,
+    // Squared radii in pixels from which on levels 1 to 8 are wished.
+    squared_radii: array<vec4f, 2>,
+    // Pixels of the target that belong to one eye.
+    eye_width: f32,
+    coarsest: u32,
+    // Level of the constant source.
+    constant_level: u32,
+    // Pixels at edges that wish 1 up to this level are shaded one by one.
+    refine_up_to: u32,
+    // Edges are looked for where the wish is 1 up to this level.
+    edges_up_to: u32,
+    // Keep the size a multiple of 16 bytes.
+    reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
+}
+
+@group(1) @binding(0) var<uniform> wish: Wish;
+@group(1) @binding(1) var rate_image: texture_2d<u32>;
+@group(1) @binding(2) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(3) var gbuffer_identity: texture_2d<u32>;
+@group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
+
+// Number of radii that the distance to the gaze exceeds.
+fn foveated_level(pixel: vec2f) -> u32 {
+    let eye = u32(pixel.x >= wish.eye_width);
+    let offset = pixel - wish.gaze[eye].xy;
+    let squared = vec4f(dot(offset, offset));
+    let beyond = vec4u(squared >= wish.squared_radii[0]) + vec4u(squared >= wish.squared_radii[1]);
+    return beyond.x + beyond.y + beyond.z + beyond.w;
+}
+
+fn level_from(source: u32, texel: vec2u) -> u32 {
+    switch source {
+        case 0u: { return foveated_level(vec2f(texel) + 0.5); }
+        case 1u: { return wish.constant_level; }
+        default: { return textureLoad(rate_image, texel * textureDimensions(rate_image) / picture_size(), 0).x; }
+    }
+}
+
+fn pixel_level(texel: vec2u) -> u32 {
+    let level = level_from(SOURCE, texel);
+    if COMBINE == 1u {
+        return max(level, level_from(OTHER, texel));
+    } else if COMBINE == 2u {
+        return min(level, level_from(OTHER, texel));
+    }
+    return level;
+}
+
+fn instance_at(texel: vec2i) -> u32 {
+    return textureLoad(gbuffer_identity, texel, 0).x;
+}
+
+fn depth_at(texel: vec2i) -> f32 {
+    return textureLoad(gbuffer_depth, texel, 0);
+}
+
+fn normal_at(texel: vec2i) -> vec3f {
+    return unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y));
+}
+
+// Whether a surface ends within a block of 2 x 2 pixels or between it and the blocks to its right and below:
+// another instance, a crease of more than 45 degrees, or a jump in depth. Reversed depth is affine in screen space
+// along a plane however it is tilted, so a jump shows as a second difference.
+fn holds_edge(block: vec2u) -> bool {
+    let first = vec2i(block) * 2;
+    let last = vec2i(picture_size()) - 1;
+    let right = vec2i(min(first.x + 2, last.x), first.y);
+    let down = vec2i(first.x, min(first.y + 2, last.y));
+    let instance = instance_at(first);
+    let same = vec3u(instance_at(right), instance_at(down), instance_at(min(first + 1, last))) == vec3u(instance);
+    if !all(same) {
+        return true;
+    }
+    if instance == 0u {
+        return false;
+    }
+    // At the picture's border the three pixels in a row are not three: their bend is unknown.
+    let depth = depth_at(first);
+    if first.x + 2 <= last.x {
+        let bend = depth - 2.0 * depth_at(first + vec2i(1, 0)) + depth_at(right);
+        if abs(bend) > 0.02 * depth {
+            return true;
+        }
+    }
+    if first.y + 2 <= last.y {
+        let bend = depth - 2.0 * depth_at(first + vec2i(0, 1)) + depth_at(down);
+        if abs(bend) > 0.02 * depth {
+            return true;
+        }
+    }
+    let normal = normal_at(first);
+    return min(dot(normal, normal_at(right)), dot(normal, normal_at(down))) < 0.7;
+}
+
+@fragment
+fn wish_level(in: LevelVertex) -> @location(0) u32 {
+    let block = vec2u(in.position.xy);
+    let last = picture_size() - 1u;
+    var level = wish.coarsest;
+    for (var i = 0u; i < 4u; i++) {
+        level = min(level, pixel_level(min(block * 2u + vec2u(i & 1u, i >> 1u), last)));
+    }
+    if level == 0u || level > wish.edges_up_to || !holds_edge(block) {
+        return level;
+    }
+    return select(level, 0u, level <= wish.refine_up_to) | CELL_EDGE;
+}

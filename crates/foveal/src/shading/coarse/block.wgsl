@@ -1,0 +1,39 @@
+// Radiance of a block. After shading.wgsl and blocks.wgsl. CPU twin: `shading/coarse/block.rs`.
+
+// The sample whose depth and normal are nearest to the average of five, else the centre.
+override TYPICAL: bool = false;
+
+// Depth counts relative to the average, and as much as a turn of the normal.
+fn typical_candidate(block: vec2u, level: u32) -> u32 {
+    var depths: array<f32, 5>;
+    var normals: array<vec3f, 5>;
+    var depth_sum = 0.0;
+    var normal_sum = vec3f(0.0);
+    for (var i = 0u; i < 5u; i++) {
+        let texel = sample_texel(block, level, i);
+        depths[i] = textureLoad(gbuffer_depth, texel, 0);
+        normals[i] = unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y));
+        depth_sum += depths[i];
+        normal_sum += normals[i];
+    }
+    var best = 0u;
+    var least = 1e30;
+    for (var i = 0u; i < 5u; i++) {
+        let away = abs(depths[i] * 5.0 - depth_sum) / max(depth_sum, 1e-12) + distance(normals[i], normal_sum / 5.0);
+        if away < least {
+            least = away;
+            best = i;
+        }
+    }
+    return best;
+}
+
+// Alpha is 1 + the number of the candidate that was shaded.
+fn shade_block(block: vec2u, level: u32) -> vec4f {
+    var candidate = 0u;
+    if TYPICAL && level > 0u {
+        candidate = typical_candidate(block, level);
+    }
+    let radiance = shade(sample_texel(block, level, candidate));
+    return vec4f(radiance.rgb, f32(1u + candidate));
+}

@@ -1,0 +1,97 @@
+//! Coarse shading: one lighting evaluation per tile of the rate map.
+//!
+//! After Imagire, 'Coarse pixel shading by stencil pyramid': level l is shaded into mip l of one target, and
+//! only where the rate map's tiling has a tile of that level. Two backends visit the same tiles and write
+//! the same bytes: [`StencilBackend`] draws each level behind a stencil test, [`ComputeBackend`] dispatches over
+//! lists of tiles. Joining the samples to a picture is the composite's work.
+
+#[cfg(test)]
+mod block;
+mod choice;
+mod compute;
+mod count;
+mod stencil;
+mod targets;
+
+pub(crate) use choice::{BackendChoice, UsedBackend};
+pub(crate) use compute::ComputeBackend;
+pub(crate) use count::CountPass;
+pub(crate) use stencil::StencilBackend;
+pub(crate) use targets::CoarseTargets;
+
+use crate::gpu::Gpu;
+use crate::recorder::Recorder;
+use crate::{Backend, CoarseStats, Settings, Timing};
+
+/// Most levels that there can be.
+pub(crate) const LEVELS: u32 = crate::COARSEST_LEVEL as u32 + 1;
+
+/// Shades the tiles of a rate map.
+#[derive(Debug)]
+pub(crate) struct CoarseShading {
+    stencil: Option<StencilBackend>,
+    compute: Option<ComputeBackend>,
+    count: CountPass,
+    choice: BackendChoice,
+}
+
+impl CoarseShading {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+        input_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let backend = settings.backend;
+        Self {
+            stencil: (backend != Backend::Compute)
+                .then(|| StencilBackend::new(gpu, settings, frame_layout, input_layout)),
+            compute: (backend != Backend::Stencil)
+                .then(|| ComputeBackend::new(gpu, settings, frame_layout, input_layout)),
+            count: CountPass::new(gpu, settings, frame_layout),
+            choice: BackendChoice::new(backend, gpu),
+        }
+    }
+
+    /// Encodes the passes: shades the tiles of `target.rate` into `target.samples`, and counts them into
+    /// `target.counts`.
+    pub(crate) fn shade(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        target: &CoarseTargets,
+    ) {
+        match (self.choice.now(), &self.stencil, &self.compute) {
+            (UsedBackend::Compute, _, Some(compute)) => {
+                compute.shade(recorder, input, target);
+            }
+            (_, Some(stencil), _) => {
+                stencil.shade(recorder, input, target);
+                self.count.draw(recorder, target);
+            }
+            // `new` makes the backends that the choice can fall on.
+            (_, None, _) => {}
+        }
+    }
+
+    /// The last frame's figures, for the `tiles` of each level; lets the choice of the backend know how long the
+    /// passes took.
+    pub(crate) fn stats(&mut self, tiles: Vec<u64>, pixels: u64, gpu_ms: &[Timing]) -> CoarseStats {
+        let shading_ms = gpu_ms
+            .iter()
+            .filter(|t| matches!(t.name.as_str(), "shading" | "tile listing"))
+            .map(|t| t.ms)
+            .sum();
+        let stats = CoarseStats {
+            shaded_fraction: tiles.iter().sum::<u64>() as f64 / pixels as f64,
+            samples_per_level: tiles,
+            backend: self.choice.now().name().to_owned(),
+            backend_reason: self.choice.reason(),
+        };
+        self.choice.observe(shading_ms);
+        stats
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,138 @@
+//! The stencil backend: per level one draw that marks the tiles, and one that shades where it is marked.
+//!
+//! The source writes levels through stencil export, which few devices have. Here the marking shader discards
+//! what is no tile and the stencil operation does the writing; the shading draw is then rejected before its
+//! shader runs wherever the test fails.
+
+use super::{CoarseTargets, targets::STENCIL_FORMAT};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
+use crate::recorder::{Recorder, overwritten};
+use crate::shading::{RADIANCE_FORMAT, lighting_constants, typical_constant};
+use crate::{Settings, shader};
+
+/// Shades tiles by draws behind a stencil test.
+#[derive(Debug)]
+pub(crate) struct StencilBackend {
+    mark: wgpu::RenderPipeline,
+    shade: wgpu::RenderPipeline,
+    cells_layout: wgpu::BindGroupLayout,
+}
+
+fn stencil_state(
+    compare: wgpu::CompareFunction,
+    pass_op: wgpu::StencilOperation,
+) -> wgpu::DepthStencilState {
+    let face = wgpu::StencilFaceState {
+        compare,
+        pass_op,
+        ..Default::default()
+    };
+    wgpu::DepthStencilState {
+        format: STENCIL_FORMAT,
+        depth_write_enabled: None,
+        depth_compare: None,
+        stencil: wgpu::StencilState {
+            front: face,
+            back: face,
+            read_mask: 0xff,
+            write_mask: 0xff,
+        },
+        bias: wgpu::DepthBiasState::default(),
+    }
+}
+
+impl StencilBackend {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+        input_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let cells_layout = bind_group_layout(
+            &gpu.device,
+            "tile marks",
+            wgpu::ShaderStages::FRAGMENT,
+            &[sampled(wgpu::TextureSampleType::Uint)],
+        );
+        let mark = shader::level_screen(
+            gpu,
+            "tile marks",
+            &shader::module(gpu, "tile marks", shader::COARSE_MARK),
+            "mark",
+            &[frame_layout, &cells_layout],
+            // The pass has a colour target; the marking leaves it alone.
+            &[Some(wgpu::ColorTargetState {
+                format: RADIANCE_FORMAT,
+                blend: None,
+                write_mask: wgpu::ColorWrites::empty(),
+            })],
+            Some(stencil_state(
+                wgpu::CompareFunction::Always,
+                wgpu::StencilOperation::Replace,
+            )),
+            &[("COARSEST", f64::from(settings.coarsest_level))],
+        );
+        let constants: Vec<_> = lighting_constants(settings)
+            .into_iter()
+            .chain([typical_constant(settings)])
+            .collect();
+        let shade = shader::level_screen(
+            gpu,
+            "coarse shading",
+            &shader::module(gpu, "coarse shading, draw", shader::COARSE_SHADE_DRAW),
+            "shade_blocks",
+            &[frame_layout, input_layout],
+            &[Some(RADIANCE_FORMAT.into())],
+            Some(stencil_state(
+                wgpu::CompareFunction::Equal,
+                wgpu::StencilOperation::Keep,
+            )),
+            &constants,
+        );
+        Self {
+            mark,
+            shade,
+            cells_layout,
+        }
+    }
+
+    /// Encodes one pass per level.
+    pub(super) fn shade(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        target: &CoarseTargets,
+    ) {
+        let gpu = recorder.gpu;
+        let Some(stencil) = &target.stencil else {
+            return;
+        };
+        let cells = bind_group(
+            &gpu.device,
+            "tile marks",
+            &self.cells_layout,
+            &[wgpu::BindingResource::TextureView(
+                &target.rate.pyramid.whole,
+            )],
+        );
+        for level in target.samples.range() {
+            let color = overwritten(target.samples.level(level));
+            let marks = wgpu::RenderPassDepthStencilAttachment {
+                view: stencil.level(level),
+                depth_ops: None,
+                stencil_ops: Some(wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(0),
+                    store: wgpu::StoreOp::Discard,
+                }),
+            };
+            let mut pass = recorder.render_pass("shading", &[color], Some(marks));
+            pass.set_stencil_reference(1);
+            pass.set_pipeline(&self.mark);
+            pass.set_bind_group(1, &cells, &[]);
+            target.samples.draw(&mut pass, level);
+            pass.set_pipeline(&self.shade);
+            pass.set_bind_group(1, input, &[]);
+            target.samples.draw(&mut pass, level);
+        }
+    }
+}

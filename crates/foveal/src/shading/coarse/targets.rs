@@ -1,0 +1,90 @@
+//! What coarse shading works on, for one frame size.
+
+use super::LEVELS;
+use crate::composite::PatchTargets;
+use crate::gpu::{Gpu, MipChain};
+use crate::rate::RateTargets;
+use crate::shading::RADIANCE_FORMAT;
+use crate::{Backend, Composite, Settings};
+
+pub(super) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
+
+/// The rate map, its tiles' samples, and what either backend needs to find the tiles.
+#[derive(Debug)]
+pub(crate) struct CoarseTargets {
+    pub(crate) rate: RateTargets,
+    /// Mip l holds the samples of level l: linear radiance, and 1 + the sample's candidate in alpha.
+    pub(crate) samples: MipChain,
+    /// For the smooth composite.
+    pub(crate) patches: Option<PatchTargets>,
+    /// Nonzero where a level has a tile; for the stencil backend.
+    pub(super) stencil: Option<MipChain>,
+    /// Tiles of each level as x | y << 16; for the compute backend.
+    pub(super) lists: Vec<wgpu::Buffer>,
+    /// Number of tiles of each level.
+    pub(crate) counts: wgpu::Buffer,
+    /// Workgroups in x, y, z and number of tiles of each level.
+    pub(super) dispatches: wgpu::Buffer,
+}
+
+impl CoarseTargets {
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
+        let size = (settings.width, settings.height);
+        let levels = 0..=u32::from(settings.coarsest_level);
+        let buffer = |label, bytes: u64, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: bytes,
+                usage: usage | wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            })
+        };
+        let list = |level: u32| {
+            let blocks =
+                u64::from(size.0.div_ceil(1 << level)) * u64::from(size.1.div_ceil(1 << level));
+            buffer("tiles", blocks * 4, wgpu::BufferUsages::empty())
+        };
+        Self {
+            rate: RateTargets::new(gpu, settings),
+            samples: MipChain::new(
+                gpu,
+                "coarse samples",
+                size,
+                levels.clone(),
+                RADIANCE_FORMAT,
+                wgpu::TextureUsages::TEXTURE_BINDING
+                    | wgpu::TextureUsages::STORAGE_BINDING
+                    | wgpu::TextureUsages::COPY_SRC,
+            ),
+            patches: match settings.composite {
+                Composite::Smooth => PatchTargets::new(gpu, settings),
+                Composite::Nearest | Composite::Paper => None,
+            },
+            stencil: (settings.backend != Backend::Compute).then(|| {
+                MipChain::new(
+                    gpu,
+                    "tile stencil",
+                    size,
+                    levels.clone(),
+                    STENCIL_FORMAT,
+                    wgpu::TextureUsages::empty(),
+                )
+            }),
+            lists: if settings.backend == Backend::Stencil {
+                Vec::new()
+            } else {
+                levels.map(list).collect()
+            },
+            counts: buffer(
+                "tile counts",
+                u64::from(LEVELS) * 4,
+                wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            ),
+            dispatches: buffer(
+                "tile dispatches",
+                u64::from(LEVELS) * 16,
+                wgpu::BufferUsages::INDIRECT,
+            ),
+        }
+    }
+}

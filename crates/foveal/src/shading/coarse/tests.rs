@@ -1,0 +1,274 @@
+//! Coarse frames on the device against full ones, against their twins, and against each other.
+
+use foveal_scene::{Scene, generate};
+
+use super::block::sample_texel;
+use crate::gpu::{MipChain, read_level};
+use crate::testing::{gpu, picture, rendered, small, texels};
+use crate::{
+    Backend, CoarseSample, Composite, Frame, MinPyramid, RateImage, RateSource, RefineEdges,
+    Renderer, Settings, Shading,
+};
+
+/// Odd sizes, one smaller than a block of the coarsest level.
+const SIZES: [(u32, u32); 3] = [(301, 187), (130, 300), (1, 1)];
+
+fn scene() -> Scene {
+    let mut scene = generate::cornell();
+    generate::add_point_lights(&mut scene, 20, 5);
+    scene
+}
+
+fn nearest(size: (u32, u32)) -> Settings {
+    Settings {
+        shading: Shading::Coarse,
+        composite: Composite::Nearest,
+        fovea_inner: 0.2,
+        fovea_outer: 0.6,
+        gaze: [0.3, 0.6],
+        ..small(size.0, size.1)
+    }
+}
+
+fn draw(settings: &Settings) -> Renderer {
+    let scene = scene();
+    rendered(&scene, &scene.cameras[0], settings)
+}
+
+fn draw_with_image(settings: &Settings, image: RateImage) -> Renderer {
+    let scene = scene();
+    pollster::block_on(async {
+        let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+        renderer.set_rate_image(image);
+        renderer.set_scene(&scene).await.unwrap();
+        let frame = Frame {
+            camera: &scene.cameras[0],
+            previous_camera: None,
+        };
+        renderer.render(&frame).await.unwrap();
+        renderer
+    })
+}
+
+fn cells(chain: &MipChain, level: u32) -> Vec<u8> {
+    let read = read_level(gpu(), &chain.texture, level - 1, chain.blocks(level));
+    pollster::block_on(read).unwrap()
+}
+
+fn radiance(renderer: &Renderer) -> Vec<[u16; 4]> {
+    texels(&renderer.targets().radiance_view)
+}
+
+/// The tiling that the device's wishes, which are those of 2 x 2 pixels, give on the CPU.
+fn twin(renderer: &Renderer) -> MinPyramid {
+    let s = renderer.settings();
+    let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
+    let quads = cells(&rate.pyramid, 1);
+    let across = s.width.div_ceil(2);
+    let wishes: Vec<u8> = (0..s.width * s.height)
+        .map(|i| quads[(i / s.width / 2 * across + i % s.width / 2) as usize])
+        .collect();
+    MinPyramid::new(s.width, &wishes, s.coarsest_level, s.rate_balance)
+}
+
+fn noise_image(side: u32, seed: u32) -> RateImage {
+    let luma = (0..side * side)
+        .map(|i| ((i + seed).wrapping_mul(0x9e37_79b1) >> 24) as u8)
+        .collect();
+    RateImage::new(side, side, luma).unwrap()
+}
+
+#[test]
+fn the_rate_map_equals_its_twin_byte_for_byte() {
+    for size in SIZES {
+        for (balance, image_side) in [(false, 3), (true, 7), (false, 40)] {
+            let settings = Settings {
+                rate: RateSource::Image,
+                rate_balance: balance,
+                ..nearest(size)
+            };
+            let renderer = draw_with_image(&settings, noise_image(image_side, 1));
+            let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
+            let twin = twin(&renderer);
+            for level in 1..=8u8 {
+                assert_eq!(
+                    cells(&rate.pyramid, level.into()),
+                    twin.cells(level),
+                    "{size:?}, level {level}"
+                );
+            }
+            let owners = cells(&rate.owner, 1);
+            for (i, owner) in (0..size.0 * size.1).map(|i| {
+                let quad = i / size.0 / 2 * size.0.div_ceil(2) + i % size.0 / 2;
+                (i, owners[quad as usize])
+            }) {
+                let (x, y) = (i % size.0, i / size.0);
+                let level = twin.owner_level(x, y);
+                assert_eq!(owner & 15, level);
+                let (width, _) = twin.size(level);
+                let cell = twin.cells(level)[((y >> level) * width + (x >> level)) as usize];
+                assert_eq!(owner & 128, cell & 128);
+            }
+        }
+    }
+}
+
+#[test]
+fn wishes_equal_their_twin() {
+    for rate in [RateSource::Foveated, RateSource::Image] {
+        let settings = Settings {
+            rate,
+            refine_edges: RefineEdges::Off,
+            ..nearest(SIZES[0])
+        };
+        let image = noise_image(5, 9);
+        let renderer = draw_with_image(&settings, image.clone());
+        let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
+        let uniform = crate::rate::WishUniform::new(&settings);
+        let quads = cells(&rate.pyramid, 1);
+        let level = |x: u32, y: u32| {
+            let (x, y) = (x.min(SIZES[0].0 - 1), y.min(SIZES[0].1 - 1));
+            uniform.level(&settings, x, y, Some(&image))
+        };
+        let differing = (0..)
+            .zip(quads)
+            .filter(|&(i, wish)| {
+                let across = settings.width.div_ceil(2);
+                let (x, y) = (i % across * 2, i / across * 2);
+                let finest = level(x, y)
+                    .min(level(x + 1, y))
+                    .min(level(x, y + 1))
+                    .min(level(x + 1, y + 1));
+                finest != wish
+            })
+            .count();
+        // A squared distance may round to either side of a radius.
+        assert!(differing <= 2, "{differing} wishes differ");
+    }
+}
+
+#[test]
+fn both_backends_give_the_same_bytes() {
+    for size in SIZES {
+        for coarse_sample in [CoarseSample::Center, CoarseSample::Typical] {
+            let [stencil, compute] = [Backend::Stencil, Backend::Compute].map(|backend| {
+                draw(&Settings {
+                    backend,
+                    coarse_sample,
+                    ..nearest(size)
+                })
+            });
+            assert_eq!(radiance(&stencil), radiance(&compute));
+            assert_eq!(picture(&stencil), picture(&compute));
+        }
+    }
+}
+
+#[test]
+fn level_zero_everywhere_is_full_shading() {
+    for size in SIZES {
+        for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+            let full = draw(&small(size.0, size.1));
+            for backend in [Backend::Stencil, Backend::Compute] {
+                let coarse = draw(&Settings {
+                    rate: RateSource::Constant,
+                    rate_level: 0,
+                    backend,
+                    composite,
+                    ..nearest(size)
+                });
+                assert!(picture(&coarse) == picture(&full), "{size:?} {composite:?}");
+                assert!(radiance(&coarse) == radiance(&full));
+            }
+        }
+    }
+}
+
+#[test]
+fn each_pixel_shows_its_tiles_sample_and_level_zero_is_full_shading() {
+    let size = SIZES[0];
+    let full = radiance(&draw(&small(size.0, size.1)));
+    let coarse = draw(&nearest(size));
+    let twin = twin(&coarse);
+    let mut levels = [0; 9];
+    for (i, pixel) in (0..).zip(radiance(&coarse)) {
+        let (x, y) = (i % size.0, i / size.0);
+        let level = twin.owner_level(x, y);
+        levels[usize::from(level)] += 1;
+        let (sx, sy) = sample_texel((x >> level, y >> level), level.into(), 0, size);
+        assert_eq!(pixel[..3], full[(sy * size.0 + sx) as usize][..3]);
+    }
+    assert!(levels.iter().filter(|&&n| n > 0).count() >= 5, "{levels:?}");
+}
+
+#[test]
+fn the_fovea_of_every_composite_is_full_shading() {
+    let size = SIZES[0];
+    let full = radiance(&draw(&small(size.0, size.1)));
+    for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+        let coarse = draw(&Settings {
+            composite,
+            ..nearest(size)
+        });
+        let twin = twin(&coarse);
+        let mut fine = 0;
+        for (i, pixel) in (0..).zip(radiance(&coarse)) {
+            if twin.owner_level(i % size.0, i / size.0) == 0 {
+                assert_eq!(pixel, full[i as usize], "{composite:?}");
+                fine += 1;
+            }
+        }
+        assert!(fine > 1000);
+    }
+}
+
+#[test]
+fn shaded_samples_are_the_tiles() {
+    let scene = scene();
+    for backend in [Backend::Stencil, Backend::Compute] {
+        let settings = Settings {
+            backend,
+            ..nearest(SIZES[0])
+        };
+        let mut renderer = draw(&settings);
+        let frame = Frame {
+            camera: &scene.cameras[0],
+            previous_camera: None,
+        };
+        let stats = pollster::block_on(renderer.render(&frame)).unwrap();
+        let tiles = twin(&renderer).tiles();
+        assert_eq!(stats.shaded_samples, tiles.iter().sum::<u64>());
+        assert_eq!(stats.coarse.unwrap().samples_per_level, tiles);
+    }
+}
+
+#[test]
+fn the_automatic_backend_settles_and_says_why() {
+    let scene = scene();
+    let mut renderer = draw(&nearest(SIZES[0]));
+    let frame = Frame {
+        camera: &scene.cameras[0],
+        previous_camera: None,
+    };
+    let reasons: Vec<String> = (0..8)
+        .map(|_| pollster::block_on(renderer.render(&frame)).unwrap())
+        .map(|stats| stats.coarse.unwrap().backend_reason)
+        .collect();
+    assert_ne!(reasons[7], "measuring");
+}
+
+#[test]
+fn resizing_keeps_the_choice_and_draws_the_same_as_a_fresh_renderer() {
+    let scene = scene();
+    let frame = Frame {
+        camera: &scene.cameras[0],
+        previous_camera: None,
+    };
+    let mut renderer = draw(&nearest(SIZES[1]));
+    let settings = nearest(SIZES[0]);
+    pollster::block_on(async {
+        renderer.set_settings(&settings).await.unwrap();
+        renderer.render(&frame).await.unwrap();
+    });
+    assert!(picture(&renderer) == picture(&draw(&settings)));
+}

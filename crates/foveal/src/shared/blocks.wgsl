@@ -1,0 +1,33 @@
+// Blocks of the coarse tiling: level l has square blocks of 2^l pixels. After frame.wgsl.
+// CPU twins: `rate/pyramid.rs`, `shading/coarse/block.rs`.
+
+// Bits of a rate-map cell: the level, and whether the block holds a geometric edge.
+const CELL_LEVEL: u32 = 15u;
+const CELL_EDGE: u32 = 128u;
+
+fn picture_size() -> vec2u {
+    return vec2u(frame.size);
+}
+
+// Blocks across and down; the last ones may reach beyond the picture.
+fn blocks_at(level: u32) -> vec2u {
+    return (picture_size() + (1u << level) - 1u) >> vec2u(level);
+}
+
+// The texel that a block's sample looks at. Candidate 0 is the centre: of the four texels around it the one to
+// the lower right. Candidates 1 to 4 lie a quarter of the side from the corners. A block whose candidate lies
+// beyond the picture takes the nearest of its texels inside.
+fn sample_texel(block: vec2u, level: u32, candidate: u32) -> vec2u {
+    let side = 1u << level;
+    var within = vec2u(side >> 1u);
+    if candidate > 0u {
+        let corner = vec2u(candidate - 1u, (candidate - 1u) >> 1u) & vec2u(1u);
+        within = (vec2u(side) * (1u + 2u * corner)) >> vec2u(2u);
+    }
+    return min((block << vec2u(level)) + within, picture_size() - 1u);
+}
+
+// Where a block was sampled, in pixels; `alpha` is its radiance's, which tells the candidate.
+fn sample_position(block: vec2u, level: u32, alpha: f32) -> vec2f {
+    return vec2f(sample_texel(block, level, u32(alpha + 0.5) - 1u)) + 0.5;
+}
