@@ -131,6 +131,8 @@ fn set<T>(setting: &mut T, flag: Option<T>) {
 fn check(settings: &Settings) -> anyhow::Result<()> {
     let boundless = wgpu::Limits {
         max_texture_dimension_2d: u32::MAX,
+        max_buffer_size: u64::MAX,
+        max_storage_buffer_binding_size: u64::MAX,
         ..wgpu::Limits::default()
     };
     Ok(settings.validate(&boundless)?)

@@ -60,6 +60,10 @@ impl AntialiasStage {
     }
 
     /// Draws all bands: fills the ordinary G-buffer and, if `shade`, the sums of the edge pixels.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
