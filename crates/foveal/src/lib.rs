@@ -8,6 +8,7 @@
 
 pub mod gpu;
 
+mod antialias;
 mod composite;
 mod culling;
 mod error;
@@ -33,7 +34,8 @@ pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
 pub use settings::{
-    Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, LightAssignment, LightingModel,
-    RateCombine, RateSource, RefineEdges, Settings, Shading, ToneMap, View,
+    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest,
+    LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern, Settings,
+    Shading, ToneMap, View,
 };
 pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};

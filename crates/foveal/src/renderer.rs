@@ -2,11 +2,12 @@
 
 use foveal_scene::{Camera, Scene};
 
+use crate::antialias::AntialiasStage;
 use crate::composite::CompositePass;
 use crate::culling::{CullingCounts, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
-use crate::geometry::{DrawList, GeometryPass};
+use crate::geometry::{DrawList, FaceNormals, GeometryPass};
 use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
@@ -17,7 +18,7 @@ use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{CoarseShading, CountPass, Samples, ShadingPass};
 use crate::targets::Targets;
-use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing};
+use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing, View};
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -54,6 +55,7 @@ struct Stages {
     lights: LightAssigner,
     geometry: GeometryPass,
     shading: ShadingPass,
+    antialias: Option<AntialiasStage>,
     coarse: Option<CoarseStages>,
     forward: ForwardPass,
     tone_map: ToneMapPass,
@@ -100,12 +102,14 @@ impl Stages {
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let frame = frame_bindings.layout();
         let shading = ShadingPass::new(gpu, settings, frame);
+        let face_normals = FaceNormals::wanted_by(settings);
         let stages = Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings.culling, settings.width, settings.height)?,
             targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
-            geometry: GeometryPass::new(gpu, frame, material_layout),
+            geometry: GeometryPass::new(gpu, frame, material_layout, face_normals),
+            antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
             shading,
@@ -243,11 +247,27 @@ impl Renderer {
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
         let gpu_ms = self.timer.collect(&self.gpu);
-        let pixels = u64::from(self.stages.settings.width) * u64::from(self.stages.settings.height);
         let coarse = self.coarse_stats(&gpu_ms).await?;
+        let Stages {
+            settings,
+            targets,
+            antialias,
+            ..
+        } = &self.stages;
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let mut shaded_samples = coarse.as_ref().map_or(pixels, CoarseStats::shaded_samples);
+        let mut edge_fraction = 0.0;
+        if let Some(antialias) = antialias {
+            let counts = antialias.counts(&self.gpu, targets).await?;
+            if !antialias.needs_ordinary() && coarse.is_none() {
+                shaded_samples = 0;
+            }
+            shaded_samples += counts.evaluations;
+            edge_fraction = counts.edge_pixels as f64 / pixels as f64;
+        }
         Ok(FrameStats {
-            width: self.stages.settings.width,
-            height: self.stages.settings.height,
+            width: settings.width,
+            height: settings.height,
             cpu_ms: cpu.stages(),
             objects_visible: culled.visible,
             objects_outside: culled.outside,
@@ -255,7 +275,9 @@ impl Renderer {
             occluder_triangles: culled.occluder_triangles,
             draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
             triangles: self.draw_list.triangles,
-            shaded_samples: coarse.as_ref().map_or(pixels, CoarseStats::shaded_samples),
+            shaded_samples,
+            edge_fraction,
+            target_bytes: targets.bytes(),
             coarse,
             gpu_ms,
             frame_ms,
@@ -298,6 +320,7 @@ impl Renderer {
             lights,
             geometry,
             shading,
+            antialias,
             coarse,
             forward,
             tone_map,
@@ -347,10 +370,20 @@ impl Renderer {
             frame: frame_bindings,
         };
         lights.assign(recorder, &scene.light_buffer, &clusters);
-        geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
+        if let Some(antialias) = antialias {
+            let shade = settings.view == View::Final;
+            antialias.draw(
+                recorder, scene, draw_list, geometry, shading, lights, targets, shade,
+            );
+        } else {
+            geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
+        }
         if let Some(view) = view {
             view.show(recorder, &targets.gbuffer, &targets.picture_view);
-        } else {
+        } else if !antialias
+            .as_ref()
+            .is_some_and(|a| a.show(recorder, targets))
+        {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
             if let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) {
                 coarse
@@ -358,13 +391,15 @@ impl Renderer {
                     .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
                 coarse.shading.shade(recorder, &input, tiles);
                 coarse.composite.join(recorder, targets, tiles);
-            } else {
-                shading.shade(
-                    recorder,
-                    &input,
-                    Samples::EveryPixel,
-                    &targets.radiance_view,
-                );
+            } else if antialias
+                .as_ref()
+                .is_none_or(AntialiasStage::needs_ordinary)
+            {
+                let target = &targets.radiance_view;
+                shading.shade(recorder, &input, Samples::EveryPixel, target);
+            }
+            if let Some(antialias) = antialias {
+                antialias.combine(recorder, targets);
             }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
             tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
@@ -404,6 +439,23 @@ impl Renderer {
 
     pub(crate) fn lights(&self) -> (&LightAssigner, &[crate::lights::LightUniform]) {
         (&self.stages.lights, &self.scene.lights)
+    }
+
+    /// Draws the frame again.
+    pub(crate) fn redraw(&mut self, camera: &Camera) -> FrameStats {
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        pollster::block_on(self.render(&frame)).expect("frame is drawn")
+    }
+
+    /// Draws the frame again in bands of `rows` rows.
+    pub(crate) fn redraw_in_bands(&mut self, camera: &Camera, rows: u32) -> FrameStats {
+        let settings = &self.stages.settings;
+        let targets = crate::antialias::SampleTargets::in_bands(&self.gpu, settings, rows);
+        self.stages.targets.samples = Some(targets);
+        self.redraw(camera)
     }
 
     /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.

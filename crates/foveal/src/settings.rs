@@ -41,6 +41,48 @@ pub enum View {
     Instances,
     /// Motion since the last frame: red = right, green = down, 16 pixels to full scale around mid-grey.
     Motion,
+    /// Pixels that anti-aliasing shades more than once: white.
+    Edges,
+    /// How often anti-aliasing shades each pixel: black once, then from blue through red to white for all
+    /// sub-samples.
+    Samples,
+}
+
+/// How edges are smoothed. See `docs/antialiasing.md`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Antialiasing {
+    /// One sample at each pixel's centre.
+    #[default]
+    None,
+    /// Every sub-sample is shaded: the reference.
+    Ssaa,
+    /// Pixels that several surfaces share are shaded once per surface, the others once.
+    Msaa,
+}
+
+/// Where a pixel's sub-samples lie.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SamplePattern {
+    /// A regular grid of n x n; drawn at n times the resolution.
+    #[default]
+    Grid,
+    /// 4 or 8 samples, no two in one row or column: a rotated grid; drawn once per sample.
+    Rotated,
+}
+
+/// Which pixels [`Antialiasing::Msaa`] takes for edges, and what it shades there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeTest {
+    /// Sub-samples that differ in instance, plane or direction; shaded once per surface, weighted by coverage.
+    #[default]
+    Surface,
+    /// The source's: reversed depths more than 1e-4 apart; all sub-samples are shaded.
+    Paper,
+    /// None; the first sub-sample alone is shaded: the source's 'none'.
+    Never,
 }
 
 /// How light is reflected.
@@ -98,6 +140,15 @@ pub struct Settings {
     pub tone_map: ToneMap,
     /// Largest anisotropy of texture filtering, 1 to 16.
     pub anisotropy: u16,
+    /// How edges are smoothed.
+    pub aa: Antialiasing,
+    /// Sub-samples per pixel where `aa` is not none: a square from 4 to 256 for the grid (16 at most with
+    /// msaa), 4 or 8 for the rotated pattern.
+    pub samples: u32,
+    /// Where the sub-samples lie.
+    pub pattern: SamplePattern,
+    /// Which pixels msaa takes for edges.
+    pub edge_test: EdgeTest,
     /// How many samples the deferred stage shades. All settings below are of coarse shading.
     pub shading: Shading,
     /// By what means coarse samples are visited.
@@ -145,6 +196,10 @@ impl Default for Settings {
             exposure: 0.0,
             tone_map: ToneMap::default(),
             anisotropy: 8,
+            aa: Antialiasing::default(),
+            samples: 4,
+            pattern: SamplePattern::default(),
+            edge_test: EdgeTest::default(),
             shading: Shading::default(),
             backend: Backend::default(),
             coarsest_level: COARSEST_LEVEL,
@@ -205,6 +260,7 @@ impl Settings {
                 expected: "between 1 and 16",
             });
         }
-        coarse::validate(self)
+        coarse::validate(self)?;
+        crate::antialias::validate(self, limits)
     }
 }

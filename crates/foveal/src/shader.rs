@@ -48,6 +48,42 @@ pub(crate) const FORWARD: Parts = &[
 ];
 pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("output/tone_map.wgsl")];
 pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];
+const AA_SAMPLES: &str = include_str!("antialias/samples.wgsl");
+const AA_SURFACES: &str = include_str!("antialias/surfaces.wgsl");
+const AA_WEIGHT: &str = include_str!("antialias/weight.wgsl");
+const AA_QUEUE: &str = include_str!("antialias/queue.wgsl");
+pub(crate) const AA_MERGE: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    AA_SAMPLES,
+    AA_SURFACES,
+    AA_QUEUE,
+    include_str!("antialias/merge.wgsl"),
+];
+pub(crate) const AA_SHADE: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    AA_SAMPLES,
+    AA_SURFACES,
+    AA_WEIGHT,
+    AA_QUEUE,
+    include_str!("antialias/shade.wgsl"),
+];
+pub(crate) const AA_COMBINE: Parts = &[
+    FRAME,
+    AA_WEIGHT,
+    AA_QUEUE,
+    include_str!("antialias/combine.wgsl"),
+];
+pub(crate) const AA_STORE: Parts = &[AA_QUEUE, include_str!("antialias/store.wgsl")];
+pub(crate) const AA_VIEW: Parts = &[include_str!("antialias/view.wgsl")];
+
 const LEVEL: &str = include_str!("shared/level.wgsl");
 const BLOCKS: &str = include_str!("shared/blocks.wgsl");
 
@@ -269,6 +305,11 @@ mod tests {
         ("forward", FORWARD),
         ("tone map", TONE_MAP),
         ("view", VIEW),
+        ("merge", AA_MERGE),
+        ("edge shading", AA_SHADE),
+        ("combination", AA_COMBINE),
+        ("combination, store", AA_STORE),
+        ("tally", AA_VIEW),
         ("rate wish", RATE_WISH),
         ("rate pyramid", RATE_PYRAMID),
         ("rate owner", RATE_OWNER),
@@ -528,6 +569,26 @@ mod tests {
                 size,
                 cluster_tile,
                 reserved,
+            ]
+        );
+        assert_same_layout!(
+            AA_MERGE,
+            "Band",
+            crate::antialias::BandUniform,
+            [first_row, rows, reserved, offsets]
+        );
+        assert_same_layout!(
+            AA_SHADE,
+            "Queue",
+            crate::antialias::QueueUniform,
+            [
+                band_groups,
+                start,
+                all_groups,
+                total,
+                edge_pixels,
+                evaluations,
+                reserved
             ]
         );
         assert_same_layout!(

@@ -89,6 +89,10 @@ pub struct FrameStats {
     pub triangles: u64,
     /// Lighting evaluations of the deferred stage, backdrop included.
     pub shaded_samples: u64,
+    /// Share of the pixels that anti-aliasing shades more than once; 0 without anti-aliasing.
+    pub edge_fraction: f64,
+    /// Bytes of all targets that depend on the frame's size: G-buffers, radiance, picture, lists.
+    pub target_bytes: u64,
     /// With coarse shading.
     pub coarse: Option<CoarseStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.

@@ -1,10 +1,14 @@
 //! What a frame is drawn into.
 
+use crate::antialias::SampleTargets;
 use crate::geometry::GBuffer;
 use crate::gpu::Gpu;
 use crate::output::PICTURE_FORMAT;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
-use crate::{Settings, Shading};
+use crate::{Antialiasing, Settings, Shading};
+
+/// G-buffer, radiance, picture.
+const BYTES_PER_PIXEL: u64 = 28 + 8 + 4;
 
 /// The targets of one frame size.
 #[derive(Debug)]
@@ -14,11 +18,14 @@ pub(crate) struct Targets {
     pub(crate) radiance_view: wgpu::TextureView,
     /// The picture.
     pub(crate) picture_view: wgpu::TextureView,
+    /// What anti-aliasing needs besides.
+    pub(crate) samples: Option<SampleTargets>,
     /// With coarse shading.
     pub(crate) coarse: Option<CoarseTargets>,
 }
 
 impl Targets {
+    /// The targets for settings that were found valid.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let (width, height) = (settings.width, settings.height);
         let target = |label, format, usage| {
@@ -49,8 +56,16 @@ impl Targets {
                 sampled | wgpu::TextureUsages::STORAGE_BINDING,
             ),
             picture_view: target("picture", PICTURE_FORMAT, sampled),
+            samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseTargets::new(gpu, settings)),
         }
+    }
+
+    /// Bytes of all targets.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.picture_view.texture().size();
+        u64::from(size.width) * u64::from(size.height) * BYTES_PER_PIXEL
+            + self.samples.as_ref().map_or(0, SampleTargets::bytes)
     }
 }

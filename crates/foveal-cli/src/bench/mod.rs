@@ -1,6 +1,11 @@
-//! `foveal bench`: what each technique costs and gains. One file per technique.
+//! `foveal bench`: what each technique costs and gains against its plain reference. One file per technique.
+//!
+//! Modes are measured in turn, round after round, and compared within each round, so that a machine that is
+//! busy with something else slows all of them alike.
 
+mod antialiasing;
 mod culling;
+mod table;
 
 use clap::Subcommand;
 
@@ -9,6 +14,8 @@ use clap::Subcommand;
 pub(crate) enum BenchCommand {
     /// Rasterizing occluders and testing boxes on the CPU
     Culling(Box<culling::Args>),
+    /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
+    Antialiasing(antialiasing::Args),
 }
 
 impl BenchCommand {
@@ -16,6 +23,7 @@ impl BenchCommand {
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Culling(_) => "bench culling",
+            Self::Antialiasing(_) => "bench antialiasing",
         }
     }
 
@@ -23,6 +31,7 @@ impl BenchCommand {
     pub(crate) fn run(&self) -> anyhow::Result<()> {
         match self {
             Self::Culling(args) => culling::run(args),
+            Self::Antialiasing(args) => antialiasing::run(args),
         }
     }
 }

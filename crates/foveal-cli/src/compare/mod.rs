@@ -4,6 +4,8 @@ mod flip;
 mod numeric;
 mod ssim;
 
+pub(crate) use flip::ErrorMap;
+
 use std::fmt::Write;
 use std::path::PathBuf;
 

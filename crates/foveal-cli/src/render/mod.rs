@@ -21,15 +21,16 @@ use foveal::{AdapterStats, Renderer, Settings, Timing};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use pollster::block_on;
 
-pub(crate) use args::Args;
+pub(crate) use args::{Args, CameraArgs};
+pub(crate) use clock::now_ms;
 pub(crate) use summary::grouped;
+pub(crate) use viewpoint::Viewpoint;
 
 use crate::{atomic_file, console, gpu, scene_source};
-use clock::{now_ms, timed};
+use clock::timed;
 use drawing::Drawing;
 use frame_files::{FrameJob, FramePattern};
 use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};
-use viewpoint::Viewpoint;
 
 /// Draws what the arguments ask for.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {

@@ -3,7 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use foveal::{Culling, LightAssignment, LightingModel, Settings, ToneMap, View};
+use foveal::{
+    Antialiasing, Culling, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings,
+    ToneMap, View,
+};
 
 use crate::values::{self, VariantParser};
 
@@ -48,6 +51,25 @@ pub(crate) struct SettingsArgs {
     /// Largest anisotropy of texture filtering, 1 to 16 [default: 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
     anisotropy: Option<u16>,
+
+    /// How edges are smoothed: not at all, by shading every sub-sample, or once per surface in a pixel
+    /// [default: none]
+    #[arg(long, value_name = "MODE", value_parser = VariantParser::<Antialiasing>::new())]
+    aa: Option<Antialiasing>,
+
+    /// Sub-samples per pixel with --aa: 4, 9, 16, ... up to 256 for the grid (msaa: 16), 4 or 8 for the
+    /// rotated pattern [default: 4]
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
+
+    /// Where the sub-samples lie [default: grid]
+    #[arg(long, value_parser = VariantParser::<SamplePattern>::new())]
+    pattern: Option<SamplePattern>,
+
+    /// Which pixels msaa takes for edges: several surfaces, the source's depth difference, or none
+    /// [default: surface]
+    #[arg(long, value_name = "TEST", value_parser = VariantParser::<EdgeTest>::new())]
+    edge_test: Option<EdgeTest>,
 }
 
 impl SettingsArgs {
@@ -77,6 +99,10 @@ impl SettingsArgs {
             exposure,
             tone_map,
             anisotropy,
+            aa,
+            samples,
+            pattern,
+            edge_test,
         } = self.clone();
         if let Some((width, height)) = size {
             (settings.width, settings.height) = (width, height);
@@ -88,6 +114,10 @@ impl SettingsArgs {
         set(&mut settings.exposure, exposure);
         set(&mut settings.tone_map, tone_map);
         set(&mut settings.anisotropy, anisotropy);
+        set(&mut settings.aa, aa);
+        set(&mut settings.samples, samples);
+        set(&mut settings.pattern, pattern);
+        set(&mut settings.edge_test, edge_test);
     }
 }
 
@@ -101,6 +131,8 @@ fn set<T>(setting: &mut T, flag: Option<T>) {
 fn check(settings: &Settings) -> anyhow::Result<()> {
     let boundless = wgpu::Limits {
         max_texture_dimension_2d: u32::MAX,
+        max_buffer_size: u64::MAX,
+        max_storage_buffer_binding_size: u64::MAX,
         ..wgpu::Limits::default()
     };
     Ok(settings.validate(&boundless)?)
@@ -157,7 +189,7 @@ mod tests {
     }
 
     /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
-    const KEYS: [(&str, &str, &[&str]); 9] = [
+    const KEYS: [(&str, &str, &[&str]); 13] = [
         ("width", "33", &["--size", "33x720"]),
         ("height", "44", &["--size", "1280x44"]),
         ("view", "\"normals\"", &["--view", "normals"]),
@@ -171,6 +203,10 @@ mod tests {
         ("exposure", "-1.5", &["--exposure", "-1.5"]),
         ("tone-map", "\"linear\"", &["--tone-map", "linear"]),
         ("anisotropy", "2", &["--anisotropy", "2"]),
+        ("aa", "\"msaa\"", &["--aa", "msaa"]),
+        ("samples", "9", &["--samples", "9"]),
+        ("pattern", "\"rotated\"", &["--pattern", "rotated"]),
+        ("edge-test", "\"paper\"", &["--edge-test", "paper"]),
     ];
 
     #[test]

@@ -15,7 +15,7 @@ use crate::scene_source::{self, TimedCamera};
 const DEFAULT_FOV_DEG: f32 = 60.0;
 
 /// A camera for every moment.
-pub(super) struct Viewpoint {
+pub(crate) struct Viewpoint {
     kind: Kind,
     /// Takes the place of the camera's own field of view.
     fov_y_rad: Option<f32>,
@@ -31,7 +31,7 @@ enum Kind {
 
 impl Viewpoint {
     /// Follows the arguments; `scene` is posed at time 0, so that the choice does not depend on the frame.
-    pub(super) fn choose(
+    pub(crate) fn choose(
         args: &CameraArgs,
         scene: &Scene,
         scene_name: &str,
@@ -78,7 +78,7 @@ impl Viewpoint {
     }
 
     /// The camera at `time_s`, to which `scene` is posed.
-    pub(super) fn at(&self, scene: &Scene, time_s: f32) -> Camera {
+    pub(crate) fn at(&self, scene: &Scene, time_s: f32) -> Camera {
         let mut camera = match &self.kind {
             Kind::OfScene(index) => scene.cameras[*index].clone(),
             Kind::Still(camera) => camera.clone(),

@@ -4,12 +4,12 @@ use super::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
 use crate::gpu::Gpu;
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
-use crate::shader;
+use crate::{Antialiasing, EdgeTest, Settings, shader};
 
 /// Reversed: 1 at the near plane, 0 where nothing is.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-const IDENTITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
+pub(crate) const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+pub(crate) const IDENTITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
 /// What is seen at each pixel; 28 bytes a pixel.
 #[derive(Debug)]
@@ -52,6 +52,34 @@ impl GBuffer {
     }
 }
 
+/// A part of a G-buffer, and where the frame lies relative to it; all in texels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Window {
+    /// Left, top, width, height of the whole frame; it may reach beyond the G-buffer, and fractions of a
+    /// texel move the sample positions.
+    pub(crate) frame: [f32; 4],
+    /// Left, top, width, height of what is drawn.
+    pub(crate) part: [u32; 4],
+}
+
+/// What the geometry pass writes besides the surfaces as they are shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FaceNormals {
+    Omitted,
+    /// The triangles' own normals, for telling planes apart.
+    Written,
+}
+
+impl FaceNormals {
+    /// What these settings need.
+    pub(crate) fn wanted_by(settings: &Settings) -> Self {
+        match (settings.aa, settings.edge_test) {
+            (Antialiasing::Msaa, EdgeTest::Surface) => Self::Written,
+            _ => Self::Omitted,
+        }
+    }
+}
+
 /// Draws opaque and masked surfaces into the G-buffer.
 #[derive(Debug)]
 pub(crate) struct GeometryPass {
@@ -63,14 +91,16 @@ impl GeometryPass {
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
+        face_normals: FaceNormals,
     ) -> Self {
+        let face_normal = f64::from(u8::from(face_normals == FaceNormals::Written));
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "geometry",
             module: shader::module(gpu, "geometry", shader::GBUFFER),
             layout: shader::pipeline_layout(gpu, "geometry", &[frame_layout, material_layout]),
             targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],
             writes_depth: true,
-            constants: Vec::new(),
+            constants: vec![("FACE_NORMAL", face_normal)],
             has_mask: true,
         });
         Self { pipelines }
@@ -93,6 +123,23 @@ impl GeometryPass {
         list: &DrawList,
         target: &GBuffer,
     ) {
+        let size = target.depth_view.texture().size();
+        let whole = Window {
+            frame: [0.0, 0.0, size.width as f32, size.height as f32],
+            part: [0, 0, size.width, size.height],
+        };
+        self.draw_windows(recorder, scene, list, target, &[whole]);
+    }
+
+    /// Encodes the pass, drawing the frame once into each of `windows`.
+    pub(crate) fn draw_windows(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        windows: &[Window],
+    ) {
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &target.depth_view,
             depth_ops: Some(wgpu::Operations {
@@ -107,6 +154,10 @@ impl GeometryPass {
         ];
         let mut pass = recorder.render_pass("geometry", &colors, Some(depth));
         scene.geometry.bind(&mut pass);
-        DrawList::issue(&list.solid, &mut pass, scene, &self.pipelines);
+        for &Window { frame, part } in windows {
+            pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
+            pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
+            DrawList::issue(&list.solid, &mut pass, scene, &self.pipelines);
+        }
     }
 }

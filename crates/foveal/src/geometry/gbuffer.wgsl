@@ -2,6 +2,8 @@
 
 // Alpha cuts holes; without, the depth test may run before the shader.
 override MASKED: bool = false;
+// The triangle's own normal goes into the spare bits of the surface: anti-aliasing tells planes apart by it.
+override FACE_NORMAL: bool = false;
 
 struct GBufferOut {
     @location(0) surface: vec4u,
@@ -16,12 +18,19 @@ fn motion_in_pixels(now: vec3f, before: vec3f) -> vec2f {
 
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
+    // Derivatives come first: a discarded neighbour has none.
+    let face = cross(dpdx(in.world), dpdy(in.world));
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
     if MASKED && m.alpha < material.alpha_cutoff {
         discard;
     }
+    var words = pack_surface(m.surface);
+    if FACE_NORMAL {
+        let e = octahedral_from_unit(unit_or(face, m.surface.normal));
+        words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
+    }
     return GBufferOut(
-        pack_surface(m.surface),
+        words,
         vec2u(in.instance + 1u, pack2x16float(motion_in_pixels(in.now, in.before))),
     );
 }

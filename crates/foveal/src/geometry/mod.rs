@@ -7,5 +7,7 @@ mod pipelines;
 mod twin;
 
 pub(crate) use draw_list::DrawList;
-pub(crate) use gbuffer::{GBuffer, GeometryPass};
+pub(crate) use gbuffer::{
+    DEPTH_FORMAT, FaceNormals, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, Window,
+};
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines};

@@ -128,7 +128,7 @@ impl GpuTimer {
         let _ = self.profiler.end_frame();
     }
 
-    /// The oldest finished frame's passes in order; empty while none is finished.
+    /// The oldest finished frame's passes in order, those of one name added up; empty while none is finished.
     pub(crate) fn collect(&mut self, gpu: &Gpu) -> Vec<Timing> {
         let Some(results) = self
             .profiler
@@ -136,14 +136,18 @@ impl GpuTimer {
         else {
             return Vec::new();
         };
-        results
-            .into_iter()
-            .filter_map(|r| {
-                r.time.map(|t| Timing {
-                    name: r.label,
-                    ms: (t.end - t.start) * 1000.0,
-                })
-            })
-            .collect()
+        let mut timings: Vec<Timing> = Vec::new();
+        for result in results {
+            let Some(time) = result.time else { continue };
+            let ms = (time.end - time.start) * 1000.0;
+            match timings.iter_mut().find(|t| t.name == result.label) {
+                Some(timing) => timing.ms += ms,
+                None => timings.push(Timing {
+                    name: result.label,
+                    ms,
+                }),
+            }
+        }
+        timings
     }
 }

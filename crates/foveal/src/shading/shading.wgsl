@@ -7,17 +7,21 @@
 @group(1) @binding(2) var<storage, read> lights: Lights;
 @group(1) @binding(3) var<storage, read> cluster_lights: array<u32>;
 
-// Radiance at a G-buffer texel.
-fn shade(texel: vec2u) -> vec4f {
-    let pixel = vec2f(texel) + 0.5;
-    let depth = textureLoad(gbuffer_depth, texel, 0);
+// Radiance at a position in pixels, from what the G-buffer holds there.
+fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {
     if depth == 0.0 {
         let far = world_from_view_position(view_position(pixel, 1.0));
         return vec4f(environment(-direction_to_eye(far)), 1.0);
     }
     let distance = view_distance(depth);
     let position = world_from_view_position(view_position(pixel, distance));
-    let surface = unpack_surface(textureLoad(gbuffer_surface, texel, 0), position);
+    let surface = unpack_surface(words, position);
     // The largest half: brighter would become infinite in the target.
     return vec4f(min(lit(surface, pixel, distance), vec3f(65504.0)), 1.0);
+}
+
+// Radiance at a G-buffer texel.
+fn shade(texel: vec2u) -> vec4f {
+    let depth = textureLoad(gbuffer_depth, texel, 0);
+    return radiance_at(vec2f(texel) + 0.5, depth, textureLoad(gbuffer_surface, texel, 0));
 }

@@ -53,7 +53,8 @@ fn exp2_integer(n: i32) -> f32 {
     return bitcast<f32>(u32(n + 127) << 23u);
 }
 
-// x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic, roughness.
+// x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic, roughness, and
+// 4 more bits of each base colour, which only an average has.
 fn pack_surface(s: Surface) -> vec4u {
     return vec4u(
         pack4x8unorm(vec4f(sqrt(saturate(s.base_color)), s.occlusion)),
@@ -64,7 +65,8 @@ fn pack_surface(s: Surface) -> vec4u {
 }
 
 fn unpack_surface(words: vec4u, position: vec3f) -> Surface {
-    let color = unpack4x8unorm(words.x);
+    let finer = vec3f((vec3u(words.w) >> vec3u(16u, 20u, 24u)) & vec3u(15u)) / 4080.0;
+    let color = unpack4x8unorm(words.x) + vec4f(finer, 0.0);
     let material = unpack4x8unorm(words.w);
     return Surface(
         position,

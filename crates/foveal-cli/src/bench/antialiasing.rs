@@ -1,0 +1,359 @@
+//! `foveal bench antialiasing`: the source's comparison (none, MSAA, SSAA), and ours beside it.
+
+use std::path::PathBuf;
+
+use foveal::{
+    AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Gpu, Renderer, SamplePattern, Settings,
+};
+use foveal_scene::{Camera, Scene};
+use pollster::block_on;
+use serde::Serialize;
+
+use super::table::{median, text};
+use crate::compare::ErrorMap;
+use crate::picture::Picture;
+use crate::render::{CameraArgs, Viewpoint, now_ms};
+use crate::{atomic_file, console, gpu, scene_source, values};
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 1;
+
+/// Frames per second that the source reports on a GTX 960, Sponza, about 1000 x 1500: none, MSAA, SSAA.
+const SOURCE_FPS: [(&str, &str); 3] =
+    [("none", "> 60"), ("msaa", "about 30"), ("ssaa", "about 10")];
+
+/// Arguments of `foveal bench antialiasing`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// A glTF 2.0 file or a generated scene
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
+    scene: String,
+
+    /// Width and height in pixels; the source's by default
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1000x1500")]
+    size: (u32, u32),
+
+    #[command(flatten)]
+    camera: CameraArgs,
+
+    /// Add N coloured point lights to the scene
+    #[arg(long, value_name = "N", default_value_t = 200)]
+    point_lights: u32,
+
+    /// Frames of each mode after one that warms up; figures are medians over them
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    rounds: u32,
+
+    /// Sub-samples of the SSAA picture that is taken for the truth; 0: leave it out
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    reference: u32,
+
+    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    #[arg(long, value_name = "NAME|NUMBER")]
+    adapter: Option<String>,
+
+    /// Write the figures as JSON; `-`: print JSON instead of the table
+    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+}
+
+/// All figures of a run.
+#[derive(Debug, Serialize)]
+struct Report {
+    schema: &'static str,
+    schema_version: u32,
+    adapter: AdapterStats,
+    scene: String,
+    camera: String,
+    point_lights: u32,
+    rounds: u32,
+    rows: Vec<Row>,
+}
+
+/// One mode's figures; times are medians in milliseconds.
+#[derive(Debug, Serialize)]
+struct Row {
+    scene: String,
+    width: u32,
+    height: u32,
+    mode: Antialiasing,
+    edge_test: EdgeTest,
+    pattern: SamplePattern,
+    samples: u32,
+    edge_fraction: f64,
+    shaded_samples: u64,
+    target_bytes: u64,
+    /// Geometry and merge.
+    gbuffer_ms: f64,
+    /// Shading, shading of edges, combination.
+    shade_ms: f64,
+    frame_ms: f64,
+    /// Medians of the ratios within each round.
+    shade_ratio_to_none: f64,
+    ratio_to_none: f64,
+    /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
+    flip_to_ssaa: f64,
+    flip_to_reference: Option<f64>,
+}
+
+/// One mode while it is measured.
+struct Mode {
+    renderer: Renderer,
+    picture: Option<Picture>,
+    rounds: Vec<Times>,
+    last: FrameStats,
+}
+
+#[derive(Clone, Copy)]
+struct Times {
+    gbuffer_ms: f64,
+    shade_ms: f64,
+    frame_ms: f64,
+}
+
+impl Times {
+    fn of(stats: &FrameStats) -> Self {
+        let sum = |names: &[&str]| {
+            let passes = stats.gpu_ms.iter();
+            passes
+                .filter(|t| names.contains(&t.name.as_str()))
+                .map(|t| t.ms)
+                .sum()
+        };
+        Self {
+            gbuffer_ms: sum(&["geometry", "merge"]),
+            shade_ms: sum(&["shading", "edge shading", "combination"]),
+            frame_ms: stats.frame_ms,
+        }
+    }
+}
+
+/// The modes: the first is what the others are compared with, the second what FLIP is.
+fn modes(base: &Settings) -> Vec<Settings> {
+    use Antialiasing::{Msaa, None, Ssaa};
+    use EdgeTest::{Paper, Surface};
+    use SamplePattern::{Grid, Rotated};
+    [
+        (None, Surface, Grid, 4),
+        (Ssaa, Surface, Grid, 4),
+        (Msaa, Surface, Grid, 4),
+        (Msaa, Paper, Grid, 4),
+        (Msaa, Surface, Rotated, 4),
+        (Msaa, Surface, Rotated, 8),
+    ]
+    .map(|(aa, edge_test, pattern, samples)| Settings {
+        aa,
+        edge_test,
+        pattern,
+        samples,
+        ..base.clone()
+    })
+    .to_vec()
+}
+
+/// Runs the benchmark.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    now_ms();
+    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
+    if let Some(path) = to_file {
+        atomic_file::check_writable(path)?;
+    }
+    let mut scene = scene_source::load(&args.scene)?;
+    scene_source::add_point_lights(&mut scene, args.point_lights, 0);
+    scene.light_by_default();
+    let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
+    let gpu = gpu::open(args.adapter.as_deref())?;
+    let base = Settings {
+        width: args.size.0,
+        height: args.size.1,
+        ..Settings::default()
+    };
+    let report = Report {
+        schema: "foveal-bench-antialiasing",
+        schema_version: SCHEMA_VERSION,
+        adapter: gpu.adapter_stats(),
+        rows: rows(args, &gpu, &scene, &camera, &base)?,
+        scene: scene.name,
+        camera: camera.name,
+        point_lights: args.point_lights,
+        rounds: args.rounds,
+    };
+    let json = serde_json::to_string_pretty(&report)? + "\n";
+    match (&args.json, to_file) {
+        (_, Some(path)) => {
+            atomic_file::write(path, json.as_bytes())?;
+            console::print_result(&summary(&report))
+        }
+        (Some(_), None) => console::print_result(&json),
+        (None, None) => console::print_result(&summary(&report)),
+    }
+}
+
+fn rows(
+    args: &Args,
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    base: &Settings,
+) -> anyhow::Result<Vec<Row>> {
+    let mut modes = modes(base)
+        .iter()
+        .map(|settings| Mode::new(gpu, scene, settings))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    for round in 0..=args.rounds {
+        for mode in &mut modes {
+            mode.draw(camera, round > 0)?;
+        }
+    }
+    let reference = if args.reference > 0 {
+        let settings = Settings {
+            aa: Antialiasing::Ssaa,
+            samples: args.reference,
+            ..base.clone()
+        };
+        let mut mode = Mode::new(gpu, scene, &settings)?;
+        mode.draw(camera, false)?;
+        mode.picture
+    } else {
+        None
+    };
+    let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
+    Ok((modes.iter().zip(&pictures))
+        .map(|(mode, picture)| {
+            let flip = |truth: &Picture| ErrorMap::between(truth, picture).mean();
+            let reference = reference.as_ref().map(flip);
+            mode.row(&scene.name, &modes[0], flip(&pictures[1]), reference)
+        })
+        .collect())
+}
+
+impl Mode {
+    fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
+        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        block_on(renderer.set_scene(scene))?;
+        Ok(Self {
+            renderer,
+            picture: None,
+            rounds: Vec::new(),
+            last: FrameStats::default(),
+        })
+    }
+
+    /// Draws one frame; the first one's picture is kept.
+    fn draw(&mut self, camera: &Camera, measured: bool) -> anyhow::Result<()> {
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        self.last = block_on(self.renderer.render(&frame))?;
+        if measured {
+            self.rounds.push(Times::of(&self.last));
+        }
+        if self.picture.is_none() {
+            let bytes = block_on(self.renderer.read_picture())?;
+            let (width, height) = (self.last.width, self.last.height);
+            self.picture = Some(Picture::from_rgba(width, height, &bytes)?);
+        }
+        Ok(())
+    }
+
+    fn row(&self, scene: &str, none: &Self, to_ssaa: f64, to_reference: Option<f64>) -> Row {
+        let settings = self.renderer.settings();
+        let middle = |figure: fn(&Times) -> f64| median(self.rounds.iter().map(figure).collect());
+        let ratio = |figure: fn(&Times) -> f64| {
+            let pairs = self.rounds.iter().zip(&none.rounds);
+            median(
+                pairs
+                    .map(|(ours, none)| figure(ours) / figure(none))
+                    .collect(),
+            )
+        };
+        Row {
+            scene: scene.to_owned(),
+            width: settings.width,
+            height: settings.height,
+            mode: settings.aa,
+            edge_test: settings.edge_test,
+            pattern: settings.pattern,
+            samples: match settings.aa {
+                Antialiasing::None => 1,
+                _ => settings.samples,
+            },
+            edge_fraction: self.last.edge_fraction,
+            shaded_samples: self.last.shaded_samples,
+            target_bytes: self.last.target_bytes,
+            gbuffer_ms: middle(|t| t.gbuffer_ms),
+            shade_ms: middle(|t| t.shade_ms),
+            frame_ms: middle(|t| t.frame_ms),
+            shade_ratio_to_none: ratio(|t| t.shade_ms),
+            ratio_to_none: ratio(|t| t.frame_ms),
+            flip_to_ssaa: to_ssaa,
+            flip_to_reference: to_reference,
+        }
+    }
+}
+
+/// A kebab-case name, as the settings file spells it.
+fn name_of(value: impl Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(name)) => name,
+        _ => String::new(),
+    }
+}
+
+fn summary(report: &Report) -> String {
+    let head = [
+        "mode",
+        "edges",
+        "G-buffer ms",
+        "shade ms",
+        "frame ms",
+        "shade/none",
+        "frame/none",
+        "FLIP to ssaa",
+        "FLIP to truth",
+        "MB",
+        "source fps",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    for row in &report.rows {
+        let mode = name_of(row.mode);
+        let name = match row.mode {
+            Antialiasing::None => mode.clone(),
+            Antialiasing::Ssaa => format!("{mode} {} {}", name_of(row.pattern), row.samples),
+            Antialiasing::Msaa => format!(
+                "{mode} {} {} {}",
+                name_of(row.pattern),
+                row.samples,
+                name_of(row.edge_test)
+            ),
+        };
+        let source = SOURCE_FPS.iter().find(|(m, _)| *m == mode);
+        lines.push(vec![
+            name,
+            format!("{:.2} %", row.edge_fraction * 100.0),
+            format!("{:.1}", row.gbuffer_ms),
+            format!("{:.1}", row.shade_ms),
+            format!("{:.1}", row.frame_ms),
+            format!("{:.3}", row.shade_ratio_to_none),
+            format!("{:.3}", row.ratio_to_none),
+            format!("{:.4}", row.flip_to_ssaa),
+            row.flip_to_reference
+                .map_or("-".to_owned(), |f| format!("{f:.4}")),
+            format!("{:.0}", row.target_bytes as f64 / 1e6),
+            source.map_or(String::new(), |(_, fps)| (*fps).to_owned()),
+        ]);
+    }
+    let about = report.rows.first().map_or(String::new(), |row| {
+        format!(
+            "{} at {}x{}, {} point lights added, {}, medians of {} rounds\n",
+            report.scene,
+            row.width,
+            row.height,
+            report.point_lights,
+            report.adapter.name,
+            report.rounds
+        )
+    });
+    about + &text(&lines)
+}

@@ -1,0 +1,44 @@
+// Combination: what the entries of a pixel came to, with the ordinary path's radiance for the rest of its
+// coverage. The result stays in the sums: no texture is read and written in one step, so store.wgsl follows.
+// After frame.wgsl, weight.wgsl and queue.wgsl.
+
+// The entries hold all of a pixel; else the largest surface is the ordinary path's.
+override ALL: bool = false;
+// Sub-samples per pixel.
+override COUNT: u32 = 4u;
+
+@group(1) @binding(0) var<storage, read> queue: Queue;
+@group(1) @binding(1) var<storage, read> entries: array<Entry>;
+@group(1) @binding(2) var<storage, read_write> sums: array<vec2u>;
+// Owner levels of 2 x 2 pixels each: coarse pixels stay as they are.
+override COARSE: bool = false;
+@group(1) @binding(4) var owner_levels: texture_2d<u32>;
+@group(1) @binding(3) var ordinary: texture_2d<f32>;
+
+@compute @workgroup_size(64)
+fn combine(@builtin(global_invocation_id) id: vec3u) {
+    let end = min(queue.total, arrayLength(&entries));
+    for (var i = id.x; i < end; i += queue.all_groups.x * 64u) {
+        let entry = entries[i];
+        if !is_first_of_its_pixel(entry) {
+            continue;
+        }
+        if COARSE && (textureLoad(owner_levels, pixel_of(entry) / 2u, 0).x & 0xfu) != 0u {
+            sums[i] = pack_half4(vec4f(0.0));
+            continue;
+        }
+        var sum = vec4f(0.0);
+        var rest = COUNT;
+        let of_pixel = entry.samples >> 24u;
+        for (var k = 0u; k < of_pixel; k++) {
+            sum += unpack_half4(sums[i + k]);
+            rest -= countOneBits(entries[i + k].samples & 0xffffu);
+        }
+        if !ALL {
+            let largest = textureLoad(ordinary, pixel_of(entry), 0).rgb;
+            sum += vec4f(largest, 1.0) * (weight_of(largest) * f32(rest) / f32(COUNT));
+        }
+        // Alpha says that there is something to store.
+        sums[i] = pack_half4(vec4f(sum.rgb / sum.a, 1.0));
+    }
+}

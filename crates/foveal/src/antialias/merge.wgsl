@@ -1,0 +1,99 @@
+// Merge: from the band of sub-samples to one G-buffer texel per pixel, which the ordinary stages read, and to
+// entries for what else the pixel shows. After surfaces.wgsl and queue.wgsl.
+
+// Which pixels are edges: 0 none, 1 all, 2 by depth, 3 by surface.
+override EDGES: u32 = 3u;
+
+// `Queue`, to be counted in.
+struct QueueCounters {
+    band_groups_x: atomic<u32>,
+    band_groups_y: u32,
+    band_groups_z: u32,
+    start: u32,
+    all_groups_x: atomic<u32>,
+    all_groups_y: u32,
+    all_groups_z: u32,
+    total: atomic<u32>,
+    edge_pixels: atomic<u32>,
+    evaluations: atomic<u32>,
+    reserved: vec2u,
+}
+
+@group(2) @binding(2) var<storage, read_write> queue: QueueCounters;
+@group(2) @binding(3) var<storage, read_write> entries: array<Entry>;
+
+struct MergeOut {
+    @location(0) surface: vec4u,
+    @location(1) identity: vec2u,
+    // How often the pixel is shaded, and how many sub-samples the texel stands for.
+    @location(2) tally: vec2u,
+    @builtin(frag_depth) depth: f32,
+}
+
+@vertex
+fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+// As tatsy's shader has it, on our depth: reversed, 1 at the near plane.
+fn depths_differ(pixel: vec2u) -> bool {
+    let first = textureLoad(gbuffer_depth, sample_texel(pixel, 0u), 0);
+    for (var i = 1u; i < COUNT; i++) {
+        if abs(textureLoad(gbuffer_depth, sample_texel(pixel, i), 0) - first) > 1e-4 {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Room for a pixel's entries, or false where the queue is full.
+fn reserve(count: u32, evaluations: u32, base: ptr<function, u32>) -> bool {
+    let first = atomicAdd(&queue.total, count);
+    *base = first;
+    let end = first + count;
+    if end > arrayLength(&entries) {
+        // Nothing to shade in what room there is.
+        for (var i = first; i < min(end, arrayLength(&entries)); i++) {
+            entries[i] = Entry(0u, 0u);
+        }
+        return false;
+    }
+    atomicMax(&queue.band_groups_x, (end - queue.start + 63u) / 64u);
+    atomicMax(&queue.all_groups_x, min((end + 63u) / 64u, 65535u));
+    atomicAdd(&queue.edge_pixels, 1u);
+    atomicAdd(&queue.evaluations, evaluations);
+    return true;
+}
+
+@fragment
+fn merge(@builtin(position) position: vec4f) -> MergeOut {
+    let pixel = vec2u(position.xy);
+    let packed = pixel.x | (pixel.y << 16u);
+    var base = 0u;
+    if EDGES == 3u {
+        let found = largest_surface(pixel);
+        let mean = blend_of(pixel, found.x);
+        let identity = textureLoad(sample_identity, sample_texel(pixel, firstTrailingBit(found.x)), 0).xy;
+        var shades = 1u;
+        let further = found.y - 1u;
+        if further > 0u && reserve(further, further, &base) {
+            shades = found.y;
+            var left = all_samples() & ~found.x;
+            for (var i = 0u; left != 0u; i++) {
+                let members = surface_of_first(pixel, left);
+                left &= ~members;
+                entries[base + i] = Entry(packed, members | (i << 16u) | (further << 24u));
+            }
+        }
+        return MergeOut(mean.words, identity, vec2u(shades, countOneBits(found.x)), mean.depth);
+    }
+    var shades = 1u;
+    if (EDGES == 1u || (EDGES == 2u && depths_differ(pixel))) && reserve(1u, COUNT, &base) {
+        shades = min(COUNT, 255u);
+        entries[base] = Entry(packed, 1u << 24u);
+    }
+    let texel = sample_texel(pixel, 0u);
+    let words = textureLoad(gbuffer_surface, texel, 0);
+    let identity = textureLoad(sample_identity, texel, 0).xy;
+    return MergeOut(words, identity, vec2u(shades, 1u), textureLoad(gbuffer_depth, texel, 0));
+}

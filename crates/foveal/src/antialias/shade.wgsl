@@ -1,0 +1,47 @@
+// Shading of the queue's entries: a further surface, or every sub-sample of a pixel. After surfaces.wgsl,
+// weight.wgsl and queue.wgsl.
+
+// An entry stands for every sub-sample of its pixel, else for those of one surface.
+override ALL: bool = false;
+
+@group(2) @binding(2) var<storage, read> queue: Queue;
+@group(2) @binding(3) var<storage, read> entries: array<Entry>;
+// Per entry: weighted radiance, and the weight in alpha; halves.
+@group(2) @binding(4) var<storage, read_write> sums: array<vec2u>;
+
+fn weighted(radiance: vec3f, coverage: u32) -> vec4f {
+    return vec4f(radiance, 1.0) * (weight_of(radiance) * f32(coverage) / f32(COUNT));
+}
+
+fn all_of(pixel: vec2u) -> vec4f {
+    var sum = vec4f(0.0);
+    for (var i = 0u; i < COUNT; i++) {
+        let texel = sample_texel(pixel, i);
+        let depth = textureLoad(gbuffer_depth, texel, 0);
+        let words = textureLoad(gbuffer_surface, texel, 0);
+        sum += weighted(radiance_at(sample_position(pixel, i), depth, words).rgb, 1u);
+    }
+    return sum;
+}
+
+fn surface_of(pixel: vec2u, members: u32) -> vec4f {
+    let mean = blend_of(pixel, members);
+    return weighted(radiance_at(mean.position, mean.depth, mean.words).rgb, countOneBits(members));
+}
+
+@compute @workgroup_size(64)
+fn shade_entries(@builtin(global_invocation_id) id: vec3u) {
+    let index = queue.start + id.x;
+    if index >= min(queue.total, arrayLength(&entries)) {
+        return;
+    }
+    let entry = entries[index];
+    if entry.samples == 0u {
+        return;
+    }
+    if ALL {
+        sums[index] = pack_half4(all_of(pixel_of(entry)));
+    } else {
+        sums[index] = pack_half4(surface_of(pixel_of(entry), entry.samples & 0xffffu));
+    }
+}

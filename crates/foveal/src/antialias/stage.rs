@@ -1,0 +1,253 @@
+//! One frame of anti-aliasing, band by band.
+
+use crate::geometry::{DrawList, GeometryPass};
+use crate::gpu::{Gpu, bind_group, read_buffer};
+use crate::lights::LightAssigner;
+use crate::output::PICTURE_FORMAT;
+use crate::recorder::{Recorder, drawn_over, overwritten};
+use crate::scene::SceneOnGpu;
+use crate::shading::ShadingPass;
+use crate::targets::Targets;
+use crate::{Antialiasing, Error, Settings, View, shader};
+
+use super::pattern::{Band, Pattern};
+use super::pipelines::{AntialiasPipelines, Edges};
+use super::targets::{QueueUniform, SampleTargets};
+
+/// Where the queue holds the workgroups of a band, and of all entries.
+const BAND_GROUPS: u64 = std::mem::offset_of!(QueueUniform, band_groups) as u64;
+const ALL_GROUPS: u64 = std::mem::offset_of!(QueueUniform, all_groups) as u64;
+
+/// Lighting evaluations of a frame, and where they went.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct EdgeCounts {
+    /// Pixels that were shaded more than once.
+    pub(crate) edge_pixels: u64,
+    /// Evaluations besides the ordinary path's.
+    pub(crate) evaluations: u64,
+}
+
+/// Fills the G-buffer from sub-samples, and shades what one evaluation per pixel leaves out.
+#[derive(Debug)]
+pub(crate) struct AntialiasStage {
+    edges: Edges,
+    pipelines: AntialiasPipelines,
+    /// Draws [`View::Edges`] or [`View::Samples`].
+    view: Option<(wgpu::RenderPipeline, wgpu::BindGroupLayout)>,
+}
+
+impl AntialiasStage {
+    /// `None` where the settings ask for no anti-aliasing.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        shading: &ShadingPass,
+    ) -> Option<Self> {
+        if settings.aa == Antialiasing::None {
+            return None;
+        }
+        let number = match settings.view {
+            View::Edges => Some(0.0),
+            View::Samples => Some(1.0),
+            _ => None,
+        };
+        Some(Self {
+            edges: Edges::of(settings),
+            pipelines: AntialiasPipelines::new(gpu, settings, frame, shading.input_layout()),
+            view: number.map(|number| view_pipeline(gpu, settings, frame, number)),
+        })
+    }
+
+    /// Draws all bands: fills the ordinary G-buffer and, if `shade`, the sums of the edge pixels.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
+    pub(crate) fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        geometry: &GeometryPass,
+        shading: &ShadingPass,
+        lights: &LightAssigner,
+        targets: &Targets,
+        shade: bool,
+    ) {
+        let Some(t) = &targets.samples else { return };
+        let size = targets.picture_view.texture().size();
+        let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights.bits());
+        t.begin_frame(recorder.encoder);
+        for (band, uniform) in &t.bands {
+            let windows = band.windows(&t.pattern, size.width, size.height);
+            geometry.draw_windows(recorder, scene, list, &t.samples, &windows);
+            t.begin_band(recorder.encoder);
+            self.merge(recorder, &input, t, targets, *band, uniform);
+            if shade && self.edges != Edges::None {
+                self.shade_entries(recorder, &input, t, uniform);
+            }
+        }
+    }
+
+    fn merge(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        t: &SampleTargets,
+        targets: &Targets,
+        band: Band,
+        uniform: &wgpu::Buffer,
+    ) {
+        let group = bind_group(
+            &recorder.gpu.device,
+            "merge",
+            &self.pipelines.merge_layout,
+            &[
+                uniform.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&t.samples.identity_view),
+                t.queue.as_entire_binding(),
+                t.entries.as_entire_binding(),
+            ],
+        );
+        let gbuffer = &targets.gbuffer;
+        let colors = [&gbuffer.surface_view, &gbuffer.identity_view, &t.tally_view].map(drawn_over);
+        let depth = wgpu::RenderPassDepthStencilAttachment {
+            view: &gbuffer.depth_view,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Load,
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        };
+        let width = targets.picture_view.texture().width();
+        let mut pass = recorder.render_pass("merge", &colors, Some(depth));
+        pass.set_pipeline(&self.pipelines.merge);
+        pass.set_bind_group(1, input, &[]);
+        pass.set_bind_group(2, &group, &[]);
+        pass.set_scissor_rect(0, band.first_row, width, band.rows);
+        pass.draw(0..3, 0..1);
+    }
+
+    fn shade_entries(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        t: &SampleTargets,
+        uniform: &wgpu::Buffer,
+    ) {
+        let group = bind_group(
+            &recorder.gpu.device,
+            "edge shading",
+            &self.pipelines.shade_layout,
+            &[
+                uniform.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&t.samples.identity_view),
+                t.queue.as_entire_binding(),
+                t.entries.as_entire_binding(),
+                t.sums.as_entire_binding(),
+            ],
+        );
+        let mut pass = recorder.compute_pass("edge shading");
+        pass.set_pipeline(&self.pipelines.shade);
+        pass.set_bind_group(1, input, &[]);
+        pass.set_bind_group(2, &group, &[]);
+        pass.dispatch_workgroups_indirect(&t.queue, BAND_GROUPS);
+    }
+
+    /// Whether the ordinary path's radiance is seen anywhere: not where every sub-sample is shaded.
+    pub(crate) fn needs_ordinary(&self) -> bool {
+        self.edges != Edges::All
+    }
+
+    /// Joins the entries with the ordinary path's radiance, in the radiance target.
+    pub(crate) fn combine(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
+        let Some(t) = &targets.samples else { return };
+        if self.edges == Edges::None {
+            return;
+        }
+        let p = &self.pipelines;
+        // Without a rate map it is not looked at.
+        let owners = targets
+            .coarse
+            .as_ref()
+            .map_or(&t.tally_view, |c| &c.rate.owner.whole);
+        let bindings = [
+            t.queue.as_entire_binding(),
+            t.entries.as_entire_binding(),
+            t.sums.as_entire_binding(),
+            wgpu::BindingResource::TextureView(&targets.radiance_view),
+            wgpu::BindingResource::TextureView(owners),
+        ];
+        let steps = [
+            (&p.combine, &p.combine_layout, &bindings[..]),
+            (&p.store, &p.store_layout, &bindings[..4]),
+        ];
+        for (pipeline, layout, bindings) in steps {
+            let group = bind_group(&recorder.gpu.device, "combination", layout, bindings);
+            let mut pass = recorder.compute_pass("combination");
+            pass.set_pipeline(pipeline);
+            pass.set_bind_group(1, &group, &[]);
+            pass.dispatch_workgroups_indirect(&t.queue, ALL_GROUPS);
+        }
+    }
+
+    /// Draws the view of the tally that the settings ask for; `false` where they ask for none.
+    pub(crate) fn show(&self, recorder: &mut Recorder<'_>, targets: &Targets) -> bool {
+        let (Some((pipeline, layout)), Some(t)) = (&self.view, &targets.samples) else {
+            return false;
+        };
+        let tally = [wgpu::BindingResource::TextureView(&t.tally_view)];
+        let group = bind_group(&recorder.gpu.device, "tally", layout, &tally);
+        let target = [overwritten(&targets.picture_view)];
+        let mut pass = recorder.render_pass("view", &target, None);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &group, &[]);
+        pass.draw(0..3, 0..1);
+        true
+    }
+
+    /// What the last frame shaded.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`], [`Error::Validation`].
+    pub(crate) async fn counts(&self, gpu: &Gpu, targets: &Targets) -> Result<EdgeCounts, Error> {
+        let Some(t) = &targets.samples else {
+            return Ok(EdgeCounts::default());
+        };
+        let bytes = read_buffer(gpu, &t.queue).await?;
+        let queue: QueueUniform = bytemuck::pod_read_unaligned(&bytes);
+        let size = targets.picture_view.texture().size();
+        let pixels = u64::from(size.width) * u64::from(size.height);
+        Ok(EdgeCounts {
+            edge_pixels: u64::from(queue.edge_pixels),
+            // The device's own sum may have wrapped around.
+            evaluations: match self.edges {
+                Edges::All => pixels * u64::from(t.pattern.count()),
+                _ => u64::from(queue.evaluations),
+            },
+        })
+    }
+}
+
+fn view_pipeline(
+    gpu: &Gpu,
+    settings: &Settings,
+    frame: &wgpu::BindGroupLayout,
+    number: f64,
+) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
+    let uint = crate::gpu::sampled(wgpu::TextureSampleType::Uint);
+    let fragment = wgpu::ShaderStages::FRAGMENT;
+    let layout = crate::gpu::bind_group_layout(&gpu.device, "tally", fragment, &[uint]);
+    let count = f64::from(Pattern::of(settings).count());
+    let pipeline = shader::full_screen(
+        gpu,
+        "tally",
+        &shader::module(gpu, "tally", shader::AA_VIEW),
+        "view",
+        &[frame, &layout],
+        PICTURE_FORMAT,
+        &[("VIEW", number), ("COUNT", count)],
+    );
+    (pipeline, layout)
+}

@@ -1,0 +1,162 @@
+//! What anti-aliasing keeps: the band of sub-samples, the tally of each pixel, and the queue of what is shaded
+//! besides the ordinary path.
+
+use bytemuck::{Pod, Zeroable};
+
+use crate::Settings;
+use crate::geometry::GBuffer;
+use crate::gpu::Gpu;
+
+use super::pattern::{BYTES_PER_SAMPLE, Band, BandUniform, Pattern};
+
+/// How often each pixel is shaded, and how many sub-samples its G-buffer texel stands for.
+pub(super) const TALLY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Uint;
+
+/// Bytes per pixel of the tally.
+const TALLY_BYTES: u64 = 2;
+/// Bytes of an entry of the queue, and of what it comes to.
+const ENTRY_BYTES: u64 = 8;
+
+/// Mirrors `Queue` in `antialias/queue.wgsl`, where the fields are explained.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct QueueUniform {
+    pub(crate) band_groups: [u32; 3],
+    pub(crate) start: u32,
+    pub(crate) all_groups: [u32; 3],
+    pub(crate) total: u32,
+    pub(crate) edge_pixels: u32,
+    pub(crate) evaluations: u32,
+    pub(crate) reserved: [u32; 2],
+}
+
+impl QueueUniform {
+    /// Of a frame that has drawn nothing yet.
+    const EMPTY: Self = Self {
+        band_groups: [0, 1, 1],
+        start: 0,
+        all_groups: [0, 1, 1],
+        total: 0,
+        edge_pixels: 0,
+        evaluations: 0,
+        reserved: [0; 2],
+    };
+}
+
+/// The targets of anti-aliasing for one frame size.
+#[derive(Debug)]
+pub(crate) struct SampleTargets {
+    pub(super) pattern: Pattern,
+    /// The bands, top to bottom, each with its uniform block.
+    pub(super) bands: Vec<(Band, wgpu::Buffer)>,
+    /// The sub-samples of one band.
+    pub(crate) samples: GBuffer,
+    pub(crate) tally_view: wgpu::TextureView,
+    /// [`QueueUniform`].
+    pub(super) queue: wgpu::Buffer,
+    pub(super) entries: wgpu::Buffer,
+    pub(super) sums: wgpu::Buffer,
+    /// An empty queue, and room for a number.
+    empty_queue: wgpu::Buffer,
+    number: wgpu::Buffer,
+    bytes: u64,
+}
+
+impl SampleTargets {
+    /// The targets for settings that were found valid and have anti-aliasing.
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
+        let most = gpu.device.limits().max_texture_dimension_2d;
+        let pattern = Pattern::of(settings);
+        let rows = pattern.rows_per_band(settings.width, settings.height, most);
+        Self::in_bands(gpu, settings, rows)
+    }
+
+    /// The targets for bands of `rows` rows.
+    pub(crate) fn in_bands(gpu: &Gpu, settings: &Settings, rows: u32) -> Self {
+        let (width, height) = (settings.width, settings.height);
+        let pattern = Pattern::of(settings);
+        let (texels_x, texels_y) = pattern.texels(width, rows);
+        let tally = gpu.device.create_texture(&wgpu::TextureDescriptor {
+            label: Some("tally"),
+            size: wgpu::Extent3d {
+                width,
+                height,
+                depth_or_array_layers: 1,
+            },
+            mip_level_count: 1,
+            sample_count: 1,
+            dimension: wgpu::TextureDimension::D2,
+            format: TALLY_FORMAT,
+            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
+                | wgpu::TextureUsages::TEXTURE_BINDING
+                | wgpu::TextureUsages::COPY_SRC,
+            view_formats: &[],
+        });
+        let buffer = |label, size, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })
+        };
+        let storage = wgpu::BufferUsages::STORAGE;
+        let bands = Band::all(height, rows).map(|band| {
+            let size = size_of::<BandUniform>() as u64;
+            let uniform = buffer("band", size, wgpu::BufferUsages::UNIFORM);
+            let value = BandUniform::new(&pattern, band);
+            gpu.queue
+                .write_buffer(&uniform, 0, bytemuck::bytes_of(&value));
+            (band, uniform)
+        });
+        let queue_bytes = size_of::<QueueUniform>() as u64;
+        let empty_queue = buffer("empty queue", queue_bytes, wgpu::BufferUsages::empty());
+        gpu.queue
+            .write_buffer(&empty_queue, 0, bytemuck::bytes_of(&QueueUniform::EMPTY));
+        let pixels = u64::from(width) * u64::from(height);
+        // One further surface per pixel on average is more than any frame shows.
+        let entry_bytes = ENTRY_BYTES * pixels.min(most_entries(&gpu.device.limits()));
+        Self {
+            bands: bands.collect(),
+            samples: GBuffer::new(gpu, texels_x, texels_y),
+            tally_view: tally.create_view(&Default::default()),
+            queue: buffer("queue", queue_bytes, storage | wgpu::BufferUsages::INDIRECT),
+            entries: buffer("queue entries", entry_bytes, storage),
+            sums: buffer("queue sums", entry_bytes, storage),
+            empty_queue,
+            number: buffer("number", 4, wgpu::BufferUsages::empty()),
+            bytes: u64::from(texels_x) * u64::from(texels_y) * BYTES_PER_SAMPLE
+                + pixels * TALLY_BYTES
+                + entry_bytes * 2,
+            pattern,
+        }
+    }
+
+    /// Empties the queue for a new frame.
+    pub(super) fn begin_frame(&self, encoder: &mut wgpu::CommandEncoder) {
+        encoder.copy_buffer_to_buffer(&self.empty_queue, 0, &self.queue, 0, self.queue.size());
+    }
+
+    /// Lets the next band's entries follow those of the bands before.
+    pub(super) fn begin_band(&self, encoder: &mut wgpu::CommandEncoder) {
+        let total = std::mem::offset_of!(QueueUniform, total) as u64;
+        let start = std::mem::offset_of!(QueueUniform, start) as u64;
+        // A buffer cannot be copied into itself.
+        encoder.copy_buffer_to_buffer(&self.queue, total, &self.number, 0, 4);
+        encoder.copy_buffer_to_buffer(&self.number, 0, &self.queue, start, 4);
+        encoder.copy_buffer_to_buffer(&self.empty_queue, 0, &self.queue, 0, 4);
+    }
+
+    /// Bytes of all that depends on the frame's size.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}
+
+/// Entries that a queue can have on a device.
+pub(super) fn most_entries(limits: &wgpu::Limits) -> u64 {
+    limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size)
+        / ENTRY_BYTES
+}

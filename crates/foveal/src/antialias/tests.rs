@@ -1,0 +1,276 @@
+//! Anti-aliased frames against their twins, against each other and against plain frames of n times the size.
+
+use foveal_scene::{Camera, Projection, Scene, generate};
+use glam::Vec3;
+
+use super::twin::{SampleTexels, resolve};
+use crate::testing::{f32_of_half, picture, rendered, small, texels};
+use crate::{Antialiasing, EdgeTest, Renderer, SamplePattern, Settings};
+
+const WIDTH: u32 = 41;
+const HEIGHT: u32 = 27;
+
+fn settings(aa: Antialiasing, edge_test: EdgeTest, samples: u32) -> Settings {
+    Settings {
+        aa,
+        edge_test,
+        samples,
+        ..small(WIDTH, HEIGHT)
+    }
+}
+
+fn radiance(renderer: &Renderer) -> Vec<Vec3> {
+    texels::<[u16; 4]>(&renderer.targets().radiance_view)
+        .into_iter()
+        .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
+        .collect()
+}
+
+fn samples_of(renderer: &Renderer) -> SampleTexels {
+    let targets = renderer
+        .targets()
+        .samples
+        .as_ref()
+        .expect("anti-aliasing is on");
+    let settings = renderer.settings();
+    SampleTexels {
+        pattern: targets.pattern,
+        width: settings.width,
+        height: settings.height,
+        surface: texels(&targets.samples.surface_view),
+        identity: texels(&targets.samples.identity_view),
+        depth: texels(&targets.samples.depth_view),
+    }
+}
+
+fn tally(renderer: &Renderer) -> Vec<[u8; 2]> {
+    let targets = renderer
+        .targets()
+        .samples
+        .as_ref()
+        .expect("anti-aliasing is on");
+    texels(&targets.tally_view)
+}
+
+fn pixels() -> impl Iterator<Item = (u32, u32)> {
+    (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)))
+}
+
+fn orthographic(camera: &Camera) -> Camera {
+    Camera {
+        projection: Projection::Orthographic {
+            height_m: 4.0,
+            near_m: 0.05,
+            far_m: 30.0,
+        },
+        ..camera.clone()
+    }
+}
+
+#[test]
+fn ssaa_is_the_resolve_of_a_plain_frame_of_n_times_the_size() {
+    for scene in [generate::cornell(), generate::materials_grid()] {
+        let camera = &scene.cameras[0];
+        for side in [2, 3, 4] {
+            let big = rendered(&scene, camera, &small(WIDTH * side, HEIGHT * side));
+            let big = radiance(&big);
+            let ssaa = settings(Antialiasing::Ssaa, EdgeTest::Surface, side * side);
+            let ssaa = radiance(&rendered(&scene, camera, &ssaa));
+            for (i, (x, y)) in pixels().enumerate() {
+                let parts = (0..side * side).map(|k| {
+                    let (x, y) = (x * side + k % side, y * side + k / side);
+                    (big[(y * WIDTH * side + x) as usize], 1.0)
+                });
+                let twin = resolve(parts, 1.0);
+                let off = (ssaa[i] - twin).abs().max_element();
+                assert!(
+                    off <= 4e-3 * twin.max_element() + 1e-4,
+                    "{side} x {side} at {x}, {y}: {} not {twin}",
+                    ssaa[i]
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn by_the_papers_test_edges_equal_ssaa_and_the_rest_equals_the_first_subsample_alone() {
+    let scene = generate::cornell();
+    for camera in [scene.cameras[0].clone(), orthographic(&scene.cameras[0])] {
+        for samples in [4, 9] {
+            let draw = |aa, test| rendered(&scene, &camera, &settings(aa, test, samples));
+            let msaa = draw(Antialiasing::Msaa, EdgeTest::Paper);
+            let none = draw(Antialiasing::Msaa, EdgeTest::Never);
+            let ssaa = draw(Antialiasing::Ssaa, EdgeTest::Paper);
+            let (tally, samples_of) = (tally(&msaa), samples_of(&msaa));
+            let texels =
+                [&msaa, &none, &ssaa].map(|r| texels::<[u16; 4]>(&r.targets().radiance_view));
+            let pictures = [&msaa, &none, &ssaa].map(picture);
+            let mut edges = 0;
+            for (i, (x, y)) in pixels().enumerate() {
+                let edge = samples_of.depths_differ(x, y);
+                assert_eq!(tally[i][0] > 1, edge, "at {x}, {y}");
+                let like = if edge { 2 } else { 1 };
+                assert_eq!(texels[0][i], texels[like][i], "at {x}, {y}");
+                let bytes = i * 4..i * 4 + 4;
+                assert_eq!(pictures[0][bytes.clone()], pictures[like][bytes]);
+                edges += usize::from(edge);
+            }
+            assert!((20..tally.len() - 20).contains(&edges), "{edges} edges");
+        }
+    }
+}
+
+fn assert_surfaces_equal_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
+    let renderer = rendered(scene, camera, settings);
+    let (tally, samples) = (tally(&renderer), samples_of(&renderer));
+    let mut edges = 0;
+    for (i, (x, y)) in pixels().enumerate() {
+        assert_eq!(tally[i], samples.surfaces(camera, x, y), "at {x}, {y}");
+        edges += usize::from(tally[i][0] > 1);
+    }
+    assert!((20..tally.len() / 2).contains(&edges), "{edges} edges");
+}
+
+#[test]
+fn the_surface_test_equals_its_twin() {
+    let scene = generate::cornell();
+    let msaa = |samples| settings(Antialiasing::Msaa, EdgeTest::Surface, samples);
+    for samples in [4, 9, 16] {
+        assert_surfaces_equal_twin(&scene, &scene.cameras[0], &msaa(samples));
+    }
+    for samples in [4, 8] {
+        let rotated = Settings {
+            pattern: SamplePattern::Rotated,
+            ..msaa(samples)
+        };
+        assert_surfaces_equal_twin(&scene, &scene.cameras[0], &rotated);
+    }
+    assert_surfaces_equal_twin(&scene, &orthographic(&scene.cameras[0]), &msaa(4));
+}
+
+/// Mean absolute difference of two pictures' bytes.
+fn difference(a: &[u8], b: &[u8]) -> f64 {
+    let sum: u64 = a
+        .iter()
+        .zip(b)
+        .map(|(a, b)| u64::from(a.abs_diff(*b)))
+        .sum();
+    sum as f64 / a.len() as f64
+}
+
+#[test]
+fn every_mode_is_nearer_to_64_samples_than_none_is() {
+    for scene in [generate::cornell(), generate::alpha()] {
+        let camera = &scene.cameras[0];
+        let draw = |settings: &Settings| picture(&rendered(&scene, camera, settings));
+        let truth = draw(&settings(Antialiasing::Ssaa, EdgeTest::Surface, 64));
+        let none = difference(&draw(&small(WIDTH, HEIGHT)), &truth);
+        for aa in [Antialiasing::Ssaa, Antialiasing::Msaa] {
+            for (pattern, samples) in [
+                (SamplePattern::Grid, 4),
+                (SamplePattern::Grid, 16),
+                (SamplePattern::Rotated, 4),
+                (SamplePattern::Rotated, 8),
+            ] {
+                let settings = Settings {
+                    pattern,
+                    ..settings(aa, EdgeTest::Surface, samples)
+                };
+                let off = difference(&draw(&settings), &truth);
+                assert!(
+                    off < 0.6 * none,
+                    "{aa:?} {pattern:?} {samples}: {off} of {none}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn bands_leave_no_trace() {
+    let scene = generate::cornell();
+    for pattern in [SamplePattern::Grid, SamplePattern::Rotated] {
+        for aa in [Antialiasing::Ssaa, Antialiasing::Msaa] {
+            let settings = Settings {
+                pattern,
+                ..settings(aa, EdgeTest::Surface, 4)
+            };
+            let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
+            let whole = picture(&renderer);
+            for rows in [1, 4, 13] {
+                renderer.redraw_in_bands(&scene.cameras[0], rows);
+                assert_eq!(picture(&renderer), whole, "{aa:?} {pattern:?}, {rows} rows");
+            }
+        }
+    }
+}
+
+#[test]
+fn the_stats_count_what_is_shaded() {
+    let scene = generate::cornell();
+    let pixels = u64::from(WIDTH * HEIGHT);
+    let stats = |settings: &Settings| {
+        let mut renderer = rendered(&scene, &scene.cameras[0], settings);
+        let stats = renderer.redraw(&scene.cameras[0]);
+        (stats, tally(&renderer))
+    };
+    let (ssaa, _) = stats(&settings(Antialiasing::Ssaa, EdgeTest::Surface, 9));
+    assert_eq!(ssaa.shaded_samples, pixels * 9);
+    assert_eq!(ssaa.edge_fraction, 1.0);
+    for (edge_test, done) in [(EdgeTest::Surface, 1), (EdgeTest::Paper, 0)] {
+        let (msaa, tally) = stats(&settings(Antialiasing::Msaa, edge_test, 4));
+        let edges = tally.iter().filter(|t| t[0] > 1);
+        let extra: u64 = edges.clone().map(|t| u64::from(t[0]) - done).sum();
+        assert_eq!(msaa.shaded_samples, pixels + extra);
+        assert_eq!(msaa.edge_fraction, edges.count() as f64 / pixels as f64);
+    }
+}
+
+#[test]
+fn two_by_two_at_1080p_stays_under_250_megabytes() {
+    let settings = Settings {
+        width: 1920,
+        height: 1080,
+        aa: Antialiasing::Msaa,
+        ..Settings::default()
+    };
+    let bytes = crate::targets::Targets::new(crate::testing::gpu(), &settings).bytes();
+    assert!(bytes < 250_000_000, "{bytes}");
+}
+
+#[test]
+fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
+    use crate::{RateSource, RefineEdges, Shading};
+    let scene = generate::cornell();
+    let coarse = Settings {
+        shading: Shading::Coarse,
+        rate: RateSource::Foveated,
+        refine_edges: RefineEdges::Off,
+        ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
+    };
+    let draw = |settings: &Settings| rendered(&scene, &scene.cameras[0], settings);
+    let radiance =
+        |renderer: &Renderer| -> Vec<[u16; 4]> { texels(&renderer.targets().radiance_view) };
+    let both = draw(&coarse);
+    let antialiased = radiance(&draw(&settings(Antialiasing::Msaa, EdgeTest::Surface, 4)));
+    let owners = &both.targets().coarse.as_ref().expect("coarse").rate.owner;
+    let across = owners.texture.width();
+    let levels: Vec<u8> = texels(&owners.whole);
+    let (mut fine, mut kept) = (0, 0);
+    let tally = tally(&both);
+    let both = radiance(&both);
+    for (i, (x, y)) in pixels().enumerate() {
+        let level = levels[(y / 2 * across + x / 2) as usize] & 15;
+        if level == 0 {
+            assert_eq!(both[i], antialiased[i], "at {x}, {y}");
+            fine += usize::from(tally[i][0] > 1);
+        } else {
+            kept += usize::from(tally[i][0] > 1);
+        }
+    }
+    assert!(
+        fine > 5 && kept > 5,
+        "{fine} fine edges, {kept} coarse ones"
+    );
+}
