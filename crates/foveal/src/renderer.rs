@@ -372,6 +372,20 @@ impl Renderer {
 
 #[cfg(test)]
 impl Renderer {
+    /// Makes coarse samples affine functions of their position from the next frame on.
+    pub(crate) fn shade_affine(&mut self) {
+        let stages = &mut self.stages;
+        if let Some(coarse) = &mut stages.coarse {
+            coarse.shading = CoarseShading::with_shaders(
+                &self.gpu,
+                &stages.settings,
+                self.frame_bindings.layout(),
+                stages.shading.input_layout(),
+                crate::shader::COARSE_AFFINE,
+            );
+        }
+    }
+
     pub(crate) fn targets(&self) -> &Targets {
         &self.stages.targets
     }

@@ -89,6 +89,27 @@ pub(crate) const COARSE_SHADE_LIST: Parts = &[
     include_str!("shading/coarse/block.wgsl"),
     include_str!("shading/coarse/shade_list.wgsl"),
 ];
+/// As the two above, radiance being an affine function of the position.
+#[cfg(test)]
+pub(crate) const COARSE_AFFINE: [Parts; 2] = [
+    &[
+        FRAME,
+        SURFACE,
+        include_str!("shading/coarse/affine.wgsl"),
+        LEVEL,
+        BLOCKS,
+        include_str!("shading/coarse/block.wgsl"),
+        include_str!("shading/coarse/shade_draw.wgsl"),
+    ],
+    &[
+        FRAME,
+        SURFACE,
+        include_str!("shading/coarse/affine.wgsl"),
+        BLOCKS,
+        include_str!("shading/coarse/block.wgsl"),
+        include_str!("shading/coarse/shade_list.wgsl"),
+    ],
+];
 const TILING: &str = include_str!("composite/tiling.wgsl");
 const SEEN: &str = include_str!("composite/seen.wgsl");
 const PATCHES: &str = include_str!("composite/patches.wgsl");
