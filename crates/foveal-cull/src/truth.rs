@@ -43,29 +43,48 @@ impl Truth {
     pub fn new(eye: &Eye, width: u32, height: u32) -> Result<Self, CullError> {
         let (w, h) = (width as usize, height as usize);
         let camera = Camera::new(&View::mono(*eye), f64::from(width), f64::from(height))?;
-        Ok(Self { width: w, height: h, depth: vec![0.0; w * h], tiles: Vec::new(), camera })
+        Ok(Self {
+            width: w,
+            height: h,
+            depth: vec![0.0; w * h],
+            tiles: Vec::new(),
+            camera,
+        })
     }
 
     /// Adds occluder triangles (counter-clockwise from outside, as placed; both sides when `two_sided`).
-    pub fn add(&mut self, positions: &[Vec3], indices: &[u32], world_from_mesh: &DAffine3, two_sided: bool) {
+    pub fn add(
+        &mut self,
+        positions: &[Vec3],
+        indices: &[u32],
+        world_from_mesh: &DAffine3,
+        two_sided: bool,
+    ) {
         self.tiles.clear();
         let mirrored = world_from_mesh.matrix3.determinant() < 0.0;
         let clip: Vec<DVec4> = positions
             .iter()
             .map(|p| {
-                let p = (world_from_mesh.transform_point3(p.as_dvec3()) - self.camera.eye).extend(1.0);
+                let p =
+                    (world_from_mesh.transform_point3(p.as_dvec3()) - self.camera.eye).extend(1.0);
                 DVec4::from_array(self.camera.rows.map(|r| r.dot(p)))
             })
             .collect();
         for t in indices.chunks_exact(3) {
-            let Some([a, b, c]) = [t[0], t[1], t[2]].map(|i| clip.get(i as usize).copied()).into_iter().collect::<Option<Vec<_>>>().and_then(|v| <[DVec4; 3]>::try_from(v).ok())
+            let Some([a, b, c]) = [t[0], t[1], t[2]]
+                .map(|i| clip.get(i as usize).copied())
+                .into_iter()
+                .collect::<Option<Vec<_>>>()
+                .and_then(|v| <[DVec4; 3]>::try_from(v).ok())
             else {
                 continue;
             };
             let mut polygon = ClipPolygon::new(&[a, b, c]);
             polygon.clip(NEAR);
-            let corners: Vec<[f64; 3]> =
-                polygon.corners[..polygon.count].iter().map(|c| [c.x / c.w, c.y / c.w, c.z / c.w]).collect();
+            let corners: Vec<[f64; 3]> = polygon.corners[..polygon.count]
+                .iter()
+                .map(|c| [c.x / c.w, c.y / c.w, c.z / c.w])
+                .collect();
             self.polygon(&corners, mirrored, two_sided);
         }
     }
@@ -88,7 +107,8 @@ impl Truth {
         // The plane from the largest fan triangle.
         let mut best = (0.0f64, 1);
         for i in 1..p.len() - 1 {
-            let e = (p[i][0] - p[0][0]) * (p[i + 1][1] - p[0][1]) - (p[i + 1][0] - p[0][0]) * (p[i][1] - p[0][1]);
+            let e = (p[i][0] - p[0][0]) * (p[i + 1][1] - p[0][1])
+                - (p[i + 1][0] - p[0][0]) * (p[i][1] - p[0][1]);
             if e.abs() > best.0.abs() {
                 best = (e, i);
             }
@@ -101,8 +121,16 @@ impl Truth {
         let (b, c) = (sub(i), sub(i + 1));
         let gx = (b[2] * c[1] - c[2] * b[1]) / e;
         let gy = (b[0] * c[2] - c[0] * b[2]) / e;
-        let (lo, hi) = p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v[2]), hi.max(v[2])));
-        let (top, bottom) = p.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| (lo.min(v[1]), hi.max(v[1])));
+        let (lo, hi) = p
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
+                (lo.min(v[2]), hi.max(v[2]))
+            });
+        let (top, bottom) = p
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), v| {
+                (lo.min(v[1]), hi.max(v[1]))
+            });
         let first = (top - 0.5).ceil().max(0.0) as usize;
         let last = (bottom - 0.5).floor().min(self.height as f64 - 1.0);
         if last < 0.0 {
@@ -118,7 +146,11 @@ impl Truth {
                 if a[1] > y || b[1] < y {
                     continue;
                 }
-                let xs = if a[1] == b[1] { [a[0], b[0]] } else { [a[0] + (b[0] - a[0]) * ((y - a[1]) / (b[1] - a[1])); 2] };
+                let xs = if a[1] == b[1] {
+                    [a[0], b[0]]
+                } else {
+                    [a[0] + (b[0] - a[0]) * ((y - a[1]) / (b[1] - a[1])); 2]
+                };
                 x0 = x0.min(xs[0]).min(xs[1]);
                 x1 = x1.max(xs[0]).max(xs[1]);
             }
@@ -166,20 +198,40 @@ impl Truth {
         let hi = bounds.max.as_dvec3() + origin - self.camera.eye;
         let corners: [DVec4; 8] = core::array::from_fn(|i| {
             let pick = |bit: usize, a: f64, b: f64| if i & bit == 0 { a } else { b };
-            let p = DVec3::new(pick(1, lo.x, hi.x), pick(2, lo.y, hi.y), pick(4, lo.z, hi.z)).extend(1.0);
+            let p = DVec3::new(
+                pick(1, lo.x, hi.x),
+                pick(2, lo.y, hi.y),
+                pick(4, lo.z, hi.z),
+            )
+            .extend(1.0);
             DVec4::from_array(self.camera.rows.map(|r| r.dot(p)))
         });
         let (w, h) = (self.width as f64, self.height as f64);
         let (mut rect, mut nearest) = ([0.0, 0.0, w - 1.0, h - 1.0], 1.0);
         if corners.iter().all(|c| c.z < c.w) {
-            rect = [f64::INFINITY, f64::INFINITY, f64::NEG_INFINITY, f64::NEG_INFINITY];
+            rect = [
+                f64::INFINITY,
+                f64::INFINITY,
+                f64::NEG_INFINITY,
+                f64::NEG_INFINITY,
+            ];
             nearest = 0.0f64;
             for c in corners {
                 let (x, y) = (c.x / c.w - 0.5, c.y / c.w - 0.5);
-                rect = [rect[0].min(x), rect[1].min(y), rect[2].max(x), rect[3].max(y)];
+                rect = [
+                    rect[0].min(x),
+                    rect[1].min(y),
+                    rect[2].max(x),
+                    rect[3].max(y),
+                ];
                 nearest = nearest.max(c.z / c.w);
             }
-            rect = [rect[0].ceil().max(0.0), rect[1].ceil().max(0.0), rect[2].floor().min(w - 1.0), rect[3].floor().min(h - 1.0)];
+            rect = [
+                rect[0].ceil().max(0.0),
+                rect[1].ceil().max(0.0),
+                rect[2].floor().min(w - 1.0),
+                rect[3].floor().min(h - 1.0),
+            ];
         }
         if rect[0] > rect[2] || rect[1] > rect[3] {
             return Seen::Outside;
@@ -189,7 +241,10 @@ impl Truth {
         let mut met = false;
         for ty in y0 / TILE..=y1 / TILE {
             for tx in x0 / TILE..=x1 / TILE {
-                let closed = self.tiles.get(ty * tw + tx).is_some_and(|&t| f64::from(t) > nearest);
+                let closed = self
+                    .tiles
+                    .get(ty * tw + tx)
+                    .is_some_and(|&t| f64::from(t) > nearest);
                 if closed {
                     // Hidden here if it is here at all; whether it is matters only for the name.
                     met = true;
@@ -197,7 +252,9 @@ impl Truth {
                 }
                 for y in y0.max(ty * TILE)..=y1.min(ty * TILE + TILE - 1) {
                     for x in x0.max(tx * TILE)..=x1.min(tx * TILE + TILE - 1) {
-                        let Some(entry) = self.entry(x, y, lo, hi) else { continue };
+                        let Some(entry) = self.entry(x, y, lo, hi) else {
+                            continue;
+                        };
                         met = true;
                         let d = self.depth[y * self.width + x];
                         if d == 0.0 || entry > f64::from(d) {

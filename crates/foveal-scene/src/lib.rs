@@ -4,6 +4,15 @@
 //! ([`load`]) or from the project's own code ([`generate`]), and is posed at a point in time by
 //! [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres, counter-clockwise front
 //! faces, column vectors; matrices are named *to_from* (`world_from_object`).
+//!
+//! ```no_run
+//! use foveal_scene::{LoadOptions, load};
+//!
+//! let mut scene = load("castle.glb".as_ref(), &LoadOptions::default())?;
+//! scene.pose(1.5);
+//! println!("{} objects within {:?}", scene.objects.len(), scene.bounds());
+//! # Ok::<(), foveal_scene::SceneError>(())
+//! ```
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 

@@ -32,9 +32,10 @@ pub struct LoadOptions {
     pub max_file_bytes: u64,
     /// Largest width and height of a texture in texels; larger pictures are halved until they fit.
     pub max_texture_size: u32,
-    /// Most bytes of all decoded pictures together, without their mip levels.
+    /// Most bytes of all decoded pictures together, without their mip levels; beyond it the largest
+    /// pictures are halved until all fit.
     pub max_texture_bytes: u64,
-    /// Most vertices of all meshes together, and most elements that the file declares without storing them.
+    /// Most vertices of all meshes together.
     pub max_vertices: u64,
     /// Most [`Instance`](crate::Instance)s: primitives times nodes times instancing elements.
     pub max_instances: u64,

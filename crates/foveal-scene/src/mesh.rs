@@ -34,7 +34,8 @@ pub struct Mesh {
     pub indices: Vec<u32>,
     /// Smallest box around the vertices that the indices use, object space.
     pub bounds: Aabb,
-    /// Morph targets or a skin change its vertices from pose to pose.
+    /// Morph targets or a skin change its vertices from pose to pose. Such a mesh belongs to one node;
+    /// the vertices of a skinned one are in world space, and its instances' matrices the identity.
     pub deforms: bool,
 }
 

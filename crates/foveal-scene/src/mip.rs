@@ -243,7 +243,13 @@ fn alpha_scale(wide: &[[u16; 4]], threshold: f32, wanted: f32) -> f32 {
     if above > 0 && with_ties - passing > passing - above {
         least = alphas[above - 1];
     }
-    let scale = (least_passing(threshold) + 1.0) / f32::from(least.max(1));
+    // The threshold goes midway between the last that passes and the first that does not: a renderer
+    // interpolates between texels, and with the threshold at either of them every edge would move.
+    let failing = alphas[alphas.partition_point(|&a| a >= least)..]
+        .first()
+        .copied();
+    let middle = 0.5 * (f32::from(least) + f32::from(failing.unwrap_or(least)));
+    let scale = (least_passing(threshold) + 1.0) / middle.max(1.0);
     scale.clamp(0.25, 4.0)
 }
 

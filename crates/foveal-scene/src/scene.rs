@@ -35,7 +35,7 @@ pub struct Instance {
     pub material: u32,
     /// Index into [`Scene::objects`].
     pub object: u32,
-    /// World space from the mesh's object space; affine, invertible or not, of either handedness.
+    /// World space from the mesh's object space; affine, finite, invertible or not, of either handedness.
     pub world_from_object: Mat4,
     /// Smallest box around the transformed vertices (not around the transformed box).
     pub bounds: Aabb,

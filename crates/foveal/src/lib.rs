@@ -9,6 +9,7 @@
 pub mod gpu;
 
 mod composite;
+mod culling;
 mod error;
 mod forward;
 mod frame;
@@ -32,7 +33,7 @@ pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
 pub use settings::{
-    Backend, COARSEST_LEVEL, CoarseSample, Composite, LightAssignment, LightingModel, RateCombine,
-    RateSource, RefineEdges, Settings, Shading, ToneMap, View,
+    Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, LightAssignment, LightingModel,
+    RateCombine, RateSource, RefineEdges, Settings, Shading, ToneMap, View,
 };
 pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};

@@ -3,6 +3,7 @@
 use foveal_scene::{Camera, Scene};
 
 use crate::composite::CompositePass;
+use crate::culling::{CullingCounts, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
 use crate::geometry::{DrawList, GeometryPass};
@@ -48,6 +49,7 @@ pub struct Renderer {
 #[derive(Debug)]
 struct Stages {
     settings: Settings,
+    culling: Option<CullingStage>,
     targets: Targets,
     lights: LightAssigner,
     geometry: GeometryPass,
@@ -100,6 +102,7 @@ impl Stages {
         let shading = ShadingPass::new(gpu, settings, frame);
         let stages = Self {
             settings: settings.clone(),
+            culling: CullingStage::new(settings.culling, settings.width, settings.height)?,
             targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
             geometry: GeometryPass::new(gpu, frame, material_layout),
@@ -162,9 +165,11 @@ impl Renderer {
             ..old.clone()
         }) == *settings
         {
+            let culling = CullingStage::new(settings.culling, settings.width, settings.height)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
             let targets = Targets::new(&self.gpu, settings);
             trap.finish().await?;
+            self.stages.culling = culling;
             self.stages.targets = targets;
             self.stages.settings = settings.clone();
             return Ok(());
@@ -233,7 +238,7 @@ impl Renderer {
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
-        self.submit(frame, &mut cpu);
+        let culled = self.submit(frame, &mut cpu);
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
@@ -244,6 +249,10 @@ impl Renderer {
             width: self.stages.settings.width,
             height: self.stages.settings.height,
             cpu_ms: cpu.stages(),
+            objects_visible: culled.visible,
+            objects_outside: culled.outside,
+            objects_occluded: culled.occluded,
+            occluder_triangles: culled.occluder_triangles,
             draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
             triangles: self.draw_list.triangles,
             shaded_samples: coarse.as_ref().map_or(pixels, CoarseStats::shaded_samples),
@@ -272,7 +281,7 @@ impl Renderer {
     }
 
     /// The frame.
-    fn submit(&mut self, frame: &Frame<'_>, cpu: &mut CpuTimer) {
+    fn submit(&mut self, frame: &Frame<'_>, cpu: &mut CpuTimer) -> CullingCounts {
         let Self {
             gpu,
             timer,
@@ -284,6 +293,7 @@ impl Renderer {
         } = self;
         let Stages {
             settings,
+            culling,
             targets,
             lights,
             geometry,
@@ -294,7 +304,22 @@ impl Renderer {
             view,
         } = stages;
 
-        draw_list.build(scene, frame.camera.eye());
+        let culled = match culling {
+            Some(culling) => culling.cull(
+                &scene.culling,
+                frame.camera,
+                settings.width,
+                settings.height,
+            ),
+            None => CullingCounts {
+                visible: scene.stats.objects,
+                ..CullingCounts::default()
+            },
+        };
+        cpu.stage("culling");
+
+        let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
+        draw_list.build(scene, frame.camera.eye(), is_visible);
         geometry.prepare(gpu, draw_list);
         forward.prepare(gpu, draw_list);
         cpu.stage("draw list");
@@ -350,6 +375,7 @@ impl Renderer {
         gpu.queue.submit([encoder.finish()]);
         timer.end_frame();
         cpu.stage("submit");
+        culled
     }
 
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes, alpha 255.

@@ -11,6 +11,19 @@ pub use coarse::{
     Backend, COARSEST_LEVEL, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Shading,
 };
 
+/// Which objects are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Culling {
+    /// Those that no nearer surface hides, and that the camera's frustum touches.
+    #[default]
+    Occlusion,
+    /// Those that the camera's frustum touches.
+    Frustum,
+    /// All of them: the reference.
+    Off,
+}
+
 /// What the written picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -73,6 +86,8 @@ pub struct Settings {
     pub height: u32,
     /// What the picture shows.
     pub view: View,
+    /// Which objects are drawn. The picture is the same with each.
+    pub culling: Culling,
     /// How light is reflected.
     pub lighting: LightingModel,
     /// Which lights a sample looks at.
@@ -124,6 +139,7 @@ impl Default for Settings {
             width: 1280,
             height: 720,
             view: View::default(),
+            culling: Culling::default(),
             lighting: LightingModel::default(),
             lights: LightAssignment::default(),
             exposure: 0.0,

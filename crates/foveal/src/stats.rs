@@ -75,6 +75,14 @@ pub struct FrameStats {
     pub cpu_ms: Vec<Timing>,
     /// GPU time per pass, in the order of the frame. Empty where the device has no timestamps.
     pub gpu_ms: Vec<Timing>,
+    /// Objects that were drawn.
+    pub objects_visible: u64,
+    /// Objects outside the frustum.
+    pub objects_outside: u64,
+    /// Objects hidden by others.
+    pub objects_occluded: u64,
+    /// Triangles that were rasterized on the CPU to find the hidden ones.
+    pub occluder_triangles: u64,
     /// Draw calls issued.
     pub draws: u64,
     /// Triangles submitted.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
-use foveal::{LightAssignment, LightingModel, Settings, ToneMap, View};
+use foveal::{Culling, LightAssignment, LightingModel, Settings, ToneMap, View};
 
 use crate::values::{self, VariantParser};
 
@@ -22,6 +22,11 @@ pub(crate) struct SettingsArgs {
     /// What the picture shows [default: final]
     #[arg(long, value_parser = VariantParser::<View>::new())]
     view: Option<View>,
+
+    /// Which objects are drawn: those that are seen, those in the frustum, or all (the reference); the picture
+    /// is the same [default: occlusion]
+    #[arg(long, value_name = "WHICH", value_parser = VariantParser::<Culling>::new())]
+    culling: Option<Culling>,
 
     /// How surfaces reflect light [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
@@ -66,6 +71,7 @@ impl SettingsArgs {
             file: _,
             size,
             view,
+            culling,
             lighting,
             lights,
             exposure,
@@ -76,6 +82,7 @@ impl SettingsArgs {
             (settings.width, settings.height) = (width, height);
         }
         set(&mut settings.view, view);
+        set(&mut settings.culling, culling);
         set(&mut settings.lighting, lighting);
         set(&mut settings.lights, lights);
         set(&mut settings.exposure, exposure);
@@ -150,10 +157,11 @@ mod tests {
     }
 
     /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
-    const KEYS: [(&str, &str, &[&str]); 8] = [
+    const KEYS: [(&str, &str, &[&str]); 9] = [
         ("width", "33", &["--size", "33x720"]),
         ("height", "44", &["--size", "1280x44"]),
         ("view", "\"normals\"", &["--view", "normals"]),
+        ("culling", "\"off\"", &["--culling", "off"]),
         (
             "lighting",
             "\"blinn-phong\"",

@@ -72,8 +72,16 @@ pub(crate) struct Screen {
 
 #[inline(always)]
 pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 {
-    let c = [l.load(&boxes.center[0]), l.load(&boxes.center[1]), l.load(&boxes.center[2])];
-    let h = [l.load(&boxes.half[0]), l.load(&boxes.half[1]), l.load(&boxes.half[2])];
+    let c = [
+        l.load(&boxes.center[0]),
+        l.load(&boxes.center[1]),
+        l.load(&boxes.center[2]),
+    ];
+    let h = [
+        l.load(&boxes.half[0]),
+        l.load(&boxes.half[1]),
+        l.load(&boxes.half[2]),
+    ];
     let (zc, ze) = (dot(l, &c, &s.rows[2]), edges(l, &h, &s.rows[2]));
     let (wc, we) = (dot(l, &c, &s.rows[3]), edges(l, &h, &s.rows[3]));
     let (zr, wr) = (reach(l, &ze), reach(l, &we));
@@ -90,8 +98,16 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
     let one = l.splat(1.0);
     let low = four!(k => l.div(one, l.sub(wq[k], wz)));
     let high = four!(k => l.div(one, l.add(wq[k], wz)));
-    let (x0, x1) = extent(l, four!(k => l.mul(l.sub(xq[k], xz), low[k])), four!(k => l.mul(l.add(xq[k], xz), high[k])));
-    let (y0, y1) = extent(l, four!(k => l.mul(l.sub(yq[k], yz), low[k])), four!(k => l.mul(l.add(yq[k], yz), high[k])));
+    let (x0, x1) = extent(
+        l,
+        four!(k => l.mul(l.sub(xq[k], xz), low[k])),
+        four!(k => l.mul(l.add(xq[k], xz), high[k])),
+    );
+    let (y0, y1) = extent(
+        l,
+        four!(k => l.mul(l.sub(yq[k], yz), low[k])),
+        four!(k => l.mul(l.add(yq[k], yz), high[k])),
+    );
     let grow = l.splat(s.dilate);
     let (x0, y0) = (l.sub(x0, grow), l.sub(y0, grow));
     let (x1, y1) = (l.add(x1, grow), l.add(y1, grow));
@@ -115,12 +131,19 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
 
 #[inline(always)]
 fn dot<L: Lanes>(l: L, c: &[L::F; 3], r: &[f32; 4]) -> L::F {
-    l.add(l.add(l.mul(c[0], l.splat(r[0])), l.mul(c[1], l.splat(r[1]))), l.add(l.mul(c[2], l.splat(r[2])), l.splat(r[3])))
+    l.add(
+        l.add(l.mul(c[0], l.splat(r[0])), l.mul(c[1], l.splat(r[1]))),
+        l.add(l.mul(c[2], l.splat(r[2])), l.splat(r[3])),
+    )
 }
 
 #[inline(always)]
 fn edges<L: Lanes>(l: L, h: &[L::F; 3], r: &[f32; 4]) -> [L::F; 3] {
-    [l.mul(h[0], l.splat(r[0])), l.mul(h[1], l.splat(r[1])), l.mul(h[2], l.splat(r[2]))]
+    [
+        l.mul(h[0], l.splat(r[0])),
+        l.mul(h[1], l.splat(r[1])),
+        l.mul(h[2], l.splat(r[2])),
+    ]
 }
 
 #[inline(always)]
@@ -138,7 +161,13 @@ fn corners<L: Lanes>(l: L, c: &[L::F; 3], h: &[L::F; 3], r: &[f32; 4]) -> ([L::F
 
 #[inline(always)]
 fn extent<L: Lanes>(l: L, a: [L::F; 4], b: [L::F; 4]) -> (L::F, L::F) {
-    let lo = l.min(l.min(l.min(a[0], a[1]), l.min(a[2], a[3])), l.min(l.min(b[0], b[1]), l.min(b[2], b[3])));
-    let hi = l.max(l.max(l.max(a[0], a[1]), l.max(a[2], a[3])), l.max(l.max(b[0], b[1]), l.max(b[2], b[3])));
+    let lo = l.min(
+        l.min(l.min(a[0], a[1]), l.min(a[2], a[3])),
+        l.min(l.min(b[0], b[1]), l.min(b[2], b[3])),
+    );
+    let hi = l.max(
+        l.max(l.max(a[0], a[1]), l.max(a[2], a[3])),
+        l.max(l.max(b[0], b[1]), l.max(b[2], b[3])),
+    );
     (lo, hi)
 }

@@ -8,7 +8,7 @@
 
 use super::polygon::Polygon;
 use crate::depth::{
-    BLOCK, BLOCK_SAMPLES, Band, CODE_OFFSET, EMPTY, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
+    BLOCK_SAMPLES, Band, CODE_OFFSET, EMPTY, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
 };
 use crate::simd::{Lanes, four};
 
@@ -28,13 +28,15 @@ pub(crate) struct Plane {
     pub(crate) max_code: i16,
 }
 
-/// Border positions at the first sample row of a row of blocks, samples.
-pub(crate) struct Spans<L: Lanes> {
-    pub(crate) left: [f32; 3],
-    pub(crate) right: [f32; 3],
-    left_lanes: [L::F; 3],
-    right_lanes: [L::F; 3],
-    top: f32,
+/// The borders of a polygon, left two and right two, ready for rows of blocks.
+pub(crate) struct Borders<L: Lanes> {
+    x: [f32; 4],
+    y: [f32; 4],
+    pub(crate) slope: [f32; 4],
+    /// Change over four sample rows per lane.
+    lanes: [L::F; 4],
+    /// Change over one sample row.
+    step: [L::F; 4],
 }
 
 const LANE_ROWS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
@@ -44,27 +46,31 @@ const FROM: [u8; 16] = [
     0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
 ];
 
-impl<L: Lanes> Spans<L> {
+impl<L: Lanes> Borders<L> {
     #[inline(always)]
-    pub(crate) fn new(l: L, polygon: &Polygon, top: f32) -> Self {
+    pub(crate) fn new(l: L, polygon: &Polygon) -> Self {
+        let e = [
+            polygon.left.edges[0],
+            polygon.left.edges[1],
+            polygon.right.edges[0],
+            polygon.right.edges[1],
+        ];
         let rows = l.load(&LANE_ROWS);
+        let step = four!(i => l.splat(e[i].slope));
+        Self {
+            x: four!(i => e[i].x),
+            y: four!(i => e[i].y),
+            slope: four!(i => e[i].slope),
+            lanes: four!(i => l.mul(rows, step[i])),
+            step,
+        }
+    }
+
+    /// Positions at the first sample row of a row of blocks that begins at `top`, samples.
+    #[inline(always)]
+    pub(crate) fn at(&self, top: f32) -> [f32; 4] {
         let y = top + 0.5;
-        let mut spans = Self {
-            left: [0.0; 3],
-            right: [0.0; 3],
-            left_lanes: [l.splat(0.0); 3],
-            right_lanes: [l.splat(0.0); 3],
-            top,
-        };
-        for (i, e) in polygon.left.edges().iter().enumerate() {
-            spans.left[i] = (y - e.y) * e.slope + e.x;
-            spans.left_lanes[i] = l.mul(rows, l.splat(e.slope));
-        }
-        for (i, e) in polygon.right.edges().iter().enumerate() {
-            spans.right[i] = (y - e.y) * e.slope + e.x;
-            spans.right_lanes[i] = l.mul(rows, l.splat(e.slope));
-        }
-        spans
+        four!(i => (y - self.y[i]) * self.slope[i] + self.x[i])
     }
 }
 
@@ -81,35 +87,18 @@ struct Bounds<L: Lanes> {
     center: L::F,
 }
 
+/// One border in a block that begins at `left`.
 #[inline(always)]
-fn bounds<L: Lanes, const LEFT: bool>(
-    l: L,
-    slopes: &[super::polygon::Edge],
-    at: &[f32; 3],
-    lanes: &[L::F; 3],
-    left: f32,
-) -> Bounds<L> {
-    let mut b = Bounds {
-        rows: [l.splat(0.0); 4],
-        center: l.splat(0.0),
-    };
-    for (i, e) in slopes.iter().enumerate() {
-        let x = at[i] - (left - 0.5);
-        let s = e.slope;
-        let at = [x, x + s, x + 2.0 * s, x + 3.0 * s];
-        let v = four!(k => l.add(l.splat(at[k]), lanes[i]));
-        let c = l.add(l.splat(x + 1.5 * s), lanes[i]);
-        if i == 0 {
-            b = Bounds { rows: v, center: c };
-        } else if LEFT {
-            b.rows = four!(k => l.max(b.rows[k], v[k]));
-            b.center = l.max(b.center, c);
-        } else {
-            b.rows = four!(k => l.min(b.rows[k], v[k]));
-            b.center = l.min(b.center, c);
-        }
+fn border<L: Lanes>(l: L, borders: &Borders<L>, at: &[f32; 4], e: usize, left: f32) -> Bounds<L> {
+    let step = borders.step[e];
+    let r0 = l.add(l.splat(at[e] - (left - 0.5)), borders.lanes[e]);
+    let r1 = l.add(r0, step);
+    let r2 = l.add(r1, step);
+    let r3 = l.add(r2, step);
+    Bounds {
+        rows: [r0, r1, r2, r3],
+        center: l.add(r1, l.mul(step, l.splat(0.5))),
     }
-    b
 }
 
 /// Planes of "at or right of the bound": by sample column, then centres.
@@ -141,24 +130,33 @@ fn limit<L: Lanes>(l: L, lo: L::F, y: f32, (y0, y1): (f32, f32)) -> L::F {
 }
 
 #[inline(always)]
-fn mask<L: Lanes>(l: L, polygon: &Polygon, spans: &Spans<L>, left: f32) -> Mask<L> {
-    let mut lo = bounds::<L, true>(
-        l,
-        polygon.left.edges(),
-        &spans.left,
-        &spans.left_lanes,
-        left,
+fn mask<L: Lanes>(
+    l: L,
+    polygon: &Polygon,
+    borders: &Borders<L>,
+    at: &[f32; 4],
+    left: f32,
+    top: f32,
+) -> Mask<L> {
+    let (l0, l1) = (
+        border(l, borders, at, 0, left),
+        border(l, borders, at, 1, left),
     );
-    let hi = bounds::<L, false>(
-        l,
-        polygon.right.edges(),
-        &spans.right,
-        &spans.right_lanes,
-        left,
+    let (r0, r1) = (
+        border(l, borders, at, 2, left),
+        border(l, borders, at, 3, left),
     );
+    let mut lo = Bounds {
+        rows: four!(k => l.max(l0.rows[k], l1.rows[k])),
+        center: l.max(l0.center, l1.center),
+    };
+    let hi = Bounds {
+        rows: four!(k => l.min(r0.rows[k], r1.rows[k])),
+        center: l.min(r0.center, r1.center),
+    };
     if let Some(limits) = polygon.rows {
-        lo.rows = four!(k => limit(l, lo.rows[k], spans.top + 0.5 + k as f32, limits));
-        lo.center = limit(l, lo.center, spans.top + 2.0, limits);
+        lo.rows = four!(k => limit(l, lo.rows[k], top + 0.5 + k as f32, limits));
+        lo.center = limit(l, lo.center, top + 2.0, limits);
     }
     let (a, ca) = planes(l, &lo);
     let (b, cb) = planes(l, &hi);
@@ -235,10 +233,7 @@ pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, 
 /// Drops partial coverage that can no longer bring anything nearer than the depth that is there.
 #[inline(always)]
 fn forget_hidden<L: Lanes>(l: L, partial: &mut crate::depth::PartialBlock, d: &[L::H; 4]) {
-    let kept = gather_bits(
-        l,
-        four!(k => l.hgt(l.hload(&partial.depth[k]), d[k])),
-    );
+    let kept = gather_bits(l, four!(k => l.hgt(l.hload(&partial.depth[k]), d[k])));
     let keep = l.bsplat64(kept);
     for c in 0..4 {
         l.bstore(
@@ -262,16 +257,13 @@ pub(crate) fn cover_partial<L: Lanes>(
     bx: u32,
     by: u32,
     polygon: &Polygon,
-    spans: &Spans<L>,
+    borders: &Borders<L>,
+    at: &[f32; 4],
 ) {
     let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
     if polygon.plane.max_code <= band.min[i] {
         return;
     }
-    let Mask {
-        mut planes,
-        mut center,
-    } = mask(l, polygon, spans, (bx * BLOCK * 4) as f32);
     let d = depth(l, &polygon.plane, bx, by);
     let state = band.state[i];
     let block = &mut band.depth[i].0;
@@ -282,6 +274,20 @@ pub(crate) fn cover_partial<L: Lanes>(
     };
     // Only pixels where the polygon is nearer than what is proven already.
     let nearer = gather_bits(l, four!(k => l.hgt(d[k], old[k])));
+    if nearer == 0 {
+        return;
+    }
+    let Mask {
+        mut planes,
+        mut center,
+    } = mask(
+        l,
+        polygon,
+        borders,
+        at,
+        (bx * BLOCK_SAMPLES) as f32,
+        (by * BLOCK_SAMPLES) as f32,
+    );
     let near = l.bsplat64(nearer);
     planes = four!(c => l.band(planes[c], near));
     center &= nearer;

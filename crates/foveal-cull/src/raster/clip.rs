@@ -4,7 +4,7 @@
 //! the near plane is not drawn by a renderer and so occludes nothing.
 
 use super::setup::{Facing, GUARD, Scratch, draw_eight};
-use crate::depth::Band;
+use crate::depth::{BLOCK_SAMPLES, Band};
 use crate::occluder::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
 use glam::DVec4;
@@ -96,10 +96,34 @@ pub(crate) fn draw_clipped<L: Lanes>(
             rows[3].dot(p),
         )
     };
+    // Borders that a corner lies beyond: near, left, right, top, bottom.
+    let right = f64::from(band.blocks_x * BLOCK_SAMPLES);
+    let (top, bottom) = (
+        f64::from(band.first_row * BLOCK_SAMPLES),
+        f64::from((band.first_row + band.rows) * BLOCK_SAMPLES),
+    );
+    for v in 0..cluster.vertex_count {
+        let c = corner(v as u8);
+        let beyond = [
+            c.z > c.w,
+            c.x < 0.0,
+            c.x > right * c.w,
+            c.y < top * c.w,
+            c.y > bottom * c.w,
+        ];
+        scratch.beyond[usize::from(v)] = beyond
+            .iter()
+            .enumerate()
+            .fold(0, |m, (i, &b)| m | (u8::from(b) << i));
+    }
     for q in 0..usize::from(cluster.quad_count) {
         let group = &mesh.quads[cluster.first_group as usize + q / 8];
         let v: [u8; 4] = core::array::from_fn(|c| group[c][q % 8]);
-        if !v.iter().any(|&v| scratch.x[usize::from(v)].is_nan()) {
+        if v.iter()
+            .fold(0xff, |m, &v| m & scratch.beyond[usize::from(v)])
+            != 0
+            || !v.iter().any(|&v| scratch.x[usize::from(v)].is_nan())
+        {
             continue;
         }
         for [a, b, c] in [[v[0], v[1], v[2]], [v[0], v[2], v[3]]] {
@@ -107,6 +131,13 @@ pub(crate) fn draw_clipped<L: Lanes>(
                 continue;
             }
             let (b, c) = if facing.mirrored { (c, b) } else { (b, c) };
+            if [a, b, c]
+                .iter()
+                .fold(0xff, |m, &v| m & scratch.beyond[usize::from(v)])
+                != 0
+            {
+                continue;
+            }
             let mut polygon = ClipPolygon::new(&[corner(a), corner(b), corner(c)]);
             for plane in PLANES {
                 polygon.clip(plane);
@@ -153,6 +184,19 @@ fn draw_fan<L: Lanes>(
     for k in 0..4 {
         depths[8 * k..8 * k + 8].copy_from_slice(&lanes[2][k]);
     }
-    const INDEX: [[u8; 8]; 4] = [[0, 1, 2, 3, 4, 5, 6, 7], [8, 9, 10, 11, 12, 13, 14, 15], [16, 17, 18, 19, 20, 21, 22, 23], [24, 25, 26, 27, 28, 29, 30, 31]];
-    scratch.polygons += draw_eight(l, band, x, y, &scratch.clipped, four!(k => &INDEX[k]), two_sided);
+    const INDEX: [[u8; 8]; 4] = [
+        [0, 1, 2, 3, 4, 5, 6, 7],
+        [8, 9, 10, 11, 12, 13, 14, 15],
+        [16, 17, 18, 19, 20, 21, 22, 23],
+        [24, 25, 26, 27, 28, 29, 30, 31],
+    ];
+    scratch.polygons += draw_eight(
+        l,
+        band,
+        x,
+        y,
+        &scratch.clipped,
+        four!(k => &INDEX[k]),
+        two_sided,
+    );
 }

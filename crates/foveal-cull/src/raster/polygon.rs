@@ -5,11 +5,11 @@
 //! that no sample between them is lost or counted twice. Per row of blocks the borders give the span of
 //! touched and of fully covered blocks.
 
-use super::block::{self, Plane, Spans};
+use super::block::{self, Borders, Plane};
 use crate::depth::{BLOCK_SAMPLES, Band};
 use crate::simd::Lanes;
 
-/// A border line through (x, y), samples, with dx/dy `slope`.
+/// A border: the line through (x, y), samples, with dx/dy `slope`.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Edge {
     pub(crate) x: f32,
@@ -17,25 +17,22 @@ pub(crate) struct Edge {
     pub(crate) slope: f32,
 }
 
-/// Borders of one side; a convex quadrilateral has up to three on one side.
+/// Borders of one side: two (the same twice where there is one).
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Side {
-    pub(crate) edges: [Edge; 3],
-    pub(crate) count: usize,
+    pub(crate) edges: [Edge; 2],
+    count: usize,
 }
 
 impl Side {
     #[inline(always)]
     fn push(&mut self, edge: Edge) {
-        if let Some(slot) = self.edges.get_mut(self.count) {
-            *slot = edge;
-            self.count += 1;
+        if self.count == 0 {
+            self.edges = [edge; 2];
+        } else {
+            self.edges[1] = edge;
         }
-    }
-
-    #[inline(always)]
-    pub(crate) fn edges(&self) -> &[Edge] {
-        &self.edges[..self.count]
+        self.count += 1;
     }
 }
 
@@ -87,31 +84,32 @@ impl Polygon {
 /// Slack of the block classification against the rounding of row ends, samples.
 const SLACK: f32 = 1.0;
 
+impl Polygon {
+    /// Whether each side has one or two borders. A quadrilateral with three on one side must be drawn as two
+    /// triangles; one without a side has no area.
+    #[inline(always)]
+    pub(crate) fn is_drawable(&self) -> bool {
+        (1..=2).contains(&self.left.count) && (1..=2).contains(&self.right.count)
+    }
+}
+
 #[inline(always)]
 pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon) {
-    if polygon.left.count == 0 || polygon.right.count == 0 {
-        return;
-    }
     let [bx0, by0, bx1, by1] = polygon.blocks;
     let size = BLOCK_SAMPLES as f32;
+    let borders = Borders::new(l, polygon);
     for by in by0..=by1 {
         let top = (by * BLOCK_SAMPLES) as f32;
-        let spans = Spans::new(l, polygon, top);
+        let at = borders.at(top);
         let (mut first, mut last) = (bx0, bx1);
         let (mut inner_left, mut inner_right) = (f32::INFINITY, f32::NEG_INFINITY);
         if bx0 != bx1 {
-            let (mut outer_left, mut outer_right) = (f32::NEG_INFINITY, f32::INFINITY);
-            (inner_left, inner_right) = (f32::NEG_INFINITY, f32::INFINITY);
-            for (e, &a) in polygon.left.edges().iter().zip(&spans.left) {
-                let b = a + e.slope * (size - 1.0);
-                outer_left = outer_left.max(a.min(b));
-                inner_left = inner_left.max(a.max(b));
-            }
-            for (e, &a) in polygon.right.edges().iter().zip(&spans.right) {
-                let b = a + e.slope * (size - 1.0);
-                outer_right = outer_right.min(a.max(b));
-                inner_right = inner_right.min(a.min(b));
-            }
+            // The same borders at the last sample row.
+            let end: [f32; 4] = core::array::from_fn(|e| at[e] + borders.slope[e] * (size - 1.0));
+            let outer_left = at[0].min(end[0]).max(at[1].min(end[1]));
+            inner_left = at[0].max(end[0]).max(at[1].max(end[1])) + SLACK;
+            let outer_right = at[2].max(end[2]).min(at[3].max(end[3]));
+            inner_right = at[2].min(end[2]).min(at[3].min(end[3])) - SLACK;
             if let Some((y0, y1)) = polygon.rows
                 && (top < y0 || top + size > y1)
             {
@@ -127,10 +125,10 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon) {
         }
         for bx in first..=last {
             let left = (bx * BLOCK_SAMPLES) as f32;
-            if left >= inner_left + SLACK && left + size <= inner_right - SLACK {
+            if left >= inner_left && left + size <= inner_right {
                 block::cover_full(l, band, bx, by, &polygon.plane);
             } else {
-                block::cover_partial(l, band, bx, by, polygon, &spans);
+                block::cover_partial(l, band, bx, by, polygon, &borders, &at);
             }
         }
     }

@@ -22,6 +22,8 @@ pub(crate) struct Scratch {
     pub(crate) d: [f32; 256],
     /// Depths of a clipped polygon's fan.
     pub(crate) clipped: [f32; 256],
+    /// Screen borders that vertices lie beyond, for the clipper.
+    pub(crate) beyond: [u8; 256],
     /// Polygons that were set up, for the statistics.
     pub(crate) polygons: u64,
     /// Clusters drawn.
@@ -35,6 +37,7 @@ impl Default for Scratch {
             y: [0.0; 256],
             d: [0.0; 256],
             clipped: [0.0; 256],
+            beyond: [0; 256],
             polygons: 0,
             clusters: 0,
         }
@@ -226,7 +229,15 @@ pub(crate) fn draw_eight<L: Lanes>(
     let [s0, s1, s2, s3] = four!(k => out(l, around[k]));
     let slopes = [s0, s1, s2, s3, out(l, diagonal)];
     let (base, gx, gy, z_lo, z_hi, y_lo, y_hi, x_lo, x_hi) = (
-        out(l, base), out(l, gx), out(l, gy), out(l, z_lo), out(l, z_hi), out(l, y_lo), out(l, y_hi), out(l, x_lo), out(l, x_hi),
+        out(l, base),
+        out(l, gx),
+        out(l, gy),
+        out(l, z_lo),
+        out(l, z_hi),
+        out(l, y_lo),
+        out(l, y_hi),
+        out(l, x_lo),
+        out(l, x_hi),
     );
     let (front0, front1) = (l.movemask(front0), l.movemask(front1));
     let mut drawn = 0;
@@ -251,9 +262,15 @@ pub(crate) fn draw_eight<L: Lanes>(
             block_of(x_hi[i], 0, band.blocks_x - 1),
             block_of(y_hi[i], band.first_row, last_row),
         ];
-        let (first, last) = if convex & bit != 0 { (2, 2) } else { (usize::from(front0 & bit == 0), usize::from(front1 & bit != 0)) };
-        for shape in &SHAPES[first..=last] {
-            drawn += 1;
+        let (first, last) = if convex & bit != 0 {
+            (2, 5)
+        } else {
+            (
+                usize::from(front0 & bit == 0),
+                1 + usize::from(front1 & bit != 0),
+            )
+        };
+        for (n, shape) in SHAPES[first..last].iter().enumerate() {
             let mut polygon = Polygon::new(plane, blocks);
             let (mut flat, mut lo, mut hi) = (false, f32::INFINITY, f32::NEG_INFINITY);
             for k in 0..shape.count {
@@ -265,7 +282,13 @@ pub(crate) fn draw_eight<L: Lanes>(
             if flat {
                 polygon.rows = Some((lo, hi));
             }
-            polygon::draw(l, band, &polygon);
+            if polygon.is_drawable() {
+                drawn += 1;
+                polygon::draw(l, band, &polygon);
+                if first + n == 2 {
+                    break;
+                }
+            }
         }
     }
     drawn
@@ -278,12 +301,23 @@ struct Shape {
     count: usize,
 }
 
-/// First triangle, second triangle, both as one.
-const SHAPES: [Shape; 3] = [
-    Shape { corners: [0, 1, 2, 0, 0], edges: [0, 1, 4, 0], count: 3 },
-    Shape { corners: [0, 2, 3, 0, 0], edges: [4, 2, 3, 0], count: 3 },
-    Shape { corners: [0, 1, 2, 3, 0], edges: [0, 1, 2, 3], count: 4 },
-];
+const FIRST: Shape = Shape {
+    corners: [0, 1, 2, 0, 0],
+    edges: [0, 1, 4, 0],
+    count: 3,
+};
+const SECOND: Shape = Shape {
+    corners: [0, 2, 3, 0, 0],
+    edges: [4, 2, 3, 0],
+    count: 3,
+};
+const WHOLE: Shape = Shape {
+    corners: [0, 1, 2, 3, 0],
+    edges: [0, 1, 2, 3],
+    count: 4,
+};
+/// The triangles alone; then the whole, and the triangles again for a whole with three borders on one side.
+const SHAPES: [Shape; 5] = [FIRST, SECOND, WHOLE, FIRST, SECOND];
 
 #[inline(always)]
 fn block_of(v: f32, first: u32, last: u32) -> u32 {
@@ -293,12 +327,20 @@ fn block_of(v: f32, first: u32, last: u32) -> u32 {
 /// Twice the signed area, positive when facing the eye (y points down).
 #[inline(always)]
 fn area<L: Lanes>(l: L, x: &[L::F; 4], y: &[L::F; 4], a: usize, b: usize, c: usize) -> L::F {
-    l.sub(l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])), l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])))
+    l.sub(
+        l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])),
+        l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])),
+    )
 }
 
 #[inline(always)]
 fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
-    [v[0], l.select(reversed, v[3], v[1]), v[2], l.select(reversed, v[1], v[3])]
+    [
+        v[0],
+        l.select(reversed, v[3], v[1]),
+        v[2],
+        l.select(reversed, v[1], v[3]),
+    ]
 }
 
 #[inline(always)]
@@ -321,7 +363,11 @@ fn steps<L: Lanes>(l: L, v: L::F, lo: f32, hi: f32) -> L::I {
 /// Second, third and left-over corner of the triangle that gives the plane.
 #[inline(always)]
 fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
-    (l.select(second, v[2], v[1]), l.select(second, v[3], v[2]), l.select(second, v[1], v[3]))
+    (
+        l.select(second, v[2], v[1]),
+        l.select(second, v[3], v[2]),
+        l.select(second, v[1], v[3]),
+    )
 }
 
 #[inline(always)]

@@ -11,6 +11,9 @@ use crate::error::{Flaw, Parsed};
 /// Numbers that all accessors together may yield: overlapping accessors can make many out of few bytes.
 const MAX_NUMBERS: u64 = 1 << 30;
 
+/// Elements without stored values that all accessors together may have.
+pub(crate) const MAX_UNBACKED: u64 = 2 << 20;
+
 /// Where a buffer's bytes are.
 enum Source {
     /// The container's binary chunk.
@@ -29,12 +32,11 @@ pub(crate) struct Buffers<'a> {
 }
 
 impl<'a> Buffers<'a> {
-    /// Fetches every buffer. `unbacked_limit` bounds the elements of accessors without a buffer view.
+    /// Fetches every buffer.
     pub(crate) fn fetch(
         defs: &[BufferDef],
         bin: Option<&'a [u8]>,
         resolver: &Resolver<'_>,
-        unbacked_limit: u64,
     ) -> Self {
         let mut store = Store {
             stored: Vec::new(),
@@ -54,7 +56,7 @@ impl<'a> Buffers<'a> {
             bin: bin.unwrap_or_default(),
             stored: store.stored,
             sources,
-            unbacked: Budget::new(unbacked_limit),
+            unbacked: Budget::new(MAX_UNBACKED),
             numbers: Budget::new(MAX_NUMBERS),
         }
     }

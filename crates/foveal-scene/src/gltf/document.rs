@@ -90,7 +90,13 @@ impl Document {
         };
         let buffers = root.objects("buffers", parse_buffer)?;
         let views = root.objects("bufferViews", |o| parse_view(o, &buffers))?;
-        let nodes: Vec<NodeDef> = root.objects("nodes", |o| NodeDef::parse(o, &counts, warn))?;
+        let nodes: Vec<NodeDef> = {
+            let mut numbers = 0..;
+            root.objects("nodes", |o| {
+                let number = numbers.next().unwrap_or(0);
+                NodeDef::parse(o, number, &counts, warn)
+            })?
+        };
         let light_defs = match lights {
             Some(lights) => lights
                 .objects("lights", LightDef::parse)

@@ -14,6 +14,12 @@ const HONOURED: &[&str] = &[
     "KHR_texture_transform",
 ];
 
+/// Read, but turned into something near it.
+const APPROXIMATED: &[(&str, &str)] = &[(
+    "KHR_materials_pbrSpecularGlossiness",
+    "its diffuse colour is shown as that of a dielectric, its specular colour is not",
+)];
+
 /// Without effect on a picture: metadata and interaction.
 const INVISIBLE: &[&str] = &[
     "KHR_node_hoverability",
@@ -24,7 +30,10 @@ const INVISIBLE: &[&str] = &[
 
 /// Fails on an unsupported required extension, warns of an unsupported used one.
 pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {
-    let honoured = |name: &str| HONOURED.contains(&name) || INVISIBLE.contains(&name);
+    let approximated = |name: &str| APPROXIMATED.iter().find(|(known, _)| *known == name);
+    let honoured = |name: &str| {
+        HONOURED.contains(&name) || INVISIBLE.contains(&name) || approximated(name).is_some()
+    };
     for (i, name) in root.strings("extensionsRequired")?.into_iter().enumerate() {
         if !honoured(name) {
             let mut flaw = Flaw::new(name).under(format_args!("extensionsRequired[{i}]"));
@@ -36,7 +45,9 @@ pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {
     used.sort_unstable();
     used.dedup();
     for name in used {
-        if !honoured(name) {
+        if let Some((_, how)) = approximated(name) {
+            warn.push(format!("extensionsUsed: {name} is approximated: {how}"));
+        } else if !honoured(name) {
             warn.push(format!(
                 "extensionsUsed: {name} is not supported; the file is shown without it"
             ));

@@ -88,7 +88,9 @@ pub(crate) fn build(
     } else {
         normals::smooth(&mut vertices, &indices, |_| true);
     }
-    if let (Some(slot), None) = (request.tangents_for, def.attributes.tangent)
+    // Tangents of the file belong to normals of the file.
+    let has_tangents = def.attributes.tangent.is_some() && def.attributes.normal.is_some();
+    if let Some(slot) = request.tangents_for.filter(|_| !has_tangents)
         && let Some(split) = tangents::generate(&mut vertices, &mut indices, slot as usize)
     {
         source = split.iter().map(|&i| source[i as usize]).collect();

@@ -67,6 +67,16 @@ impl MaterialDef {
             material.roughness = roughness.clamp(0.0, 1.0);
             base_color = slot(pbr, "baseColorTexture").map_err(within)?;
             metallic_roughness = slot(pbr, "metallicRoughnessTexture").map_err(within)?;
+        } else if let Some(old) = o.extension("KHR_materials_pbrSpecularGlossiness")? {
+            let within = |e: Flaw| e.under("extensions.KHR_materials_pbrSpecularGlossiness");
+            let diffuse = old.floats("diffuseFactor").map_err(within)?;
+            let glossiness = old.float("glossinessFactor").map_err(within)?;
+            material.base_color = diffuse
+                .map_or(Vec4::ONE, Vec4::from)
+                .clamp(Vec4::ZERO, Vec4::ONE);
+            material.metallic = 0.0;
+            material.roughness = 1.0 - glossiness.unwrap_or(1.0).clamp(0.0, 1.0);
+            base_color = slot(old, "diffuseTexture").map_err(within)?;
         }
         if let Some(normal) = o.object("normalTexture")? {
             material.normal_scale = normal.float("scale")?.unwrap_or(1.0);

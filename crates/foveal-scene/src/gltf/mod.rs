@@ -102,12 +102,7 @@ fn import_checked(
     // Freeing a large JSON tree takes as long as using it: give it back before the vertices come.
     drop(root);
     let parse_ms = watch.lap_ms();
-    let buffers = Buffers::fetch(
-        &document.buffers,
-        container.bin,
-        resolver,
-        options.max_vertices.min(16 << 20),
-    );
+    let buffers = Buffers::fetch(&document.buffers, container.bin, resolver);
     warn.extend(buffers.faults().map(Flaw::sentence));
     let read_ms = watch.lap_ms();
     let reader = Reader {
@@ -161,7 +156,7 @@ fn build(
     scene.timings.parse_ms = watch.lap_ms();
 
     let mut geometry = Geometry::default();
-    let mut shown = geometry.request(document, &hierarchy, &mut scene);
+    let mut shown = geometry.request(document, &hierarchy, options, &mut scene)?;
     let shapes = geometry.build(reader, options, &mut scene, warn)?;
     let mut elements_left = options.max_instances;
     for one in &mut shown {
@@ -181,7 +176,7 @@ fn build(
     rig.give_own_meshes(&mut shown, &shapes, &mut scene, document, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
 
-    scene.textures = textures::decode(&wanted, reader, resolver, options, warn)?;
+    scene.textures = textures::decode(&wanted, reader, resolver, options, warn);
     scene.timings.decode_ms = watch.lap_ms();
 
     let world = rig.world_at_rest();

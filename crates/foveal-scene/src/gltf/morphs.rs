@@ -62,6 +62,13 @@ fn read_influences(
     notes: &mut Vec<String>,
 ) -> Parsed<Option<Influences>> {
     let attributes = &def.attributes;
+    for set in 0..2 {
+        if attributes.joints[set].is_some() != attributes.weights[set].is_some() {
+            notes.push(format!(
+                "has only one of JOINTS_{set} and WEIGHTS_{set}, which is ignored"
+            ));
+        }
+    }
     if attributes.joints[0].is_none() || attributes.weights[0].is_none() {
         return Ok(None);
     }

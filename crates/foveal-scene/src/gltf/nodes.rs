@@ -34,7 +34,12 @@ pub(crate) struct NodeDef {
 }
 
 impl NodeDef {
-    pub(crate) fn parse(o: Obj<'_>, counts: &Counts, warn: &mut Vec<String>) -> Parsed<Self> {
+    pub(crate) fn parse(
+        o: Obj<'_>,
+        number: usize,
+        counts: &Counts,
+        warn: &mut Vec<String>,
+    ) -> Parsed<Self> {
         let name = o.string("name")?.map(str::to_owned);
         let trs = ["translation", "rotation", "scale"]
             .iter()
@@ -42,9 +47,8 @@ impl NodeDef {
         let local = match o.floats::<16>("matrix")? {
             Some(matrix) => {
                 if trs {
-                    let of = name.as_deref().unwrap_or("without a name");
                     warn.push(format!(
-                        "nodes: the node {of} has a matrix and translation, rotation or scale; the matrix is used"
+                        "nodes[{number}]: has a matrix and translation, rotation or scale; the matrix is used"
                     ));
                 }
                 Local::Matrix(affine(matrix))

@@ -10,6 +10,9 @@ use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};
 
+/// An object takes hundreds of bytes: a file that stores none of them does not get many.
+const MAX_UNBACKED_INSTANCES: usize = 1 << 16;
+
 /// A mesh with a material, as one primitive of a glTF mesh gives it.
 #[derive(Clone, Copy)]
 pub(crate) struct Part {
@@ -45,6 +48,12 @@ pub(crate) fn elements(
     let Some(count) = counts.min() else {
         return Ok(vec![Mat4::IDENTITY]);
     };
+    let mut used = accessors.iter().flatten();
+    if count > MAX_UNBACKED_INSTANCES && used.all(|&a| reader.accessor(a).unbacked() > 0) {
+        return Err(Flaw::too_large(format!(
+            "{count} instances without stored values, the limit is {MAX_UNBACKED_INSTANCES}"
+        )));
+    }
     *left = left
         .checked_sub(count as u64)
         .ok_or_else(|| too_many(count as u64, options))?;
@@ -72,7 +81,7 @@ pub(crate) fn elements(
         .collect())
 }
 
-fn too_many(count: u64, options: &LoadOptions) -> Flaw {
+pub(crate) fn too_many(count: u64, options: &LoadOptions) -> Flaw {
     Flaw::too_large(format!(
         "{count} instances are more than the limit of {} in all leaves",
         options.max_instances
@@ -100,7 +109,7 @@ pub(crate) fn place(
     let numbers: Vec<u32> = (0..meshes.len() as u32).collect();
     let clouds = threads::map(options.parallel, &numbers, |&i| {
         let uses = uses[i as usize];
-        (uses > 0).then(|| Arc::new(Cloud::of(&meshes[i as usize], uses > 3)))
+        (uses > 0).then(|| Arc::new(Cloud::of(&meshes[i as usize], uses)))
     });
     let spots: Vec<(&Shown, usize)> = shown
         .iter()

@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use glam::Mat4;
 
+use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
 use super::materials::{DEFAULT_UV_SETS, UvSets};
-use super::meshes::Mode;
+use super::meshes::{Mode, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
 use super::reader::Reader;
@@ -29,11 +30,13 @@ impl Geometry {
         &mut self,
         document: &Document,
         hierarchy: &Hierarchy,
+        options: &LoadOptions,
         scene: &mut Scene,
-    ) -> Vec<Shown> {
+    ) -> Parsed<Vec<Shown>> {
         let mut default_material = None;
         let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
         let mut shown = Vec::new();
+        let mut instances = 0u64;
         for (node, _, mesh) in objects::nodes_with_meshes(&document.nodes, hierarchy) {
             let parts = parts_of.entry(mesh).or_insert_with(|| {
                 let def = &document.meshes[mesh as usize];
@@ -49,6 +52,11 @@ impl Geometry {
                     })
                     .collect()
             });
+            // Before the list is copied: few bytes can name many primitives in many nodes.
+            instances += parts.len() as u64;
+            if instances > options.max_instances {
+                return Err(objects::too_many(instances, options).under("nodes"));
+            }
             shown.push(Shown {
                 node,
                 parts: parts.clone(),
@@ -56,7 +64,7 @@ impl Geometry {
                 skinned: false,
             });
         }
-        shown
+        Ok(shown)
     }
 
     fn number(&mut self, document: &Document, mesh: u32, primitive: usize) -> u32 {
@@ -108,7 +116,7 @@ impl Geometry {
 
     /// Adds up the vertices and corners that will come of it before anything is allocated.
     fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
-        let (mut vertices, mut corners) = (0u64, 0u64);
+        let (mut vertices, mut corners, mut unbacked) = (0u64, 0u64, 0u64);
         for (request, place) in &self.requests {
             let def = &request.primitive;
             let count = |a: u32| reader.accessor(a).count as u64;
@@ -129,6 +137,15 @@ impl Geometry {
             let morphs = 1 + def.targets.len() as u64;
             vertices = vertices.saturating_add(made.saturating_mul(morphs));
             corners = corners.saturating_add(of_triangles);
+            if positions_are_unbacked(reader, def) {
+                unbacked = unbacked.saturating_add(made);
+            }
+            if unbacked > MAX_UNBACKED {
+                return Err(Flaw::too_large(format!(
+                    "{unbacked} vertices without stored positions, the limit is {MAX_UNBACKED}"
+                ))
+                .under(place));
+            }
             let (limit, most) = (options.max_vertices, vertices.max(corners / 6));
             if most > limit {
                 return Err(Flaw::too_large(format!(
@@ -140,6 +157,11 @@ impl Geometry {
         }
         Ok(())
     }
+}
+
+fn positions_are_unbacked(reader: Reader<'_>, def: &PrimitiveDef) -> bool {
+    let position = def.attributes.position;
+    position.is_some_and(|a| reader.accessor(a).unbacked() > 0)
 }
 
 /// Forgets meshes without triangles: they have been noted, and there is nothing to draw.

@@ -101,7 +101,7 @@ impl<'a> Reader<'a> {
                 read(source, accessor.count)
             }
             None => {
-                self.buffers.take_unbacked(accessor.unbacked())?;
+                self.buffers.take_unbacked(accessor.unbacked_cost())?;
                 vec![zero; accessor.count]
             }
         };

@@ -13,6 +13,9 @@ use crate::error::{Flaw, Parsed};
 use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};
 use crate::{LoadOptions, Scene};
 
+/// Each pose writes all of these anew, and each node has its own: more would not move in real time.
+const MAX_DEFORMING: u64 = 16 << 20;
+
 /// The rig while the scene is being put together.
 pub(crate) struct Rigging {
     data: RigData,
@@ -92,7 +95,7 @@ impl Rigging {
             let node = one.node;
             let def = &document.nodes[node as usize];
             let skin = def.skin;
-            self.data.nodes[node as usize].weights = weights_at_rest(document, node);
+            self.data.nodes[node as usize].weights = weights_at_rest(document, node, warn);
             for part in &mut one.parts {
                 let Some(shape) = &shapes[part.mesh as usize] else {
                     continue;
@@ -106,7 +109,7 @@ impl Rigging {
                     continue;
                 }
                 vertices += shape.rest.len() as u64;
-                if vertices > options.max_vertices {
+                if vertices > options.max_vertices.min(MAX_DEFORMING) {
                     let cause = "the deforming meshes have more vertices than the limit allows";
                     return Err(Flaw::too_large(cause).under(format_args!("nodes[{node}]")));
                 }
@@ -158,6 +161,9 @@ impl Rigging {
         clouds: &[Option<Arc<Cloud>>],
         camera_nodes: &[u32],
     ) {
+        if self.data.deformers.is_empty() && self.data.animations.is_empty() {
+            return;
+        }
         let deforming: std::collections::HashSet<u32> =
             self.data.deformers.iter().map(|d| d.node).collect();
         let by_node: std::collections::HashMap<u32, &Shown> =
@@ -193,9 +199,7 @@ impl Rigging {
                 self.data.lights.push((i as u32, node));
             }
         }
-        if !self.data.deformers.is_empty() || !self.data.animations.is_empty() {
-            scene.rig = Rig(Some(Arc::new(self.data)));
-        }
+        scene.rig = Rig(Some(Arc::new(self.data)));
     }
 }
 
@@ -233,13 +237,20 @@ fn target_count(document: &Document, node: u32) -> usize {
 }
 
 /// The node's own weights, else its mesh's, else zeros.
-fn weights_at_rest(document: &Document, node: u32) -> Vec<f32> {
+fn weights_at_rest(document: &Document, node: u32, warn: &mut Vec<String>) -> Vec<f32> {
     let def = &document.nodes[node as usize];
     let of_mesh = def.mesh.map(|m| &document.meshes[m as usize].weights);
     let mut weights = match of_mesh {
         Some(of_mesh) if def.weights.is_empty() => of_mesh.clone(),
         _ => def.weights.clone(),
     };
-    weights.resize(target_count(document, node), 0.0);
+    let count = target_count(document, node);
+    if !weights.is_empty() && weights.len() != count {
+        warn.push(format!(
+            "nodes[{node}]: has {} weights for {count} morph targets",
+            weights.len()
+        ));
+    }
+    weights.resize(count, 0.0);
     weights
 }

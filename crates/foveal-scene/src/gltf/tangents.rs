@@ -95,6 +95,7 @@ pub(crate) fn generate(
     for triangle in indices.chunks_exact_mut(3) {
         if has_area_of(vertices, triangle) {
             for (index, tangent) in triangle.iter_mut().zip(&mut of_solid) {
+                let tangent = unit_or(tangent, vertices[*index as usize].normal);
                 *index = split.assign(vertices, *index, tangent);
             }
         }
@@ -102,11 +103,21 @@ pub(crate) fn generate(
     // What only triangles without area use is never seen, but must be a unit vector.
     for (vertex, given) in vertices.iter_mut().zip(&split.given) {
         if !given {
-            let normal = Vec3::from(vertex.normal);
-            vertex.tangent = normal.any_orthonormal_vector().extend(1.0).to_array();
+            vertex.tangent = unit_or([0.0; 4], vertex.normal);
         }
     }
     split.sources()
+}
+
+/// The tangent, or any one across the normal where positions or UVs of extreme size gave none.
+fn unit_or(tangent: [f32; 4], normal: [f32; 3]) -> [f32; 4] {
+    let [x, y, z, w] = tangent;
+    let length = Vec3::new(x, y, z).length();
+    if (length - 1.0).abs() < 1e-3 {
+        return tangent;
+    }
+    let across = Vec3::from(normal).any_orthonormal_vector();
+    across.extend(if w < 0.0 { -1.0 } else { 1.0 }).to_array()
 }
 
 fn has_area_of(vertices: &[Vertex], t: &[u32]) -> bool {

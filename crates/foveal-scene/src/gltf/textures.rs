@@ -11,7 +11,7 @@ use super::document::Document;
 use super::materials::{MaterialDef, SlotDef};
 use super::pictures::{self, Picture};
 use super::reader::Reader;
-use crate::error::{Flaw, Parsed};
+use crate::error::Parsed;
 use crate::mip::{self, Content};
 use crate::{AlphaMode, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, threads};
 
@@ -131,7 +131,7 @@ pub(crate) fn decode(
     resolver: &Resolver<'_>,
     options: &LoadOptions,
     warn: &mut Vec<String>,
-) -> Parsed<Vec<Texture>> {
+) -> Vec<Texture> {
     let document = reader.document;
     // All uses of a picture together, so that it is decoded once.
     let mut uses: Vec<(Option<u32>, Vec<usize>)> = Vec::new();
@@ -148,13 +148,13 @@ pub(crate) fn decode(
         .iter()
         .map(|(image, uses)| (pictures::fetch(*image, reader, resolver), uses.as_slice()))
         .collect();
-    check_budget(&encoded, options)?;
+    let largest = largest_size(&encoded, options, warn);
     let decoded = threads::map(options.parallel, &encoded, |(bytes, uses)| {
         let picture = match bytes {
             Ok(bytes) => pictures::decode(bytes),
             Err(flaw) => Err(flaw.cause.clone()),
         };
-        finish(picture, uses, wanted, document, options)
+        finish(picture, uses, wanted, document, largest)
     });
     let mut textures: Vec<(usize, Texture)> = Vec::new();
     for (one, (image, _)) in decoded.into_iter().zip(&uses) {
@@ -169,26 +169,48 @@ pub(crate) fn decode(
         textures.extend(one.textures);
     }
     textures.sort_unstable_by_key(|(i, _)| *i);
-    Ok(textures.into_iter().map(|(_, t)| t).collect())
+    textures.into_iter().map(|(_, t)| t).collect()
 }
 
-/// Adds up the sizes that the headers promise before anything is decoded.
-fn check_budget(encoded: &[Encoded<'_>], options: &LoadOptions) -> Parsed<()> {
-    let mut total = 0u64;
-    for (bytes, uses) in encoded {
-        let Ok(bytes) = bytes else { continue };
-        if let Ok((width, height)) = pictures::promised_size(bytes) {
-            total += u64::from(width) * u64::from(height) * 4 * uses.len() as u64;
-        }
+/// The largest texture size with which all pictures fit into the options' budget, by what their
+/// headers promise, before anything is decoded.
+fn largest_size(encoded: &[Encoded<'_>], options: &LoadOptions, warn: &mut Vec<String>) -> u32 {
+    let sizes: Vec<(u32, u32, u64)> = encoded
+        .iter()
+        .filter_map(|(bytes, uses)| {
+            let (width, height) = pictures::promised_size(bytes.as_ref().ok()?).ok()?;
+            Some((width, height, uses.len() as u64))
+        })
+        .collect();
+    let wished = options.max_texture_size.max(1);
+    let total = |largest: u32| -> u64 {
+        let texels = sizes.iter().map(|&(width, height, uses)| {
+            let drop = levels_to_drop(width, height, largest);
+            u64::from((width >> drop).max(1)) * u64::from((height >> drop).max(1)) * uses
+        });
+        texels.sum::<u64>().saturating_mul(4)
+    };
+    let mut largest = wished;
+    while largest > 1 && total(largest) > options.max_texture_bytes {
+        largest /= 2;
     }
-    if total > options.max_texture_bytes {
-        return Err(Flaw::too_large(format!(
-            "the decoded pictures take {total} bytes, the limit is {}",
+    if largest < wished {
+        warn.push(format!(
+            "images: take {} bytes, more than the limit of {}; they are reduced to {largest} texels",
+            total(wished),
             options.max_texture_bytes
-        ))
-        .under("images"));
+        ));
     }
-    Ok(())
+    largest
+}
+
+/// How often a picture is halved to fit.
+fn levels_to_drop(width: u32, height: u32, largest: u32) -> usize {
+    let mut drop = 0;
+    while width.max(height) >> drop > largest {
+        drop += 1;
+    }
+    drop
 }
 
 /// What came of one picture.
@@ -202,7 +224,7 @@ fn finish(
     uses: &[usize],
     wanted: &Wanted,
     document: &Document,
-    options: &LoadOptions,
+    largest: u32,
 ) -> Finished {
     let mut notes = Vec::new();
     let mut textures = Vec::with_capacity(uses.len());
@@ -219,7 +241,7 @@ fn finish(
                 } else {
                     pixels.clone()
                 };
-                let texture = build(&wanted.keys[i], document, pixels, (width, height), options);
+                let texture = build(&wanted.keys[i], document, pixels, (width, height), largest);
                 if last && texture.width < width {
                     notes.push(format!(
                         "is {width} x {height} texels large and reduced to {} x {}",
@@ -234,7 +256,7 @@ fn finish(
             for &i in uses {
                 let key = &wanted.keys[i];
                 let (pixels, side) = placeholder(key.role, wanted.only_emissive[i]);
-                textures.push((i, build(key, document, pixels, (side, side), options)));
+                textures.push((i, build(key, document, pixels, (side, side), largest)));
             }
         }
     }
@@ -246,13 +268,9 @@ fn build(
     document: &Document,
     pixels: Vec<u8>,
     (width, height): (u32, u32),
-    options: &LoadOptions,
+    largest: u32,
 ) -> Texture {
-    let largest = options.max_texture_size.max(1);
-    let mut drop = 0;
-    while width.max(height) >> drop > largest {
-        drop += 1;
-    }
+    let drop = levels_to_drop(width, height, largest);
     let mut levels = if key.sampler.mip.is_some() || drop > 0 {
         mip::chain(pixels, width, height, key.role.content())
     } else {

@@ -85,7 +85,12 @@ impl Shape {
                     .transform_vector3(tangent.truncate())
                     .extend(tangent.w);
             }
-            vertex.position = position.to_array();
+            // Weights and matrices may lead beyond the range of numbers.
+            vertex.position = if position.is_finite() {
+                position.to_array()
+            } else {
+                rest.position
+            };
             vertex.normal = unit(normal, rest.normal);
             vertex.tangent = tangent
                 .truncate()

@@ -178,7 +178,7 @@ impl RigData {
                         shown.meshes.get(instance.mesh as usize),
                     ) {
                         (Some(cloud), _) => cloud.bounds(matrix),
-                        (None, Some(mesh)) => Cloud::of(mesh, false).bounds(matrix),
+                        (None, Some(mesh)) => Cloud::of(mesh, 1).bounds(matrix),
                         (None, None) => Aabb::EMPTY,
                     }
                 })
@@ -186,6 +186,11 @@ impl RigData {
             (matrix, boxes)
         });
         for (binding, (matrix, boxes)) in self.bindings.iter().zip(placed) {
+            // Key frames may lead beyond the range of numbers; what goes there stays where it was.
+            let finite = |b: &Aabb| b.is_empty() || (b.min.is_finite() && b.max.is_finite());
+            if !matrix.is_finite() || !boxes.iter().all(finite) {
+                continue;
+            }
             let Some(object) = scene.objects.get_mut(binding.object as usize) else {
                 continue;
             };

@@ -30,8 +30,13 @@ pub(crate) struct DrawList {
 }
 
 impl DrawList {
-    /// Lists the draws of all instances of `scene`, seen from `eye`.
-    pub(crate) fn build(&mut self, scene: &SceneOnGpu, eye: Vec3) {
+    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`.
+    pub(crate) fn build(
+        &mut self,
+        scene: &SceneOnGpu,
+        eye: Vec3,
+        is_visible: impl Fn(u32) -> bool,
+    ) {
         self.drawn.clear();
         self.solid.clear();
         self.blended.clear();
@@ -40,7 +45,7 @@ impl DrawList {
             Vec::with_capacity(scene.instances.len());
         let mut blended: Vec<(f32, u32)> = Vec::new();
         for (index, instance) in (0..).zip(&scene.instances) {
-            if scene.geometry.mesh(instance.mesh).index_count == 0 {
+            if scene.geometry.mesh(instance.mesh).index_count == 0 || !is_visible(instance.object) {
                 continue;
             }
             match instance.alpha_mode {

@@ -17,6 +17,7 @@ pub(crate) use materials::{SceneMaterials, material_layout};
 use foveal_scene::{Aabb, AlphaMode, Environment, Scene};
 use glam::Mat4;
 
+use crate::culling::CullingScene;
 use crate::gpu::Gpu;
 use crate::lights::{LightUniform, LightsHeader, MAX_LIGHTS};
 use crate::{Error, SceneStats, Settings};
@@ -26,6 +27,7 @@ use crate::{Error, SceneStats, Settings};
 pub(crate) struct DrawnInstance {
     pub(crate) mesh: u32,
     pub(crate) material: u32,
+    pub(crate) object: u32,
     pub(crate) bounds: Aabb,
     /// Its transform turns front faces into clockwise ones.
     pub(crate) mirrored: bool,
@@ -45,6 +47,7 @@ pub(crate) struct SceneOnGpu {
     pub(crate) light_buffer: wgpu::Buffer,
     pub(crate) environment: Environment,
     pub(crate) stats: SceneStats,
+    pub(crate) culling: CullingScene,
     uniforms: Vec<InstanceUniform>,
 }
 
@@ -80,6 +83,7 @@ impl SceneOnGpu {
             lights,
             light_buffer,
             environment: scene.environment,
+            culling: CullingScene::new(scene),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
                 materials: scene.materials.len() as u64,
@@ -106,6 +110,7 @@ impl SceneOnGpu {
         self.lights = scene.lights.iter().map(LightUniform::new).collect();
         write_lights(gpu, &self.light_buffer, &self.lights);
         self.geometry.update_pose(gpu, scene);
+        self.culling.update_pose(scene);
     }
 
     /// The instances as the vertex shader reads them.
@@ -135,6 +140,7 @@ fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
             DrawnInstance {
                 mesh: i.mesh,
                 material: i.material,
+                object: i.object,
                 bounds: i.bounds,
                 mirrored: is_mirrored(i.world_from_object),
                 alpha_mode: material.alpha_mode,

@@ -12,7 +12,7 @@ use crate::generate::trig::{pitch, shift, yaw};
 
 const STALL_SHINE: Shine = Shine {
     color: WARM,
-    intensity: 17.0,
+    intensity: 12.0,
     range_m: 6.0,
 };
 
@@ -82,7 +82,7 @@ pub(super) fn stall<'a>(market: &mut Market<'a>, kit: &'a Kit, place: Mat4, rng:
     } else {
         let color = wares.rng.pick([0usize, 0, 1, 2, 3]);
         let shine = Shine {
-            intensity: 13.0,
+            intensity: 10.0,
             range_m: 5.5,
             ..PAPER_SHINES[color]
         };

@@ -55,7 +55,7 @@ impl Goods {
                 14,
             );
         });
-        let heap = model(scene, "heap", |b| heap(b, [200, 70, 10]));
+        let heap = model(scene, "heap", |b| heap(b, [176, 48, 6]));
         let jar = model(scene, "jar", |b| {
             let outside = [
                 (0.0, 0.0),
@@ -354,7 +354,7 @@ fn loaves(b: &mut MeshBuilder) {
         (-0.13, 0.36, -0.05),
     ] {
         let place = Vec3::new(x, y, z);
-        let tint = vary([150, 78, 26], &mut rng);
+        let tint = vary([104, 48, 14], &mut rng);
         b.tint(tint)
             .ellipsoid(place, Vec3::new(0.13, 0.065, 0.10), 10, 7);
     }

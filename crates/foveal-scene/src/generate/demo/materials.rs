@@ -129,9 +129,9 @@ const PAPER_M: f32 = 0.62;
 
 /// Fruit: name, linear colour, roughness.
 const FRUITS: [(&str, [f32; 3], f32); 4] = [
-    ("oranges", [0.90, 0.30, 0.02], 0.45),
+    ("oranges", [0.85, 0.24, 0.01], 0.45),
     ("apples", [0.68, 0.04, 0.03], 0.25),
-    ("limes", [0.42, 0.58, 0.05], 0.40),
+    ("limes", [0.26, 0.42, 0.03], 0.40),
     ("aubergines", [0.16, 0.03, 0.20], 0.20),
 ];
 
@@ -303,7 +303,7 @@ impl Materials {
             rope: add(plain("rope", [0.36, 0.28, 0.18], 0.95)),
             // Frosted: its own flame stands behind it, so that it must shine by itself.
             glass: add(Material {
-                emissive: Vec3::new(1.0, 0.50, 0.16) * 2.0,
+                emissive: Vec3::new(1.0, 0.44, 0.11) * 1.7,
                 ..clear("lantern glass", [1.0, 0.80, 0.50, 0.45], 0.15)
             }),
             bottles: add(clear("bottle glass", [0.10, 0.45, 0.32, 0.55], 0.06)),
@@ -313,10 +313,10 @@ impl Materials {
                 double_sided: true,
                 ..clear("steam", [1.0, 1.0, 1.0, 0.20], 1.0)
             }),
-            flame: add(glowing("flame", [1.0, 0.62, 0.22], 14.0)),
+            flame: add(glowing("flame", [1.0, 0.55, 0.16], 9.0)),
             bulb: add(glowing("bulb", [1.0, 0.72, 0.36], 9.0)),
             papers: [
-                ("paper amber", [1.0, 0.42, 0.09], 2.6),
+                ("paper amber", [1.0, 0.36, 0.06], 2.0),
                 ("paper red", [1.0, 0.10, 0.04], 1.9),
                 ("paper teal", [0.03, 0.72, 0.66], 1.5),
                 ("paper magenta", [1.0, 0.05, 0.36], 1.6),

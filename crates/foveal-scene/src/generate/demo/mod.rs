@@ -4,9 +4,13 @@
 //! where lanes and houses lie, the `build_*` files place things on it, and the [`market`] leaves
 //! out the least important ones until the number of instances is the wanted one.
 
+mod arches;
 mod build_houses;
 mod build_quarter;
+mod build_ropes;
+mod build_square;
 mod build_stalls;
+mod build_walls;
 mod cameras;
 mod goods;
 mod houses;
@@ -15,6 +19,7 @@ mod lanterns;
 mod lots;
 mod market;
 mod materials;
+mod openings;
 mod plan;
 mod square;
 mod stalls;

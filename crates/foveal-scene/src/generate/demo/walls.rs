@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::houses::{ArchWall, arch_wall};
+use super::arches::{ArchWall, arch_wall};
 use super::kit::{Thing, model};
 use super::materials::Materials;
 use crate::generate::build::{MeshBuilder, SceneBuilder};

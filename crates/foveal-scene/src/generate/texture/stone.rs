@@ -20,7 +20,7 @@ pub(in crate::generate) fn cobbles() -> Baked {
         let top = Vec3::new(1.03 + 0.10 * warm, 0.98, 0.93 - 0.12 * warm) * shade;
         let joint = Vec3::new(0.22, 0.19, 0.16) * (0.7 + 0.5 * fine);
         let puddle = step(0.60, 0.68, broad) * (1.0 - 0.55 * dome);
-        let mut texel = Texel::new(joint.lerp(top, stone) * (1.0 - 0.45 * puddle));
+        let mut texel = Texel::new(joint.lerp(top, stone) * (1.0 - 0.22 * puddle));
         let tilt = (unit(lattice(cell.id, 7, 5)) - 0.5) * 0.006;
         let height = 0.022 * dome + tilt * stone + 0.002 * fine;
         texel.height_m = height * (1.0 - puddle) + 0.012 * puddle;

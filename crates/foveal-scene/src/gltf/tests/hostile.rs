@@ -248,3 +248,86 @@ fn required_extensions_that_are_unknown_are_named() {
         );
     }
 }
+
+#[test]
+fn sparse_morph_targets_without_a_base_are_cheap_to_declare() {
+    let mut file = File::with_mesh();
+    let count = 50_000;
+    let positions: Vec<f32> = (0..count * 3).map(|i| (i % 7) as f32).collect();
+    file.attribute("POSITION", &positions, "VEC3");
+    file.attribute("NORMAL", &[0., 0., 1.].repeat(count), "VEC3");
+    let at = file.view(&7u16.to_le_bytes());
+    let value: Vec<u8> = [1f32, 2., 3.]
+        .iter()
+        .flat_map(|v| v.to_le_bytes())
+        .collect();
+    let value = file.view(&value);
+    let targets: Vec<_> = (0..60)
+        .map(|_| {
+            let sparse = json!({
+                "count": 1,
+                "indices": { "bufferView": at, "componentType": 5123 },
+                "values": { "bufferView": value },
+            });
+            let target = file.push(
+                "accessors",
+                json!({ "componentType": 5126, "type": "VEC3", "count": count, "sparse": sparse }),
+            );
+            json!({ "POSITION": target })
+        })
+        .collect();
+    file.primitive()["targets"] = json!(targets);
+    file.json["meshes"][0]["weights"] = json!([2]);
+    let scene = file.load();
+    let [x, y, z] = scene.meshes[0].vertices[7].position;
+    let rest = &positions[21..24];
+    assert_eq!([x - rest[0], y - rest[1], z - rest[2]], [2., 4., 6.]);
+}
+
+#[test]
+fn tangents_of_extreme_geometry_are_unit_vectors() {
+    for (size, uv) in [(1e38, 1.), (1., 1e38), (1e-38, 1e-38), (1e38, 0.)] {
+        let mut file = File::with_mesh();
+        file.attribute(
+            "POSITION",
+            &[-size, 0., 0., size, 0., 0., 0., size, 0.],
+            "VEC3",
+        );
+        file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
+        file.attribute("TEXCOORD_0", &[-uv, 0., uv, 0., 0., uv], "VEC2");
+        let texture = file.texture(&image::RgbaImage::new(1, 1));
+        file.material(json!({ "normalTexture": { "index": texture } }));
+        for v in &file.load().meshes[0].vertices {
+            let [x, y, z, w] = v.tangent;
+            let length = (x * x + y * y + z * z).sqrt();
+            assert!(
+                (length - 1.).abs() < 1e-3 && w.abs() == 1.,
+                "{size} {uv}: {:?}",
+                v.tangent
+            );
+        }
+    }
+}
+
+#[test]
+fn key_frames_beyond_the_numbers_leave_things_where_they_are() {
+    let mut file = File::with_triangle();
+    file.push(
+        "nodes",
+        json!({ "children": [0], "scale": [1e30, 1e30, 1e30] }),
+    );
+    file.json["scenes"][0]["nodes"] = json!([1]);
+    let times = file.floats(&[0., 1.], "SCALAR");
+    let values = file.floats(&[1e-30, 1e-30, 1e-30, 1e30, 1e30, 1e30], "VEC3");
+    file.push(
+        "animations",
+        json!({
+            "samplers": [{ "input": times, "output": values, "interpolation": "STEP" }],
+            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "scale" } }],
+        }),
+    );
+    let mut scene = file.load();
+    scene.pose(1.0);
+    assert!(scene.bounds().max.is_finite());
+    assert!(scene.instances[0].world_from_object.is_finite());
+}

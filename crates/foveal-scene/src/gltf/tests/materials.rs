@@ -37,6 +37,22 @@ fn factors_and_modes_are_read() {
 }
 
 #[test]
+fn specular_glossiness_keeps_its_diffuse_colour() {
+    let mut file = File::with_triangle();
+    file.json["extensionsUsed"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+    file.material(
+        json!({ "extensions": { "KHR_materials_pbrSpecularGlossiness": {
+        "diffuseFactor": [0.5, 0.25, 0, 1], "glossinessFactor": 0.75,
+    } } }),
+    );
+    let scene = file.load();
+    let m = &scene.materials[0];
+    assert_eq!(m.base_color, Vec4::new(0.5, 0.25, 0., 1.));
+    assert_eq!((m.metallic, m.roughness), (0., 0.25));
+    assert!(warnings(&scene).contains("is approximated"));
+}
+
+#[test]
 fn a_primitive_without_material_gets_the_default_one() {
     let scene = File::with_triangle().load();
     assert_eq!(scene.materials, [crate::Material::default()]);
@@ -241,4 +257,17 @@ fn large_pictures_are_halved_until_they_fit() {
     assert_eq!(t.levels.len(), 3);
     assert_eq!(t.levels[0], [10, 20, 30, 255].repeat(10));
     assert!(warnings(&scene).contains("is 20 x 9 texels large and reduced to 5 x 2"));
+
+    // 720 bytes do not fit, 10 x 4 texels do.
+    let options = LoadOptions {
+        max_texture_bytes: 200,
+        ..LoadOptions::default()
+    };
+    let scene = file.load_with(&options).unwrap();
+    assert_eq!((scene.textures[0].width, scene.textures[0].height), (10, 4));
+    assert!(
+        warnings(&scene).contains("images: take 720 bytes"),
+        "{}",
+        warnings(&scene)
+    );
 }

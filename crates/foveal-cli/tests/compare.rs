@@ -1,0 +1,178 @@
+//! `foveal compare` on small pictures.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod common;
+
+use std::path::Path;
+
+use common::{fail, folder, foveal_in, names, png, stderr, stdout, succeed};
+use serde_json::Value;
+
+fn pattern(x: u32, y: u32) -> [u8; 3] {
+    [(x * 8) as u8, (y * 8) as u8, ((x ^ y) * 4) as u8]
+}
+
+fn inverse(x: u32, y: u32) -> [u8; 3] {
+    pattern(x, y).map(|c| 255 - c)
+}
+
+fn pictures(folder: &Path) {
+    png(folder, "a.png", 32, 24, pattern);
+    png(folder, "b.png", 32, 24, |x, y| {
+        if (x, y) == (5, 6) {
+            [255, 0, 0]
+        } else {
+            pattern(x, y)
+        }
+    });
+    png(folder, "c.png", 32, 24, inverse);
+    png(folder, "small.png", 8, 8, pattern);
+}
+
+fn json(folder: &Path, words: &[&str]) -> Value {
+    serde_json::from_str(&stdout(&succeed(folder, words))).unwrap()
+}
+
+#[test]
+fn equal_pictures_are_equal_by_every_measure() {
+    let folder = folder();
+    pictures(folder.path());
+    let result = json(
+        folder.path(),
+        &[
+            "compare",
+            "a.png",
+            "a.png",
+            "--json",
+            "--max-flip",
+            "0",
+            "--min-psnr",
+            "inf",
+        ],
+    );
+    let expected = serde_json::json!({
+        "width": 32, "height": 24, "flip": 0.0, "psnr_db": null, "ssim": 1.0,
+        "max_difference": 0, "differing_pixels": 0, "passed": true
+    });
+    assert_eq!(result, expected);
+}
+
+#[test]
+fn one_pixel_differs_less_than_all_pixels() {
+    let folder = folder();
+    pictures(folder.path());
+    let near = json(folder.path(), &["compare", "a.png", "b.png", "--json"]);
+    let far = json(folder.path(), &["compare", "a.png", "c.png", "--json"]);
+    assert_eq!(near["differing_pixels"], 1);
+    let value = |result: &Value, name: &str| result[name].as_f64().unwrap();
+    assert!(value(&near, "flip") > 0.0 && value(&near, "flip") < value(&far, "flip"));
+    assert!(value(&near, "psnr_db") > value(&far, "psnr_db"));
+    assert!(value(&near, "ssim") > value(&far, "ssim"));
+}
+
+#[test]
+fn thresholds_decide_the_exit_code() {
+    let folder = folder();
+    pictures(folder.path());
+    for threshold in [["--max-flip", "0.001"], ["--min-psnr", "40"]] {
+        let [flag, value] = threshold;
+        let output = foveal_in(
+            folder.path(),
+            &["compare", "a.png", "c.png", "--json", flag, value],
+        );
+        assert_eq!(output.status.code(), Some(1));
+        assert!(
+            stderr(&output).contains(flag) && stderr(&output).contains("c.png"),
+            "{}",
+            stderr(&output)
+        );
+        let result: Value = serde_json::from_str(&stdout(&output)).unwrap();
+        assert_eq!(result["passed"], false);
+    }
+    succeed(
+        folder.path(),
+        &[
+            "compare",
+            "a.png",
+            "c.png",
+            "--max-flip",
+            "1",
+            "--min-psnr",
+            "1",
+        ],
+    );
+}
+
+#[test]
+fn the_difference_picture_shows_where() {
+    let folder = folder();
+    pictures(folder.path());
+    succeed(
+        folder.path(),
+        &["compare", "a.png", "b.png", "--diff", "d.png"],
+    );
+    let diff = image::open(folder.path().join("d.png"))
+        .unwrap()
+        .into_rgb8();
+    assert_eq!(diff.dimensions(), (32, 24));
+    let light = |x, y| {
+        diff.get_pixel(x, y)
+            .0
+            .iter()
+            .map(|&c| u32::from(c))
+            .sum::<u32>()
+    };
+    assert!(light(5, 6) > light(28, 20) + 50);
+}
+
+#[test]
+fn pictures_smaller_than_the_window_have_no_ssim() {
+    let folder = folder();
+    pictures(folder.path());
+    assert!(
+        json(
+            folder.path(),
+            &["compare", "small.png", "small.png", "--json"]
+        )["ssim"]
+            .is_null()
+    );
+    let text = stdout(&succeed(
+        folder.path(),
+        &["compare", "small.png", "small.png"],
+    ));
+    assert!(
+        text.contains("PSNR        infinite") && text.contains("11x11"),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_cannot_be_compared_is_named() {
+    let folder = folder();
+    pictures(folder.path());
+    std::fs::write(folder.path().join("text.png"), "text").unwrap();
+    let before = names(folder.path());
+    let here = folder.path();
+    fail(
+        here,
+        &["compare", "a.png", "small.png", "--diff", "d.png"],
+        &["32x24", "8x8", "small.png"],
+    );
+    fail(
+        here,
+        &["compare", "a.png", "missing.png", "--diff", "d.png"],
+        &["missing.png"],
+    );
+    fail(
+        here,
+        &["compare", "text.png", "a.png", "--diff", "d.png"],
+        &["text.png"],
+    );
+    fail(
+        here,
+        &["compare", "a.png", "b.png", "--diff", "no/d.png"],
+        &["no/d.png", "does not exist"],
+    );
+    assert_eq!(names(here), before);
+}

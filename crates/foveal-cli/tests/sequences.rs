@@ -1,0 +1,166 @@
+//! Image sequences: any part of one renders alone and the same, and finished frames can be left out.
+//!
+//! These tests draw, and need a graphics adapter; Mesa's lavapipe will do.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::{folder, moving_triangle, names, stderr, succeed};
+
+const SIZE: [&str; 2] = ["--size", "48x32"];
+
+fn bytes(folder: &Path, name: &str) -> Vec<u8> {
+    fs::read(folder.join(name)).unwrap()
+}
+
+#[test]
+fn a_part_of_a_sequence_is_the_same_as_in_the_whole() {
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    fs::write(
+        here.join("path.json"),
+        r#"[{"eye": [0, 0.7, 4], "target": [0, 0.7, 0]}, {"eye": [2, 1, 3], "target": [0, 0.7, 0], "fov_y_deg": 40}]"#,
+    )
+    .unwrap();
+    // Motion depends on the frame before: the hardest to get right in the middle.
+    for view in ["final", "motion"] {
+        let render = |output: &str, frames: &str| {
+            let words = [
+                "render",
+                "triangle.gltf",
+                "--path",
+                "path.json",
+                "--fps",
+                "4",
+                "--view",
+                view,
+            ];
+            let more = ["-o", output, "--frames", frames];
+            succeed(here, &[&words[..], &more, &SIZE].concat());
+        };
+        render("whole_##.png", "0..5");
+        render("part_##.png", "2..4");
+        for frame in [2, 3] {
+            let (whole, part) = (
+                format!("whole_{frame:02}.png"),
+                format!("part_{frame:02}.png"),
+            );
+            assert!(bytes(here, &whole) == bytes(here, &part), "{view} {frame}");
+        }
+        assert!(
+            bytes(here, "whole_01.png") != bytes(here, "whole_02.png"),
+            "{view}"
+        );
+    }
+}
+
+#[test]
+fn a_single_picture_is_the_frame_of_its_moment() {
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    for view in ["final", "motion"] {
+        let words = ["render", "triangle.gltf", "--fps", "10", "--view", view];
+        succeed(
+            here,
+            &[
+                &words[..],
+                &["-o", "frame_#.png", "--frames", "6..8"],
+                &SIZE,
+            ]
+            .concat(),
+        );
+        succeed(
+            here,
+            &[&words[..], &["-o", "still.png", "--time", "0.7"], &SIZE].concat(),
+        );
+        assert!(
+            bytes(here, "frame_7.png") == bytes(here, "still.png"),
+            "{view}"
+        );
+    }
+}
+
+#[test]
+fn finished_frames_are_left_out_and_the_rest_is_whole() {
+    let folder = folder();
+    let here = folder.path();
+    let words = [
+        "render",
+        "cornell",
+        "-o",
+        "f{frame}.png",
+        "--frames",
+        "3",
+        "--skip-existing",
+    ];
+    fs::write(here.join("f1.png"), "finished elsewhere").unwrap();
+    // As a crash might leave it behind; it is not finished.
+    fs::write(here.join("f2.png"), "").unwrap();
+    let output = succeed(here, &[&words[..], &SIZE].concat());
+    assert!(
+        stderr(&output).contains("1 were there already"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(names(here), ["f0.png", "f1.png", "f2.png"]);
+    assert_eq!(bytes(here, "f1.png"), b"finished elsewhere");
+    // A still camera before a still scene.
+    assert!(bytes(here, "f0.png") == bytes(here, "f2.png"));
+    let output = succeed(here, &[&words[..], &SIZE].concat());
+    assert!(
+        stderr(&output).contains("all 3 frames"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn a_quiet_run_says_nothing() {
+    let folder = folder();
+    let output = succeed(
+        folder.path(),
+        &[&["render", "cornell", "-o", "a.png", "-q"][..], &SIZE].concat(),
+    );
+    assert!(
+        output.stderr.is_empty() && output.stdout.is_empty(),
+        "{}",
+        stderr(&output)
+    );
+}
+
+#[test]
+fn flags_change_the_picture() {
+    let folder = folder();
+    let here = folder.path();
+    let render = |name: &str, flags: &[&str]| {
+        succeed(
+            here,
+            &[&["render", "cornell", "-q", "-o", name], &SIZE[..], flags].concat(),
+        );
+        bytes(here, name)
+    };
+    let plain = render("plain.png", &[]);
+    for flags in [
+        &["--view", "normals"][..],
+        &["--exposure", "1"],
+        &["--tone-map", "linear"],
+        &["--lighting", "blinn-phong"],
+        &["--fov", "90"],
+        &["--eye", "-1,1,3", "--target", "0,1,0"],
+        &["--camera", "overview"],
+        &["--point-lights", "8"],
+    ] {
+        assert!(render("other.png", flags) != plain, "{flags:?}");
+    }
+    assert!(render("same.png", &["--camera", "0", "--warmup", "2"]) == plain);
+    assert!(
+        render("a.png", &["--point-lights", "8"])
+            != render("b.png", &["--point-lights", "8", "--light-seed", "1"])
+    );
+}

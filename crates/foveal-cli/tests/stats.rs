@@ -1,0 +1,97 @@
+//! `--stats` and `adapters --json` write what their documentation says. They need a graphics adapter.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod common;
+
+use std::fs;
+
+use common::{folder, schema::violations, stdout, succeed};
+use serde_json::Value;
+
+const SCHEMA: &str = include_str!("../../../docs/stats.schema.json");
+
+fn stats(words: &[&str]) -> Value {
+    let folder = folder();
+    let words = [
+        &["render", "cornell", "--size", "48x32", "--stats", "s.json"],
+        words,
+    ]
+    .concat();
+    succeed(folder.path(), &words);
+    serde_json::from_str(&fs::read_to_string(folder.path().join("s.json")).unwrap()).unwrap()
+}
+
+#[test]
+fn stats_keep_to_their_schema() {
+    let schema: Value = serde_json::from_str(SCHEMA).unwrap();
+    for words in [
+        &["-o", "a.png"][..],
+        &["-o", "a_#.png", "--frames", "3", "--warmup", "1"],
+    ] {
+        let stats = stats(words);
+        assert_eq!(violations(&schema, &stats), [""; 0]);
+        assert_eq!(
+            stats["frames"].as_array().unwrap().len(),
+            if words.len() == 2 { 1 } else { 3 }
+        );
+    }
+}
+
+#[test]
+fn the_schema_finds_what_is_wrong() {
+    let schema: Value = serde_json::from_str(SCHEMA).unwrap();
+    let mut stats = stats(&["-o", "a.png"]);
+    stats["schema_version"] = 2.into();
+    stats["frames"][0]["draws"] = (-1).into();
+    stats["scene"].as_object_mut().unwrap().remove("name");
+    stats["adapter"]["price"] = 100.into();
+    assert_eq!(violations(&schema, &stats).len(), 4);
+}
+
+#[test]
+fn stats_say_what_was_drawn() {
+    let stats = stats(&["-o", "a.png", "--point-lights", "7"]);
+    let frame = &stats["frames"][0];
+    assert_eq!(
+        (&frame["width"], &frame["height"]),
+        (&48.into(), &32.into())
+    );
+    assert_eq!(frame["shaded_samples"], 48 * 32);
+    assert!(frame["draws"].as_u64() > Some(0) && frame["triangles"].as_u64() > Some(0));
+    assert!(
+        frame["frame_ms"].as_f64() > Some(0.0) && !frame["cpu_ms"].as_array().unwrap().is_empty()
+    );
+    assert_eq!(stats["settings"]["width"], 48);
+    assert_eq!(stats["median"]["frame_ms"], frame["frame_ms"]);
+    let scene = foveal_scene::generate::by_name("cornell").unwrap();
+    assert_eq!(stats["scene"]["lights"], scene.lights.len() + 7);
+    assert_eq!(stats["scene"]["triangles"], scene.triangle_count());
+}
+
+#[test]
+fn adapters_are_listed_for_programs_and_for_people() {
+    let folder = folder();
+    let json: Value =
+        serde_json::from_str(&stdout(&succeed(folder.path(), &["adapters", "--json"]))).unwrap();
+    let text = stdout(&succeed(folder.path(), &["adapters"]));
+    for (number, adapter) in json.as_array().unwrap().iter().enumerate() {
+        assert_eq!(adapter["number"], number);
+        assert!(text.contains(adapter["name"].as_str().unwrap()));
+    }
+}
+
+#[test]
+fn scene_info_lists_the_cameras() {
+    let folder = folder();
+    common::moving_triangle(folder.path());
+    let text = stdout(&succeed(
+        folder.path(),
+        &["scene", "info", "triangle.gltf", "--json"],
+    ));
+    let info: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(info["animated"], true);
+    assert_eq!(info["triangles"], 1);
+    assert_eq!(info["cameras"][0]["name"], "front");
+    assert_eq!(info["bounds"]["max"], serde_json::json!([0.0, 1.5, 0.0]));
+}

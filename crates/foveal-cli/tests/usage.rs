@@ -1,0 +1,103 @@
+//! Wrong usage is told apart from failure: exit code 2, and nothing is read, drawn or written.
+
+mod common;
+
+use common::{folder, foveal_in, names, stderr, stdout, succeed};
+
+#[test]
+fn wrong_words_are_usage_errors() {
+    let lines = [
+        "",
+        "paint",
+        "render",
+        "render -o a.png --stereo instanced",
+        "render -o a.png --view sideways",
+        "render -o a.png --lighting phong",
+        "render -o a.png --size 12",
+        "render -o a.png --size -1x5",
+        "render -o a.png --exposure nan",
+        "render -o a.png --exposure inf",
+        "render -o a.png --anisotropy 17",
+        "render -o a.png --fov 180",
+        "render -o a.png --fov 0",
+        "render -o a.png --time -1",
+        "render -o a.png --fps 0",
+        "render -o a.png --point-lights -3",
+        "render -o a.png --eye 1,2 --target 0,0,0",
+        "render -o a.png --eye 1,2,nan --target 0,0,0",
+        "render -o a_#.png --frames 5..5",
+        "render -o a_#.png --frames 9..3",
+        "compare a.png",
+        "compare a.png b.png --max-flip -1",
+        "compare a.png b.png --max-flip nan",
+        "adapters now",
+        "scene",
+    ];
+    let folder = folder();
+    for line in lines {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = foveal_in(folder.path(), &words);
+        assert_eq!(
+            output.status.code(),
+            Some(2),
+            "foveal {line}: {}",
+            stderr(&output)
+        );
+        assert!(stdout(&output).is_empty(), "foveal {line}");
+    }
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn words_that_contradict_each_other_are_usage_errors() {
+    let lines = [
+        ("render -o a.png --eye 1,2,3", "--target"),
+        ("render -o a.png --target 1,2,3", "--eye"),
+        ("render -o a.png --up 0,0,1", "--eye"),
+        ("render -o a.png --eye 1,2,3 --target 1,2,3", "same point"),
+        (
+            "render -o a.png --eye 1,2,3 --target 0,0,0 --up 0,0,0",
+            "--up",
+        ),
+        (
+            "render -o a.png --camera x --eye 1,2,3 --target 0,0,0",
+            "--camera",
+        ),
+        ("render -o a.png --camera x --path demo", "--path"),
+        (
+            "render -o a.png --eye 1,2,3 --target 0,0,0 --path demo",
+            "--path",
+        ),
+        ("render cornell -o a.png --path demo", "demo"),
+        ("render -o a.png --frames 0..3", "####"),
+        ("render -o a_#_#.png --frames 0..3", "several"),
+        ("render -o a_#.png --frames 0..3 --time 1", "--time"),
+        ("render -o a.png --skip-existing", "--frames"),
+        ("render -o a.png --light-seed 4", "--point-lights"),
+        ("render -o a.jpg", ".png"),
+        ("render -o a.png --stats a.png", "same file"),
+    ];
+    let folder = folder();
+    for (line, cause) in lines {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let output = foveal_in(folder.path(), &words);
+        let said = stderr(&output);
+        assert_eq!(output.status.code(), Some(2), "foveal {line}: {said}");
+        assert!(said.contains(cause), "foveal {line}: {said}");
+    }
+    assert!(names(folder.path()).is_empty());
+}
+
+#[test]
+fn help_and_version_are_results() {
+    let folder = folder();
+    assert!(stdout(&succeed(folder.path(), &["--version"])).contains(env!("CARGO_PKG_VERSION")));
+    for words in [
+        &["--help"][..],
+        &["render", "--help"],
+        &["compare", "--help"],
+        &["scene", "info", "--help"],
+    ] {
+        assert!(stdout(&succeed(folder.path(), words)).contains("Usage: foveal"));
+    }
+}

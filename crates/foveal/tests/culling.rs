@@ -1,0 +1,154 @@
+//! The strongest test of culling: the picture does not change by a bit, and less is drawn.
+
+use std::path::{Path, PathBuf};
+
+use foveal::{Culling, Frame, FrameStats, Gpu, Renderer, Settings};
+use foveal_scene::generate::{self, DemoOptions};
+use foveal_scene::{Camera, LoadOptions, Projection, Scene};
+use glam::Vec3;
+
+/// One picture and its figures per camera.
+fn draw(scene: &Scene, cameras: &[Camera], settings: &Settings) -> Vec<(Vec<u8>, FrameStats)> {
+    pollster::block_on(async {
+        let gpu = Gpu::open(None)
+            .await
+            .expect("the tests need a graphics adapter");
+        let mut renderer = Renderer::new(&gpu, settings, None)
+            .await
+            .expect("settings fit");
+        renderer.set_scene(scene).await.expect("scene fits");
+        let mut drawn = Vec::new();
+        for camera in cameras {
+            let stats = renderer
+                .render(&Frame {
+                    camera,
+                    previous_camera: None,
+                })
+                .await
+                .expect("drawn");
+            drawn.push((renderer.read_picture().await.expect("read back"), stats));
+        }
+        drawn
+    })
+}
+
+/// Draws with and without culling; returns how many objects were hidden and outside in all.
+fn assert_same_pictures(
+    name: &str,
+    scene: &Scene,
+    cameras: &[Camera],
+    width: u32,
+    height: u32,
+) -> (u64, u64) {
+    let settings = |culling| Settings {
+        width,
+        height,
+        culling,
+        ..Settings::default()
+    };
+    let reference = draw(scene, cameras, &settings(Culling::Off));
+    let (mut occluded, mut outside) = (0, 0);
+    for culling in [Culling::Frustum, Culling::Occlusion] {
+        let culled = draw(scene, cameras, &settings(culling));
+        for (i, ((expected, all), (picture, some))) in reference.iter().zip(&culled).enumerate() {
+            let differing = expected
+                .chunks_exact(4)
+                .zip(picture.chunks_exact(4))
+                .filter(|(a, b)| a != b)
+                .count();
+            assert_eq!(
+                differing,
+                0,
+                "{name}, {culling:?}, camera {i} at {}: pixels differ",
+                cameras[i].eye()
+            );
+            assert!(some.triangles <= all.triangles);
+            let objects = some.objects_visible + some.objects_outside + some.objects_occluded;
+            assert_eq!(objects, scene.objects.len() as u64);
+            outside += some.objects_outside;
+            occluded += some.objects_occluded;
+        }
+    }
+    (occluded, outside)
+}
+
+#[test]
+fn the_walk_through_the_demo_scene_looks_the_same_with_and_without_culling() {
+    let options = DemoOptions {
+        instances: 1500,
+        ..DemoOptions::default()
+    };
+    let scene = generate::demo(&options).expect("options fit");
+    let mut cameras: Vec<Camera> = (0..6)
+        .map(|i| generate::demo_path(&options, i as f32 / 6.0))
+        .collect();
+    cameras.extend(scene.cameras.iter().cloned());
+    // A size that is no multiple of four.
+    let (occluded, outside) = assert_same_pictures("demo", &scene, &cameras, 253, 143);
+    assert!(
+        occluded > 500 && outside > 500,
+        "{occluded} hidden, {outside} outside"
+    );
+}
+
+#[test]
+fn an_orthographic_view_looks_the_same_with_and_without_culling() {
+    let scene = generate::cornell();
+    let mut camera = scene.cameras[0].clone();
+    camera.projection = Projection::Orthographic {
+        height_m: 3.0,
+        near_m: 0.1,
+        far_m: 40.0,
+    };
+    assert_same_pictures(
+        "cornell",
+        &scene,
+        &[camera, scene.cameras[0].clone()],
+        120,
+        90,
+    );
+}
+
+fn shared(scene: &str) -> Option<PathBuf> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/data/scenes")
+        .join(scene);
+    if path.exists() {
+        return Some(path);
+    }
+    println!("skipped: {} is not there", path.display());
+    None
+}
+
+/// Cameras in the scene's middle that look all around, and one from outside.
+fn around(scene: &Scene) -> Vec<Camera> {
+    let bounds = scene.bounds();
+    let eye = bounds.center() - 0.3 * bounds.size() * Vec3::Y;
+    let directions = [
+        Vec3::X,
+        Vec3::NEG_X,
+        Vec3::new(0.3, -0.1, 1.0),
+        Vec3::new(-0.2, 0.3, -1.0),
+    ];
+    let mut cameras: Vec<Camera> = directions
+        .map(|d| Camera::look_at(eye, eye + d, Vec3::Y, 1.2))
+        .to_vec();
+    cameras.extend(scene.cameras.iter().cloned());
+    cameras.push(scene.overview_camera());
+    cameras
+}
+
+#[test]
+fn scenes_from_files_look_the_same_with_and_without_culling() {
+    for name in ["Sponza.glb", "IntelCastle.glb", "oa_minia.glb"] {
+        let Some(path) = shared(name) else { continue };
+        let options = LoadOptions {
+            max_texture_size: 64,
+            ..LoadOptions::default()
+        };
+        let mut scene = foveal_scene::load(&path, &options).expect("loads");
+        scene.light_by_default();
+        let (occluded, _) = assert_same_pictures(name, &scene, &around(&scene), 320, 180);
+        assert!(occluded > 0, "{name}: nothing is hidden");
+    }
+}
