@@ -11,7 +11,7 @@ use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
 use crate::lights::{ClusterGrid, LightAssigner};
-use crate::output::{ToneMapPass, ViewPass};
+use crate::output::{OverlayPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
@@ -66,6 +66,7 @@ struct CoarseStages {
     rate_map: RateMapPass,
     shading: CoarseShading,
     composite: CompositePass,
+    overlay: Option<OverlayPass>,
 }
 
 impl CoarseStages {
@@ -84,6 +85,7 @@ impl CoarseStages {
             rate_map,
             shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
             composite: CompositePass::new(gpu, settings, frame),
+            overlay: OverlayPass::new(gpu, settings.view, frame),
         }
     }
 }
@@ -352,7 +354,7 @@ impl Renderer {
             view.show(recorder, &targets.gbuffer, &targets.picture_view);
         } else {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            if let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) {
+            if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
                 coarse
                     .rate_map
                     .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
@@ -368,6 +370,12 @@ impl Renderer {
             }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
             tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
+            if let (Some(overlay), Some(tiles)) = (
+                coarse.as_ref().and_then(|c| c.overlay.as_ref()),
+                &targets.coarse,
+            ) {
+                overlay.draw(recorder, tiles, &targets.picture_view);
+            }
         }
         timer.resolve(&mut encoder);
         cpu.stage("encode");

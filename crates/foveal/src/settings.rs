@@ -41,6 +41,12 @@ pub enum View {
     Instances,
     /// Motion since the last frame: red = right, green = down, 16 pixels to full scale around mid-grey.
     Motion,
+    /// The finished frame under a colour per level of coarse shading; white where each pixel is shaded.
+    Rate,
+    /// The finished frame with the borders of coarse shading's tiles.
+    Blocks,
+    /// The finished frame where it was shaded, dark elsewhere.
+    Samples,
 }
 
 /// How light is reflected.

@@ -149,6 +149,14 @@ pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     include_str!("composite/smooth.wgsl"),
 ];
 
+pub(crate) const OVERLAY: Parts = &[
+    FRAME,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    include_str!("output/overlay.wgsl"),
+];
+
 /// Joins a shader's parts.
 pub(crate) fn source(parts: Parts) -> String {
     parts.join("\n")
@@ -298,6 +306,7 @@ mod tests {
         ("coarse dispatch", COARSE_DISPATCH),
         ("coarse shade draw", COARSE_SHADE_DRAW),
         ("coarse shade list", COARSE_SHADE_LIST),
+        ("overlay", OVERLAY),
         ("composite nearest", COMPOSITE_NEAREST),
         ("composite paper", COMPOSITE_PAPER),
         ("composite patch", COMPOSITE_PATCH),

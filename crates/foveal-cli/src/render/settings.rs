@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, anyhow};
 use foveal::{Culling, LightAssignment, LightingModel, Settings, ToneMap, View};
 
+use super::coarse_args::CoarseArgs;
 use crate::values::{self, VariantParser};
 
 /// A flag for each field of [`Settings`]; what is not given stays as the file or the default says.
@@ -48,6 +49,9 @@ pub(crate) struct SettingsArgs {
     /// Largest anisotropy of texture filtering, 1 to 16 [default: 8]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=16))]
     anisotropy: Option<u16>,
+
+    #[command(flatten)]
+    coarse: CoarseArgs,
 }
 
 impl SettingsArgs {
@@ -77,6 +81,7 @@ impl SettingsArgs {
             exposure,
             tone_map,
             anisotropy,
+            coarse,
         } = self.clone();
         if let Some((width, height)) = size {
             (settings.width, settings.height) = (width, height);
@@ -88,10 +93,11 @@ impl SettingsArgs {
         set(&mut settings.exposure, exposure);
         set(&mut settings.tone_map, tone_map);
         set(&mut settings.anisotropy, anisotropy);
+        coarse.apply(settings);
     }
 }
 
-fn set<T>(setting: &mut T, flag: Option<T>) {
+pub(super) fn set<T>(setting: &mut T, flag: Option<T>) {
     if let Some(value) = flag {
         *setting = value;
     }
@@ -157,7 +163,7 @@ mod tests {
     }
 
     /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
-    const KEYS: [(&str, &str, &[&str]); 9] = [
+    const KEYS: [(&str, &str, &[&str]); 25] = [
         ("width", "33", &["--size", "33x720"]),
         ("height", "44", &["--size", "1280x44"]),
         ("view", "\"normals\"", &["--view", "normals"]),
@@ -171,6 +177,26 @@ mod tests {
         ("exposure", "-1.5", &["--exposure", "-1.5"]),
         ("tone-map", "\"linear\"", &["--tone-map", "linear"]),
         ("anisotropy", "2", &["--anisotropy", "2"]),
+        ("shading", "\"coarse\"", &["--shading", "coarse"]),
+        ("backend", "\"stencil\"", &["--backend", "stencil"]),
+        ("coarsest-level", "5", &["--coarsest-level", "5"]),
+        ("rate", "\"constant\"", &["--rate", "constant"]),
+        ("rate-other", "\"image\"", &["--rate-other", "image"]),
+        ("rate-combine", "\"finer\"", &["--rate-combine", "finer"]),
+        ("rate-level", "3", &["--rate-level", "3"]),
+        ("rate-image", "\"a.png\"", &["--rate-image", "a.png"]),
+        ("gaze", "[0.25, -0.5]", &["--gaze", "0.25,-0.5"]),
+        ("fovea-inner", "0.25", &["--fovea-inner", "0.25"]),
+        ("fovea-outer", "0.75", &["--fovea-outer", "0.75"]),
+        ("fovea-curve", "2.5", &["--fovea-curve", "2.5"]),
+        ("rate-balance", "false", &["--rate-balance", "false"]),
+        ("refine-edges", "\"off\"", &["--refine-edges", "off"]),
+        (
+            "coarse-sample",
+            "\"typical\"",
+            &["--coarse-sample", "typical"],
+        ),
+        ("composite", "\"paper\"", &["--composite", "paper"]),
     ];
 
     #[test]
@@ -251,6 +277,11 @@ mod tests {
             "exposure = inf",
             "anisotropy = 0",
             "anisotropy = 17",
+            "coarsest-level = 9",
+            "fovea-curve = 0.0",
+            "fovea-inner = -1.0",
+            "gaze = [nan, 0.0]",
+            "view = \"rate\"",
         ] {
             assert!(check(&parse(text).unwrap()).is_err(), "{text}");
         }

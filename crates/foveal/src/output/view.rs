@@ -14,10 +14,10 @@ pub(crate) struct ViewPass {
 }
 
 impl ViewPass {
-    /// `None` for the finished frame.
+    /// `None` for views of the finished frame.
     pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
         let number = match view {
-            View::Final => return None,
+            View::Final | View::Rate | View::Blocks | View::Samples => return None,
             View::Depth => 1,
             View::Normals => 2,
             View::BaseColor => 3,
