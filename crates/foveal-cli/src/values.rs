@@ -37,6 +37,15 @@ pub(crate) fn vec3(text: &str) -> Result<Vec3, String> {
     }
 }
 
+/// A place in the picture: `x,y`.
+pub(crate) fn vec2(text: &str) -> Result<[f32; 2], String> {
+    let numbers = text.split(',').map(finite).collect::<Result<Vec<_>, _>>()?;
+    match numbers[..] {
+        [x, y] => Ok([x, y]),
+        _ => Err("two numbers are needed: x,y".to_owned()),
+    }
+}
+
 /// A vertical field of view in degrees, in (0, 180).
 pub(crate) fn fov_deg(text: &str) -> Result<f32, String> {
     let degrees = finite(text)?;

@@ -12,7 +12,7 @@ use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
 use crate::lights::{ClusterGrid, LightAssigner};
-use crate::output::{ToneMapPass, ViewPass};
+use crate::output::{OverlayPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
@@ -68,6 +68,7 @@ struct CoarseStages {
     rate_map: RateMapPass,
     shading: CoarseShading,
     composite: CompositePass,
+    overlay: Option<OverlayPass>,
 }
 
 impl CoarseStages {
@@ -86,6 +87,7 @@ impl CoarseStages {
             rate_map,
             shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
             composite: CompositePass::new(gpu, settings, frame),
+            overlay: OverlayPass::new(gpu, settings.view, frame),
         }
     }
 }
@@ -385,7 +387,7 @@ impl Renderer {
             .is_some_and(|a| a.show(recorder, targets))
         {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
-            if let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) {
+            if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
                 coarse
                     .rate_map
                     .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
@@ -403,6 +405,12 @@ impl Renderer {
             }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
             tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
+            if let (Some(overlay), Some(tiles)) = (
+                coarse.as_ref().and_then(|c| c.overlay.as_ref()),
+                &targets.coarse,
+            ) {
+                overlay.draw(recorder, tiles, &targets.picture_view);
+            }
         }
         timer.resolve(&mut encoder);
         cpu.stage("encode");
@@ -433,6 +441,20 @@ impl Renderer {
 
 #[cfg(test)]
 impl Renderer {
+    /// Makes coarse samples affine functions of their position from the next frame on.
+    pub(crate) fn shade_affine(&mut self) {
+        let stages = &mut self.stages;
+        if let Some(coarse) = &mut stages.coarse {
+            coarse.shading = CoarseShading::with_shaders(
+                &self.gpu,
+                &stages.settings,
+                self.frame_bindings.layout(),
+                stages.shading.input_layout(),
+                crate::shader::COARSE_AFFINE,
+            );
+        }
+    }
+
     pub(crate) fn targets(&self) -> &Targets {
         &self.stages.targets
     }

@@ -46,6 +46,12 @@ pub enum View {
     /// How often anti-aliasing shades each pixel: black once, then from blue through red to white for all
     /// sub-samples.
     Samples,
+    /// The finished frame under a colour per level of coarse shading; white where each pixel is shaded.
+    Rate,
+    /// The finished frame with the borders of coarse shading's tiles.
+    Blocks,
+    /// The finished frame where it was shaded, dark elsewhere.
+    Shaded,
 }
 
 /// How edges are smoothed. See `docs/antialiasing.md`.

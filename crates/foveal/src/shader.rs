@@ -125,6 +125,27 @@ pub(crate) const COARSE_SHADE_LIST: Parts = &[
     include_str!("shading/coarse/block.wgsl"),
     include_str!("shading/coarse/shade_list.wgsl"),
 ];
+/// As the two above, radiance being an affine function of the position.
+#[cfg(test)]
+pub(crate) const COARSE_AFFINE: [Parts; 2] = [
+    &[
+        FRAME,
+        SURFACE,
+        include_str!("shading/coarse/affine.wgsl"),
+        LEVEL,
+        BLOCKS,
+        include_str!("shading/coarse/block.wgsl"),
+        include_str!("shading/coarse/shade_draw.wgsl"),
+    ],
+    &[
+        FRAME,
+        SURFACE,
+        include_str!("shading/coarse/affine.wgsl"),
+        BLOCKS,
+        include_str!("shading/coarse/block.wgsl"),
+        include_str!("shading/coarse/shade_list.wgsl"),
+    ],
+];
 const TILING: &str = include_str!("composite/tiling.wgsl");
 const SEEN: &str = include_str!("composite/seen.wgsl");
 const PATCHES: &str = include_str!("composite/patches.wgsl");
@@ -162,6 +183,14 @@ pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     SEEN,
     PATCHES,
     include_str!("composite/smooth.wgsl"),
+];
+
+pub(crate) const OVERLAY: Parts = &[
+    FRAME,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    include_str!("output/overlay.wgsl"),
 ];
 
 /// Joins a shader's parts.
@@ -318,6 +347,7 @@ mod tests {
         ("coarse dispatch", COARSE_DISPATCH),
         ("coarse shade draw", COARSE_SHADE_DRAW),
         ("coarse shade list", COARSE_SHADE_LIST),
+        ("overlay", OVERLAY),
         ("composite nearest", COMPOSITE_NEAREST),
         ("composite paper", COMPOSITE_PAPER),
         ("composite patch", COMPOSITE_PATCH),

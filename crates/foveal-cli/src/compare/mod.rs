@@ -99,8 +99,8 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
-fn compare(a: &Picture, b: &Picture) -> (flip::ErrorMap, Comparison) {
-    let map = flip::ErrorMap::between(a, b);
+fn compare(a: &Picture, b: &Picture) -> (ErrorMap, Comparison) {
+    let map = ErrorMap::between(a, b);
     let comparison = Comparison {
         width: a.width,
         height: a.height,

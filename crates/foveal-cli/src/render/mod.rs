@@ -6,6 +6,7 @@
 mod args;
 mod camera_path;
 mod clock;
+mod coarse_args;
 mod drawing;
 mod frame_files;
 mod inside;
@@ -138,6 +139,7 @@ fn prepare(
         })
         .context("cannot start a thread")?;
 
+    let rate_image = coarse_args::rate_image(settings)?;
     // Fails before the scene is there where the size is beyond the device: the thread then ends with the program.
     let mut device_ms = Vec::new();
     let gpu = timed(&mut device_ms, "device", || {
@@ -146,6 +148,10 @@ fn prepare(
     let mut renderer = timed(&mut device_ms, "pipelines", || {
         block_on(Renderer::new(&gpu, settings, Some(now_ms)))
     })?;
+
+    if let Some(image) = rate_image {
+        renderer.set_rate_image(image);
+    }
 
     let (mut scene, scene_ms) = loading
         .join()

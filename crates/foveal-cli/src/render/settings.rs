@@ -8,6 +8,7 @@ use foveal::{
     ToneMap, View,
 };
 
+use super::coarse_args::CoarseArgs;
 use crate::values::{self, VariantParser};
 
 /// A flag for each field of [`Settings`]; what is not given stays as the file or the default says.
@@ -70,6 +71,9 @@ pub(crate) struct SettingsArgs {
     /// [default: surface]
     #[arg(long, value_name = "TEST", value_parser = VariantParser::<EdgeTest>::new())]
     edge_test: Option<EdgeTest>,
+
+    #[command(flatten)]
+    coarse: CoarseArgs,
 }
 
 impl SettingsArgs {
@@ -103,6 +107,7 @@ impl SettingsArgs {
             samples,
             pattern,
             edge_test,
+            coarse,
         } = self.clone();
         if let Some((width, height)) = size {
             (settings.width, settings.height) = (width, height);
@@ -118,10 +123,11 @@ impl SettingsArgs {
         set(&mut settings.samples, samples);
         set(&mut settings.pattern, pattern);
         set(&mut settings.edge_test, edge_test);
+        coarse.apply(settings);
     }
 }
 
-fn set<T>(setting: &mut T, flag: Option<T>) {
+pub(super) fn set<T>(setting: &mut T, flag: Option<T>) {
     if let Some(value) = flag {
         *setting = value;
     }
@@ -189,7 +195,7 @@ mod tests {
     }
 
     /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
-    const KEYS: [(&str, &str, &[&str]); 13] = [
+    const KEYS: [(&str, &str, &[&str]); 29] = [
         ("width", "33", &["--size", "33x720"]),
         ("height", "44", &["--size", "1280x44"]),
         ("view", "\"normals\"", &["--view", "normals"]),
@@ -207,6 +213,26 @@ mod tests {
         ("samples", "9", &["--samples", "9"]),
         ("pattern", "\"rotated\"", &["--pattern", "rotated"]),
         ("edge-test", "\"paper\"", &["--edge-test", "paper"]),
+        ("shading", "\"coarse\"", &["--shading", "coarse"]),
+        ("backend", "\"stencil\"", &["--backend", "stencil"]),
+        ("coarsest-level", "5", &["--coarsest-level", "5"]),
+        ("rate", "\"constant\"", &["--rate", "constant"]),
+        ("rate-other", "\"image\"", &["--rate-other", "image"]),
+        ("rate-combine", "\"finer\"", &["--rate-combine", "finer"]),
+        ("rate-level", "3", &["--rate-level", "3"]),
+        ("rate-image", "\"a.png\"", &["--rate-image", "a.png"]),
+        ("gaze", "[0.25, -0.5]", &["--gaze", "0.25,-0.5"]),
+        ("fovea-inner", "0.25", &["--fovea-inner", "0.25"]),
+        ("fovea-outer", "0.75", &["--fovea-outer", "0.75"]),
+        ("fovea-curve", "2.5", &["--fovea-curve", "2.5"]),
+        ("rate-balance", "false", &["--rate-balance", "false"]),
+        ("refine-edges", "\"off\"", &["--refine-edges", "off"]),
+        (
+            "coarse-sample",
+            "\"typical\"",
+            &["--coarse-sample", "typical"],
+        ),
+        ("composite", "\"paper\"", &["--composite", "paper"]),
     ];
 
     #[test]
@@ -287,6 +313,11 @@ mod tests {
             "exposure = inf",
             "anisotropy = 0",
             "anisotropy = 17",
+            "coarsest-level = 9",
+            "fovea-curve = 0.0",
+            "fovea-inner = -1.0",
+            "gaze = [nan, 0.0]",
+            "view = \"rate\"",
         ] {
             assert!(check(&parse(text).unwrap()).is_err(), "{text}");
         }

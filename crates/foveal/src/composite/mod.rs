@@ -9,6 +9,9 @@ mod taps;
 
 pub(crate) use smooth::PatchTargets;
 
+#[cfg(test)]
+mod tests;
+
 use smooth::SmoothComposite;
 use taps::TapComposite;
 

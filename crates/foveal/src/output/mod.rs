@@ -1,10 +1,12 @@
 //! Output: what the picture shows, as 8-bit sRGB.
 
+mod overlay;
 mod tone_map;
 #[cfg(test)]
 mod twin;
 mod view;
 
+pub(crate) use overlay::OverlayPass;
 pub(crate) use tone_map::ToneMapPass;
 pub(crate) use view::ViewPass;
 

@@ -17,8 +17,8 @@ impl ViewPass {
     /// `None` for the finished frame and for what other stages show.
     pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
         let number = match view {
-            // Anti-aliasing shows its own.
             View::Final | View::Edges | View::Samples => return None,
+            View::Rate | View::Blocks | View::Shaded => return None,
             View::Depth => 1,
             View::Normals => 2,
             View::BaseColor => 3,

@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::Settings;
+use super::{Settings, View};
 use crate::Error;
 
 /// How many samples the deferred stage shades.
@@ -105,6 +105,11 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             expected,
         })
     };
+    let shows_tiles = matches!(s.view, View::Rate | View::Blocks | View::Shaded);
+    if shows_tiles && s.shading == Shading::Full {
+        let value = format!("{:?}", s.view).to_lowercase();
+        return wrong("view", value, "another one unless shading is coarse");
+    }
     for (name, level) in [
         ("coarsest-level", s.coarsest_level),
         ("rate-level", s.rate_level),

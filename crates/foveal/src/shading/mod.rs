@@ -10,5 +10,5 @@ mod samples;
 pub(crate) mod twin;
 
 pub(crate) use coarse::{CoarseShading, CoarseTargets, CountPass};
-pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants, typical_constant};
+pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};

@@ -4,7 +4,7 @@ use super::{SampleList, Samples};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
 use crate::recorder::{Recorder, overwritten};
-use crate::{CoarseSample, LightAssignment, LightingModel, Settings, shader};
+use crate::{LightAssignment, LightingModel, Settings, shader};
 
 /// Linear radiance, before exposure.
 pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
@@ -21,12 +21,6 @@ pub(crate) fn lighting_constants(settings: &Settings) -> [(&'static str, f64); 2
             f64::from(u8::from(settings.lights == LightAssignment::Brute)),
         ),
     ]
-}
-
-/// Whether a coarse sample is chosen among five.
-pub(crate) fn typical_constant(settings: &Settings) -> (&'static str, f64) {
-    let typical = settings.coarse_sample == CoarseSample::Typical;
-    ("TYPICAL", f64::from(u8::from(typical)))
 }
 
 /// Lights samples of the G-buffer.

@@ -1,11 +1,11 @@
 //! The compute backend: lists of tiles, and an indirect dispatch per level over its list.
 
-use super::{CoarseTargets, LEVELS};
+use super::{CoarseTargets, LEVELS, shading_constants};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
 };
 use crate::recorder::Recorder;
-use crate::shading::{RADIANCE_FORMAT, lighting_constants, typical_constant};
+use crate::shading::RADIANCE_FORMAT;
 use crate::{Settings, shader};
 
 /// Blocks a side that one workgroup of the listing looks at.
@@ -61,6 +61,7 @@ impl ComputeBackend {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
+        parts: shader::Parts,
     ) -> Self {
         let layout = |label, types: &[wgpu::BindingType]| {
             bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
@@ -88,10 +89,7 @@ impl ComputeBackend {
                 },
             ],
         );
-        let constants: Vec<_> = lighting_constants(settings)
-            .into_iter()
-            .chain([typical_constant(settings)])
-            .collect();
+        let constants = shading_constants(settings);
         let pipeline = |label, parts, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
             let module = shader::module(gpu, label, parts);
             shader::compute(gpu, label, &module, entry, groups, constants)
@@ -113,7 +111,7 @@ impl ComputeBackend {
             ),
             shade: pipeline(
                 "coarse shading, list",
-                shader::COARSE_SHADE_LIST,
+                parts,
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
                 &constants,

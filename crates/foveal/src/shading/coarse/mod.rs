@@ -21,10 +21,18 @@ pub(crate) use targets::CoarseTargets;
 
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
-use crate::{Backend, CoarseStats, Settings, Timing};
+use crate::shading::lighting_constants;
+use crate::{Backend, CoarseSample, CoarseStats, Settings, Timing, shader};
 
 /// Most levels that there can be.
 pub(crate) const LEVELS: u32 = crate::COARSEST_LEVEL as u32 + 1;
+
+/// Settings that change the shading shaders.
+fn shading_constants(settings: &Settings) -> [(&'static str, f64); 3] {
+    let [model, assignment] = lighting_constants(settings);
+    let typical = settings.coarse_sample == CoarseSample::Typical;
+    [model, assignment, ("TYPICAL", f64::from(u8::from(typical)))]
+}
 
 /// Shades the tiles of a rate map.
 #[derive(Debug)]
@@ -42,12 +50,24 @@ impl CoarseShading {
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
     ) -> Self {
+        let shaders = [shader::COARSE_SHADE_DRAW, shader::COARSE_SHADE_LIST];
+        Self::with_shaders(gpu, settings, frame_layout, input_layout, shaders)
+    }
+
+    /// With other shaders for the draw and the list than those that light surfaces.
+    pub(crate) fn with_shaders(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+        input_layout: &wgpu::BindGroupLayout,
+        [draw, list]: [shader::Parts; 2],
+    ) -> Self {
         let backend = settings.backend;
         Self {
             stencil: (backend != Backend::Compute)
-                .then(|| StencilBackend::new(gpu, settings, frame_layout, input_layout)),
+                .then(|| StencilBackend::new(gpu, settings, frame_layout, input_layout, draw)),
             compute: (backend != Backend::Stencil)
-                .then(|| ComputeBackend::new(gpu, settings, frame_layout, input_layout)),
+                .then(|| ComputeBackend::new(gpu, settings, frame_layout, input_layout, list)),
             count: CountPass::new(gpu, settings, frame_layout),
             choice: BackendChoice::new(backend, gpu),
         }

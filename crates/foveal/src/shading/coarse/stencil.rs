@@ -4,10 +4,10 @@
 //! what is no tile and the stencil operation does the writing; the shading draw is then rejected before its
 //! shader runs wherever the test fails.
 
-use super::{CoarseTargets, targets::STENCIL_FORMAT};
+use super::{CoarseTargets, shading_constants, targets::STENCIL_FORMAT};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
-use crate::shading::{RADIANCE_FORMAT, lighting_constants, typical_constant};
+use crate::shading::RADIANCE_FORMAT;
 use crate::{Settings, shader};
 
 /// Shades tiles by draws behind a stencil test.
@@ -47,6 +47,7 @@ impl StencilBackend {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
+        parts: shader::Parts,
     ) -> Self {
         let cells_layout = bind_group_layout(
             &gpu.device,
@@ -72,14 +73,11 @@ impl StencilBackend {
             )),
             &[("COARSEST", f64::from(settings.coarsest_level))],
         );
-        let constants: Vec<_> = lighting_constants(settings)
-            .into_iter()
-            .chain([typical_constant(settings)])
-            .collect();
+        let constants = shading_constants(settings);
         let shade = shader::level_screen(
             gpu,
             "coarse shading",
-            &shader::module(gpu, "coarse shading, draw", shader::COARSE_SHADE_DRAW),
+            &shader::module(gpu, "coarse shading, draw", parts),
             "shade_blocks",
             &[frame_layout, input_layout],
             &[Some(RADIANCE_FORMAT.into())],

@@ -1,0 +1,120 @@
+//! Composites on the device: exactness on affine radiance, and no mixing of surfaces.
+
+use foveal_scene::{Camera, Scene, generate};
+use glam::Vec3;
+
+use crate::testing::{f32_of_half, gpu, small, texels};
+use crate::{CoarseSample, Composite, Frame, RateImage, RateSource, Renderer, Settings, Shading};
+
+/// A map of random patches, `side` across.
+fn random_map(side: u32, seed: u32) -> RateImage {
+    let luma = (0..side * side)
+        .map(|i| {
+            let h = (i + seed * 7919).wrapping_mul(0x9e37_79b1);
+            ((h ^ h >> 15).wrapping_mul(0x2c1b_3c6d) >> 24) as u8
+        })
+        .collect();
+    RateImage::new(side, side, luma).unwrap()
+}
+
+/// Nothing but the backdrop.
+fn backdrop() -> (Scene, Camera) {
+    let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
+    (Scene::default(), camera)
+}
+
+/// The back wall of the box room, seen at a slant: it fills the picture.
+fn wall() -> (Scene, Camera) {
+    let eye = Vec3::new(-1.0, 2.2, -1.2);
+    let camera = Camera::look_at(eye, Vec3::new(-0.5, 2.3, -2.0), Vec3::Y, 0.35);
+    (generate::cornell(), camera)
+}
+
+/// The largest deviation from the affine radiance, and where.
+fn affine_error(
+    (scene, camera): &(Scene, Camera),
+    settings: &Settings,
+    map: RateImage,
+) -> (f32, u32, u32) {
+    let renderer = pollster::block_on(async {
+        let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+        renderer.set_rate_image(map);
+        renderer.set_scene(scene).await.unwrap();
+        renderer.shade_affine();
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        renderer.render(&frame).await.unwrap();
+        renderer
+    });
+    let size = (settings.width, settings.height);
+    let mut worst = (0.0, 0, 0);
+    for (i, texel) in (0..).zip(texels::<[u16; 4]>(&renderer.targets().radiance_view)) {
+        let (x, y) = (i % size.0, i / size.0);
+        let at = (
+            (x as f32 + 0.5) / size.0 as f32,
+            (y as f32 + 0.5) / size.1 as f32,
+        );
+        let expected = [at.0, at.1, 0.5 + 0.25 * at.0 - 0.5 * at.1];
+        for (channel, expected) in expected.into_iter().enumerate() {
+            let error = (f32_of_half(texel[channel]) - expected).abs();
+            if error > worst.0 {
+                worst = (error, x, y);
+            }
+        }
+    }
+    worst
+}
+
+fn settings(size: (u32, u32), seed: u32) -> Settings {
+    Settings {
+        shading: Shading::Coarse,
+        composite: Composite::Smooth,
+        rate: RateSource::Image,
+        rate_balance: seed.is_multiple_of(2),
+        ..small(size.0, size.1)
+    }
+}
+
+#[test]
+fn smooth_returns_affine_radiance_for_random_maps() {
+    // More than a block of the coarsest level in either direction, and no multiple of one.
+    for (seed, size) in [
+        (0, (601, 523)),
+        (1, (601, 523)),
+        (2, (900, 270)),
+        (3, (270, 777)),
+    ] {
+        for view in [backdrop(), wall()] {
+            for side in [2, 5, 11, 31] {
+                let (error, x, y) =
+                    affine_error(&view, &settings(size, seed), random_map(side, seed));
+                assert!(
+                    error <= 1.0 / 255.0,
+                    "{size:?}, map of {side}, seed {seed}: {} / 255 at {x}, {y}",
+                    error * 255.0
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn smooth_returns_affine_radiance_for_typical_samples() {
+    let settings = Settings {
+        coarse_sample: CoarseSample::Typical,
+        ..settings((601, 523), 1)
+    };
+    let (error, x, y) = affine_error(&wall(), &settings, random_map(7, 3));
+    assert!(error <= 1.0 / 255.0, "{} / 255 at {x}, {y}", error * 255.0);
+}
+
+#[test]
+fn the_sources_composite_bends_affine_radiance() {
+    let settings = Settings {
+        composite: Composite::Paper,
+        ..settings((601, 523), 1)
+    };
+    assert!(affine_error(&backdrop(), &settings, random_map(7, 3)).0 > 8.0 / 255.0);
+}

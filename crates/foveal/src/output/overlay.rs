@@ -1,0 +1,70 @@
+//! The tiling of coarse shading made visible over the finished frame.
+
+use super::PICTURE_FORMAT;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
+use crate::recorder::{Recorder, drawn_over};
+use crate::shading::CoarseTargets;
+use crate::{View, shader};
+
+/// Draws levels, tile borders or samples over the picture.
+#[derive(Debug)]
+pub(crate) struct OverlayPass {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl OverlayPass {
+    /// `None` for views that do not show the tiling.
+    pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
+        let number = match view {
+            View::Rate => 1,
+            View::Blocks => 2,
+            View::Shaded => 3,
+            _ => return None,
+        };
+        let layout = bind_group_layout(
+            &gpu.device,
+            "overlay",
+            wgpu::ShaderStages::FRAGMENT,
+            &[
+                sampled(wgpu::TextureSampleType::Uint),
+                sampled(wgpu::TextureSampleType::Float { filterable: false }),
+            ],
+        );
+        let pipeline = shader::level_screen(
+            gpu,
+            "overlay",
+            &shader::module(gpu, "overlay", shader::OVERLAY),
+            "overlay",
+            &[frame_layout, &layout],
+            &[Some(wgpu::ColorTargetState {
+                format: PICTURE_FORMAT,
+                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::COLOR,
+            })],
+            None,
+            &[("VIEW", f64::from(number))],
+        );
+        Some(Self { pipeline, layout })
+    }
+
+    /// Encodes the pass.
+    pub(crate) fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        tiles: &CoarseTargets,
+        picture: &wgpu::TextureView,
+    ) {
+        let group = bind_group(
+            &recorder.gpu.device,
+            "overlay",
+            &self.layout,
+            &[&tiles.rate.owner.whole, &tiles.samples.whole]
+                .map(wgpu::BindingResource::TextureView),
+        );
+        let mut pass = recorder.render_pass("overlay", &[drawn_over(picture)], None);
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(1, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

@@ -1,0 +1,16 @@
+// For tests: radiance that is an affine function of the sample's position, in place of shading.wgsl.
+
+// As lighting.wgsl has them.
+override BLINN_PHONG: bool = false;
+override BRUTE: bool = false;
+
+@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
+
+fn shade(texel: vec2u) -> vec4f {
+    let at = (vec2f(texel) + 0.5) / frame.size;
+    if BLINN_PHONG && BRUTE {
+        return vec4f(0.0);
+    }
+    return vec4f(at.x, at.y, 0.5 + 0.25 * at.x - 0.5 * at.y, 1.0);
+}
