@@ -1,4 +1,8 @@
 //! The strongest test of culling: the picture does not change by a bit, and less is drawn.
+#![allow(
+    clippy::print_stdout,
+    reason = "a test says what it skipped and what it measured"
+)]
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,8 @@
 //! What a long run and a failing device do.
+#![allow(
+    clippy::print_stdout,
+    reason = "a test says what it skipped and what it measured"
+)]
 
 use foveal::{Error, Frame, Gpu, Renderer, Settings};
 use foveal_scene::{Light, LightKind, Scene, generate};

@@ -1,5 +1,9 @@
 //! Files of others, where they are at hand: every sample gives a picture, every malformed file a picture or an
 //! error, none a panic or a long wait.
+#![allow(
+    clippy::print_stdout,
+    reason = "a test says what it skipped and what it measured"
+)]
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
