@@ -138,6 +138,16 @@ pub(crate) const COMPOSITE_PATCH: Parts = &[
     PATCHES,
     include_str!("composite/patch.wgsl"),
 ];
+pub(crate) const COMPOSITE_RAISE: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    SEEN,
+    PATCHES,
+    include_str!("composite/raise.wgsl"),
+];
 pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     FRAME,
     SURFACE,
@@ -310,6 +320,7 @@ mod tests {
         ("composite nearest", COMPOSITE_NEAREST),
         ("composite paper", COMPOSITE_PAPER),
         ("composite patch", COMPOSITE_PATCH),
+        ("composite raise", COMPOSITE_RAISE),
         ("composite smooth", COMPOSITE_SMOOTH),
     ];
 
