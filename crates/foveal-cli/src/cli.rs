@@ -2,7 +2,7 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::{adapters, compare, render, scene_info};
+use crate::{adapters, bench, compare, render, scene_info};
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
 #[derive(Debug, Parser)]
@@ -23,6 +23,9 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Draw a scene into a PNG file, or a sequence of frames into many
     Render(Box<render::Args>),
+    /// Measure what a technique gains against its reference
+    #[command(subcommand)]
+    Bench(bench::Bench),
     /// Measure how far two pictures of the same size are apart
     Compare(compare::Args),
     /// List the graphics adapters of this machine
@@ -44,6 +47,7 @@ impl Command {
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Render(_) => "render",
+            Self::Bench(_) => "bench",
             Self::Compare(_) => "compare",
             Self::Adapters(_) => "adapters",
             Self::Scene(SceneCommand::Info(_)) => "scene info",

@@ -6,6 +6,7 @@
 
 mod adapters;
 mod atomic_file;
+mod bench;
 mod cli;
 mod compare;
 mod console;
@@ -27,6 +28,7 @@ fn main() -> ExitCode {
     let name = cli.command.name();
     failure::report(name, || match cli.command {
         Command::Render(args) => render::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Adapters(args) => adapters::run(&args),
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),

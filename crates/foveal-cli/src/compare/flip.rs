@@ -8,11 +8,11 @@ use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8};
 use crate::picture::Picture;
 
 /// FLIP's error per pixel, 0 to 1.
-pub(super) struct ErrorMap(FlipImageFloat);
+pub(crate) struct ErrorMap(FlipImageFloat);
 
 impl ErrorMap {
     /// The map between two pictures of the same size.
-    pub(super) fn between(reference: &Picture, test: &Picture) -> Self {
+    pub(crate) fn between(reference: &Picture, test: &Picture) -> Self {
         let image = |p: &Picture| FlipImageRgb8::with_data(p.width, p.height, &p.rgb_bytes());
         Self(nv_flip::flip(
             image(reference),
@@ -22,13 +22,13 @@ impl ErrorMap {
     }
 
     /// The mean over all pixels.
-    pub(super) fn mean(&self) -> f64 {
+    pub(crate) fn mean(&self) -> f64 {
         let errors = self.0.to_vec();
         errors.iter().map(|&e| f64::from(e)).sum::<f64>() / errors.len() as f64
     }
 
     /// The map in the magma colours, RGB8 rows.
-    pub(super) fn heat_rgb(&self) -> Vec<u8> {
+    pub(crate) fn heat_rgb(&self) -> Vec<u8> {
         self.0.apply_color_lut(&nv_flip::magma_lut()).to_vec()
     }
 }

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 use std::time::Instant;
 
 /// Milliseconds since the first call.
-pub(super) fn now_ms() -> f64 {
+pub(crate) fn now_ms() -> f64 {
     static START: OnceLock<Instant> = OnceLock::new();
     START.get_or_init(Instant::now).elapsed().as_secs_f64() * 1e3
 }
