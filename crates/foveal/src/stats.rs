@@ -90,6 +90,7 @@ pub struct FrameStats {
     /// Lighting evaluations of the deferred stage, backdrop included.
     pub shaded_samples: u64,
     /// With coarse shading.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub coarse: Option<CoarseStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
     pub frame_ms: f64,
