@@ -220,6 +220,10 @@ pub(crate) fn compute(
 }
 
 /// A pipeline that draws one level of a mip chain (`shared/level.wgsl`).
+#[expect(
+    clippy::too_many_arguments,
+    reason = "all that tells one such pipeline from another"
+)]
 pub(crate) fn level_screen(
     gpu: &Gpu,
     label: &str,
