@@ -174,6 +174,16 @@ pub(crate) const COMPOSITE_PATCH: Parts = &[
     PATCHES,
     include_str!("composite/patch.wgsl"),
 ];
+pub(crate) const COMPOSITE_RAISE: Parts = &[
+    FRAME,
+    SURFACE,
+    LEVEL,
+    BLOCKS,
+    TILING,
+    SEEN,
+    PATCHES,
+    include_str!("composite/raise.wgsl"),
+];
 pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     FRAME,
     SURFACE,
@@ -355,6 +365,7 @@ mod tests {
         ("composite nearest", COMPOSITE_NEAREST),
         ("composite paper", COMPOSITE_PAPER),
         ("composite patch", COMPOSITE_PATCH),
+        ("composite raise", COMPOSITE_RAISE),
         ("composite smooth", COMPOSITE_SMOOTH),
     ];
 

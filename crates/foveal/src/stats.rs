@@ -94,6 +94,7 @@ pub struct FrameStats {
     /// Bytes of all targets that depend on the frame's size: G-buffers, radiance, picture, lists.
     pub target_bytes: u64,
     /// With coarse shading.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub coarse: Option<CoarseStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
     pub frame_ms: f64,

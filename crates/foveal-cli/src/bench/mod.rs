@@ -4,6 +4,7 @@
 //! busy with something else slows all of them alike.
 
 mod antialiasing;
+mod coarse;
 mod culling;
 mod table;
 
@@ -14,6 +15,8 @@ use clap::Subcommand;
 pub(crate) enum BenchCommand {
     /// Rasterizing occluders and testing boxes on the CPU
     Culling(Box<culling::Args>),
+    /// Coarse shading against shading every pixel
+    Coarse(coarse::Args),
     /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
     Antialiasing(antialiasing::Args),
 }
@@ -23,6 +26,7 @@ impl BenchCommand {
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Culling(_) => "bench culling",
+            Self::Coarse(_) => "bench coarse",
             Self::Antialiasing(_) => "bench antialiasing",
         }
     }
@@ -31,6 +35,7 @@ impl BenchCommand {
     pub(crate) fn run(&self) -> anyhow::Result<()> {
         match self {
             Self::Culling(args) => culling::run(args),
+            Self::Coarse(args) => coarse::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),
         }
     }

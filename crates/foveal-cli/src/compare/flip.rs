@@ -28,7 +28,7 @@ impl ErrorMap {
     }
 
     /// The map in the magma colours, RGB8 rows.
-    pub(super) fn heat_rgb(&self) -> Vec<u8> {
+    pub(crate) fn heat_rgb(&self) -> Vec<u8> {
         self.0.apply_color_lut(&nv_flip::magma_lut()).to_vec()
     }
 }

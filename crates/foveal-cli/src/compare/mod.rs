@@ -1,6 +1,6 @@
 //! `foveal compare`: how far two pictures are apart, as eyes and as numbers see it.
 
-mod flip;
+pub(crate) mod flip;
 mod numeric;
 mod ssim;
 

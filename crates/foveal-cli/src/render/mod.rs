@@ -5,7 +5,7 @@
 
 mod args;
 mod camera_path;
-mod clock;
+pub(crate) mod clock;
 mod coarse_args;
 mod drawing;
 mod frame_files;

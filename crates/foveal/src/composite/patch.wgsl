@@ -140,9 +140,6 @@ fn fit_corners(in: LevelVertex) -> PatchOut {
     let block = vec2u(in.position.xy);
     let first = block << vec2u(in.level);
     let own = tile_at(min(first, picture_size() - 1u));
-    if own.level != in.level {
-        return PatchOut(vec4f(0.0), vec4f(0.0), vec4f(0.0));
-    }
     let low = vec2i(tile_low(own));
     let high = vec2i(tile_high(own));
     var corners: array<vec3f, 4>;

@@ -9,45 +9,14 @@
 @group(1) @binding(5) var patches_0: texture_2d<f32>;
 @group(1) @binding(6) var patches_1: texture_2d<f32>;
 @group(1) @binding(7) var patches_2: texture_2d<f32>;
-
-// How much radiance at the middle of an edge lies above the mean of the edge's ends, of which `turn` is the
-// difference; `axis` is that across the edge. Both tiles find the same.
-fn edge_raise(tile: Tile, value: vec4f, axis: u32, far: bool, mean: vec3f, turn: vec3f) -> vec3f {
-    let low = vec2f(tile_low(tile));
-    let high = vec2f(tile_high(tile));
-    var middle = 0.5 * (low + high);
-    middle[axis] = select(low[axis], high[axis], far);
-    var probe = middle;
-    probe[axis] += select(-0.5, 0.5, far);
-    if any(probe < vec2f(0.0)) || any(probe >= frame.size) {
-        return vec3f(0.0);
-    }
-    let other = tile_at(vec2u(probe));
-    if other.level != tile.level {
-        return vec3f(0.0);
-    }
-    let other_value = sample_of(other);
-    let here_texel = sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u);
-    let there_texel = sample_texel(other.block, other.level, u32(other_value.a + 0.5) - 1u);
-    if (tile.has_edge || other.has_edge) && !same_surface(seen_at(here_texel), seen_at(there_texel)) {
-        return vec3f(0.0);
-    }
-    // Samples lie beside the centres; their mean lies beside the edge's middle by `beside`.
-    let here = vec2f(here_texel) + 0.5;
-    let there = vec2f(there_texel) + 0.5;
-    let beside = 0.5 * (here + there) - middle;
-    let along_edge = turn / (high[1u - axis] - low[1u - axis]);
-    let apart = there - here;
-    let normal_slope = (other_value.rgb - value.rgb - along_edge * apart[1u - axis]) / apart[axis];
-    return 0.5 * (value.rgb + other_value.rgb) - normal_slope * beside[axis] - along_edge * beside[1u - axis] - mean;
-}
+// Of a tile's left and upper edge.
+@group(1) @binding(8) var raises_left: texture_2d<f32>;
+@group(1) @binding(9) var raises_upper: texture_2d<f32>;
 
 // Radiance of a tile at a position, continued beyond its edges as a constant.
 fn tile_radiance(tile: Tile, value: vec4f, position: vec2f) -> vec3f {
-    if tile.level == 0u {
-        return value.rgb;
-    }
-    let mip = tile.level - 1u;
+    // A pixel has no patch; what is read in its place is not used.
+    let mip = max(tile.level, 1u) - 1u;
     let p = unpack_patch(
         textureLoad(patches_0, tile.block, mip),
         textureLoad(patches_1, tile.block, mip),
@@ -61,19 +30,19 @@ fn tile_radiance(tile: Tile, value: vec4f, position: vec2f) -> vec3f {
     // 1 at the middle of an edge, 0 at its ends.
     let tent = 1.0 - abs(2.0 * uv - 1.0);
 
-    // Ends of the vertical edge on the pixel's side, and of the horizontal one.
-    let top = select(p.c00, p.c10, far.x);
-    let bottom = select(p.c01, p.c11, far.x);
-    let left = select(p.c00, p.c01, far.y);
-    let right = select(p.c10, p.c11, far.y);
-    let raise_x = edge_raise(tile, value, 0u, far.x, 0.5 * (top + bottom), bottom - top);
-    let raise_y = edge_raise(tile, value, 1u, far.y, 0.5 * (left + right), right - left);
+    // A tile's right edge is the left one of the tile beside it.
+    let next = tile.block + vec2u(far);
+    let inside = next < blocks_at(max(tile.level, 1u));
+    let left = textureLoad(raises_left, vec2u(next.x, tile.block.y), mip).rgb;
+    let upper = textureLoad(raises_upper, vec2u(tile.block.x, next.y), mip).rgb;
+    let raise_x = select(vec3f(0.0), left, inside.x);
+    let raise_y = select(vec3f(0.0), upper, inside.y);
     let raise = value.rgb - patch_at(p, peak);
     let radiance = patch_at(p, uv)
         + raise_x * ((1.0 - slope.x) * tent.y)
         + raise_y * ((1.0 - slope.y) * tent.x)
         + raise * (slope.x * slope.y);
-    return max(radiance, vec3f(0.0));
+    return select(max(radiance, vec3f(0.0)), value.rgb, tile.level == 0u);
 }
 
 // Radiance at a pixel whose tile sampled another surface: a mean over the neighbours on the pixel's side of the tile
@@ -103,21 +72,33 @@ fn across_edge(position: vec2f, own: Tile, seen: Seen) -> vec3f {
     return sum / total;
 }
 
+// Every pixel, as if its tile held one surface.
 @fragment
 fn smooth_composite(in: LevelVertex) -> @location(0) vec4f {
     let texel = vec2u(in.position.xy);
     let tile = tile_at(texel);
+    return vec4f(tile_radiance(tile, sample_of(tile), vec2f(texel) + 0.5), 1.0);
+}
+
+// Marks pixels whose tile holds several surfaces.
+@fragment
+fn mark_edges(in: LevelVertex) {
+    let tile = tile_at(vec2u(in.position.xy));
+    if tile.level == 0u || !tile.has_edge {
+        discard;
+    }
+}
+
+// Marked pixels.
+@fragment
+fn smooth_edges(in: LevelVertex) -> @location(0) vec4f {
+    let texel = vec2u(in.position.xy);
+    let tile = tile_at(texel);
     let value = sample_of(tile);
-    if tile.level == 0u {
-        return vec4f(value.rgb, 1.0);
+    let seen = seen_at(texel);
+    let sampled = seen_at(sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u));
+    if same_surface(seen, sampled) {
+        discard;
     }
-    let position = vec2f(texel) + 0.5;
-    if tile.has_edge {
-        let seen = seen_at(texel);
-        let sampled = seen_at(sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u));
-        if !same_surface(seen, sampled) {
-            return vec4f(across_edge(position, tile, seen), 1.0);
-        }
-    }
-    return vec4f(tile_radiance(tile, value, position), 1.0);
+    return vec4f(across_edge(vec2f(texel) + 0.5, tile, seen), 1.0);
 }

@@ -16,8 +16,8 @@ mod targets;
 pub(crate) use choice::{BackendChoice, UsedBackend};
 pub(crate) use compute::ComputeBackend;
 pub(crate) use count::CountPass;
-pub(crate) use stencil::StencilBackend;
-pub(crate) use targets::CoarseTargets;
+pub(crate) use stencil::{StencilBackend, stencil_state};
+pub(crate) use targets::{CoarseTargets, STENCIL_FORMAT};
 
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;

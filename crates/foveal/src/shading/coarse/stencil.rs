@@ -18,7 +18,8 @@ pub(crate) struct StencilBackend {
     cells_layout: wgpu::BindGroupLayout,
 }
 
-fn stencil_state(
+/// Stencil as its only test and its only effect, on both faces.
+pub(crate) fn stencil_state(
     compare: wgpu::CompareFunction,
     pass_op: wgpu::StencilOperation,
 ) -> wgpu::DepthStencilState {

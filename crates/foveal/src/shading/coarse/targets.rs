@@ -7,7 +7,8 @@ use crate::rate::RateTargets;
 use crate::shading::RADIANCE_FORMAT;
 use crate::{Backend, Composite, Settings};
 
-pub(super) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
+/// A stencil whose mips can be attached one by one.
+pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
 
 /// The rate map, its tiles' samples, and what either backend needs to find the tiles.
 #[derive(Debug)]
