@@ -23,18 +23,6 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
             _ => Ok(()),
         };
     }
-    // Shading every sub-sample lists every pixel.
-    let pixels = u64::from(settings.width) * u64::from(settings.height);
-    let most = most_entries(limits);
-    if settings.aa == Antialiasing::Ssaa && pixels > most {
-        return Err(Error::Limit {
-            what: "the picture's number of pixels with ssaa".to_owned(),
-            value: pixels,
-            limit: most,
-            hint: ": that is the device's largest storage buffer; msaa takes larger pictures"
-                .to_owned(),
-        });
-    }
     let samples = settings.samples;
     let wrong = |expected| {
         Err(Error::Setting {
@@ -44,7 +32,9 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
         })
     };
     match settings.pattern {
-        SamplePattern::Rotated if samples == 4 || samples == 8 => return Ok(()),
+        SamplePattern::Rotated if samples == 4 || samples == 8 => {
+            return fits_buffers(settings, limits);
+        }
         SamplePattern::Rotated => return wrong("4 or 8 with the rotated pattern"),
         SamplePattern::Grid => {}
     }
@@ -71,6 +61,22 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
             } else {
                 ": at this size the device takes the rotated pattern only".to_owned()
             },
+        });
+    }
+    fits_buffers(settings, limits)
+}
+
+/// Shading every sub-sample lists every pixel.
+fn fits_buffers(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
+    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let most = most_entries(limits);
+    if settings.aa == Antialiasing::Ssaa && pixels > most {
+        return Err(Error::Limit {
+            what: "the picture's number of pixels with ssaa".to_owned(),
+            value: pixels,
+            limit: most,
+            hint: ": that is the device's largest storage buffer; msaa takes larger pictures"
+                .to_owned(),
         });
     }
     Ok(())
@@ -158,6 +164,7 @@ mod tests {
             aa: Antialiasing::Ssaa,
             ..Settings::default()
         };
+        // 2 x 2 fits the texture: the buffer is the limit.
         let error = validate(
             &settings,
             &wgpu::Limits {
