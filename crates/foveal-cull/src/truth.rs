@@ -252,11 +252,16 @@ impl Truth {
                 }
                 for y in y0.max(ty * TILE)..=y1.min(ty * TILE + TILE - 1) {
                     for x in x0.max(tx * TILE)..=x1.min(tx * TILE + TILE - 1) {
+                        let d = self.depth[y * self.width + x];
+                        // Nothing of the box is as near as the occluder here.
+                        if f64::from(d) > nearest {
+                            met = true;
+                            continue;
+                        }
                         let Some(entry) = self.entry(x, y, lo, hi) else {
                             continue;
                         };
                         met = true;
-                        let d = self.depth[y * self.width + x];
                         if d == 0.0 || entry > f64::from(d) {
                             return Seen::Visible;
                         }
