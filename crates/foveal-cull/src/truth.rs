@@ -206,7 +206,16 @@ impl Truth {
             .extend(1.0);
             DVec4::from_array(self.camera.rows.map(|r| r.dot(p)))
         });
+        // Wholly behind one of the planes of the frustum (all are linear, so the corners decide).
         let (w, h) = (self.width as f64, self.height as f64);
+        if corners.iter().all(|c| c.z > c.w)
+            || corners.iter().all(|c| c.x < 0.0)
+            || corners.iter().all(|c| c.x > w * c.w)
+            || corners.iter().all(|c| c.y < 0.0)
+            || corners.iter().all(|c| c.y > h * c.w)
+        {
+            return Seen::Outside;
+        }
         let (mut rect, mut nearest) = ([0.0, 0.0, w - 1.0, h - 1.0], 1.0);
         if corners.iter().all(|c| c.z < c.w) {
             rect = [
