@@ -206,7 +206,16 @@ impl Truth {
             .extend(1.0);
             DVec4::from_array(self.camera.rows.map(|r| r.dot(p)))
         });
+        // Wholly behind one of the planes of the frustum (all are linear, so the corners decide).
         let (w, h) = (self.width as f64, self.height as f64);
+        if corners.iter().all(|c| c.z > c.w)
+            || corners.iter().all(|c| c.x < 0.0)
+            || corners.iter().all(|c| c.x > w * c.w)
+            || corners.iter().all(|c| c.y < 0.0)
+            || corners.iter().all(|c| c.y > h * c.w)
+        {
+            return Seen::Outside;
+        }
         let (mut rect, mut nearest) = ([0.0, 0.0, w - 1.0, h - 1.0], 1.0);
         if corners.iter().all(|c| c.z < c.w) {
             rect = [
@@ -252,11 +261,16 @@ impl Truth {
                 }
                 for y in y0.max(ty * TILE)..=y1.min(ty * TILE + TILE - 1) {
                     for x in x0.max(tx * TILE)..=x1.min(tx * TILE + TILE - 1) {
+                        let d = self.depth[y * self.width + x];
+                        // Nothing of the box is as near as the occluder here.
+                        if f64::from(d) > nearest {
+                            met = true;
+                            continue;
+                        }
                         let Some(entry) = self.entry(x, y, lo, hi) else {
                             continue;
                         };
                         met = true;
-                        let d = self.depth[y * self.width + x];
                         if d == 0.0 || entry > f64::from(d) {
                             return Seen::Visible;
                         }

@@ -52,7 +52,7 @@ fn culls_nothing_visible(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(60))]
+    #![proptest_config(ProptestConfig::with_cases(400))]
 
     #[test]
     fn perspective_views_cull_nothing_visible(seed in any::<u64>()) {
