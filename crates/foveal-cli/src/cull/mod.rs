@@ -5,6 +5,7 @@
 
 mod args;
 pub(crate) mod camera_file;
+mod frustum;
 pub(crate) mod measure;
 mod mocrec;
 pub(crate) mod occluders;

@@ -1,8 +1,9 @@
 //! Pictures of a culled frame: the depth buffer, and the boxes over it.
 
 use foveal_cull::{Aabb, Culler, Eye, Visibility};
-use glam::{DVec3, DVec4};
+use glam::DVec4;
 
+use super::frustum::{clip_position, corners};
 use crate::picture::Picture;
 
 const EMPTY: [u8; 4] = [16, 20, 48, 255];
@@ -75,44 +76,16 @@ fn enlarge(picture: &Picture, by: u32) -> Picture {
 }
 
 fn draw_box(picture: &mut Picture, eye: &Eye, bounds: &Aabb, color: [u8; 4]) {
-    let (lo, hi) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
-    let corner = |i: usize| {
-        let pick = |bit: usize, a: f64, b: f64| if i & bit == 0 { a } else { b };
-        let p = DVec3::new(
-            pick(1, lo.x, hi.x),
-            pick(2, lo.y, hi.y),
-            pick(4, lo.z, hi.z),
-        );
-        clip_position(eye, p)
-    };
+    let corners = corners(bounds).map(|corner| clip_position(eye, corner));
     for a in 0..8_usize {
         for bit in [1, 2, 4] {
             if a & bit == 0
-                && let Some(line) = clipped(corner(a), corner(a | bit))
+                && let Some(line) = clipped(corners[a], corners[a | bit])
             {
                 draw_line(picture, line, color);
             }
         }
     }
-}
-
-/// Clip space with x and y in -w..w, and z >= 0 in front of the near plane.
-fn clip_position(eye: &Eye, world: DVec3) -> DVec4 {
-    let m = eye.world_from_eye.matrix3;
-    let p = m.transpose() * (world - eye.position());
-    let [l, r, b, t] = eye.projection.extents();
-    let [near, _] = eye.projection.near_far();
-    let w = if eye.projection.is_orthographic() {
-        1.0
-    } else {
-        -p.z
-    };
-    DVec4::new(
-        (2.0 * p.x - (r + l) * w) / (r - l),
-        (2.0 * p.y - (t + b) * w) / (t - b),
-        -p.z - near,
-        w,
-    )
 }
 
 /// The part of an edge that is on the screen (Liang and Barsky 1984), as x0, y0, x1, y1 in -1..1.
@@ -152,7 +125,7 @@ fn draw_line(picture: &mut Picture, [x0, y0, x1, y1]: [f64; 4], color: [u8; 4]) 
 mod tests {
     use super::*;
     use foveal_cull::Projection;
-    use glam::Vec3;
+    use glam::{DVec3, Vec3};
 
     #[test]
     fn edges_that_cross_the_near_plane_are_cut_there() {

@@ -7,6 +7,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::frustum::is_outside;
 use super::occluders::Occluders;
 
 /// How the culler's answers compare with what is really visible.
@@ -40,9 +41,15 @@ impl Check {
         boxes: &[Aabb],
         results: &[Visibility],
     ) -> anyhow::Result<Self> {
-        let same = compare(&reference(occluders, eye, width, height)?, boxes, results);
+        let same = compare(
+            &reference(occluders, eye, width, height)?,
+            eye,
+            boxes,
+            results,
+        );
         let fine = compare(
             &reference(occluders, eye, 4 * width, 4 * height)?,
+            eye,
             boxes,
             results,
         );
@@ -79,12 +86,17 @@ struct Counts {
     hidden_but_kept: u64,
 }
 
-fn compare(truth: &Truth, boxes: &[Aabb], results: &[Visibility]) -> Counts {
+fn compare(truth: &Truth, eye: &Eye, boxes: &[Aabb], results: &[Visibility]) -> Counts {
     boxes
         .par_iter()
         .zip(results)
         .map(|(bounds, result)| {
-            let seen = truth.seen(bounds, DVec3::ZERO);
+            // The reference would follow rays through the whole screen for a box behind the eye.
+            let seen = if is_outside(eye, bounds) {
+                Seen::Outside
+            } else {
+                truth.seen(bounds, DVec3::ZERO)
+            };
             let culled = matches!(result, Visibility::Occluded | Visibility::Outside);
             Counts {
                 culled_but_seen: u64::from(culled && seen == Seen::Visible),
