@@ -15,11 +15,11 @@ pub use coarse::{
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Culling {
-    /// Those that no nearer surface hides, and that the camera's frustum touches.
-    #[default]
-    Occlusion,
     /// Those that the camera's frustum touches.
+    #[default]
     Frustum,
+    /// Of these, those that no nearer surface hides.
+    Occlusion,
     /// All of them: the reference.
     Off,
 }
@@ -144,7 +144,8 @@ pub struct Settings {
     pub exposure: f32,
     /// The tone map.
     pub tone_map: ToneMap,
-    /// Largest anisotropy of texture filtering, 1 to 16.
+    /// Largest anisotropy of texture filtering, 1 to 16. Lavapipe takes 1 whatever is asked for: its own
+    /// anisotropic filter can take minutes for one triangle.
     pub anisotropy: u16,
     /// How edges are smoothed.
     pub aa: Antialiasing,

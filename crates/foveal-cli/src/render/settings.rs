@@ -27,8 +27,8 @@ pub(crate) struct SettingsArgs {
     #[arg(long, value_parser = VariantParser::<View>::new())]
     view: Option<View>,
 
-    /// Which objects are drawn: those that are seen, those in the frustum, or all (the reference); the picture
-    /// is the same [default: occlusion]
+    /// Which objects are drawn: those in the frustum, of these the ones that nothing hides, or all (the
+    /// reference); the picture is the same [default: frustum]
     #[arg(long, value_name = "WHICH", value_parser = VariantParser::<Culling>::new())]
     culling: Option<Culling>,
 

@@ -43,6 +43,11 @@ impl Checker<'_> {
                     place,
                     &format!("is below {rule}"),
                 ),
+                "maximum" => self.expect(
+                    value.as_f64() <= rule.as_f64(),
+                    place,
+                    &format!("is above {rule}"),
+                ),
                 "required" => {
                     for name in rule.as_array().unwrap() {
                         let there = value.get(name.as_str().unwrap()).is_some();
