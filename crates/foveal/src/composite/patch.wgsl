@@ -1,4 +1,4 @@
-// The corners of each tile's patch. After seen.wgsl. CPU twin: `composite/patch.rs`.
+// The corners of each tile's patch. After seen.wgsl.
 //
 // Radiance at a corner is the affine least-squares fit through the samples of the tiles that touch it, so that
 // affine radiance comes out exactly, and all tiles around a corner find the same value. A corner that lies within the

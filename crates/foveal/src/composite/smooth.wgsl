@@ -80,25 +80,24 @@ fn smooth_composite(in: LevelVertex) -> @location(0) vec4f {
     return vec4f(tile_radiance(tile, sample_of(tile), vec2f(texel) + 0.5), 1.0);
 }
 
-// Marks pixels whose tile holds several surfaces.
+// Marks pixels that show another surface than their tile's sample.
 @fragment
 fn mark_edges(in: LevelVertex) {
-    let tile = tile_at(vec2u(in.position.xy));
+    let texel = vec2u(in.position.xy);
+    let tile = tile_at(texel);
     if tile.level == 0u || !tile.has_edge {
+        discard;
+    }
+    let texel_sampled = sample_texel(tile.block, tile.level, u32(sample_of(tile).a + 0.5) - 1u);
+    if same_surface(seen_at(texel), seen_at(texel_sampled)) {
         discard;
     }
 }
 
-// Marked pixels.
+// Marked pixels. Nothing is discarded here, so that the stencil test may come first.
 @fragment
 fn smooth_edges(in: LevelVertex) -> @location(0) vec4f {
     let texel = vec2u(in.position.xy);
     let tile = tile_at(texel);
-    let value = sample_of(tile);
-    let seen = seen_at(texel);
-    let sampled = seen_at(sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u));
-    if same_surface(seen, sampled) {
-        discard;
-    }
-    return vec4f(across_edge(vec2f(texel) + 0.5, tile, seen), 1.0);
+    return vec4f(across_edge(vec2f(texel) + 0.5, tile, seen_at(texel)), 1.0);
 }

@@ -2,13 +2,30 @@
 
 use crate::{AdapterStats, Error};
 
+/// All adapters that the environment allows, best first.
 pub(super) async fn all() -> Vec<wgpu::Adapter> {
+    of(wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all())).await
+}
+
+/// The adapters to choose from when nothing is asked for: GL, which lacks much, where there is nothing else.
+async fn preferred() -> Vec<wgpu::Adapter> {
+    if let Some(backends) = wgpu::Backends::from_env() {
+        return of(backends).await;
+    }
+    let modern = of(wgpu::Backends::PRIMARY).await;
+    if modern.is_empty() {
+        of(wgpu::Backends::SECONDARY).await
+    } else {
+        modern
+    }
+}
+
+async fn of(backends: wgpu::Backends) -> Vec<wgpu::Adapter> {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-        backends: wgpu::Backends::from_env()
-            .unwrap_or(wgpu::Backends::PRIMARY | wgpu::Backends::SECONDARY),
+        backends,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    let mut adapters = instance.enumerate_adapters(wgpu::Backends::all()).await;
+    let mut adapters = instance.enumerate_adapters(backends).await;
     // A stable sort: the driver's order holds among equals.
     adapters.sort_by_key(|a| rank(&a.get_info()));
     adapters
@@ -28,7 +45,11 @@ fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
 }
 
 pub(super) async fn choose(wanted: Option<&str>) -> Result<wgpu::Adapter, Error> {
-    let adapters = all().await;
+    let adapters = if wanted.is_some() {
+        all().await
+    } else {
+        preferred().await
+    };
     let names: Vec<String> = adapters
         .iter()
         .enumerate()

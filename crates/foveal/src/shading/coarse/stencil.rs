@@ -36,7 +36,12 @@ pub(crate) fn stencil_state(
             front: face,
             back: face,
             read_mask: 0xff,
-            write_mask: 0xff,
+            // What only tests must not look as if it wrote: drivers then test before they shade.
+            write_mask: if pass_op == wgpu::StencilOperation::Keep {
+                0
+            } else {
+                0xff
+            },
         },
         bias: wgpu::DepthBiasState::default(),
     }
