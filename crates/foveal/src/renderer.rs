@@ -155,7 +155,8 @@ impl Renderer {
     }
 
     /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
-    /// [`Settings::anisotropy`] takes effect with the next [`Renderer::set_scene`].
+    /// [`Settings::anisotropy`], and one to [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are
+    /// baked with the scene, takes effect with the next [`Renderer::set_scene`].
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.

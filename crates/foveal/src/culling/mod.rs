@@ -37,13 +37,21 @@ pub(crate) struct CullingScene {
 }
 
 impl CullingScene {
-    /// Bakes the occluders of a scene: the opaque instances of the objects that are marked as occluders, or
-    /// of all objects where none is marked.
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the objects that are
+    /// marked as occluders, or of all objects where none is marked.
+    pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
+        let mut this = Self::default();
+        if mode == Culling::Occlusion {
+            this.bake(scene);
+        }
+        this.take_boxes(scene);
+        this
+    }
+
+    fn bake(&mut self, scene: &Scene) {
         let marked = scene.objects.iter().any(|o| o.occluder == Some(true));
         let mut baked: std::collections::HashMap<(u32, bool), Option<Arc<OccluderMesh>>> =
             Default::default();
-        let mut this = Self::default();
         for (index, instance) in (0..).zip(&scene.instances) {
             let material = &scene.materials[instance.material as usize];
             let mesh = &scene.meshes[instance.mesh as usize];
@@ -62,15 +70,13 @@ impl CullingScene {
                     .map(Arc::new)
             });
             if let Some(occluder) = occluder
-                && let Ok(id) = this
+                && let Ok(id) = self
                     .occluders
                     .add(Arc::clone(occluder), affine(instance.world_from_object))
             {
-                this.placed.push((id, index));
+                self.placed.push((id, index));
             }
         }
-        this.take_boxes(scene);
-        this
     }
 
     /// Takes over a new pose of the same scene.

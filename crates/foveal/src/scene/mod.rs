@@ -83,7 +83,7 @@ impl SceneOnGpu {
             lights,
             light_buffer,
             environment: scene.environment,
-            culling: CullingScene::new(scene),
+            culling: CullingScene::new(scene, settings.culling),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
                 materials: scene.materials.len() as u64,
