@@ -18,7 +18,7 @@ use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{CoarseShading, CountPass, Samples, ShadingPass};
 use crate::targets::Targets;
-use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing, View};
+use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing};
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -258,14 +258,18 @@ impl Renderer {
             ..
         } = &self.stages;
         let pixels = u64::from(settings.width) * u64::from(settings.height);
-        let mut shaded_samples = coarse.as_ref().map_or(pixels, CoarseStats::shaded_samples);
+        let lit = settings.view.is_lit();
+        let mut shaded_samples = match &coarse {
+            Some(coarse) => coarse.shaded_samples(),
+            None => u64::from(lit) * pixels,
+        };
         let mut edge_fraction = 0.0;
         if let Some(antialias) = antialias {
             let counts = antialias.counts(&self.gpu, targets).await?;
             if !antialias.needs_ordinary() && coarse.is_none() {
                 shaded_samples = 0;
             }
-            shaded_samples += counts.evaluations;
+            shaded_samples += u64::from(lit) * counts.evaluations;
             edge_fraction = counts.edge_pixels as f64 / pixels as f64;
         }
         Ok(FrameStats {
@@ -374,7 +378,7 @@ impl Renderer {
         };
         lights.assign(recorder, &scene.light_buffer, &clusters);
         if let Some(antialias) = antialias {
-            let shade = settings.view == View::Final;
+            let shade = settings.view.is_lit();
             antialias.draw(
                 recorder, scene, draw_list, geometry, shading, lights, targets, shade,
             );

@@ -54,6 +54,17 @@ pub enum View {
     Shaded,
 }
 
+impl View {
+    /// Whether lighting is evaluated for it.
+    pub(crate) fn is_lit(self) -> bool {
+        match self {
+            Self::Final | Self::Rate | Self::Blocks | Self::Shaded => true,
+            Self::Depth | Self::Normals | Self::BaseColor | Self::Instances | Self::Motion => false,
+            Self::Edges | Self::Samples => false,
+        }
+    }
+}
+
 /// How edges are smoothed. See `docs/antialiasing.md`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

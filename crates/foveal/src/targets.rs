@@ -67,5 +67,26 @@ impl Targets {
         let size = self.picture_view.texture().size();
         u64::from(size.width) * u64::from(size.height) * BYTES_PER_PIXEL
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
+            + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coarse_targets_count_too() {
+        let bytes = |shading| {
+            let settings = Settings {
+                shading,
+                ..crate::testing::small(64, 64)
+            };
+            Targets::new(crate::testing::gpu(), &settings).bytes()
+        };
+        let full = bytes(Shading::Full);
+        assert_eq!(full, 64 * 64 * BYTES_PER_PIXEL);
+        // Its samples alone are 8 bytes a pixel on the finest of their levels.
+        assert!(bytes(Shading::Coarse) > full + 64 * 64 * 8);
     }
 }

@@ -47,7 +47,7 @@ fn a_thousand_frames_with_a_resize_every_fifty_leave_memory_flat() {
         renderer.set_scene(&scene).await.expect("scene fits");
         for i in 0..1000 {
             if i % 50 == 0 {
-                // Twenty sizes, each one only once in the first half and once in the second.
+                // Ten sizes, each once in the first half and once in the second.
                 let step = i / 50 % 10;
                 settings.width = 96 + 32 * step;
                 settings.height = 54 + 18 * step;

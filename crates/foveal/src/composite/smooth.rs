@@ -30,6 +30,15 @@ pub(crate) struct PatchTargets {
 }
 
 impl PatchTargets {
+    /// Bytes of all chains.
+    pub(crate) fn bytes(&self) -> u64 {
+        let chains = self.corners.iter().chain(&self.raises);
+        chains
+            .chain([&self.stencil, &self.pixel_stencil])
+            .map(MipChain::bytes)
+            .sum()
+    }
+
     /// `None` where all tiles are pixels.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
         let coarsest = u32::from(settings.coarsest_level);

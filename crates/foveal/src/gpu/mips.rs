@@ -62,6 +62,16 @@ impl MipChain {
         }
     }
 
+    /// Bytes of all levels.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.texture.size();
+        let texel = u64::from(self.texture.format().block_copy_size(None).unwrap_or(1));
+        let texels = |mip| u64::from(size.width >> mip) * u64::from(size.height >> mip);
+        (0..self.texture.mip_level_count())
+            .map(|mip| texels(mip) * texel)
+            .sum()
+    }
+
     /// The view of a level.
     pub(crate) fn level(&self, level: u32) -> &wgpu::TextureView {
         &self.levels[(level - self.first) as usize]

@@ -7,9 +7,10 @@ use crate::Error;
 pub(crate) struct ErrorTrap {
     gpu: Gpu,
     doing: &'static str,
-    memory: wgpu::ErrorScopeGuard,
-    validation: wgpu::ErrorScopeGuard,
+    // Dropped in this order, the reverse of their opening: any other is a panic.
     internal: wgpu::ErrorScopeGuard,
+    validation: wgpu::ErrorScopeGuard,
+    memory: wgpu::ErrorScopeGuard,
 }
 
 impl ErrorTrap {
@@ -42,5 +43,18 @@ impl ErrorTrap {
             }),
             None => Ok(()),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_trap_that_is_left_early_closes_its_scopes_in_order() {
+        let gpu = crate::testing::gpu();
+        drop(ErrorTrap::new(gpu, "giving up"));
+        let trap = ErrorTrap::new(gpu, "trying again");
+        pollster::block_on(trap.finish()).expect("nothing happened");
     }
 }

@@ -19,6 +19,11 @@ pub(crate) struct RateTargets {
 }
 
 impl RateTargets {
+    /// Bytes of both.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.pyramid.bytes() + self.owner.bytes()
+    }
+
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let size = (settings.width, settings.height);
         // Level 0 tiles are found by their parent, so there is always one.

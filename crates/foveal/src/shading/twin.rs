@@ -329,6 +329,7 @@ fn views_do_not_shade() {
         view: View::Depth,
         ..small(WIDTH, HEIGHT)
     };
-    let renderer = rendered(&scene, &scene.cameras[0], &settings);
+    let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
     assert!(radiance(&renderer).iter().all(|r| *r == Vec3::ZERO));
+    assert_eq!(renderer.redraw(&scene.cameras[0]).shaded_samples, 0);
 }

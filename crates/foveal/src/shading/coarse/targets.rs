@@ -29,6 +29,16 @@ pub(crate) struct CoarseTargets {
 }
 
 impl CoarseTargets {
+    /// Bytes of everything.
+    pub(crate) fn bytes(&self) -> u64 {
+        let buffers = self.lists.iter().chain([&self.counts, &self.dispatches]);
+        self.rate.bytes()
+            + self.samples.bytes()
+            + self.patches.as_ref().map_or(0, PatchTargets::bytes)
+            + self.stencil.as_ref().map_or(0, MipChain::bytes)
+            + buffers.map(wgpu::Buffer::size).sum::<u64>()
+    }
+
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let size = (settings.width, settings.height);
         let levels = 0..=u32::from(settings.coarsest_level);
