@@ -13,6 +13,7 @@ mod console;
 mod cull;
 mod failure;
 mod gpu;
+mod median;
 mod picture;
 mod render;
 mod scene_info;

@@ -3,7 +3,8 @@
 use glam::{Mat4, Vec3};
 
 use crate::{
-    Aabb, Camera, Environment, Light, LightKind, LoadTimings, Material, Mesh, Rig, Texture,
+    Aabb, AlphaMode, Camera, Environment, Light, LightKind, LoadTimings, Material, Mesh, Rig,
+    Texture,
 };
 
 /// One thing as the file's author sees it: a node with a mesh, or one element of its GPU instancing.
@@ -90,6 +91,20 @@ impl Scene {
         self.objects
             .iter()
             .fold(Aabb::EMPTY, |b, o| b.union(o.bounds))
+    }
+
+    /// Whether an instance's surface can hide things for certain: opaque (masks have holes, blended surfaces
+    /// show what is behind them) and rigid (an occluder that deforms would have to be prepared in every pose).
+    #[must_use]
+    pub fn can_occlude(&self, instance: &Instance) -> bool {
+        let material = &self.materials[instance.material as usize];
+        material.alpha_mode == AlphaMode::Opaque && !self.meshes[instance.mesh as usize].deforms
+    }
+
+    /// Whether the scene says of any object that it is meant to occlude.
+    #[must_use]
+    pub fn marks_occluders(&self) -> bool {
+        self.objects.iter().any(|o| o.occluder == Some(true))
     }
 
     /// Number of triangles drawn: each mesh's, once per instance.

@@ -270,32 +270,17 @@ pub(crate) fn level_screen(
     depth_stencil: Option<wgpu::DepthStencilState>,
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
-    let compilation_options = wgpu::PipelineCompilationOptions {
+    let entry_points = ("level_screen", entry_point);
+    screen(
+        gpu,
+        label,
+        module,
+        entry_points,
+        groups,
+        targets,
+        depth_stencil,
         constants,
-        ..Default::default()
-    };
-    gpu.device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(label),
-            layout: Some(&pipeline_layout(gpu, label, groups)),
-            vertex: wgpu::VertexState {
-                module,
-                entry_point: Some("level_screen"),
-                compilation_options: compilation_options.clone(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil,
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some(entry_point),
-                compilation_options,
-                targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+    )
 }
 
 /// A pipeline that draws one full-screen triangle into one target.
@@ -308,6 +293,34 @@ pub(crate) fn full_screen(
     target: wgpu::TextureFormat,
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
+    let entry_points = ("full_screen", entry_point);
+    let targets = [Some(target.into())];
+    screen(
+        gpu,
+        label,
+        module,
+        entry_points,
+        groups,
+        &targets,
+        None,
+        constants,
+    )
+}
+
+#[expect(
+    clippy::too_many_arguments,
+    reason = "what a pipeline differs in, by name"
+)]
+fn screen(
+    gpu: &Gpu,
+    label: &str,
+    module: &wgpu::ShaderModule,
+    (vertex, fragment): (&str, &str),
+    groups: &[&wgpu::BindGroupLayout],
+    targets: &[Option<wgpu::ColorTargetState>],
+    depth_stencil: Option<wgpu::DepthStencilState>,
+    constants: &[(&str, f64)],
+) -> wgpu::RenderPipeline {
     let compilation_options = wgpu::PipelineCompilationOptions {
         constants,
         ..Default::default()
@@ -318,18 +331,18 @@ pub(crate) fn full_screen(
             layout: Some(&pipeline_layout(gpu, label, groups)),
             vertex: wgpu::VertexState {
                 module,
-                entry_point: Some("full_screen"),
+                entry_point: Some(vertex),
                 compilation_options: compilation_options.clone(),
                 buffers: &[],
             },
             primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: None,
+            depth_stencil,
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module,
-                entry_point: Some(entry_point),
+                entry_point: Some(fragment),
                 compilation_options,
-                targets: &[Some(target.into())],
+                targets,
             }),
             multiview_mask: None,
             cache: None,

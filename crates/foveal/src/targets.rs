@@ -2,7 +2,7 @@
 
 use crate::antialias::SampleTargets;
 use crate::geometry::GBuffer;
-use crate::gpu::Gpu;
+use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
 use crate::{Antialiasing, Settings, Shading};
@@ -28,34 +28,15 @@ impl Targets {
     /// The targets for settings that were found valid.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let (width, height) = (settings.width, settings.height);
-        let target = |label, format, usage| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: usage
-                    | wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            });
-            texture.create_view(&Default::default())
-        };
-        let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
+        let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
         Self {
             gbuffer: GBuffer::new(gpu, width, height),
             radiance_view: target(
                 "radiance",
                 RADIANCE_FORMAT,
-                sampled | wgpu::TextureUsages::STORAGE_BINDING,
+                wgpu::TextureUsages::STORAGE_BINDING,
             ),
-            picture_view: target("picture", PICTURE_FORMAT, sampled),
+            picture_view: target("picture", PICTURE_FORMAT, wgpu::TextureUsages::empty()),
             samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseTargets::new(gpu, settings)),

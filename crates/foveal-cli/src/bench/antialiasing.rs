@@ -9,8 +9,9 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::table::{median, text};
+use super::table::text;
 use crate::compare::ErrorMap;
+use crate::median::median;
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
 use crate::{atomic_file, console, gpu, scene_source, values};
@@ -259,13 +260,14 @@ impl Mode {
 
     fn row(&self, scene: &str, none: &Self, to_ssaa: f64, to_reference: Option<f64>) -> Row {
         let settings = self.renderer.settings();
-        let middle = |figure: fn(&Times) -> f64| median(self.rounds.iter().map(figure).collect());
+        let middle =
+            |figure: fn(&Times) -> f64| median(&self.rounds.iter().map(figure).collect::<Vec<_>>());
         let ratio = |figure: fn(&Times) -> f64| {
             let pairs = self.rounds.iter().zip(&none.rounds);
             median(
-                pairs
+                &pairs
                     .map(|(ours, none)| figure(ours) / figure(none))
-                    .collect(),
+                    .collect::<Vec<_>>(),
             )
         };
         Row {

@@ -13,6 +13,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use crate::compare::flip::ErrorMap;
+use crate::median::median;
 use crate::picture::Picture;
 use crate::render::clock::now_ms;
 use crate::{atomic_file, gpu, scene_source, values};
@@ -226,12 +227,6 @@ fn lighting_ms(stats: &FrameStats) -> f64 {
         .filter(|pass| !OTHER.contains(&pass.name.as_str()))
         .map(|pass| pass.ms)
         .sum()
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 fn fovea_differing(a: &Picture, b: &Picture, s: &Settings) -> f64 {

@@ -21,17 +21,6 @@ pub(super) fn text(lines: &[Vec<String>]) -> String {
         .collect()
 }
 
-/// The middle value, or the mean of the two in the middle; 0 of nothing.
-pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[middle],
-        _ => 0.5 * (values[middle - 1] + values[middle]),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -41,12 +30,5 @@ mod tests {
         let line = |cells: [&str; 2]| cells.map(str::to_owned).to_vec();
         let lines = [line(["mode", "ms"]), line(["a", "12.5"])];
         assert_eq!(text(&lines), "mode    ms\na     12.5\n");
-    }
-
-    #[test]
-    fn the_median_is_in_the_middle() {
-        assert_eq!(median(vec![3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(vec![4.0, 1.0]), 2.5);
-        assert_eq!(median(Vec::new()), 0.0);
     }
 }

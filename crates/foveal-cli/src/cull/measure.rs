@@ -9,6 +9,7 @@ use serde::Serialize;
 use super::args::CullingArgs;
 use super::subject::{Occludees, Subject};
 use super::workers::Workers;
+use crate::median::median;
 
 /// The figures of one eye, those that Intel's occlusion culling sample shows. Times are medians.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -105,7 +106,7 @@ pub(crate) fn measure(
             rasterized_models: stats.occluder_models_rasterized,
             triangles: subject.occluders.set.triangle_count() as u64,
             rasterized_triangles: stats.occluder_triangles_rasterized,
-            rasterize_ms: median(&mut rasterize_ms),
+            rasterize_ms: median(&rasterize_ms),
             size_threshold: culling.occluder_size_threshold,
         },
         occludees: OccludeeFigures {
@@ -118,7 +119,7 @@ pub(crate) fn measure(
             triangles: stats.occludee_triangles,
             culled_triangles: stats.occludee_triangles_culled(),
             visible_triangles: stats.occludee_triangles_visible,
-            test_ms: median(&mut test_ms),
+            test_ms: median(&test_ms),
             size_threshold: culling.occludee_size_threshold,
         },
         draw_calls: draw_calls(draws, &results),
@@ -139,26 +140,4 @@ fn draw_calls(draws: &[u32], results: &[Visibility]) -> DrawCalls {
         calls.occlusion += if result.is_visible() { draws } else { 0 };
     }
     calls
-}
-
-/// The middle value, of an even number the mean of the two in the middle; 0 of none.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    values.sort_by(f64::total_cmp);
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[n / 2],
-        n => (values[n / 2 - 1] + values[n / 2]) * 0.5,
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_median_is_the_middle() {
-        assert_eq!(median(&mut []), 0.0);
-        assert_eq!(median(&mut [3.0, 1.0, 2.0]), 2.0);
-        assert_eq!(median(&mut [4.0, 1.0, 2.0, 3.0]), 2.5);
-    }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use anyhow::{Context, bail};
 use foveal_cull::{BakeOptions, OccluderMesh, OccluderSet};
-use foveal_scene::{AlphaMode, Object, Scene};
+use foveal_scene::{Object, Scene};
 use glam::{DAffine3, Vec3};
 use rayon::prelude::*;
 
@@ -68,8 +68,7 @@ impl Occluders {
             let material = &scene.materials[instance.material as usize];
             let mesh = &scene.meshes[instance.mesh as usize];
             let object = &scene.objects[instance.object as usize];
-            // A deforming mesh would have to be baked anew in every frame.
-            if material.alpha_mode != AlphaMode::Opaque || mesh.deforms || !chosen(object) {
+            if !scene.can_occlude(instance) || !chosen(object) {
                 continue;
             }
             let two_sided = material.double_sided;
@@ -125,7 +124,7 @@ fn chosen(scene: &Scene, choice: &Choice) -> anyhow::Result<impl Fn(&Object) -> 
         }
     }
     let choice = match choice {
-        Choice::Auto if scene.objects.iter().any(marked) => Choice::Marked,
+        Choice::Auto if scene.marks_occluders() => Choice::Marked,
         Choice::Auto => Choice::All,
         other => other.clone(),
     };
@@ -158,7 +157,7 @@ fn no_such_set(scene: &Scene, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use foveal_scene::generate;
+    use foveal_scene::{AlphaMode, generate};
 
     fn models(scene: &Scene, choice: &Choice) -> usize {
         Occluders::of_scene(scene, choice).unwrap().set.len()

@@ -4,6 +4,8 @@
 use foveal::{AdapterStats, FrameStats, SceneStats, Settings, Timing};
 use serde::Serialize;
 
+use crate::median::median;
+
 /// Version of the JSON's shape.
 pub(super) const SCHEMA_VERSION: u32 = 1;
 
@@ -77,7 +79,8 @@ pub(super) struct MedianStats {
 impl MedianStats {
     pub(super) fn of(frames: &[NumberedFrameStats]) -> Self {
         let median = |figure: fn(&FrameStats) -> f64| {
-            median(frames.iter().map(|frame| figure(&frame.figures)).collect())
+            let figures = frames.iter().map(|frame| figure(&frame.figures));
+            median(&figures.collect::<Vec<_>>())
         };
         Self {
             cpu_ms: medians(frames, |figures| &figures.cpu_ms),
@@ -107,20 +110,9 @@ fn medians(frames: &[NumberedFrameStats], timings: fn(&FrameStats) -> &[Timing])
         .into_iter()
         .map(|(name, ms)| Timing {
             name: name.to_owned(),
-            ms: median(ms),
+            ms: median(&ms),
         })
         .collect()
-}
-
-/// The middle value, or the mean of the two in the middle; 0 of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    match values.len() {
-        0 => 0.0,
-        n if n % 2 == 1 => values[middle],
-        _ => 0.5 * (values[middle - 1] + values[middle]),
-    }
 }
 
 #[cfg(test)]

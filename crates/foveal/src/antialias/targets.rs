@@ -5,7 +5,7 @@ use bytemuck::{Pod, Zeroable};
 
 use crate::Settings;
 use crate::geometry::GBuffer;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, target};
 
 use super::pattern::{BYTES_PER_SAMPLE, Band, BandUniform, Pattern};
 
@@ -76,22 +76,13 @@ impl SampleTargets {
         let (width, height) = (settings.width, settings.height);
         let pattern = Pattern::of(settings);
         let (texels_x, texels_y) = pattern.texels(width, rows);
-        let tally = gpu.device.create_texture(&wgpu::TextureDescriptor {
-            label: Some("tally"),
-            size: wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-            mip_level_count: 1,
-            sample_count: 1,
-            dimension: wgpu::TextureDimension::D2,
-            format: TALLY_FORMAT,
-            usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                | wgpu::TextureUsages::TEXTURE_BINDING
-                | wgpu::TextureUsages::COPY_SRC,
-            view_formats: &[],
-        });
+        let tally_view = target(
+            gpu,
+            "tally",
+            (width, height),
+            TALLY_FORMAT,
+            wgpu::TextureUsages::empty(),
+        );
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -119,7 +110,7 @@ impl SampleTargets {
         Self {
             bands: bands.collect(),
             samples: GBuffer::new(gpu, texels_x, texels_y),
-            tally_view: tally.create_view(&Default::default()),
+            tally_view,
             queue: buffer("queue", queue_bytes, storage | wgpu::BufferUsages::INDIRECT),
             entries: buffer("queue entries", entry_bytes, storage),
             sums: buffer("queue sums", entry_bytes, storage),

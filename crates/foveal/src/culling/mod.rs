@@ -10,7 +10,7 @@ use foveal_cull::{
     BakeOptions, Culler, Eye, FrameOptions, OccluderId, OccluderMesh, OccluderSet, Projection,
     View, Visibility,
 };
-use foveal_scene::{AlphaMode, Camera, Scene};
+use foveal_scene::{Camera, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
 use crate::{Culling, Error};
@@ -49,15 +49,14 @@ impl CullingScene {
     }
 
     fn bake(&mut self, scene: &Scene) {
-        let marked = scene.objects.iter().any(|o| o.occluder == Some(true));
+        let marked = scene.marks_occluders();
         let mut baked: std::collections::HashMap<(u32, bool), Option<Arc<OccluderMesh>>> =
             Default::default();
         for (index, instance) in (0..).zip(&scene.instances) {
             let material = &scene.materials[instance.material as usize];
             let mesh = &scene.meshes[instance.mesh as usize];
             let wanted = !marked || scene.objects[instance.object as usize].occluder == Some(true);
-            // Holes and glass hide nothing for certain, and a deforming mesh would have to be baked anew.
-            if !wanted || material.alpha_mode != AlphaMode::Opaque || mesh.deforms {
+            if !wanted || !scene.can_occlude(instance) {
                 continue;
             }
             let two_sided = material.double_sided;

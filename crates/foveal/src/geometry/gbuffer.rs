@@ -1,7 +1,7 @@
 //! The G-buffer and the pass that fills it.
 
 use super::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
-use crate::gpu::Gpu;
+use crate::gpu::{self, Gpu};
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::{Antialiasing, EdgeTest, Settings, shader};
@@ -26,23 +26,8 @@ pub(crate) struct GBuffer {
 impl GBuffer {
     pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
         let target = |label, format| {
-            let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
-                label: Some(label),
-                size: wgpu::Extent3d {
-                    width,
-                    height,
-                    depth_or_array_layers: 1,
-                },
-                mip_level_count: 1,
-                sample_count: 1,
-                dimension: wgpu::TextureDimension::D2,
-                format,
-                usage: wgpu::TextureUsages::RENDER_ATTACHMENT
-                    | wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
-                view_formats: &[],
-            });
-            texture.create_view(&Default::default())
+            let usage = wgpu::TextureUsages::empty();
+            gpu::target(gpu, label, (width, height), format, usage)
         };
         Self {
             surface_view: target("G-buffer surface", SURFACE_FORMAT),

@@ -4,6 +4,7 @@ mod adapter;
 mod layout;
 mod mips;
 mod readback;
+mod target;
 mod timing;
 mod trap;
 
@@ -14,6 +15,7 @@ pub(crate) use mips::MipChain;
 #[cfg(test)]
 pub(crate) use readback::read_level;
 pub(crate) use readback::{read_buffer, read_texture, submitted_work_done};
+pub(crate) use target::target;
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;
 

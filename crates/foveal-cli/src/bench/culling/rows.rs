@@ -7,11 +7,11 @@ use foveal_cull::{Aabb, CullError, Culler, FrameOptions, View, Visibility};
 use serde::Serialize;
 
 use crate::cull::CullingArgs;
-use crate::cull::measure::median;
 use crate::cull::occluders::Occluders;
 use crate::cull::truth::Check;
 use crate::cull::views::NamedEye;
 use crate::cull::workers::Workers;
+use crate::median::median;
 
 const WARM_UP: u32 = 3;
 
