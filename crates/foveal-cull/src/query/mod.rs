@@ -1,5 +1,6 @@
 //! Queries: which boxes can be seen.
 
+pub(crate) mod answer;
 pub(crate) mod near;
 pub(crate) mod project;
 pub(crate) mod test;

@@ -4,7 +4,8 @@
 //! all of them. Every child covers one run of the tree's own order of objects.
 
 use super::project::{Boxes8, project};
-use crate::culler::{Query, Visibility};
+use crate::Visibility;
+use crate::query::answer::Query;
 use crate::simd::{Kernel, Lanes};
 use crate::{Aabb, CullError};
 use glam::{DVec3, Vec3};
