@@ -36,7 +36,7 @@ fn facet_at(pixel: vec2u, index: u32) -> Facet {
     return Facet(instance, position, face_normal(textureLoad(gbuffer_surface, texel, 0).w));
 }
 
-fn same_surface(a: Facet, b: Facet) -> bool {
+fn same_surface(view: u32, a: Facet, b: Facet) -> bool {
     if a.instance != b.instance {
         return false;
     }
@@ -50,13 +50,14 @@ fn same_surface(a: Facet, b: Facet) -> bool {
     }
     let step = b.position - a.position;
     // To view space: the rotation's transpose.
+    let world_from_view = frame.views[view].world_from_view;
     let normal = vec3f(
-        dot(frame.world_from_view[0].xyz, a.normal),
-        dot(frame.world_from_view[1].xyz, a.normal),
-        dot(frame.world_from_view[2].xyz, a.normal),
+        dot(world_from_view[0].xyz, a.normal),
+        dot(world_from_view[1].xyz, a.normal),
+        dot(world_from_view[2].xyz, a.normal),
     );
     let off = dot(normal, step);
-    let pixel_side = 2.0 * frame.view_from_ndc.y / frame.size.y
+    let pixel_side = 2.0 * frame.views[view].view_from_ndc.y / frame.size.y
         * select(-a.position.z, 1.0, frame.orthographic != 0u);
     let tolerance = PLANE_PIXELS * PLANE_PIXELS * pixel_side * pixel_side
         + PLANE_SLOPE * PLANE_SLOPE * dot(step, step);
@@ -70,7 +71,7 @@ fn surface_of_first(pixel: vec2u, candidates: u32) -> u32 {
     var members = 1u << first;
     for (var others = candidates & (candidates - 1u); others != 0u; others &= others - 1u) {
         let index = firstTrailingBit(others);
-        if same_surface(leader, facet_at(pixel, index)) {
+        if same_surface(view_of(pixel), leader, facet_at(pixel, index)) {
             members |= 1u << index;
         }
     }

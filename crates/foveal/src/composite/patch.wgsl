@@ -16,24 +16,25 @@ struct PatchOut {
     @location(2) part_2: vec4f,
 }
 
-fn is_inside(texel: vec2i) -> bool {
-    return all(texel >= vec2i(0)) && all(texel < vec2i(picture_size()));
+fn is_inside(picture: Picture, texel: vec2i) -> bool {
+    return all(texel >= vec2i(picture.low)) && all(texel < vec2i(picture.end));
 }
 
 // The texel of a quadrant around a corner; beyond the picture's border instead one in the next tile inwards, so
 // that the fit goes on through the border. Outside the picture where there is none.
-fn quadrant_texel(corner: vec2i, quadrant: u32) -> vec2i {
-    let last = vec2i(picture_size()) - 1;
+fn quadrant_texel(picture: Picture, corner: vec2i, quadrant: u32) -> vec2i {
+    let first = vec2i(picture.low);
+    let last = vec2i(picture.end) - 1;
     var texel = corner - 1 + vec2i(vec2u(quadrant, quadrant >> 1u) & vec2u(1u));
     for (var axis = 0u; axis < 2u; axis++) {
-        if texel[axis] < 0 || texel[axis] > last[axis] {
-            let touching = tile_at(vec2u(clamp(texel, vec2i(0), last)));
-            if texel[axis] < 0 {
+        if texel[axis] < first[axis] || texel[axis] > last[axis] {
+            let touching = tile_at(vec2u(clamp(texel, first, last)));
+            if texel[axis] < first[axis] {
                 texel[axis] = i32(tile_high(touching)[axis]);
             } else {
                 texel[axis] = i32(tile_low(touching)[axis]) - 1;
             }
-            if texel[axis] < 0 || texel[axis] > last[axis] {
+            if texel[axis] < first[axis] || texel[axis] > last[axis] {
                 return vec2i(-1);
             }
         }
@@ -55,9 +56,10 @@ fn corner_radiance(corner: vec2i, own: Tile) -> vec3f {
     var valid: array<bool, 4>;
     var all_pure = true;
     var all_touch = true;
+    let picture = picture_of(tile_low(own));
     for (var i = 0u; i < 4u; i++) {
-        let texel = quadrant_texel(corner, i);
-        valid[i] = is_inside(texel);
+        let texel = quadrant_texel(picture, corner, i);
+        valid[i] = is_inside(picture, texel);
         all_touch = all_touch && all(abs(2 * (texel - corner) + 1) == vec2i(1));
         if valid[i] {
             tiles[i] = tile_at(vec2u(texel));
@@ -139,7 +141,7 @@ fn corner_radiance(corner: vec2i, own: Tile) -> vec3f {
 fn fit_corners(in: LevelVertex) -> PatchOut {
     let block = vec2u(in.position.xy);
     let first = block << vec2u(in.level);
-    let own = tile_at(min(first, picture_size() - 1u));
+    let own = tile_at(min(first, picture_of(first).end - 1u));
     let low = vec2i(tile_low(own));
     let high = vec2i(tile_high(own));
     var corners: array<vec3f, 4>;

@@ -17,7 +17,8 @@ fn tile_low(tile: Tile) -> vec2u {
 }
 
 fn tile_high(tile: Tile) -> vec2u {
-    return min(tile_low(tile) + (1u << tile.level), picture_size());
+    let low = tile_low(tile);
+    return min(low + (1u << tile.level), picture_of(low).end);
 }
 
 // Position in a tile's part inside the picture, 0 to 1.

@@ -20,7 +20,8 @@ fn edge_raise(tile: Tile, value: vec4f, axis: u32, begin: vec3f, end: vec3f) -> 
     middle[axis] = low[axis];
     var probe = middle;
     probe[axis] -= 0.5;
-    let other = tile_at(vec2u(max(probe, vec2f(0.0))));
+    let border = vec2f(picture_of(tile_low(tile)).low);
+    let other = tile_at(vec2u(max(probe, border)));
     let other_value = sample_of(other);
     let here_texel = sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u);
     let there_texel = sample_texel(other.block, other.level, u32(other_value.a + 0.5) - 1u);
@@ -34,14 +35,15 @@ fn edge_raise(tile: Tile, value: vec4f, axis: u32, begin: vec3f, end: vec3f) -> 
     let apart = here - there;
     let across = (value.rgb - other_value.rgb - along * apart[1u - axis]) / apart[axis];
     let between = 0.5 * (value.rgb + other_value.rgb) - across * beside[axis] - along * beside[1u - axis];
-    let joined = probe[axis] > 0.0 && other.level == tile.level && same;
+    let joined = probe[axis] > border[axis] && other.level == tile.level && same;
     return vec4f(select(vec3f(0.0), between - 0.5 * (begin + end), joined), 0.0);
 }
 
 @fragment
 fn raise_edges(in: LevelVertex) -> RaiseOut {
     let block = vec2u(in.position.xy);
-    let tile = tile_at(min(block << vec2u(in.level), picture_size() - 1u));
+    let first = block << vec2u(in.level);
+    let tile = tile_at(min(first, picture_of(first).end - 1u));
     let value = sample_of(tile);
     let mip = in.level - 1u;
     let corners = unpack_patch(

@@ -17,7 +17,7 @@ fn seen_at(texel: vec2u) -> Seen {
     let distance = view_distance(max(textureLoad(gbuffer_depth, texel, 0), 1e-20));
     return Seen(
         textureLoad(gbuffer_identity, texel, 0).x,
-        world_from_view_position(view_position(vec2f(texel) + 0.5, distance)),
+        world_position(vec2f(texel) + 0.5, distance),
         unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y)),
     );
 }

@@ -32,7 +32,7 @@ fn tile_radiance(tile: Tile, value: vec4f, position: vec2f) -> vec3f {
 
     // A tile's right edge is the left one of the tile beside it.
     let next = tile.block + vec2u(far);
-    let inside = next < blocks_at(max(tile.level, 1u));
+    let inside = (next << vec2u(tile.level)) < picture_of(tile_low(tile)).end;
     let left = textureLoad(raises_left, vec2u(next.x, tile.block.y), mip).rgb;
     let upper = textureLoad(raises_upper, vec2u(tile.block.x, next.y), mip).rgb;
     let raise_x = select(vec3f(0.0), left, inside.x);
@@ -50,13 +50,14 @@ fn tile_radiance(tile: Tile, value: vec4f, position: vec2f) -> vec3f {
 fn across_edge(position: vec2f, own: Tile, seen: Seen) -> vec3f {
     let low = vec2f(tile_low(own));
     let high = vec2f(tile_high(own));
+    let picture = picture_of(tile_low(own));
     let near = select(low - 0.5, high + 0.5, 2.0 * position > low + high);
     var sum = vec3f(0.0);
     var total = 0.0;
     for (var i = 0u; i < 4u; i++) {
         // The last turn is for the tile itself, should no neighbour do.
         let probe = select(position, near, (vec2u(i + 1u, (i + 1u) >> 1u) & vec2u(1u)) == vec2u(1u));
-        if any(probe < vec2f(0.0)) || any(probe >= frame.size) || (i == 3u && total > 0.0) {
+        if any(probe < vec2f(picture.low)) || any(probe >= vec2f(picture.end)) || (i == 3u && total > 0.0) {
             continue;
         }
         let tile = tile_at(vec2u(probe));

@@ -4,6 +4,9 @@
 @group(1) @binding(0) var<storage, read> lights: Lights;
 @group(1) @binding(1) var<storage, read_write> cluster_bits: array<atomic<u32>>;
 
+// How many views share the grid.
+override VIEWS: u32 = 1u;
+
 struct Box {
     low: vec3f,
     high: vec3f,
@@ -19,18 +22,30 @@ fn slice_span(slice: u32) -> vec2f {
     );
 }
 
-// The cluster in view space, its depth clipped to the light's: slices at both ends are infinite.
-fn cluster_box(cluster: vec3u, nearest: f32, farthest: f32) -> Box {
+// The cluster in a view's space, its depth clipped to the light's: slices at both ends are infinite.
+fn cluster_box(view: u32, cluster: vec3u, nearest: f32, farthest: f32) -> Box {
     let span = slice_span(cluster.z);
     let z = vec2f(max(span.x, nearest), min(span.y, farthest));
-    let corner = vec2f(cluster.xy) * frame.cluster_tile;
-    let a = view_position(corner, z.x).xy;
-    let b = view_position(corner + frame.cluster_tile, z.x).xy;
-    let c = view_position(corner, z.y).xy;
-    let d = view_position(corner + frame.cluster_tile, z.y).xy;
+    let shift = vec2f(frame.views[view].cluster_shift_x, frame.views[view].cluster_shift_y);
+    let corner = vec2f(cluster.xy) * frame.cluster_tile - shift;
+    let a = position_in_view(view, corner, z.x).xy;
+    let b = position_in_view(view, corner + frame.cluster_tile, z.x).xy;
+    let c = position_in_view(view, corner, z.y).xy;
+    let d = position_in_view(view, corner + frame.cluster_tile, z.y).xy;
     return Box(
         vec3f(min(min(a, b), min(c, d)), -z.y),
         vec3f(max(max(a, b), max(c, d)), -z.x),
+    );
+}
+
+// A light's centre in a view's space.
+fn center_in(view: u32, position: vec3f) -> vec3f {
+    let world_from_view = frame.views[view].world_from_view;
+    let offset = position - world_from_view[3].xyz;
+    return vec3f(
+        dot(world_from_view[0].xyz, offset),
+        dot(world_from_view[1].xyz, offset),
+        dot(world_from_view[2].xyz, offset),
     );
 }
 
@@ -41,12 +56,8 @@ fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
     let everywhere = light.kind == LIGHT_DIRECTIONAL;
     // A little more than the range: rounding may err, but never to the small side.
     let radius = light.range * 1.0001 + 1e-4;
-    let offset = light.position - frame.world_from_view[3].xyz;
-    let center = vec3f(
-        dot(frame.world_from_view[0].xyz, offset),
-        dot(frame.world_from_view[1].xyz, offset),
-        dot(frame.world_from_view[2].xyz, offset),
-    );
+    // The eyes look the same way and stand side by side, so the distance is the same for both.
+    let center = center_in(0u, light.position);
     let nearest = -center.z - radius;
     let farthest = -center.z + radius;
     if !everywhere && farthest < 0.0 && frame.orthographic == 0u {
@@ -67,9 +78,11 @@ fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         let in_slice = i % per_slice;
         let cluster = vec3u(in_slice % frame.cluster_counts.x, in_slice / frame.cluster_counts.x, first + i / per_slice);
         var touches = everywhere;
-        if !everywhere {
-            let b = cluster_box(cluster, select(max(nearest, 0.0), nearest, frame.orthographic != 0u), farthest);
-            let gap = max(max(b.low - center, center - b.high), vec3f(0.0));
+        for (var view = 0u; view < VIEWS && !touches; view++) {
+            let begin = select(max(nearest, 0.0), nearest, frame.orthographic != 0u);
+            let b = cluster_box(view, cluster, begin, farthest);
+            let seen = center_in(view, light.position);
+            let gap = max(max(b.low - seen, seen - b.high), vec3f(0.0));
             touches = dot(gap, gap) <= radius * radius;
         }
         if touches {

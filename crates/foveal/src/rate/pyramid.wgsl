@@ -10,11 +10,13 @@ override BALANCE: bool = false;
 @fragment
 fn reduce(in: LevelVertex) -> @location(0) u32 {
     let first = vec2i(in.position.xy) * 2;
-    let size = vec2i(blocks_at(in.level - 1u));
+    let picture = picture_of(vec2u(first) << vec2u(in.level - 1u));
+    let low = vec2i(picture.low >> vec2u(in.level - 1u));
+    let end = vec2i((picture.end + (1u << (in.level - 1u)) - 1u) >> vec2u(in.level - 1u));
     var least = CELL_LEVEL;
     var edge = 0u;
     for (var i = 0u; i < 4u; i++) {
-        let child = textureLoad(below, min(first + vec2i(vec2u(i & 1u, i >> 1u)), size - 1), 0).x;
+        let child = textureLoad(below, min(first + vec2i(vec2u(i & 1u, i >> 1u)), end - 1), 0).x;
         least = min(least, child & CELL_LEVEL);
         edge |= child & CELL_EDGE;
     }
@@ -24,7 +26,7 @@ fn reduce(in: LevelVertex) -> @location(0) u32 {
             let beside = vec2i(select(-1, 2, i > 9), (i - 8) & 1);
             let row = vec2i((i & 3) - 1, select(-1, 2, i > 3));
             let at = first + select(beside, row, i < 8);
-            if all(at >= vec2i(0)) && all(at < size) && (textureLoad(below, at, 0).x & CELL_LEVEL) < in.level - 1u {
+            if all(at >= low) && all(at < end) && (textureLoad(below, at, 0).x & CELL_LEVEL) < in.level - 1u {
                 least = in.level - 1u;
             }
         }

@@ -42,11 +42,17 @@ fn foveated_level(pixel: vec2f) -> u32 {
     return beyond.x + beyond.y + beyond.z + beyond.w;
 }
 
+// The picture is stretched over each eye's.
+fn image_texel(texel: vec2u) -> vec2u {
+    let picture = picture_of(texel);
+    return (min(texel, picture.end - 1u) - picture.low) * textureDimensions(rate_image) / (picture.end - picture.low);
+}
+
 fn level_from(source: u32, texel: vec2u) -> u32 {
     switch source {
         case 0u: { return foveated_level(vec2f(texel) + 0.5); }
         case 1u: { return wish.constant_level; }
-        default: { return textureLoad(rate_image, texel * textureDimensions(rate_image) / picture_size(), 0).x; }
+        default: { return textureLoad(rate_image, image_texel(texel), 0).x; }
     }
 }
 
@@ -76,8 +82,8 @@ fn normal_at(texel: vec2i) -> vec3f {
 // another instance, a crease of more than 45 degrees, or a jump in depth. Reversed depth is affine in screen space
 // along a plane however it is tilted, so a jump shows as a second difference.
 fn holds_edge(block: vec2u) -> bool {
-    let first = vec2i(block) * 2;
-    let last = vec2i(picture_size()) - 1;
+    let last = vec2i(picture_of(block * 2u).end) - 1;
+    let first = min(vec2i(block) * 2, last);
     let right = vec2i(min(first.x + 2, last.x), first.y);
     let down = vec2i(first.x, min(first.y + 2, last.y));
     let instance = instance_at(first);
@@ -109,7 +115,7 @@ fn holds_edge(block: vec2u) -> bool {
 @fragment
 fn wish_level(in: LevelVertex) -> @location(0) u32 {
     let block = vec2u(in.position.xy);
-    let last = picture_size() - 1u;
+    let last = picture_of(block * 2u).end - 1u;
     var level = wish.coarsest;
     for (var i = 0u; i < 4u; i++) {
         level = min(level, pixel_level(min(block * 2u + vec2u(i & 1u, i >> 1u), last)));

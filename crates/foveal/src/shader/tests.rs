@@ -248,7 +248,7 @@ macro_rules! assert_same_layout {
 
 #[test]
 fn shared_structs_lie_the_same_in_rust_and_wgsl() {
-    use crate::frame::FrameUniform;
+    use crate::frame::{FrameUniform, ViewUniform};
     use crate::lights::LightUniform;
     use crate::rate::WishUniform;
     use crate::scene::{InstanceUniform, MaterialUniform};
@@ -257,14 +257,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         "Frame",
         FrameUniform,
         [
-            clip_from_world,
-            previous_clip_from_world,
-            world_from_view,
-            view_from_ndc,
-            eye,
-            orthographic,
-            forward,
-            exposure,
+            views,
             zenith,
             near,
             horizon,
@@ -274,8 +267,26 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             cluster_counts,
             cluster_scale,
             size,
+            target_size,
             cluster_tile,
-            reserved,
+            eye_stride,
+            exposure,
+            orthographic,
+        ]
+    );
+    assert_same_layout!(
+        GBUFFER,
+        "View",
+        ViewUniform,
+        [
+            clip_from_world,
+            previous_clip_from_world,
+            world_from_view,
+            view_from_ndc,
+            eye,
+            cluster_shift_x,
+            forward,
+            cluster_shift_y,
         ]
     );
     assert_same_layout!(

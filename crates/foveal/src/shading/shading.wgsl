@@ -10,11 +10,11 @@
 // Radiance at a position in pixels, from what the G-buffer holds there.
 fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {
     if depth == 0.0 {
-        let far = world_from_view_position(view_position(pixel, 1.0));
-        return vec4f(environment(-direction_to_eye(far)), 1.0);
+        let far = world_position(pixel, 1.0);
+        return vec4f(environment(-direction_to_eye(view_at(pixel), far)), 1.0);
     }
     let distance = view_distance(depth);
-    let position = world_from_view_position(view_position(pixel, distance));
+    let position = world_position(pixel, distance);
     let surface = unpack_surface(words, position);
     // The largest half: brighter would become infinite in the target.
     return vec4f(min(lit(surface, pixel, distance), vec3f(65504.0)), 1.0);

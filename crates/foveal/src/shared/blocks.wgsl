@@ -5,18 +5,33 @@
 const CELL_LEVEL: u32 = 15u;
 const CELL_EDGE: u32 = 128u;
 
-fn picture_size() -> vec2u {
-    return vec2u(frame.size);
+// Texels of one eye's picture: from `low` up to but not including `end`. Blocks of all levels begin anew where the
+// right eye's does, so that none belongs to both; those at an eye's right and lower border may reach beyond it.
+struct Picture {
+    low: vec2u,
+    end: vec2u,
 }
 
-// Blocks across and down; the last ones may reach beyond the picture.
+// The picture that a texel belongs to.
+fn picture_of(texel: vec2u) -> Picture {
+    let low = vec2u(view_of(texel) * frame.eye_stride, 0u);
+    return Picture(low, low + vec2u(frame.size));
+}
+
+// Blocks across and down the target.
 fn blocks_at(level: u32) -> vec2u {
-    return (picture_size() + (1u << level) - 1u) >> vec2u(level);
+    return (vec2u(frame.target_size) + (1u << level) - 1u) >> vec2u(level);
+}
+
+// Whether a block lies between the eyes' pictures, where nothing is seen.
+fn is_padding(block: vec2u, level: u32) -> bool {
+    let first = block << vec2u(level);
+    return first.x >= picture_of(first).end.x;
 }
 
 // The texel that a block's sample looks at. Candidate 0 is the centre: of the four texels around it the one to
 // the lower right. Candidates 1 to 4 lie a quarter of the side from the corners. A block whose candidate lies
-// beyond the picture takes the nearest of its texels inside.
+// beyond its eye's picture takes the nearest of its texels inside.
 fn sample_texel(block: vec2u, level: u32, candidate: u32) -> vec2u {
     let side = 1u << level;
     var within = vec2u(side >> 1u);
@@ -24,7 +39,8 @@ fn sample_texel(block: vec2u, level: u32, candidate: u32) -> vec2u {
         let corner = vec2u(candidate - 1u, (candidate - 1u) >> 1u) & vec2u(1u);
         within = (vec2u(side) * (1u + 2u * corner)) >> vec2u(2u);
     }
-    return min((block << vec2u(level)) + within, picture_size() - 1u);
+    let first = block << vec2u(level);
+    return min(first + within, picture_of(first).end - 1u);
 }
 
 // Where a block was sampled, in pixels; `alpha` is its radiance's, which tells the candidate.

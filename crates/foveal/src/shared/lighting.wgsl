@@ -88,9 +88,12 @@ fn ambient(s: Surface, v: vec3f) -> vec3f {
     return (diffuse + specular) * s.occlusion;
 }
 
-// Index of the first light word of the cluster at a position in pixels and a distance along the view axis.
+// Index of the first light word of the cluster at a position in pixels of the target and a distance along the view
+// axis.
 fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
-    let tile = min(vec2u(pixel / frame.cluster_tile), frame.cluster_counts.xy - 1u);
+    let view = view_at(pixel);
+    let moved = in_eye(pixel) + vec2f(frame.views[view].cluster_shift_x, frame.views[view].cluster_shift_y);
+    let tile = min(vec2u(moved / frame.cluster_tile), frame.cluster_counts.xy - 1u);
     let cluster = tile.x + frame.cluster_counts.x * (tile.y + frame.cluster_counts.y * cluster_slice(distance));
     return cluster * lights.words;
 }
@@ -98,7 +101,7 @@ fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
 // Radiance that leaves a surface towards the eye. Lights are summed in ascending order whichever way they
 // are found, so that clustered and brute agree to the bit.
 fn lit(s: Surface, pixel: vec2f, distance: f32) -> vec3f {
-    let v = direction_to_eye(s.position);
+    let v = direction_to_eye(view_at(pixel), s.position);
     var sum = s.emissive + ambient(s, v);
     let first = cluster_words_at(pixel, distance);
     for (var word = 0u; word < lights.words; word++) {

@@ -57,7 +57,7 @@ fn vertex(in: VertexIn) -> VertexOut {
     let tangent = vec3f(dot(i.world_x.xyz, t), dot(i.world_y.xyz, t), dot(i.world_z.xyz, t));
 
     var out: VertexOut;
-    out.clip = frame.clip_from_world * vec4f(world, 1.0);
+    out.clip = frame.views[0].clip_from_world * vec4f(world, 1.0);
     out.world = world;
     out.normal = unit_or(normal, vec3f(0.0, 1.0, 0.0));
     // Zero stays zero: it says that there is no tangent.
@@ -66,7 +66,7 @@ fn vertex(in: VertexIn) -> VertexOut {
     out.color = in.color;
     out.instance = index;
     out.now = out.clip.xyw;
-    out.before = (frame.previous_clip_from_world * vec4f(previous, 1.0)).xyw;
+    out.before = (frame.views[0].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
     return out;
 }
 

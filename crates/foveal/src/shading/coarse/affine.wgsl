@@ -8,7 +8,7 @@ override BRUTE: bool = false;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
 
 fn shade(texel: vec2u) -> vec4f {
-    let at = (vec2f(texel) + 0.5) / frame.size;
+    let at = in_eye(vec2f(texel) + 0.5) / frame.size;
     if BLINN_PHONG && BRUTE {
         return vec4f(0.0);
     }

@@ -18,7 +18,7 @@ var<workgroup> found: atomic<u32>;
 var<workgroup> first: u32;
 
 fn is_tile(block: vec2u, level: u32) -> bool {
-    if any(block >= blocks_at(level)) {
+    if any(block >= blocks_at(level)) || is_padding(block, level) {
         return false;
     }
     if level > 0u && (textureLoad(pyramid, block, level - 1u).x & CELL_LEVEL) < level {

@@ -9,6 +9,9 @@ override COARSEST: u32 = 8u;
 @fragment
 fn mark(in: LevelVertex) {
     let block = vec2u(in.position.xy);
+    if is_padding(block, in.level) {
+        discard;
+    }
     if in.level > 0u && (textureLoad(pyramid, block, in.level - 1u).x & CELL_LEVEL) < in.level {
         discard;
     }
