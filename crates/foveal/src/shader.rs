@@ -164,25 +164,15 @@ pub(crate) const COMPOSITE_PAPER: Parts = &[
     TILING,
     include_str!("composite/paper.wgsl"),
 ];
-pub(crate) const COMPOSITE_PATCH: Parts = &[
+pub(crate) const COMPOSITE_FIT: Parts = &[
     FRAME,
     SURFACE,
-    LEVEL,
-    BLOCKS,
-    TILING,
-    SEEN,
-    PATCHES,
-    include_str!("composite/patch.wgsl"),
-];
-pub(crate) const COMPOSITE_RAISE: Parts = &[
-    FRAME,
-    SURFACE,
-    LEVEL,
     BLOCKS,
     TILING,
     SEEN,
     PATCHES,
     include_str!("composite/raise.wgsl"),
+    include_str!("composite/fit.wgsl"),
 ];
 pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     FRAME,
@@ -192,6 +182,7 @@ pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     TILING,
     SEEN,
     PATCHES,
+    include_str!("composite/curve.wgsl"),
     include_str!("composite/smooth.wgsl"),
 ];
 
@@ -276,6 +267,7 @@ pub(crate) fn level_screen(
         label,
         module,
         entry_points,
+        wgpu::PrimitiveTopology::TriangleList,
         groups,
         targets,
         depth_stencil,
@@ -300,6 +292,7 @@ pub(crate) fn full_screen(
         label,
         module,
         entry_points,
+        wgpu::PrimitiveTopology::TriangleList,
         groups,
         &targets,
         None,
@@ -307,15 +300,17 @@ pub(crate) fn full_screen(
     )
 }
 
+/// A pipeline of any vertex and fragment entry points, without vertex buffers.
 #[expect(
     clippy::too_many_arguments,
     reason = "what a pipeline differs in, by name"
 )]
-fn screen(
+pub(crate) fn screen(
     gpu: &Gpu,
     label: &str,
     module: &wgpu::ShaderModule,
     (vertex, fragment): (&str, &str),
+    topology: wgpu::PrimitiveTopology,
     groups: &[&wgpu::BindGroupLayout],
     targets: &[Option<wgpu::ColorTargetState>],
     depth_stencil: Option<wgpu::DepthStencilState>,
@@ -335,7 +330,10 @@ fn screen(
                 compilation_options: compilation_options.clone(),
                 buffers: &[],
             },
-            primitive: wgpu::PrimitiveState::default(),
+            primitive: wgpu::PrimitiveState {
+                topology,
+                ..Default::default()
+            },
             depth_stencil,
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {

@@ -4,10 +4,11 @@
 //! interpolation of the technique's source; `smooth` is continuous, exact where radiance is an affine function
 //! of the position, and reads the G-buffer so as not to mix surfaces.
 
+mod patches;
 mod smooth;
 mod taps;
 
-pub(crate) use smooth::PatchTargets;
+pub(crate) use patches::PatchTargets;
 
 #[cfg(test)]
 mod tests;
@@ -38,7 +39,7 @@ impl CompositePass {
         match settings.composite {
             // Where all tiles are pixels there is nothing to smooth.
             Composite::Smooth if settings.coarsest_level > 0 => {
-                Self::Smooth(SmoothComposite::new(gpu, settings, frame_layout))
+                Self::Smooth(SmoothComposite::new(gpu, frame_layout))
             }
             Composite::Paper => taps(shader::COMPOSITE_PAPER, "paper"),
             Composite::Nearest | Composite::Smooth => taps(shader::COMPOSITE_NEAREST, "nearest"),

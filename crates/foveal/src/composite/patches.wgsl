@@ -1,15 +1,60 @@
-// A tile's patch: radiance at the corners of the tile's part inside the picture, bilinear between. After
-// tiling.wgsl.
+// A tile's patch: radiance at the corners of the tile's part inside the picture, bilinear between, and how far the
+// middles of its left and its upper edge are raised above that. After tiling.wgsl.
 
 struct Patch {
     c00: vec3f,
     c10: vec3f,
     c01: vec3f,
     c11: vec3f,
+    left: vec3f,
+    upper: vec3f,
 }
 
-fn unpack_patch(part_0: vec4f, part_1: vec4f, part_2: vec4f) -> Patch {
-    return Patch(part_0.rgb, part_1.rgb, part_2.rgb, vec3f(part_0.a, part_1.a, part_2.a));
+// 18 halves in three texels: c00, c10, c01.rg; c01.b, c11, left, upper.r; upper.gb.
+struct PackedPatch {
+    part_0: vec4u,
+    part_1: vec4u,
+    part_2: u32,
+}
+
+fn pack_patch(p: Patch) -> PackedPatch {
+    return PackedPatch(
+        vec4u(
+            pack2x16float(p.c00.rg),
+            pack2x16float(vec2f(p.c00.b, p.c10.r)),
+            pack2x16float(p.c10.gb),
+            pack2x16float(p.c01.rg),
+        ),
+        vec4u(
+            pack2x16float(vec2f(p.c01.b, p.c11.r)),
+            pack2x16float(p.c11.gb),
+            pack2x16float(p.left.rg),
+            pack2x16float(vec2f(p.left.b, p.upper.r)),
+        ),
+        pack2x16float(p.upper.gb),
+    );
+}
+
+// The corners alone.
+fn unpack_corners(part_0: vec4u, part_1: vec2u) -> Patch {
+    let b = unpack2x16float(part_0.y);
+    let c = unpack2x16float(part_1.x);
+    return Patch(
+        vec3f(unpack2x16float(part_0.x), b.x),
+        vec3f(b.y, unpack2x16float(part_0.z)),
+        vec3f(unpack2x16float(part_0.w), c.x),
+        vec3f(c.y, unpack2x16float(part_1.y)),
+        vec3f(0.0),
+        vec3f(0.0),
+    );
+}
+
+fn unpack_left(part_1: vec4u) -> vec3f {
+    return vec3f(unpack2x16float(part_1.z), unpack2x16float(part_1.w).x);
+}
+
+fn unpack_upper(part_1: vec4u, part_2: u32) -> vec3f {
+    return vec3f(unpack2x16float(part_1.w).y, unpack2x16float(part_2));
 }
 
 fn tile_low(tile: Tile) -> vec2u {
@@ -29,4 +74,13 @@ fn within(tile: Tile, position: vec2f) -> vec2f {
 
 fn patch_at(p: Patch, uv: vec2f) -> vec3f {
     return mix(mix(p.c00, p.c10, uv.x), mix(p.c01, p.c11, uv.x), uv.y);
+}
+
+// A tile in one word.
+fn pack_quad(tile: Tile) -> u32 {
+    return tile.block.x | (tile.block.y << 14u) | (tile.level << 28u);
+}
+
+fn unpack_quad(word: u32, has_edge: bool) -> Tile {
+    return Tile(word >> 28u, vec2u(word & 0x3fffu, (word >> 14u) & 0x3fffu), has_edge);
 }

@@ -3,17 +3,8 @@
 // holds the raises of its left and its upper edge; where the neighbour has another size or shows another surface,
 // and at the picture's border, there is none.
 
-@group(1) @binding(5) var corners_0: texture_2d<f32>;
-@group(1) @binding(6) var corners_1: texture_2d<f32>;
-@group(1) @binding(7) var corners_2: texture_2d<f32>;
-
-struct RaiseOut {
-    @location(0) left: vec4f,
-    @location(1) upper: vec4f,
-}
-
 // `axis` is that across the edge, `begin` and `end` are the edge's ends.
-fn edge_raise(tile: Tile, value: vec4f, axis: u32, begin: vec3f, end: vec3f) -> vec4f {
+fn edge_raise(tile: Tile, value: vec4f, seen: Seen, axis: u32, begin: vec3f, end: vec3f) -> vec3f {
     let low = vec2f(tile_low(tile));
     let high = vec2f(tile_high(tile));
     var middle = 0.5 * (low + high);
@@ -26,7 +17,7 @@ fn edge_raise(tile: Tile, value: vec4f, axis: u32, begin: vec3f, end: vec3f) -> 
     let here_texel = sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u);
     let there_texel = sample_texel(other.block, other.level, u32(other_value.a + 0.5) - 1u);
     let both_pure = !tile.has_edge && !other.has_edge;
-    let same = both_pure || same_surface(seen_at(here_texel), seen_at(there_texel));
+    let same = both_pure || same_surface(seen, seen_at(there_texel));
     // Samples lie beside the centres; their mean lies beside the edge's middle by `beside`.
     let here = vec2f(here_texel) + 0.5;
     let there = vec2f(there_texel) + 0.5;
@@ -36,23 +27,5 @@ fn edge_raise(tile: Tile, value: vec4f, axis: u32, begin: vec3f, end: vec3f) -> 
     let across = (value.rgb - other_value.rgb - along * apart[1u - axis]) / apart[axis];
     let between = 0.5 * (value.rgb + other_value.rgb) - across * beside[axis] - along * beside[1u - axis];
     let joined = probe[axis] > border[axis] && other.level == tile.level && same;
-    return vec4f(select(vec3f(0.0), between - 0.5 * (begin + end), joined), 0.0);
-}
-
-@fragment
-fn raise_edges(in: LevelVertex) -> RaiseOut {
-    let block = vec2u(in.position.xy);
-    let first = block << vec2u(in.level);
-    let tile = tile_at(min(first, picture_of(first).end - 1u));
-    let value = sample_of(tile);
-    let mip = in.level - 1u;
-    let corners = unpack_patch(
-        textureLoad(corners_0, block, mip),
-        textureLoad(corners_1, block, mip),
-        textureLoad(corners_2, block, mip),
-    );
-    return RaiseOut(
-        edge_raise(tile, value, 0u, corners.c00, corners.c01),
-        edge_raise(tile, value, 1u, corners.c00, corners.c10),
-    );
+    return select(vec3f(0.0), between - 0.5 * (begin + end), joined);
 }

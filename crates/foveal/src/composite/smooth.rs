@@ -1,199 +1,112 @@
-//! The smooth composite: patches fitted to the samples, then one look-up per pixel.
+//! The smooth composite: patches fitted to the samples (`patches.rs`), then each pixel from its tile's patch.
 //!
-//! Passes per level, coarsest first: corners (`patch.wgsl`) and edge raises (`raise.wgsl`) of its tiles. Then
-//! one pass per pixel (`smooth.wgsl`), and again for pixels whose tile holds several surfaces. What is
-//! costly runs behind a stencil, since not all devices skip the branch that no pixel takes.
+//! Large tiles are drawn as quads whose vertices bring the patch along, so that a pixel looks nothing up; the pixels
+//! of small tiles look up theirs. What only some pixels need runs behind a stencil, since not all devices skip the
+//! branch that no pixel takes.
 
-use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled};
+use super::patches::{DRAW_BYTES, PatchPass, PatchTargets};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
 use crate::recorder::{Recorder, overwritten};
-use crate::shading::{CoarseTargets, RADIANCE_FORMAT, STENCIL_FORMAT, stencil_state};
+use crate::shader;
+use crate::shading::{CoarseTargets, RADIANCE_FORMAT, stencil_state};
 use crate::targets::Targets;
-use crate::{Settings, shader};
 
-/// Corner radiances of a tile's patch: four colours in three texels.
-const CORNERS: usize = 3;
-/// Raises of its left and its upper edge.
-const RAISES: usize = 2;
-
-/// The patches of all tiles of one frame size.
-#[derive(Debug)]
-pub(crate) struct PatchTargets {
-    /// Levels 1 and up: a pixel needs no patch.
-    corners: [MipChain; CORNERS],
-    raises: [MipChain; RAISES],
-    /// Marks tiles.
-    stencil: MipChain,
-    /// Marks the pixels of tiles with several surfaces: a single level, 0.
-    pixel_stencil: MipChain,
-    /// For each level from 1 on, the corners' levels above it; empty for the coarsest.
-    above: Vec<Vec<wgpu::TextureView>>,
-}
-
-impl PatchTargets {
-    /// Bytes of all chains.
-    pub(crate) fn bytes(&self) -> u64 {
-        let chains = self.corners.iter().chain(&self.raises);
-        chains
-            .chain([&self.stencil, &self.pixel_stencil])
-            .map(MipChain::bytes)
-            .sum()
-    }
-
-    /// `None` where all tiles are pixels.
-    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
-        let coarsest = u32::from(settings.coarsest_level);
-        if coarsest == 0 {
-            return None;
-        }
-        let size = (settings.width, settings.height);
-        let sampled = wgpu::TextureUsages::TEXTURE_BINDING;
-        let chain = |label| MipChain::new(gpu, label, size, 1..=coarsest, RADIANCE_FORMAT, sampled);
-        let corners = ["corners 0", "corners 1", "corners 2"].map(chain);
-        let above = (1..=coarsest)
-            .map(|level| match level == coarsest {
-                true => Vec::new(),
-                false => corners.iter().map(|p| p.above(level)).collect(),
-            })
-            .collect();
-        let none = wgpu::TextureUsages::empty();
-        Some(Self {
-            corners,
-            raises: ["raises left", "raises upper"].map(chain),
-            stencil: MipChain::new(
-                gpu,
-                "patch stencil",
-                size,
-                1..=coarsest,
-                STENCIL_FORMAT,
-                none,
-            ),
-            pixel_stencil: MipChain::new(gpu, "edge stencil", size, 0..=0, STENCIL_FORMAT, none),
-            above,
-        })
-    }
-}
-
-fn marks(
-    stencil: &wgpu::TextureView,
-    load: wgpu::LoadOp<u32>,
-) -> Option<wgpu::RenderPassDepthStencilAttachment<'_>> {
-    Some(wgpu::RenderPassDepthStencilAttachment {
-        view: stencil,
-        depth_ops: None,
-        stencil_ops: Some(wgpu::Operations {
-            load,
-            store: wgpu::StoreOp::Store,
-        }),
-    })
-}
+/// What a pixel's stencil says: a quad covered it, or another surface than its tile's sample is seen there.
+const COVERED: u32 = 1;
+const EDGE: u32 = 2;
 
 /// Fits patches and reads them.
 #[derive(Debug)]
 pub(crate) struct SmoothComposite {
-    mark: wgpu::RenderPipeline,
-    fit: wgpu::RenderPipeline,
-    raise: wgpu::RenderPipeline,
-    read: wgpu::RenderPipeline,
+    patches: PatchPass,
+    tiles: wgpu::RenderPipeline,
+    others: wgpu::RenderPipeline,
     mark_edges: wgpu::RenderPipeline,
-    read_edges: wgpu::RenderPipeline,
-    cells_layout: wgpu::BindGroupLayout,
-    fit_layout: wgpu::BindGroupLayout,
-    read_layout: wgpu::BindGroupLayout,
+    edges: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
 }
 
 impl SmoothComposite {
-    pub(crate) fn new(
-        gpu: &Gpu,
-        settings: &Settings,
-        frame_layout: &wgpu::BindGroupLayout,
-    ) -> Self {
-        let cells = sampled(wgpu::TextureSampleType::Uint);
+    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
+        let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let depth = sampled(wgpu::TextureSampleType::Depth);
-        let layout = |label, types: &[_]| {
-            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::FRAGMENT, types)
-        };
-        let cells_layout = layout("patch marks", &[cells]);
-        let fit_layout = layout(
-            "patches",
-            &[cells, float, cells, cells, depth, float, float, float],
-        );
-        let read_layout = layout(
+        let layout = bind_group_layout(
+            &gpu.device,
             "smooth composite",
+            wgpu::ShaderStages::VERTEX_FRAGMENT,
             &[
-                cells, float, cells, cells, depth, float, float, float, float, float,
+                uint,
+                float,
+                uint,
+                uint,
+                depth,
+                uint,
+                uint,
+                uint,
+                storage_read(),
             ],
         );
-        let color = |write_mask| {
-            Some(wgpu::ColorTargetState {
-                format: RADIANCE_FORMAT,
-                blend: None,
-                write_mask,
-            })
+        let module = shader::module(gpu, "smooth composite", shader::COMPOSITE_SMOOTH);
+        let target = |write_mask| wgpu::ColorTargetState {
+            format: RADIANCE_FORMAT,
+            blend: None,
+            write_mask,
         };
-        let (written, kept) = (
-            color(wgpu::ColorWrites::ALL),
-            color(wgpu::ColorWrites::empty()),
-        );
-        let [always, marked] = [
-            stencil_state(
-                wgpu::CompareFunction::Always,
-                wgpu::StencilOperation::Replace,
-            ),
-            stencil_state(wgpu::CompareFunction::Equal, wgpu::StencilOperation::Keep),
-        ];
-        let untouched = stencil_state(wgpu::CompareFunction::Always, wgpu::StencilOperation::Keep);
-        let level = [("COARSEST", f64::from(settings.coarsest_level))];
-        let pipeline = |module: &wgpu::ShaderModule,
-                        entry,
-                        group,
-                        targets: &[_],
-                        stencil: &wgpu::DepthStencilState,
-                        constants: &[_]| {
-            shader::level_screen(
+        let pipeline = |label, vertex, fragment, topology, stencil, write_mask| {
+            shader::screen(
                 gpu,
-                entry,
-                module,
-                entry,
-                &[frame_layout, group],
-                targets,
-                Some(stencil.clone()),
-                constants,
+                label,
+                &module,
+                (vertex, fragment),
+                topology,
+                &[frame_layout, &layout],
+                &[Some(target(write_mask))],
+                Some(stencil),
+                &[],
             )
         };
-        let mark = shader::module(gpu, "patch marks", shader::COARSE_MARK);
-        let fit = shader::module(gpu, "corners", shader::COMPOSITE_PATCH);
-        let raise = shader::module(gpu, "raises", shader::COMPOSITE_RAISE);
-        let smooth = shader::module(gpu, "smooth composite", shader::COMPOSITE_SMOOTH);
-        let (three, two, one) = (
-            [written.clone(), written.clone(), written.clone()],
-            [written.clone(), written.clone()],
-            [written],
+        use wgpu::{ColorWrites, CompareFunction as Compare, StencilOperation as Op};
+        let (strip, list) = (
+            wgpu::PrimitiveTopology::TriangleStrip,
+            wgpu::PrimitiveTopology::TriangleList,
         );
+        let marking = stencil_state(Compare::Always, Op::Replace);
         Self {
-            mark: pipeline(
-                &mark,
-                "mark",
-                &cells_layout,
-                &[kept.clone(), kept.clone(), kept.clone()],
-                &always,
-                &level,
+            patches: PatchPass::new(gpu, frame_layout),
+            tiles: pipeline(
+                "smooth tiles",
+                "tile_vertex",
+                "tile_pixel",
+                strip,
+                marking.clone(),
+                ColorWrites::ALL,
             ),
-            fit: pipeline(&fit, "fit_corners", &fit_layout, &three, &marked, &[]),
-            raise: pipeline(&raise, "raise_edges", &fit_layout, &two, &marked, &[]),
-            read: pipeline(
-                &smooth,
-                "smooth_composite",
-                &read_layout,
-                &one,
-                &untouched,
-                &[],
+            others: pipeline(
+                "smooth pixels",
+                "level_screen",
+                "other_pixel",
+                list,
+                stencil_state(Compare::NotEqual, Op::Keep),
+                ColorWrites::ALL,
             ),
-            mark_edges: pipeline(&smooth, "mark_edges", &read_layout, &[kept], &always, &[]),
-            read_edges: pipeline(&smooth, "smooth_edges", &read_layout, &one, &marked, &[]),
-            cells_layout,
-            fit_layout,
-            read_layout,
+            mark_edges: pipeline(
+                "smooth edge marks",
+                "edge_vertex",
+                "mark_edge_pixel",
+                strip,
+                marking,
+                ColorWrites::empty(),
+            ),
+            edges: pipeline(
+                "smooth edges",
+                "edge_vertex",
+                "edge_pixel",
+                strip,
+                stencil_state(Compare::Equal, Op::Keep),
+                ColorWrites::ALL,
+            ),
+            layout,
         }
     }
 
@@ -205,72 +118,49 @@ impl SmoothComposite {
         from: &CoarseTargets,
         patches: &PatchTargets,
     ) {
-        let gpu = recorder.gpu;
-        let group = |layout: &wgpu::BindGroupLayout, rest: &[&wgpu::TextureView]| {
-            let views: Vec<_> = [
-                &from.rate.owner.whole,
-                &from.samples.whole,
-                &targets.gbuffer.surface_view,
-                &targets.gbuffer.identity_view,
-                &targets.gbuffer.depth_view,
-            ]
-            .iter()
-            .chain(rest)
-            .map(|view| wgpu::BindingResource::TextureView(view))
+        self.patches.fit(recorder, targets, from, patches);
+        let [p0, p1, p2] = patches.parts.each_ref().map(|p| &p.whole);
+        let views = [
+            &from.rate.owner.whole,
+            &from.samples.whole,
+            &targets.gbuffer.surface_view,
+            &targets.gbuffer.identity_view,
+            &targets.gbuffer.depth_view,
+            p0,
+            p1,
+            p2,
+        ];
+        let bindings: Vec<_> = views
+            .map(wgpu::BindingResource::TextureView)
+            .into_iter()
+            .chain([patches.quad_tiles.as_entire_binding()])
             .collect();
-            bind_group(&gpu.device, "smooth composite", layout, &views)
-        };
-        let cells = bind_group(
-            &gpu.device,
-            "patch marks",
-            &self.cells_layout,
-            &[wgpu::BindingResource::TextureView(&from.rate.pyramid.whole)],
+        let group = bind_group(
+            &recorder.gpu.device,
+            "smooth composite",
+            &self.layout,
+            &bindings,
         );
-        let [c0, c1, c2] = patches.corners.each_ref().map(|c| &c.whole);
-        let corners = group(&self.fit_layout, &[c0, c1, c2]);
-        let levels = patches.corners[0].range();
-        for level in levels.clone().rev() {
-            let above = match patches.above[level as usize - 1].as_slice() {
-                [a, b, c] => group(&self.fit_layout, &[a, b, c]),
-                // Nothing is coarser than the coarsest: any texture will do, none is read.
-                _ => group(&self.fit_layout, &[&from.samples.whole; CORNERS]),
-            };
-            let into = patches
-                .corners
-                .each_ref()
-                .map(|p| overwritten(p.level(level)));
-            let marks = marks(patches.stencil.level(level), wgpu::LoadOp::Clear(0));
-            let mut pass = recorder.render_pass("patches", &into, marks);
-            pass.set_stencil_reference(1);
-            pass.set_pipeline(&self.mark);
-            pass.set_bind_group(1, &cells, &[]);
-            patches.stencil.draw(&mut pass, level);
-            pass.set_pipeline(&self.fit);
-            pass.set_bind_group(1, &above, &[]);
-            patches.stencil.draw(&mut pass, level);
-        }
-        for level in levels {
-            let into = patches
-                .raises
-                .each_ref()
-                .map(|p| overwritten(p.level(level)));
-            let marks = marks(patches.stencil.level(level), wgpu::LoadOp::Load);
-            let mut pass = recorder.render_pass("patches", &into, marks);
-            pass.set_stencil_reference(1);
-            pass.set_pipeline(&self.raise);
-            pass.set_bind_group(1, &corners, &[]);
-            patches.stencil.draw(&mut pass, level);
-        }
-        let [r0, r1] = patches.raises.each_ref().map(|r| &r.whole);
-        let whole = group(&self.read_layout, &[c0, c1, c2, r0, r1]);
-        let marks = marks(patches.pixel_stencil.level(0), wgpu::LoadOp::Clear(0));
+        let stencil = wgpu::RenderPassDepthStencilAttachment {
+            view: patches.stencil.level(0),
+            depth_ops: None,
+            stencil_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0),
+                store: wgpu::StoreOp::Discard,
+            }),
+        };
         let into = [overwritten(&targets.radiance_view)];
-        let mut pass = recorder.render_pass("composite", &into, marks);
-        pass.set_stencil_reference(1);
-        pass.set_bind_group(1, &whole, &[]);
-        for pipeline in [&self.read, &self.mark_edges, &self.read_edges] {
+        let mut pass = recorder.render_pass("composite", &into, Some(stencil));
+        pass.set_bind_group(1, &group, &[]);
+        pass.set_stencil_reference(COVERED);
+        pass.set_pipeline(&self.tiles);
+        pass.draw_indirect(&patches.quads, 0);
+        pass.set_pipeline(&self.others);
+        patches.stencil.draw(&mut pass, 0);
+        pass.set_stencil_reference(EDGE);
+        for pipeline in [&self.mark_edges, &self.edges] {
             pass.set_pipeline(pipeline);
-            patches.pixel_stencil.draw(&mut pass, 0);
+            pass.draw_indirect(&patches.quads, DRAW_BYTES);
         }
     }
 }

@@ -1,48 +1,100 @@
-// The smooth composite: each pixel takes its tile's patch, raised to pass through the tile's sample and through the
-// middles between it and neighbours of its size: bilinear interpolation where tiles are alike. After seen.wgsl and
-// patches.wgsl.
+// The smooth composite's draws. After curve.wgsl.
 //
-// Patches meet along their edges, tiles raise a common edge alike and the sample's raise vanishes there, so the
-// picture is continuous. Where radiance is affine, patches are and all raises are zero, so it is exact. A pixel on
-// another surface than its tile's sample takes the patches of the neighbours on its side that sampled its surface.
+// Large tiles, and those that hold an edge, are drawn as quads, whose vertices carry all that the tile's pixels need;
+// then the other pixels, each looking up its own tile. A pixel on another surface than its tile's sample is marked
+// and drawn again from the patches of the neighbours on its side that sampled its surface.
 
-@group(1) @binding(5) var patches_0: texture_2d<f32>;
-@group(1) @binding(6) var patches_1: texture_2d<f32>;
-@group(1) @binding(7) var patches_2: texture_2d<f32>;
-// Of a tile's left and upper edge.
-@group(1) @binding(8) var raises_left: texture_2d<f32>;
-@group(1) @binding(9) var raises_upper: texture_2d<f32>;
+@group(1) @binding(8) var<storage, read> quad_tiles: array<u32>;
 
-// Radiance of a tile at a position, continued beyond its edges as a constant.
-fn tile_radiance(tile: Tile, value: vec4f, position: vec2f) -> vec3f {
-    // A pixel has no patch; what is read in its place is not used.
-    let mip = max(tile.level, 1u) - 1u;
-    let p = unpack_patch(
-        textureLoad(patches_0, tile.block, mip),
-        textureLoad(patches_1, tile.block, mip),
-        textureLoad(patches_2, tile.block, mip),
-    );
-    let uv = saturate(within(tile, position));
+// Clip space position of a tile's corner, numbered as a strip has them.
+fn tile_corner(tile: Tile, number: u32) -> vec4f {
+    let far = (vec2u(number, number >> 1u) & vec2u(1u)) == vec2u(1u);
+    let corner = vec2f(select(tile_low(tile), tile_high(tile), far)) / frame.target_size;
+    return vec4f(corner.x * 2.0 - 1.0, 1.0 - corner.y * 2.0, 0.0, 1.0);
+}
+
+struct TileVertex {
+    @builtin(position) position: vec4f,
+    // Where the tile lies, and one over its size; then what `curve` takes.
+    @location(0) @interpolate(flat) low_scale: vec4f,
+    @location(1) @interpolate(flat) c00_peak_x: vec4f,
+    @location(2) @interpolate(flat) c10_peak_y: vec4f,
+    @location(3) @interpolate(flat) c01: vec3f,
+    @location(4) @interpolate(flat) c11: vec3f,
+    @location(5) @interpolate(flat) raise: vec3f,
+    @location(6) @interpolate(flat) left: vec3f,
+    @location(7) @interpolate(flat) right: vec3f,
+    @location(8) @interpolate(flat) upper: vec3f,
+    @location(9) @interpolate(flat) lower: vec3f,
+}
+
+@vertex
+fn tile_vertex(@builtin(vertex_index) number: u32, @builtin(instance_index) index: u32) -> TileVertex {
+    let tile = unpack_quad(quad_tiles[index], false);
+    let mip = tile.level - 1u;
+    let p = corners_of(tile.block, mip);
+    let value = sample_of(tile);
     let peak = within(tile, sample_position(tile.block, tile.level, value.a));
-    let far = uv > peak;
-    // 1 at the sample, 0 at the edges.
-    let slope = select(uv / peak, (1.0 - uv) / (1.0 - peak), far);
-    // 1 at the middle of an edge, 0 at its ends.
-    let tent = 1.0 - abs(2.0 * uv - 1.0);
+    let next = tile.block + 1u;
+    let inside = is_in_picture_of(tile, next);
+    let low = vec2f(tile_low(tile));
+    return TileVertex(
+        tile_corner(tile, number),
+        vec4f(low, 1.0 / (vec2f(tile_high(tile)) - low)),
+        vec4f(p.c00, peak.x),
+        vec4f(p.c10, peak.y),
+        p.c01,
+        p.c11,
+        value.rgb - patch_at(p, peak),
+        left_raise(tile.block, mip),
+        select(vec3f(0.0), left_raise(vec2u(next.x, tile.block.y), mip), inside.x),
+        upper_raise(tile.block, mip),
+        select(vec3f(0.0), upper_raise(vec2u(tile.block.x, next.y), mip), inside.y),
+    );
+}
 
-    // A tile's right edge is the left one of the tile beside it.
-    let next = tile.block + vec2u(far);
-    let inside = (next << vec2u(tile.level)) < picture_of(tile_low(tile)).end;
-    let left = textureLoad(raises_left, vec2u(next.x, tile.block.y), mip).rgb;
-    let upper = textureLoad(raises_upper, vec2u(tile.block.x, next.y), mip).rgb;
-    let raise_x = select(vec3f(0.0), left, inside.x);
-    let raise_y = select(vec3f(0.0), upper, inside.y);
-    let raise = value.rgb - patch_at(p, peak);
-    let radiance = patch_at(p, uv)
-        + raise_x * ((1.0 - slope.x) * tent.y)
-        + raise_y * ((1.0 - slope.y) * tent.x)
-        + raise * (slope.x * slope.y);
-    return select(max(radiance, vec3f(0.0)), value.rgb, tile.level == 0u);
+@fragment
+fn tile_pixel(in: TileVertex) -> @location(0) vec4f {
+    let p = Patch(in.c00_peak_x.rgb, in.c10_peak_y.rgb, in.c01, in.c11, vec3f(0.0), vec3f(0.0));
+    let peak = vec2f(in.c00_peak_x.a, in.c10_peak_y.a);
+    let uv = (in.position.xy - in.low_scale.xy) * in.low_scale.zw;
+    let far = uv > peak;
+    let raise_x = select(in.left, in.right, far.x);
+    let raise_y = select(in.upper, in.lower, far.y);
+    return vec4f(curve(p, peak, uv, in.raise, raise_x, raise_y), 1.0);
+}
+
+// Pixels that no quad covered.
+@fragment
+fn other_pixel(in: LevelVertex) -> @location(0) vec4f {
+    let texel = vec2u(in.position.xy);
+    let tile = tile_at(texel);
+    return vec4f(tile_radiance(tile, sample_of(tile), vec2f(texel) + 0.5), 1.0);
+}
+
+struct EdgeVertex {
+    @builtin(position) position: vec4f,
+    @location(0) @interpolate(flat) tile: u32,
+    // What the tile's sample saw.
+    @location(1) @interpolate(flat) instance: u32,
+    @location(2) @interpolate(flat) world: vec3f,
+    @location(3) @interpolate(flat) normal: vec3f,
+}
+
+@vertex
+fn edge_vertex(@builtin(vertex_index) number: u32, @builtin(instance_index) index: u32) -> EdgeVertex {
+    let word = quad_tiles[arrayLength(&quad_tiles) / 2u + index];
+    let tile = unpack_quad(word, true);
+    let seen = seen_at(sample_texel(tile.block, tile.level, u32(sample_of(tile).a + 0.5) - 1u));
+    return EdgeVertex(tile_corner(tile, number), word, seen.instance, seen.position, seen.normal);
+}
+
+// Marks pixels that show another surface than their tile's sample.
+@fragment
+fn mark_edge_pixel(in: EdgeVertex) {
+    if same_surface(seen_at(vec2u(in.position.xy)), Seen(in.instance, in.world, in.normal)) {
+        discard;
+    }
 }
 
 // Radiance at a pixel whose tile sampled another surface: a mean over the neighbours on the pixel's side of the tile
@@ -73,32 +125,9 @@ fn across_edge(position: vec2f, own: Tile, seen: Seen) -> vec3f {
     return sum / total;
 }
 
-// Every pixel, as if its tile held one surface.
-@fragment
-fn smooth_composite(in: LevelVertex) -> @location(0) vec4f {
-    let texel = vec2u(in.position.xy);
-    let tile = tile_at(texel);
-    return vec4f(tile_radiance(tile, sample_of(tile), vec2f(texel) + 0.5), 1.0);
-}
-
-// Marks pixels that show another surface than their tile's sample.
-@fragment
-fn mark_edges(in: LevelVertex) {
-    let texel = vec2u(in.position.xy);
-    let tile = tile_at(texel);
-    if tile.level == 0u || !tile.has_edge {
-        discard;
-    }
-    let texel_sampled = sample_texel(tile.block, tile.level, u32(sample_of(tile).a + 0.5) - 1u);
-    if same_surface(seen_at(texel), seen_at(texel_sampled)) {
-        discard;
-    }
-}
-
 // Marked pixels. Nothing is discarded here, so that the stencil test may come first.
 @fragment
-fn smooth_edges(in: LevelVertex) -> @location(0) vec4f {
+fn edge_pixel(in: EdgeVertex) -> @location(0) vec4f {
     let texel = vec2u(in.position.xy);
-    let tile = tile_at(texel);
-    return vec4f(across_edge(vec2f(texel) + 0.5, tile, seen_at(texel)), 1.0);
+    return vec4f(across_edge(vec2f(texel) + 0.5, unpack_quad(in.tile, true), seen_at(texel)), 1.0);
 }

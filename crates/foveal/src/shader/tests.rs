@@ -26,8 +26,7 @@ const ALL: &[(&str, Parts)] = &[
     ("overlay", OVERLAY),
     ("composite nearest", COMPOSITE_NEAREST),
     ("composite paper", COMPOSITE_PAPER),
-    ("composite patch", COMPOSITE_PATCH),
-    ("composite raise", COMPOSITE_RAISE),
+    ("composite fit", COMPOSITE_FIT),
     ("composite smooth", COMPOSITE_SMOOTH),
 ];
 

@@ -9,6 +9,8 @@ mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
 
-pub(crate) use coarse::{CoarseShading, CoarseTargets, CountPass, STENCIL_FORMAT, stencil_state};
+pub(crate) use coarse::{
+    CoarseShading, CoarseTargets, CountPass, LevelNumbers, STENCIL_FORMAT, stencil_state,
+};
 pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};

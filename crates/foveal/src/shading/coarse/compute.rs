@@ -1,58 +1,17 @@
-//! The compute backend: lists of tiles, and an indirect dispatch per level over its list.
+//! The compute backend: an indirect dispatch per level over its list of tiles.
 
-use super::{CoarseTargets, LEVELS, shading_constants};
-use crate::gpu::{
-    Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
-};
+use super::{CoarseTargets, LevelNumbers, shading_constants};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, uniform};
 use crate::recorder::Recorder;
 use crate::shading::RADIANCE_FORMAT;
 use crate::{Settings, shader};
 
-/// Blocks a side that one workgroup of the listing looks at.
-const LISTED: u32 = 16;
-
 /// Shades tiles by dispatches over lists.
 #[derive(Debug)]
 pub(crate) struct ComputeBackend {
-    list: wgpu::ComputePipeline,
-    list_layout: wgpu::BindGroupLayout,
-    size: wgpu::ComputePipeline,
-    size_layout: wgpu::BindGroupLayout,
     shade: wgpu::ComputePipeline,
     shade_layout: wgpu::BindGroupLayout,
     level_numbers: LevelNumbers,
-}
-
-/// The numbers of the levels as uniforms, one binding each.
-#[derive(Debug)]
-pub(super) struct LevelNumbers(wgpu::Buffer);
-
-/// Uniform offsets are multiples of this on every device.
-const OFFSET_ALIGNMENT: u32 = 256;
-
-impl LevelNumbers {
-    pub(super) fn new(gpu: &Gpu) -> Self {
-        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("level numbers"),
-            size: u64::from(LEVELS * OFFSET_ALIGNMENT),
-            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        for level in 0..LEVELS {
-            let offset = u64::from(level * OFFSET_ALIGNMENT);
-            gpu.queue
-                .write_buffer(&buffer, offset, &level.to_le_bytes());
-        }
-        Self(buffer)
-    }
-
-    pub(super) fn binding(&self, level: u32) -> wgpu::BindingResource<'_> {
-        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-            buffer: &self.0,
-            offset: u64::from(level * OFFSET_ALIGNMENT),
-            size: std::num::NonZeroU64::new(4),
-        })
-    }
 }
 
 impl ComputeBackend {
@@ -63,21 +22,10 @@ impl ComputeBackend {
         input_layout: &wgpu::BindGroupLayout,
         parts: shader::Parts,
     ) -> Self {
-        let layout = |label, types: &[wgpu::BindingType]| {
-            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
-        };
-        let list_layout = layout(
-            "tile listing",
-            &[
-                uniform(),
-                sampled(wgpu::TextureSampleType::Uint),
-                storage_write(),
-                storage_write(),
-            ],
-        );
-        let size_layout = layout("tile dispatches", &[storage_read(), storage_write()]);
-        let shade_layout = layout(
+        let shade_layout = bind_group_layout(
+            &gpu.device,
             "tile shading",
+            wgpu::ShaderStages::COMPUTE,
             &[
                 uniform(),
                 storage_read(),
@@ -89,41 +37,21 @@ impl ComputeBackend {
                 },
             ],
         );
-        let constants = shading_constants(settings);
-        let pipeline = |label, parts, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
-            let module = shader::module(gpu, label, parts);
-            shader::compute(gpu, label, &module, entry, groups, constants)
-        };
         Self {
-            list: pipeline(
-                "tile listing",
-                shader::COARSE_LIST,
-                "list_tiles",
-                &[frame_layout, &list_layout],
-                &[("COARSEST", f64::from(settings.coarsest_level))],
-            ),
-            size: pipeline(
-                "tile dispatches",
-                shader::COARSE_DISPATCH,
-                "size_dispatches",
-                &[&size_layout],
-                &[],
-            ),
-            shade: pipeline(
+            shade: shader::compute(
+                gpu,
                 "coarse shading, list",
-                parts,
+                &shader::module(gpu, "coarse shading, list", parts),
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
-                &constants,
+                &shading_constants(settings),
             ),
-            list_layout,
-            size_layout,
             shade_layout,
             level_numbers: LevelNumbers::new(gpu),
         }
     }
 
-    /// Encodes listing, sizing and shading.
+    /// Encodes the shading of the tiles that were listed.
     pub(super) fn shade(
         &self,
         recorder: &mut Recorder<'_>,
@@ -132,43 +60,6 @@ impl ComputeBackend {
     ) {
         let gpu = recorder.gpu;
         let levels = || target.samples.range().zip(&target.lists);
-        recorder.encoder.clear_buffer(&target.counts, 0, None);
-        let listing: Vec<_> = levels()
-            .map(|(level, list)| {
-                bind_group(
-                    &gpu.device,
-                    "tile listing",
-                    &self.list_layout,
-                    &[
-                        self.level_numbers.binding(level),
-                        wgpu::BindingResource::TextureView(&target.rate.pyramid.whole),
-                        target.counts.as_entire_binding(),
-                        list.as_entire_binding(),
-                    ],
-                )
-            })
-            .collect();
-        let sizing = bind_group(
-            &gpu.device,
-            "tile dispatches",
-            &self.size_layout,
-            &[
-                target.counts.as_entire_binding(),
-                target.dispatches.as_entire_binding(),
-            ],
-        );
-        {
-            let mut pass = recorder.compute_pass("tile listing");
-            pass.set_pipeline(&self.list);
-            for ((level, _), group) in levels().zip(&listing) {
-                let (width, height) = target.samples.blocks(level);
-                pass.set_bind_group(1, group, &[]);
-                pass.dispatch_workgroups(width.div_ceil(LISTED), height.div_ceil(LISTED), 1);
-            }
-            pass.set_pipeline(&self.size);
-            pass.set_bind_group(0, &sizing, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-        }
         let shading: Vec<_> = levels()
             .map(|(level, list)| {
                 bind_group(

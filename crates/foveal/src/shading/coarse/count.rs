@@ -1,7 +1,6 @@
 //! Counts the tiles of each level, for the statistics: the stencil backend itself never needs their number.
 
-use super::compute::LevelNumbers;
-use super::{CoarseTargets, LEVELS};
+use super::{CoarseTargets, LEVELS, LevelNumbers};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_write, uniform};
 use crate::recorder::Recorder;
 use crate::{Settings, shader};

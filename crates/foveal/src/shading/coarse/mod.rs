@@ -10,22 +10,29 @@ mod block;
 mod choice;
 mod compute;
 mod count;
+mod lists;
 mod stencil;
 mod targets;
 
 pub(crate) use choice::{BackendChoice, UsedBackend};
 pub(crate) use compute::ComputeBackend;
 pub(crate) use count::CountPass;
+pub(crate) use lists::{LevelNumbers, TileListing};
 pub(crate) use stencil::{StencilBackend, stencil_state};
 pub(crate) use targets::{CoarseTargets, STENCIL_FORMAT};
 
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::shading::lighting_constants;
-use crate::{Backend, CoarseSample, CoarseStats, Settings, Timing, shader};
+use crate::{Backend, CoarseSample, CoarseStats, Composite, Settings, Timing, shader};
 
 /// Most levels that there can be.
 pub(crate) const LEVELS: u32 = crate::COARSEST_LEVEL as u32 + 1;
+
+/// Whether some stage visits tiles by lists.
+fn needs_lists(settings: &Settings) -> bool {
+    settings.backend != Backend::Stencil || settings.composite == Composite::Smooth
+}
 
 /// Settings that change the shading shaders.
 fn shading_constants(settings: &Settings) -> [(&'static str, f64); 3] {
@@ -39,7 +46,11 @@ fn shading_constants(settings: &Settings) -> [(&'static str, f64); 3] {
 pub(crate) struct CoarseShading {
     stencil: Option<StencilBackend>,
     compute: Option<ComputeBackend>,
+    /// For the compute backend and for the smooth composite.
+    listing: Option<TileListing>,
     count: CountPass,
+    /// The smooth composite needs lists, whatever the backend.
+    composite: Composite,
     choice: BackendChoice,
 }
 
@@ -68,7 +79,9 @@ impl CoarseShading {
                 .then(|| StencilBackend::new(gpu, settings, frame_layout, input_layout, draw)),
             compute: (backend != Backend::Stencil)
                 .then(|| ComputeBackend::new(gpu, settings, frame_layout, input_layout, list)),
+            listing: needs_lists(settings).then(|| TileListing::new(gpu, settings, frame_layout)),
             count: CountPass::new(gpu, settings, frame_layout),
+            composite: settings.composite,
             choice: BackendChoice::new(backend, gpu),
         }
     }
@@ -81,16 +94,20 @@ impl CoarseShading {
         input: &wgpu::BindGroup,
         target: &CoarseTargets,
     ) {
-        match (self.choice.now(), &self.stencil, &self.compute) {
-            (UsedBackend::Compute, _, Some(compute)) => {
-                compute.shade(recorder, input, target);
-            }
-            (_, Some(stencil), _) => {
-                stencil.shade(recorder, input, target);
-                self.count.draw(recorder, target);
-            }
-            // `new` makes the backends that the choice can fall on.
-            (_, None, _) => {}
+        // `new` makes the backends that the choice can fall on.
+        let compute = match self.choice.now() {
+            UsedBackend::Compute => self.compute.as_ref(),
+            UsedBackend::Stencil => None,
+        };
+        let needs_lists = compute.is_some() || self.composite == Composite::Smooth;
+        match &self.listing {
+            Some(listing) if needs_lists => listing.list(recorder, target),
+            _ => self.count.draw(recorder, target),
+        }
+        if let Some(compute) = compute {
+            compute.shade(recorder, input, target);
+        } else if let Some(stencil) = &self.stencil {
+            stencil.shade(recorder, input, target);
         }
     }
 

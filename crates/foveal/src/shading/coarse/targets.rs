@@ -20,12 +20,12 @@ pub(crate) struct CoarseTargets {
     pub(crate) patches: Option<PatchTargets>,
     /// Nonzero where a level has a tile; for the stencil backend.
     pub(super) stencil: Option<MipChain>,
-    /// Tiles of each level as x | y << 16; for the compute backend.
-    pub(super) lists: Vec<wgpu::Buffer>,
+    /// Tiles of each level as x | y << 16; for the compute backend and the smooth composite.
+    pub(crate) lists: Vec<wgpu::Buffer>,
     /// Number of tiles of each level.
     pub(crate) counts: wgpu::Buffer,
     /// Workgroups in x, y, z and number of tiles of each level.
-    pub(super) dispatches: wgpu::Buffer,
+    pub(crate) dispatches: wgpu::Buffer,
 }
 
 impl CoarseTargets {
@@ -81,10 +81,10 @@ impl CoarseTargets {
                     wgpu::TextureUsages::empty(),
                 )
             }),
-            lists: if settings.backend == Backend::Stencil {
-                Vec::new()
-            } else {
+            lists: if super::needs_lists(settings) {
                 levels.map(list).collect()
+            } else {
+                Vec::new()
             },
             counts: buffer(
                 "tile counts",

@@ -1,20 +1,40 @@
-// The corners of each tile's patch. After seen.wgsl.
+// The patch of each listed tile of a level. After seen.wgsl, patches.wgsl and raise.wgsl. CPU twin: `composite/twin.rs`.
 //
 // Radiance at a corner is the affine least-squares fit through the samples of the tiles that touch it, so that
 // affine radiance comes out exactly, and all tiles around a corner find the same value. A corner that lies within the
 // edge of a coarser tile takes that edge's value instead, so that patches meet without a gap; levels are therefore
-// drawn coarsest first. Tiles that show another surface than this one's sample are left out.
+// fitted coarsest first. Tiles that show another surface than this one's sample are left out.
 
-// Corners of the coarser levels, finest of them in mip 0.
-@group(1) @binding(5) var coarser_0: texture_2d<f32>;
-@group(1) @binding(6) var coarser_1: texture_2d<f32>;
-@group(1) @binding(7) var coarser_2: texture_2d<f32>;
+// Tiles of this level and up are drawn as quads by the composite, whatever they hold.
+override QUAD_LEVEL: u32 = 3u;
 
-struct PatchOut {
-    @location(0) part_0: vec4f,
-    @location(1) part_1: vec4f,
-    @location(2) part_2: vec4f,
+struct Level {
+    level: u32,
 }
+
+// Arguments of an indirect draw: vertices, instances, first of either.
+struct Quads {
+    vertices: u32,
+    count: atomic<u32>,
+    first_vertex: u32,
+    first_instance: u32,
+}
+
+// Patches of the coarser levels, finest of them in mip 0.
+@group(1) @binding(5) var coarser_0: texture_2d<u32>;
+@group(1) @binding(6) var coarser_1: texture_2d<u32>;
+
+@group(2) @binding(0) var<uniform> current: Level;
+@group(2) @binding(1) var<storage, read> dispatches: array<vec4u, 9>;
+// Blocks as x | y << 16.
+@group(2) @binding(2) var<storage, read> blocks: array<u32>;
+@group(2) @binding(3) var patch_0: texture_storage_2d<rgba32uint, write>;
+@group(2) @binding(4) var patch_1: texture_storage_2d<rgba32uint, write>;
+@group(2) @binding(5) var patch_2: texture_storage_2d<r32uint, write>;
+// All tiles that the composite draws as quads, and those of them that hold an edge.
+@group(2) @binding(6) var<storage, read_write> quads: array<Quads, 2>;
+// Those tiles, as `pack_quad` has them: all in the first half, those with edges in the second.
+@group(2) @binding(7) var<storage, read_write> quad_tiles: array<u32>;
 
 fn is_inside(picture: Picture, texel: vec2i) -> bool {
     return all(texel >= vec2i(picture.low)) && all(texel < vec2i(picture.end));
@@ -44,14 +64,11 @@ fn quadrant_texel(picture: Picture, corner: vec2i, quadrant: u32) -> vec2i {
 
 fn coarser_patch(tile: Tile, drawn: u32) -> Patch {
     let mip = tile.level - drawn - 1u;
-    return unpack_patch(
-        textureLoad(coarser_0, tile.block, mip),
-        textureLoad(coarser_1, tile.block, mip),
-        textureLoad(coarser_2, tile.block, mip),
-    );
+    let part_1 = textureLoad(coarser_1, tile.block, mip).xy;
+    return unpack_corners(textureLoad(coarser_0, tile.block, mip), part_1);
 }
 
-fn corner_radiance(corner: vec2i, own: Tile) -> vec3f {
+fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) -> vec3f {
     var tiles: array<Tile, 4>;
     var valid: array<bool, 4>;
     var all_pure = true;
@@ -66,9 +83,6 @@ fn corner_radiance(corner: vec2i, own: Tile) -> vec3f {
             all_pure = all_pure && !tiles[i].has_edge && tiles[i].level > 0u;
         }
     }
-    let own_sample = sample_of(own);
-    let own_seen = seen_at(sample_texel(own.block, own.level, u32(own_sample.a + 0.5) - 1u));
-
     var offsets: array<vec2f, 4>;
     var radiance: array<vec3f, 4>;
     var weights = vec4f(0.0);
@@ -137,18 +151,36 @@ fn corner_radiance(corner: vec2i, own: Tile) -> vec3f {
     return clamp(fitted, max(least - slack, vec3f(0.0)), most + slack);
 }
 
-@fragment
-fn fit_corners(in: LevelVertex) -> PatchOut {
-    let block = vec2u(in.position.xy);
-    let first = block << vec2u(in.level);
+@compute @workgroup_size(64)
+fn fit_patches(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let dispatch = dispatches[current.level];
+    let index = (group.y * dispatch.x + group.x) * 64u + local;
+    if index >= dispatch.w {
+        return;
+    }
+    let block = vec2u(blocks[index] & 0xffffu, blocks[index] >> 16u);
+    let first = block << vec2u(current.level);
     let own = tile_at(min(first, picture_of(first).end - 1u));
+    let value = sample_of(own);
+    let seen = seen_at(sample_texel(own.block, own.level, u32(value.a + 0.5) - 1u));
     let low = vec2i(tile_low(own));
     let high = vec2i(tile_high(own));
     var corners: array<vec3f, 4>;
     for (var i = 0u; i < 4u; i++) {
         let far = (vec2u(i, i >> 1u) & vec2u(1u)) == vec2u(1u);
-        corners[i] = corner_radiance(select(low, high, far), own);
+        corners[i] = corner_radiance(select(low, high, far), own, value, seen);
     }
-    let last = corners[3];
-    return PatchOut(vec4f(corners[0], last.r), vec4f(corners[1], last.g), vec4f(corners[2], last.b));
+    let left = edge_raise(own, value, seen, 0u, corners[0], corners[2]);
+    let upper = edge_raise(own, value, seen, 1u, corners[0], corners[1]);
+    let packed = pack_patch(Patch(corners[0], corners[1], corners[2], corners[3], left, upper));
+    textureStore(patch_0, block, packed.part_0);
+    textureStore(patch_1, block, packed.part_1);
+    textureStore(patch_2, block, vec4u(packed.part_2, 0u, 0u, 0u));
+
+    if own.level >= QUAD_LEVEL || own.has_edge {
+        quad_tiles[atomicAdd(&quads[0].count, 1u)] = pack_quad(own);
+    }
+    if own.has_edge {
+        quad_tiles[arrayLength(&quad_tiles) / 2u + atomicAdd(&quads[1].count, 1u)] = pack_quad(own);
+    }
 }
