@@ -1,22 +1,33 @@
-//! `foveal bench coarse`: frames in pairs, full and coarse in turn, medians of both.
+//! `foveal bench coarse`: full shading and coarse shading by each backend and composite, in turn, medians of all.
 //!
 //! Timed is lighting with composite: all passes but geometry, light assignment, forward, tone map and the counting
 //! of tiles for the statistics; the rate map is part of it.
 
+mod side;
+
 use std::path::PathBuf;
 
 use foveal::{
-    Backend, Composite, Frame, FrameStats, Gpu, LightAssignment, Renderer, Settings, Shading,
+    AdapterStats, Backend, Composite, Gpu, LightAssignment, LightingModel, RefineEdges, Settings,
+    Shading,
 };
 use foveal_scene::{Camera, Scene};
-use pollster::block_on;
 use serde::Serialize;
+use side::{Side, fovea_differing, psnr};
 
+use super::table::text;
 use crate::compare::flip::ErrorMap;
 use crate::median::median;
-use crate::picture::Picture;
-use crate::render::clock::now_ms;
-use crate::{atomic_file, gpu, scene_source, values};
+use crate::render::{CameraArgs, Viewpoint};
+use crate::values::VariantParser;
+use crate::{atomic_file, console, gpu, scene_source, values};
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 1;
+
+/// Frames per second that the source reports (Radeon RX 560, 200 point lights, nine levels): each pixel, the
+/// interpolating composite, the nearest one.
+const SOURCE_FPS: [(&str, f64); 3] = [("full", 36.4), ("interpolated", 60.1), ("nearest", 68.6)];
 
 /// Arguments of `foveal bench coarse`.
 #[derive(Debug, clap::Args)]
@@ -24,6 +35,9 @@ pub(crate) struct Args {
     /// A glTF 2.0 file or a generated scene
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
+
+    #[command(flatten)]
+    camera: CameraArgs,
 
     /// Width and height; may be given several times [default: 1000x1500 and 1920x1080]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
@@ -33,11 +47,32 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_values_t = [200])]
     lights: Vec<u32>,
 
+    /// Range of each of them in metres; 0: no range, as in the technique's source [default: shorter the more
+    /// lights there are]
+    #[arg(long, value_name = "M", value_parser = values::non_negative)]
+    light_range: Option<f32>,
+
+    /// How light is reflected; the technique's source uses blinn-phong [default: ggx]
+    #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
+    lighting: Option<LightingModel>,
+
     /// Radius where every pixel is shaded, by the picture's height; may be given several times
     #[arg(long, value_name = "R", default_values_t = [0.125])]
     fovea_inner: Vec<f32>,
 
-    /// Pairs of frames that are measured, after one that warms up
+    /// Where geometric edges are shaded more finely [default: graded]
+    #[arg(long, value_name = "WHERE", value_parser = VariantParser::<RefineEdges>::new())]
+    refine_edges: Option<RefineEdges>,
+
+    /// Backends; may be given several times [default: stencil and compute]
+    #[arg(long, value_name = "HOW", value_parser = VariantParser::<Backend>::new())]
+    backend: Vec<Backend>,
+
+    /// Besides, rows over 10 to 2,000 lights and over fovea radii, at the last size by the last backend
+    #[arg(long)]
+    sweep: bool,
+
+    /// Rounds that are measured, after one that warms up
     #[arg(long, value_name = "N", default_value_t = 3)]
     pairs: u32,
 
@@ -45,19 +80,33 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 
-    /// Write the rows as JSON
-    #[arg(long, value_name = "FILE.json")]
+    /// Write the figures as JSON; `-`: print JSON instead of the table
+    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
     json: Option<PathBuf>,
 }
 
-/// One measurement; docs/coarse-notes.md describes the fields.
+/// All figures of a run; docs/program.md describes the fields.
+#[derive(Debug, Serialize)]
+struct Report {
+    schema: &'static str,
+    schema_version: u32,
+    adapter: AdapterStats,
+    scene: String,
+    camera: String,
+    rows: Vec<Row>,
+}
+
+/// One measurement.
 #[derive(Debug, Serialize)]
 struct Row {
     scene: String,
     width: u32,
     height: u32,
     lights: u32,
+    light_range_m: Option<f32>,
+    lighting: LightingModel,
     fovea_inner: f32,
+    refine_edges: RefineEdges,
     backend: Backend,
     composite: Composite,
     levels: u32,
@@ -74,183 +123,163 @@ struct Row {
     psnr: Option<f64>,
 }
 
+/// What a group of rows has in common.
+#[derive(Clone, Copy)]
+struct Case {
+    size: (u32, u32),
+    lights: u32,
+    fovea_inner: f32,
+}
+
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    if let Some(file) = &args.json {
-        atomic_file::check_writable(file)?;
+    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
+    if let Some(path) = to_file {
+        atomic_file::check_writable(path)?;
     }
     let sizes = match args.size.as_slice() {
         [] => &[(1000, 1500), (1920, 1080)][..],
         given => given,
     };
+    let backends = match args.backend.as_slice() {
+        [] => &[Backend::Stencil, Backend::Compute][..],
+        given => given,
+    };
     let gpu = gpu::open(args.adapter.as_deref())?;
+    let mut scene = scene_source::load(&args.scene)?;
+    let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
     let mut rows = Vec::new();
+    let mut measure = |case: Case, backends: &[Backend]| -> anyhow::Result<()> {
+        light(&mut scene, case.lights, args.light_range);
+        for row in measure(args, &gpu, &scene, &camera, case, backends)? {
+            print(&row);
+            rows.push(row);
+        }
+        Ok(())
+    };
+    let mut last = None;
     for &lights in &args.lights {
-        let mut scene = scene_source::load(&args.scene)?;
-        scene.lights.clear();
-        scene_source::add_point_lights(&mut scene, lights, 1);
         for &size in sizes {
-            for &inner in &args.fovea_inner {
-                for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
-                    for backend in [Backend::Stencil, Backend::Compute] {
-                        let settings = Settings {
-                            width: size.0,
-                            height: size.1,
-                            lights: LightAssignment::Brute,
-                            shading: Shading::Coarse,
-                            fovea_inner: inner,
-                            backend,
-                            composite,
-                            ..Settings::default()
-                        };
-                        let row = measure(args, &gpu, &scene, &settings, lights)?;
-                        print(&row);
-                        rows.push(row);
-                    }
-                }
+            for &fovea_inner in &args.fovea_inner {
+                let case = Case {
+                    size,
+                    lights,
+                    fovea_inner,
+                };
+                measure(case, backends)?;
+                last = Some(case);
             }
         }
     }
-    if let Some(file) = &args.json {
-        let json = serde_json::to_string_pretty(&rows)? + "\n";
-        atomic_file::write(file, json.as_bytes())?;
+    if let (true, Some(case), Some(&backend)) = (args.sweep, last, backends.last()) {
+        for lights in [10, 50, 500, 1000, 2000] {
+            measure(Case { lights, ..case }, &[backend])?;
+        }
+        for fovea_inner in [0.0, 0.0625, 0.25, 0.5] {
+            let case = Case {
+                fovea_inner,
+                ..case
+            };
+            measure(case, &[backend])?;
+        }
     }
-    Ok(())
+    let report = Report {
+        schema: "foveal-bench-coarse",
+        schema_version: SCHEMA_VERSION,
+        adapter: gpu.adapter_stats(),
+        scene: scene.name.clone(),
+        camera: camera.name.clone(),
+        rows,
+    };
+    let json = serde_json::to_string_pretty(&report)? + "\n";
+    match (&args.json, to_file) {
+        (_, Some(path)) => {
+            atomic_file::write(path, json.as_bytes())?;
+            console::print_result(&beside_the_source(&report.rows))
+        }
+        (Some(_), None) => console::print_result(&json),
+        (None, None) => console::print_result(&beside_the_source(&report.rows)),
+    }
 }
 
+/// Puts `count` point lights in place of the scene's.
+fn light(scene: &mut Scene, count: u32, range_m: Option<f32>) {
+    scene.lights.clear();
+    scene_source::add_point_lights(scene, count, 1);
+    if let Some(range_m) = range_m {
+        for light in &mut scene.lights {
+            light.range_m = (range_m > 0.0).then_some(range_m);
+        }
+    }
+}
+
+/// Rows for each backend and composite, nearest first.
 fn measure(
     args: &Args,
     gpu: &Gpu,
     scene: &Scene,
-    settings: &Settings,
-    lights: u32,
-) -> anyhow::Result<Row> {
-    let camera = match scene.cameras.first() {
-        Some(camera) => camera.clone(),
-        None => scene.overview_camera(),
-    };
+    camera: &Camera,
+    case: Case,
+    backends: &[Backend],
+) -> anyhow::Result<Vec<Row>> {
     let full_settings = Settings {
-        shading: Shading::Full,
-        ..settings.clone()
+        width: case.size.0,
+        height: case.size.1,
+        lights: LightAssignment::Brute,
+        lighting: args.lighting.unwrap_or_default(),
+        refine_edges: args.refine_edges.unwrap_or_default(),
+        fovea_inner: case.fovea_inner,
+        ..Settings::default()
     };
-    let mut full = Side::new(gpu, scene, &camera, &full_settings)?;
-    let mut coarse = Side::new(gpu, scene, &camera, settings)?;
+    let mut full = Side::new(gpu, scene, camera, &full_settings)?;
+    let mut sides = Vec::new();
+    for &backend in backends {
+        for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+            let settings = Settings {
+                shading: Shading::Coarse,
+                backend,
+                composite,
+                ..full_settings.clone()
+            };
+            sides.push(Side::new(gpu, scene, camera, &settings)?);
+        }
+    }
     for _ in 0..args.pairs.max(1) {
         full.draw()?;
-        coarse.draw()?;
-    }
-    let (a, b) = (full.picture()?, coarse.picture()?);
-    let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
-    Ok(Row {
-        scene: args.scene.clone(),
-        width: settings.width,
-        height: settings.height,
-        lights,
-        fovea_inner: settings.fovea_inner,
-        backend: settings.backend,
-        composite: settings.composite,
-        levels: u32::from(settings.coarsest_level) + 1,
-        shaded_fraction: coarse.shaded_fraction,
-        full_ms,
-        coarse_ms,
-        ratio: full_ms / coarse_ms,
-        full_frame_ms: median(&full.frame_ms),
-        coarse_frame_ms: median(&coarse.frame_ms),
-        flip_mean: ErrorMap::between(&a, &b).mean(),
-        fovea_differing: fovea_differing(&a, &b, settings),
-        psnr: psnr(&a, &b),
-    })
-}
-
-/// One of the two that are compared.
-struct Side<'a> {
-    renderer: Renderer,
-    camera: &'a Camera,
-    lighting_ms: Vec<f64>,
-    frame_ms: Vec<f64>,
-    shaded_fraction: f64,
-}
-
-impl<'a> Side<'a> {
-    fn new(
-        gpu: &Gpu,
-        scene: &Scene,
-        camera: &'a Camera,
-        settings: &Settings,
-    ) -> anyhow::Result<Self> {
-        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
-        block_on(renderer.set_scene(scene))?;
-        let mut side = Self {
-            renderer,
-            camera,
-            lighting_ms: Vec::new(),
-            frame_ms: Vec::new(),
-            shaded_fraction: 1.0,
-        };
-        // The first frame compiles.
-        side.draw()?;
-        side.lighting_ms.clear();
-        side.frame_ms.clear();
-        Ok(side)
-    }
-
-    fn draw(&mut self) -> anyhow::Result<()> {
-        let frame = Frame {
-            camera: self.camera,
-            previous_camera: None,
-        };
-        let stats = block_on(self.renderer.render(&frame))?;
-        self.lighting_ms.push(lighting_ms(&stats));
-        self.frame_ms.push(stats.frame_ms);
-        if let Some(coarse) = &stats.coarse {
-            self.shaded_fraction = coarse.shaded_fraction;
-        }
-        Ok(())
-    }
-
-    fn picture(&self) -> anyhow::Result<Picture> {
-        let bytes = block_on(self.renderer.read_picture())?;
-        let s = self.renderer.settings();
-        Picture::from_rgba(s.width, s.height, &bytes)
-    }
-}
-
-fn lighting_ms(stats: &FrameStats) -> f64 {
-    const OTHER: [&str; 5] = [
-        "geometry",
-        "light assignment",
-        "forward",
-        "tone map",
-        "tile counting",
-    ];
-    let passes = stats.gpu_ms.iter();
-    passes
-        .filter(|pass| !OTHER.contains(&pass.name.as_str()))
-        .map(|pass| pass.ms)
-        .sum()
-}
-
-fn fovea_differing(a: &Picture, b: &Picture, s: &Settings) -> f64 {
-    let (gx, gy) = (s.gaze[0] * a.width as f32, s.gaze[1] * a.height as f32);
-    let radius = s.fovea_inner * a.height as f32;
-    let mut pixels = (0u64, 0u64);
-    for (i, (a_pixel, b_pixel)) in a.pixels.iter().zip(&b.pixels).enumerate() {
-        let x = (i % a.width as usize) as f32 + 0.5 - gx;
-        let y = (i / a.width as usize) as f32 + 0.5 - gy;
-        if x * x + y * y < radius * radius {
-            pixels = (pixels.0 + 1, pixels.1 + u64::from(a_pixel != b_pixel));
+        for side in &mut sides {
+            side.draw()?;
         }
     }
-    pixels.1 as f64 / pixels.0.max(1) as f64
-}
-
-fn psnr(a: &Picture, b: &Picture) -> Option<f64> {
-    let (a, b) = (a.rgb_bytes(), b.rgb_bytes());
-    let squares = a
+    let reference = full.picture()?;
+    sides
         .iter()
-        .zip(&b)
-        .map(|(&a, &b)| f64::from(a.abs_diff(b)).powi(2));
-    let mean = squares.sum::<f64>() / a.len() as f64;
-    (mean > 0.0).then(|| 10.0 * (255.0 * 255.0 / mean).log10())
+        .map(|coarse| {
+            let picture = coarse.picture()?;
+            let settings = coarse.renderer.settings();
+            let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
+            Ok(Row {
+                scene: args.scene.clone(),
+                width: settings.width,
+                height: settings.height,
+                lights: case.lights,
+                light_range_m: args.light_range,
+                lighting: settings.lighting,
+                fovea_inner: settings.fovea_inner,
+                refine_edges: settings.refine_edges,
+                backend: settings.backend,
+                composite: settings.composite,
+                levels: u32::from(settings.coarsest_level) + 1,
+                shaded_fraction: coarse.shaded_fraction,
+                full_ms,
+                coarse_ms,
+                ratio: full_ms / coarse_ms,
+                full_frame_ms: median(&full.frame_ms),
+                coarse_frame_ms: median(&coarse.frame_ms),
+                flip_mean: ErrorMap::between(&reference, &picture).mean(),
+                fovea_differing: fovea_differing(&reference, &picture, settings),
+                psnr: psnr(&reference, &picture),
+            })
+        })
+        .collect()
 }
 
 fn print(row: &Row) {
@@ -272,4 +301,75 @@ fn print(row: &Row) {
         row.flip_mean,
         row.fovea_differing,
     );
+}
+
+/// The source's table rebuilt: frames per second of whole frames and the gains over full shading, for the first case
+/// by its last backend.
+fn beside_the_source(rows: &[Row]) -> String {
+    let Some(first) = rows.first() else {
+        return String::new();
+    };
+    let of = |composite| {
+        let same = |r: &&Row| {
+            (r.width, r.height, r.lights, r.fovea_inner)
+                == (first.width, first.height, first.lights, first.fovea_inner)
+                && r.composite == composite
+        };
+        rows.iter().rfind(same)
+    };
+    let gain = |fps: f64, full: f64| format!("{:+.0} %", (fps / full - 1.0) * 100.0);
+    let full_fps = 1000.0 / first.full_frame_ms;
+    let source_full = SOURCE_FPS[0].1;
+    let mut lines = vec![
+        ["", "fps", "gain", "lighting", "FLIP", "source fps", "gain"]
+            .map(str::to_owned)
+            .to_vec(),
+        vec![
+            "full".to_owned(),
+            format!("{full_fps:.2}"),
+            String::new(),
+            "1.0x".to_owned(),
+            "0".to_owned(),
+            source_full.to_string(),
+        ],
+    ];
+    for (name, composite, source) in [
+        (
+            "interpolated (paper)",
+            Composite::Paper,
+            Some(SOURCE_FPS[1].1),
+        ),
+        ("nearest", Composite::Nearest, Some(SOURCE_FPS[2].1)),
+        ("smooth", Composite::Smooth, None),
+    ] {
+        let Some(row) = of(composite) else { continue };
+        let fps = 1000.0 / row.coarse_frame_ms;
+        lines.push(vec![
+            name.to_owned(),
+            format!("{fps:.2}"),
+            gain(fps, full_fps),
+            format!("{:.1}x", row.ratio),
+            format!("{:.4}", row.flip_mean),
+            source.map_or("-".to_owned(), |s| s.to_string()),
+            source.map_or(String::new(), |s| gain(s, source_full)),
+        ]);
+    }
+    format!(
+        "{} at {}x{}, {} lights, whole frames; beside them the source's on a Radeon RX 560\n",
+        first.scene, first.width, first.height, first.lights
+    ) + &text(&lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_can_be_given_a_range_or_none() {
+        let mut scene = foveal_scene::generate::cornell();
+        light(&mut scene, 7, Some(2.5));
+        assert!(scene.lights.len() == 7 && scene.lights.iter().all(|l| l.range_m == Some(2.5)));
+        light(&mut scene, 3, Some(0.0));
+        assert!(scene.lights.len() == 3 && scene.lights.iter().all(|l| l.range_m.is_none()));
+    }
 }

@@ -71,8 +71,8 @@ pub(super) struct CoarseArgs {
     #[arg(long, value_name = "BOOL")]
     rate_balance: Option<bool>,
 
-    /// Where pixels at geometric edges are shaded one by one: outside the periphery (inner), everywhere, or
-    /// nowhere [default: inner]
+    /// Where geometric edges are shaded more finely: two levels everywhere (graded), pixel by pixel outside the
+    /// periphery (inner) or everywhere, or nowhere [default: graded]
     #[arg(long, value_name = "WHERE", value_parser = VariantParser::<RefineEdges>::new())]
     refine_edges: Option<RefineEdges>,
 

@@ -17,10 +17,13 @@ pub(crate) struct WishUniform {
     pub(crate) constant_level: u32,
     pub(crate) refine_up_to: u32,
     pub(crate) edges_up_to: u32,
-    pub(crate) reserved_0: u32,
+    pub(crate) refine_by: u32,
     pub(crate) reserved_1: u32,
     pub(crate) reserved_2: u32,
 }
+
+/// Levels by which [`RefineEdges::Graded`] refines.
+const GRADED_BY: u8 = 2;
 
 impl WishUniform {
     /// The uniform for one eye that fills the target.
@@ -29,7 +32,7 @@ impl WishUniform {
         let gaze = [s.gaze[0] * width, s.gaze[1] * height, 0.0, 0.0];
         let refine_up_to = match s.refine_edges {
             RefineEdges::Inner => s.coarsest_level / 2,
-            RefineEdges::Everywhere => s.coarsest_level,
+            RefineEdges::Graded | RefineEdges::Everywhere => s.coarsest_level,
             RefineEdges::Off => 0,
         };
         Self {
@@ -43,7 +46,10 @@ impl WishUniform {
                 Composite::Smooth => s.coarsest_level,
                 Composite::Nearest | Composite::Paper => refine_up_to,
             }),
-            reserved_0: 0,
+            refine_by: u32::from(match s.refine_edges {
+                RefineEdges::Graded => GRADED_BY,
+                _ => crate::COARSEST_LEVEL,
+            }),
             reserved_1: 0,
             reserved_2: 0,
         }

@@ -17,12 +17,13 @@ struct Wish {
     coarsest: u32,
     // Level of the constant source.
     constant_level: u32,
-    // Pixels at edges that wish 1 up to this level are shaded one by one.
+    // Pixels at edges that wish 1 up to this level wish finer ones instead.
     refine_up_to: u32,
     // Edges are looked for where the wish is 1 up to this level.
     edges_up_to: u32,
+    // By so many levels.
+    refine_by: u32,
     // Keep the size a multiple of 16 bytes.
-    reserved_0: u32,
     reserved_1: u32,
     reserved_2: u32,
 }
@@ -123,5 +124,5 @@ fn wish_level(in: LevelVertex) -> @location(0) u32 {
     if level == 0u || level > wish.edges_up_to || !holds_edge(block) {
         return level;
     }
-    return select(level, 0u, level <= wish.refine_up_to) | CELL_EDGE;
+    return select(level, level - min(level, wish.refine_by), level <= wish.refine_up_to) | CELL_EDGE;
 }

@@ -56,14 +56,16 @@ pub enum RateCombine {
     Finer,
 }
 
-/// Where pixels at geometric edges are shaded one by one.
+/// Where geometric edges are shaded more finely than wished.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RefineEdges {
-    /// Outside the periphery: where the wish is at most half the coarsest level.
+    /// Two levels finer than wished, everywhere.
     #[default]
+    Graded,
+    /// Pixel by pixel outside the periphery: where the wish is at most half the coarsest level.
     Inner,
-    /// Everywhere.
+    /// Pixel by pixel everywhere.
     Everywhere,
     /// Nowhere.
     Off,

@@ -320,7 +320,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             constant_level,
             refine_up_to,
             edges_up_to,
-            reserved_0,
+            refine_by,
             reserved_1,
             reserved_2
         ]
