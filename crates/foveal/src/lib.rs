@@ -34,7 +34,7 @@ pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
 pub use settings::{
-    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest,
+    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest, Geometry,
     LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern, Settings,
     Shading, ToneMap, View,
 };

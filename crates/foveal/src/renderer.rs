@@ -7,7 +7,7 @@ use crate::composite::CompositePass;
 use crate::culling::{CullingCounts, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
-use crate::geometry::{DrawList, FaceNormals, GeometryPass};
+use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
@@ -104,13 +104,12 @@ impl Stages {
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let frame = frame_bindings.layout();
         let shading = ShadingPass::new(gpu, settings, frame);
-        let face_normals = FaceNormals::wanted_by(settings);
         let stages = Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings.culling, settings.width, settings.height)?,
             targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
-            geometry: GeometryPass::new(gpu, frame, material_layout, face_normals),
+            geometry: GeometryPass::new(gpu, settings, frame, material_layout),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
@@ -166,6 +165,7 @@ impl Renderer {
         if *settings == *old {
             return Ok(());
         }
+        self.scene.geometry.check(&self.gpu, settings.geometry)?;
         if (Settings {
             width: settings.width,
             height: settings.height,
@@ -215,6 +215,8 @@ impl Renderer {
         );
         trap.finish().await?;
         let uploaded = uploaded?;
+        let geometry = self.stages.settings.geometry;
+        uploaded.geometry.check(&self.gpu, geometry)?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's instances");
         let written = self
             .frame_bindings
@@ -350,7 +352,7 @@ impl Renderer {
 
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
         draw_list.build(scene, frame.camera.eye(), is_visible);
-        geometry.prepare(gpu, draw_list);
+        geometry.prepare(gpu, scene, draw_list);
         forward.prepare(gpu, draw_list);
         cpu.stage("draw list");
 
@@ -458,6 +460,10 @@ impl Renderer {
                 crate::shader::COARSE_AFFINE,
             );
         }
+    }
+
+    pub(crate) fn geometry(&self) -> &GeometryPass {
+        &self.stages.geometry
     }
 
     pub(crate) fn targets(&self) -> &Targets {

@@ -6,10 +6,12 @@ use serde::{Deserialize, Serialize};
 use crate::Error;
 
 mod coarse;
+mod variable;
 
 pub use coarse::{
     Backend, COARSEST_LEVEL, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Shading,
 };
+pub use variable::Geometry;
 
 /// Which objects are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -147,6 +149,8 @@ pub struct Settings {
     pub view: View,
     /// Which objects are drawn. The picture is the same with each.
     pub culling: Culling,
+    /// How the G-buffer is filled. The picture is the same but for rounding.
+    pub geometry: Geometry,
     /// How light is reflected.
     pub lighting: LightingModel,
     /// Which lights a sample looks at.
@@ -209,6 +213,7 @@ impl Default for Settings {
             height: 720,
             view: View::default(),
             culling: Culling::default(),
+            geometry: Geometry::default(),
             lighting: LightingModel::default(),
             lights: LightAssignment::default(),
             exposure: 0.0,

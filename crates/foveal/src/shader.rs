@@ -11,14 +11,52 @@ const LIGHT: &str = include_str!("shared/light.wgsl");
 const LIGHTING: &str = include_str!("shared/lighting.wgsl");
 const VERTEX: &str = include_str!("shared/vertex.wgsl");
 const MATERIAL: &str = include_str!("shared/material.wgsl");
+const SAMPLE_IMPLICIT: &str = include_str!("shared/sample_implicit.wgsl");
+const SAMPLE_GRADIENTS: &str = include_str!("shared/sample_gradients.wgsl");
+const ATTRIBUTES: &str = include_str!("shared/attributes.wgsl");
 const SHADING: &str = include_str!("shading/shading.wgsl");
 
 pub(crate) const GBUFFER: Parts = &[
     FRAME,
     SURFACE,
     VERTEX,
+    SAMPLE_IMPLICIT,
     MATERIAL,
     include_str!("geometry/gbuffer.wgsl"),
+];
+const VISIBLE: &str = include_str!("geometry/visibility/visible.wgsl");
+const EVERY: &str = include_str!("geometry/visibility/every.wgsl");
+/// Needs [`wgpu::Features::PRIMITIVE_INDEX`].
+pub(crate) const VISIBLE_INDEXED: Parts = &[
+    "enable primitive_index;",
+    FRAME,
+    SURFACE,
+    VERTEX,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    VISIBLE,
+    include_str!("geometry/visibility/indexed.wgsl"),
+];
+pub(crate) const VISIBLE_PULLED: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    VISIBLE,
+    ATTRIBUTES,
+    include_str!("geometry/visibility/pulled.wgsl"),
+];
+pub(crate) const BINS: Parts = &[EVERY, include_str!("geometry/visibility/bins.wgsl")];
+pub(crate) const RESOLVE: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    SAMPLE_GRADIENTS,
+    MATERIAL,
+    EVERY,
+    include_str!("geometry/visibility/resolve.wgsl"),
 ];
 pub(crate) const CLUSTERS: Parts = &[FRAME, LIGHT, include_str!("lights/clusters.wgsl")];
 pub(crate) const SHADE_EVERY_PIXEL: Parts = &[
@@ -43,6 +81,7 @@ pub(crate) const FORWARD: Parts = &[
     LIGHT,
     LIGHTING,
     VERTEX,
+    SAMPLE_IMPLICIT,
     MATERIAL,
     include_str!("forward/forward.wgsl"),
 ];

@@ -1,7 +1,7 @@
 //! What a frame is drawn into.
 
 use crate::antialias::SampleTargets;
-use crate::geometry::GBuffer;
+use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
@@ -30,7 +30,7 @@ impl Targets {
         let (width, height) = (settings.width, settings.height);
         let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
         Self {
-            gbuffer: GBuffer::new(gpu, width, height),
+            gbuffer: GBuffer::new(gpu, settings.geometry, width, height),
             radiance_view: target(
                 "radiance",
                 RADIANCE_FORMAT,
@@ -47,6 +47,11 @@ impl Targets {
     pub(crate) fn bytes(&self) -> u64 {
         let size = self.picture_view.texture().size();
         u64::from(size.width) * u64::from(size.height) * BYTES_PER_PIXEL
+            + self
+                .gbuffer
+                .visibility
+                .as_ref()
+                .map_or(0, VisibilityTargets::bytes)
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
             + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)
     }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, anyhow};
 use foveal::{
-    Antialiasing, Culling, EdgeTest, LightAssignment, LightingModel, SamplePattern, Settings,
-    ToneMap, View,
+    Antialiasing, Culling, EdgeTest, Geometry, LightAssignment, LightingModel, SamplePattern,
+    Settings, ToneMap, View,
 };
 
 use super::coarse_args::CoarseArgs;
@@ -31,6 +31,11 @@ pub(crate) struct SettingsArgs {
     /// reference); the picture is the same [default: frustum]
     #[arg(long, value_name = "WHICH", value_parser = VariantParser::<Culling>::new())]
     culling: Option<Culling>,
+
+    /// How the G-buffer is filled: by the rasterizer, or by a visibility buffer whose materials are evaluated once
+    /// per pixel; the picture is the same but for rounding [default: gbuffer]
+    #[arg(long, value_name = "HOW", value_parser = VariantParser::<Geometry>::new())]
+    geometry: Option<Geometry>,
 
     /// How surfaces reflect light [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
@@ -98,6 +103,7 @@ impl SettingsArgs {
             size,
             view,
             culling,
+            geometry,
             lighting,
             lights,
             exposure,
@@ -114,6 +120,7 @@ impl SettingsArgs {
         }
         set(&mut settings.view, view);
         set(&mut settings.culling, culling);
+        set(&mut settings.geometry, geometry);
         set(&mut settings.lighting, lighting);
         set(&mut settings.lights, lights);
         set(&mut settings.exposure, exposure);
@@ -195,11 +202,12 @@ mod tests {
     }
 
     /// For each key of the settings file: its flag, and a value that is not the default in both spellings.
-    const KEYS: [(&str, &str, &[&str]); 29] = [
+    const KEYS: [(&str, &str, &[&str]); 30] = [
         ("width", "33", &["--size", "33x720"]),
         ("height", "44", &["--size", "1280x44"]),
         ("view", "\"normals\"", &["--view", "normals"]),
         ("culling", "\"off\"", &["--culling", "off"]),
+        ("geometry", "\"visibility\"", &["--geometry", "visibility"]),
         (
             "lighting",
             "\"blinn-phong\"",

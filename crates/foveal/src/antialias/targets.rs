@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::Settings;
-use crate::geometry::GBuffer;
+use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{Gpu, target};
 
 use super::pattern::{BYTES_PER_SAMPLE, Band, BandUniform, Pattern};
@@ -109,7 +109,7 @@ impl SampleTargets {
         let entry_bytes = ENTRY_BYTES * pixels.min(most_entries(&gpu.device.limits()));
         Self {
             bands: bands.collect(),
-            samples: GBuffer::new(gpu, texels_x, texels_y),
+            samples: GBuffer::new(gpu, settings.geometry, texels_x, texels_y),
             tally_view,
             queue: buffer("queue", queue_bytes, storage | wgpu::BufferUsages::INDIRECT),
             entries: buffer("queue entries", entry_bytes, storage),
@@ -141,6 +141,11 @@ impl SampleTargets {
     /// Bytes of all that depends on the frame's size.
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
+            + self
+                .samples
+                .visibility
+                .as_ref()
+                .map_or(0, VisibilityTargets::bytes)
     }
 }
 

@@ -3,7 +3,7 @@
 #[cfg(test)]
 pub(crate) mod twin;
 
-use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
+use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
 use crate::recorder::{Recorder, drawn_over};
 use crate::scene::SceneOnGpu;
@@ -39,6 +39,8 @@ impl ForwardPass {
                 "forward",
                 &[frame_layout, material_layout, &lights_layout],
             ),
+            vertex: VertexSource::Buffers("vertex"),
+            fragment: "fragment",
             targets: vec![Some(wgpu::ColorTargetState {
                 format: RADIANCE_FORMAT,
                 blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),

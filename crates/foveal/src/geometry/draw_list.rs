@@ -1,5 +1,7 @@
 //! Which draws a frame issues, and in which order.
 
+use std::collections::BTreeMap;
+
 use foveal_scene::AlphaMode;
 use glam::Vec3;
 
@@ -149,22 +151,41 @@ impl DrawList {
         scene: &SceneOnGpu,
         pipelines: &super::Pipelines,
     ) {
+        Self::issue_with(batches, pass, scene, |key| pipelines.get(key), false);
+    }
+
+    /// As [`DrawList::issue`], with the pipeline that each key gets; `pulled`: the shader fetches the vertices.
+    pub(crate) fn issue_with<'p>(
+        batches: &[Batch],
+        pass: &mut wgpu::RenderPass<'_>,
+        scene: &SceneOnGpu,
+        pipeline: impl Fn(PipelineKey) -> &'p wgpu::RenderPipeline,
+        pulled: bool,
+    ) {
         let (mut key, mut material) = (None, None);
         for batch in batches {
             if key != Some(batch.key) {
                 key = Some(batch.key);
-                pass.set_pipeline(pipelines.get(batch.key));
+                pass.set_pipeline(pipeline(batch.key));
             }
             if material != Some(batch.material) {
                 material = Some(batch.material);
                 pass.set_bind_group(1, scene.materials.group(batch.material), &[]);
             }
             let mesh = scene.geometry.mesh(batch.mesh);
-            pass.draw_indexed(
-                mesh.first_index..mesh.first_index + mesh.index_count,
-                mesh.base_vertex,
-                batch.first..batch.first + batch.count,
-            );
+            let indices = mesh.first_index..mesh.first_index + mesh.index_count;
+            let instances = batch.first..batch.first + batch.count;
+            if pulled {
+                pass.draw(indices, instances);
+            } else {
+                pass.draw_indexed(indices, mesh.base_vertex, instances);
+            }
         }
+    }
+
+    /// Materials of the solid draws with their classes, each once.
+    pub(crate) fn solid_materials(&self) -> BTreeMap<u32, u32> {
+        let draws = self.solid.iter();
+        draws.map(|b| (b.material, b.key.class)).collect()
     }
 }

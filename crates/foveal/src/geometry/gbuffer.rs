@@ -1,10 +1,13 @@
 //! The G-buffer and the pass that fills it.
 
-use super::{DrawList, PipelineKey, PipelineRecipe, Pipelines};
+use super::{
+    DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource, VisibilityPass,
+    VisibilityTargets,
+};
 use crate::gpu::{self, Gpu};
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
-use crate::{Antialiasing, EdgeTest, Settings, shader};
+use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, shader};
 
 /// Reversed: 1 at the near plane, 0 where nothing is.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -21,18 +24,25 @@ pub(crate) struct GBuffer {
     pub(crate) identity_view: wgpu::TextureView,
     /// Reversed depth.
     pub(crate) depth_view: wgpu::TextureView,
+    /// Where surfaces are evaluated after the rasterizer.
+    pub(crate) visibility: Option<VisibilityTargets>,
 }
 
 impl GBuffer {
-    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
-        let target = |label, format| {
-            let usage = wgpu::TextureUsages::empty();
-            gpu::target(gpu, label, (width, height), format, usage)
+    pub(crate) fn new(gpu: &Gpu, geometry: Geometry, width: u32, height: u32) -> Self {
+        let by_triangles = geometry == Geometry::Visibility;
+        let drawn = wgpu::TextureUsages::empty();
+        let written = if by_triangles {
+            wgpu::TextureUsages::STORAGE_BINDING
+        } else {
+            drawn
         };
+        let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
         Self {
-            surface_view: target("G-buffer surface", SURFACE_FORMAT),
-            identity_view: target("G-buffer identity", IDENTITY_FORMAT),
-            depth_view: target("G-buffer depth", DEPTH_FORMAT),
+            surface_view: target("G-buffer surface", SURFACE_FORMAT, written),
+            identity_view: target("G-buffer identity", IDENTITY_FORMAT, drawn),
+            depth_view: target("G-buffer depth", DEPTH_FORMAT, drawn),
+            visibility: by_triangles.then(|| VisibilityTargets::new(gpu, width, height)),
         }
     }
 }
@@ -65,38 +75,57 @@ impl FaceNormals {
     }
 }
 
-/// Draws opaque and masked surfaces into the G-buffer.
+/// Fills the G-buffer with opaque and masked surfaces.
 #[derive(Debug)]
-pub(crate) struct GeometryPass {
-    pipelines: Pipelines,
+pub(crate) enum GeometryPass {
+    /// The rasterizer's fragments are surfaces.
+    Surfaces(Pipelines),
+    /// The rasterizer's fragments are triangles, evaluated afterwards.
+    Triangles(VisibilityPass),
 }
 
 impl GeometryPass {
     pub(crate) fn new(
         gpu: &Gpu,
+        settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
-        face_normals: FaceNormals,
     ) -> Self {
+        let face_normals = FaceNormals::wanted_by(settings);
+        if settings.geometry == Geometry::Visibility {
+            // A rotated pattern draws the frame once per sample; there are at most 8.
+            let rotated =
+                settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
+            let windows = if rotated { settings.samples } else { 1 };
+            let pass =
+                VisibilityPass::new(gpu, frame_layout, material_layout, face_normals, windows);
+            return Self::Triangles(pass);
+        }
         let face_normal = f64::from(u8::from(face_normals == FaceNormals::Written));
-        let pipelines = Pipelines::new(PipelineRecipe {
+        Self::Surfaces(Pipelines::new(PipelineRecipe {
             label: "geometry",
             module: shader::module(gpu, "geometry", shader::GBUFFER),
             layout: shader::pipeline_layout(gpu, "geometry", &[frame_layout, material_layout]),
+            vertex: VertexSource::Buffers("vertex"),
+            fragment: "fragment",
             targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],
             writes_depth: true,
             constants: vec![("FACE_NORMAL", face_normal)],
             has_mask: true,
-        });
-        Self { pipelines }
+        }))
     }
 
     /// Makes the pipelines that `list` needs.
-    pub(crate) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
-        let mut keys: Vec<PipelineKey> = list.solid.iter().map(|b| b.key).collect();
-        keys.dedup();
-        for key in keys {
-            self.pipelines.prepare(gpu, key);
+    pub(crate) fn prepare(&mut self, gpu: &Gpu, scene: &SceneOnGpu, list: &DrawList) {
+        match self {
+            Self::Surfaces(pipelines) => {
+                let mut keys: Vec<PipelineKey> = list.solid.iter().map(|b| b.key).collect();
+                keys.dedup();
+                for key in keys {
+                    pipelines.prepare(gpu, key);
+                }
+            }
+            Self::Triangles(pass) => pass.prepare(gpu, scene, list),
         }
     }
 
@@ -125,6 +154,12 @@ impl GeometryPass {
         target: &GBuffer,
         windows: &[Window],
     ) {
+        let pipelines = match self {
+            Self::Surfaces(pipelines) => pipelines,
+            Self::Triangles(pass) => {
+                return pass.draw_windows(recorder, scene, list, target, windows);
+            }
+        };
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &target.depth_view,
             depth_ops: Some(wgpu::Operations {
@@ -142,7 +177,7 @@ impl GeometryPass {
         for &Window { frame, part } in windows {
             pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
             pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
-            DrawList::issue(&list.solid, &mut pass, scene, &self.pipelines);
+            DrawList::issue(&list.solid, &mut pass, scene, pipelines);
         }
     }
 }

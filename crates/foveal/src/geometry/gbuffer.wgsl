@@ -11,11 +11,6 @@ struct GBufferOut {
     @location(1) identity: vec2u,
 }
 
-fn motion_in_pixels(now: vec3f, before: vec3f) -> vec2f {
-    let moved = now.xy / now.z - before.xy / before.z;
-    return clamp(moved * vec2f(0.5, -0.5) * frame.size, vec2f(-60000.0), vec2f(60000.0));
-}
-
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
     // Derivatives come first: a discarded neighbour has none.

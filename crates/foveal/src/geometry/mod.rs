@@ -5,9 +5,13 @@ mod gbuffer;
 mod pipelines;
 #[cfg(test)]
 mod twin;
+mod visibility;
 
 pub(crate) use draw_list::DrawList;
 pub(crate) use gbuffer::{
     DEPTH_FORMAT, FaceNormals, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, Window,
 };
-pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines};
+pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+#[cfg(test)]
+pub(crate) use visibility::WindowsUniform;
+pub(crate) use visibility::{VisibilityPass, VisibilityTargets};

@@ -25,12 +25,24 @@ pub(crate) struct PipelineKey {
     pub(crate) faces: Faces,
 }
 
+/// Where vertices come from, with the vertex shader's entry point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum VertexSource {
+    /// The device fetches them.
+    Buffers(&'static str),
+    /// The shader fetches them.
+    Shader(&'static str),
+}
+
 /// What all pipelines of a pass share.
 #[derive(Debug)]
 pub(crate) struct PipelineRecipe {
     pub(crate) label: &'static str,
     pub(crate) module: wgpu::ShaderModule,
     pub(crate) layout: wgpu::PipelineLayout,
+    pub(crate) vertex: VertexSource,
+    /// Entry point of the fragment shader.
+    pub(crate) fragment: &'static str,
     pub(crate) targets: Vec<Option<wgpu::ColorTargetState>>,
     pub(crate) writes_depth: bool,
     pub(crate) constants: Vec<(&'static str, f64)>,
@@ -73,6 +85,10 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
     if recipe.has_mask {
         constants.push(("MASKED", f64::from(u8::from(key.masked))));
     }
+    let (vertex, buffers) = match recipe.vertex {
+        VertexSource::Buffers(entry) => (entry, &VERTEX_LAYOUTS[..]),
+        VertexSource::Shader(entry) => (entry, &[][..]),
+    };
     let compilation_options = wgpu::PipelineCompilationOptions {
         constants: &constants,
         ..Default::default()
@@ -83,9 +99,9 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
             layout: Some(&recipe.layout),
             vertex: wgpu::VertexState {
                 module: &recipe.module,
-                entry_point: Some("vertex"),
+                entry_point: Some(vertex),
                 compilation_options: compilation_options.clone(),
-                buffers: &VERTEX_LAYOUTS,
+                buffers,
             },
             primitive: wgpu::PrimitiveState {
                 front_face: if key.mirrored {
@@ -110,7 +126,7 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
                 module: &recipe.module,
-                entry_point: Some("fragment"),
+                entry_point: Some(recipe.fragment),
                 compilation_options,
                 targets: &recipe.targets,
             }),

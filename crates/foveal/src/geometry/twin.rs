@@ -9,6 +9,7 @@ use glam::{Mat3, Vec2, Vec3};
 use crate::forward::twin::{front, quads};
 use crate::shading::twin::{position_at, unpack_surface};
 use crate::testing::{rendered, small, texels};
+use crate::{Geometry, Settings};
 
 struct Hit {
     distance: f32,
@@ -65,8 +66,18 @@ fn intersect(scene: &Scene, origin: Vec3, direction: Vec3) -> Option<Hit> {
 }
 
 fn assert_equals_twin(scene: &Scene, camera: &Camera) {
+    for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+        assert_geometry_equals_twin(scene, camera, geometry);
+    }
+}
+
+fn assert_geometry_equals_twin(scene: &Scene, camera: &Camera, geometry: Geometry) {
     let (width, height) = (47, 33);
-    let renderer = rendered(scene, camera, &small(width, height));
+    let settings = Settings {
+        geometry,
+        ..small(width, height)
+    };
+    let renderer = rendered(scene, camera, &settings);
     let gbuffer = &renderer.targets().gbuffer;
     let words: Vec<[u32; 4]> = texels(&gbuffer.surface_view);
     let identity: Vec<[u32; 2]> = texels(&gbuffer.identity_view);

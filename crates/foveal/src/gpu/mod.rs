@@ -82,7 +82,7 @@ impl Gpu {
     /// Features that the renderer uses where they are there; none is required.
     #[must_use]
     pub fn wanted_features() -> wgpu::Features {
-        wgpu::Features::TIMESTAMP_QUERY
+        wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PRIMITIVE_INDEX
     }
 
     /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.

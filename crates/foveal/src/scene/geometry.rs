@@ -1,9 +1,10 @@
 //! All meshes in one vertex and one index buffer.
 
+use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Scene, Vertex};
 
-use crate::Error;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
+use crate::{Error, Geometry};
 
 const STRIDE: u64 = size_of::<Vertex>() as u64;
 
@@ -31,6 +32,26 @@ pub(crate) struct MeshRange {
     pub(crate) base_vertex: i32,
 }
 
+/// Where shaders find an instance's triangles: mirrors `Place` in `shared/attributes.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct PlaceUniform {
+    pub(crate) first_index: u32,
+    pub(crate) base_vertex: u32,
+    pub(crate) material: u32,
+    pub(crate) reserved: u32,
+}
+
+/// The layout of [`SceneGeometry::group`]: bind group 2 of `shared/attributes.wgsl`.
+pub(crate) fn geometry_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    bind_group_layout(
+        &gpu.device,
+        "geometry",
+        wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::COMPUTE,
+        &[storage_read(); 4],
+    )
+}
+
 /// The scene's vertices and indices.
 #[derive(Debug)]
 pub(crate) struct SceneGeometry {
@@ -40,6 +61,16 @@ pub(crate) struct SceneGeometry {
     indices: wgpu::Buffer,
     meshes: Vec<MeshRange>,
     deforms: bool,
+    by_shaders: Option<ByShaders>,
+    /// Of the larger of the two buffers.
+    largest_bytes: u64,
+}
+
+/// What shaders read the geometry by.
+#[derive(Debug)]
+struct ByShaders {
+    places: wgpu::Buffer,
+    group: wgpu::BindGroup,
 }
 
 impl SceneGeometry {
@@ -64,13 +95,13 @@ impl SceneGeometry {
             gpu,
             "vertices",
             vertex_count as u64 * STRIDE,
-            wgpu::BufferUsages::VERTEX,
+            wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE,
         );
         let indices = buffer(
             gpu,
             "indices",
             index_count as u64 * 4,
-            wgpu::BufferUsages::INDEX,
+            wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE,
         );
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let (mut base_vertex, mut first_index) = (0u64, 0u64);
@@ -99,7 +130,7 @@ impl SceneGeometry {
                 gpu,
                 "previous vertices",
                 vertices.size(),
-                wgpu::BufferUsages::VERTEX,
+                wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE,
             );
             let mut encoder = gpu.device.create_command_encoder(&Default::default());
             encoder.copy_buffer_to_buffer(&vertices, 0, &previous, 0, vertices.size());
@@ -108,13 +139,45 @@ impl SceneGeometry {
         } else {
             vertices.clone()
         };
+        let largest_bytes = vertices.size().max(indices.size());
+        let bindable = largest_bytes <= gpu.device.limits().max_storage_buffer_binding_size;
+        let buffers = [&vertices, &previous_vertices, &indices];
+        let by_shaders = bindable.then(|| ByShaders::new(gpu, buffers, places(scene, &meshes)));
         Ok(Self {
             vertices,
             previous_vertices,
             indices,
             meshes,
             deforms,
+            by_shaders,
+            largest_bytes,
         })
+    }
+
+    /// Checks that passes of this kind can read the geometry.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where shaders must read it and it is too large for them.
+    pub(crate) fn check(&self, gpu: &Gpu, geometry: Geometry) -> Result<(), Error> {
+        if geometry == Geometry::Gbuffer || self.by_shaders.is_some() {
+            return Ok(());
+        }
+        Err(Error::Limit {
+            what: "the scene's largest geometry buffer in bytes".to_owned(),
+            value: self.largest_bytes,
+            limit: gpu.device.limits().max_storage_buffer_binding_size,
+            hint: ": shaders cannot read it, so take the geometry gbuffer".to_owned(),
+        })
+    }
+
+    /// Bind group 2 of `shared/attributes.wgsl`; `None` for a scene that failed [`SceneGeometry::check`].
+    pub(crate) fn group(&self) -> Option<&wgpu::BindGroup> {
+        self.by_shaders.as_ref().map(|s| &s.group)
+    }
+
+    /// A [`PlaceUniform`] per instance; `None` as for [`SceneGeometry::group`].
+    pub(crate) fn places(&self) -> Option<&wgpu::Buffer> {
+        self.by_shaders.as_ref().map(|s| &s.places)
     }
 
     /// Uploads the deformed meshes; the vertices so far become the previous ones.
@@ -153,6 +216,32 @@ impl SceneGeometry {
         pass.set_vertex_buffer(1, self.previous_vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
     }
+}
+
+impl ByShaders {
+    fn new(gpu: &Gpu, buffers: [&wgpu::Buffer; 3], places: Vec<PlaceUniform>) -> Self {
+        let bytes: &[u8] = bytemuck::cast_slice(&places);
+        let usage = wgpu::BufferUsages::STORAGE;
+        let places = buffer(gpu, "places of instances", bytes.len() as u64, usage);
+        gpu.queue.write_buffer(&places, 0, bytes);
+        let [vertices, previous, indices] = buffers.map(wgpu::Buffer::as_entire_binding);
+        let resources = [vertices, previous, indices, places.as_entire_binding()];
+        let group = bind_group(&gpu.device, "geometry", &geometry_layout(gpu), &resources);
+        Self { places, group }
+    }
+}
+
+fn places(scene: &Scene, meshes: &[MeshRange]) -> Vec<PlaceUniform> {
+    let place = |instance: &foveal_scene::Instance| {
+        let mesh = meshes[instance.mesh as usize];
+        PlaceUniform {
+            first_index: mesh.first_index,
+            base_vertex: mesh.base_vertex as u32,
+            material: instance.material,
+            reserved: 0,
+        }
+    };
+    scene.instances.iter().map(place).collect()
 }
 
 fn buffer(gpu: &Gpu, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -19,6 +19,10 @@ pub(crate) struct MaterialUniform {
     pub(crate) occlusion_strength: f32,
     pub(crate) alpha_cutoff: f32,
     pub(crate) uv: [[[f32; 4]; 2]; 5],
+    pub(crate) number: u32,
+    pub(crate) reserved_0: u32,
+    pub(crate) reserved_1: u32,
+    pub(crate) reserved_2: u32,
 }
 
 /// A material's texture slots in the order of the shader's bindings; their positions are the flags' bits.
@@ -45,7 +49,7 @@ pub(crate) fn material_class(material: &Material) -> u32 {
 }
 
 impl MaterialUniform {
-    pub(crate) fn new(material: &Material) -> Self {
+    pub(crate) fn new(material: &Material, number: u32) -> Self {
         let slots = slots(material);
         Self {
             base_color: material.base_color.to_array(),
@@ -59,6 +63,10 @@ impl MaterialUniform {
                 AlphaMode::Opaque | AlphaMode::Blend => 0.0,
             },
             uv: slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
+            number,
+            reserved_0: 0,
+            reserved_1: 0,
+            reserved_2: 0,
         }
     }
 }
@@ -83,7 +91,7 @@ pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     bind_group_layout(
         &gpu.device,
         "material",
-        wgpu::ShaderStages::FRAGMENT,
+        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
         &types,
     )
 }
@@ -118,11 +126,12 @@ impl SceneMaterials {
             mapped_at_creation: false,
         });
         let mut groups = Vec::with_capacity(scene.materials.len());
-        for (material, offset) in scene.materials.iter().zip((0..).step_by(stride as usize)) {
+        for (number, material) in (0..).zip(&scene.materials) {
+            let offset = u64::from(number) * stride;
             gpu.queue.write_buffer(
                 &uniforms,
                 offset,
-                bytemuck::bytes_of(&MaterialUniform::new(material)),
+                bytemuck::bytes_of(&MaterialUniform::new(material, number)),
             );
             let pairs = slots(material).map(|slot| match slot {
                 Some(slot) => {

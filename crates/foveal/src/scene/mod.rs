@@ -7,7 +7,9 @@ mod materials;
 mod textures;
 
 pub(crate) use bindings::FrameBindings;
-pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS};
+#[cfg(test)]
+pub(crate) use geometry::PlaceUniform;
+pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS, geometry_layout};
 pub(crate) use instances::InstanceUniform;
 #[cfg(test)]
 pub(crate) use materials::MaterialUniform;

@@ -1,4 +1,5 @@
-// The material at a rasterized point. Needs frame.wgsl and surface.wgsl. Rust: `scene/materials.rs`.
+// The material at a point of a surface. Needs frame.wgsl and surface.wgsl, and sample_implicit.wgsl or
+// sample_gradients.wgsl. Rust: `scene/materials.rs`.
 
 // What the material has, known when the pipeline is made: bits as below.
 override MATERIAL_CLASS: u32 = 0u;
@@ -27,6 +28,11 @@ struct Material {
     alpha_cutoff: f32,
     // Base colour, metallic-roughness, normal, occlusion, emissive.
     uv: array<UvMap, 5>,
+    // Which of the scene's materials it is.
+    number: u32,
+    reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
 }
 
 @group(1) @binding(0) var<uniform> material: Material;
@@ -47,6 +53,15 @@ fn uv_of(slot: u32, uv: vec4f) -> vec2f {
     return vec2f(dot(map.x.xyz, p), dot(map.y.xyz, p));
 }
 
+// Opacity alone.
+fn alpha_at(uv: vec4f, color_alpha: f32) -> f32 {
+    let alpha = material.base_color.a * color_alpha;
+    if (MATERIAL_CLASS & HAS_BASE_COLOR) != 0u {
+        return alpha * sample_material(base_color_texture, base_color_sampler, 0u, uv).a;
+    }
+    return alpha;
+}
+
 struct Shaded {
     surface: Surface,
     alpha: f32,
@@ -56,19 +71,19 @@ struct Shaded {
 fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color: vec4f, front: bool) -> Shaded {
     var base = material.base_color * color;
     if (MATERIAL_CLASS & HAS_BASE_COLOR) != 0u {
-        base *= textureSample(base_color_texture, base_color_sampler, uv_of(0u, uv));
+        base *= sample_material(base_color_texture, base_color_sampler, 0u, uv);
     }
     var metallic = material.metallic;
     var roughness = material.roughness;
     if (MATERIAL_CLASS & HAS_METALLIC_ROUGHNESS) != 0u {
-        let texel = textureSample(metallic_roughness_texture, metallic_roughness_sampler, uv_of(1u, uv));
+        let texel = sample_material(metallic_roughness_texture, metallic_roughness_sampler, 1u, uv);
         roughness *= texel.g;
         metallic *= texel.b;
     }
     let facing = select(-1.0, 1.0, front);
     var n = normalize(normal) * facing;
     if (MATERIAL_CLASS & HAS_NORMAL) != 0u {
-        let texel = textureSample(normal_texture, normal_sampler, uv_of(2u, uv)).xyz * 2.0 - 1.0;
+        let texel = sample_material(normal_texture, normal_sampler, 2u, uv).xyz * 2.0 - 1.0;
         if dot(tangent.xyz, tangent.xyz) > 0.0 {
             // As MikkTSpace bakes: interpolated vectors, not normalized before the sum.
             let bitangent = cross(normal, tangent.xyz) * tangent.w;
@@ -78,12 +93,12 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
     }
     var occlusion = 1.0;
     if (MATERIAL_CLASS & HAS_OCCLUSION) != 0u {
-        let texel = textureSample(occlusion_texture, occlusion_sampler, uv_of(3u, uv));
+        let texel = sample_material(occlusion_texture, occlusion_sampler, 3u, uv);
         occlusion = 1.0 + material.occlusion_strength * (texel.r - 1.0);
     }
     var emissive = material.emissive;
     if (MATERIAL_CLASS & HAS_EMISSIVE) != 0u {
-        emissive *= textureSample(emissive_texture, emissive_sampler, uv_of(4u, uv)).rgb;
+        emissive *= sample_material(emissive_texture, emissive_sampler, 4u, uv).rgb;
     }
     if (MATERIAL_CLASS & IS_UNLIT) != 0u {
         // Black to all light: what is left is the colour itself.

@@ -39,35 +39,67 @@ struct VertexOut {
     @location(7) before: vec3f,
 }
 
-@vertex
-fn vertex(in: VertexIn) -> VertexOut {
-    let index = drawn[in.drawn_index];
-    let i = instances[index];
-    let p = vec4f(in.position, 1.0);
-    let q = vec4f(in.previous_position, 1.0);
-    let world = vec3f(dot(i.world_x, p), dot(i.world_y, p), dot(i.world_z, p));
-    let previous = vec3f(dot(i.previous_x, q), dot(i.previous_y, q), dot(i.previous_z, q));
+// A vertex in the world: unit normal and tangent; a tangent of zero says that there is none.
+struct WorldVertex {
+    position: vec3f,
+    normal: vec3f,
+    tangent: vec4f,
+}
+
+fn instance_position(i: Instance, position: vec3f) -> vec3f {
+    let p = vec4f(position, 1.0);
+    return vec3f(dot(i.world_x, p), dot(i.world_y, p), dot(i.world_z, p));
+}
+
+fn previous_instance_position(i: Instance, position: vec3f) -> vec3f {
+    let p = vec4f(position, 1.0);
+    return vec3f(dot(i.previous_x, p), dot(i.previous_y, p), dot(i.previous_z, p));
+}
+
+// 1, or -1 where the instance's transform turns the winding around.
+fn handedness_of(i: Instance) -> f32 {
+    return select(-1.0, 1.0, dot(i.world_x.xyz, cross(i.world_y.xyz, i.world_z.xyz)) >= 0.0);
+}
+
+fn world_vertex(i: Instance, position: vec3f, normal: vec3f, tangent: vec4f) -> WorldVertex {
     // Normals go by the cofactor matrix: the inverse transpose times the determinant, so without a division.
     let cx = cross(i.world_y.xyz, i.world_z.xyz);
     let cy = cross(i.world_z.xyz, i.world_x.xyz);
     let cz = cross(i.world_x.xyz, i.world_y.xyz);
-    let handedness = select(-1.0, 1.0, dot(i.world_x.xyz, cx) >= 0.0);
-    let normal = handedness * vec3f(dot(cx, in.normal), dot(cy, in.normal), dot(cz, in.normal));
-    let t = in.tangent.xyz;
-    let tangent = vec3f(dot(i.world_x.xyz, t), dot(i.world_y.xyz, t), dot(i.world_z.xyz, t));
+    let handedness = handedness_of(i);
+    let n = handedness * vec3f(dot(cx, normal), dot(cy, normal), dot(cz, normal));
+    let t = vec3f(dot(i.world_x.xyz, tangent.xyz), dot(i.world_y.xyz, tangent.xyz), dot(i.world_z.xyz, tangent.xyz));
+    return WorldVertex(
+        instance_position(i, position),
+        unit_or(n, vec3f(0.0, 1.0, 0.0)),
+        vec4f(unit_or(t, vec3f(0.0)), tangent.w * handedness),
+    );
+}
+
+@vertex
+fn vertex(in: VertexIn) -> VertexOut {
+    let index = drawn[in.drawn_index];
+    let i = instances[index];
+    let world = world_vertex(i, in.position, in.normal, in.tangent);
+    let previous = previous_instance_position(i, in.previous_position);
 
     var out: VertexOut;
-    out.clip = frame.views[0].clip_from_world * vec4f(world, 1.0);
-    out.world = world;
-    out.normal = unit_or(normal, vec3f(0.0, 1.0, 0.0));
-    // Zero stays zero: it says that there is no tangent.
-    out.tangent = vec4f(unit_or(tangent, vec3f(0.0)), in.tangent.w * handedness);
+    out.clip = frame.views[0].clip_from_world * vec4f(world.position, 1.0);
+    out.world = world.position;
+    out.normal = world.normal;
+    out.tangent = world.tangent;
     out.uv = in.uv;
     out.color = in.color;
     out.instance = index;
     out.now = out.clip.xyw;
     out.before = (frame.views[0].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
     return out;
+}
+
+// Motion since the frame before, for x, y, w of clip space then and now.
+fn motion_in_pixels(now: vec3f, before: vec3f) -> vec2f {
+    let moved = now.xy / now.z - before.xy / before.z;
+    return clamp(moved * vec2f(0.5, -0.5) * frame.size, vec2f(-60000.0), vec2f(60000.0));
 }
 
 fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {

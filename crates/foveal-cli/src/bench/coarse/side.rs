@@ -61,8 +61,10 @@ impl<'a> Side<'a> {
 }
 
 fn lighting_ms(stats: &FrameStats) -> f64 {
-    const OTHER: [&str; 5] = [
+    const OTHER: [&str; 7] = [
         "geometry",
+        "binning",
+        "material",
         "light assignment",
         "forward",
         "tone map",

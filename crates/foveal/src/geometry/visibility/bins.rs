@@ -1,0 +1,114 @@
+//! The passes that sort the seen pixels by material.
+
+use super::VisibilityTargets;
+use crate::geometry::{GBuffer, SURFACE_FORMAT};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write};
+use crate::recorder::Recorder;
+use crate::scene::SceneOnGpu;
+use crate::shader;
+
+/// Bytes of `Bin` in `bins.wgsl`; it begins with the arguments of an indirect dispatch.
+pub(super) const BIN_BYTES: u64 = 32;
+/// Pixels a side that one workgroup looks at.
+const TILE: u32 = 16;
+
+/// Where each material's pixels lie.
+#[derive(Debug)]
+pub(super) struct Bins(pub(super) wgpu::Buffer);
+
+impl Bins {
+    pub(super) fn new(gpu: &Gpu, materials: u32) -> Self {
+        Self(gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("material bins"),
+            size: u64::from(materials.max(1)) * BIN_BYTES,
+            usage: wgpu::BufferUsages::STORAGE
+                | wgpu::BufferUsages::INDIRECT
+                | wgpu::BufferUsages::COPY_DST
+                | wgpu::BufferUsages::COPY_SRC,
+            mapped_at_creation: false,
+        }))
+    }
+
+    /// Number of bins.
+    pub(super) fn count(&self) -> u32 {
+        (self.0.size() / BIN_BYTES) as u32
+    }
+}
+
+/// Counts, sums up and scatters.
+#[derive(Debug)]
+pub(super) struct BinPass {
+    count: wgpu::ComputePipeline,
+    sum: wgpu::ComputePipeline,
+    scatter: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl BinPass {
+    pub(super) fn new(gpu: &Gpu) -> Self {
+        let layout = bind_group_layout(
+            &gpu.device,
+            "binning",
+            wgpu::ShaderStages::COMPUTE,
+            &[
+                sampled(wgpu::TextureSampleType::Uint),
+                storage_read(),
+                storage_write(),
+                storage_write(),
+                wgpu::BindingType::StorageTexture {
+                    access: wgpu::StorageTextureAccess::WriteOnly,
+                    format: SURFACE_FORMAT,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                },
+            ],
+        );
+        let module = shader::module(gpu, "binning", shader::BINS);
+        let pipeline = |entry| shader::compute(gpu, "binning", &module, entry, &[&layout], &[]);
+        Self {
+            count: pipeline("count_pixels"),
+            sum: pipeline("sum_bins"),
+            scatter: pipeline("scatter_pixels"),
+            layout,
+        }
+    }
+
+    /// Encodes the passes: fills `bins` and the list of pixels, and empties the surfaces where nothing is seen.
+    pub(super) fn sort(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        target: &GBuffer,
+        visibility: &VisibilityTargets,
+        bins: &Bins,
+    ) {
+        let Some(places) = scene.geometry.places() else {
+            // The scene was checked for them.
+            return;
+        };
+        recorder.encoder.clear_buffer(&bins.0, 0, None);
+        let group = bind_group(
+            &recorder.gpu.device,
+            "binning",
+            &self.layout,
+            &[
+                wgpu::BindingResource::TextureView(&target.identity_view),
+                places.as_entire_binding(),
+                bins.0.as_entire_binding(),
+                visibility.pixels.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&target.surface_view),
+            ],
+        );
+        let size = target.identity_view.texture().size();
+        let tiles = (size.width.div_ceil(TILE), size.height.div_ceil(TILE));
+        let mut pass = recorder.compute_pass("binning");
+        pass.set_bind_group(0, &group, &[]);
+        for (pipeline, (x, y)) in [
+            (&self.count, tiles),
+            (&self.sum, (1, 1)),
+            (&self.scatter, tiles),
+        ] {
+            pass.set_pipeline(pipeline);
+            pass.dispatch_workgroups(x, y, 1);
+        }
+    }
+}

@@ -1,0 +1,162 @@
+// The seen pixels sorted by material: counted, summed up, scattered. After nothing. CPU twin: `twin.rs`.
+//
+// A workgroup looks at 16 x 16 pixels, a thread at 2 x 2 of them. What it finds is gathered in a small hash table
+// first, so that the bins are touched once per workgroup and material.
+
+// Workgroups that a dispatch may have in one dimension.
+const MAX_ROW: u32 = 65535u;
+
+struct Place {
+    first_index: u32,
+    base_vertex: u32,
+    material: u32,
+    reserved: u32,
+}
+
+struct Bin {
+    // Workgroups of 64 pixels, as an indirect dispatch wants them.
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
+    count: atomic<u32>,
+    // Where in `pixels` the bin begins, and how many of its pixels are there already.
+    first: u32,
+    filled: atomic<u32>,
+    reserved_0: u32,
+    reserved_1: u32,
+}
+
+@group(0) @binding(0) var identity: texture_2d<u32>;
+@group(0) @binding(1) var<storage, read> places: array<Place>;
+// One for each material.
+@group(0) @binding(2) var<storage, read_write> bins: array<Bin>;
+// x | y << 16.
+@group(0) @binding(3) var<storage, read_write> pixels: array<u32>;
+@group(0) @binding(4) var surface: texture_storage_2d<rgba32uint, write>;
+
+// The hash table: material + 1, pixels of it, where they go.
+var<workgroup> keys: array<atomic<u32>, 256>;
+var<workgroup> counts: array<atomic<u32>, 256>;
+var<workgroup> starts: array<u32, 256>;
+
+// Material + 1 at a pixel; 0 where nothing is, or where the pixel is another's to stand for.
+fn key_at(texel: vec2u) -> u32 {
+    if any(texel >= textureDimensions(identity)) || !is_listed(texel) {
+        return 0u;
+    }
+    let instance = textureLoad(identity, texel, 0).x;
+    if instance == 0u {
+        return 0u;
+    }
+    return places[instance - 1u].material + 1u;
+}
+
+fn slot_of(key: u32) -> u32 {
+    var slot = (key * 0x9e3779b1u) >> 24u;
+    loop {
+        let found = atomicCompareExchangeWeak(&keys[slot], 0u, key);
+        if found.exchanged || found.old_value == key {
+            break;
+        }
+        // An exchange may fail for no reason: then the slot is tried again.
+        slot = (slot + u32(found.old_value != 0u)) & 255u;
+    }
+    return slot;
+}
+
+fn texel_of(id: vec2u, i: u32) -> vec2u {
+    return id * 2u + vec2u(i & 1u, i >> 1u);
+}
+
+@compute @workgroup_size(8, 8)
+fn count_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    var run_key = 0u;
+    var run = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        let key = key_at(texel_of(id.xy, i));
+        if key != run_key && run > 0u {
+            atomicAdd(&counts[slot_of(run_key)], run);
+            run = 0u;
+        }
+        run_key = key;
+        run += u32(key != 0u);
+    }
+    if run > 0u {
+        atomicAdd(&counts[slot_of(run_key)], run);
+    }
+    workgroupBarrier();
+    for (var slot = local; slot < 256u; slot += 64u) {
+        let found = atomicLoad(&counts[slot]);
+        if found > 0u {
+            atomicAdd(&bins[atomicLoad(&keys[slot]) - 1u].count, found);
+        }
+    }
+}
+
+var<workgroup> sums: array<u32, 256>;
+
+// One workgroup: an inclusive sum over 256 bins at a time (Hillis and Steele 1986).
+@compute @workgroup_size(256)
+fn sum_bins(@builtin(local_invocation_index) local: u32) {
+    let length = arrayLength(&bins);
+    var before = 0u;
+    for (var chunk = 0u; chunk < length; chunk += 256u) {
+        let bin = chunk + local;
+        var count = 0u;
+        if bin < length {
+            count = atomicLoad(&bins[bin].count);
+        }
+        sums[local] = count;
+        workgroupBarrier();
+        for (var stride = 1u; stride < 256u; stride *= 2u) {
+            var left = 0u;
+            if local >= stride {
+                left = sums[local - stride];
+            }
+            workgroupBarrier();
+            sums[local] += left;
+            workgroupBarrier();
+        }
+        if bin < length {
+            let groups = (count + 63u) / 64u;
+            bins[bin].groups_x = min(groups, MAX_ROW);
+            bins[bin].groups_y = (groups + MAX_ROW - 1u) / MAX_ROW;
+            bins[bin].groups_z = 1u;
+            bins[bin].first = before + sums[local] - count;
+        }
+        before += sums[255];
+        workgroupBarrier();
+    }
+}
+
+@compute @workgroup_size(8, 8)
+fn scatter_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    var slots: array<u32, 4>;
+    var within: array<u32, 4>;
+    for (var i = 0u; i < 4u; i++) {
+        let texel = texel_of(id.xy, i);
+        let key = key_at(texel);
+        slots[i] = 256u;
+        if key != 0u {
+            slots[i] = slot_of(key);
+            within[i] = atomicAdd(&counts[slots[i]], 1u);
+        } else if all(texel < textureDimensions(identity)) && textureLoad(identity, texel, 0).x == 0u {
+            textureStore(surface, texel, vec4u(0u));
+        }
+    }
+    workgroupBarrier();
+    for (var slot = local; slot < 256u; slot += 64u) {
+        let found = atomicLoad(&counts[slot]);
+        if found > 0u {
+            let bin = atomicLoad(&keys[slot]) - 1u;
+            starts[slot] = bins[bin].first + atomicAdd(&bins[bin].filled, found);
+        }
+    }
+    workgroupBarrier();
+    for (var i = 0u; i < 4u; i++) {
+        if slots[i] < 256u {
+            let texel = texel_of(id.xy, i);
+            pixels[starts[slots[i]] + within[i]] = texel.x | (texel.y << 16u);
+        }
+    }
+}

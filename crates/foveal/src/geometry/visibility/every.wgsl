@@ -1,0 +1,10 @@
+// Every pixel stands for itself. Before bins.wgsl or resolve.wgsl.
+
+fn is_listed(texel: vec2u) -> bool {
+    return true;
+}
+
+// Pixels across and down for which a listed pixel stands.
+fn extent_of(texel: vec2u) -> vec2u {
+    return vec2u(1u);
+}

@@ -1,0 +1,20 @@
+// The triangle's number comes from the device. After visible.wgsl.
+
+struct VisibleIn {
+    @builtin(instance_index) drawn_index: u32,
+    @location(0) position: vec3f,
+    @location(3) uv: vec4f,
+    @location(4) color: vec4f,
+    // Object space, in the pose of the frame before.
+    @location(5) previous_position: vec3f,
+}
+
+@vertex
+fn vertex_indexed(in: VisibleIn) -> VisibleVertex {
+    return visible_vertex(drawn[in.drawn_index], in.position, in.previous_position, in.uv, in.color.a);
+}
+
+@fragment
+fn visible_indexed(in: VisibleVertex, @builtin(primitive_index) triangle: u32) -> VisibleOut {
+    return visible(in, triangle);
+}

@@ -1,0 +1,19 @@
+// For devices that do not number triangles: drawn without an index buffer, so that a vertex knows its own.
+// After visible.wgsl and attributes.wgsl.
+
+@vertex
+fn vertex_pulled(@builtin(instance_index) drawn_index: u32, @builtin(vertex_index) at: u32) -> VisibleVertex {
+    let index = drawn[drawn_index];
+    let place = places[index];
+    let vertex = place.base_vertex + indices[at];
+    let corner = corner_at(vertex);
+    let previous = bitcast<vec3f>(previous_vertices[vertex * 4u].xyz);
+    var out = visible_vertex(index, corner.position, previous, corner.uv, corner.color.a);
+    out.triangle = (at - place.first_index) / 3u;
+    return out;
+}
+
+@fragment
+fn visible_pulled(in: VisibleVertex) -> VisibleOut {
+    return visible(in, in.triangle);
+}

@@ -1,0 +1,120 @@
+//! The pass that draws triangles.
+
+use super::{TRIANGLE_FORMAT, VisibilityTargets};
+use crate::geometry::{
+    DrawList, GBuffer, IDENTITY_FORMAT, PipelineKey, PipelineRecipe, Pipelines, VertexSource,
+    Window,
+};
+use crate::gpu::Gpu;
+use crate::recorder::{Recorder, overwritten};
+use crate::scene::SceneOnGpu;
+use crate::shader;
+
+/// Draws instance and motion, the triangle's number, and depth.
+#[derive(Debug)]
+pub(super) struct VisiblePass {
+    pipelines: Pipelines,
+    /// Vertices are fetched by the shader, because the device does not number triangles.
+    pulled: bool,
+}
+
+impl VisiblePass {
+    pub(super) fn new(
+        gpu: &Gpu,
+        frame_layout: &wgpu::BindGroupLayout,
+        material_layout: &wgpu::BindGroupLayout,
+        geometry_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let numbered = gpu
+            .device
+            .features()
+            .contains(wgpu::Features::PRIMITIVE_INDEX);
+        let layouts = [frame_layout, material_layout, geometry_layout];
+        let (parts, layouts, vertex, fragment) = if numbered {
+            let vertex = VertexSource::Buffers("vertex_indexed");
+            (
+                shader::VISIBLE_INDEXED,
+                &layouts[..2],
+                vertex,
+                "visible_indexed",
+            )
+        } else {
+            let vertex = VertexSource::Shader("vertex_pulled");
+            (
+                shader::VISIBLE_PULLED,
+                &layouts[..],
+                vertex,
+                "visible_pulled",
+            )
+        };
+        let pipelines = Pipelines::new(PipelineRecipe {
+            label: "visibility",
+            module: shader::module(gpu, "visibility", parts),
+            layout: shader::pipeline_layout(gpu, "visibility", layouts),
+            vertex,
+            fragment,
+            targets: vec![Some(IDENTITY_FORMAT.into()), Some(TRIANGLE_FORMAT.into())],
+            writes_depth: true,
+            constants: Vec::new(),
+            has_mask: true,
+        });
+        Self {
+            pipelines,
+            pulled: !numbered,
+        }
+    }
+
+    /// Of a material only what cuts holes matters here.
+    fn key(key: PipelineKey) -> PipelineKey {
+        const HAS_BASE_COLOR: u32 = 1;
+        PipelineKey {
+            class: if key.masked {
+                key.class & HAS_BASE_COLOR
+            } else {
+                0
+            },
+            ..key
+        }
+    }
+
+    pub(super) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
+        for batch in &list.solid {
+            self.pipelines.prepare(gpu, Self::key(batch.key));
+        }
+    }
+
+    pub(super) fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        visibility: &VisibilityTargets,
+        windows: &[Window],
+    ) {
+        let depth = wgpu::RenderPassDepthStencilAttachment {
+            view: &target.depth_view,
+            depth_ops: Some(wgpu::Operations {
+                load: wgpu::LoadOp::Clear(0.0),
+                store: wgpu::StoreOp::Store,
+            }),
+            stencil_ops: None,
+        };
+        let colors = [
+            overwritten(&target.identity_view),
+            overwritten(&visibility.triangle_view),
+        ];
+        let mut pass = recorder.render_pass("geometry", &colors, Some(depth));
+        if self.pulled {
+            pass.set_bind_group(2, scene.geometry.group(), &[]);
+        } else {
+            scene.geometry.bind(&mut pass);
+        }
+        for &Window { frame, part } in windows {
+            pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
+            pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
+            let pipeline = |key| self.pipelines.get(Self::key(key));
+            DrawList::issue_with(&list.solid, &mut pass, scene, pipeline, self.pulled);
+        }
+    }
+}

@@ -1,0 +1,156 @@
+//! The pass that evaluates materials at the pixels that show them.
+
+use std::collections::BTreeMap;
+
+use bytemuck::{Pod, Zeroable};
+
+use super::VisibilityTargets;
+use super::bins::{BIN_BYTES, Bins};
+use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read, uniform};
+use crate::recorder::Recorder;
+use crate::scene::SceneOnGpu;
+use crate::shader;
+
+/// Most windows that a frame is drawn into at once.
+const MOST_WINDOWS: usize = 8;
+
+/// Mirrors `Windows` in `resolve.wgsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct WindowsUniform {
+    pub(crate) frames: [[f32; 4]; MOST_WINDOWS],
+    pub(crate) parts: [[u32; 4]; MOST_WINDOWS],
+}
+
+impl WindowsUniform {
+    fn new(windows: &[Window]) -> Self {
+        let mut uniform = Self::zeroed();
+        for (i, window) in windows.iter().take(MOST_WINDOWS).enumerate() {
+            uniform.frames[i] = window.frame;
+            uniform.parts[i] = window.part;
+        }
+        uniform
+    }
+}
+
+/// Evaluates materials, one dispatch each.
+#[derive(Debug)]
+pub(super) struct ResolvePass {
+    module: wgpu::ShaderModule,
+    layout: wgpu::PipelineLayout,
+    group_layout: wgpu::BindGroupLayout,
+    constants: [(&'static str, f64); 2],
+    /// By material class.
+    pipelines: BTreeMap<u32, wgpu::ComputePipeline>,
+}
+
+impl ResolvePass {
+    pub(super) fn new(
+        gpu: &Gpu,
+        [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
+        face_normals: FaceNormals,
+        windows: u32,
+    ) -> Self {
+        let uint = sampled(wgpu::TextureSampleType::Uint);
+        let group_layout = bind_group_layout(
+            &gpu.device,
+            "materials of triangles",
+            wgpu::ShaderStages::COMPUTE,
+            &[
+                uint,
+                uint,
+                storage_read(),
+                storage_read(),
+                uniform(),
+                wgpu::BindingType::StorageTexture {
+                    access: wgpu::StorageTextureAccess::WriteOnly,
+                    format: SURFACE_FORMAT,
+                    view_dimension: wgpu::TextureViewDimension::D2,
+                },
+            ],
+        );
+        let written = u8::from(face_normals == FaceNormals::Written);
+        Self {
+            module: shader::module(gpu, "materials of triangles", shader::RESOLVE),
+            layout: shader::pipeline_layout(
+                gpu,
+                "materials of triangles",
+                &[frame, material, geometry, &group_layout],
+            ),
+            group_layout,
+            constants: [
+                ("FACE_NORMAL", f64::from(written)),
+                ("WINDOWS", f64::from(windows)),
+            ],
+            pipelines: BTreeMap::new(),
+        }
+    }
+
+    /// Makes the pipeline for materials of `class` unless it is there.
+    pub(super) fn prepare(&mut self, gpu: &Gpu, class: u32) {
+        self.pipelines.entry(class).or_insert_with(|| {
+            let [face_normal, windows] = self.constants;
+            gpu.device
+                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                    label: Some("materials of triangles"),
+                    layout: Some(&self.layout),
+                    module: &self.module,
+                    entry_point: Some("resolve"),
+                    compilation_options: wgpu::PipelineCompilationOptions {
+                        constants: &[face_normal, windows, ("MATERIAL_CLASS", f64::from(class))],
+                        ..Default::default()
+                    },
+                    cache: None,
+                })
+        });
+    }
+
+    /// Encodes the pass.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
+    pub(super) fn draw(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        visibility: &VisibilityTargets,
+        bins: &Bins,
+        windows: &[Window],
+    ) {
+        let gpu = recorder.gpu;
+        let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("windows"),
+            size: size_of::<WindowsUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let value = WindowsUniform::new(windows);
+        gpu.queue
+            .write_buffer(&uniform, 0, bytemuck::bytes_of(&value));
+        let group = bind_group(
+            &gpu.device,
+            "materials of triangles",
+            &self.group_layout,
+            &[
+                wgpu::BindingResource::TextureView(&target.identity_view),
+                wgpu::BindingResource::TextureView(&visibility.triangle_view),
+                bins.0.as_entire_binding(),
+                visibility.pixels.as_entire_binding(),
+                uniform.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&target.surface_view),
+            ],
+        );
+        let mut pass = recorder.compute_pass("material");
+        pass.set_bind_group(2, scene.geometry.group(), &[]);
+        pass.set_bind_group(3, &group, &[]);
+        for (material, class) in list.solid_materials() {
+            pass.set_pipeline(&self.pipelines[&class]);
+            pass.set_bind_group(1, scene.materials.group(material), &[]);
+            pass.dispatch_workgroups_indirect(&bins.0, u64::from(material) * BIN_BYTES);
+        }
+    }
+}

@@ -1,0 +1,77 @@
+// From triangles to the G-buffer's surfaces: one material's pixels. After frame, surface, vertex, attributes,
+// sample_gradients and material.wgsl, and every.wgsl or what takes its place.
+
+// As in geometry/gbuffer.wgsl.
+override FACE_NORMAL: bool = false;
+// Windows in use, 1 to 8.
+override WINDOWS: u32 = 1u;
+
+struct Bin {
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
+    count: u32,
+    first: u32,
+    filled: u32,
+    reserved_0: u32,
+    reserved_1: u32,
+}
+
+// Parts of the target, and where the frame (both eyes) lies relative to it: left, top, width, height in texels.
+struct Windows {
+    frames: array<vec4f, 8>,
+    parts: array<vec4u, 8>,
+}
+
+@group(3) @binding(0) var identity: texture_2d<u32>;
+@group(3) @binding(1) var triangles: texture_2d<u32>;
+@group(3) @binding(2) var<storage, read> bins: array<Bin>;
+@group(3) @binding(3) var<storage, read> pixels: array<u32>;
+@group(3) @binding(4) var<uniform> windows: Windows;
+@group(3) @binding(5) var surface: texture_storage_2d<rgba32uint, write>;
+
+// The frame around a texel.
+fn frame_around(texel: vec2u) -> vec4f {
+    var found = windows.frames[0];
+    for (var i = 1u; i < WINDOWS; i++) {
+        let part = windows.parts[i];
+        let inside = all(texel >= part.xy) && all(texel < part.xy + part.zw);
+        found = select(found, windows.frames[i], inside);
+    }
+    return found;
+}
+
+@compute @workgroup_size(64)
+fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let bin = bins[material.number];
+    let index = (group.y * bin.groups_x + group.x) * 64u + local;
+    if index >= bin.count {
+        return;
+    }
+    let packed = pixels[bin.first + index];
+    let texel = vec2u(packed & 0xffffu, packed >> 16u);
+    let extent = extent_of(texel);
+    let around = frame_around(texel);
+    // Texels per pixel: sub-samples have their own.
+    let scale = around.zw / frame.target_size;
+    let pixel = (vec2f(texel) + 0.5 * vec2f(extent) - around.xy) / scale;
+    let ndc = ndc_of(in_eye(pixel));
+    let step = vec2f(2.0, -2.0) / (frame.size * scale) * vec2f(extent);
+    let instance = textureLoad(identity, texel, 0).x - 1u;
+    let triangle = textureLoad(triangles, texel, 0).x;
+    let a = attributes_at(frame.views[view_at(pixel)].clip_from_world, instance, triangle, ndc, step);
+    uv_right = a.uv_right;
+    uv_down = a.uv_down;
+    let m = material_at(a.position, a.normal, a.tangent, a.uv, a.color, a.front);
+    var words = pack_surface(m.surface);
+    if FACE_NORMAL {
+        let e = octahedral_from_unit(unit_or(a.face, m.surface.normal));
+        words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
+    }
+    let last = textureDimensions(identity);
+    for (var y = texel.y; y < min(texel.y + extent.y, last.y); y++) {
+        for (var x = texel.x; x < min(texel.x + extent.x, last.x); x++) {
+            textureStore(surface, vec2u(x, y), words);
+        }
+    }
+}

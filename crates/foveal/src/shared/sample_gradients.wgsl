@@ -1,0 +1,17 @@
+// Textures where there are no neighbours: the includer sets how both UV sets change from pixel to pixel.
+// Before material.wgsl.
+
+// Per pixel to the right, per pixel down.
+var<private> uv_right: vec4f;
+var<private> uv_down: vec4f;
+
+fn sample_material(image: texture_2d<f32>, how: sampler, slot: u32, uv: vec4f) -> vec4f {
+    return textureSampleGrad(image, how, uv_of(slot, uv), uv_step(slot, uv_right), uv_step(slot, uv_down));
+}
+
+// As `uv_of`, for differences.
+fn uv_step(slot: u32, uv: vec4f) -> vec2f {
+    let map = material.uv[slot];
+    let p = select(uv.xy, uv.zw, map.x.w > 0.5);
+    return vec2f(dot(map.x.xy, p), dot(map.y.xy, p));
+}
