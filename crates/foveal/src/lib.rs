@@ -35,7 +35,7 @@ pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer};
 pub use settings::{
     Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest, Geometry,
-    LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern, Settings,
-    Shading, ToneMap, View,
+    Kind, LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern,
+    Setting, Settings, Shading, ToneMap, View,
 };
 pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};

@@ -6,11 +6,14 @@ use serde::{Deserialize, Serialize};
 use crate::Error;
 
 mod coarse;
+mod define;
 mod variable;
 
 pub use coarse::{
     Backend, COARSEST_LEVEL, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Shading,
 };
+use define::settings;
+pub use define::{Kind, Setting};
 pub use variable::Geometry;
 
 /// Which objects are drawn.
@@ -137,108 +140,90 @@ pub enum ToneMap {
     Linear,
 }
 
-/// Everything that a user chooses about a frame.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
-pub struct Settings {
-    /// Width in pixels, 1 up to the device's limit.
-    pub width: u32,
-    /// Height in pixels, 1 up to the device's limit.
-    pub height: u32,
-    /// What the picture shows.
-    pub view: View,
-    /// Which objects are drawn. The picture is the same with each.
-    pub culling: Culling,
-    /// How the G-buffer is filled. The picture is the same but for rounding.
-    pub geometry: Geometry,
-    /// How light is reflected.
-    pub lighting: LightingModel,
-    /// Which lights a sample looks at.
-    pub lights: LightAssignment,
-    /// Exposure in stops: radiance is multiplied by 2^exposure before the tone map.
-    pub exposure: f32,
-    /// The tone map.
-    pub tone_map: ToneMap,
-    /// Largest anisotropy of texture filtering, 1 to 16. Lavapipe takes 1 whatever is asked for: its own
-    /// anisotropic filter can take minutes for one triangle.
-    pub anisotropy: u16,
-    /// How edges are smoothed.
-    pub aa: Antialiasing,
-    /// Sub-samples per pixel where `aa` is not none: a square from 4 to 256 for the grid (16 at most with
-    /// msaa), 4 or 8 for the rotated pattern.
-    pub samples: u32,
-    /// Where the sub-samples lie.
-    pub pattern: SamplePattern,
-    /// Which pixels msaa takes for edges.
-    pub edge_test: EdgeTest,
-    /// How many samples the deferred stage shades. All settings below are of coarse shading.
-    pub shading: Shading,
-    /// By what means coarse samples are visited.
-    pub backend: Backend,
-    /// Coarsest level in use, 0 to 8: blocks have at most 2^level pixels a side.
-    pub coarsest_level: u8,
-    /// Where wished levels come from.
-    pub rate: RateSource,
-    /// A second source of wishes.
-    pub rate_other: RateSource,
-    /// What becomes of the second source.
-    pub rate_combine: RateCombine,
-    /// The level of the constant source, 0 to 8.
-    pub rate_level: u8,
-    /// The image source's file. The library opens no files: its caller hands the pixels to
-    /// [`crate::Renderer::set_rate_image`].
-    pub rate_image: String,
-    /// Where the eye looks, as fractions of the picture from its top left corner.
-    pub gaze: [f32; 2],
-    /// Radius around the gaze within which every pixel is shaded, as a fraction of the picture's height.
-    pub fovea_inner: f32,
-    /// Radius from which on the coarsest level is wished, as a fraction of the picture's height.
-    pub fovea_outer: f32,
-    /// How levels follow between the radii: 1 in even steps, above 1 in steps that widen outwards.
-    pub fovea_curve: f32,
-    /// Neighbouring blocks differ by one level at most.
-    pub rate_balance: bool,
-    /// Where pixels at geometric edges are shaded one by one.
-    pub refine_edges: RefineEdges,
-    /// Which of its pixels a block's sample looks at.
-    pub coarse_sample: CoarseSample,
-    /// How samples become pixels.
-    pub composite: Composite,
-}
-
-impl Default for Settings {
-    fn default() -> Self {
-        Self {
-            width: 1280,
-            height: 720,
-            view: View::default(),
-            culling: Culling::default(),
-            geometry: Geometry::default(),
-            lighting: LightingModel::default(),
-            lights: LightAssignment::default(),
-            exposure: 0.0,
-            tone_map: ToneMap::default(),
-            anisotropy: 8,
-            aa: Antialiasing::default(),
-            samples: 4,
-            pattern: SamplePattern::default(),
-            edge_test: EdgeTest::default(),
-            shading: Shading::default(),
-            backend: Backend::default(),
-            coarsest_level: COARSEST_LEVEL,
-            rate: RateSource::default(),
-            rate_other: RateSource::Constant,
-            rate_combine: RateCombine::default(),
-            rate_level: 0,
-            rate_image: String::new(),
-            gaze: [0.5, 0.5],
-            fovea_inner: 0.125,
-            fovea_outer: 0.9,
-            fovea_curve: 1.5,
-            rate_balance: true,
-            refine_edges: RefineEdges::default(),
-            coarse_sample: CoarseSample::default(),
-            composite: Composite::default(),
+settings! {
+    /// Everything that a user chooses about a frame.
+    #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+    #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+    pub struct Settings {
+        "Picture" {
+            /// Width in pixels, 1 up to the device's limit
+            width: u32 = 1280, "Width", Kind::Integer { least: 1, most: 16384 };
+            /// Height in pixels, 1 up to the device's limit
+            height: u32 = 720, "Height", Kind::Integer { least: 1, most: 16384 };
+            /// What the picture shows
+            view: View = View::default(), "View", Kind::choice::<View>();
+            /// Exposure in stops: radiance is multiplied by 2^exposure before the tone map, +1 doubles the light
+            exposure: f32 = 0.0, "Exposure", Kind::Number { least: -8.0, most: 8.0 };
+            /// How radiance becomes display values
+            tone_map: ToneMap = ToneMap::default(), "Tone map", Kind::choice::<ToneMap>();
+        }
+        "Culling" {
+            /// Which objects are drawn: those in the frustum, of these the ones that nothing hides, or all (the
+            /// reference); the picture is the same
+            culling: Culling = Culling::default(), "Culling", Kind::choice::<Culling>();
+        }
+        "Geometry" {
+            /// How the G-buffer is filled: by the rasterizer, or by a visibility buffer whose materials are evaluated once
+            /// per pixel; the picture is the same but for rounding
+            geometry: Geometry = Geometry::default(), "Path", Kind::choice::<Geometry>();
+        }
+        "Lighting" {
+            /// How surfaces reflect light
+            lighting: LightingModel = LightingModel::default(), "Model", Kind::choice::<LightingModel>();
+            /// Which lights a sample looks at: those that reach its cluster, or all of them (the reference)
+            lights: LightAssignment = LightAssignment::default(), "Lights", Kind::choice::<LightAssignment>();
+            /// Largest anisotropy of texture filtering, 1 to 16. Lavapipe takes 1 whatever is asked for: its own
+            /// anisotropic filter can take minutes for one triangle
+            anisotropy: u16 = 8, "Anisotropy", Kind::Integer { least: 1, most: 16 };
+        }
+        "Anti-aliasing" {
+            /// How edges are smoothed: not at all, by shading every sub-sample, or once per surface in a pixel
+            aa: Antialiasing = Antialiasing::default(), "Mode", Kind::choice::<Antialiasing>();
+            /// Sub-samples per pixel: 4, 9, 16, ... up to 256 for the grid (msaa: 16), 4 or 8 for the rotated
+            /// pattern
+            samples: u32 = 4, "Sub-samples", Kind::Integer { least: 4, most: 256 };
+            /// Where the sub-samples lie
+            pattern: SamplePattern = SamplePattern::default(), "Pattern", Kind::choice::<SamplePattern>();
+            /// Which pixels msaa takes for edges: several surfaces, the source's depth difference, or none
+            edge_test: EdgeTest = EdgeTest::default(), "Edge test", Kind::choice::<EdgeTest>();
+        }
+        "Shading rate" {
+            /// One lighting evaluation per pixel, or per tile of a rate map
+            shading: Shading = Shading::default(), "Shading", Kind::choice::<Shading>();
+        }
+        "Coarse shading" {
+            /// By what means tiles are visited; auto measures both
+            backend: Backend = Backend::default(), "Backend", Kind::choice::<Backend>();
+            /// Coarsest level, 0 to 8: tiles of at most 2^N pixels a side
+            coarsest_level: u8 = COARSEST_LEVEL, "Coarsest level", Kind::Integer { least: 0, most: 8 };
+            /// Where wished levels come from: the distance to the gaze, a constant, or an image (black: every
+            /// pixel, white: level 8)
+            rate: RateSource = RateSource::default(), "Rate from", Kind::choice::<RateSource>();
+            /// A second source of wishes
+            rate_other: RateSource = RateSource::Constant, "Second source", Kind::choice::<RateSource>();
+            /// What becomes of the second source: not looked at, or the coarser or finer wish of both
+            rate_combine: RateCombine = RateCombine::default(), "Combine", Kind::choice::<RateCombine>();
+            /// The constant source's level, 0 to 8
+            rate_level: u8 = 0, "Constant level", Kind::Integer { least: 0, most: 8 };
+            /// The image source's file. The library opens no files: its caller hands the pixels to the renderer
+            rate_image: String = String::new(), "Image", Kind::File;
+            /// Where the eye looks, as fractions of the picture from its top left corner
+            gaze: [f32; 2] = [0.5, 0.5], "Gaze", Kind::Place;
+            /// Radius around the gaze where every pixel is shaded, by the picture's height
+            fovea_inner: f32 = 0.125, "Fovea", Kind::Number { least: 0.0, most: 1.0 };
+            /// Radius from which on the coarsest level is wished, by the picture's height
+            fovea_outer: f32 = 0.9, "Periphery", Kind::Number { least: 0.0, most: 2.0 };
+            /// How levels follow between the radii: 1 in even steps, above 1 in steps that widen outwards
+            fovea_curve: f32 = 1.5, "Curve", Kind::Number { least: 0.1, most: 10.0 };
+            /// Whether neighbouring tiles differ by one level at most
+            rate_balance: bool = true, "Balance", Kind::Switch;
+            /// Where geometric edges are shaded more finely: two levels everywhere (graded), pixel by pixel outside the
+            /// periphery (inner) or everywhere, or nowhere
+            refine_edges: RefineEdges = RefineEdges::default(), "Refine edges", Kind::choice::<RefineEdges>();
+            /// Which of its pixels a tile's sample looks at: the centre, or the most typical of five
+            coarse_sample: CoarseSample = CoarseSample::default(), "Sample", Kind::choice::<CoarseSample>();
+            /// How samples become pixels: by continuous patches, by the source's four taps, or as they are
+            composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
         }
     }
 }

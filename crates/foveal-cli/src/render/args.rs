@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use glam::Vec3;
 
-use super::settings::SettingsArgs;
+use super::settings_args::SettingsArgs;
 use crate::failure::usage;
 use crate::values;
 
@@ -56,7 +56,7 @@ pub(crate) struct Args {
 }
 
 /// Where the frame is seen from.
-#[derive(Debug, Clone, clap::Args)]
+#[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Camera")]
 pub(crate) struct CameraArgs {
     /// A camera of the scene, by name or by number from 0; or `overview`: the whole scene from outside; or

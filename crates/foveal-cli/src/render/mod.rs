@@ -6,11 +6,12 @@
 mod args;
 mod camera_path;
 pub(crate) mod clock;
-mod coarse_args;
 mod drawing;
 mod frame_files;
 mod inside;
+mod rate_image;
 mod settings;
+mod settings_args;
 mod stats;
 mod summary;
 mod viewpoint;
@@ -139,7 +140,7 @@ fn prepare(
         })
         .context("cannot start a thread")?;
 
-    let rate_image = coarse_args::rate_image(settings)?;
+    let rate_image = rate_image::rate_image(settings)?;
     // Fails before the scene is there where the size is beyond the device: the thread then ends with the program.
     let mut device_ms = Vec::new();
     let gpu = timed(&mut device_ms, "device", || {
