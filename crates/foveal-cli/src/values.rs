@@ -1,6 +1,10 @@
 //! Values as the command line spells them. Each parser's message completes clap's «invalid value '…' for
 //! '--flag'».
 
+mod variants;
+
+pub(crate) use variants::VariantParser;
+
 use glam::Vec3;
 
 /// Width and height in pixels: `1920x1080`.

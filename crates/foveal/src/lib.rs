@@ -32,7 +32,7 @@ mod testing;
 pub use error::Error;
 pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
-pub use renderer::{Clock, Frame, Renderer};
+pub use renderer::{Clock, Frame, Renderer, Target};
 pub use settings::{
     Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest, Geometry,
     Kind, LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern,

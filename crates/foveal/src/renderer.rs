@@ -12,13 +12,16 @@ use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
 use crate::lights::{ClusterGrid, LightAssigner};
-use crate::output::{OverlayPass, ToneMapPass, ViewPass};
+use crate::output::{OverlayPass, PresentPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{CoarseShading, CountPass, Samples, ShadingPass};
+use crate::shading::{CoarseShading, Samples, ShadingPass};
 use crate::targets::Targets;
-use crate::{CoarseStats, Error, FrameStats, SceneStats, Settings, Shading, Timing};
+use crate::{Error, FrameStats, SceneStats, Settings, Shading};
+use figures::{Counts, InFlight};
+
+mod figures;
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -30,6 +33,16 @@ pub struct Frame<'a> {
     pub camera: &'a Camera,
     /// Where the frame before it was seen from, for motion vectors; `None`: from the same place.
     pub previous_camera: Option<&'a Camera>,
+}
+
+/// A texture of the host's, drawn to with the format of the view: an sRGB one encodes by itself, into any other the
+/// renderer writes sRGB values.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// One layer of one mip of a texture with [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
+    pub view: &'a wgpu::TextureView,
+    /// The format of the view.
+    pub format: wgpu::TextureFormat,
 }
 
 /// Draws scenes.
@@ -44,6 +57,8 @@ pub struct Renderer {
     rate_image: Option<RateImage>,
     scene: SceneOnGpu,
     draw_list: DrawList,
+    present: PresentPass,
+    in_flight: Option<InFlight>,
 }
 
 /// What depends on the settings.
@@ -127,9 +142,11 @@ impl Renderer {
     /// Builds the pipelines and the targets for `settings`; the scene is empty.
     ///
     /// # Errors
-    /// [`Error::Limit`] or [`Error::Setting`] where the settings cannot be met on this device;
+    /// [`Error::Limit`] where the device offers less than [`Gpu::required_limits`]; that or [`Error::Setting`] where
+    /// the settings cannot be met on it;
     /// [`Error::OutOfMemory`] where the targets do not fit.
     pub async fn new(gpu: &Gpu, settings: &Settings, clock: Option<Clock>) -> Result<Self, Error> {
+        gpu.check_limits()?;
         let frame_bindings = FrameBindings::new(gpu);
         let material_layout = material_layout(gpu);
         let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout, None).await?;
@@ -144,6 +161,8 @@ impl Renderer {
             rate_image: None,
             scene,
             draw_list: DrawList::default(),
+            present: PresentPass::new(gpu),
+            in_flight: None,
         })
     }
 
@@ -166,6 +185,8 @@ impl Renderer {
             return Ok(());
         }
         self.scene.geometry.check(&self.gpu, settings.geometry)?;
+        // Its counts are read from targets that go.
+        self.in_flight = None;
         if (Settings {
             width: settings.width,
             height: settings.height,
@@ -247,72 +268,51 @@ impl Renderer {
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
-        let culled = self.submit(frame, &mut cpu);
+        let submitted = self.submit(frame, None, &mut cpu);
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
         let gpu_ms = self.timer.collect(&self.gpu);
-        let coarse = self.coarse_stats(&gpu_ms).await?;
-        let Stages {
-            settings,
-            targets,
-            antialias,
-            ..
-        } = &self.stages;
-        let pixels = u64::from(settings.width) * u64::from(settings.height);
-        let lit = settings.view.is_lit();
-        let mut shaded_samples = match &coarse {
-            Some(coarse) => coarse.shaded_samples(),
-            None => u64::from(lit) * pixels,
-        };
-        let mut edge_fraction = 0.0;
-        if let Some(antialias) = antialias {
-            let counts = antialias.counts(&self.gpu, targets).await?;
-            if !antialias.needs_ordinary() && coarse.is_none() {
-                shaded_samples = 0;
-            }
-            shaded_samples += u64::from(lit) * counts.evaluations;
-            edge_fraction = counts.edge_pixels as f64 / pixels as f64;
+        let counters = self.counters();
+        let mut counts = Counts::default();
+        if let Some(tiles) = counters.tiles {
+            counts.tiles = Some(read_buffer(&self.gpu, tiles).await?);
         }
-        Ok(FrameStats {
-            width: settings.width,
-            height: settings.height,
-            cpu_ms: cpu.stages(),
-            objects_visible: culled.visible,
-            objects_outside: culled.outside,
-            objects_occluded: culled.occluded,
-            occluder_triangles: culled.occluder_triangles,
-            draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
-            triangles: self.draw_list.triangles,
-            shaded_samples,
-            edge_fraction,
-            target_bytes: targets.bytes(),
-            coarse,
-            gpu_ms,
-            frame_ms,
-        })
+        if let Some(edges) = counters.edges {
+            counts.edges = Some(read_buffer(&self.gpu, edges).await?);
+        }
+        Ok(self.figures(submitted, &counts, gpu_ms, frame_ms))
     }
 
-    /// What coarse shading did in the last frame, whose passes took `gpu_ms`; tells the choice of the backend.
-    async fn coarse_stats(&mut self, gpu_ms: &[Timing]) -> Result<Option<CoarseStats>, Error> {
-        let Stages {
-            settings,
-            targets,
-            coarse,
-            view,
-            ..
-        } = &mut self.stages;
-        let (Some(coarse), Some(tiles), None) = (coarse, &targets.coarse, view) else {
-            return Ok(None);
-        };
-        let counts = read_buffer(&self.gpu, &tiles.counts).await?;
-        let tiles = CountPass::tiles(&counts, settings.coarsest_level);
-        let pixels = u64::from(settings.width) * u64::from(settings.height);
-        Ok(Some(coarse.shading.stats(tiles, pixels, gpu_ms)))
+    /// Draws one frame into the host's texture, stretched to its size, and waits for nothing. Given are the figures of an
+    /// earlier frame that has been finished since the last call; a host that draws all the time gets them every few
+    /// frames. The host's own passes may follow at once: they are executed after these.
+    ///
+    /// # Errors
+    /// As [`Renderer::render`]; [`Error::Validation`] where `target` cannot be drawn to.
+    pub async fn render_to(
+        &mut self,
+        frame: &Frame<'_>,
+        target: Target<'_>,
+    ) -> Result<Option<FrameStats>, Error> {
+        let finished = self.finished()?;
+        let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
+        let mut cpu = CpuTimer::start(self.clock);
+        let submitted = self.submit(frame, Some(target), &mut cpu);
+        if self.in_flight.is_none() {
+            self.in_flight = Some(InFlight::new(&self.gpu, submitted, &self.counters(), cpu));
+        }
+        trap.finish().await?;
+        Ok(finished)
     }
 
     /// The frame.
-    fn submit(&mut self, frame: &Frame<'_>, cpu: &mut CpuTimer) -> CullingCounts {
+    fn submit(
+        &mut self,
+        frame: &Frame<'_>,
+        target: Option<Target<'_>>,
+        cpu: &mut CpuTimer,
+    ) -> FrameStats {
         let Self {
             gpu,
             timer,
@@ -320,6 +320,7 @@ impl Renderer {
             stages,
             scene,
             draw_list,
+            present,
             ..
         } = self;
         let Stages {
@@ -419,13 +420,16 @@ impl Renderer {
                 overlay.draw(recorder, tiles, &targets.picture_view);
             }
         }
+        if let Some(target) = target {
+            present.present(recorder, &targets.picture_view, target);
+        }
         timer.resolve(&mut encoder);
         cpu.stage("encode");
 
         gpu.queue.submit([encoder.finish()]);
         timer.end_frame();
         cpu.stage("submit");
-        culled
+        self.submitted(culled, cpu)
     }
 
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes, alpha 255.

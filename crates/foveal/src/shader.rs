@@ -86,6 +86,7 @@ pub(crate) const FORWARD: Parts = &[
     include_str!("forward/forward.wgsl"),
 ];
 pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("output/tone_map.wgsl")];
+pub(crate) const PRESENT: Parts = &[FRAME, include_str!("output/present.wgsl")];
 pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];
 const AA_SAMPLES: &str = include_str!("antialias/samples.wgsl");
 const AA_SURFACES: &str = include_str!("antialias/surfaces.wgsl");

@@ -1,14 +1,14 @@
 //! One frame of anti-aliasing, band by band.
 
 use crate::geometry::{DrawList, GeometryPass};
-use crate::gpu::{Gpu, bind_group, read_buffer};
+use crate::gpu::{Gpu, bind_group};
 use crate::lights::LightAssigner;
 use crate::output::PICTURE_FORMAT;
 use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::shading::ShadingPass;
 use crate::targets::Targets;
-use crate::{Antialiasing, Error, Settings, View, shader};
+use crate::{Antialiasing, Settings, View, shader};
 
 use super::pattern::{Band, Pattern};
 use super::pipelines::{AntialiasPipelines, Edges};
@@ -207,26 +207,24 @@ impl AntialiasStage {
         true
     }
 
-    /// What the last frame shaded.
-    ///
-    /// # Errors
-    /// [`Error::DeviceLost`], [`Error::Validation`].
-    pub(crate) async fn counts(&self, gpu: &Gpu, targets: &Targets) -> Result<EdgeCounts, Error> {
-        let Some(t) = &targets.samples else {
-            return Ok(EdgeCounts::default());
+    /// What the frame shaded after which the targets' queue held these bytes.
+    pub(crate) fn counts(&self, bytes: &[u8], targets: &Targets) -> EdgeCounts {
+        let (Some(t), Ok(queue)) = (
+            &targets.samples,
+            bytemuck::try_pod_read_unaligned::<QueueUniform>(bytes),
+        ) else {
+            return EdgeCounts::default();
         };
-        let bytes = read_buffer(gpu, &t.queue).await?;
-        let queue: QueueUniform = bytemuck::pod_read_unaligned(&bytes);
         let size = targets.picture_view.texture().size();
         let pixels = u64::from(size.width) * u64::from(size.height);
-        Ok(EdgeCounts {
+        EdgeCounts {
             edge_pixels: u64::from(queue.edge_pixels),
             // The device's own sum may have wrapped around.
             evaluations: match self.edges {
                 Edges::All => pixels * u64::from(t.pattern.count()),
                 _ => u64::from(queue.evaluations),
             },
-        })
+        }
     }
 }
 

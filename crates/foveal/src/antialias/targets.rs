@@ -53,7 +53,7 @@ pub(crate) struct SampleTargets {
     pub(crate) samples: GBuffer,
     pub(crate) tally_view: wgpu::TextureView,
     /// [`QueueUniform`].
-    pub(super) queue: wgpu::Buffer,
+    pub(crate) queue: wgpu::Buffer,
     pub(super) entries: wgpu::Buffer,
     pub(super) sums: wgpu::Buffer,
     /// An empty queue, and room for a number.

@@ -14,7 +14,9 @@ pub(crate) use layout::{
 pub(crate) use mips::MipChain;
 #[cfg(test)]
 pub(crate) use readback::read_level;
-pub(crate) use readback::{read_buffer, read_texture, submitted_work_done};
+pub(crate) use readback::{
+    Arriving, Handover, read_buffer, read_texture, submitted_work_done, work_done,
+};
 pub(crate) use target::target;
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;
@@ -54,29 +56,54 @@ impl Gpu {
                 adapter: name,
                 cause: cause.to_string(),
             })?;
-        Ok(Self::from_device(device, queue))
+        let gpu = Self::from_device(device, queue);
+        let seen = gpu.clone();
+        gpu.device
+            .set_device_lost_callback(move |reason, message| match message.as_str() {
+                "" => seen.note_loss(format!("{reason:?}")),
+                message => seen.note_loss(message),
+            });
+        Ok(gpu)
     }
 
-    /// Takes the host's device, which must have been opened with at least [`wgpu::Limits::default`].
-    /// Its uncaptured-error handler is left alone; its device-lost callback is replaced.
+    /// Takes the host's device and leaves all that is the host's alone: its error handler, its device-lost callback,
+    /// its other submissions. The device must offer [`Gpu::required_limits`]; a callback of the host's that hears of its
+    /// loss should call [`Gpu::note_loss`].
     #[must_use]
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        let lost = Arc::new(Mutex::new(None));
-        let seen = Arc::clone(&lost);
-        device.set_device_lost_callback(move |reason, message| {
-            if let Ok(mut slot) = seen.lock() {
-                *slot = Some(if message.is_empty() {
-                    format!("{reason:?}")
-                } else {
-                    message.clone()
-                });
-            }
-        });
         Self {
             device,
             queue,
-            lost,
+            lost: Arc::new(Mutex::new(None)),
         }
+    }
+
+    /// Takes down that the device is gone: from now on the renderer answers with [`Error::DeviceLost`].
+    pub fn note_loss(&self, reason: impl Into<String>) {
+        if let Ok(mut slot) = self.lost.lock() {
+            *slot = Some(reason.into());
+        }
+    }
+
+    /// The limits that every device must offer; no feature is required.
+    #[must_use]
+    pub fn required_limits() -> wgpu::Limits {
+        wgpu::Limits::default()
+    }
+
+    /// [`Error::Limit`] for the first of [`Gpu::required_limits`] that the device does not offer.
+    pub(crate) fn check_limits(&self) -> Result<(), Error> {
+        let mut missing = Ok(());
+        let offered = self.device.limits();
+        Self::required_limits().check_limits_with_fail_fn(&offered, true, |name, value, limit| {
+            missing = Err(Error::Limit {
+                what: format!("the device limit {name} that the renderer needs"),
+                value,
+                limit,
+                hint: ": open the device with Gpu::required_limits".to_owned(),
+            });
+        });
+        missing
     }
 
     /// Features that the renderer uses where they are there; none is required.

@@ -7,7 +7,7 @@ use super::Gpu;
 use crate::Error;
 
 /// A value that a callback hands to a future.
-struct Handover<T>(Arc<Mutex<(Option<T>, Option<Waker>)>>);
+pub(crate) struct Handover<T>(Arc<Mutex<(Option<T>, Option<Waker>)>>);
 
 impl<T> Clone for Handover<T> {
     fn clone(&self) -> Self {
@@ -27,6 +27,16 @@ impl<T> Handover<T> {
                 waker.wake();
             }
         }
+    }
+
+    /// The value, if it is there.
+    pub(crate) fn take_now(&self) -> Option<T> {
+        self.0.lock().ok()?.0.take()
+    }
+
+    /// Whether the value is there.
+    pub(crate) fn is_given(&self) -> bool {
+        self.0.lock().is_ok_and(|slot| slot.0.is_some())
     }
 
     /// Natively someone must drive the device; a browser does it by itself.
@@ -56,10 +66,18 @@ impl<T> Handover<T> {
 
 /// Resolves when everything submitted so far is done.
 pub(crate) async fn submitted_work_done(gpu: &Gpu) -> Result<(), Error> {
+    work_done(gpu, || ()).take(gpu).await
+}
+
+/// What `now` says when everything submitted so far is done.
+pub(crate) fn work_done<T: Send + 'static>(
+    gpu: &Gpu,
+    now: impl FnOnce() -> T + Send + 'static,
+) -> Handover<T> {
     let done = Handover::new();
     let given = done.clone();
-    gpu.queue.on_submitted_work_done(move || given.give(()));
-    done.take(gpu).await
+    gpu.queue.on_submitted_work_done(move || given.give(now()));
+    done
 }
 
 /// The bytes of mip 0 of a texture, rows top to bottom without padding.
@@ -123,6 +141,49 @@ fn read_back_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {
         usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: false,
     })
+}
+
+/// A buffer's bytes on their way to the caller, who does not wait for them.
+pub(crate) struct Arriving {
+    copy: wgpu::Buffer,
+    mapped: Handover<Result<(), wgpu::BufferAsyncError>>,
+}
+
+impl Arriving {
+    /// Encodes the copy of a buffer that can be copied from.
+    pub(crate) fn record(
+        gpu: &Gpu,
+        encoder: &mut wgpu::CommandEncoder,
+        buffer: &wgpu::Buffer,
+    ) -> Self {
+        let copy = read_back_buffer(gpu, buffer.size());
+        encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        Self {
+            copy,
+            mapped: Handover::new(),
+        }
+    }
+
+    /// Call after the submission.
+    pub(crate) fn submitted(&self) {
+        let given = self.mapped.clone();
+        let give = move |result| given.give(result);
+        self.copy.map_async(wgpu::MapMode::Read, .., give);
+    }
+
+    /// Whether the bytes are there.
+    pub(crate) fn is_there(&self) -> bool {
+        self.mapped.is_given()
+    }
+
+    /// The bytes once they are there; empty where the copy failed.
+    pub(crate) fn take(&self) -> Option<Vec<u8>> {
+        let bytes = match self.mapped.take_now()? {
+            Ok(()) => self.copy.get_mapped_range(..).map(|view| view.to_vec()),
+            Err(_) => Ok(Vec::new()),
+        };
+        Some(bytes.unwrap_or_default())
+    }
 }
 
 async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {

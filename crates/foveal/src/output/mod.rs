@@ -1,12 +1,14 @@
 //! Output: what the picture shows, as 8-bit sRGB.
 
 mod overlay;
+mod present;
 mod tone_map;
 #[cfg(test)]
 mod twin;
 mod view;
 
 pub(crate) use overlay::OverlayPass;
+pub(crate) use present::PresentPass;
 pub(crate) use tone_map::ToneMapPass;
 pub(crate) use view::ViewPass;
 

@@ -13,6 +13,7 @@ const ALL: &[(&str, Parts)] = &[
     ("shade list", SHADE_LIST),
     ("forward", FORWARD),
     ("tone map", TONE_MAP),
+    ("present", PRESENT),
     ("view", VIEW),
     ("merge", AA_MERGE),
     ("edge shading", AA_SHADE),

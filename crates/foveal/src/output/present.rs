@@ -1,0 +1,78 @@
+//! The picture into a texture of the host's.
+
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
+use crate::recorder::{Recorder, overwritten};
+use crate::{Target, shader};
+
+/// Draws the picture into targets of any size and of any format that can be drawn to.
+#[derive(Debug)]
+pub(crate) struct PresentPass {
+    layout: wgpu::BindGroupLayout,
+    bilinear: wgpu::Sampler,
+    /// For the format of the last target.
+    pipeline: Option<(wgpu::TextureFormat, wgpu::RenderPipeline)>,
+}
+
+impl PresentPass {
+    pub(crate) fn new(gpu: &Gpu) -> Self {
+        let layout = bind_group_layout(
+            &gpu.device,
+            "present",
+            wgpu::ShaderStages::FRAGMENT,
+            &[
+                sampled(wgpu::TextureSampleType::Float { filterable: true }),
+                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering),
+            ],
+        );
+        let bilinear = gpu.device.create_sampler(&wgpu::SamplerDescriptor {
+            label: Some("present"),
+            mag_filter: wgpu::FilterMode::Linear,
+            min_filter: wgpu::FilterMode::Linear,
+            ..Default::default()
+        });
+        Self {
+            layout,
+            bilinear,
+            pipeline: None,
+        }
+    }
+
+    /// Encodes the pass.
+    pub(crate) fn present(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        picture: &wgpu::TextureView,
+        target: Target<'_>,
+    ) {
+        let gpu = recorder.gpu;
+        let format = target.format;
+        if self.pipeline.as_ref().is_none_or(|(f, _)| *f != format) {
+            let pipeline = shader::full_screen(
+                gpu,
+                "present",
+                &shader::module(gpu, "present", shader::PRESENT),
+                "present",
+                &[recorder.frame.layout(), &self.layout],
+                format,
+                &[("ENCODED_BY_TARGET", f64::from(u8::from(format.is_srgb())))],
+            );
+            self.pipeline = Some((format, pipeline));
+        }
+        let Some((_, pipeline)) = &self.pipeline else {
+            return;
+        };
+        let group = bind_group(
+            &gpu.device,
+            "present",
+            &self.layout,
+            &[
+                wgpu::BindingResource::TextureView(picture),
+                wgpu::BindingResource::Sampler(&self.bilinear),
+            ],
+        );
+        let mut pass = recorder.render_pass("present", &[overwritten(target.view)], None);
+        pass.set_pipeline(pipeline);
+        pass.set_bind_group(1, &group, &[]);
+        pass.draw(0..3, 0..1);
+    }
+}

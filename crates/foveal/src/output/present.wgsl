@@ -1,0 +1,29 @@
+// The picture into the host's texture, stretched to its size. After frame.wgsl.
+
+// Whether the target encodes sRGB by itself.
+override ENCODED_BY_TARGET: bool = false;
+
+@group(1) @binding(0) var picture: texture_2d<f32>;
+@group(1) @binding(1) var bilinear: sampler;
+
+struct PresentVertex {
+    @builtin(position) position: vec4f,
+    @location(0) place: vec2f,
+}
+
+@vertex
+fn full_screen(@builtin(vertex_index) index: u32) -> PresentVertex {
+    let corner = vec2f(f32(index & 1u) * 2.0, f32(index >> 1u) * 2.0);
+    return PresentVertex(vec4f(corner * 2.0 - 1.0, 0.0, 1.0), vec2f(corner.x, 1.0 - corner.y));
+}
+
+@fragment
+fn present(in: PresentVertex) -> @location(0) vec4f {
+    let encoded = textureSampleLevel(picture, bilinear, in.place, 0.0).rgb;
+    if !ENCODED_BY_TARGET {
+        return vec4f(encoded, 1.0);
+    }
+    let low = encoded / 12.92;
+    let high = pow((encoded + 0.055) / 1.055, vec3f(2.4));
+    return vec4f(select(high, low, encoded <= vec3f(0.04045)), 1.0);
+}

@@ -1,0 +1,190 @@
+//! A frame's figures: what the CPU knows at once, and what the device counts and times.
+
+use super::Renderer;
+use crate::antialias::AntialiasStage;
+use crate::culling::CullingCounts;
+use crate::gpu::{Arriving, CpuTimer, Gpu, Handover, work_done};
+use crate::shading::CountPass;
+use crate::{CoarseStats, Error, FrameStats, Timing};
+
+/// What the device counts, each where the settings ask for it.
+#[derive(Default)]
+pub(super) struct Counts<T> {
+    /// Tiles per level of coarse shading.
+    pub(super) tiles: Option<T>,
+    /// Edge pixels and lighting evaluations of anti-aliasing.
+    pub(super) edges: Option<T>,
+}
+
+/// A frame that the device has not finished, or whose figures have not arrived.
+pub(super) struct InFlight {
+    stats: FrameStats,
+    counts: Counts<Arriving>,
+    /// The moment when it was done.
+    done: Handover<f64>,
+}
+
+impl std::fmt::Debug for InFlight {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("InFlight")
+    }
+}
+
+impl InFlight {
+    /// Follows the frame that was submitted last.
+    pub(super) fn new(
+        gpu: &Gpu,
+        stats: FrameStats,
+        counters: &Counts<&wgpu::Buffer>,
+        cpu: CpuTimer,
+    ) -> Self {
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut record = |buffer: Option<&wgpu::Buffer>| {
+            buffer.map(|buffer| Arriving::record(gpu, &mut encoder, buffer))
+        };
+        let counts = Counts {
+            tiles: record(counters.tiles),
+            edges: record(counters.edges),
+        };
+        gpu.queue.submit([encoder.finish()]);
+        for arriving in counts.tiles.iter().chain(&counts.edges) {
+            arriving.submitted();
+        }
+        let done = work_done(gpu, move || cpu.since_start_ms());
+        Self {
+            stats,
+            counts,
+            done,
+        }
+    }
+}
+
+impl Renderer {
+    /// The buffers that the device counts in.
+    pub(super) fn counters(&self) -> Counts<&wgpu::Buffer> {
+        let stages = &self.stages;
+        let tiles = match (&stages.coarse, &stages.targets.coarse, &stages.view) {
+            (Some(_), Some(tiles), None) => Some(&tiles.counts),
+            _ => None,
+        };
+        let samples = stages.targets.samples.as_ref();
+        Counts {
+            tiles,
+            edges: samples
+                .filter(|_| stages.antialias.is_some())
+                .map(|samples| &samples.queue),
+        }
+    }
+
+    /// What the CPU knows of the frame that it has just submitted.
+    pub(super) fn submitted(&self, culled: CullingCounts, cpu: &CpuTimer) -> FrameStats {
+        let settings = &self.stages.settings;
+        FrameStats {
+            width: settings.width,
+            height: settings.height,
+            cpu_ms: cpu.stages(),
+            objects_visible: culled.visible,
+            objects_outside: culled.outside,
+            objects_occluded: culled.occluded,
+            occluder_triangles: culled.occluder_triangles,
+            draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
+            triangles: self.draw_list.triangles,
+            target_bytes: self.stages.targets.bytes(),
+            ..FrameStats::default()
+        }
+    }
+
+    /// The frame in flight, once all of its figures are there.
+    pub(super) fn finished(&mut self) -> Result<Option<FrameStats>, Error> {
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Err(cause) = self.gpu.device.poll(wgpu::PollType::Poll) {
+            return Err(Error::DeviceLost {
+                reason: cause.to_string(),
+            });
+        }
+        self.gpu.check_alive()?;
+        let Some(in_flight) = &mut self.in_flight else {
+            return Ok(None);
+        };
+        let arrived =
+            |arriving: &Option<Arriving>| arriving.as_ref().is_none_or(Arriving::is_there);
+        if !(in_flight.done.is_given()
+            && arrived(&in_flight.counts.tiles)
+            && arrived(&in_flight.counts.edges))
+        {
+            return Ok(None);
+        }
+        let Some(InFlight {
+            stats,
+            counts,
+            done,
+        }) = self.in_flight.take()
+        else {
+            return Ok(None);
+        };
+        // Later frames may be finished too: the last one's times are as good.
+        let mut gpu_ms = Vec::new();
+        loop {
+            let passes = self.timer.collect(&self.gpu);
+            if passes.is_empty() {
+                break;
+            }
+            gpu_ms = passes;
+        }
+        let counts = Counts {
+            tiles: counts.tiles.and_then(|arriving| arriving.take()),
+            edges: counts.edges.and_then(|arriving| arriving.take()),
+        };
+        let frame_ms = done.take_now().unwrap_or_default();
+        Ok(Some(self.figures(stats, &counts, gpu_ms, frame_ms)))
+    }
+
+    /// All figures of a frame, from what the CPU knew, the bytes of the counters and the times.
+    pub(super) fn figures(
+        &mut self,
+        stats: FrameStats,
+        counts: &Counts<Vec<u8>>,
+        gpu_ms: Vec<Timing>,
+        frame_ms: f64,
+    ) -> FrameStats {
+        let coarse = self.coarse_figures(counts, &gpu_ms);
+        let stages = &self.stages;
+        let pixels = u64::from(stats.width) * u64::from(stats.height);
+        let lit = stages.settings.view.is_lit();
+        let mut shaded_samples = match &coarse {
+            Some(coarse) => coarse.shaded_samples(),
+            None => u64::from(lit) * pixels,
+        };
+        let mut edge_fraction = 0.0;
+        if let (Some(antialias), Some(bytes)) = (&stages.antialias, &counts.edges) {
+            let counts = AntialiasStage::counts(antialias, bytes, &stages.targets);
+            if !antialias.needs_ordinary() && coarse.is_none() {
+                shaded_samples = 0;
+            }
+            shaded_samples += u64::from(lit) * counts.evaluations;
+            edge_fraction = counts.edge_pixels as f64 / pixels as f64;
+        }
+        FrameStats {
+            shaded_samples,
+            edge_fraction,
+            coarse,
+            gpu_ms,
+            frame_ms,
+            ..stats
+        }
+    }
+
+    /// What coarse shading did; tells the choice of the backend what the passes took.
+    fn coarse_figures(
+        &mut self,
+        counts: &Counts<Vec<u8>>,
+        gpu_ms: &[Timing],
+    ) -> Option<CoarseStats> {
+        let bytes = counts.tiles.as_ref()?;
+        let settings = &self.stages.settings;
+        let tiles = CountPass::tiles(bytes, settings.coarsest_level);
+        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let coarse = self.stages.coarse.as_mut()?;
+        Some(coarse.shading.stats(tiles, pixels, gpu_ms))
+    }
+}

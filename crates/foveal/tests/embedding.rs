@@ -1,0 +1,181 @@
+//! The renderer as a guest on the host's device.
+
+use foveal::{Antialiasing, Error, Frame, Gpu, Renderer, Settings, Shading, Target};
+use foveal_scene::generate;
+
+fn clock() -> f64 {
+    static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
+    let start = START.get_or_init(std::time::Instant::now);
+    start.elapsed().as_secs_f64() * 1e3
+}
+
+fn host(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+    pollster::block_on(async {
+        let adapter = instance
+            .request_adapter(&Default::default())
+            .await
+            .expect("the tests need a graphics adapter");
+        let descriptor = wgpu::DeviceDescriptor {
+            required_features: Gpu::wanted_features() & adapter.features(),
+            required_limits,
+            ..Default::default()
+        };
+        adapter.request_device(&descriptor).await.expect("a device")
+    })
+}
+
+fn texture(device: &wgpu::Device, format: wgpu::TextureFormat) -> wgpu::Texture {
+    device.create_texture(&wgpu::TextureDescriptor {
+        label: None,
+        size: wgpu::Extent3d {
+            width: 64,
+            height: 40,
+            depth_or_array_layers: 1,
+        },
+        mip_level_count: 1,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format,
+        usage: wgpu::TextureUsages::RENDER_ATTACHMENT | wgpu::TextureUsages::COPY_SRC,
+        view_formats: &[],
+    })
+}
+
+fn bytes(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) -> Vec<u8> {
+    let buffer = device.create_buffer(&wgpu::BufferDescriptor {
+        label: None,
+        size: 64 * 40 * 4,
+        usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    });
+    let mut encoder = device.create_command_encoder(&Default::default());
+    let layout = wgpu::TexelCopyBufferLayout {
+        offset: 0,
+        bytes_per_row: Some(256),
+        rows_per_image: None,
+    };
+    let into = wgpu::TexelCopyBufferInfo {
+        buffer: &buffer,
+        layout,
+    };
+    encoder.copy_texture_to_buffer(texture.as_image_copy(), into, texture.size());
+    queue.submit([encoder.finish()]);
+    buffer.map_async(wgpu::MapMode::Read, .., |_| ());
+    device
+        .poll(wgpu::PollType::wait_indefinitely())
+        .expect("done");
+    buffer.get_mapped_range(..).expect("mapped").to_vec()
+}
+
+/// Renders into textures of the host's, and gives its frames' figures with those of a frame that waited.
+#[test]
+fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
+    let (device, queue) = host(Gpu::required_limits());
+    let gpu = Gpu::from_device(device.clone(), queue.clone());
+    let scene = generate::cornell();
+    let frame = Frame {
+        camera: &scene.cameras[0],
+        previous_camera: None,
+    };
+    for (shading, aa) in [
+        (Shading::Full, Antialiasing::None),
+        (Shading::Coarse, Antialiasing::None),
+        (Shading::Full, Antialiasing::Msaa),
+    ] {
+        let settings = Settings {
+            width: 64,
+            height: 40,
+            shading,
+            aa,
+            backend: foveal::Backend::Compute,
+            ..Settings::default()
+        };
+        pollster::block_on(async {
+            let mut renderer = Renderer::new(&gpu, &settings, Some(clock))
+                .await
+                .expect("fits");
+            renderer.set_scene(&scene).await.expect("fits");
+            let waited = renderer.render(&frame).await.expect("drawn");
+            let expected = renderer.read_picture().await.expect("read");
+            for format in [
+                wgpu::TextureFormat::Rgba8Unorm,
+                wgpu::TextureFormat::Rgba8UnormSrgb,
+            ] {
+                let texture = texture(&device, format);
+                let view = texture.create_view(&Default::default());
+                let target = Target {
+                    view: &view,
+                    format,
+                };
+                let mut figures = None;
+                for _ in 0..1000 {
+                    figures = renderer.render_to(&frame, target).await.expect("drawn");
+                    if figures.is_some() {
+                        break;
+                    }
+                    std::thread::sleep(std::time::Duration::from_millis(2));
+                }
+                let figures = figures.expect("a frame is finished within two seconds");
+                assert_eq!(figures.shaded_samples, waited.shaded_samples);
+                assert_eq!(figures.edge_fraction, waited.edge_fraction);
+                assert_eq!(figures.draws, waited.draws);
+                assert_eq!(figures.gpu_ms.is_empty(), waited.gpu_ms.is_empty());
+                assert!(figures.frame_ms > 0.0);
+                let shown = bytes(&device, &queue, &texture);
+                let difference = shown
+                    .iter()
+                    .zip(&expected)
+                    .map(|(a, b)| a.abs_diff(*b))
+                    .max();
+                let most = u8::from(format.is_srgb());
+                assert!(difference <= Some(most), "{format:?}: {difference:?}");
+            }
+        });
+    }
+}
+
+#[test]
+fn a_host_with_too_little_is_told_what_is_missing() {
+    let (device, queue) = host(wgpu::Limits {
+        max_storage_buffers_per_shader_stage: 4,
+        ..wgpu::Limits::default()
+    });
+    let gpu = Gpu::from_device(device, queue);
+    let error = pollster::block_on(Renderer::new(&gpu, &Settings::default(), None));
+    let error = error.expect_err("four storage buffers are too few");
+    assert!(matches!(error, Error::Limit { .. }), "{error}");
+    assert!(
+        error
+            .to_string()
+            .contains("max_storage_buffers_per_shader_stage"),
+        "{error}"
+    );
+}
+
+#[test]
+fn the_hosts_own_handlers_stay_in_place() {
+    let (device, queue) = host(Gpu::required_limits());
+    let (sender, lost) = std::sync::mpsc::channel();
+    device.set_device_lost_callback(move |_, _| {
+        let _ = sender.send(());
+    });
+    let gpu = Gpu::from_device(device.clone(), queue);
+    let settings = Settings {
+        width: 32,
+        height: 32,
+        ..Settings::default()
+    };
+    let mut renderer = pollster::block_on(Renderer::new(&gpu, &settings, None)).expect("fits");
+    device.destroy();
+    let _ = device.poll(wgpu::PollType::wait_indefinitely());
+    lost.recv().expect("the host's callback was called");
+    gpu.note_loss("the host said so");
+    let scene = generate::cornell();
+    let frame = Frame {
+        camera: &scene.cameras[0],
+        previous_camera: None,
+    };
+    let error = pollster::block_on(renderer.render(&frame)).expect_err("the device is gone");
+    assert!(error.to_string().contains("the host said so"), "{error}");
+}
