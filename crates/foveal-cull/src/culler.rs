@@ -180,6 +180,7 @@ impl Culler {
             },
         });
         self.draw(occluders, options.budget, radius, threads);
+        self.buffer.summarize();
         Ok(())
     }
 

@@ -40,16 +40,16 @@ pub(crate) fn decode(code: i16) -> f32 {
 /// Depth of 64 pixels, row by row.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct DepthBlock(pub(crate) [[i16; 16]; 4]);
+pub(crate) struct DepthBlock(pub(crate) [i16; 64]);
 
 /// What partly covered pixels of a block have so far. Bit `8 * row + column` of a plane is a pixel.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct PartialBlock {
     /// Planes by sample column, then sample row.
-    pub(crate) planes: [[u64; 4]; 4],
+    pub(crate) planes: [u64; 16],
     /// Farthest depth so far.
-    pub(crate) depth: [[i16; 16]; 4],
+    pub(crate) depth: [i16; 64],
     /// The plane of pixel centres.
     pub(crate) center: u64,
 }
@@ -73,34 +73,61 @@ pub(crate) struct DepthBuffer {
     /// Farthest depth per block.
     pub(crate) min: Vec<i16>,
     pub(crate) state: Vec<u8>,
+    /// Once a frame is complete: farthest depths of blocks, then of 2x2, 4x4, ... blocks up to the whole, each
+    /// level as if it were as large as the first, and one more value.
+    pub(crate) coarse: Vec<i16>,
 }
 
 impl DepthBuffer {
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let (blocks_x, blocks_y) = (width.div_ceil(BLOCK), height.div_ceil(BLOCK));
         let n = (blocks_x * blocks_y) as usize;
+        let levels = 33 - (blocks_x.max(blocks_y) - 1).leading_zeros();
         Self {
             width,
             height,
             blocks_x,
             blocks_y,
-            depth: vec![DepthBlock([[EMPTY; 16]; 4]); n],
+            depth: vec![DepthBlock([EMPTY; 64]); n],
             partial: vec![
                 PartialBlock {
-                    planes: [[0; 4]; 4],
-                    depth: [[i16::MAX; 16]; 4],
+                    planes: [0; 16],
+                    depth: [i16::MAX; 64],
                     center: 0
                 };
                 n
             ],
             min: vec![EMPTY; n],
             state: vec![STATE_EMPTY; n],
+            coarse: vec![EMPTY; n * levels as usize + 1],
+        }
+    }
+
+    /// Fits the coarse levels to the blocks.
+    pub(crate) fn summarize(&mut self) {
+        let n = self.min.len();
+        self.coarse[..n].copy_from_slice(&self.min);
+        let stride = self.blocks_x as usize;
+        let (mut w, mut h) = (stride, self.blocks_y as usize);
+        let mut rest = &mut self.coarse[..];
+        while w > 1 || h > 1 {
+            let (below, above) = rest.split_at_mut(n);
+            for y in 0..h.div_ceil(2) {
+                let first = &below[2 * y * stride..][..w];
+                let second = &below[(2 * y + 1).min(h - 1) * stride..][..w];
+                let pairs = first.chunks(2).zip(second.chunks(2));
+                for (out, (a, b)) in above[y * stride..].iter_mut().zip(pairs) {
+                    *out = a.iter().chain(b).fold(i16::MAX, |m, &v| m.min(v));
+                }
+            }
+            (w, h, rest) = (w.div_ceil(2), h.div_ceil(2), above);
         }
     }
 
     pub(crate) fn clear(&mut self) {
         self.min.fill(EMPTY);
         self.state.fill(STATE_EMPTY);
+        self.coarse.fill(EMPTY);
     }
 
     /// Splits into horizontal bands of block rows that threads own.
@@ -123,7 +150,7 @@ impl DepthBuffer {
             return EMPTY;
         }
         let i = (y % BLOCK * BLOCK + x % BLOCK) as usize;
-        self.depth[b].0[i / 16][i % 16]
+        self.depth[b].0[i]
     }
 }
 

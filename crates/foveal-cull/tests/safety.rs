@@ -97,9 +97,11 @@ proptest! {
         for n in [1, 4] {
             prop_assert!(wrongly_culled(&scene, &view.eye, (w, h), n, &by_tree).is_empty());
         }
-        culler.set_instruction_set(InstructionSet::Portable);
-        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
-        prop_assert_eq!(&image, &depth(&culler));
+        for set in [InstructionSet::Portable, InstructionSet::Avx2, InstructionSet::Avx512] {
+            culler.set_instruction_set(set);
+            prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
+            prop_assert_eq!(&image, &depth(&culler));
+        }
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! From a projected box to an answer: frustum, size, then the depth buffer; for one eye, two, or a radius.
 
+use super::faces::Planes;
 use super::near::{Clipped, clip_box};
-use super::project::{Boxes8, Projected8, Screen, project};
+use super::project::{Boxes8, Coarse, Projected8, ROUNDING, Screen, project};
 use super::test::{PixelRect, hidden};
 use crate::depth::{DepthBuffer, SAMPLES, encode};
 use crate::simd::{Kernel, Lanes};
@@ -9,9 +10,13 @@ use crate::view::{Camera, frustum_planes};
 use crate::{Aabb, View, Visibility};
 use glam::{DVec3, Vec3};
 
-/// Boxes grow by this on the screen before they are tested, samples (a quarter pixel each): more than all
-/// rounding, and enough that a box which reaches an occluder's border also asks what is behind it.
-const DILATE: f32 = 1.0;
+/// Boxes grow by this on the screen before they are tested, samples: their rectangles then touch every pixel
+/// that has a sample within one sample of them. That is more than all rounding, and enough that a box which
+/// reaches an occluder's border also asks what is behind it.
+const DILATE: f32 = 0.5;
+/// The same where not only samples count but all that lies between them.
+const DILATE_AROUND: f32 = 1.0;
+
 /// What queries need to know of the frame that was rasterized.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
@@ -24,12 +29,14 @@ pub(crate) struct Frame {
 /// A frame, as queries see it.
 pub(crate) struct Query<'a> {
     pub(crate) buffer: &'a DepthBuffer,
-    pub(crate) screen: Screen,
+    pub(crate) screen: Screen<'a>,
     pub(crate) occlusion: bool,
     /// `threshold² * tan(fov / 2)`.
     pub(crate) small: f32,
     /// For a result that holds around the eye.
     around: Option<Around>,
+    /// For boxes whose rectangle does not say enough; only for one eye at its exact place.
+    planes: Option<Planes>,
 }
 
 impl<'a> Query<'a> {
@@ -50,11 +57,20 @@ impl<'a> Query<'a> {
             width: (buffer.width * SAMPLES) as f32,
             height: (buffer.height * SAMPLES) as f32,
             far_depth: (camera.far_depth * (1.0 - 1e-5)) as f32,
-            dilate: DILATE,
-            grow: 6e-7 * from_origin.length() as f32,
+            dilate: if camera.radius > 0.0 {
+                DILATE_AROUND
+            } else {
+                DILATE
+            },
+            grow: ROUNDING * from_origin.length() as f32,
+            coarse: frame.occlusion.then(|| Coarse::new(buffer)).flatten(),
         };
         let t = f64::from(frame.occludee_size_threshold);
+        let planes = (camera.radius == 0.0)
+            .then(|| Planes::new(camera, origin, screen.width, screen.height))
+            .flatten();
         Self {
+            planes,
             buffer,
             screen,
             occlusion: frame.occlusion,
@@ -68,33 +84,19 @@ impl<'a> Query<'a> {
         }
     }
 
-    /// Centre and half extent for the kernels, grown against rounding; NaN for what is not a volume.
+    /// Answers for one of eight projected boxes. `object`: a single one, which may be too small, and whose
+    /// faces are looked at where its rectangle does not say enough.
     #[inline(always)]
-    pub(crate) fn prepare(b: &Aabb) -> (Vec3, Vec3) {
-        let (center, half) = (b.center(), b.half_extent());
-        let reach = center.abs().max_element() + half.max_element();
-        let valid = b.min.cmple(b.max).all();
-        (
-            center,
-            if valid {
-                half + 6e-7 * reach
-            } else {
-                Vec3::NAN
-            },
-        )
-    }
-
-    /// Answers for one of eight projected boxes. `object`: a single one, which may be too small.
-    #[inline(always)]
-    pub(crate) fn answer(
+    pub(crate) fn answer<L: Lanes>(
         &self,
+        l: L,
         p: &Projected8,
         i: usize,
         boxes: &Boxes8,
         object: bool,
     ) -> Visibility {
         if self.around.is_some() {
-            return self.answer_around(p, i, boxes, object);
+            return self.answer_around(l, p, i, boxes, object);
         }
         if p.outside >> i & 1 != 0 {
             return Visibility::Outside;
@@ -103,9 +105,27 @@ impl<'a> Query<'a> {
             return Visibility::Small;
         }
         if p.crossing >> i & 1 != 0 {
-            return self.answer_crossing(i, boxes);
+            return self.answer_crossing(l, i, boxes);
         }
-        self.answer_rect([p.x0[i], p.y0[i], p.x1[i], p.y1[i]], p.depth[i])
+        if p.hidden >> i & 1 != 0 {
+            return Visibility::Occluded;
+        }
+        if !self.occlusion {
+            return Visibility::Visible;
+        }
+        let rect = PixelRect {
+            x0: p.pixels[0][i] as u32,
+            y0: p.pixels[1][i] as u32,
+            x1: p.pixels[2][i] as u32,
+            y1: p.pixels[3][i] as u32,
+        };
+        let code = p.code[i].clamp(-32768, 32767) as i16;
+        // Where even the middle lies before all that is known, nothing closer will hide the box.
+        let [x, y, middle] = [0, 1, 2].map(|k| p.middle[k][i]);
+        if object && middle > i32::from(self.buffer.pixel(x as u32, y as u32)) {
+            return Visibility::Visible;
+        }
+        self.answer_rect(l, rect, code, object.then(|| place(boxes, i)))
     }
 
     #[inline(always)]
@@ -120,31 +140,53 @@ impl<'a> Query<'a> {
     }
 
     #[inline(always)]
-    fn answer_rect(&self, [x0, y0, x1, y1]: [f32; 4], depth: f32) -> Visibility {
+    fn answer_rect<L: Lanes>(
+        &self,
+        l: L,
+        rect: PixelRect,
+        code: i16,
+        place: Option<(Vec3, Vec3)>,
+    ) -> Visibility {
         if !self.occlusion {
             return Visibility::Visible;
         }
-        let rect = PixelRect::from_samples(x0, y0, x1, y1, self.buffer.width, self.buffer.height);
-        if hidden(self.buffer, rect, encode(depth)) {
+        let place = place.map(|(center, half)| (center, half + self.screen.grow));
+        let faces = self.planes.as_ref().zip(place);
+        if hidden(l, self.buffer, rect, code, faces) {
             Visibility::Occluded
         } else {
             Visibility::Visible
         }
     }
 
-    #[cold]
-    fn answer_crossing(&self, i: usize, boxes: &Boxes8) -> Visibility {
+    #[inline(always)]
+    fn answer_crossing<L: Lanes>(&self, l: L, i: usize, boxes: &Boxes8) -> Visibility {
         let (center, half) = place(boxes, i);
         match clip_box(&self.screen, center, half + self.screen.grow) {
             Clipped::Outside => Visibility::Outside,
             Clipped::Visible => Visibility::Visible,
-            Clipped::Rect(rect, depth) => self.answer_rect(rect, depth),
+            Clipped::Rect(rect, depth) => {
+                self.answer_rect(l, self.pixels(rect), encode(depth), Some((center, half)))
+            }
         }
+    }
+
+    #[inline(always)]
+    fn pixels(&self, samples: [f32; 4]) -> PixelRect {
+        PixelRect::from_samples(samples, self.buffer.width, self.buffer.height)
     }
 
     /// The same for two eyes or a validity radius: the frusta are tested one by one, and what the buffer of
     /// the middle cannot answer for all of them is visible.
-    fn answer_around(&self, p: &Projected8, i: usize, boxes: &Boxes8, object: bool) -> Visibility {
+    #[inline(always)]
+    fn answer_around<L: Lanes>(
+        &self,
+        l: L,
+        p: &Projected8,
+        i: usize,
+        boxes: &Boxes8,
+        object: bool,
+    ) -> Visibility {
         let Some(around) = &self.around else {
             return Visibility::Visible;
         };
@@ -170,7 +212,8 @@ impl<'a> Query<'a> {
         if cut && p.depth[i] >= around.clamp_depth {
             return Visibility::Visible;
         }
-        self.answer_rect([p.x0[i], p.y0[i], p.x1[i], p.y1[i]], p.depth[i])
+        let rect = self.pixels([p.x0[i], p.y0[i], p.x1[i], p.y1[i]]);
+        self.answer_rect(l, rect, encode(p.depth[i]), None)
     }
 }
 
@@ -205,16 +248,43 @@ impl Kernel for Flat<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
-        for (boxes, results) in self.boxes.chunks(8).zip(self.results.chunks_mut(8)) {
-            let mut eight = Boxes8::NONE;
-            for (i, b) in boxes.iter().enumerate() {
-                let (c, h) = Query::prepare(b);
-                eight.set(i, c, h);
-            }
-            let p = project(l, &self.query.screen, &eight);
+        let (whole, rest) = self.boxes.as_chunks::<8>();
+        let (results, last) = self.results.split_at_mut(whole.len() * 8);
+        let (results, _) = results.as_chunks_mut::<8>();
+        for (boxes, results) in whole.iter().zip(results) {
+            self.query.answer_eight(l, boxes, results);
+        }
+        if !rest.is_empty() {
+            let mut boxes = [Aabb::EMPTY; 8];
+            boxes[..rest.len()].copy_from_slice(rest);
+            let mut results = [Visibility::Visible; 8];
+            self.query.answer_eight(l, &boxes, &mut results);
+            last.copy_from_slice(&results[..rest.len()]);
+        }
+    }
+}
+
+impl Query<'_> {
+    /// What most boxes are is known for all eight at once; the others are looked at one by one.
+    #[inline(always)]
+    fn answer_eight<L: Lanes>(&self, l: L, boxes: &[Aabb; 8], results: &mut [Visibility; 8]) {
+        let eight = Boxes8::of(l, boxes);
+        let p = project(l, &self.screen, &eight);
+        let mut open = 0xffu32;
+        if self.around.is_none() && self.small <= 0.0 {
+            open &= !(p.outside | p.hidden);
             for (i, r) in results.iter_mut().enumerate() {
-                *r = self.query.answer(&p, i, &eight, true);
+                *r = if p.outside >> i & 1 != 0 {
+                    Visibility::Outside
+                } else {
+                    Visibility::Occluded
+                };
             }
+        }
+        while open != 0 {
+            let i = open.trailing_zeros() as usize;
+            open &= open - 1;
+            results[i] = self.answer(l, &p, i, &eight, true);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Queries: which boxes can be seen.
 
 pub(crate) mod answer;
+pub(crate) mod faces;
 pub(crate) mod near;
 pub(crate) mod project;
 pub(crate) mod test;

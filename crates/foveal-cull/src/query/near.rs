@@ -18,7 +18,7 @@ pub(crate) enum Clipped {
     Rect([f32; 4], f32),
 }
 
-pub(crate) fn clip_box(s: &Screen, center: Vec3, half: Vec3) -> Clipped {
+pub(crate) fn clip_box(s: &Screen<'_>, center: Vec3, half: Vec3) -> Clipped {
     if !(center.is_finite() && half.is_finite() && half.cmpge(Vec3::ZERO).all()) {
         return Clipped::Visible;
     }
@@ -110,7 +110,7 @@ pub(crate) fn clip_box(s: &Screen, center: Vec3, half: Vec3) -> Clipped {
 
 /// Whether the middle of the near rectangle is inside the box. Solved in clip space: the point with X/W, Y/W
 /// in the middle of the screen and Z = W is a combination of the box's axes with factors of at most one.
-fn contains_near_center(s: &Screen, rows: &[DVec4; 4], center: Vec3, half: Vec3) -> bool {
+fn contains_near_center(s: &Screen<'_>, rows: &[DVec4; 4], center: Vec3, half: Vec3) -> bool {
     let m = glam::DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
     let inverse = m.inverse();
     if !inverse.is_finite() {

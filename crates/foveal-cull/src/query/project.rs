@@ -1,6 +1,11 @@
 //! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
 
+use crate::Aabb;
+use crate::depth::{BLOCK, DepthBuffer, SAMPLES};
 use crate::simd::{Lanes, four};
+
+/// Relative growth of boxes against rounding.
+pub(crate) const ROUNDING: f32 = 6e-7;
 
 /// Eight boxes by coordinate.
 #[derive(Clone, Copy, Debug)]
@@ -16,6 +21,36 @@ impl Boxes8 {
         center: [[f32::NAN; 8]; 3],
         half: [[f32::NAN; 8]; 3],
     };
+
+    /// Centres and half extents of eight boxes, grown against rounding; NaN for what is not a volume.
+    #[inline(always)]
+    pub(crate) fn of<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Self {
+        let rows: [[f32; 6]; 8] = core::array::from_fn(|i| {
+            let (a, b) = (boxes[i].min, boxes[i].max);
+            [a.x, a.y, a.z, b.x, b.y, b.z]
+        });
+        let v = l.turn(&rows);
+        let half = l.splat(0.5);
+        let (mut eight, mut reach) = (Self::NONE, [l.splat(0.0); 2]);
+        let mut valid = l.isplat(-1);
+        let (mut center, mut extent) = ([half; 3], [half; 3]);
+        for k in 0..3 {
+            let (lo, hi) = (l.mul(v[k], half), l.mul(v[k + 3], half));
+            (center[k], extent[k]) = (l.add(lo, hi), l.sub(hi, lo));
+            valid = l.iandnot(l.lt(v[k + 3], v[k]), valid);
+            reach = [
+                l.max(reach[0], l.abs(center[k])),
+                l.max(reach[1], extent[k]),
+            ];
+        }
+        let grow = l.mul(l.add(reach[0], reach[1]), l.splat(ROUNDING));
+        for k in 0..3 {
+            l.store(center[k], &mut eight.center[k]);
+            let grown = l.select(valid, l.add(extent[k], grow), l.splat(f32::NAN));
+            l.store(grown, &mut eight.half[k]);
+        }
+        eight
+    }
 
     pub(crate) fn set(&mut self, lane: usize, center: glam::Vec3, half: glam::Vec3) {
         for axis in 0..3 {
@@ -35,12 +70,18 @@ pub(crate) struct Projected8 {
     pub(crate) y1: [f32; 8],
     /// Nearest depth, raised for rounding.
     pub(crate) depth: [f32; 8],
-    /// Smallest W: distance for perspective views.
-    pub(crate) distance: [f32; 8],
+    /// Pixels of the rectangle on the screen, inclusive: left, top, right, bottom.
+    pub(crate) pixels: [[i32; 8]; 4],
+    /// Code of the nearest depth.
+    pub(crate) code: [i32; 8],
+    /// The pixel that the box's middle lies in, and the code of its depth; a very low one beside the screen.
+    pub(crate) middle: [[i32; 8]; 3],
     /// Bit per box: certainly outside the frustum.
     pub(crate) outside: u32,
     /// Bit per box: in front of the near plane in part, or not a volume; the other fields mean nothing.
     pub(crate) crossing: u32,
+    /// Bit per box: certainly behind what covers its rectangle, where the screen knows that.
+    pub(crate) hidden: u32,
 }
 
 impl Projected8 {
@@ -50,15 +91,18 @@ impl Projected8 {
         y0: [0.0; 8],
         y1: [0.0; 8],
         depth: [0.0; 8],
-        distance: [0.0; 8],
+        pixels: [[0; 8]; 4],
+        code: [0; 8],
+        middle: [[0; 8]; 3],
         outside: 0,
         crossing: 0,
+        hidden: 0,
     };
 }
 
 /// What boxes are projected with.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Screen {
+pub(crate) struct Screen<'a> {
     /// Clip rows in the space of the boxes.
     pub(crate) rows: [[f32; 4]; 4],
     /// Samples.
@@ -70,10 +114,46 @@ pub(crate) struct Screen {
     pub(crate) dilate: f32,
     /// By how much boxes grow on each side, metres.
     pub(crate) grow: f32,
+    /// Boxes are tested against it at once.
+    pub(crate) coarse: Option<Coarse<'a>>,
+}
+
+/// The summary of a finished depth buffer.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Coarse<'a> {
+    buffer: &'a DepthBuffer,
+}
+
+impl<'a> Coarse<'a> {
+    /// `None` where the summary is too large to be numbered by its kernel.
+    pub(crate) fn new(buffer: &'a DepthBuffer) -> Option<Self> {
+        (buffer.coarse.len() < 1 << 24).then_some(Self { buffer })
+    }
+
+    /// The farthest depth in rectangles of pixels (left, top, right, bottom, inclusive) or somewhat farther: of
+    /// the at most four values that cover one on the finest level where four do.
+    #[inline(always)]
+    fn farthest<L: Lanes>(self, l: L, pixels: [L::I; 4]) -> L::I {
+        let block = l.isplat(BLOCK.trailing_zeros() as i32);
+        let [x0, y0, x1, y1] = four!(i => l.ishr(pixels[i], block));
+        // The smallest `up` with `span <= 2^up`.
+        let span = l.imax(l.isub(x1, x0), l.isub(y1, y0));
+        let up = l.ibits(l.imax(l.isub(span, l.isplat(1)), l.isplat(0)));
+        let stride = l.isplat(self.buffer.blocks_x as i32);
+        let level = l.imul(up, l.isplat(self.buffer.min.len() as i32));
+        let [x0, y0, x1, y1] = four!(i => l.ishr([x0, y0, x1, y1][i], up));
+        let (top, bottom) = (
+            l.iadd(level, l.imul(y0, stride)),
+            l.iadd(level, l.imul(y1, stride)),
+        );
+        let corners = [(top, x0), (top, x1), (bottom, x0), (bottom, x1)];
+        let v = four!(i => l.igather(&self.buffer.coarse, l.iadd(corners[i].0, corners[i].1)));
+        l.imin(l.imin(v[0], v[1]), l.imin(v[2], v[3]))
+    }
 }
 
 #[inline(always)]
-pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 {
+pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Projected8 {
     let c = [
         l.load(&boxes.center[0]),
         l.load(&boxes.center[1]),
@@ -121,14 +201,43 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen, boxes: &Boxes8) -> Projected8 
     );
     let off = l.iand(beyond, l.ior(off, l.lt(depth, l.splat(s.far_depth))));
     let mut p = Projected8::NONE;
+    p.outside = l.movemask(l.ior(behind, off));
+    p.crossing = !l.movemask(beyond) & !p.outside & 0xff;
     l.store(x0, &mut p.x0);
     l.store(x1, &mut p.x1);
     l.store(y0, &mut p.y0);
     l.store(y1, &mut p.y1);
     l.store(depth, &mut p.depth);
-    l.store(w_near, &mut p.distance);
-    p.outside = l.movemask(l.ior(behind, off));
-    p.crossing = !l.movemask(beyond) & !p.outside & 0xff;
+    let pixel = l.splat(1.0 / SAMPLES as f32);
+    let right = l.splat(s.width / SAMPLES as f32 - 1.0);
+    let bottom = l.splat(s.height / SAMPLES as f32 - 1.0);
+    let clamped = four!(i => {
+        let v = l.mul([x0, y0, x1, y1][i], pixel);
+        let last = [right, bottom, right, bottom][i];
+        l.trunc(l.min(l.max(v, zero), last))
+    });
+    for (v, to) in clamped.iter().zip(&mut p.pixels) {
+        l.istore(*v, to);
+    }
+    let code = l.codes(l.max(depth, zero));
+    l.istore(code, &mut p.code);
+    if let Some(coarse) = s.coarse {
+        let behind = l.isub(code, coarse.farthest(l, clamped));
+        p.hidden = l.movemask(l.iand(beyond, behind)) & !p.outside;
+    }
+    let w = l.div(pixel, wc);
+    let x = l.mul(dot(l, &c, &s.rows[0]), w);
+    let y = l.mul(dot(l, &c, &s.rows[1]), w);
+    let z = l.mul(zc, l.mul(w, l.splat(SAMPLES as f32)));
+    l.istore(l.trunc(l.min(l.max(x, zero), right)), &mut p.middle[0]);
+    l.istore(l.trunc(l.min(l.max(y, zero), bottom)), &mut p.middle[1]);
+    // Beside the screen it says nothing.
+    let beside = l.ior(
+        l.ior(l.lt(x, zero), l.lt(l.add(right, one), x)),
+        l.ior(l.lt(y, zero), l.lt(l.add(bottom, one), y)),
+    );
+    let z = l.select(beside, zero, l.max(z, zero));
+    l.istore(l.codes(z), &mut p.middle[2]);
     p
 }
 

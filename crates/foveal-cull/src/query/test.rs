@@ -1,6 +1,9 @@
 //! A rectangle with a depth against the buffer.
 
 use crate::depth::{BLOCK, DepthBuffer, SAMPLES, STATE_EMPTY};
+use crate::query::faces::{Faces, Planes};
+use crate::simd::Lanes;
+use glam::Vec3;
 
 /// Pixels from `x0, y0` to `x1, y1`, inclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,14 +17,7 @@ pub(crate) struct PixelRect {
 impl PixelRect {
     /// Every pixel that the rectangle (samples) touches, clamped to the screen.
     #[inline(always)]
-    pub(crate) fn from_samples(
-        x0: f32,
-        y0: f32,
-        x1: f32,
-        y1: f32,
-        width: u32,
-        height: u32,
-    ) -> Self {
+    pub(crate) fn from_samples([x0, y0, x1, y1]: [f32; 4], width: u32, height: u32) -> Self {
         let scale = 1.0 / SAMPLES as f32;
         // Float casts saturate, and give 0 for what is left of the screen.
         Self {
@@ -31,13 +27,43 @@ impl PixelRect {
             y1: ((y1 * scale) as u32).min(height - 1),
         }
     }
+
+    /// First and last block, both inclusive.
+    #[inline(always)]
+    pub(crate) fn blocks(self) -> [u32; 4] {
+        [
+            self.x0 / BLOCK,
+            self.y0 / BLOCK,
+            self.x1 / BLOCK,
+            self.y1 / BLOCK,
+        ]
+    }
+
+    /// The part in one block, a bit per pixel.
+    #[inline(always)]
+    fn bits(self, bx: u32, by: u32) -> u64 {
+        let x0 = self.x0.max(bx * BLOCK) - bx * BLOCK;
+        let x1 = self.x1.min(bx * BLOCK + BLOCK - 1) - bx * BLOCK;
+        let y0 = self.y0.max(by * BLOCK) - by * BLOCK;
+        let y1 = self.y1.min(by * BLOCK + BLOCK - 1) - by * BLOCK;
+        let columns = (0xff >> (7 - x1)) & (0xffu64 << x0);
+        let rows = (u64::MAX >> (8 * (7 - y1))) & (u64::MAX << (8 * y0));
+        (columns * 0x0101_0101_0101_0101) & rows
+    }
 }
 
-/// Whether everything at `code` or farther is hidden in the rectangle.
-#[inline]
-pub(crate) fn hidden(buffer: &DepthBuffer, rect: PixelRect, code: i16) -> bool {
-    let (bx0, bx1) = (rect.x0 / BLOCK, rect.x1 / BLOCK);
-    let (by0, by1) = (rect.y0 / BLOCK, rect.y1 / BLOCK);
+/// Whether everything at `code` or farther is hidden in the rectangle; and, where it is not, whether a box is
+/// that lies there (centre and half extent).
+#[inline(always)]
+pub(crate) fn hidden<L: Lanes>(
+    l: L,
+    buffer: &DepthBuffer,
+    rect: PixelRect,
+    code: i16,
+    place: Option<(&Planes, (Vec3, Vec3))>,
+) -> bool {
+    let mut faces = None;
+    let [bx0, by0, bx1, by1] = rect.blocks();
     for by in by0..=by1 {
         let row = (by * buffer.blocks_x) as usize;
         for bx in bx0..=bx1 {
@@ -45,23 +71,27 @@ pub(crate) fn hidden(buffer: &DepthBuffer, rect: PixelRect, code: i16) -> bool {
             if code < buffer.min[b] {
                 continue;
             }
-            if buffer.state[b] == STATE_EMPTY {
-                return false;
+            let here = rect.bits(bx, by);
+            let depth = if buffer.state[b] == STATE_EMPTY {
+                l.dsplat(crate::depth::EMPTY)
+            } else {
+                l.dload(&buffer.depth[b].0)
+            };
+            let seen = here & !l.dgt(depth, l.dsplat(code));
+            if seen == 0 {
+                continue;
             }
-            let x0 = rect.x0.max(bx * BLOCK) - bx * BLOCK;
-            let x1 = rect.x1.min(bx * BLOCK + BLOCK - 1) - bx * BLOCK;
-            let y0 = rect.y0.max(by * BLOCK) - by * BLOCK;
-            let y1 = rect.y1.min(by * BLOCK + BLOCK - 1) - by * BLOCK;
-            // The block's farthest pixel is in the rectangle if the whole block is.
-            if x0 == 0 && y0 == 0 && x1 == BLOCK - 1 && y1 == BLOCK - 1 {
+            let Some((planes, (center, half))) = place else {
                 return false;
+            };
+            if faces.is_none() {
+                faces = Faces::new(planes, center, half);
             }
-            let block = &buffer.depth[b].0;
-            for y in y0..=y1 {
-                let half = &block[(y / 2) as usize][(8 * (y % 2)) as usize..][..8];
-                if half[x0 as usize..=x1 as usize].iter().any(|&d| code >= d) {
-                    return false;
-                }
+            let Some(faces) = &faces else {
+                return false;
+            };
+            if faces.seen(l, bx, by, seen, buffer.min[b], depth) {
+                return false;
             }
         }
     }

@@ -3,7 +3,7 @@
 //! Nodes have eight children whose boxes lie side by side, so that one pass of the projection kernel tests
 //! all of them. Every child covers one run of the tree's own order of objects.
 
-use super::project::{Boxes8, project};
+use super::project::{Boxes8, ROUNDING, project};
 use crate::Visibility;
 use crate::query::answer::Query;
 use crate::simd::{Kernel, Lanes};
@@ -37,8 +37,6 @@ struct Child {
 }
 
 const OBJECT: u32 = u32::MAX;
-/// Relative growth of boxes against rounding.
-const ROUNDING: f32 = 6e-7;
 
 impl OccludeeTree {
     /// Builds a tree over boxes in metres relative to `origin` (world). A box that is not a volume is always
@@ -247,7 +245,7 @@ impl Kernel for Walk<'_> {
             let p = project(l, &query.screen, &node.boxes);
             for lane in 0..usize::from(node.count) {
                 let child = node.children[lane];
-                let answer = query.answer(&p, lane, &node.boxes, child.node == OBJECT);
+                let answer = query.answer(l, &p, lane, &node.boxes, child.node == OBJECT);
                 if child.node == OBJECT {
                     results[tree.order[child.first as usize] as usize] = answer;
                 } else if answer == Visibility::Visible && top < stack.len() {

@@ -2,13 +2,13 @@
 //!
 //! Coverage: the borders are evaluated in float for 32 sample rows (and for the 8 rows through pixel
 //! centres), rounded to the first covered sample, and turned into bit planes, one per sample position in a
-//! pixel, by two 16-entry byte look-ups per side. Merging then is plain logic on 64-bit planes.
+//! pixel, by byte look-ups. Merging then is plain logic on 64-bit planes.
 //!
 //! Depth: the polygon's plane at its farthest point within each pixel, no farther than its farthest vertex.
 
 use super::polygon::Polygon;
 use crate::depth::{
-    BLOCK_SAMPLES, Band, CODE_OFFSET, EMPTY, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
+    BLOCK_SAMPLES, Band, EMPTY, PartialBlock, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
 };
 use crate::simd::{Lanes, four};
 
@@ -33,18 +33,15 @@ pub(crate) struct Borders<L: Lanes> {
     x: [f32; 4],
     y: [f32; 4],
     pub(crate) slope: [f32; 4],
-    /// Change over four sample rows per lane.
-    lanes: [L::F; 4],
-    /// Change over one sample row.
-    step: [L::F; 4],
+    /// Change from the first sample row to each.
+    rows: [L::R; 4],
+    /// The same for the rows through pixel centres.
+    centers: [L::F; 4],
 }
 
-const LANE_ROWS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
-const LANE_COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-/// Pixels at or right of the n-th column.
-const FROM: [u8; 16] = [
-    0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
-];
+/// Rows through pixel centres, in sample rows from the first.
+const CENTER_ROWS: [f32; 8] = [1.5, 5.5, 9.5, 13.5, 17.5, 21.5, 25.5, 29.5];
+const COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl<L: Lanes> Borders<L> {
     #[inline(always)]
@@ -55,14 +52,13 @@ impl<L: Lanes> Borders<L> {
             polygon.right.edges[0],
             polygon.right.edges[1],
         ];
-        let rows = l.load(&LANE_ROWS);
-        let step = four!(i => l.splat(e[i].slope));
+        let centers = l.load(&CENTER_ROWS);
         Self {
             x: four!(i => e[i].x),
             y: four!(i => e[i].y),
             slope: four!(i => e[i].slope),
-            lanes: four!(i => l.mul(rows, step[i])),
-            step,
+            rows: four!(i => l.rows(e[i].slope)),
+            centers: four!(i => l.mul(centers, l.splat(e[i].slope))),
         }
     }
 
@@ -75,157 +71,75 @@ impl<L: Lanes> Borders<L> {
 }
 
 /// Coverage of a block: sixteen sample planes and the plane of centres.
-pub(crate) struct Mask<L: Lanes> {
-    pub(crate) planes: [L::B; 4],
-    pub(crate) center: u64,
-}
-
-/// First covered sample per row (0 to 32), for the four sample rows of each pixel row, and first covered
-/// pixel centre (0 to 8).
-struct Bounds<L: Lanes> {
-    rows: [L::F; 4],
-    center: L::F,
-}
-
-/// One border in a block that begins at `left`.
 #[inline(always)]
-fn border<L: Lanes>(l: L, borders: &Borders<L>, at: &[f32; 4], e: usize, left: f32) -> Bounds<L> {
-    let step = borders.step[e];
-    let r0 = l.add(l.splat(at[e] - (left - 0.5)), borders.lanes[e]);
-    let r1 = l.add(r0, step);
-    let r2 = l.add(r1, step);
-    let r3 = l.add(r2, step);
-    Bounds {
-        rows: [r0, r1, r2, r3],
-        center: l.add(r1, l.mul(step, l.splat(0.5))),
-    }
-}
-
-/// Planes of "at or right of the bound": by sample column, then centres.
-#[inline(always)]
-fn planes<L: Lanes>(l: L, b: &Bounds<L>) -> ([L::B; 4], u64) {
-    let (zero, end) = (l.splat(0.0), l.splat(32.0));
-    let n = l.pack8(four!(k => l.trunc(l.min(l.max(b.rows[k], zero), end))));
-    let whole = l.blookup(&FROM, l.bshr2(n));
-    let next = l.badd(whole, whole);
-    let part = l.band(n, l.bsplat(3));
-    let columns = [
-        l.bselect(l.bgt(part, l.bsplat(0)), next, whole),
-        l.bselect(l.bgt(part, l.bsplat(1)), next, whole),
-        l.bselect(l.bgt(part, l.bsplat(2)), next, whole),
-        whole,
-    ];
-    let c = l.mul(l.add(b.center, l.splat(1.5)), l.splat(0.25));
-    let c = l.trunc(l.min(l.max(c, zero), l.splat(8.0)));
-    let c = l.blookup(&FROM, l.pack8([c; 4]));
-    (columns, l.band_fold(c))
-}
-
-/// Moves the left border out of sight on rows outside the limits; `y` is the first of the eight rows.
-#[inline(always)]
-fn limit<L: Lanes>(l: L, lo: L::F, y: f32, (y0, y1): (f32, f32)) -> L::F {
-    let y = l.add(l.load(&LANE_ROWS), l.splat(y));
-    let inside = l.iandnot(l.lt(l.splat(y1), y), l.lt(l.splat(y0), y));
-    l.select(inside, lo, l.splat(1e6))
-}
-
-#[inline(always)]
-fn mask<L: Lanes>(
+fn coverage<L: Lanes>(
     l: L,
     polygon: &Polygon,
     borders: &Borders<L>,
     at: &[f32; 4],
     left: f32,
     top: f32,
-) -> Mask<L> {
-    let (l0, l1) = (
-        border(l, borders, at, 0, left),
-        border(l, borders, at, 1, left),
-    );
-    let (r0, r1) = (
-        border(l, borders, at, 2, left),
-        border(l, borders, at, 3, left),
-    );
-    let mut lo = Bounds {
-        rows: four!(k => l.max(l0.rows[k], l1.rows[k])),
-        center: l.max(l0.center, l1.center),
-    };
-    let hi = Bounds {
-        rows: four!(k => l.min(r0.rows[k], r1.rows[k])),
-        center: l.min(r0.center, r1.center),
-    };
-    if let Some(limits) = polygon.rows {
-        lo.rows = four!(k => limit(l, lo.rows[k], top + 0.5 + k as f32, limits));
-        lo.center = limit(l, lo.center, top + 2.0, limits);
+) -> (L::P, u64) {
+    // Sample n of a row lies at `left + n + 0.5`.
+    let at = four!(e => at[e] - (left - 0.5));
+    let rows = four!(e => l.radd(l.rsplat(at[e]), borders.rows[e]));
+    let centers = four!(e => l.add(l.splat(at[e]), borders.centers[e]));
+    let mut from = l.rmax(rows[0], rows[1]);
+    let to = l.rmin(rows[2], rows[3]);
+    let mut center_from = l.max(centers[0], centers[1]);
+    let center_to = l.min(centers[2], centers[3]);
+    if let Some((after, last)) = polygon.rows {
+        from = l.rlimit(from, top + 0.5, after, last);
+        center_from = limit_centers(l, center_from, top + 2.0, after, last);
     }
-    let (a, ca) = planes(l, &lo);
-    let (b, cb) = planes(l, &hi);
-    Mask {
-        planes: four!(c => l.bandnot(b[c], a[c])),
-        center: ca & !cb,
-    }
+    // The centre of pixel n is at sample 4 n + 1.5 of the row.
+    let pixel = |v: L::F| l.mul(l.add(v, l.splat(1.5)), l.splat(0.25));
+    (
+        l.planes(from, to),
+        l.plane(pixel(center_from), pixel(center_to)),
+    )
 }
 
+/// Moves the left border out of sight on rows outside the limits; `y` is the first of the eight rows.
 #[inline(always)]
-fn depth_row<L: Lanes>(l: L, columns: L::F, floor: L::F, offset: L::I, down: f32) -> L::I {
-    let d = l.max(l.add(columns, l.splat(down)), floor);
-    l.isub(l.isra12(l.bits(d)), offset)
+fn limit_centers<L: Lanes>(l: L, from: L::F, y: f32, after: f32, last: f32) -> L::F {
+    let y = l.add(l.mul(l.load(&COLUMNS), l.splat(4.0)), l.splat(y));
+    let inside = l.iandnot(l.lt(l.splat(last), y), l.lt(l.splat(after), y));
+    l.select(inside, from, l.splat(1e6))
 }
 
 /// Depth codes of the block's 64 pixels.
 #[inline(always)]
-fn depth<L: Lanes>(l: L, plane: &Plane, bx: u32, by: u32) -> [L::H; 4] {
+fn depths<L: Lanes>(l: L, plane: &Plane, bx: u32, by: u32) -> L::D {
     // Centre of the first pixel.
     let x = (bx * BLOCK_SAMPLES) as f32 + 2.0 - plane.x;
     let y = (by * BLOCK_SAMPLES) as f32 + 2.0 - plane.y;
     let first = plane.depth + plane.dx * x + plane.dy * y;
-    let (dx, dy) = (plane.dx * 4.0, plane.dy * 4.0);
-    let columns = l.add(l.splat(first), l.mul(l.load(&LANE_COLUMNS), l.splat(dx)));
-    let (floor, offset) = (l.splat(plane.min), l.isplat(CODE_OFFSET));
+    let columns = l.add(
+        l.splat(first),
+        l.mul(l.load(&COLUMNS), l.splat(plane.dx * 4.0)),
+    );
     // Never nearer than the nearest vertex, so that what is skipped as hidden would have changed nothing.
-    let nearest = l.hsplat(plane.max_code);
-    four!(i => l.hmin(l.pack16(depth_row(l, columns, floor, offset, dy * (2 * i) as f32), depth_row(l, columns, floor, offset, dy * (2 * i + 1) as f32)), nearest))
-}
-
-#[inline(always)]
-fn spread<L: Lanes>(l: L, bits: u64, i: usize) -> L::H {
-    l.hmask((bits >> (16 * i)) as u16)
-}
-
-#[inline(always)]
-fn gather_bits<L: Lanes>(l: L, masks: [L::H; 4]) -> u64 {
-    let m = four!(i => u64::from(l.hbits(masks[i])) << (16 * i));
-    (m[0] | m[1]) | (m[2] | m[3])
-}
-
-#[inline(always)]
-fn reduce<L: Lanes>(l: L, d: &[L::H; 4]) -> i16 {
-    l.hreduce_min(l.hmin(l.hmin(d[0], d[1]), l.hmin(d[2], d[3])))
+    l.depths(columns, plane.dy * 4.0, plane.min, plane.max_code)
 }
 
 /// Merges a polygon that covers the whole block.
-#[allow(clippy::needless_range_loop, reason = "four parallel arrays, unrolled")]
 #[inline(always)]
 pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, plane: &Plane) {
     let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
     if plane.max_code <= band.min[i] {
         return;
     }
-    let mut d = depth(l, plane, bx, by);
+    let mut d = depths(l, plane, bx, by);
     let state = band.state[i];
     let block = &mut band.depth[i].0;
     if state != STATE_EMPTY {
-        for k in 0..4 {
-            d[k] = l.hmax(d[k], l.hload(&block[k]));
-        }
+        d = l.dmax(d, l.dload(block));
     }
-    for k in 0..4 {
-        l.hstore(d[k], &mut block[k]);
-    }
-    band.min[i] = reduce(l, &d);
+    l.dstore(d, block);
+    band.min[i] = l.dreduce_min(d);
     if state == STATE_PARTIAL {
-        let partial = &mut band.partial[i];
-        forget_hidden(l, partial, &d);
+        forget_hidden(l, &mut band.partial[i], d);
     } else {
         band.state[i] = STATE_DEPTH;
     }
@@ -233,25 +147,16 @@ pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, 
 
 /// Drops partial coverage that can no longer bring anything nearer than the depth that is there.
 #[inline(always)]
-fn forget_hidden<L: Lanes>(l: L, partial: &mut crate::depth::PartialBlock, d: &[L::H; 4]) {
-    let kept = gather_bits(l, four!(k => l.hgt(l.hload(&partial.depth[k]), d[k])));
-    let keep = l.bsplat64(kept);
-    for c in 0..4 {
-        l.bstore(
-            l.band(l.bload(&partial.planes[c]), keep),
-            &mut partial.planes[c],
-        );
-    }
+fn forget_hidden<L: Lanes>(l: L, partial: &mut PartialBlock, d: L::D) {
+    let old = l.dload(&partial.depth);
+    let kept = l.dgt(old, d);
+    let planes = l.pkeep(l.pload(&partial.planes), kept);
+    l.pstore(planes, &mut partial.planes);
     partial.center &= kept;
-    let far = l.hsplat(i16::MAX);
-    for k in 0..4 {
-        let p = l.hselect(spread(l, kept, k), l.hload(&partial.depth[k]), far);
-        l.hstore(p, &mut partial.depth[k]);
-    }
+    l.dstore(l.dselect(kept, old, l.dsplat(i16::MAX)), &mut partial.depth);
 }
 
 /// Merges a polygon that covers a part of the block.
-#[allow(clippy::needless_range_loop, reason = "four parallel arrays, unrolled")]
 #[inline(always)]
 pub(crate) fn cover_partial<L: Lanes>(
     l: L,
@@ -266,90 +171,42 @@ pub(crate) fn cover_partial<L: Lanes>(
     if polygon.plane.max_code <= band.min[i] {
         return;
     }
-    let d = depth(l, &polygon.plane, bx, by);
+    let d = depths(l, &polygon.plane, bx, by);
+    let (left, top) = ((bx * BLOCK_SAMPLES) as f32, (by * BLOCK_SAMPLES) as f32);
+    let (planes, center) = coverage(l, polygon, borders, at, left, top);
+    // From here on without a branch: none of the questions has an answer that could be foreseen.
     let state = band.state[i];
-    let block = &mut band.depth[i].0;
-    let old: [L::H; 4] = if state == STATE_EMPTY {
-        [l.hsplat(EMPTY); 4]
-    } else {
-        four!(k => l.hload(&block[k]))
-    };
-    // Only pixels where the polygon is nearer than what is proven already.
-    let nearer = gather_bits(l, four!(k => l.hgt(d[k], old[k])));
-    if nearer == 0 {
-        return;
-    }
-    let Mask {
-        mut planes,
-        mut center,
-    } = mask(
-        l,
-        polygon,
-        borders,
-        at,
-        (bx * BLOCK_SAMPLES) as f32,
-        (by * BLOCK_SAMPLES) as f32,
+    let (block, partial) = (&mut band.depth[i].0, &mut band.partial[i]);
+    let known = u64::from(state == STATE_EMPTY).wrapping_sub(1);
+    let begun = u64::from(state != STATE_PARTIAL).wrapping_sub(1);
+    let far = l.dsplat(i16::MAX);
+    let old = l.dselect(known, l.dload(block), l.dsplat(EMPTY));
+    // Only pixels where the polygon is nearer than what is proven already. Those that it covers alone need no
+    // partner, and what they have so far stays apart from them.
+    let nearer = l.dgt(d, old);
+    let alone = l.pall(planes) & center & nearer;
+    let joined = (l.pany(planes) | center) & nearer & !alone;
+    let new = l.dselect(alone, d, old);
+    let planes = l.por(
+        l.pkeep(planes, joined),
+        l.pkeep(l.pload(&partial.planes), begun),
     );
-    let near = l.bsplat64(nearer);
-    planes = four!(c => l.band(planes[c], near));
-    center &= nearer;
-    let touched =
-        l.bor_fold(l.bor(l.bor(planes[0], planes[1]), l.bor(planes[2], planes[3]))) | center;
-    if touched == 0 {
-        return;
-    }
-    let alone =
-        l.band_fold(l.band(l.band(planes[0], planes[1]), l.band(planes[2], planes[3]))) & center;
-    let partial = &mut band.partial[i];
-    let far = l.hsplat(i16::MAX);
-    // Pixels that it covers alone need no partner, and what they have so far stays apart from them.
-    let mut new = old;
-    if alone != 0 {
-        for k in 0..4 {
-            new[k] = l.hselect(spread(l, alone, k), d[k], old[k]);
-        }
-        let others = l.bsplat64(!alone);
-        planes = four!(c => l.band(planes[c], others));
-        center &= !alone;
-    }
-    let mut depths: [L::H; 4] = [far; 4];
-    if state == STATE_PARTIAL {
-        planes = four!(c => l.bor(planes[c], l.bload(&partial.planes[c])));
-        center |= partial.center;
-        depths = four!(k => l.hload(&partial.depth[k]));
-    }
-    let joined = touched & !alone;
-    for k in 0..4 {
-        depths[k] = l.hselect(spread(l, joined, k), l.hmin(depths[k], d[k]), depths[k]);
-    }
-    let full =
-        l.band_fold(l.band(l.band(planes[0], planes[1]), l.band(planes[2], planes[3]))) & center;
-    if full | alone != 0 {
-        for k in 0..4 {
-            new[k] = l.hselect(spread(l, full, k), l.hmax(new[k], depths[k]), new[k]);
-            l.hstore(new[k], &mut block[k]);
-        }
-        band.min[i] = reduce(l, &new);
-        // Forget what is complete, or hidden by now.
-        let kept = gather_bits(l, four!(k => l.hgt(depths[k], new[k])));
-        let keep = l.bsplat64(kept);
-        planes = four!(c => l.band(planes[c], keep));
-        center &= kept;
-        for k in 0..4 {
-            depths[k] = l.hselect(spread(l, kept, k), depths[k], far);
-        }
-    } else if state == STATE_EMPTY {
-        for k in 0..4 {
-            l.hstore(old[k], &mut block[k]);
-        }
-    }
-    for c in 0..4 {
-        l.bstore(planes[c], &mut partial.planes[c]);
-    }
+    let center = (center & joined) | (partial.center & begun);
+    let depth = l.dmin(
+        l.dselect(joined, d, far),
+        l.dselect(begun, l.dload(&partial.depth), far),
+    );
+    let full = l.pall(planes) & center;
+    let new = l.dselect(full, l.dmax(new, depth), new);
+    // Forget what is complete, or hidden by now.
+    let kept = l.dgt(depth, new);
+    let planes = l.pkeep(planes, kept);
+    let center = center & kept;
+    l.dstore(new, block);
+    band.min[i] = l.dreduce_min(new);
+    l.pstore(planes, &mut partial.planes);
     partial.center = center;
-    for k in 0..4 {
-        l.hstore(depths[k], &mut partial.depth[k]);
-    }
-    let any = l.bor_fold(l.bor(l.bor(planes[0], planes[1]), l.bor(planes[2], planes[3]))) | center;
-    band.state[i] = if any == 0 { STATE_DEPTH } else { STATE_PARTIAL };
+    l.dstore(l.dselect(kept, depth, far), &mut partial.depth);
+    let any = l.pany(planes) | center != 0;
+    band.state[i] = if any { STATE_PARTIAL } else { STATE_DEPTH };
 }

@@ -82,6 +82,7 @@ impl Kernel for Select<'_> {
                 far_depth: camera.far_depth as f32 * 0.999_99,
                 dilate: 0.0,
                 grow: 0.0,
+                coarse: None,
             };
             let eye = instance.mesh_from_world.transform_point3(camera.eye) - mesh.center;
             let forward = instance.mesh_from_world.transform_vector3(camera.forward);

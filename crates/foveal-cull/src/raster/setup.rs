@@ -18,6 +18,11 @@ pub(crate) const GUARD: f32 = 32768.0;
 /// bit): polygons that shrink by this cover every point between the samples that they cover.
 const BETWEEN_SAMPLES: f32 = 0.72;
 
+/// From a pixel's centre, in each axis: its border, and (for the exact place of an eye, whose rays go through
+/// samples only) its outermost samples.
+const WHOLE_PIXEL: f32 = 2.0;
+const SAMPLES_ONLY: f32 = 1.5 + 1.0 / 64.0;
+
 /// Working memory of one thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
@@ -234,7 +239,12 @@ pub(crate) fn draw_eight<L: Lanes>(
         l.mul(relative, variation),
         l.mul(z_hi, l.splat(1.0 / 1_048_576.0)),
     );
-    let slack = l.add(l.add(fold, rounding), l.mul(l.splat(2.0), l.add(ax, ay)));
+    let reach = l.splat(if radius.is_some() {
+        WHOLE_PIXEL
+    } else {
+        SAMPLES_ONLY
+    });
+    let slack = l.add(l.add(fold, rounding), l.mul(reach, l.add(ax, ay)));
     let base = l.sub(z[0], slack);
 
     let around = four!(k => l.div(l.sub(x[(k + 1) % 4], x[k]), l.sub(y[(k + 1) % 4], y[k])));

@@ -1,6 +1,8 @@
 //! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods sound.
 
-use super::{Kernel, Lanes};
+use super::portable::SAMPLE_ROWS;
+use super::{Kernel, Lanes, four, two};
+use crate::depth::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// Proof that the CPU has AVX2.
@@ -39,8 +41,9 @@ macro_rules! avx2 {
 impl Lanes for Avx2 {
     type F = __m256;
     type I = __m256i;
-    type H = __m256i;
-    type B = __m256i;
+    type D = [__m256i; 4];
+    type R = [__m256; 4];
+    type P = [__m256i; 4];
 
     #[inline(always)]
     fn splat(self, v: f32) -> __m256 {
@@ -95,8 +98,11 @@ impl Lanes for Avx2 {
         avx2!(_mm256_cvttps_epi32(a))
     }
     #[inline(always)]
-    fn bits(self, a: __m256) -> __m256i {
-        avx2!(_mm256_castps_si256(a))
+    fn codes(self, a: __m256) -> __m256i {
+        avx2!(_mm256_sub_epi32(
+            _mm256_srai_epi32::<12>(_mm256_castps_si256(a)),
+            _mm256_set1_epi32(CODE_OFFSET)
+        ))
     }
     #[inline(always)]
     fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> __m256 {
@@ -111,6 +117,90 @@ impl Lanes for Avx2 {
     #[inline(always)]
     fn isplat(self, v: i32) -> __m256i {
         avx2!(_mm256_set1_epi32(v))
+    }
+    #[inline(always)]
+    fn turn(self, v: &[[f32; 6]; 8]) -> [__m256; 6] {
+        let p: *const f32 = v.as_ptr().cast();
+        avx2!({
+            // Four rows in a half of each register: rows 0 and 1 are twelve numbers, a; rows 2 and 3 are b.
+            let [a0, b0] = two!(i => half_rows(self, p, 12 * i));
+            let [a1, b1] = two!(i => half_rows(self, p, 12 * i + 4));
+            let [a2, b2] = two!(i => half_rows(self, p, 12 * i + 8));
+            let (xy_a, xy_b) = (
+                _mm256_shuffle_ps::<0b11_10_01_00>(a0, a1),
+                _mm256_shuffle_ps::<0b11_10_01_00>(b0, b1),
+            );
+            let (zx_a, zx_b) = (
+                _mm256_shuffle_ps::<0b01_00_11_10>(a0, a2),
+                _mm256_shuffle_ps::<0b01_00_11_10>(b0, b2),
+            );
+            let (yz_a, yz_b) = (
+                _mm256_shuffle_ps::<0b11_10_01_00>(a1, a2),
+                _mm256_shuffle_ps::<0b11_10_01_00>(b1, b2),
+            );
+            [
+                _mm256_shuffle_ps::<0b10_00_10_00>(xy_a, xy_b),
+                _mm256_shuffle_ps::<0b11_01_11_01>(xy_a, xy_b),
+                _mm256_shuffle_ps::<0b10_00_10_00>(zx_a, zx_b),
+                _mm256_shuffle_ps::<0b11_01_11_01>(zx_a, zx_b),
+                _mm256_shuffle_ps::<0b10_00_10_00>(yz_a, yz_b),
+                _mm256_shuffle_ps::<0b11_01_11_01>(yz_a, yz_b),
+            ]
+        })
+    }
+    #[inline(always)]
+    fn iadd(self, a: __m256i, b: __m256i) -> __m256i {
+        avx2!(_mm256_add_epi32(a, b))
+    }
+    #[inline(always)]
+    fn imin(self, a: __m256i, b: __m256i) -> __m256i {
+        avx2!(_mm256_min_epi32(a, b))
+    }
+    #[inline(always)]
+    fn imax(self, a: __m256i, b: __m256i) -> __m256i {
+        avx2!(_mm256_max_epi32(a, b))
+    }
+    #[inline(always)]
+    fn imul(self, a: __m256i, b: __m256i) -> __m256i {
+        avx2!(_mm256_mullo_epi32(a, b))
+    }
+    #[inline(always)]
+    fn ishr(self, a: __m256i, by: __m256i) -> __m256i {
+        avx2!(_mm256_srav_epi32(a, by))
+    }
+    #[inline(always)]
+    fn ibits(self, a: __m256i) -> __m256i {
+        // The exponent of the number as a float, which is exact; 0 has none.
+        avx2!({
+            let exponent = _mm256_srli_epi32::<23>(_mm256_castps_si256(_mm256_cvtepi32_ps(a)));
+            _mm256_max_epi32(
+                _mm256_sub_epi32(exponent, _mm256_set1_epi32(126)),
+                _mm256_setzero_si256(),
+            )
+        })
+    }
+    #[inline(always)]
+    fn igather(self, table: &[i16], index: __m256i) -> __m256i {
+        let last = i32::try_from(table.len()).unwrap_or(i32::MAX) - 1;
+        // SAFETY: AVX2 is proved by `self`. Lanes whose four bytes do not lie within the table are not read.
+        unsafe {
+            let inside = _mm256_andnot_si256(
+                _mm256_srai_epi32::<31>(index),
+                _mm256_cmpgt_epi32(_mm256_set1_epi32(last), index),
+            );
+            let v = _mm256_mask_i32gather_epi32::<2>(
+                _mm256_set1_epi32(i32::MIN),
+                table.as_ptr().cast(),
+                index,
+                inside,
+            );
+            let short = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(v));
+            _mm256_blendv_epi8(_mm256_set1_epi32(i32::MIN), short, inside)
+        }
+    }
+    #[inline(always)]
+    fn istore(self, v: __m256i, to: &mut [i32; 8]) {
+        avx2!(_mm256_storeu_si256(to.as_mut_ptr().cast(), v))
     }
     #[inline(always)]
     fn isub(self, a: __m256i, b: __m256i) -> __m256i {
@@ -129,168 +219,225 @@ impl Lanes for Avx2 {
         avx2!(_mm256_andnot_si256(a, b))
     }
     #[inline(always)]
-    fn isra12(self, a: __m256i) -> __m256i {
-        avx2!(_mm256_srai_epi32::<12>(a))
-    }
-    #[inline(always)]
     fn movemask(self, a: __m256i) -> u32 {
         avx2!(_mm256_movemask_ps(_mm256_castsi256_ps(a)) as u32)
     }
 
     #[inline(always)]
-    fn pack16(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_permute4x64_epi64::<0b11_01_10_00>(
-            _mm256_packs_epi32(a, b)
-        ))
-    }
-    #[inline(always)]
-    fn hload(self, v: &[i16; 16]) -> __m256i {
-        avx2!(_mm256_loadu_si256(v.as_ptr().cast()))
-    }
-    #[inline(always)]
-    fn hstore(self, v: __m256i, to: &mut [i16; 16]) {
-        avx2!(_mm256_storeu_si256(to.as_mut_ptr().cast(), v))
-    }
-    #[inline(always)]
-    fn hsplat(self, v: i16) -> __m256i {
-        avx2!(_mm256_set1_epi16(v))
-    }
-    #[inline(always)]
-    fn hmin(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_min_epi16(a, b))
-    }
-    #[inline(always)]
-    fn hmax(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_max_epi16(a, b))
-    }
-    #[inline(always)]
-    fn hgt(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_cmpgt_epi16(a, b))
-    }
-    #[inline(always)]
-    fn hselect(self, mask: __m256i, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_blendv_epi8(b, a, mask))
-    }
-    #[inline(always)]
-    fn hbits(self, mask: __m256i) -> u16 {
-        avx2!(_mm_movemask_epi8(_mm_packs_epi16(
-            _mm256_castsi256_si128(mask),
-            _mm256_extracti128_si256::<1>(mask)
-        )) as u16)
-    }
-    #[inline(always)]
-    fn hmask(self, bits: u16) -> __m256i {
+    fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
         avx2!({
-            let lanes = _mm256_setr_epi16(
-                1,
-                2,
-                4,
-                8,
-                16,
-                32,
-                64,
-                128,
-                256,
-                512,
-                1024,
-                2048,
-                4096,
-                8192,
-                16384,
-                i16::MIN,
-            );
-            _mm256_cmpeq_epi16(
-                _mm256_and_si256(_mm256_set1_epi16(bits as i16), lanes),
-                lanes,
-            )
+            let (floor, cap) = (_mm256_set1_ps(floor), _mm256_set1_epi16(cap));
+            let offset = _mm256_set1_epi32(CODE_OFFSET);
+            four!(i => {
+                let rows = two!(k => {
+                    let down = _mm256_set1_ps((2 * i + k) as f32 * down);
+                    let bits = _mm256_castps_si256(_mm256_max_ps(_mm256_add_ps(columns, down), floor));
+                    _mm256_sub_epi32(_mm256_srai_epi32::<12>(bits), offset)
+                });
+                let codes = _mm256_packs_epi32(rows[0], rows[1]);
+                _mm256_min_epi16(_mm256_permute4x64_epi64::<0b11_01_10_00>(codes), cap)
+            })
         })
     }
     #[inline(always)]
-    fn hreduce_min(self, a: __m256i) -> i16 {
+    fn dload(self, v: &[i16; 64]) -> Self::D {
+        let p: *const __m256i = v.as_ptr().cast();
+        avx2!(four!(i => _mm256_loadu_si256(p.add(i))))
+    }
+    #[inline(always)]
+    fn dstore(self, v: Self::D, to: &mut [i16; 64]) {
+        let p: *mut __m256i = to.as_mut_ptr().cast();
         avx2!({
-            // minpos works on unsigned lanes: flip the sign bit.
-            let m = _mm_min_epi16(_mm256_castsi256_si128(a), _mm256_extracti128_si256::<1>(a));
+            four!(i => _mm256_storeu_si256(p.add(i), v[i]));
+        })
+    }
+    #[inline(always)]
+    fn dsplat(self, v: i16) -> Self::D {
+        avx2!([_mm256_set1_epi16(v); 4])
+    }
+    #[inline(always)]
+    fn dmin(self, a: Self::D, b: Self::D) -> Self::D {
+        avx2!(four!(i => _mm256_min_epi16(a[i], b[i])))
+    }
+    #[inline(always)]
+    fn dmax(self, a: Self::D, b: Self::D) -> Self::D {
+        avx2!(four!(i => _mm256_max_epi16(a[i], b[i])))
+    }
+    #[inline(always)]
+    fn dgt(self, a: Self::D, b: Self::D) -> u64 {
+        avx2!({
+            let m = four!(i => _mm256_cmpgt_epi16(a[i], b[i]));
+            let halves = two!(i => {
+                let bytes = _mm256_packs_epi16(m[2 * i], m[2 * i + 1]);
+                let bytes = _mm256_permute4x64_epi64::<0b11_01_10_00>(bytes);
+                u64::from(_mm256_movemask_epi8(bytes) as u32)
+            });
+            halves[0] | (halves[1] << 32)
+        })
+    }
+    #[inline(always)]
+    fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
+        avx2!({
+            let bit = _mm256_setr_epi16(
+                1, 2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 8192, 16384, -32768,
+            );
+            four!(i => {
+                let bits = _mm256_set1_epi16((bits >> (16 * i)) as i16);
+                let mask = _mm256_cmpeq_epi16(_mm256_and_si256(bits, bit), bit);
+                _mm256_blendv_epi8(b[i], a[i], mask)
+            })
+        })
+    }
+    #[inline(always)]
+    fn dreduce_min(self, a: Self::D) -> i16 {
+        avx2!({
+            let m = _mm256_min_epi16(_mm256_min_epi16(a[0], a[1]), _mm256_min_epi16(a[2], a[3]));
+            let m = _mm_min_epi16(_mm256_castsi256_si128(m), _mm256_extracti128_si256::<1>(m));
+            // The one horizontal minimum there is works on unsigned lanes.
             let m = _mm_minpos_epu16(_mm_xor_si128(m, _mm_set1_epi16(i16::MIN)));
             (_mm_cvtsi128_si32(m) as i16) ^ i16::MIN
         })
     }
 
     #[inline(always)]
-    fn pack8(self, v: [__m256i; 4]) -> __m256i {
+    fn rsplat(self, v: f32) -> Self::R {
+        avx2!([_mm256_set1_ps(v); 4])
+    }
+    #[inline(always)]
+    fn rows(self, slope: f32) -> Self::R {
+        let rows = sample_rows();
+        avx2!(four!(k => _mm256_mul_ps(rows[k], _mm256_set1_ps(slope))))
+    }
+    #[inline(always)]
+    fn radd(self, a: Self::R, b: Self::R) -> Self::R {
+        avx2!(four!(k => _mm256_add_ps(a[k], b[k])))
+    }
+    #[inline(always)]
+    fn rmin(self, a: Self::R, b: Self::R) -> Self::R {
+        avx2!(four!(k => _mm256_min_ps(a[k], b[k])))
+    }
+    #[inline(always)]
+    fn rmax(self, a: Self::R, b: Self::R) -> Self::R {
+        avx2!(four!(k => _mm256_max_ps(a[k], b[k])))
+    }
+    #[inline(always)]
+    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
+        let rows = sample_rows();
+        avx2!(four!(k => {
+            let y = _mm256_add_ps(_mm256_set1_ps(first), rows[k]);
+            let inside = _mm256_and_ps(
+                _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_set1_ps(after), y),
+                _mm256_cmp_ps::<_CMP_LE_OQ>(y, _mm256_set1_ps(last)),
+            );
+            _mm256_blendv_ps(_mm256_set1_ps(1e6), v[k], inside)
+        }))
+    }
+    #[inline(always)]
+    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
+        let n = [bytes(self, from), bytes(self, to)];
         avx2!({
-            let h = _mm256_packs_epi32(v[0], v[1]);
-            let g = _mm256_packs_epi32(v[2], v[3]);
-            let b = _mm256_packs_epi16(h, g);
-            // Groups of four bytes now come as 0 2 4 6 | 1 3 5 7 (in units of four rows).
-            _mm256_permutevar8x32_epi32(b, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))
+            let table = _mm256_broadcastsi128_si256(_mm_loadu_si128(FROM.as_ptr().cast()));
+            four!(column => {
+                let sides = two!(side => {
+                    let n = _mm256_add_epi8(n[side], _mm256_set1_epi8(3 - column as i8));
+                    let pixel = _mm256_and_si256(_mm256_srli_epi16::<2>(n), _mm256_set1_epi8(0x3f));
+                    _mm256_shuffle_epi8(table, pixel)
+                });
+                _mm256_andnot_si256(sides[1], sides[0])
+            })
         })
     }
     #[inline(always)]
-    fn bsplat(self, v: u8) -> __m256i {
-        avx2!(_mm256_set1_epi8(v as i8))
-    }
-    #[inline(always)]
-    fn badd(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_add_epi8(a, b))
-    }
-    #[inline(always)]
-    fn band(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_and_si256(a, b))
-    }
-    #[inline(always)]
-    fn bor(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_or_si256(a, b))
-    }
-    #[inline(always)]
-    fn bandnot(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_andnot_si256(a, b))
-    }
-    #[inline(always)]
-    fn bshr2(self, a: __m256i) -> __m256i {
-        avx2!(_mm256_and_si256(
-            _mm256_srli_epi16::<2>(a),
-            _mm256_set1_epi8(0x3f)
-        ))
-    }
-    #[inline(always)]
-    fn bgt(self, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_cmpgt_epi8(a, b))
-    }
-    #[inline(always)]
-    fn bselect(self, mask: __m256i, a: __m256i, b: __m256i) -> __m256i {
-        avx2!(_mm256_blendv_epi8(b, a, mask))
-    }
-    #[inline(always)]
-    fn blookup(self, table: &[u8; 16], index: __m256i) -> __m256i {
-        avx2!(_mm256_shuffle_epi8(
-            _mm256_broadcastsi128_si256(_mm_loadu_si128(table.as_ptr().cast())),
-            index
-        ))
-    }
-    #[inline(always)]
-    fn bload(self, v: &[u64; 4]) -> __m256i {
-        avx2!(_mm256_loadu_si256(v.as_ptr().cast()))
-    }
-    #[inline(always)]
-    fn bstore(self, v: __m256i, to: &mut [u64; 4]) {
-        avx2!(_mm256_storeu_si256(to.as_mut_ptr().cast(), v))
-    }
-    #[inline(always)]
-    fn band_fold(self, v: __m256i) -> u64 {
+    fn plane(self, from: __m256, to: __m256) -> u64 {
         avx2!({
-            let h = _mm_and_si128(_mm256_castsi256_si128(v), _mm256_extracti128_si256::<1>(v));
+            let v = [from, to];
+            let sides = two!(side => {
+                let v = _mm256_max_ps(v[side], _mm256_setzero_ps());
+                let n = _mm256_cvttps_epi32(_mm256_min_ps(v, _mm256_set1_ps(8.0)));
+                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
+            });
+            let bits = _mm256_andnot_si256(sides[1], sides[0]);
+            let bits = _mm256_and_si256(bits, _mm256_set1_epi32(0xff));
+            let bytes = _mm256_packus_epi16(_mm256_packs_epi32(bits, bits), bits);
+            let low = _mm_cvtsi128_si32(_mm256_castsi256_si128(bytes)) as u32;
+            let high = _mm_cvtsi128_si32(_mm256_extracti128_si256::<1>(bytes)) as u32;
+            u64::from(low) | (u64::from(high) << 32)
+        })
+    }
+    #[inline(always)]
+    fn pload(self, v: &[u64; 16]) -> Self::P {
+        let p: *const __m256i = v.as_ptr().cast();
+        avx2!(four!(i => _mm256_loadu_si256(p.add(i))))
+    }
+    #[inline(always)]
+    fn pstore(self, v: Self::P, to: &mut [u64; 16]) {
+        let p: *mut __m256i = to.as_mut_ptr().cast();
+        avx2!({
+            four!(i => _mm256_storeu_si256(p.add(i), v[i]));
+        })
+    }
+    #[inline(always)]
+    fn pkeep(self, v: Self::P, bits: u64) -> Self::P {
+        avx2!({
+            let bits = _mm256_set1_epi64x(bits as i64);
+            four!(i => _mm256_and_si256(v[i], bits))
+        })
+    }
+    #[inline(always)]
+    fn por(self, a: Self::P, b: Self::P) -> Self::P {
+        avx2!(four!(i => _mm256_or_si256(a[i], b[i])))
+    }
+    #[inline(always)]
+    fn pall(self, v: Self::P) -> u64 {
+        avx2!({
+            let q = _mm256_and_si256(_mm256_and_si256(v[0], v[1]), _mm256_and_si256(v[2], v[3]));
+            let h = _mm_and_si128(_mm256_castsi256_si128(q), _mm256_extracti128_si256::<1>(q));
             _mm_cvtsi128_si64(_mm_and_si128(h, _mm_unpackhi_epi64(h, h))) as u64
         })
     }
     #[inline(always)]
-    fn bor_fold(self, v: __m256i) -> u64 {
+    fn pany(self, v: Self::P) -> u64 {
         avx2!({
-            let h = _mm_or_si128(_mm256_castsi256_si128(v), _mm256_extracti128_si256::<1>(v));
+            let q = _mm256_or_si256(_mm256_or_si256(v[0], v[1]), _mm256_or_si256(v[2], v[3]));
+            let h = _mm_or_si128(_mm256_castsi256_si128(q), _mm256_extracti128_si256::<1>(q));
             _mm_cvtsi128_si64(_mm_or_si128(h, _mm_unpackhi_epi64(h, h))) as u64
         })
     }
-    #[inline(always)]
-    fn bsplat64(self, v: u64) -> __m256i {
-        avx2!(_mm256_set1_epi64x(v as i64))
-    }
+}
+
+/// Pixels at or right of the n-th.
+pub(super) const FROM: [u8; 16] = [
+    0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
+];
+
+/// Four numbers of a table of 48 at `at`, and four at `at + 24`.
+#[inline(always)]
+fn half_rows(_: Avx2, table: *const f32, at: usize) -> __m256 {
+    debug_assert!(at + 28 <= 48);
+    // SAFETY: the caller holds an `Avx2` and a table of 48, of which this reads within 52 - 4.
+    unsafe { _mm256_loadu2_m128(table.add(at + 24), table.add(at)) }
+}
+
+#[inline(always)]
+fn sample_rows() -> [__m256; 4] {
+    let p = SAMPLE_ROWS.as_ptr();
+    // SAFETY: an `Avx2` is at hand wherever this is called, and there are 32 rows.
+    unsafe { four!(k => _mm256_loadu_ps(p.add(8 * k))) }
+}
+
+/// Sample numbers from 0 to 32, a byte each, in the order of the rows.
+#[inline(always)]
+fn bytes(_: Avx2, v: [__m256; 4]) -> __m256i {
+    avx2!({
+        let n = four!(k => _mm256_cvttps_epi32(_mm256_min_ps(
+            _mm256_max_ps(v[k], _mm256_setzero_ps()),
+            _mm256_set1_ps(32.0),
+        )));
+        let b = _mm256_packs_epi16(
+            _mm256_packs_epi32(n[0], n[1]),
+            _mm256_packs_epi32(n[2], n[3]),
+        );
+        // Groups of four bytes now come as 0 2 4 6 | 1 3 5 7 (in units of four rows).
+        _mm256_permutevar8x32_epi32(b, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))
+    })
 }

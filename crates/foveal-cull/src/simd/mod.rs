@@ -1,7 +1,7 @@
 //! Lanes: the one seam between the kernels and instruction sets.
 //!
 //! Kernels are written once, generic over [`Lanes`], and instantiated for the portable implementation
-//! (plain arrays, which the compiler turns into SSE2, NEON or wasm SIMD) and for AVX2. There is no fused
+//! (plain arrays, which the compiler turns into SSE2, NEON or wasm SIMD), for AVX2 and for AVX-512. There is no fused
 //! multiply-add and no approximate reciprocal anywhere, so that every instruction set gives the same bits.
 
 pub(crate) mod portable;
@@ -12,6 +12,12 @@ pub(crate) mod portable;
     reason = "the one place for intrinsics; every method is held to the portable twin by a test"
 )]
 pub(crate) mod avx2;
+#[cfg(target_arch = "x86_64")]
+#[allow(
+    unsafe_code,
+    reason = "as for AVX2; held to the portable twin by the same tests"
+)]
+pub(crate) mod avx512;
 
 /// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of closures: what
 /// is not inlined loses the instruction set.
@@ -39,6 +45,23 @@ macro_rules! four {
 }
 pub(crate) use four;
 
+/// `[e(0), e(1)]`, as [`four!`].
+macro_rules! two {
+    ($k:ident => $e:expr) => {
+        [
+            {
+                let $k = 0usize;
+                $e
+            },
+            {
+                let $k = 1usize;
+                $e
+            },
+        ]
+    };
+}
+pub(crate) use two;
+
 /// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.
 pub(crate) trait Kernel {
     /// What it gives back.
@@ -54,6 +77,8 @@ pub enum InstructionSet {
     Portable,
     /// 256-bit AVX2.
     Avx2,
+    /// AVX-512 (F, BW, DQ, VL): 512-bit registers for whole blocks.
+    Avx512,
 }
 
 impl InstructionSet {
@@ -61,35 +86,49 @@ impl InstructionSet {
     #[must_use]
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
-        if avx2::Avx2::detect().is_some() {
-            return Self::Avx2;
+        {
+            if avx512::Avx512::detect().is_some() {
+                return Self::Avx512;
+            }
+            if avx2::Avx2::detect().is_some() {
+                return Self::Avx2;
+            }
         }
         Self::Portable
     }
 
-    /// Runs a kernel with this instruction set (with the portable one where the CPU lacks it).
+    /// Runs a kernel with this instruction set, or with the next smaller one that the CPU has.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         #[cfg(target_arch = "x86_64")]
-        if self == Self::Avx2
-            && let Some(lanes) = avx2::Avx2::detect()
         {
-            return lanes.run(kernel);
+            if self == Self::Avx512
+                && let Some(lanes) = avx512::Avx512::detect()
+            {
+                return lanes.run(kernel);
+            }
+            if self != Self::Portable
+                && let Some(lanes) = avx2::Avx2::detect()
+            {
+                return lanes.run(kernel);
+            }
         }
         kernel.run(portable::Portable)
     }
 }
 
-/// Eight 32-bit lanes, sixteen 16-bit lanes, thirty-two bytes.
+/// Eight lanes for set-up and projection, and the parts of a block: pixels, sample rows, sample planes.
 pub(crate) trait Lanes: Copy {
     /// 8 x f32.
     type F: Copy;
     /// 8 x i32.
     type I: Copy;
-    /// 16 x i16.
-    type H: Copy;
-    /// 32 x u8.
-    type B: Copy;
+    /// 64 x i16: a block's pixels, row by row.
+    type D: Copy;
+    /// 32 x f32: a block's sample rows. Row 4 i + k is number 8 k + i.
+    type R: Copy;
+    /// 16 x u64: a block's samples, a plane per place in a pixel (4 times its column, plus its row).
+    type P: Copy;
 
     fn splat(self, v: f32) -> Self::F;
     fn load(self, v: &[f32; 8]) -> Self::F;
@@ -109,56 +148,68 @@ pub(crate) trait Lanes: Copy {
     fn select(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
     /// Towards zero; lanes out of range give `i32::MIN`.
     fn trunc(self, a: Self::F) -> Self::I;
-    fn bits(self, a: Self::F) -> Self::I;
+    /// Depth codes before they are clamped (see [`crate::depth::encode`]), of depths above zero.
+    fn codes(self, a: Self::F) -> Self::I;
     fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F;
 
+    /// Eight times six numbers, turned over: number k of each eight.
+    fn turn(self, v: &[[f32; 6]; 8]) -> [Self::F; 6];
+
     fn isplat(self, v: i32) -> Self::I;
+    fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
+    fn imin(self, a: Self::I, b: Self::I) -> Self::I;
+    fn imax(self, a: Self::I, b: Self::I) -> Self::I;
+    fn imul(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `a >> by`, `by` from 0 to 31.
+    fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
+    /// How many bits a number from 0 to 2^24 has.
+    fn ibits(self, a: Self::I) -> Self::I;
+    /// `table[index]`, `i32::MIN` for an index beyond.
+    fn igather(self, table: &[i16], index: Self::I) -> Self::I;
+    fn istore(self, v: Self::I, to: &mut [i32; 8]);
     fn isub(self, a: Self::I, b: Self::I) -> Self::I;
     fn iand(self, a: Self::I, b: Self::I) -> Self::I;
     fn ior(self, a: Self::I, b: Self::I) -> Self::I;
     /// `!a & b`.
     fn iandnot(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Arithmetic shift right by 12.
-    fn isra12(self, a: Self::I) -> Self::I;
     /// Sign bits, lane 0 lowest.
     fn movemask(self, a: Self::I) -> u32;
 
-    /// Sixteen lanes from two times eight, saturating, `a` first.
-    fn pack16(self, a: Self::I, b: Self::I) -> Self::H;
-    fn hload(self, v: &[i16; 16]) -> Self::H;
-    fn hstore(self, v: Self::H, to: &mut [i16; 16]);
-    fn hsplat(self, v: i16) -> Self::H;
-    fn hmin(self, a: Self::H, b: Self::H) -> Self::H;
-    fn hmax(self, a: Self::H, b: Self::H) -> Self::H;
-    /// All ones where `a > b`.
-    fn hgt(self, a: Self::H, b: Self::H) -> Self::H;
-    fn hselect(self, mask: Self::H, a: Self::H, b: Self::H) -> Self::H;
-    /// One bit per lane (of a mask), lane 0 lowest.
-    fn hbits(self, mask: Self::H) -> u16;
-    /// A mask from one bit per lane.
-    fn hmask(self, bits: u16) -> Self::H;
-    fn hreduce_min(self, a: Self::H) -> i16;
+    /// Pixels from a value for each column at the top, and its change per row: as depth codes (see
+    /// [`crate::depth`]), no value below `floor` and no code above `cap`.
+    fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D;
+    fn dload(self, v: &[i16; 64]) -> Self::D;
+    fn dstore(self, v: Self::D, to: &mut [i16; 64]);
+    fn dsplat(self, v: i16) -> Self::D;
+    fn dmin(self, a: Self::D, b: Self::D) -> Self::D;
+    fn dmax(self, a: Self::D, b: Self::D) -> Self::D;
+    /// A bit per pixel where `a > b`.
+    fn dgt(self, a: Self::D, b: Self::D) -> u64;
+    /// `a` where the bit is set, else `b`.
+    fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D;
+    fn dreduce_min(self, a: Self::D) -> i16;
 
-    /// Thirty-two bytes from four times eight lanes that are all in `0..=127`.
-    fn pack8(self, v: [Self::I; 4]) -> Self::B;
-    fn bsplat(self, v: u8) -> Self::B;
-    fn badd(self, a: Self::B, b: Self::B) -> Self::B;
-    fn band(self, a: Self::B, b: Self::B) -> Self::B;
-    fn bor(self, a: Self::B, b: Self::B) -> Self::B;
-    /// `!a & b`.
-    fn bandnot(self, a: Self::B, b: Self::B) -> Self::B;
-    /// `a >> 2`, per byte.
-    fn bshr2(self, a: Self::B) -> Self::B;
-    /// All ones where `a > b` (both below 128).
-    fn bgt(self, a: Self::B, b: Self::B) -> Self::B;
-    fn bselect(self, mask: Self::B, a: Self::B, b: Self::B) -> Self::B;
-    /// `table[index]`, each index below 16.
-    fn blookup(self, table: &[u8; 16], index: Self::B) -> Self::B;
-    fn bload(self, v: &[u64; 4]) -> Self::B;
-    fn bstore(self, v: Self::B, to: &mut [u64; 4]);
-    /// The four 64-bit quarters ANDed.
-    fn band_fold(self, v: Self::B) -> u64;
-    /// The four 64-bit quarters ORed.
-    fn bor_fold(self, v: Self::B) -> u64;
-    fn bsplat64(self, v: u64) -> Self::B;
+    fn rsplat(self, v: f32) -> Self::R;
+    /// The number of the row, times `slope`.
+    fn rows(self, slope: f32) -> Self::R;
+    fn radd(self, a: Self::R, b: Self::R) -> Self::R;
+    /// As [`Lanes::min`].
+    fn rmin(self, a: Self::R, b: Self::R) -> Self::R;
+    /// As [`Lanes::max`].
+    fn rmax(self, a: Self::R, b: Self::R) -> Self::R;
+    /// `v`, but 1e6 for rows outside `after < first + row <= last`.
+    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R;
+    /// Samples whose number in their row is at least `from`, and less than `to`, both rounded towards zero.
+    fn planes(self, from: Self::R, to: Self::R) -> Self::P;
+    /// The same for one sample per pixel: rows of eight.
+    fn plane(self, from: Self::F, to: Self::F) -> u64;
+    fn pload(self, v: &[u64; 16]) -> Self::P;
+    fn pstore(self, v: Self::P, to: &mut [u64; 16]);
+    /// Only the pixels whose bit is set.
+    fn pkeep(self, v: Self::P, bits: u64) -> Self::P;
+    fn por(self, a: Self::P, b: Self::P) -> Self::P;
+    /// Pixels of which every sample is set.
+    fn pall(self, v: Self::P) -> u64;
+    /// Pixels of which any sample is set.
+    fn pany(self, v: Self::P) -> u64;
 }

@@ -1,7 +1,19 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
 use super::Lanes;
+use crate::depth::CODE_OFFSET;
 use core::array::from_fn;
+
+/// Sample rows in the order of [`Lanes::R`].
+pub(super) const SAMPLE_ROWS: [f32; 32] = {
+    let mut rows = [0.0; 32];
+    let mut i = 0;
+    while i < 32 {
+        rows[i] = (4 * (i % 8) + i / 8) as f32;
+        i += 1;
+    }
+    rows
+};
 
 /// Plain arrays.
 #[derive(Clone, Copy)]
@@ -10,8 +22,9 @@ pub(crate) struct Portable;
 impl Lanes for Portable {
     type F = [f32; 8];
     type I = [i32; 8];
-    type H = [i16; 16];
-    type B = [u8; 32];
+    type D = [i16; 64];
+    type R = [f32; 32];
+    type P = [u64; 16];
 
     #[inline(always)]
     fn splat(self, v: f32) -> Self::F {
@@ -72,8 +85,8 @@ impl Lanes for Portable {
         })
     }
     #[inline(always)]
-    fn bits(self, a: Self::F) -> Self::I {
-        from_fn(|i| a[i].to_bits() as i32)
+    fn codes(self, a: Self::F) -> Self::I {
+        from_fn(|i| ((a[i].to_bits() as i32) >> 12).wrapping_sub(CODE_OFFSET))
     }
     #[inline(always)]
     fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F {
@@ -83,6 +96,42 @@ impl Lanes for Portable {
     #[inline(always)]
     fn isplat(self, v: i32) -> Self::I {
         [v; 8]
+    }
+    #[inline(always)]
+    fn turn(self, v: &[[f32; 6]; 8]) -> [Self::F; 6] {
+        from_fn(|k| from_fn(|i| v[i][k]))
+    }
+    #[inline(always)]
+    fn iadd(self, a: Self::I, b: Self::I) -> Self::I {
+        from_fn(|i| a[i].wrapping_add(b[i]))
+    }
+    #[inline(always)]
+    fn imin(self, a: Self::I, b: Self::I) -> Self::I {
+        from_fn(|i| a[i].min(b[i]))
+    }
+    #[inline(always)]
+    fn imax(self, a: Self::I, b: Self::I) -> Self::I {
+        from_fn(|i| a[i].max(b[i]))
+    }
+    #[inline(always)]
+    fn imul(self, a: Self::I, b: Self::I) -> Self::I {
+        from_fn(|i| a[i].wrapping_mul(b[i]))
+    }
+    #[inline(always)]
+    fn ishr(self, a: Self::I, by: Self::I) -> Self::I {
+        from_fn(|i| a[i] >> (by[i] & 31))
+    }
+    #[inline(always)]
+    fn ibits(self, a: Self::I) -> Self::I {
+        a.map(|v| (32 - v.leading_zeros()) as i32)
+    }
+    #[inline(always)]
+    fn igather(self, table: &[i16], index: Self::I) -> Self::I {
+        index.map(|i| table.get(i as usize).map_or(i32::MIN, |&v| i32::from(v)))
+    }
+    #[inline(always)]
+    fn istore(self, v: Self::I, to: &mut [i32; 8]) {
+        *to = v;
     }
     #[inline(always)]
     fn isub(self, a: Self::I, b: Self::I) -> Self::I {
@@ -101,124 +150,121 @@ impl Lanes for Portable {
         from_fn(|i| !a[i] & b[i])
     }
     #[inline(always)]
-    fn isra12(self, a: Self::I) -> Self::I {
-        from_fn(|i| a[i] >> 12)
-    }
-    #[inline(always)]
     fn movemask(self, a: Self::I) -> u32 {
         (0..8).fold(0, |m, i| m | (u32::from(a[i] < 0) << i))
     }
 
     #[inline(always)]
-    fn pack16(self, a: Self::I, b: Self::I) -> Self::H {
-        from_fn(|i| if i < 8 { a[i] } else { b[i - 8] }.clamp(-32768, 32767) as i16)
+    fn depths(self, columns: [f32; 8], down: f32, floor: f32, cap: i16) -> Self::D {
+        from_fn(|i| {
+            let v = columns[i % 8] + (i / 8) as f32 * down;
+            let v = if v > floor { v } else { floor };
+            let code = ((v.to_bits() as i32) >> 12) - CODE_OFFSET;
+            (code.clamp(-32768, 32767) as i16).min(cap)
+        })
     }
     #[inline(always)]
-    fn hload(self, v: &[i16; 16]) -> Self::H {
+    fn dload(self, v: &[i16; 64]) -> Self::D {
         *v
     }
     #[inline(always)]
-    fn hstore(self, v: Self::H, to: &mut [i16; 16]) {
+    fn dstore(self, v: Self::D, to: &mut [i16; 64]) {
         *to = v;
     }
     #[inline(always)]
-    fn hsplat(self, v: i16) -> Self::H {
-        [v; 16]
+    fn dsplat(self, v: i16) -> Self::D {
+        [v; 64]
     }
     #[inline(always)]
-    fn hmin(self, a: Self::H, b: Self::H) -> Self::H {
+    fn dmin(self, a: Self::D, b: Self::D) -> Self::D {
         from_fn(|i| a[i].min(b[i]))
     }
     #[inline(always)]
-    fn hmax(self, a: Self::H, b: Self::H) -> Self::H {
+    fn dmax(self, a: Self::D, b: Self::D) -> Self::D {
         from_fn(|i| a[i].max(b[i]))
     }
     #[inline(always)]
-    fn hgt(self, a: Self::H, b: Self::H) -> Self::H {
-        from_fn(|i| -i16::from(a[i] > b[i]))
+    fn dgt(self, a: Self::D, b: Self::D) -> u64 {
+        (0..64).fold(0, |m, i| m | (u64::from(a[i] > b[i]) << i))
     }
     #[inline(always)]
-    fn hselect(self, mask: Self::H, a: Self::H, b: Self::H) -> Self::H {
-        from_fn(|i| (mask[i] & a[i]) | (!mask[i] & b[i]))
+    fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
+        from_fn(|i| {
+            let mask = -(((bits >> i) & 1) as i16);
+            (mask & a[i]) | (!mask & b[i])
+        })
     }
     #[inline(always)]
-    fn hbits(self, mask: Self::H) -> u16 {
-        (0..16).fold(0, |m, i| m | (u16::from(mask[i] < 0) << i))
-    }
-    #[inline(always)]
-    fn hmask(self, bits: u16) -> Self::H {
-        from_fn(|i| -(((bits >> i) & 1) as i16))
-    }
-    #[inline(always)]
-    fn hreduce_min(self, a: Self::H) -> i16 {
+    fn dreduce_min(self, a: Self::D) -> i16 {
         a.iter().fold(i16::MAX, |m, &v| m.min(v))
     }
 
     #[inline(always)]
-    fn pack8(self, v: [Self::I; 4]) -> Self::B {
-        from_fn(|i| v[i / 8][i % 8] as u8)
-    }
-    #[inline(always)]
-    fn bsplat(self, v: u8) -> Self::B {
+    fn rsplat(self, v: f32) -> Self::R {
         [v; 32]
     }
     #[inline(always)]
-    fn badd(self, a: Self::B, b: Self::B) -> Self::B {
-        from_fn(|i| a[i].wrapping_add(b[i]))
+    fn rows(self, slope: f32) -> Self::R {
+        from_fn(|i| SAMPLE_ROWS[i] * slope)
     }
     #[inline(always)]
-    fn band(self, a: Self::B, b: Self::B) -> Self::B {
-        from_fn(|i| a[i] & b[i])
+    fn radd(self, a: Self::R, b: Self::R) -> Self::R {
+        from_fn(|i| a[i] + b[i])
     }
     #[inline(always)]
-    fn bor(self, a: Self::B, b: Self::B) -> Self::B {
+    fn rmin(self, a: Self::R, b: Self::R) -> Self::R {
+        from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn rmax(self, a: Self::R, b: Self::R) -> Self::R {
+        from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
+        from_fn(|i| {
+            let y = first + SAMPLE_ROWS[i];
+            if after < y && y <= last { v[i] } else { 1e6 }
+        })
+    }
+    #[inline(always)]
+    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
+        let number = |v: f32| v.clamp(0.0, 32.0) as u8;
+        from_fn(|plane| {
+            let (column, k) = (plane as u8 / 4, plane % 4);
+            // The first pixel whose sample in this column is at or right of the n-th sample.
+            let pixels = |n: u8| (0xffu16 << ((n + 3 - column) >> 2)) as u8;
+            u64::from_le_bytes(from_fn(|i| {
+                pixels(number(from[8 * k + i])) & !pixels(number(to[8 * k + i]))
+            }))
+        })
+    }
+    #[inline(always)]
+    fn plane(self, from: Self::F, to: Self::F) -> u64 {
+        let pixels = |v: f32| (0xffu16 << (v.clamp(0.0, 8.0) as u8)) as u8;
+        u64::from_le_bytes(from_fn(|i| pixels(from[i]) & !pixels(to[i])))
+    }
+    #[inline(always)]
+    fn pload(self, v: &[u64; 16]) -> Self::P {
+        *v
+    }
+    #[inline(always)]
+    fn pstore(self, v: Self::P, to: &mut [u64; 16]) {
+        *to = v;
+    }
+    #[inline(always)]
+    fn pkeep(self, v: Self::P, bits: u64) -> Self::P {
+        v.map(|plane| plane & bits)
+    }
+    #[inline(always)]
+    fn por(self, a: Self::P, b: Self::P) -> Self::P {
         from_fn(|i| a[i] | b[i])
     }
     #[inline(always)]
-    fn bandnot(self, a: Self::B, b: Self::B) -> Self::B {
-        from_fn(|i| !a[i] & b[i])
+    fn pall(self, v: Self::P) -> u64 {
+        v.iter().fold(u64::MAX, |all, plane| all & plane)
     }
     #[inline(always)]
-    fn bshr2(self, a: Self::B) -> Self::B {
-        from_fn(|i| a[i] >> 2)
+    fn pany(self, v: Self::P) -> u64 {
+        v.iter().fold(0, |any, plane| any | plane)
     }
-    #[inline(always)]
-    fn bgt(self, a: Self::B, b: Self::B) -> Self::B {
-        from_fn(|i| if a[i] > b[i] { 0xff } else { 0 })
-    }
-    #[inline(always)]
-    fn bselect(self, mask: Self::B, a: Self::B, b: Self::B) -> Self::B {
-        from_fn(|i| (mask[i] & a[i]) | (!mask[i] & b[i]))
-    }
-    #[inline(always)]
-    fn blookup(self, table: &[u8; 16], index: Self::B) -> Self::B {
-        from_fn(|i| table[usize::from(index[i] & 15)])
-    }
-    #[inline(always)]
-    fn bload(self, v: &[u64; 4]) -> Self::B {
-        from_fn(|i| (v[i / 8] >> (8 * (i % 8))) as u8)
-    }
-    #[inline(always)]
-    fn bstore(self, v: Self::B, to: &mut [u64; 4]) {
-        *to = quarters(v);
-    }
-    #[inline(always)]
-    fn band_fold(self, v: Self::B) -> u64 {
-        let q = quarters(v);
-        (q[0] & q[1]) & (q[2] & q[3])
-    }
-    #[inline(always)]
-    fn bor_fold(self, v: Self::B) -> u64 {
-        let q = quarters(v);
-        (q[0] | q[1]) | (q[2] | q[3])
-    }
-    #[inline(always)]
-    fn bsplat64(self, v: u64) -> Self::B {
-        from_fn(|i| (v >> (8 * (i % 8))) as u8)
-    }
-}
-
-#[inline(always)]
-fn quarters(v: [u8; 32]) -> [u64; 4] {
-    from_fn(|q| u64::from_le_bytes(from_fn(|i| v[8 * q + i])))
 }
