@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::bench::BenchCommand;
-use crate::{adapters, compare, cull, render, scene_info};
+use crate::{adapters, compare, cull, render, scene_info, view};
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
 #[derive(Debug, Parser)]
@@ -24,6 +24,8 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Draw a scene into a PNG file, or a sequence of frames into many
     Render(Box<render::Args>),
+    /// Open a window on a scene: fly, switch every setting, see what it costs
+    View(Box<view::Args>),
     /// Measure how far two pictures of the same size are apart
     Compare(compare::Args),
     /// List the graphics adapters of this machine
@@ -50,6 +52,7 @@ impl Command {
     pub(crate) fn name(&self) -> &'static str {
         match self {
             Self::Render(_) => "render",
+            Self::View(_) => "view",
             Self::Compare(_) => "compare",
             Self::Adapters(_) => "adapters",
             Self::Scene(SceneCommand::Info(_)) => "scene info",

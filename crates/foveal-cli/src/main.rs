@@ -19,6 +19,7 @@ mod render;
 mod scene_info;
 mod scene_source;
 mod values;
+mod view;
 
 use std::process::ExitCode;
 
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
     let name = cli.command.name();
     failure::report(name, || match cli.command {
         Command::Render(args) => render::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Adapters(args) => adapters::run(&args),
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),

@@ -29,7 +29,9 @@ mod targets;
 #[cfg(test)]
 mod testing;
 
+pub use culling::CullingFigures;
 pub use error::Error;
+pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer, Target};

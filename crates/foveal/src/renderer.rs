@@ -1,10 +1,11 @@
 //! One frame, top to bottom.
 
+use foveal_cull::Visibility;
 use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
 use crate::composite::CompositePass;
-use crate::culling::{CullingCounts, CullingStage};
+use crate::culling::{CullingCounts, CullingFigures, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
 use crate::geometry::{DrawList, GeometryPass};
@@ -58,6 +59,7 @@ pub struct Renderer {
     scene: SceneOnGpu,
     draw_list: DrawList,
     present: PresentPass,
+    frozen: bool,
     in_flight: Option<InFlight>,
 }
 
@@ -121,7 +123,7 @@ impl Stages {
         let shading = ShadingPass::new(gpu, settings, frame);
         let stages = Self {
             settings: settings.clone(),
-            culling: CullingStage::new(settings.culling, settings.width, settings.height)?,
+            culling: CullingStage::new(settings)?,
             targets: Targets::new(gpu, settings),
             lights: LightAssigner::new(gpu, frame),
             geometry: GeometryPass::new(gpu, settings, frame, material_layout),
@@ -162,6 +164,7 @@ impl Renderer {
             scene,
             draw_list: DrawList::default(),
             present: PresentPass::new(gpu),
+            frozen: false,
             in_flight: None,
         })
     }
@@ -193,7 +196,7 @@ impl Renderer {
             ..old.clone()
         }) == *settings
         {
-            let culling = CullingStage::new(settings.culling, settings.width, settings.height)?;
+            let culling = CullingStage::new(settings)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
             let targets = Targets::new(&self.gpu, settings);
             trap.finish().await?;
@@ -321,6 +324,8 @@ impl Renderer {
             scene,
             draw_list,
             present,
+            clock,
+            frozen,
             ..
         } = self;
         let Stages {
@@ -338,12 +343,15 @@ impl Renderer {
         } = stages;
 
         let culled = match culling {
-            Some(culling) => culling.cull(
-                &scene.culling,
-                frame.camera,
-                settings.width,
-                settings.height,
-            ),
+            Some(culling)
+                if *frozen && culling.visibility().len() == scene.stats.objects as usize =>
+            {
+                culling.counts()
+            }
+            Some(culling) => {
+                let size = (settings.width, settings.height);
+                culling.cull(&scene.culling, frame.camera, size, *clock)
+            }
             None => CullingCounts {
                 visible: scene.stats.objects,
                 ..CullingCounts::default()
@@ -441,6 +449,33 @@ impl Renderer {
         let bytes = read_texture(&self.gpu, self.stages.targets.picture_view.texture()).await;
         trap.finish().await?;
         bytes
+    }
+
+    /// Whether frames draw what culling found last, whatever their camera sees: to look at a result from elsewhere.
+    pub fn freeze_culling(&mut self, frozen: bool) {
+        self.frozen = frozen;
+    }
+
+    /// What the culler found in the last frame; `None` without culling.
+    #[must_use]
+    pub fn culling(&self) -> Option<CullingFigures> {
+        self.stages.culling.as_ref().map(CullingStage::figures)
+    }
+
+    /// What became of each of the scene's objects in the last frame; empty without culling.
+    #[must_use]
+    pub fn visibility(&self) -> &[Visibility] {
+        match &self.stages.culling {
+            Some(culling) => culling.visibility(),
+            None => &[],
+        }
+    }
+
+    /// The last frame's occlusion buffer: width, height, and rows from the top, near / distance (0: nothing proven), for
+    /// orthographic cameras 1 at the near plane to 0 at the far one. `None` without culling.
+    #[must_use]
+    pub fn occluder_depth(&self) -> Option<(u32, u32, Vec<f32>)> {
+        self.stages.culling.as_ref().map(CullingStage::depth)
     }
 
     /// Counts of the scene that was set last.

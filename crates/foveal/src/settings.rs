@@ -161,6 +161,17 @@ settings! {
             /// Which objects are drawn: those in the frustum, of these the ones that nothing hides, or all (the
             /// reference); the picture is the same
             culling: Culling = Culling::default(), "Culling", Kind::choice::<Culling>();
+            /// Occluders that look smaller are not rasterized: radius^2 < distance * size^2 * tan(fov / 2), as in Intel's
+            /// sample, which takes 1.5; 0 takes all
+            occluder_size: f32 = 0.0, "Occluder size", Kind::Number { least: 0.0, most: 5.0 };
+            /// Objects that look smaller are not drawn, by the same measure; Intel's sample takes 0.01. Above 0 the
+            /// picture changes
+            occludee_size: f32 = 0.0, "Object size", Kind::Number { least: 0.0, most: 1.0 };
+            /// Pixels of the picture per pixel of the occlusion buffer and axis. Up to 4 nothing that the picture shows is
+            /// culled; above, gaps as thin as a pixel may be taken for closed
+            occlusion_scale: u8 = 4, "Buffer scale", Kind::Integer { least: 1, most: 16 };
+            /// Threads that rasterize occluders; 0: as many as there are
+            culling_threads: u8 = 0, "Threads", Kind::Integer { least: 0, most: 32 };
         }
         "Geometry" {
             /// How the G-buffer is filled: by the rasterizer, or by a visibility buffer whose materials are evaluated once
@@ -267,6 +278,40 @@ impl Settings {
                 value,
                 expected: "between 1 and 16",
             });
+        }
+        for (name, value) in [
+            ("occluder-size", self.occluder_size),
+            ("occludee-size", self.occludee_size),
+        ] {
+            if !(0.0..=1e6).contains(&value) {
+                return Err(Error::Setting {
+                    name,
+                    value: value.to_string(),
+                    expected: "between 0 and 1000000",
+                });
+            }
+        }
+        for (name, value, range, expected) in [
+            (
+                "occlusion-scale",
+                self.occlusion_scale,
+                1..=16,
+                "between 1 and 16",
+            ),
+            (
+                "culling-threads",
+                self.culling_threads,
+                0..=32,
+                "between 0 and 32",
+            ),
+        ] {
+            if !range.contains(&value) {
+                return Err(Error::Setting {
+                    name,
+                    value: value.to_string(),
+                    expected,
+                });
+            }
         }
         coarse::validate(self)?;
         crate::antialias::validate(self, limits)

@@ -81,6 +81,8 @@ pub struct FrameStats {
     pub objects_outside: u64,
     /// Objects hidden by others.
     pub objects_occluded: u64,
+    /// Objects below the size threshold.
+    pub objects_small: u64,
     /// Triangles that were rasterized on the CPU to find the hidden ones.
     pub occluder_triangles: u64,
     /// Draw calls issued.

@@ -25,6 +25,9 @@ use pollster::block_on;
 
 pub(crate) use args::{Args, CameraArgs};
 pub(crate) use clock::now_ms;
+pub(crate) use rate_image::rate_image;
+pub(crate) use settings::read as read_settings;
+pub(crate) use settings_args::{SettingsArgs, flags};
 pub(crate) use summary::grouped;
 pub(crate) use viewpoint::Viewpoint;
 
@@ -140,7 +143,7 @@ fn prepare(
         })
         .context("cannot start a thread")?;
 
-    let rate_image = rate_image::rate_image(settings)?;
+    let rate_image = rate_image(settings)?;
     // Fails before the scene is there where the size is beyond the device: the thread then ends with the program.
     let mut device_ms = Vec::new();
     let gpu = timed(&mut device_ms, "device", || {

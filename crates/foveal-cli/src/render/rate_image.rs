@@ -8,7 +8,7 @@ use foveal::{RateCombine, RateImage, RateSource, Settings, Shading};
 use crate::picture::Picture;
 
 /// The picture that the rate map comes from, where it comes from one.
-pub(super) fn rate_image(settings: &Settings) -> anyhow::Result<Option<RateImage>> {
+pub(crate) fn rate_image(settings: &Settings) -> anyhow::Result<Option<RateImage>> {
     let second = settings.rate_combine != RateCombine::First;
     let used =
         settings.rate == RateSource::Image || second && settings.rate_other == RateSource::Image;

@@ -158,6 +158,11 @@ impl clap::FromArgMatches for SettingsArgs {
 }
 
 impl SettingsArgs {
+    /// Whether flags or file say how large the picture is.
+    pub(crate) fn gives_size(&self) -> bool {
+        self.file.is_some() || self.given.keys().any(|key| is_part_of_size(key))
+    }
+
     /// A file's name given for `rate` goes where it belongs, unless that is given too.
     fn split_rate(&mut self) {
         let Some(Value::String(rate)) = self.given.get("rate") else {
@@ -172,7 +177,6 @@ impl SettingsArgs {
 }
 
 /// The flags that make `settings` out of the defaults, in the order of the table.
-#[cfg(test)]
 pub(crate) fn flags(settings: &Settings) -> Vec<String> {
     let of = |settings: &Settings| Table::try_from(settings).unwrap_or_default();
     let (chosen, default) = (of(settings), of(&Settings::default()));

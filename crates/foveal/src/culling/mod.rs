@@ -1,22 +1,34 @@
 //! Culling: which objects are seen at all, decided on the CPU before anything is drawn.
 //!
-//! The occlusion buffer has a quarter of the picture's size per axis, and its frustum is the picture's,
+//! The occlusion buffer has by default a quarter of the picture's size per axis, and its frustum is the picture's,
 //! widened to whole buffer pixels: the 4x4 coverage samples in each of its pixels then lie on the picture's
 //! own pixel centres, so that what is culled could not have changed a single pixel.
 
 use std::sync::Arc;
 
 use foveal_cull::{
-    BakeOptions, Culler, Eye, FrameOptions, OccluderId, OccluderMesh, OccluderSet, Projection,
-    View, Visibility,
+    BakeOptions, CullStats, Culler, Eye, FrameOptions, OccluderId, OccluderMesh, OccluderSet, Pool,
+    Projection, SingleThread, Threads, View, Visibility,
 };
 use foveal_scene::{Camera, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
-use crate::{Culling, Error};
+use crate::{Clock, Culling, Error, Settings};
 
-/// Samples per buffer pixel and axis.
-const SAMPLES: u32 = 4;
+/// What the culler found in a frame, as Intel's occlusion culling sample shows it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CullingFigures {
+    /// Counts.
+    pub stats: CullStats,
+    /// Width and height of the occlusion buffer.
+    pub buffer: (u32, u32),
+    /// Threads that rasterize.
+    pub threads: usize,
+    /// Time for the occluders, in milliseconds; 0 without a clock.
+    pub rasterize_ms: f64,
+    /// Time for the tests of all objects, in milliseconds; 0 without a clock.
+    pub test_ms: f64,
+}
 
 /// What culling found in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,6 +36,7 @@ pub(crate) struct CullingCounts {
     pub(crate) visible: u64,
     pub(crate) outside: u64,
     pub(crate) occluded: u64,
+    pub(crate) small: u64,
     pub(crate) occluder_triangles: u64,
 }
 
@@ -34,6 +47,8 @@ pub(crate) struct CullingScene {
     /// Which instance each occluder is.
     placed: Vec<(OccluderId, u32)>,
     boxes: Vec<foveal_cull::Aabb>,
+    /// Per object.
+    triangles: Vec<u32>,
 }
 
 impl CullingScene {
@@ -45,6 +60,13 @@ impl CullingScene {
             this.bake(scene);
         }
         this.take_boxes(scene);
+        this.triangles = vec![0; scene.objects.len()];
+        for instance in &scene.instances {
+            let triangles = scene.meshes[instance.mesh as usize].triangle_count() as u32;
+            if let Some(sum) = this.triangles.get_mut(instance.object as usize) {
+                *sum = sum.saturating_add(triangles);
+            }
+        }
         this
     }
 
@@ -108,8 +130,46 @@ fn affine(m: Mat4) -> DAffine3 {
 #[derive(Debug)]
 pub(crate) struct CullingStage {
     occlusion: bool,
+    occluder_size: f32,
+    occludee_size: f32,
+    /// Picture pixels per buffer pixel and axis.
+    scale: u32,
+    threads: Workers,
     culler: Culler,
     results: Vec<Visibility>,
+    rasterize_ms: f64,
+    test_ms: f64,
+}
+
+/// Who rasterizes.
+#[derive(Debug)]
+enum Workers {
+    #[cfg(not(target_arch = "wasm32"))]
+    All,
+    One,
+    Some(Pool),
+}
+
+impl Workers {
+    fn new(threads: u8) -> Self {
+        match threads {
+            #[cfg(not(target_arch = "wasm32"))]
+            0 => Self::All,
+            #[cfg(target_arch = "wasm32")]
+            0 => Self::One,
+            1 => Self::One,
+            n => Self::Some(Pool::new(n.into())),
+        }
+    }
+
+    fn threads(&self) -> &dyn Threads {
+        match self {
+            #[cfg(not(target_arch = "wasm32"))]
+            Self::All => &foveal_cull::Rayon,
+            Self::One => &SingleThread,
+            Self::Some(pool) => pool,
+        }
+    }
 }
 
 impl CullingStage {
@@ -117,25 +177,32 @@ impl CullingStage {
     ///
     /// # Errors
     /// [`Error::Limit`] where the picture is too large for the occlusion buffer.
-    pub(crate) fn new(mode: Culling, width: u32, height: u32) -> Result<Option<Self>, Error> {
-        let occlusion = match mode {
+    pub(crate) fn new(settings: &Settings) -> Result<Option<Self>, Error> {
+        let (width, height) = (settings.width, settings.height);
+        let scale = u32::from(settings.occlusion_scale);
+        let occlusion = match settings.culling {
             Culling::Off => return Ok(None),
             Culling::Frustum => false,
             Culling::Occlusion => true,
         };
-        let culler =
-            Culler::new(width.div_ceil(SAMPLES), height.div_ceil(SAMPLES)).map_err(|_| {
-                Error::Limit {
-                    what: "the larger side of a picture with occlusion culling".to_owned(),
-                    value: u64::from(width.max(height)),
-                    limit: 4096 * u64::from(SAMPLES),
-                    hint: String::new(),
-                }
-            })?;
+        let culler = Culler::new(width.div_ceil(scale), height.div_ceil(scale)).map_err(|_| {
+            Error::Limit {
+                what: "the larger side of a picture with occlusion culling".to_owned(),
+                value: u64::from(width.max(height)),
+                limit: 4096 * u64::from(scale),
+                hint: ": raise occlusion-scale".to_owned(),
+            }
+        })?;
         Ok(Some(Self {
             occlusion,
+            occluder_size: settings.occluder_size,
+            occludee_size: settings.occludee_size,
+            scale,
+            threads: Workers::new(settings.culling_threads),
             culler,
             results: Vec::new(),
+            rasterize_ms: 0.0,
+            test_ms: 0.0,
         }))
     }
 
@@ -144,23 +211,28 @@ impl CullingStage {
         &mut self,
         scene: &CullingScene,
         camera: &Camera,
-        width: u32,
-        height: u32,
+        (width, height): (u32, u32),
+        clock: Option<Clock>,
     ) -> CullingCounts {
         let view = View::mono(Eye {
             world_from_eye: affine(camera.world_from_view),
-            projection: projection(camera, width, height),
+            projection: projection(camera, width, height, self.scale),
         });
         let options = FrameOptions {
             occlusion: self.occlusion,
+            occluder_size_threshold: self.occluder_size,
+            occludee_size_threshold: self.occludee_size,
             ..FrameOptions::default()
         };
         self.results.clear();
         self.results.resize(scene.boxes.len(), Visibility::Visible);
-        if self
-            .culler
-            .rasterize(&view, &scene.occluders, &options, &THREADS)
-            .is_ok()
+        let now = || clock.map_or(0.0, |clock| clock());
+        let start_ms = now();
+        let rasterized =
+            self.culler
+                .rasterize(&view, &scene.occluders, &options, self.threads.threads());
+        let rasterized_ms = now();
+        if rasterized.is_ok()
             && self
                 .culler
                 .query(&scene.boxes, DVec3::ZERO, &mut self.results)
@@ -168,13 +240,47 @@ impl CullingStage {
         {
             self.results.fill(Visibility::Visible);
         }
-        let count = |v| self.results.iter().filter(|&&r| r == v).count() as u64;
+        self.rasterize_ms = rasterized_ms - start_ms;
+        self.test_ms = now() - rasterized_ms;
+        self.culler.count(&self.results, Some(&scene.triangles));
+        self.counts()
+    }
+
+    /// What the last frame found.
+    pub(crate) fn counts(&self) -> CullingCounts {
+        let s = self.culler.stats();
         CullingCounts {
-            visible: count(Visibility::Visible),
-            outside: count(Visibility::Outside),
-            occluded: count(Visibility::Occluded),
-            occluder_triangles: self.culler.stats().occluder_triangles_rasterized,
+            visible: s.occludees_visible,
+            outside: s.occludees_outside,
+            occluded: s.occludees_occluded,
+            small: s.occludees_small,
+            occluder_triangles: s.occluder_triangles_rasterized,
         }
+    }
+
+    /// All figures of the last frame.
+    pub(crate) fn figures(&self) -> CullingFigures {
+        CullingFigures {
+            stats: self.culler.stats(),
+            buffer: self.culler.size(),
+            threads: self.threads.threads().count(),
+            rasterize_ms: self.rasterize_ms,
+            test_ms: self.test_ms,
+        }
+    }
+
+    /// What became of each object in the last frame.
+    pub(crate) fn visibility(&self) -> &[Visibility] {
+        &self.results
+    }
+
+    /// The occlusion buffer of the last frame.
+    pub(crate) fn depth(&self) -> (u32, u32, Vec<f32>) {
+        let (width, height) = self.culler.size();
+        let mut pixels = vec![0.0; (width * height) as usize];
+        // The only error is a wrong length.
+        let _ = self.culler.read_depth(&mut pixels);
+        (width, height, pixels)
     }
 
     /// Whether the last frame's object is to be drawn.
@@ -185,15 +291,10 @@ impl CullingStage {
     }
 }
 
-#[cfg(not(target_arch = "wasm32"))]
-const THREADS: foveal_cull::Rayon = foveal_cull::Rayon;
-#[cfg(target_arch = "wasm32")]
-const THREADS: foveal_cull::SingleThread = foveal_cull::SingleThread;
-
 /// The camera's frustum, widened to the right and downwards to whole buffer pixels.
-fn projection(camera: &Camera, width: u32, height: u32) -> Projection {
+fn projection(camera: &Camera, width: u32, height: u32, scale: u32) -> Projection {
     let aspect = f64::from(width) / f64::from(height);
-    let widened = |pixels: u32| f64::from(pixels.next_multiple_of(SAMPLES)) / f64::from(pixels);
+    let widened = |pixels: u32| f64::from(pixels.next_multiple_of(scale)) / f64::from(pixels);
     let (right_over_width, down_over_height) = (widened(width), widened(height));
     let extents = |half_height: f64| {
         let half_width = half_height * aspect;

@@ -86,6 +86,7 @@ impl Renderer {
             objects_visible: culled.visible,
             objects_outside: culled.outside,
             objects_occluded: culled.occluded,
+            objects_small: culled.small,
             occluder_triangles: culled.occluder_triangles,
             draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
             triangles: self.draw_list.triangles,

@@ -1,0 +1,67 @@
+//! `foveal view`: the window, with the program's scenes, files and flags behind it.
+
+use foveal_scene::generate;
+use foveal_view::{Host, Loaded};
+
+use crate::render::{CameraArgs, SettingsArgs, Viewpoint, flags, rate_image, read_settings};
+use crate::{scene_source, values};
+
+/// Arguments of `foveal view`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// A glTF 2.0 file or a generated scene
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
+    scene: String,
+
+    #[command(flatten)]
+    camera: CameraArgs,
+
+    /// Add N coloured point lights to the scene
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    point_lights: u32,
+
+    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    #[arg(long, value_name = "NAME|NUMBER")]
+    adapter: Option<String>,
+
+    /// Size of the window in pixels
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1280x720")]
+    window: (u32, u32),
+
+    #[command(flatten)]
+    settings: SettingsArgs,
+}
+
+/// Opens the window and stays until it is closed.
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    let settings = args.settings.resolve()?;
+    let (first, camera) = (args.scene.clone(), args.camera.clone());
+    let point_lights = args.point_lights;
+    let load = move |name: &str| {
+        let mut scene = scene_source::load(name)?;
+        if point_lights > 0 {
+            scene_source::add_point_lights(&mut scene, point_lights, 0);
+        }
+        scene.light_by_default();
+        // What was asked for of the camera holds for the first scene.
+        let camera = if name == first {
+            camera.clone()
+        } else {
+            CameraArgs::default()
+        };
+        let camera = Viewpoint::choose(&camera, &scene, name)?.at(&scene, 0.0);
+        Ok(Loaded { scene, camera })
+    };
+    foveal_view::run(Host {
+        scene: args.scene.clone(),
+        generated: generate::NAMES.map(str::to_owned).to_vec(),
+        fit: !args.settings.gives_size(),
+        settings,
+        adapter: args.adapter.clone(),
+        window: args.window,
+        load: Box::new(load),
+        read_settings,
+        rate_image,
+        flags,
+    })
+}

@@ -1,0 +1,535 @@
+//! What the window knows, and what becomes of input: from the hands to the next request for a picture.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use egui::{Key, Modifiers, TextureHandle, TextureOptions};
+use foveal::{AdapterStats, Settings, Shading};
+use foveal_scene::Camera;
+use glam::{Vec2, Vec3};
+use toml::Table;
+
+use crate::Host;
+use crate::history::History;
+use crate::navigator::{Hands, Mode, Navigator};
+use crate::worker::{LoadedScene, News, Request, Rgba, Shown, Worker};
+use crate::{panels, viewport};
+
+/// A line that tells the user something for a while, or until it is dismissed.
+#[derive(Debug)]
+pub(crate) struct Message {
+    pub(crate) text: String,
+    pub(crate) is_error: bool,
+    /// Seconds on the interface's clock after which it goes.
+    pub(crate) until_s: f64,
+}
+
+/// How the picture is shown, besides what the settings say.
+#[derive(Debug)]
+pub(crate) struct Display {
+    /// The picture has the size of its place in the window.
+    pub(crate) fit: bool,
+    /// Size of the picture against its place.
+    pub(crate) scale: f32,
+    pub(crate) always: bool,
+    pub(crate) gaze_follows: bool,
+    pub(crate) boxes: bool,
+    pub(crate) depth: bool,
+    pub(crate) frozen: bool,
+    pub(crate) compare: bool,
+    /// Where the reference ends, as a fraction of the picture's width.
+    pub(crate) split: f32,
+    pub(crate) panels: bool,
+    /// Whether the interface waits for the screen.
+    pub(crate) vsync: bool,
+    pub(crate) playing: bool,
+    pub(crate) time_s: f32,
+}
+
+/// Everything behind the window.
+pub(crate) struct App {
+    pub(crate) host: Arc<Host>,
+    worker: Worker,
+    /// The settings as the panels hold them; may be wrong for a moment.
+    pub(crate) draft: Table,
+    /// The last ones that made sense.
+    pub(crate) settings: Settings,
+    /// What is wrong with the draft.
+    pub(crate) wrong: Option<String>,
+    /// What the split slider shows on the left.
+    pub(crate) reference: Settings,
+    pub(crate) display: Display,
+    pub(crate) navigator: Option<Navigator>,
+    pub(crate) bookmarks: [Option<Camera>; 9],
+    pub(crate) scene: Option<LoadedScene>,
+    pub(crate) scene_name: String,
+    pub(crate) loading: bool,
+    pub(crate) adapter: Option<AdapterStats>,
+    pub(crate) shown: Option<Box<Shown>>,
+    pub(crate) picture: Option<TextureHandle>,
+    pub(crate) reference_picture: Option<TextureHandle>,
+    pub(crate) depth_picture: Option<TextureHandle>,
+    pub(crate) history: History,
+    pub(crate) messages: Vec<Message>,
+    pub(crate) settings_file: String,
+    /// Size of the picture's place, in pixels.
+    pub(crate) place: (u32, u32),
+    asked: Option<Request>,
+}
+
+impl App {
+    pub(crate) fn new(host: Host, wake: impl Fn() + Send + 'static) -> std::io::Result<Self> {
+        let host = Arc::new(host);
+        let worker = Worker::start(Arc::clone(&host), wake)?;
+        worker.load(host.scene.clone());
+        let settings = host.settings.clone();
+        Ok(Self {
+            worker,
+            draft: Table::try_from(&settings).unwrap_or_default(),
+            wrong: None,
+            reference: Settings::default(),
+            display: Display {
+                fit: host.fit,
+                scale: 1.0,
+                always: false,
+                gaze_follows: false,
+                boxes: false,
+                depth: false,
+                frozen: false,
+                compare: false,
+                split: 0.5,
+                panels: true,
+                vsync: true,
+                playing: false,
+                time_s: 0.0,
+            },
+            navigator: None,
+            bookmarks: Default::default(),
+            scene: None,
+            scene_name: host.scene.clone(),
+            loading: true,
+            adapter: None,
+            shown: None,
+            picture: None,
+            reference_picture: None,
+            depth_picture: None,
+            history: History::default(),
+            messages: Vec::new(),
+            settings_file: "foveal.toml".to_owned(),
+            place: (0, 0),
+            asked: None,
+            settings,
+            host,
+        })
+    }
+
+    /// One pass of the interface.
+    pub(crate) fn show(&mut self, ui: &mut egui::Ui) {
+        self.take_news(ui.ctx());
+        self.take_keys(ui.ctx());
+        panels::show(self, ui);
+        viewport::show(self, ui);
+        self.take_settings();
+        self.ask();
+        self.forget_messages(ui.ctx());
+    }
+
+    /// Loads another scene in place of this one.
+    pub(crate) fn open_scene(&mut self, name: String) {
+        self.loading = true;
+        self.worker.load(name.clone());
+        self.scene_name = name;
+    }
+
+    pub(crate) fn say(&mut self, context: &egui::Context, text: impl Into<String>) {
+        self.messages.push(Message {
+            text: text.into(),
+            is_error: false,
+            until_s: context.input(|i| i.time) + 5.0,
+        });
+    }
+
+    pub(crate) fn complain(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        self.messages.retain(|message| message.text != text);
+        self.messages.push(Message {
+            text,
+            is_error: true,
+            until_s: f64::INFINITY,
+        });
+    }
+
+    fn forget_messages(&mut self, context: &egui::Context) {
+        let now = context.input(|i| i.time);
+        self.messages.retain(|message| message.until_s > now);
+        if let Some(first) = self
+            .messages
+            .iter()
+            .map(|m| m.until_s)
+            .min_by(f64::total_cmp)
+            && first.is_finite()
+        {
+            context.request_repaint_after_secs((first - now) as f32);
+        }
+    }
+
+    fn take_news(&mut self, context: &egui::Context) {
+        let news: Vec<News> = self.worker.news().collect();
+        for news in news {
+            match news {
+                News::Adapter(adapter) => {
+                    // Half the pixels a side where the processor draws.
+                    if self.adapter.is_none() && adapter.kind == "cpu" {
+                        self.display.scale = 0.5;
+                    }
+                    self.adapter = Some(adapter);
+                }
+                News::Scene(scene) => {
+                    self.loading = false;
+                    self.navigator = Some(Navigator::new(scene.start.clone(), scene.bounds));
+                    self.bookmarks = Default::default();
+                    self.display.playing = scene.is_animated;
+                    self.display.time_s = 0.0;
+                    self.asked = None;
+                    self.history.clear();
+                    if scene.warnings > 0 {
+                        let text = format!(
+                            "{}: {} warnings; 'foveal scene info' lists them",
+                            scene.name, scene.warnings
+                        );
+                        self.say(context, text);
+                    }
+                    self.scene = Some(*scene);
+                }
+                News::Picture(shown) => self.take_picture(context, shown),
+                News::Failed(cause) => {
+                    self.loading = false;
+                    // What is shown stays, and so does its name.
+                    if let Some(scene) = &self.scene {
+                        self.scene_name = scene.name.clone();
+                    }
+                    self.complain(cause);
+                }
+            }
+        }
+    }
+
+    fn take_picture(&mut self, context: &egui::Context, mut shown: Box<Shown>) {
+        self.history.push(shown.stats.frame_ms);
+        let load =
+            |slot: &mut Option<TextureHandle>, name: &str, image: egui::ColorImage| match slot {
+                Some(texture) => texture.set(image, TextureOptions::LINEAR),
+                None => *slot = Some(context.load_texture(name, image, TextureOptions::LINEAR)),
+            };
+        let image = |picture: &Rgba| {
+            let size = [picture.width as usize, picture.height as usize];
+            egui::ColorImage::from_rgba_premultiplied(size, &picture.bytes)
+        };
+        load(&mut self.picture, "picture", image(&shown.picture));
+        if let Some((reference, _)) = &shown.reference {
+            load(&mut self.reference_picture, "reference", image(reference));
+        }
+        if let Some(depth) = &shown.depth {
+            let size = [depth.width as usize, depth.height as usize];
+            let gray = viewport::depth_grays(&depth.near_over_distance);
+            let image = egui::ColorImage::from_gray_iter(size, gray);
+            load(&mut self.depth_picture, "depth", image);
+        }
+        // The figure stays until the next one: it is measured on some frames only.
+        if shown.flip.is_none()
+            && let Some(before) = &self.shown
+            && before.camera == shown.camera
+            && self.display.compare
+        {
+            shown.flip = before.flip;
+        }
+        self.shown = Some(shown);
+    }
+
+    /// Keys, unless a text field takes them.
+    fn take_keys(&mut self, context: &egui::Context) {
+        if context.text_edit_focused() {
+            return;
+        }
+        let pressed = |key| context.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+        let display = &mut self.display;
+        for (key, switch) in [
+            (Key::C, &mut display.frozen),
+            (Key::B, &mut display.boxes),
+            (Key::Z, &mut display.depth),
+            (Key::X, &mut display.compare),
+            (Key::G, &mut display.gaze_follows),
+            (Key::H, &mut display.panels),
+            (Key::Space, &mut display.playing),
+        ] {
+            if pressed(key) {
+                *switch = !*switch;
+            }
+        }
+        if pressed(Key::F)
+            && let Some(navigator) = &mut self.navigator
+        {
+            navigator.mode = match navigator.mode {
+                Mode::Fly => Mode::Orbit,
+                Mode::Orbit => Mode::Fly,
+            };
+        }
+        if pressed(Key::Home)
+            && let (Some(navigator), Some(scene)) = (&mut self.navigator, &self.scene)
+        {
+            navigator.go_to(scene.start.clone());
+        }
+        if pressed(Key::P) || pressed(Key::F12) {
+            self.take_screenshot(context);
+        }
+        const DIGITS: [Key; 9] = [
+            Key::Num1,
+            Key::Num2,
+            Key::Num3,
+            Key::Num4,
+            Key::Num5,
+            Key::Num6,
+            Key::Num7,
+            Key::Num8,
+            Key::Num9,
+        ];
+        for (index, key) in DIGITS.into_iter().enumerate() {
+            if context.input_mut(|i| i.consume_key(Modifiers::CTRL, key)) {
+                self.set_bookmark(index);
+            } else if pressed(key) {
+                self.go_to_bookmark(index);
+            }
+        }
+    }
+
+    pub(crate) fn set_bookmark(&mut self, index: usize) {
+        if let Some(navigator) = &self.navigator {
+            self.bookmarks[index] = Some(navigator.camera().clone());
+        }
+    }
+
+    pub(crate) fn go_to_bookmark(&mut self, index: usize) {
+        if let (Some(navigator), Some(camera)) = (&mut self.navigator, &self.bookmarks[index]) {
+            navigator.go_to(camera.clone());
+        }
+    }
+
+    /// Moves the camera by the keys that are held and by what the pointer did over the picture.
+    pub(crate) fn steer(&mut self, context: &egui::Context, mut hands: Hands) {
+        if !context.text_edit_focused() {
+            context.input(|i| {
+                if i.modifiers.ctrl || i.modifiers.command {
+                    return;
+                }
+                let axis = |more: &[Key], less: &[Key]| {
+                    let down = |keys: &[Key]| keys.iter().any(|&key| i.key_down(key));
+                    f32::from(u8::from(down(more))) - f32::from(u8::from(down(less)))
+                };
+                hands.push = Vec3::new(
+                    axis(&[Key::D, Key::ArrowRight], &[Key::A, Key::ArrowLeft]),
+                    axis(&[Key::E, Key::PageUp], &[Key::Q, Key::PageDown]),
+                    axis(&[Key::W, Key::ArrowUp], &[Key::S, Key::ArrowDown]),
+                );
+                hands.hurry = i.modifiers.shift;
+            });
+        }
+        let dt = context.input(|i| i.stable_dt);
+        // A step after a pause is as long as one frame, not as the pause.
+        hands.elapsed_s = dt.min(0.1);
+        if let Some(navigator) = &mut self.navigator
+            && navigator.step(&hands)
+            && hands.push != Vec3::ZERO
+        {
+            context.request_repaint();
+        }
+        let animated = self.scene.as_ref().is_some_and(|scene| scene.is_animated);
+        if animated && self.display.playing {
+            self.display.time_s += hands.elapsed_s;
+            context.request_repaint();
+        }
+    }
+
+    /// Where the eye looks, by the pointer's place in the picture.
+    pub(crate) fn look_at(&mut self, place: Vec2) {
+        let gaze = [place.x, place.y].map(|p| f64::from((p * 1000.0).round() / 1000.0));
+        self.draft.insert("gaze".to_owned(), gaze.to_vec().into());
+    }
+
+    /// Takes over the draft where it makes sense.
+    fn take_settings(&mut self) {
+        let (width, height) = self.place;
+        if self.display.fit && width > 0 && height > 0 {
+            let scaled = |pixels: u32| ((pixels as f32 * self.display.scale) as i64).max(16);
+            self.draft.insert("width".to_owned(), scaled(width).into());
+            self.draft
+                .insert("height".to_owned(), scaled(height).into());
+        }
+        let limits = wgpu::Limits {
+            max_texture_dimension_2d: 16384,
+            max_buffer_size: u64::MAX,
+            max_storage_buffer_binding_size: u64::MAX,
+            ..wgpu::Limits::default()
+        };
+        let checked = self
+            .draft
+            .clone()
+            .try_into::<Settings>()
+            .map_err(|error| error.message().to_owned())
+            .and_then(|settings| {
+                settings
+                    .validate(&limits)
+                    .map(|()| settings)
+                    .map_err(|error| error.to_string())
+            });
+        match checked {
+            Ok(settings) => {
+                self.wrong = None;
+                self.settings = settings;
+            }
+            Err(cause) => self.wrong = Some(cause),
+        }
+    }
+
+    /// Puts other settings in place of these.
+    pub(crate) fn use_settings(&mut self, settings: &Settings) {
+        self.draft = Table::try_from(settings).unwrap_or_default();
+    }
+
+    /// The reference as it is drawn: with this picture's size and exposure.
+    fn sized_reference(&self) -> Settings {
+        Settings {
+            width: self.settings.width,
+            height: self.settings.height,
+            ..self.reference.clone()
+        }
+    }
+
+    /// Asks for a picture where a new one is wanted.
+    fn ask(&mut self) {
+        let Some(navigator) = &self.navigator else {
+            return;
+        };
+        if self.place.0 == 0 {
+            return;
+        }
+        let request = Request {
+            settings: self.settings.clone(),
+            reference: self.display.compare.then(|| self.sized_reference()),
+            camera: navigator.camera().clone(),
+            frozen: self.display.frozen,
+            boxes: self.display.boxes,
+            depth: self.display.depth,
+            time_s: self.display.time_s,
+            always: self.display.always,
+        };
+        if self.asked.as_ref() != Some(&request) {
+            let before = self.asked.as_ref().map(|asked| &asked.settings);
+            if before.is_some_and(|settings| *settings != request.settings) {
+                self.history.clear();
+            }
+            self.worker.draw(request.clone());
+            self.asked = Some(request);
+        }
+    }
+
+    /// Writes the picture, as it was drawn, beside the program's other files.
+    pub(crate) fn take_screenshot(&mut self, context: &egui::Context) {
+        let Some(shown) = &self.shown else { return };
+        let free = (1..).map(|n| PathBuf::from(format!("foveal-{n:03}.png")));
+        let path = free.into_iter().find(|path| !path.exists());
+        let path = path.unwrap_or_else(|| PathBuf::from("foveal.png"));
+        let Rgba {
+            width,
+            height,
+            bytes,
+        } = &shown.picture;
+        match image::save_buffer(&path, bytes, *width, *height, image::ColorType::Rgba8) {
+            Ok(()) => self.say(context, format!("Screenshot: {}", path.display())),
+            Err(error) => {
+                self.complain(format!("cannot write '{}': {error}", path.display()));
+            }
+        }
+    }
+
+    pub(crate) fn save_settings(&mut self, context: &egui::Context) {
+        let path = PathBuf::from(&self.settings_file);
+        let written = toml::to_string(&self.settings)
+            .map_err(anyhow::Error::from)
+            .and_then(|text| Ok(std::fs::write(&path, text)?));
+        match written {
+            Ok(()) => self.say(context, format!("Settings saved: {}", path.display())),
+            Err(error) => self.complain(format!("cannot write '{}': {error}", path.display())),
+        }
+    }
+
+    pub(crate) fn load_settings(&mut self, context: &egui::Context) {
+        match (self.host.read_settings)(&PathBuf::from(&self.settings_file)) {
+            Ok(settings) => {
+                // A file's size holds; what follows the window has none of its own.
+                self.display.fit = false;
+                self.use_settings(&settings);
+                self.say(context, format!("Settings loaded: {}", self.settings_file));
+            }
+            Err(error) => self.complain(format!("{error:#}")),
+        }
+    }
+
+    /// The command that draws this picture to a file.
+    pub(crate) fn command_line(&self) -> String {
+        let mut words = vec!["foveal".to_owned(), "render".to_owned()];
+        words.push(quoted(&self.scene_name));
+        words.extend(["--output".to_owned(), "picture.png".to_owned()]);
+        if let Some(navigator) = &self.navigator {
+            let camera = navigator.camera();
+            let forward = -camera.world_from_view.z_axis.truncate();
+            let eye = camera.eye();
+            let list = |v: Vec3| format!("{},{},{}", v.x, v.y, v.z);
+            if let foveal_scene::Projection::Perspective { fov_y_rad, .. } = camera.projection {
+                words.extend([
+                    "--eye".to_owned(),
+                    list(eye),
+                    "--target".to_owned(),
+                    list(eye + forward),
+                    "--fov".to_owned(),
+                    fov_y_rad.to_degrees().to_string(),
+                ]);
+            } else {
+                words.extend(["--camera".to_owned(), quoted(&camera.name)]);
+            }
+        }
+        let flags = (self.host.flags)(&self.settings);
+        words.extend(flags.iter().map(|flag| quoted(flag)));
+        words.join(" ")
+    }
+
+    /// Whether a stage does anything with these settings.
+    pub(crate) fn is_in_use(&self, stage: &str) -> bool {
+        match stage {
+            "Coarse shading" => self.settings.shading == Shading::Coarse,
+            _ => true,
+        }
+    }
+}
+
+/// A word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=@%#".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::quoted;
+
+    #[test]
+    fn words_with_spaces_and_quotes_survive_a_shell() {
+        assert_eq!(quoted("demo:2000"), "demo:2000");
+        assert_eq!(quoted("my scene.glb"), "'my scene.glb'");
+        assert_eq!(quoted("it's"), r"'it'\''s'");
+        assert_eq!(quoted(""), "''");
+    }
+}

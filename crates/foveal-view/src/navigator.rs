@@ -1,0 +1,218 @@
+//! Moving the camera: flying through the scene, or orbiting around a point of it.
+
+use foveal_scene::{Aabb, Camera};
+use glam::{Mat4, Vec2, Vec3};
+
+/// Radians that a drag over one point of the window turns.
+const TURN_RAD: f32 = 0.005;
+/// Steepest look up or down.
+const STEEPEST_RAD: f32 = 1.55;
+
+/// How the camera is moved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Mode {
+    #[default]
+    Fly,
+    Orbit,
+}
+
+/// What the hands do in a moment.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Hands {
+    /// Right, up, forward; each -1 to 1.
+    pub(crate) push: Vec3,
+    /// Pointer movement with the turning button down, in points.
+    pub(crate) turn: Vec2,
+    /// Pointer movement with the shifting button down, in points.
+    pub(crate) shift: Vec2,
+    /// Notches of the wheel.
+    pub(crate) scroll: f32,
+    pub(crate) hurry: bool,
+    pub(crate) elapsed_s: f32,
+}
+
+/// A camera that is moved.
+#[derive(Clone, Debug)]
+pub(crate) struct Navigator {
+    pub(crate) mode: Mode,
+    /// Metres per second.
+    pub(crate) speed_m_s: f32,
+    camera: Camera,
+    yaw_rad: f32,
+    pitch_rad: f32,
+    /// Distance of the point that is orbited.
+    radius_m: f32,
+}
+
+impl Navigator {
+    /// At `camera` in a scene of this extent.
+    pub(crate) fn new(camera: Camera, bounds: Aabb) -> Self {
+        let extent_m = if bounds.is_empty() {
+            1.0
+        } else {
+            bounds.size().length().max(1e-3)
+        };
+        let towards = if bounds.is_empty() {
+            extent_m
+        } else {
+            camera.eye().distance(bounds.center())
+        };
+        let mut this = Self {
+            mode: Mode::Fly,
+            speed_m_s: (extent_m * 0.08).clamp(1e-3, 50.0),
+            yaw_rad: 0.0,
+            pitch_rad: 0.0,
+            radius_m: towards.max(1e-3 * extent_m),
+            camera: camera.clone(),
+        };
+        this.go_to(camera);
+        this
+    }
+
+    /// Jumps to a camera.
+    pub(crate) fn go_to(&mut self, camera: Camera) {
+        let forward = (-camera.world_from_view.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
+        self.yaw_rad = f32::atan2(-forward.x, -forward.z);
+        self.pitch_rad = forward.y.clamp(-1.0, 1.0).asin();
+        self.camera = camera;
+    }
+
+    /// Where it is. Bit for bit the camera it was told to go to until it is moved.
+    pub(crate) fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    fn turned(&self) -> Mat4 {
+        Mat4::from_rotation_y(self.yaw_rad) * Mat4::from_rotation_x(self.pitch_rad)
+    }
+
+    /// Moves; true if anything changed.
+    pub(crate) fn step(&mut self, hands: &Hands) -> bool {
+        match self.mode {
+            Mode::Fly => self.fly(hands),
+            Mode::Orbit => self.orbit(hands),
+        }
+    }
+
+    fn turn(&mut self, by: Vec2) {
+        self.yaw_rad -= by.x * TURN_RAD;
+        let pitch = self.pitch_rad - by.y * TURN_RAD;
+        self.pitch_rad = pitch.clamp(-STEEPEST_RAD, STEEPEST_RAD);
+    }
+
+    fn place(&mut self, eye: Vec3) {
+        self.camera.world_from_view = Mat4::from_translation(eye) * self.turned();
+        self.camera.name = "free".to_owned();
+    }
+
+    fn fly(&mut self, hands: &Hands) -> bool {
+        if hands.scroll != 0.0 {
+            self.speed_m_s = (self.speed_m_s * 1.2f32.powf(hands.scroll)).clamp(1e-4, 1e4);
+        }
+        let drag = hands.turn + hands.shift;
+        if drag == Vec2::ZERO && hands.push == Vec3::ZERO {
+            return false;
+        }
+        self.turn(drag);
+        let hurry = if hands.hurry { 4.0 } else { 1.0 };
+        let way = hands.push.clamp_length_max(1.0) * self.speed_m_s * hurry * hands.elapsed_s;
+        let eye = self.camera.eye();
+        let turned = self.turned();
+        let step =
+            turned.x_axis.truncate() * way.x + Vec3::Y * way.y - turned.z_axis.truncate() * way.z;
+        self.place(eye + step);
+        true
+    }
+
+    fn orbit(&mut self, hands: &Hands) -> bool {
+        if hands.turn == Vec2::ZERO
+            && hands.shift == Vec2::ZERO
+            && hands.scroll == 0.0
+            && hands.push == Vec3::ZERO
+        {
+            return false;
+        }
+        let before = self.turned();
+        let mut pivot = self.camera.eye() - before.z_axis.truncate() * self.radius_m;
+        self.turn(hands.turn);
+        let turned = self.turned();
+        let (right, up) = (turned.x_axis.truncate(), turned.y_axis.truncate());
+        let by = hands.shift * (self.radius_m * 0.0015);
+        let push = hands.push * (self.radius_m * hands.elapsed_s);
+        pivot += up * (by.y + push.y) - right * by.x + right * push.x;
+        self.radius_m *= 0.9f32.powf(hands.scroll) * (1.0 - push.z / self.radius_m).max(0.5);
+        self.radius_m = self.radius_m.max(1e-4);
+        self.place(pivot + turned.z_axis.truncate() * self.radius_m);
+        true
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn navigator() -> Navigator {
+        let camera = Camera::look_at(Vec3::new(3.0, 2.0, 5.0), Vec3::ZERO, Vec3::Y, 1.0);
+        let bounds = Aabb {
+            min: Vec3::splat(-1.0),
+            max: Vec3::splat(1.0),
+        };
+        Navigator::new(camera, bounds)
+    }
+
+    fn forward(navigator: &Navigator) -> Vec3 {
+        -navigator.camera().world_from_view.z_axis.truncate()
+    }
+
+    #[test]
+    fn a_camera_that_is_not_moved_stays_to_the_bit() {
+        let mut navigator = navigator();
+        let before = navigator.camera().clone();
+        assert!(!navigator.step(&Hands::default()));
+        assert_eq!(*navigator.camera(), before);
+    }
+
+    #[test]
+    fn flying_forward_goes_where_the_camera_looks() {
+        let mut navigator = navigator();
+        let (eye, looks) = (navigator.camera().eye(), forward(&navigator));
+        let hands = Hands {
+            push: Vec3::Z,
+            elapsed_s: 0.5,
+            ..Hands::default()
+        };
+        assert!(navigator.step(&hands));
+        let way = navigator.camera().eye() - eye;
+        assert!((way.normalize() - looks).length() < 1e-4, "{way}, {looks}");
+        assert!((way.length() - 0.5 * navigator.speed_m_s).abs() < 1e-4);
+    }
+
+    #[test]
+    fn orbiting_keeps_the_distance_and_looks_at_the_pivot() {
+        let mut navigator = navigator();
+        navigator.mode = Mode::Orbit;
+        let distance = navigator.camera().eye().length();
+        for turn in [Vec2::new(100.0, 0.0), Vec2::new(-30.0, 70.0)] {
+            let hands = Hands {
+                turn,
+                ..Hands::default()
+            };
+            assert!(navigator.step(&hands));
+            let eye = navigator.camera().eye();
+            assert!((eye.length() - distance).abs() < 1e-2, "{eye}");
+            assert!((forward(&navigator) + eye.normalize()).length() < 1e-2);
+        }
+    }
+
+    #[test]
+    fn one_cannot_tumble_over() {
+        let mut navigator = navigator();
+        let hands = Hands {
+            turn: Vec2::new(0.0, -1e4),
+            ..Hands::default()
+        };
+        navigator.step(&hands);
+        let up = navigator.camera().world_from_view.y_axis.truncate();
+        assert!(up.y > 0.0, "{up}");
+    }
+}

@@ -1,0 +1,118 @@
+//! What the last frame cost.
+
+use egui::RichText;
+use foveal::Settings;
+
+use super::{card, figure, timeline};
+use crate::app::App;
+use crate::look::{self, grouped};
+
+pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
+    compare(app, ui);
+    let Some(shown) = &app.shown else {
+        ui.label(RichText::new("No frame yet").color(look::FAINT));
+        return;
+    };
+    let stats = &shown.stats;
+    card(ui, "Frame", |ui| {
+        ui.horizontal(|ui| {
+            ui.label(RichText::new(look::ms(stats.frame_ms)).size(20.0).strong());
+            let fps = 1000.0 / stats.frame_ms.max(1e-3);
+            ui.label(RichText::new(format!("{fps:.1} fps")).color(look::FAINT));
+        });
+        timeline::graph(ui, &app.history);
+        if let Some((_, slowest)) = app.history.median_and_slowest() {
+            figure(ui, "Slowest 1 %", look::ms(slowest));
+        }
+        timeline::stacked(ui, "CPU", &stats.cpu_ms, 0);
+        timeline::stacked(ui, "GPU", &stats.gpu_ms, 0);
+    });
+    ui.add_space(6.0);
+    card(ui, "Work", |ui| {
+        let pixels = u64::from(stats.width) * u64::from(stats.height);
+        figure(ui, "Picture", format!("{} x {}", stats.width, stats.height));
+        figure(ui, "Draws", grouped(stats.draws));
+        figure(ui, "Triangles", grouped(stats.triangles));
+        figure(ui, "Shaded samples", grouped(stats.shaded_samples));
+        let fraction = 100.0 * stats.shaded_samples as f64 / pixels.max(1) as f64;
+        figure(ui, "Per pixel", format!("{fraction:.2} %"));
+        if stats.edge_fraction > 0.0 {
+            let edges = 100.0 * stats.edge_fraction;
+            figure(ui, "Edge pixels", format!("{edges:.2} %"));
+        }
+        let bytes = stats.target_bytes as f64 / f64::from(1 << 20);
+        figure(ui, "Targets", format!("{bytes:.1} MiB"));
+        if let Some(coarse) = &stats.coarse {
+            figure(ui, "Backend", coarse.backend.as_str());
+            ui.label(
+                RichText::new(&coarse.backend_reason)
+                    .small()
+                    .color(look::FAINT),
+            );
+            for (level, samples) in coarse.samples_per_level.iter().enumerate() {
+                figure(ui, &format!("Level {level}"), grouped(*samples));
+            }
+        }
+    });
+    ui.add_space(6.0);
+    card(ui, "Machine", |ui| {
+        if let Some(adapter) = &app.adapter {
+            ui.label(&adapter.name);
+            let text = format!("{}, {}", adapter.backend, adapter.kind);
+            ui.label(RichText::new(text).small().color(look::FAINT));
+        }
+        if let Some(scene) = &app.scene {
+            figure(ui, "Scene", scene.name.as_str());
+            figure(ui, "Objects", grouped(scene.counts.objects));
+            figure(ui, "Triangles", grouped(scene.counts.triangles));
+            figure(ui, "Lights", grouped(scene.counts.lights));
+        }
+    });
+    ui.add_space(6.0);
+}
+
+/// The split slider's switch, and what it says.
+fn compare(app: &mut App, ui: &mut egui::Ui) {
+    card(ui, "Compare", |ui| {
+        ui.checkbox(&mut app.display.compare, "Reference on the left (X)");
+        if !app.display.compare {
+            return;
+        }
+        ui.horizontal(|ui| {
+            let plain = Settings::default();
+            let against_plain = app.reference == plain;
+            if ui
+                .selectable_label(against_plain, "Defaults")
+                .on_hover_text("Every pixel shaded once, no anti-aliasing")
+                .clicked()
+            {
+                app.reference = plain;
+            }
+            if ui
+                .selectable_label(!against_plain, "As now")
+                .on_hover_text("Takes the present settings for the reference; then change them")
+                .clicked()
+            {
+                app.reference = app.settings.clone();
+            }
+        });
+        let Some(shown) = &app.shown else { return };
+        let flip = shown
+            .flip
+            .map_or("...".to_owned(), |flip| format!("{flip:.4}"));
+        figure(ui, "FLIP", flip);
+        if let Some((_, reference)) = &shown.reference {
+            figure(ui, "Reference", look::ms(reference.frame_ms));
+            figure(ui, "Chosen", look::ms(shown.stats.frame_ms));
+            let ratio = reference.frame_ms / shown.stats.frame_ms.max(1e-6);
+            let color = if ratio >= 1.0 { look::GOOD } else { look::BAD };
+            ui.horizontal(|ui| {
+                ui.label(RichText::new("Ratio").color(look::FAINT));
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    ui.label(RichText::new(format!("{ratio:.2} x")).color(color));
+                });
+            });
+        }
+    });
+    ui.add_space(6.0);
+}

@@ -1,0 +1,253 @@
+//! The picture: with what is drawn over it, and what the pointer does to it.
+
+use egui::{
+    Align2, CentralPanel, Color32, CornerRadius, CursorIcon, PointerButton, Pos2, Rect, RichText,
+    Sense, Stroke, StrokeKind, Vec2,
+};
+use foveal::View;
+
+use crate::app::App;
+use crate::navigator::Hands;
+use crate::{boxes, legend, look};
+
+/// The greys of the culler's depth: from its own nearest (white) to its farthest, logarithmic; black where nothing is
+/// proven.
+pub(crate) fn depth_grays(near_over_distance: &[f32]) -> impl Iterator<Item = u8> + '_ {
+    let covered = || near_over_distance.iter().copied().filter(|&d| d > 0.0);
+    let near = covered().fold(f32::MIN_POSITIVE, f32::max).log2();
+    let far = covered().fold(1.0, f32::min).log2();
+    let span = (near - far).max(1e-6);
+    near_over_distance.iter().map(move |&depth| {
+        if depth > 0.0 {
+            (56.0 + 199.0 * ((depth.log2() - far) / span).clamp(0.0, 1.0)) as u8
+        } else {
+            0
+        }
+    })
+}
+
+pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
+    let frame = egui::Frame::new().fill(look::BACKGROUND);
+    CentralPanel::no_frame().frame(frame).show(ui, |ui| {
+        let place = ui.max_rect();
+        let pixels = ui.ctx().pixels_per_point();
+        app.place = (
+            (place.width() * pixels) as u32,
+            (place.height() * pixels) as u32,
+        );
+        let response = ui.interact(
+            place,
+            ui.scope_id().with("picture"),
+            Sense::click_and_drag(),
+        );
+        let rect = picture(app, ui, place);
+        let over_split = rect.is_some_and(|rect| split(app, ui, rect));
+        if let Some(rect) = rect {
+            if app.display.gaze_follows
+                && let Some(at) = response.hover_pos()
+            {
+                let place = (at - rect.min) / rect.size();
+                app.look_at(glam::Vec2::new(place.x, place.y));
+            }
+            if app.display.gaze_follows && app.is_in_use("Coarse shading") {
+                gaze(app, ui, rect);
+            }
+        }
+        let mut hands = Hands::default();
+        if !over_split {
+            let drag = response.drag_delta();
+            let drag = glam::Vec2::new(drag.x, drag.y);
+            if response.dragged_by(PointerButton::Primary) {
+                hands.turn = drag;
+            } else if response.dragged() {
+                hands.shift = drag;
+            }
+        }
+        if response.hovered() {
+            hands.scroll = ui.input(|i| i.smooth_scroll_delta().y) / 50.0;
+        }
+        if response.clicked() || response.dragged() {
+            // Keys belong to the picture again.
+            ui.ctx().memory_mut(|m| {
+                if let Some(focused) = m.focused() {
+                    m.surrender_focus(focused);
+                }
+            });
+        }
+        let context = ui.ctx().clone();
+        app.steer(&context, hands);
+        legends(app, ui, place);
+        depth(app, ui, place);
+        messages(app, ui, place);
+    });
+}
+
+/// The picture at its largest; where it is.
+fn picture(app: &App, ui: &egui::Ui, place: Rect) -> Option<Rect> {
+    let painter = ui.painter_at(place);
+    let (Some(shown), Some(texture)) = (&app.shown, &app.picture) else {
+        let text = match (app.loading, &app.scene) {
+            (true, _) => "Loading...",
+            (false, Some(_)) => "Drawing the first frame...",
+            (false, None) => "No scene",
+        };
+        let font = egui::FontId::proportional(16.0);
+        painter.text(
+            place.center(),
+            Align2::CENTER_CENTER,
+            text,
+            font,
+            look::FAINT,
+        );
+        return None;
+    };
+    let size = Vec2::new(shown.picture.width as f32, shown.picture.height as f32);
+    let size = size * (place.size() / size).min_elem();
+    let rect = Rect::from_center_size(place.center(), size);
+    let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    painter.image(texture.id(), rect, all, Color32::WHITE);
+    if let (true, Some(_), Some(reference)) = (
+        app.display.compare,
+        &shown.reference,
+        &app.reference_picture,
+    ) {
+        let x = app.display.split;
+        let left = Rect::from_min_max(
+            rect.min,
+            Pos2::new(rect.left() + x * rect.width(), rect.bottom()),
+        );
+        let part = Rect::from_min_max(Pos2::ZERO, Pos2::new(x, 1.0));
+        painter.image(reference.id(), left, part, Color32::WHITE);
+    }
+    if app.display.boxes {
+        let painter = ui.painter_at(rect);
+        boxes::draw(
+            &painter,
+            rect,
+            app.navigator.as_ref()?.camera(),
+            &shown.boxes,
+        );
+    }
+    Some(rect)
+}
+
+/// The line between reference and picture; whether the pointer holds it.
+fn split(app: &mut App, ui: &egui::Ui, rect: Rect) -> bool {
+    if !app.display.compare || app.shown.as_ref().is_none_or(|s| s.reference.is_none()) {
+        return false;
+    }
+    let x = rect.left() + app.display.split * rect.width();
+    let handle = Rect::from_x_y_ranges(x - 6.0..=x + 6.0, rect.y_range());
+    let response = ui
+        .interact(handle, ui.scope_id().with("split"), Sense::drag())
+        .on_hover_cursor(CursorIcon::ResizeHorizontal);
+    if let (true, Some(at)) = (response.dragged(), response.interact_pointer_pos()) {
+        app.display.split = ((at.x - rect.left()) / rect.width()).clamp(0.0, 1.0);
+    }
+    let painter = ui.painter_at(rect);
+    let stroke = Stroke::new(2.0, Color32::WHITE);
+    painter.vline(x, rect.y_range(), stroke);
+    let middle = Pos2::new(x, rect.center().y);
+    painter.circle(middle, 8.0, Color32::WHITE, Stroke::new(2.0, look::ACCENT));
+    for (text, side, align) in [
+        ("reference", -10.0, Align2::RIGHT_TOP),
+        ("chosen", 10.0, Align2::LEFT_TOP),
+    ] {
+        let at = Pos2::new(x + side, rect.top() + 8.0);
+        let galley = painter.layout_no_wrap(text.to_owned(), look::small_font(), Color32::WHITE);
+        let back = align.anchor_size(at, galley.size()).expand(4.0);
+        let dark = Color32::from_black_alpha(170);
+        painter.rect_filled(back, CornerRadius::same(3), dark);
+        painter.galley(back.min + Vec2::splat(4.0), galley, Color32::WHITE);
+    }
+    response.hovered() || response.dragged()
+}
+
+fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
+    let [x, y] = app.settings.gaze;
+    let at = rect.min + rect.size() * Vec2::new(x, y);
+    let radius = app.settings.fovea_inner * rect.height();
+    let painter = ui.painter_at(rect);
+    painter.circle_stroke(at, radius.max(2.0), Stroke::new(1.0, look::ACCENT));
+}
+
+/// What the colours mean, at the lower left.
+fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
+    let view = app.settings.view;
+    if view == View::Final && !app.display.boxes && !app.display.frozen {
+        return;
+    }
+    egui::Area::new(ui.scope_id().with("legends"))
+        .fixed_pos(place.left_bottom() + Vec2::new(10.0, -10.0))
+        .pivot(Align2::LEFT_BOTTOM)
+        .constrain_to(place)
+        .interactable(false)
+        .show(ui.ctx(), |ui| {
+            if app.display.frozen {
+                look::strip_frame().show(ui, |ui| {
+                    let text = "Culling is frozen: what was found is drawn from anywhere (C)";
+                    ui.label(RichText::new(text).color(look::SMALL));
+                });
+            }
+            if app.display.boxes {
+                legend::of_boxes(ui);
+            }
+            legend::of_view(ui, view, app.settings.coarsest_level);
+        });
+}
+
+/// The culler's depth, at the lower right.
+fn depth(app: &App, ui: &egui::Ui, place: Rect) {
+    let has_depth = app.shown.as_ref().is_some_and(|s| s.depth.is_some());
+    if !app.display.depth {
+        return;
+    }
+    let (Some(texture), true) = (&app.depth_picture, has_depth) else {
+        return;
+    };
+    let size = texture.size_vec2();
+    let size = size * (0.38 * place.width() / size.x);
+    let rect = Rect::from_min_size(place.right_bottom() - size - Vec2::splat(10.0), size);
+    let painter = ui.painter_at(place);
+    let all = Rect::from_min_max(Pos2::ZERO, Pos2::new(1.0, 1.0));
+    painter.image(texture.id(), rect, all, Color32::WHITE);
+    let stroke = Stroke::new(1.0, look::FAINT);
+    painter.rect_stroke(rect, CornerRadius::ZERO, stroke, StrokeKind::Outside);
+    let text = "occluders' depth: white near, dark far, black open";
+    let galley = painter.layout_no_wrap(text.to_owned(), look::small_font(), look::TEXT);
+    let back = Rect::from_min_size(rect.min, galley.size() + Vec2::splat(8.0));
+    painter.rect_filled(back, CornerRadius::ZERO, Color32::from_black_alpha(190));
+    painter.galley(rect.min + Vec2::splat(4.0), galley, look::TEXT);
+}
+
+/// What is to be said, at the upper left.
+fn messages(app: &mut App, ui: &egui::Ui, place: Rect) {
+    if app.messages.is_empty() {
+        return;
+    }
+    let mut dismissed = None;
+    egui::Area::new(ui.scope_id().with("messages"))
+        .fixed_pos(place.left_top() + Vec2::splat(10.0))
+        .constrain_to(place)
+        .show(ui.ctx(), |ui| {
+            ui.set_max_width((place.width() - 20.0).max(100.0));
+            for (index, message) in app.messages.iter().enumerate() {
+                look::strip_frame().show(ui, |ui| {
+                    ui.horizontal_wrapped(|ui| {
+                        let color = if message.is_error {
+                            look::BAD
+                        } else {
+                            look::TEXT
+                        };
+                        ui.label(RichText::new(&message.text).color(color));
+                        if message.is_error && ui.small_button("Dismiss").clicked() {
+                            dismissed = Some(index);
+                        }
+                    });
+                });
+            }
+        });
+    if let Some(index) = dismissed {
+        app.messages.remove(index);
+    }
+}

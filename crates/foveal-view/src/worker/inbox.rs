@@ -1,0 +1,73 @@
+//! What the window asks the drawing thread for: the newest request of each kind.
+
+use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+use super::Request;
+
+/// What is to be done next.
+pub(super) enum Order {
+    Quit,
+    Load(String),
+    Draw(Box<Request>),
+    Nothing,
+}
+
+#[derive(Default)]
+struct Orders {
+    quit: bool,
+    load: Option<String>,
+    draw: Option<Request>,
+}
+
+#[derive(Default)]
+pub(super) struct Inbox {
+    orders: Mutex<Orders>,
+    changed: Condvar,
+}
+
+impl Inbox {
+    fn orders(&self) -> MutexGuard<'_, Orders> {
+        // Whoever panicked left whole orders behind.
+        self.orders.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn quit(&self) {
+        self.orders().quit = true;
+        self.changed.notify_one();
+    }
+
+    pub(super) fn load(&self, scene: String) {
+        let mut orders = self.orders();
+        orders.load = Some(scene);
+        orders.draw = None;
+        self.changed.notify_one();
+    }
+
+    pub(super) fn draw(&self, request: Request) {
+        self.orders().draw = Some(request);
+        self.changed.notify_one();
+    }
+
+    /// The next order; waits for one if `idle`.
+    pub(super) fn next(&self, idle: bool) -> Order {
+        let mut orders = self.orders();
+        loop {
+            if orders.quit {
+                return Order::Quit;
+            }
+            if let Some(scene) = orders.load.take() {
+                return Order::Load(scene);
+            }
+            if let Some(request) = orders.draw.take() {
+                return Order::Draw(Box::new(request));
+            }
+            if !idle {
+                return Order::Nothing;
+            }
+            orders = self
+                .changed
+                .wait(orders)
+                .unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
