@@ -6,6 +6,7 @@
 mod antialiasing;
 mod coarse;
 mod culling;
+mod report;
 mod table;
 
 use clap::Subcommand;
@@ -19,6 +20,10 @@ pub(crate) enum BenchCommand {
     Coarse(coarse::Args),
     /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
     Antialiasing(antialiasing::Args),
+    /// All of them, as one report: a page with pictures and plots, JSON, CSV
+    All(report::Args),
+    /// What became slower between two reports
+    Diff(report::diff::Args),
 }
 
 impl BenchCommand {
@@ -28,6 +33,8 @@ impl BenchCommand {
             Self::Culling(_) => "bench culling",
             Self::Coarse(_) => "bench coarse",
             Self::Antialiasing(_) => "bench antialiasing",
+            Self::All(_) => "bench all",
+            Self::Diff(_) => "bench diff",
         }
     }
 
@@ -37,6 +44,8 @@ impl BenchCommand {
             Self::Culling(args) => culling::run(args),
             Self::Coarse(args) => coarse::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),
+            Self::All(args) => report::run(args),
+            Self::Diff(args) => report::diff::run(args),
         }
     }
 }

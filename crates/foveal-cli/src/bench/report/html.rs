@@ -1,0 +1,107 @@
+//! Words for the page. Every figure goes through [`Figures::figure`], which takes it out of the JSON and leaves its place there
+//! in the markup, so that a test can look each of them up.
+
+use serde_json::Value;
+
+/// The JSON that the page is made from.
+pub(super) struct Figures<'a>(pub(super) &'a Value);
+
+impl Figures<'_> {
+    /// The number at a JSON pointer, or a dash where there is none.
+    pub(super) fn figure(&self, pointer: &str, factor: f64, digits: usize) -> String {
+        match self.shown(pointer, factor, digits) {
+            Some(text) => format!(
+                "<span data-json=\"{}\" data-factor=\"{factor}\" data-digits=\"{digits}\">{text}</span>",
+                escaped(pointer)
+            ),
+            None => "&ndash;".to_owned(),
+        }
+    }
+
+    /// As [`Figures::figure`], for the inside of an SVG.
+    pub(super) fn svg_figure(&self, pointer: &str, factor: f64, digits: usize) -> String {
+        match self.shown(pointer, factor, digits) {
+            Some(text) => format!(
+                "<tspan data-json=\"{}\" data-factor=\"{factor}\" data-digits=\"{digits}\">{text}</tspan>",
+                escaped(pointer)
+            ),
+            None => String::new(),
+        }
+    }
+
+    fn shown(&self, pointer: &str, factor: f64, digits: usize) -> Option<String> {
+        match self.0.pointer(pointer)? {
+            Value::Number(number) => Some(rounded(number.as_f64()? * factor, digits)),
+            Value::String(text) => Some(escaped(text)),
+            _ => None,
+        }
+    }
+
+    /// A text of the JSON's.
+    pub(super) fn text(&self, pointer: &str) -> String {
+        let text = self.0.pointer(pointer).and_then(Value::as_str);
+        escaped(text.unwrap_or_default())
+    }
+
+    /// The number at a pointer.
+    pub(super) fn number(&self, pointer: &str) -> Option<f64> {
+        self.0.pointer(pointer)?.as_f64()
+    }
+
+    /// How many entries the array at a pointer has.
+    pub(super) fn len(&self, pointer: &str) -> usize {
+        let array = self.0.pointer(pointer).and_then(Value::as_array);
+        array.map_or(0, Vec::len)
+    }
+}
+
+/// As the page spells numbers.
+pub(super) fn rounded(number: f64, digits: usize) -> String {
+    format!("{number:.digits$}")
+}
+
+pub(super) fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}
+
+pub(super) const STYLE: &str = "
+:root { color-scheme: light dark; --back: #fbfbfc; --card: #fff; --line: #dfe3e8; --text: #1c2026; --faint: #626b78;
+  --accent: #1f6fb4; --bad: #b3382c; }
+@media (prefers-color-scheme: dark) { :root { --back: #14161a; --card: #1d2026; --line: #343a44; --text: #dce0e6;
+  --faint: #97a0ad; --accent: #6cb6ff; --bad: #ff7b72; } }
+* { box-sizing: border-box; }
+body { margin: 0; background: var(--back); color: var(--text); font: 15px/1.5 system-ui, sans-serif; }
+main { max-width: 1080px; margin: 0 auto; padding: 24px 16px 64px; }
+h1 { font-size: 28px; margin: 0 0 4px; } h2 { font-size: 21px; margin: 0 0 4px; } h3 { font-size: 15px; margin: 20px 0 6px; }
+p { margin: 4px 0 10px; } .faint { color: var(--faint); } .bad { color: var(--bad); font-weight: 600; }
+section { background: var(--card); border: 1px solid var(--line); border-radius: 10px; padding: 18px; margin: 18px 0; }
+nav { display: flex; flex-wrap: wrap; gap: 8px; margin: 14px 0; }
+nav a { color: var(--text); text-decoration: none; border: 1px solid var(--line); border-radius: 99px; padding: 3px 12px;
+  background: var(--card); } nav a.off { color: var(--faint); }
+.scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; min-width: 100%; }
+th, td { text-align: right; padding: 4px 10px; border-bottom: 1px solid var(--line); white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; } th { color: var(--faint); font-weight: 600; }
+code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: var(--back); border-radius: 4px; padding: 1px 5px; }
+.columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(300px, 100%), 1fr)); gap: 18px; }
+.compare { position: relative; display: grid; overflow: hidden; border-radius: 6px; touch-action: pan-y; }
+.compare img { grid-area: 1 / 1; width: 100%; display: block; }
+.compare .after { clip-path: inset(0 0 0 var(--at, 50%)); }
+.compare .line { position: absolute; top: 0; bottom: 0; left: var(--at, 50%); width: 2px; background: #fff; box-shadow: 0 0 4px #000; }
+.compare span { position: absolute; top: 8px; padding: 1px 8px; border-radius: 4px; background: #000a; color: #fff; font-size: 13px; }
+.compare .left { left: 8px; } .compare .right { right: 8px; }
+input[type=range] { width: 100%; margin: 8px 0 0; } figure { margin: 12px 0; } figcaption { color: var(--faint); }
+.difference { width: 100%; border-radius: 6px; display: block; } svg { width: 100%; height: auto; display: block; }
+svg text { fill: var(--text); font: 12px system-ui, sans-serif; } svg .faint { fill: var(--faint); }
+";
+
+/// The slider; the page works without it, half and half.
+pub(super) const SCRIPT: &str = "
+for (const slider of document.querySelectorAll('input[type=range]')) {
+  const compare = slider.previousElementSibling;
+  slider.addEventListener('input', () => compare.style.setProperty('--at', slider.value + '%'));
+}
+document.documentElement.dataset.ready = 'yes';
+";

@@ -1,0 +1,62 @@
+//! Several passes of a bench become one table: medians, and how far the passes lay apart.
+
+use serde_json::{Map, Value, json};
+
+use super::plan::Bench;
+use crate::median::median;
+
+/// A row per row of the first pass. Numbers that the passes disagree about become their median; `spread` holds the least
+/// and the largest of each.
+pub(super) fn passes(bench: &Bench, passes: &[Vec<Value>]) -> Value {
+    let Some(first) = passes.first() else {
+        return json!([]);
+    };
+    let rows = first.iter().enumerate().map(|(i, row)| {
+        let Some(columns) = row.as_object() else {
+            return row.clone();
+        };
+        let mut merged = Map::new();
+        merged.insert("label".to_owned(), label(bench, columns).into());
+        let mut spread = Map::new();
+        for (key, value) in columns {
+            let all: Vec<f64> = passes
+                .iter()
+                .filter_map(|rows| rows.get(i)?.get(key)?.as_f64())
+                .collect();
+            let differ = all.iter().any(|&v| v != all[0]);
+            if value.is_number() && differ && all.len() == passes.len() {
+                let least = all.iter().copied().fold(f64::INFINITY, f64::min);
+                let most = all.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                merged.insert(key.clone(), median(&all).into());
+                spread.insert(key.clone(), json!([least, most]));
+            } else {
+                merged.insert(key.clone(), value.clone());
+            }
+        }
+        merged.insert("spread".to_owned(), spread.into());
+        merged.into()
+    });
+    rows.collect::<Vec<Value>>().into()
+}
+
+/// «smooth, compute»
+fn label(bench: &Bench, row: &Map<String, Value>) -> String {
+    let mut parts = Vec::new();
+    let has_size = bench.label.contains(&"width") && row.contains_key("width");
+    for key in bench.label {
+        match (row.get(*key), *key) {
+            (Some(width), "width") if has_size => {
+                parts.push(format!(
+                    "{width}x{}",
+                    row.get("height").unwrap_or(&Value::Null)
+                ));
+            }
+            (_, "height") if has_size => {}
+            (Some(threads), "threads") => parts.push(format!("{threads} threads")),
+            (Some(Value::String(text)), _) => parts.push(text.clone()),
+            (Some(value), _) => parts.push(value.to_string()),
+            (None, _) => {}
+        }
+    }
+    parts.join(", ")
+}

@@ -1,0 +1,141 @@
+//! Before and after, as the page shows them.
+
+use anyhow::Context;
+use foveal::{Frame, Gpu, Renderer, Settings};
+use foveal_scene::{Camera, Scene};
+use image::codecs::jpeg::JpegEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use pollster::block_on;
+use serde_json::{Value, json};
+use toml::Table;
+
+use super::plan::Bench;
+use crate::compare::ErrorMap;
+use crate::picture::Picture;
+use crate::render::{CameraArgs, Viewpoint, flags};
+use crate::{gpu, scene_source};
+
+/// How well the page's pictures keep what they show.
+const JPEG_QUALITY: u8 = 88;
+
+/// The pairs of a bench.
+pub(super) fn draw(
+    bench: &Bench,
+    scene_name: &str,
+    size: (u32, u32),
+    adapter: Option<&str>,
+) -> anyhow::Result<Vec<Value>> {
+    let gpu = gpu::open(adapter)?;
+    let mut scene = scene_source::load(scene_name)?;
+    scene.light_by_default();
+    let camera = Viewpoint::choose(&CameraArgs::default(), &scene, scene_name)?.at(&scene, 0.0);
+    let mut pictures = Vec::new();
+    for pair in bench.pairs {
+        let (before, before_settings) = one(&gpu, &scene, &camera, size, pair.before)?;
+        let (after, after_settings) = one(&gpu, &scene, &camera, size, pair.after)?;
+        let map = ErrorMap::between(&before, &after);
+        pictures.push(json!({
+            "title": pair.title,
+            "before_flags": spelled(&before_settings),
+            "after_flags": spelled(&after_settings),
+            "flip_mean": map.mean(),
+            "before": jpeg(&before.rgb_bytes(), size)?,
+            "after": jpeg(&after.rgb_bytes(), size)?,
+            "difference": jpeg(&map.heat_rgb(), size)?,
+        }));
+    }
+    Ok(pictures)
+}
+
+/// Takes the pictures themselves out of a report.
+pub(super) fn strip(report: &mut Value) {
+    for bench in report["benches"].as_array_mut().into_iter().flatten() {
+        for picture in bench["pictures"].as_array_mut().into_iter().flatten() {
+            if let Some(picture) = picture.as_object_mut() {
+                for key in ["before", "after", "difference"] {
+                    picture.remove(key);
+                }
+            }
+        }
+    }
+}
+
+fn spelled(settings: &Settings) -> String {
+    format!("foveal render {}", flags(settings).join(" "))
+}
+
+fn one(
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    size: (u32, u32),
+    changes: &[(&str, &str)],
+) -> anyhow::Result<(Picture, Settings)> {
+    let mut table = Table::try_from(Settings {
+        width: size.0,
+        height: size.1,
+        ..Settings::default()
+    })?;
+    for &(key, value) in changes {
+        table.insert(key.to_owned(), value.into());
+    }
+    let settings: Settings = table.try_into()?;
+    let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
+    block_on(renderer.set_scene(scene))?;
+    let frame = Frame {
+        camera,
+        previous_camera: None,
+    };
+    block_on(renderer.render(&frame))?;
+    let bytes = block_on(renderer.read_picture())?;
+    Ok((Picture::from_rgba(size.0, size.1, &bytes)?, settings))
+}
+
+/// A data URL.
+fn jpeg(rgb: &[u8], (width, height): (u32, u32)) -> anyhow::Result<String> {
+    let mut bytes = Vec::new();
+    JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)
+        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
+        .context("cannot encode a picture")?;
+    Ok(format!("data:image/jpeg;base64,{}", base64(&bytes)))
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
+        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for i in 0..4 {
+            if i <= chunk.len() {
+                let letter = LETTERS[(word >> (18 - 6 * i) & 63) as usize];
+                text.push(char::from(letter));
+            } else {
+                text.push('=');
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::base64;
+
+    /// The examples of RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        for (bytes, text) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

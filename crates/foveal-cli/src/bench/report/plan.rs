@@ -1,0 +1,271 @@
+//! Which benches there are, how each is called, and what of it the page shows.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::{Value, json};
+
+/// A column of the page's table.
+pub(super) struct Column {
+    pub(super) key: &'static str,
+    pub(super) title: &'static str,
+    /// Multiplied before it is shown, for percent and the like.
+    pub(super) factor: f64,
+    pub(super) digits: usize,
+}
+
+const fn column(key: &'static str, title: &'static str, digits: usize) -> Column {
+    Column {
+        key,
+        title,
+        factor: 1.0,
+        digits,
+    }
+}
+
+const fn percent(key: &'static str, title: &'static str) -> Column {
+    Column {
+        key,
+        title,
+        factor: 100.0,
+        digits: 2,
+    }
+}
+
+/// Two settings whose pictures are laid over each other.
+pub(super) struct Pair {
+    pub(super) title: &'static str,
+    pub(super) before: &'static [(&'static str, &'static str)],
+    pub(super) after: &'static [(&'static str, &'static str)],
+}
+
+/// One bench.
+pub(super) struct Bench {
+    pub(super) name: &'static str,
+    pub(super) title: &'static str,
+    pub(super) about: &'static str,
+    pub(super) subcommand: &'static [&'static str],
+    quick: &'static [&'static str],
+    full: &'static [&'static str],
+    /// Whether it takes `--size`.
+    sized: bool,
+    pub(super) rows: fn(&Value) -> Option<Vec<Value>>,
+    /// What tells a row from the others; the row's label is made of these.
+    pub(super) label: &'static [&'static str],
+    pub(super) columns: &'static [Column],
+    /// The cost in the bar plot.
+    pub(super) cost: &'static str,
+    /// Cost and error in the plot of quality against speed.
+    pub(super) quality: Option<(&'static str, &'static str)>,
+    pub(super) pairs: &'static [Pair],
+}
+
+fn own_rows(figures: &Value) -> Option<Vec<Value>> {
+    let rows = figures.get("rows").unwrap_or(figures);
+    rows.as_array().cloned()
+}
+
+/// The stages of `foveal render --stats`.
+fn stages(figures: &Value) -> Option<Vec<Value>> {
+    let median = figures.get("median")?;
+    let mut rows = Vec::new();
+    for (unit, key) in [("CPU", "cpu_ms"), ("GPU", "gpu_ms")] {
+        for timing in median.get(key)?.as_array()? {
+            rows.push(json!({ "unit": unit, "stage": timing["name"], "ms": timing["ms"] }));
+        }
+    }
+    rows.push(json!({ "unit": "both", "stage": "frame", "ms": median["frame_ms"] }));
+    Some(rows)
+}
+
+/// In the order of the frame.
+pub(super) const BENCHES: &[Bench] = &[
+    Bench {
+        name: "baseline",
+        title: "Baseline",
+        about: "The plain frame that everything else is compared with: every pixel shaded once, no anti-aliasing, objects outside the frustum left out.",
+        subcommand: &["render"],
+        quick: &["--warmup", "2", "--frames", "3"],
+        full: &["--warmup", "3", "--frames", "9"],
+        sized: true,
+        rows: stages,
+        label: &["unit", "stage"],
+        columns: &[column("ms", "ms", 2)],
+        cost: "ms",
+        quality: None,
+        pairs: &[],
+    },
+    Bench {
+        name: "culling",
+        title: "Software occlusion culling",
+        about: "Occluders are rasterized on the processor, then boxes are tested against their depth: what nothing can show is never submitted.",
+        subcommand: &["bench", "culling"],
+        quick: &["--repetitions", "9", "--sizes", "640x360", "--quiet"],
+        full: &[
+            "--repetitions",
+            "31",
+            "--sizes",
+            "640x360,1280x720",
+            "--quiet",
+        ],
+        sized: false,
+        rows: own_rows,
+        label: &["camera", "width", "height", "threads"],
+        columns: &[
+            column("occluder_triangles", "occluder triangles", 0),
+            column("raster_ms", "rasterize ms", 3),
+            column("query_boxes", "boxes", 0),
+            column("query_ms", "test ms", 3),
+            column("query_ns_per_box", "ns per box", 1),
+            column("culled", "culled", 0),
+            column("visible", "visible", 0),
+        ],
+        cost: "raster_ms",
+        quality: None,
+        pairs: &[Pair {
+            title: "All objects, and those that are seen: the same picture",
+            before: &[("culling", "off")],
+            after: &[("culling", "occlusion")],
+        }],
+    },
+    Bench {
+        name: "stereo",
+        title: "Instanced stereo",
+        about: "Both eyes in one submission.",
+        subcommand: &["bench", "stereo"],
+        quick: &[],
+        full: &[],
+        sized: false,
+        rows: own_rows,
+        label: &["scene", "mode"],
+        columns: &[],
+        cost: "frame_ms",
+        quality: None,
+        pairs: &[],
+    },
+    Bench {
+        name: "coarse",
+        title: "Coarse pixel shading",
+        about: "Away from the gaze one lighting evaluation serves a whole block of pixels.",
+        subcommand: &["bench", "coarse"],
+        quick: &["--pairs", "2"],
+        full: &["--pairs", "3"],
+        sized: true,
+        rows: own_rows,
+        label: &["composite", "backend"],
+        columns: &[
+            column("lights", "lights", 0),
+            percent("shaded_fraction", "shaded %"),
+            column("full_ms", "full ms", 1),
+            column("coarse_ms", "coarse ms", 1),
+            column("ratio", "ratio", 2),
+            column("flip_mean", "FLIP", 4),
+            column("psnr", "PSNR dB", 1),
+        ],
+        cost: "coarse_ms",
+        quality: Some(("coarse_ms", "flip_mean")),
+        pairs: &[
+            Pair {
+                title: "Every pixel, and the smooth composite",
+                before: &[],
+                after: &[("shading", "coarse"), ("composite", "smooth")],
+            },
+            Pair {
+                title: "Every pixel, and the source's four taps",
+                before: &[],
+                after: &[("shading", "coarse"), ("composite", "paper")],
+            },
+        ],
+    },
+    Bench {
+        name: "variable",
+        title: "Variable-rate shading in software",
+        about: "Where the picture is flat, one evaluation serves a few pixels.",
+        subcommand: &["bench", "variable"],
+        quick: &[],
+        full: &[],
+        sized: false,
+        rows: own_rows,
+        label: &["scene", "mode"],
+        columns: &[],
+        cost: "frame_ms",
+        quality: None,
+        pairs: &[],
+    },
+    Bench {
+        name: "antialiasing",
+        title: "Anti-aliasing in compute",
+        about: "Only pixels that several surfaces share are shaded more than once.",
+        subcommand: &["bench", "antialiasing"],
+        quick: &["--rounds", "2", "--reference", "16"],
+        full: &["--rounds", "5"],
+        sized: true,
+        rows: own_rows,
+        label: &["mode", "pattern", "samples", "edge_test"],
+        columns: &[
+            percent("edge_fraction", "edges %"),
+            column("shaded_samples", "shaded samples", 0),
+            column("gbuffer_ms", "G-buffer ms", 1),
+            column("shade_ms", "shade ms", 1),
+            column("frame_ms", "frame ms", 1),
+            column("shade_ratio_to_none", "shade / none", 3),
+            column("ratio_to_none", "frame / none", 3),
+            column("flip_to_reference", "FLIP to truth", 4),
+        ],
+        cost: "frame_ms",
+        quality: Some(("frame_ms", "flip_to_reference")),
+        pairs: &[Pair {
+            title: "None, and MSAA",
+            before: &[],
+            after: &[("aa", "msaa")],
+        }],
+    },
+];
+
+impl Bench {
+    /// The command's words, without where its figures go.
+    pub(super) fn words(
+        &self,
+        scene: &str,
+        size: (u32, u32),
+        quick: bool,
+        adapter: Option<&str>,
+    ) -> Vec<String> {
+        let mut words: Vec<String> = self.subcommand.iter().map(|&w| w.to_owned()).collect();
+        words.push(scene.to_owned());
+        if self.sized {
+            words.extend(["--size".to_owned(), format!("{}x{}", size.0, size.1)]);
+        }
+        let own = if quick { self.quick } else { self.full };
+        words.extend(own.iter().map(|&w| w.to_owned()));
+        if let Some(adapter) = adapter
+            && self.name != "culling"
+        {
+            words.extend(["--adapter".to_owned(), adapter.to_owned()]);
+        }
+        words
+    }
+
+    /// The command as a user types it.
+    pub(super) fn command_line(&self, words: &[String]) -> String {
+        let output = match self.subcommand {
+            ["render"] => " --output frame_#.png",
+            _ => "",
+        };
+        format!("foveal {}{output}", words.join(" "))
+    }
+
+    /// Adds where the figures go.
+    pub(super) fn output(&self, command: &mut Command, folder: &Path, file: &Path) {
+        if self.subcommand == ["render"] {
+            command
+                .arg("--quiet")
+                .arg("--output")
+                .arg(folder.join("frame_#.png"))
+                .arg("--stats")
+                .arg(file);
+        } else {
+            command.arg("--json").arg(file);
+        }
+    }
+}

@@ -1,0 +1,60 @@
+//! What the sources publish about their own techniques, on their own machines.
+
+use serde_json::{Value, json};
+
+/// The source's table; `null` for the baseline.
+pub(super) fn of(bench: &str) -> Value {
+    match bench {
+        "culling" => json!({
+            "source": "Intel, Software Occlusion Culling sample (castle scene)",
+            "machine": "4 cores, 8 threads, 2.3 GHz",
+            "columns": ["", "frame ms", "draws"],
+            "rows": [
+                ["no culling", 266.67, 22877],
+                ["frustum", 95.96, 7683],
+                ["occlusion (rasterize 3.77 ms, test 2.23 ms)", 31.71, 1845],
+            ],
+        }),
+        "stereo" => json!({
+            "source": "yvt, instanced stereo rendering",
+            "machine": "the source's; gain over two passes",
+            "columns": ["", "CPU %", "GPU %"],
+            "rows": [
+                ["materials: 20 draws", 11.4, 10.7],
+                ["materials2: 2,000 draws", -19.5, 14.6],
+            ],
+        }),
+        "coarse" => json!({
+            "source": "Imagire, coarse pixel shading by stencil pyramid",
+            "machine": "Radeon RX 560, 200 lights, 9 levels",
+            "columns": ["", "frames per second", "ratio to full"],
+            "rows": [
+                ["full", 36.4, 1.0],
+                ["interpolated", 60.1, 1.65],
+                ["nearest", 68.6, 1.88],
+            ],
+        }),
+        "variable" => json!({
+            "source": "Monsho, software variable-rate shading",
+            "machine": "the source's",
+            "columns": ["", "ms"],
+            "rows": [
+                ["G-buffer pass", 0.28],
+                ["saved", 0.06],
+                ["mask", 0.08],
+                ["reprojection", 0.02],
+            ],
+        }),
+        "antialiasing" => json!({
+            "source": "tatsy, compute anti-aliasing (Sponza)",
+            "machine": "GTX 960, about 1000x1500",
+            "columns": ["", "frames per second"],
+            "rows": [
+                ["none", "> 60"],
+                ["MSAA", "about 30"],
+                ["SSAA", "about 10"],
+            ],
+        }),
+        _ => Value::Null,
+    }
+}

@@ -1,0 +1,139 @@
+//! The page says nothing that the JSON does not.
+
+use serde_json::{Value, json};
+
+use super::html::{escaped, rounded};
+use super::{csv, merge, page, pictures, plan, published};
+
+/// A report with figures that occur nowhere else.
+fn report() -> Value {
+    let benches: Vec<Value> = plan::BENCHES
+        .iter()
+        .enumerate()
+        .map(|(i, bench)| {
+            let row = |step: f64| {
+                let mut row = serde_json::Map::new();
+                for (j, key) in bench.label.iter().enumerate() {
+                    row.insert((*key).to_owned(), format!("{key}{j}").into());
+                }
+                for (j, column) in bench.columns.iter().enumerate() {
+                    let figure = 1234.5678 * (i + 1) as f64 + 7.125 * j as f64 + step;
+                    row.insert(column.key.to_owned(), figure.into());
+                }
+                Value::from(row)
+            };
+            let measured = !bench.columns.is_empty();
+            json!({
+                "name": bench.name,
+                "title": bench.title,
+                "about": bench.about,
+                "command": "foveal bench <x> --size 480x270",
+                "published": published::of(bench.name),
+                "status": if measured { "measured" } else { "skipped" },
+                "cause": if measured { Value::Null } else { "not in this version".into() },
+                "rows": if measured { merge::passes(bench, &[vec![row(0.0)], vec![row(1.5)]]) } else { json!([]) },
+                "pictures": [{
+                    "title": "a & b", "before_flags": "--aa none", "after_flags": "--aa msaa", "flip_mean": 0.01234,
+                    "before": "data:,1", "after": "data:,2", "difference": "data:,3",
+                }],
+            })
+        })
+        .collect();
+    json!({
+        "schema": "foveal-report", "scene": "cornell", "width": 480, "height": 270, "passes": 2, "minutes": 2.75,
+        "machine": { "processor": "CPU <7>", "threads": 2, "system": "linux" },
+        "adapter": { "name": "llvmpipe", "backend": "vulkan", "driver": "Mesa 22" },
+        "program_version": "0.1.0", "benches": benches,
+    })
+}
+
+/// All texts of the JSON, as the page spells them.
+fn texts(value: &Value, found: &mut Vec<String>) {
+    match value {
+        Value::String(text) => found.push(escaped(text)),
+        Value::Array(items) => items.iter().for_each(|item| texts(item, found)),
+        Value::Object(items) => items.values().for_each(|item| texts(item, found)),
+        _ => {}
+    }
+}
+
+/// The page's texts, each with the attributes of the tag before it.
+fn nodes(page: &str) -> Vec<(String, String)> {
+    let body = page.split_once("</style>").unwrap().1;
+    let body = body.split_once("<script>").unwrap().0;
+    let mut nodes = Vec::new();
+    for part in body.split('<').skip(1) {
+        let (tag, text) = part.split_once('>').unwrap();
+        if !text.trim().is_empty() {
+            nodes.push((tag.to_owned(), text.to_owned()));
+        }
+    }
+    nodes
+}
+
+fn attribute<'t>(tag: &'t str, name: &str) -> Option<&'t str> {
+    let start = tag.split_once(&format!("{name}=\""))?.1;
+    start.split('"').next()
+}
+
+#[test]
+fn every_number_of_the_page_is_in_the_json() {
+    let report = report();
+    let page = page::of(&report);
+    let mut known = Vec::new();
+    let mut figures = report.clone();
+    pictures::strip(&mut figures);
+    texts(&figures, &mut known);
+    let mut looked_up = 0;
+    for (tag, text) in nodes(&page) {
+        if let Some(pointer) = attribute(&tag, "data-json") {
+            let factor: f64 = attribute(&tag, "data-factor").unwrap().parse().unwrap();
+            let digits: usize = attribute(&tag, "data-digits").unwrap().parse().unwrap();
+            let expected = match figures.pointer(pointer) {
+                Some(Value::Number(number)) => rounded(number.as_f64().unwrap() * factor, digits),
+                Some(Value::String(text)) => escaped(text),
+                other => panic!("{pointer}: {other:?}"),
+            };
+            assert_eq!(text, expected, "{pointer}");
+            looked_up += 1;
+        } else {
+            // What has digits besides comes from a text of the JSON's, whole.
+            let mut rest = text.clone();
+            known.sort_by_key(|t| std::cmp::Reverse(t.len()));
+            for text in known.iter().filter(|t| !t.is_empty()) {
+                rest = rest.replace(text.as_str(), "");
+            }
+            assert!(
+                !rest.contains(|c: char| c.is_ascii_digit()),
+                "{text:?}: {rest:?}"
+            );
+        }
+    }
+    assert!(looked_up > 60, "{looked_up}");
+}
+
+#[test]
+fn a_skipped_bench_is_shown_with_its_cause() {
+    let page = page::of(&report());
+    for bench in plan::BENCHES {
+        assert!(page.contains(&format!("<section id=\"{}\">", bench.name)));
+    }
+    assert!(page.contains("skipped: not in this version"));
+}
+
+#[test]
+fn passes_become_their_median_and_their_spread() {
+    let report = report();
+    let row = &report["benches"][0]["rows"][0];
+    assert_eq!(row["ms"], 1234.5678 + 0.75);
+    assert_eq!(row["spread"]["ms"], json!([1234.5678, 1234.5678 + 1.5]));
+    let csv = csv::of(&report);
+    assert!(
+        csv.contains("baseline,\"unit0, stage1\",ms,1235.3178,1234.5678,1236.0678"),
+        "{csv}"
+    );
+    assert!(
+        csv.contains("stereo,,skipped,not in this version,,"),
+        "{csv}"
+    );
+}
