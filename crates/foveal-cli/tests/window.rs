@@ -144,7 +144,8 @@ impl Screen {
         });
         screen.until("a picture is drawn", |screen| {
             let picture = screen.shot().picture();
-            (count(&picture, BACKGROUND, 1) < picture.len() / 10).then_some(())
+            let empty = count(&picture, BACKGROUND, 1);
+            (colors(&picture) > 12 && empty < picture.len() / 10).then_some(())
         });
         screen
     }

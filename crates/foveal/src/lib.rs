@@ -38,6 +38,6 @@ pub use renderer::{Clock, Frame, Renderer, Target};
 pub use settings::{
     Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest, Geometry,
     Kind, LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern,
-    Setting, Settings, Shading, ToneMap, View,
+    Setting, Settings, Shading, ToneMap, View, variant_names,
 };
 pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};

@@ -13,7 +13,7 @@ pub use coarse::{
     Backend, COARSEST_LEVEL, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Shading,
 };
 use define::settings;
-pub use define::{Kind, Setting};
+pub use define::{Kind, Setting, variant_names};
 pub use variable::Geometry;
 
 /// Which objects are drawn.

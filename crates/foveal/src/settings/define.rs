@@ -115,7 +115,8 @@ macro_rules! settings {
 pub(super) use settings;
 
 /// The names of the unit variants of `T` as serde spells them, in the order of its declaration.
-fn variant_names<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] {
+#[must_use]
+pub fn variant_names<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] {
     let mut found: &'static [&'static str] = &[];
     let _ = T::deserialize(Probe(&mut found));
     found
