@@ -478,6 +478,13 @@ impl Renderer {
         self.stages.culling.as_ref().map(CullingStage::depth)
     }
 
+    /// The last frame's picture on the device: sRGB-encoded [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after
+    /// [`Renderer::set_settings`].
+    #[must_use]
+    pub fn picture(&self) -> &wgpu::TextureView {
+        &self.stages.targets.picture_view
+    }
+
     /// Counts of the scene that was set last.
     #[must_use]
     pub fn scene_stats(&self) -> SceneStats {

@@ -103,7 +103,7 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
         if tile.level > own.level {
             let low = vec2i(tile_low(tile));
             let high = vec2i(tile_high(tile));
-            if any(corner > low & corner < high) && all(corner >= low & corner <= high) {
+            if any((corner > low) & (corner < high)) && all((corner >= low) & (corner <= high)) {
                 return patch_at(coarser_patch(tile, own.level), within(tile, vec2f(corner)));
             }
         }

@@ -35,6 +35,12 @@ pub struct Gpu {
     lost: Arc<Mutex<Option<String>>>,
 }
 
+fn note(lost: &Mutex<Option<String>>, reason: String) {
+    if let Ok(mut slot) = lost.lock() {
+        *slot = Some(reason);
+    }
+}
+
 impl Gpu {
     /// Opens the adapter whose name, driver or backend contains `wanted` (case-insensitive), or whose number
     /// in [`Gpu::adapters`] it is; without `wanted`, the most capable one.
@@ -42,8 +48,14 @@ impl Gpu {
     /// # Errors
     /// [`Error::NoAdapter`] and [`Error::NoDevice`].
     pub async fn open(wanted: Option<&str>) -> Result<Self, Error> {
-        let adapter = adapter::choose(wanted).await?;
-        let name = adapter.get_info().name;
+        Self::from_adapter(&adapter::choose(wanted).await?).await
+    }
+
+    /// Opens a device of the host's adapter, with what [`Gpu::wanted_features`] and [`Gpu::wanted_limits`] say.
+    ///
+    /// # Errors
+    /// [`Error::NoDevice`].
+    pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, Error> {
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("foveal"),
@@ -53,15 +65,16 @@ impl Gpu {
             })
             .await
             .map_err(|cause| Error::NoDevice {
-                adapter: name,
+                adapter: adapter.get_info().name,
                 cause: cause.to_string(),
             })?;
         let gpu = Self::from_device(device, queue);
-        let seen = gpu.clone();
+        // Not the device itself, which would never end while its own callback holds it.
+        let lost = Arc::clone(&gpu.lost);
         gpu.device
             .set_device_lost_callback(move |reason, message| match message.as_str() {
-                "" => seen.note_loss(format!("{reason:?}")),
-                message => seen.note_loss(message),
+                "" => note(&lost, format!("{reason:?}")),
+                message => note(&lost, message.to_owned()),
             });
         Ok(gpu)
     }
@@ -80,9 +93,7 @@ impl Gpu {
 
     /// Takes down that the device is gone: from now on the renderer answers with [`Error::DeviceLost`].
     pub fn note_loss(&self, reason: impl Into<String>) {
-        if let Ok(mut slot) = self.lost.lock() {
-            *slot = Some(reason.into());
-        }
+        note(&self.lost, reason.into());
     }
 
     /// The limits that every device must offer; no feature is required.

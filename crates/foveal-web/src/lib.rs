@@ -1,0 +1,23 @@
+//! The renderer behind a web page: two pictures of one scene from one camera, a reference on the left and the chosen
+//! settings on the right, divided by a slider.
+//!
+//! The page (`web/page`) holds the controls, the camera and the clock of frames; this crate holds what must be
+//! Rust. Settings and figures cross as JSON, in the words of the native program. Built by `./run web`; on anything
+//! but `wasm32` the crate is empty.
+#![forbid(unsafe_code)]
+
+#[cfg(target_arch = "wasm32")]
+mod camera;
+#[cfg(target_arch = "wasm32")]
+mod present;
+#[cfg(target_arch = "wasm32")]
+mod scenes;
+#[cfg(target_arch = "wasm32")]
+mod side;
+#[cfg(target_arch = "wasm32")]
+mod table;
+#[cfg(target_arch = "wasm32")]
+mod viewer;
+
+#[cfg(target_arch = "wasm32")]
+pub use viewer::{Viewer, default_settings, settings_table};

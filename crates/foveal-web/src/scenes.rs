@@ -1,0 +1,66 @@
+//! Scenes by name, and from dropped files.
+
+use foveal_scene::{Camera, LoadOptions, Scene, generate, load_bytes};
+use serde::Serialize;
+
+use crate::camera::Place;
+
+/// What the page is told of a scene.
+#[derive(Serialize)]
+pub(crate) struct Shown {
+    name: String,
+    camera: Place,
+    /// Half the length of its box's diagonal, for the pace of the camera.
+    radius_m: f32,
+    triangles: u64,
+    objects: usize,
+    lights: usize,
+    warnings: Vec<String>,
+}
+
+impl Shown {
+    pub(crate) fn of(scene: &Scene) -> Self {
+        let bounds = scene.bounds();
+        let radius_m = 0.5 * (bounds.max - bounds.min).length();
+        let camera: Camera = match scene.cameras.first() {
+            Some(camera) => camera.clone(),
+            None => scene.overview_camera(),
+        };
+        let middle = 0.5 * (bounds.min + bounds.max);
+        Self {
+            name: scene.name.clone(),
+            camera: Place::of(&camera, camera.eye().distance(middle).max(1e-3)),
+            radius_m,
+            triangles: scene.triangle_count(),
+            objects: scene.objects.len(),
+            lights: scene.lights.len(),
+            warnings: scene.warnings.iter().map(ToString::to_string).collect(),
+        }
+    }
+}
+
+/// A generated scene (`demo`, `cornell`, …).
+pub(crate) fn generated(name: &str) -> Result<Scene, String> {
+    let mut scene = generate::by_name(name).map_err(|cause| cause.to_string())?;
+    scene.light_by_default();
+    Ok(scene)
+}
+
+/// A `.glb` or a `.gltf` that holds its buffers itself: a page cannot read what lies beside a dropped file.
+pub(crate) fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, String> {
+    let options = LoadOptions {
+        parallel: false,
+        max_file_bytes: 512 << 20,
+        max_texture_size: 2048,
+        max_texture_bytes: 1 << 30,
+        ..LoadOptions::default()
+    };
+    let outside = |uri: &str| {
+        Err(format!(
+            "\"{uri}\" lies beside the file, where a page cannot look; drop a .glb that holds everything"
+        ))
+    };
+    let mut scene = load_bytes(bytes, name, &options, &outside).map_err(|e| e.to_string())?;
+    scene.light_by_default();
+    Ok(scene)
+}

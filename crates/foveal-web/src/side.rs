@@ -1,0 +1,91 @@
+//! One of the two pictures: a renderer with its settings and what its last frame cost.
+
+use foveal::{Frame, FrameStats, Gpu, Renderer, Settings};
+use foveal_scene::{Camera, Scene};
+
+/// A renderer that follows its settings frame by frame.
+pub(crate) struct Side {
+    renderer: Renderer,
+    /// What the page wishes; taken over before the next frame.
+    wished: Settings,
+}
+
+impl Side {
+    pub(crate) async fn new(gpu: &Gpu, settings: &Settings, scene: &Scene) -> Result<Self, String> {
+        let mut renderer = Renderer::new(gpu, settings, Some(now_ms))
+            .await
+            .map_err(|cause| cause.to_string())?;
+        renderer
+            .set_scene(scene)
+            .await
+            .map_err(|cause| cause.to_string())?;
+        Ok(Self {
+            renderer,
+            wished: settings.clone(),
+        })
+    }
+
+    pub(crate) fn wish(&mut self, settings: Settings) {
+        self.wished = settings;
+    }
+
+    pub(crate) async fn set_scene(&mut self, scene: &Scene) -> Result<(), String> {
+        self.renderer
+            .set_scene(scene)
+            .await
+            .map_err(|cause| cause.to_string())
+    }
+
+    /// Draws the next frame of `width` x `height` pixels. `scene` is what was set last: settings that are baked
+    /// into the upload set it anew.
+    pub(crate) async fn draw(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        (width, height): (u32, u32),
+    ) -> Result<FrameStats, String> {
+        let settings = Settings {
+            width,
+            height,
+            ..self.wished.clone()
+        };
+        let before = self.renderer.settings();
+        let uploads =
+            before.culling != settings.culling || before.anisotropy != settings.anisotropy;
+        self.renderer
+            .set_settings(&settings)
+            .await
+            .map_err(|cause| cause.to_string())?;
+        if uploads {
+            self.set_scene(scene).await?;
+        }
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        self.renderer
+            .render(&frame)
+            .await
+            .map_err(|cause| cause.to_string())
+    }
+
+    /// The last frame, sRGB-encoded.
+    pub(crate) fn picture(&self) -> &wgpu::TextureView {
+        self.renderer.picture()
+    }
+
+    /// Its pixels.
+    pub(crate) async fn read_picture(&self) -> Result<Vec<u8>, String> {
+        self.renderer
+            .read_picture()
+            .await
+            .map_err(|cause| cause.to_string())
+    }
+}
+
+/// The page's clock.
+pub(crate) fn now_ms() -> f64 {
+    web_sys::window()
+        .and_then(|w| w.performance())
+        .map_or(0.0, |p| p.now())
+}

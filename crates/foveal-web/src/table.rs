@@ -1,0 +1,46 @@
+//! The settings' own table, as the page's controls are made from it.
+
+use foveal::{Kind, Setting, Settings};
+use serde::Serialize;
+
+/// A setting as the page sees it; `kind` says which of the others mean something.
+#[derive(Serialize)]
+struct Described {
+    key: &'static str,
+    stage: &'static str,
+    label: &'static str,
+    help: &'static str,
+    kind: &'static str,
+    names: &'static [&'static str],
+    least: f64,
+    most: f64,
+}
+
+impl From<&Setting> for Described {
+    fn from(setting: &Setting) -> Self {
+        let (kind, names, (least, most)) = match setting.kind {
+            Kind::Switch => ("switch", &[][..], (0.0, 1.0)),
+            Kind::Choice(names) => ("choice", names(), (0.0, 0.0)),
+            Kind::Integer { least, most } => ("integer", &[][..], (least as f64, most as f64)),
+            Kind::Number { least, most } => ("number", &[][..], (least, most)),
+            Kind::Place => ("place", &[][..], (0.0, 1.0)),
+            Kind::File => ("file", &[][..], (0.0, 0.0)),
+        };
+        Self {
+            key: setting.key,
+            stage: setting.stage,
+            label: setting.label,
+            help: setting.help,
+            kind,
+            names,
+            least,
+            most,
+        }
+    }
+}
+
+/// All settings in the order of the frame, as JSON.
+pub(crate) fn json() -> String {
+    let all: Vec<Described> = Settings::ALL.iter().map(Described::from).collect();
+    serde_json::to_string(&all).unwrap_or_default()
+}

@@ -1,0 +1,211 @@
+//! What the page calls.
+
+use foveal::{FrameStats, Gpu, Settings};
+use foveal_scene::Scene;
+use serde::{Deserialize, Serialize};
+use wasm_bindgen::prelude::*;
+
+use crate::camera::Place;
+use crate::present::Present;
+use crate::scenes::{self, Shown};
+use crate::side::Side;
+
+/// One frame, as the page asks for it.
+#[derive(Deserialize)]
+struct Wish {
+    camera: Place,
+    /// Size of the picture in pixels.
+    width: u32,
+    height: u32,
+    /// Where the line stands, from 0 (all right) to 1 (all left). The hidden side is not drawn.
+    split: f32,
+}
+
+/// What a frame cost, per side that was drawn.
+#[derive(Serialize)]
+struct Cost {
+    reference: Option<FrameStats>,
+    chosen: Option<FrameStats>,
+    /// Milliseconds from the wish to the canvas.
+    total_ms: f64,
+}
+
+/// A scene, two renderers and a canvas.
+#[wasm_bindgen]
+pub struct Viewer {
+    gpu: Gpu,
+    present: Present,
+    scene: Scene,
+    reference: Side,
+    chosen: Side,
+}
+
+/// The settings of a page that was just opened: the program's own, as JSON.
+#[wasm_bindgen]
+#[must_use]
+pub fn default_settings() -> String {
+    serde_json::to_string(&Settings::default()).unwrap_or_default()
+}
+
+/// What is to be known of each setting in order to offer it: a list of `{key, stage, label, help, kind, names, least,
+/// most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and `number` (between `least` and `most`), `place`, `file`.
+#[wasm_bindgen]
+#[must_use]
+pub fn settings_table() -> String {
+    crate::table::json()
+}
+
+#[wasm_bindgen(start)]
+fn start() {
+    console_error_panic_hook::set_once();
+}
+
+#[wasm_bindgen]
+impl Viewer {
+    /// Opens the browser's graphics device and draws into `canvas`. The scene is empty.
+    ///
+    /// # Errors
+    /// A sentence: no WebGPU, no adapter, no device.
+    pub async fn open(canvas: web_sys::HtmlCanvasElement) -> Result<Viewer, String> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::BROWSER_WEBGPU,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let surface = instance
+            .create_surface(wgpu::SurfaceTarget::Canvas(canvas))
+            .map_err(|cause| format!("the canvas cannot be drawn into: {cause}"))?;
+        let adapter = instance
+            .request_adapter(&wgpu::RequestAdapterOptions {
+                power_preference: wgpu::PowerPreference::HighPerformance,
+                compatible_surface: Some(&surface),
+                ..Default::default()
+            })
+            .await
+            .map_err(|_| "the browser found no graphics adapter")?;
+        let gpu = Gpu::from_adapter(&adapter)
+            .await
+            .map_err(|cause| cause.to_string())?;
+        let present = Present::new(&gpu, surface, &adapter)?;
+        let scene = Scene::default();
+        let settings = Settings {
+            width: 64,
+            height: 64,
+            ..Settings::default()
+        };
+        let reference = Side::new(&gpu, &settings, &scene).await?;
+        let chosen = Side::new(&gpu, &settings, &scene).await?;
+        Ok(Viewer {
+            gpu,
+            present,
+            scene,
+            reference,
+            chosen,
+        })
+    }
+
+    /// The adapter and driver, as JSON.
+    #[must_use]
+    pub fn adapter(&self) -> String {
+        serde_json::to_string(&self.gpu.adapter_stats()).unwrap_or_default()
+    }
+
+    /// Shows a generated scene; tells its figures and its camera as JSON. The old scene stays where it fails.
+    ///
+    /// # Errors
+    /// A sentence: no such scene, or it does not fit.
+    pub async fn generate(&mut self, name: String) -> Result<String, String> {
+        let scene = scenes::generated(&name)?;
+        self.show(scene).await
+    }
+
+    /// Shows a `.glb`; tells its figures and its camera as JSON. The old scene stays where it fails.
+    ///
+    /// # Errors
+    /// A sentence that names the file, the place and the cause.
+    pub async fn load(&mut self, name: String, bytes: Vec<u8>) -> Result<String, String> {
+        let scene = scenes::from_bytes(&name, &bytes)?;
+        self.show(scene).await
+    }
+
+    /// Takes over both sides' settings (JSON, the words of the program's TOML; sizes are the frame's own).
+    ///
+    /// # Errors
+    /// A sentence that names the setting.
+    pub fn set_settings(&mut self, reference: &str, chosen: &str) -> Result<(), String> {
+        let read =
+            |text: &str| serde_json::from_str::<Settings>(text).map_err(|cause| cause.to_string());
+        let (reference, chosen) = (read(reference)?, read(chosen)?);
+        self.reference.wish(reference);
+        self.chosen.wish(chosen);
+        Ok(())
+    }
+
+    /// Draws one frame and presents it; tells what it cost as JSON.
+    ///
+    /// # Errors
+    /// A sentence: settings that cannot be met, out of memory, the device was lost.
+    pub async fn draw(&mut self, wish: String) -> Result<String, String> {
+        let wish: Wish = serde_json::from_str(&wish).map_err(|cause| cause.to_string())?;
+        let started_ms = crate::side::now_ms();
+        let camera = wish.camera.camera()?;
+        let size = (wish.width, wish.height);
+        let reference = match wish.split > 0.0 {
+            true => Some(self.reference.draw(&self.scene, &camera, size).await?),
+            false => None,
+        };
+        let chosen = match wish.split < 1.0 {
+            true => Some(self.chosen.draw(&self.scene, &camera, size).await?),
+            false => None,
+        };
+        let left = if reference.is_some() {
+            &self.reference
+        } else {
+            &self.chosen
+        };
+        let right = if chosen.is_some() {
+            &self.chosen
+        } else {
+            &self.reference
+        };
+        self.present
+            .show(&self.gpu, left.picture(), right.picture(), wish.split)?;
+        let cost = Cost {
+            reference,
+            chosen,
+            total_ms: crate::side::now_ms() - started_ms,
+        };
+        serde_json::to_string(&cost).map_err(|cause| cause.to_string())
+    }
+
+    /// The last picture of the chosen side, or of the reference: RGBA8 rows, sRGB-encoded, top to bottom.
+    ///
+    /// # Errors
+    /// A sentence: the device was lost.
+    pub async fn picture(&self, chosen: bool) -> Result<Vec<u8>, String> {
+        let side = if chosen {
+            &self.chosen
+        } else {
+            &self.reference
+        };
+        side.read_picture().await
+    }
+
+    /// Gives the device back, so that the page can be seen to survive its loss.
+    pub fn lose_device(&self) {
+        self.gpu.device.destroy();
+    }
+}
+
+impl Viewer {
+    async fn show(&mut self, scene: Scene) -> Result<String, String> {
+        self.reference.set_scene(&scene).await?;
+        if let Err(cause) = self.chosen.set_scene(&scene).await {
+            // Both sides show the same scene, whatever happens.
+            self.reference.set_scene(&self.scene).await?;
+            return Err(cause);
+        }
+        let shown = Shown::of(&scene);
+        self.scene = scene;
+        serde_json::to_string(&shown).map_err(|cause| cause.to_string())
+    }
+}

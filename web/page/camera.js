@@ -1,0 +1,110 @@
+// The camera: fly (drag to look, WASD to move) or orbit, by mouse, touch and keyboard.
+
+const STEP_RAD = 0.04;
+
+export class Camera {
+  /** `moved()` is called after each change. */
+  constructor(canvas, moved) {
+    this.orbit = false;
+    this.keys = new Set();
+    this.pointers = new Map();
+    this.moved = moved;
+    this.reset({ eye: [0, 0, 1], target: [0, 0, 0], fov_y_deg: 50 }, 1);
+    this.listen(canvas);
+  }
+
+  reset(place, radius) {
+    this.eye = [...place.eye];
+    this.fov = place.fov_y_deg;
+    const forward = place.target.map((t, i) => t - place.eye[i]);
+    this.distance = Math.hypot(...forward) || 1;
+    this.yaw = Math.atan2(forward[0], -forward[2]);
+    this.pitch = Math.asin(forward[1] / this.distance);
+    this.pace = radius / 60;
+  }
+
+  get forward() {
+    const level = Math.cos(this.pitch);
+    return [Math.sin(this.yaw) * level, Math.sin(this.pitch), -Math.cos(this.yaw) * level];
+  }
+
+  place() {
+    const target = this.eye.map((e, i) => e + this.forward[i] * this.distance);
+    return { eye: this.eye, target, fov_y_deg: this.fov };
+  }
+
+  turn(right, up) {
+    const pivot = this.eye.map((e, i) => e + this.forward[i] * this.distance);
+    this.yaw += right;
+    this.pitch = Math.max(-1.5, Math.min(1.5, this.pitch + up));
+    if (this.orbit) this.eye = pivot.map((p, i) => p - this.forward[i] * this.distance);
+    this.moved();
+  }
+
+  move(right, up, ahead) {
+    const side = [Math.cos(this.yaw), 0, Math.sin(this.yaw)];
+    const f = this.forward;
+    if (this.orbit && ahead) {
+      const distance = Math.max(this.pace * 0.05, this.distance - ahead);
+      ahead = this.distance - distance;
+      this.distance = distance;
+    }
+    this.eye = this.eye.map((e, i) => e + side[i] * right + f[i] * ahead + (i === 1 ? up : 0));
+    this.moved();
+  }
+
+  /** One step of the keys that are held; true while there are any. */
+  step(seconds) {
+    const held = (key) => (this.keys.has(key) ? 1 : 0);
+    const pace = this.pace * (this.keys.has('shift') ? 40 : 10) * Math.min(seconds, 0.1);
+    const right = held('d') - held('a');
+    const up = held('e') - held('q');
+    const ahead = held('w') - held('s');
+    if (right || up || ahead) this.move(right * pace, up * pace, ahead * pace);
+    return this.keys.size > 0;
+  }
+
+  listen(canvas) {
+    canvas.addEventListener('pointerdown', (event) => {
+      canvas.setPointerCapture(event.pointerId);
+      this.pointers.set(event.pointerId, [event.clientX, event.clientY]);
+    });
+    const release = (event) => this.pointers.delete(event.pointerId);
+    canvas.addEventListener('pointerup', release);
+    canvas.addEventListener('pointercancel', release);
+    canvas.addEventListener('pointermove', (event) => {
+      const before = this.pointers.get(event.pointerId);
+      if (!before) return;
+      const now = [event.clientX, event.clientY];
+      const spread = this.spread();
+      this.pointers.set(event.pointerId, now);
+      const [dx, dy] = [now[0] - before[0], now[1] - before[1]];
+      const perPixel = ((this.fov * Math.PI) / 180 / canvas.clientHeight) * (this.orbit ? 2.5 : 1);
+      if (this.pointers.size === 1) this.turn((this.orbit ? 1 : -1) * dx * perPixel, (this.orbit ? -1 : 1) * dy * perPixel);
+      else this.move(-dx * this.pace * 0.05, dy * this.pace * 0.05, (this.spread() - spread) * this.pace * 0.2);
+    });
+    canvas.addEventListener('wheel', (event) => {
+      event.preventDefault();
+      this.move(0, 0, -Math.sign(event.deltaY) * this.pace * 3);
+    }, { passive: false });
+    canvas.addEventListener('keydown', (event) => {
+      if (event.ctrlKey || event.metaKey || event.altKey) return;
+      const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+      const turn = turns[event.key];
+      const key = event.key.toLowerCase();
+      if (turn) this.turn(turn[0] * STEP_RAD, turn[1] * STEP_RAD);
+      else if ('wasdqe'.includes(key) || key === 'shift') this.keys.add(key);
+      else return;
+      event.preventDefault();
+      this.moved();
+    });
+    canvas.addEventListener('keyup', (event) => this.keys.delete(event.key.toLowerCase()));
+    canvas.addEventListener('blur', () => this.keys.clear());
+  }
+
+  /** How far apart two fingers are. */
+  spread() {
+    const [a, b] = [...this.pointers.values()];
+    return a && b ? Math.hypot(a[0] - b[0], a[1] - b[1]) : 0;
+  }
+}

@@ -1,0 +1,80 @@
+// What frames cost, side by side.
+
+const COLOURS = ['#59c2ff', '#ffb454', '#7fd962', '#d2a6ff', '#f07178', '#95e6cb', '#e6b450', '#6c9cff', '#ff8f40', '#aad94c', '#c594c5', '#5fb3b3'];
+
+const rows = [
+  ['Frame', (s) => s.frame_ms, ms, true],
+  ['Passes in all', (s) => (s.gpu_ms.length ? total(s.gpu_ms) : undefined), ms, true],
+  ['Processor', (s) => total(s.cpu_ms), ms, true],
+  ['Objects drawn', (s) => s.objects_visible, count, true],
+  ['Draws', (s) => s.draws, count, true],
+  ['Triangles', (s) => s.triangles, count, true],
+  ['Samples lit', (s) => s.shaded_samples, count, true],
+  ['… by pixels', (s) => s.shaded_samples / (s.width * s.height), (v) => `${(100 * v).toFixed(1)} %`],
+  ['Targets', (s) => s.target_bytes / 2 ** 20, (v) => `${v.toFixed(0)} MiB`],
+];
+
+function ms(value) {
+  return `${value.toFixed(value < 10 ? 2 : 0)} ms`;
+}
+
+function count(value) {
+  return value.toLocaleString('en');
+}
+
+function total(timings) {
+  return timings.reduce((sum, timing) => sum + timing.ms, 0);
+}
+
+function cell(name, text, better) {
+  const made = document.createElement(name);
+  made.textContent = text;
+  if (better) made.className = 'better';
+  return made;
+}
+
+/** Fills the table; a side that was not drawn keeps its last figures. */
+export function showFigures(table, passes, { reference, chosen }) {
+  const body = table.tBodies[0];
+  body.replaceChildren();
+  for (const [name, pick, write, compare] of rows) {
+    const [left, right] = [reference, chosen].map((s) => (s ? pick(s) : undefined));
+    if (left === undefined && right === undefined) continue;
+    const row = body.insertRow();
+    row.append(cell('th', name));
+    for (const value of [left, right]) row.append(cell('td', value === undefined ? '–' : write(value)));
+    const ratio = compare && left > 0 && right > 0 ? right / left : undefined;
+    row.append(cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`, ratio < 0.98));
+  }
+  showPasses(passes, reference, chosen);
+}
+
+/** One bar per side, its passes to scale. */
+function showPasses(place, reference, chosen) {
+  place.replaceChildren();
+  const sides = [reference, chosen].filter((s) => s?.gpu_ms.length);
+  const longest = Math.max(...sides.map((s) => total(s.gpu_ms)));
+  const names = [...new Set(sides.flatMap((s) => s.gpu_ms.map((t) => t.name)))];
+  const colour = (name) => COLOURS[names.indexOf(name) % COLOURS.length];
+  for (const side of sides) {
+    const bar = document.createElement('div');
+    bar.className = 'bar';
+    for (const { name, ms: time } of side.gpu_ms) {
+      const part = document.createElement('span');
+      part.style.cssText = `width:${(100 * time) / longest}%;background:${colour(name)}`;
+      part.title = `${name}: ${ms(time)}`;
+      bar.append(part);
+    }
+    place.append(bar);
+  }
+  const keys = document.createElement('div');
+  keys.className = 'keys';
+  for (const name of names) {
+    const key = document.createElement('span');
+    const square = document.createElement('i');
+    square.style.background = colour(name);
+    key.append(square, name);
+    keys.append(key);
+  }
+  place.append(keys);
+}

@@ -1,0 +1,73 @@
+// Both sides' settings: defaults from the renderer, changes by the page, and the link that holds them.
+// In a link, `left.` and `right.` stand before the settings that are not the default.
+
+const SIDES = { reference: 'left', chosen: 'right' };
+
+export class Settings {
+  /** `defaults`: the renderer's; `table`: what is to be known of each setting. */
+  constructor(defaults, table) {
+    this.defaults = defaults;
+    this.table = table;
+    this.sides = { reference: { ...defaults }, chosen: { ...defaults } };
+  }
+
+  entry(key) {
+    return this.table.find((entry) => entry.key === key);
+  }
+
+  use(technique) {
+    this.sides.reference = { ...this.defaults, ...technique.reference };
+    this.sides.chosen = { ...this.defaults, ...technique.chosen };
+  }
+
+  set(side, key, value) {
+    this.sides[side][key] = value;
+  }
+
+  changed(side, key) {
+    return JSON.stringify(this.sides[side][key]) !== JSON.stringify(this.defaults[key]);
+  }
+
+  /** Adds what is not the default to a link's parameters. */
+  write(link) {
+    for (const [side, short] of Object.entries(SIDES)) {
+      for (const { key } of this.table) {
+        if (this.changed(side, key)) link.set(`${short}.${key}`, String(this.sides[side][key]));
+      }
+    }
+  }
+
+  /** Takes over what a link says; tells what it could not read. */
+  read(link) {
+    const unread = [];
+    for (const [name, text] of link) {
+      const [short, key] = name.split('.', 2);
+      const side = Object.keys(SIDES).find((s) => SIDES[s] === short);
+      if (!side || key === undefined) continue;
+      const entry = this.entry(key);
+      const value = entry && parse(entry, text);
+      if (value === undefined) unread.push(`${name}=${text}`);
+      else this.set(side, key, value);
+    }
+    return unread;
+  }
+}
+
+function parse(entry, text) {
+  switch (entry.kind) {
+    case 'switch':
+      return text === 'true' ? true : text === 'false' ? false : undefined;
+    case 'choice':
+      return entry.names.includes(text) ? text : undefined;
+    case 'integer':
+      return /^-?\d+$/.test(text) ? Number(text) : undefined;
+    case 'number':
+      return text !== '' && Number.isFinite(Number(text)) ? Number(text) : undefined;
+    case 'place': {
+      const place = text.split(',').map(Number);
+      return place.length === 2 && place.every(Number.isFinite) ? place : undefined;
+    }
+    default:
+      return undefined;
+  }
+}

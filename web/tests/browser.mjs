@@ -1,0 +1,66 @@
+// A real browser with WebGPU on SwiftShader, a page in it, and what both said.
+
+import { existsSync } from 'node:fs';
+import { chromium } from 'playwright-core';
+import { serve } from '../serve.mjs';
+
+const QUIET = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
+const WEBGPU = ['--enable-unsafe-webgpu', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--use-webgpu-adapter=swiftshader'];
+
+/** Where a frame may take seconds, waiting may take a minute. */
+export const PATIENCE = 120_000;
+
+function executablePath() {
+  const found = [process.env.CHROMIUM, '/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'].find((p) => p && existsSync(p));
+  if (!found) throw new Error('no Chromium: install Debian\'s package chromium, or name one in CHROMIUM');
+  return found;
+}
+
+/** A browser and a server for the page; `close` ends both. */
+export async function open({ webgpu = true } = {}) {
+  const server = await serve(0);
+  const browser = await chromium.launch({ executablePath: executablePath(), args: webgpu ? [...QUIET, ...WEBGPU] : QUIET });
+  const address = `http://localhost:${server.address().port}/`;
+  return {
+    address,
+    browser,
+    /** Opens the page with what a link says; `said` collects errors and warnings. */
+    async visit(link = '', viewport = { width: 1280, height: 720 }) {
+      const context = await browser.newContext({ viewport, acceptDownloads: true });
+      const page = await context.newPage();
+      page.setDefaultTimeout(PATIENCE);
+      const said = [];
+      page.on('console', (m) => { if (m.type() === 'error') said.push(m.text()); });
+      page.on('pageerror', (e) => said.push(String(e)));
+      await page.goto(`${address}${link}`);
+      return { page, said };
+    },
+    async close() {
+      await browser.close();
+      server.closeAllConnections?.();
+      await new Promise((done) => server.close(done));
+    },
+  };
+}
+
+/** Waits until a frame of the present settings is on the canvas. */
+export async function settled(page) {
+  await page.waitForFunction(() => {
+    const { frames, stale, busy } = window.foveal ?? {};
+    return frames > 0 && !stale && !busy;
+  });
+}
+
+/** The last picture of one side, as RGBA bytes, with its size and its mean colour. */
+export async function picture(page, chosen = true) {
+  await settled(page);
+  const { bytes, width, height } = await page.evaluate(async (side) => {
+    const { viewer, costs } = window.foveal;
+    const pixels = await viewer.picture(side);
+    const { width, height } = side ? costs.chosen : costs.reference;
+    let text = '';
+    for (let i = 0; i < pixels.length; i += 32768) text += String.fromCharCode(...pixels.subarray(i, i + 32768));
+    return { bytes: btoa(text), width, height };
+  }, chosen);
+  return { bytes: Buffer.from(bytes, 'base64'), width, height };
+}

@@ -1,0 +1,252 @@
+// The page in a real browser: what a visitor does, and what must come of it.
+
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { existsSync, mkdirSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { open, picture, settled } from './browser.mjs';
+import { drop, triangle } from './files.mjs';
+
+const ROOT = fileURLToPath(new URL('../..', import.meta.url));
+const SHOTS = join(ROOT, 'out/web');
+const SMALL = { width: 1000, height: 420 };
+
+let site;
+before(async () => {
+  mkdirSync(SHOTS, { recursive: true });
+  site = await open();
+});
+after(() => site.close());
+
+const shot = (page, name) => page.screenshot({ path: join(SHOTS, `${name}.png`) });
+/** Mean difference of two pictures' channels, of 255. */
+function difference(a, b) {
+  assert.deepEqual([a.width, a.height], [b.width, b.height]);
+  return a.bytes.reduce((sum, v, i) => sum + Math.abs(v - b.bytes[i]), 0) / a.bytes.length;
+}
+
+const costs = (page) => page.evaluate(() => window.foveal.costs);
+
+test('the page draws, names what it draws with and says nothing in the console', async () => {
+  const { page, said } = await site.visit('#scene=demo&scale=0.5');
+  await settled(page);
+  const { reference, chosen } = await costs(page);
+  assert.ok(chosen.shaded_samples < 0.6 * reference.shaded_samples, 'coarse shading lights fewer samples');
+  assert.equal(await page.locator('#wait').isVisible(), false);
+  assert.ok((await page.locator('#figures tbody tr').count()) >= 7);
+  assert.match(await page.locator('#adapter').textContent(), /WebGPU/);
+  await shot(page, 'desktop');
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('every technique draws, with every view that it offers', async () => {
+  const { page, said } = await site.visit('#scene=demo:1000&scale=0.25', SMALL);
+  await settled(page);
+  for (const button of await page.locator('#techniques button').all()) {
+    await button.click();
+    await settled(page);
+    const name = await button.getAttribute('data-key');
+    assert.equal(await button.getAttribute('aria-checked'), 'true');
+    assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
+    await shot(page, `technique-${name}`);
+    const view = page.locator('#quick-view');
+    if (!(await view.count())) continue;
+    for (const option of await view.locator('option').all()) {
+      await page.locator('#quick-view').selectOption(await option.getAttribute('value'));
+      await settled(page);
+      assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
+    }
+  }
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('culling in WebAssembly hides objects and changes no pixel', async () => {
+  const { page } = await site.visit('#scene=demo:1000&technique=culling&scale=0.5', SMALL);
+  const [left, right] = [await picture(page, false), await picture(page, true)];
+  const { reference, chosen } = await costs(page);
+  assert.ok(chosen.objects_occluded > 0 && chosen.objects_visible < reference.objects_visible);
+  assert.ok(left.bytes.equals(right.bytes));
+  await page.context().close();
+});
+
+test('the picture is the native one', async () => {
+  const { page } = await site.visit('#scene=demo:1000&left.anisotropy=1&scale=1&split=1', { width: 848, height: 270 });
+  const { bytes, width, height } = await picture(page, false);
+  const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
+  
+
+  await page.evaluate(async ({ width, height }) => {
+    const pixels = new Uint8ClampedArray(await window.foveal.viewer.picture(false));
+    const canvas = new OffscreenCanvas(width, height);
+    canvas.getContext('2d').putImageData(new ImageData(pixels, width, height), 0, 0);
+    const buffer = new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer());
+    let text = '';
+    for (const byte of buffer) text += String.fromCharCode(byte);
+    window.png = btoa(text);
+  }, { width, height });
+  const theirs = join(folder, 'page.png');
+  writeFileSync(theirs, Buffer.from(await page.evaluate(() => window.png), 'base64'));
+  const ours = join(folder, 'native.png');
+  // The browser's own driver where it can be found: drivers differ in how they choose mip levels.
+  const driver = '/usr/lib/chromium/vk_swiftshader_icd.json';
+  const env = existsSync(driver) ? { ...process.env, VK_DRIVER_FILES: driver } : process.env;
+  const foveal = (...words) => execFileSync('cargo', ['run', '--quiet', '--package', 'foveal-cli', '--', ...words], { cwd: ROOT, encoding: 'utf8', env });
+  foveal('render', 'demo:1000', '--anisotropy', '1', '--size', `${width}x${height}`, '--output', ours);
+  const { flip } = JSON.parse(foveal('compare', ours, theirs, '--json'));
+  assert.ok(flip < 0.01, `FLIP to the native picture is ${flip}`);
+  await page.context().close();
+});
+
+test('the divider moves by keyboard and by dragging, and hides what it covers', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  await page.locator('#split').focus();
+  await page.keyboard.press('ArrowRight');
+  assert.equal(await page.evaluate(() => window.foveal.split), 0.501);
+  await page.keyboard.press('End');
+  await settled(page);
+  assert.equal(await page.locator('#right-name').isVisible(), false);
+  const box = await page.locator('#stage').boundingBox();
+  await page.mouse.move(box.x + box.width - 4, box.y + 100);
+  await page.mouse.down();
+  await page.mouse.move(box.x + box.width * 0.25, box.y + 100, { steps: 4 });
+  await page.mouse.up();
+  await settled(page);
+  assert.ok(Math.abs((await page.evaluate(() => window.foveal.split)) - 0.25) < 0.01);
+  await page.context().close();
+});
+
+test('looking around by mouse and keys changes the picture, and home brings it back', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25&technique=culling', SMALL);
+  const first = await picture(page);
+  const box = await page.locator('#picture').boundingBox();
+  await page.mouse.move(box.x + 100, box.y + 100);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 180, box.y + 120, { steps: 3 });
+  await page.mouse.up();
+  const turned = await picture(page);
+  assert.ok(!turned.bytes.equals(first.bytes));
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  await page.keyboard.down('w');
+  await page.waitForTimeout(300);
+  await page.keyboard.up('w');
+  assert.ok(!(await picture(page)).bytes.equals(turned.bytes));
+  await page.locator('#home').click();
+  assert.ok((await picture(page)).bytes.equals(first.bytes));
+  await page.context().close();
+});
+
+test('the gaze follows the pointer', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  const box = await page.locator('#picture').boundingBox();
+  await page.mouse.move(box.x + box.width * 0.8, box.y + box.height * 0.3);
+  await settled(page);
+  const gaze = await page.evaluate(() => window.foveal.settings.sides.chosen.gaze);
+  assert.ok(Math.abs(gaze[0] - 0.8) < 0.01 && Math.abs(gaze[1] - 0.3) < 0.01, String(gaze));
+  await page.context().close();
+});
+
+test('a link holds the settings, the place and the divider', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25&technique=msaa', SMALL);
+  await settled(page);
+  await page.locator('#settings summary').first().click();
+  await page.locator('#quick-samples').fill('9');
+  await page.locator('#picture').focus();
+  await page.keyboard.press('ArrowLeft');
+  await settled(page);
+  const hash = await page.evaluate(() => location.hash);
+  const shown = await picture(page);
+  const again = await site.visit(hash, SMALL);
+  // Places are rounded to a tenth of a millimetre.
+  assert.ok(difference(await picture(again.page), shown) < 0.5);
+  assert.equal(await again.page.evaluate(() => window.foveal.settings.sides.chosen.samples), 9);
+  const odd = await site.visit('#scene=cornell&scale=0.25&right.nonsense=1', SMALL);
+  await settled(odd.page);
+  assert.match(await odd.page.locator('#messages').textContent(), /right\.nonsense=1/);
+  for (const p of [page, again.page, odd.page]) await p.context().close();
+});
+
+test('a dropped .glb is shown; a broken one is named, and the page goes on', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  await drop(page, 'triangle.glb', triangle());
+  await page.waitForFunction(() => document.getElementById('scene').value === 'triangle.glb');
+  const { bytes } = await picture(page, false);
+  let red = 0;
+  for (let i = 0; i < bytes.length; i += 4) red += Number(bytes[i] > 2 * bytes[i + 1] && bytes[i] > 60);
+  assert.ok(red > 200, `${red} red pixels`);
+  await drop(page, 'broken.glb', triangle().subarray(0, 60));
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /broken\.glb/);
+  assert.equal(await page.locator('#scene').inputValue(), 'triangle.glb');
+  await page.locator('.message button').click();
+  await page.locator('#scene').selectOption('cornell');
+  await page.waitForFunction(() => window.foveal.scene.name === 'cornell');
+  await settled(page);
+  assert.equal(await page.locator('.message').count(), 0);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('settings that cannot be met are said, and the last picture stays', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25&technique=msaa', SMALL);
+  await settled(page);
+  await page.evaluate(() => { location.hash = ''; });
+  await page.locator('#quick-samples').fill('5');
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /samples/);
+  await page.locator('#quick-samples').fill('4');
+  await page.locator('.message button').click();
+  await settled(page);
+  assert.equal(await page.locator('.message').count(), 0);
+  await page.context().close();
+});
+
+test('a lost device is opened again', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  const first = await picture(page);
+  await page.evaluate(() => { window.foveal.viewer.lose_device(); window.foveal.stale = true; });
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /lost/i);
+  const again = await picture(page);
+  assert.ok(again.bytes.equals(first.bytes));
+  await page.context().close();
+});
+
+test('on a phone the picture and the controls share the screen', async () => {
+  const { page } = await site.visit('#scene=demo:1000&scale=0.5', { width: 390, height: 844 });
+  await settled(page);
+  const [stage, panel] = [await page.locator('#stage').boundingBox(), await page.locator('#panel').boundingBox()];
+  assert.ok(stage.height > 300 && panel.y >= stage.y + stage.height - 1);
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 390);
+  await shot(page, 'phone');
+  await page.locator('#fold').click();
+  await settled(page);
+  assert.ok((await page.locator('#stage').boundingBox()).height > 700);
+  await shot(page, 'phone-folded');
+  await page.setViewportSize({ width: 844, height: 390 });
+  await settled(page);
+  await shot(page, 'phone-turned');
+  await page.context().close();
+});
+
+test('without WebGPU there is a picture of each technique and a sentence', async () => {
+  const bare = await open({ webgpu: false });
+  const { page } = await bare.visit();
+  await page.locator('#stills img').first().waitFor();
+  assert.match(await page.locator('#missing').textContent(), /WebGPU/);
+  const loaded = await page.locator('#stills img').evaluateAll(async (images) => {
+    await Promise.all(images.map((image) => image.decode()));
+    return images.length;
+  });
+  assert.ok(loaded >= 4);
+  await shot(page, 'without-webgpu');
+  await bare.close();
+});
