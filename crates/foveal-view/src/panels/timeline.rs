@@ -1,6 +1,6 @@
 //! Times made visible: a graph of frames, and a frame's stages as one stacked bar.
 
-use egui::{Align2, CornerRadius, Pos2, Rect, RichText, Sense, Stroke, Vec2};
+use egui::{CornerRadius, Pos2, Rect, RichText, Sense, Stroke, Vec2};
 use foveal::Timing;
 
 use crate::history::History;
@@ -32,7 +32,10 @@ pub(super) fn graph(ui: &mut egui::Ui, history: &History) {
     painter.hline(rect.x_range(), y, Stroke::new(1.0, look::TEXT));
     let text = format!("median {}", look::ms(median));
     let at = rect.left_top() + Vec2::new(5.0, 3.0);
-    painter.text(at, Align2::LEFT_TOP, text, look::small_font(), look::TEXT);
+    let galley = painter.layout_no_wrap(text, look::small_font(), look::TEXT);
+    let back = Rect::from_min_size(at, galley.size()).expand(2.0);
+    painter.rect_filled(back, CornerRadius::same(2), look::BACKGROUND);
+    painter.galley(at, galley, look::TEXT);
 }
 
 /// A frame's stages side by side, as wide as they are long, with their names and times below.

@@ -83,9 +83,9 @@ nav a { color: var(--text); text-decoration: none; border: 1px solid var(--line)
   background: var(--card); } nav a.off { color: var(--faint); }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; min-width: 100%; }
 th, td { text-align: right; padding: 4px 10px; border-bottom: 1px solid var(--line); white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; } th { color: var(--faint); font-weight: 600; }
+th:first-child, td:first-child { text-align: left; white-space: normal; min-width: 9em; } th { color: var(--faint); font-weight: 600; }
 code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: var(--back); border-radius: 4px; padding: 1px 5px; }
-.columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(300px, 100%), 1fr)); gap: 18px; }
+.columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(400px, 100%), 1fr)); gap: 18px; }
 .compare { position: relative; display: grid; overflow: hidden; border-radius: 6px; touch-action: pan-y; }
 .compare img { grid-area: 1 / 1; width: 100%; display: block; }
 .compare .after { clip-path: inset(0 0 0 var(--at, 50%)); }
@@ -93,7 +93,7 @@ code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: 
 .compare span { position: absolute; top: 8px; padding: 1px 8px; border-radius: 4px; background: #000a; color: #fff; font-size: 13px; }
 .compare .left { left: 8px; } .compare .right { right: 8px; }
 input[type=range] { width: 100%; margin: 8px 0 0; } figure { margin: 12px 0; } figcaption { color: var(--faint); }
-.difference { width: 100%; border-radius: 6px; display: block; } svg { width: 100%; height: auto; display: block; }
+.difference { width: 100%; border-radius: 6px; display: block; } svg { width: 100%; max-width: 480px; height: auto; display: block; }
 svg text { fill: var(--text); font: 12px system-ui, sans-serif; } svg .faint { fill: var(--faint); }
 ";
 

@@ -95,11 +95,14 @@ fn section(body: &mut String, f: &Figures<'_>, index: usize, bench: &Bench) {
     body.push_str("</div>\n");
     table(body, f, &at, bench);
     pictures(body, f, &at);
-    let _ = write!(
-        body,
-        "<h3>To measure it again</h3>\n<p><code>{}</code></p>\n</section>\n",
-        f.text(&format!("{at}/command"))
-    );
+    if status != "skipped" {
+        let _ = writeln!(
+            body,
+            "<h3>To measure it again</h3>\n<p><code>{}</code></p>",
+            f.text(&format!("{at}/command"))
+        );
+    }
+    body.push_str("</section>\n");
 }
 
 fn published(body: &mut String, f: &Figures<'_>, at: &str) {

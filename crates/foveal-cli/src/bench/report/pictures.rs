@@ -36,8 +36,8 @@ pub(super) fn draw(
         let map = ErrorMap::between(&before, &after);
         pictures.push(json!({
             "title": pair.title,
-            "before_flags": spelled(&before_settings),
-            "after_flags": spelled(&after_settings),
+            "before_flags": spelled(scene_name, "before.png", &before_settings),
+            "after_flags": spelled(scene_name, "after.png", &after_settings),
             "flip_mean": map.mean(),
             "before": jpeg(&before.rgb_bytes(), size)?,
             "after": jpeg(&after.rgb_bytes(), size)?,
@@ -60,8 +60,10 @@ pub(super) fn strip(report: &mut Value) {
     }
 }
 
-fn spelled(settings: &Settings) -> String {
-    format!("foveal render {}", flags(settings).join(" "))
+/// The command that draws it.
+fn spelled(scene: &str, output: &str, settings: &Settings) -> String {
+    let flags = flags(settings).join(" ");
+    format!("foveal render {scene} --output {output} {flags}")
 }
 
 fn one(

@@ -5,7 +5,7 @@ use std::fmt::Write;
 use super::html::Figures;
 use super::plan::Bench;
 
-const WIDTH: f64 = 480.0;
+const WIDTH: f64 = 360.0;
 const COLORS: [&str; 6] = [
     "#4e9ad9", "#e08e45", "#5fb87a", "#c96bb0", "#b59a2c", "#3fa7aa",
 ];
