@@ -417,7 +417,7 @@ impl Renderer {
                 shading.shade(recorder, &input, Samples::EveryPixel, target);
             }
             if let Some(antialias) = antialias {
-                antialias.combine(recorder, targets);
+                antialias.combine(recorder, scene, shading, lights, targets);
             }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
             tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);

@@ -58,6 +58,18 @@ pub(crate) const RESOLVE: Parts = &[
     EVERY,
     include_str!("geometry/visibility/resolve.wgsl"),
 ];
+/// As [`RESOLVE`], for the further surfaces of pixels at edges.
+pub(crate) const RESOLVE_FURTHER: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    SAMPLE_GRADIENTS,
+    MATERIAL,
+    AA_QUARTERS,
+    include_str!("antialias/further.wgsl"),
+    include_str!("geometry/visibility/resolve.wgsl"),
+];
 pub(crate) const CLUSTERS: Parts = &[FRAME, LIGHT, include_str!("lights/clusters.wgsl")];
 pub(crate) const SHADE_EVERY_PIXEL: Parts = &[
     FRAME,
@@ -90,8 +102,12 @@ pub(crate) const PRESENT: Parts = &[FRAME, include_str!("output/present.wgsl")];
 pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];
 const AA_SAMPLES: &str = include_str!("antialias/samples.wgsl");
 const AA_SURFACES: &str = include_str!("antialias/surfaces.wgsl");
+const AA_STORED: &str = include_str!("antialias/stored.wgsl");
 const AA_WEIGHT: &str = include_str!("antialias/weight.wgsl");
+const AA_WEIGHTED: &str = include_str!("antialias/weighted.wgsl");
 const AA_QUEUE: &str = include_str!("antialias/queue.wgsl");
+const AA_COUNTERS: &str = include_str!("antialias/counters.wgsl");
+const AA_QUARTERS: &str = include_str!("antialias/quarters.wgsl");
 pub(crate) const AA_MERGE: Parts = &[
     FRAME,
     SURFACE,
@@ -100,7 +116,9 @@ pub(crate) const AA_MERGE: Parts = &[
     SHADING,
     AA_SAMPLES,
     AA_SURFACES,
+    AA_STORED,
     AA_QUEUE,
+    AA_COUNTERS,
     include_str!("antialias/merge.wgsl"),
 ];
 pub(crate) const AA_SHADE: Parts = &[
@@ -111,9 +129,58 @@ pub(crate) const AA_SHADE: Parts = &[
     SHADING,
     AA_SAMPLES,
     AA_SURFACES,
+    AA_STORED,
     AA_WEIGHT,
+    AA_WEIGHTED,
     AA_QUEUE,
     include_str!("antialias/shade.wgsl"),
+];
+const AA_IDS: &str = include_str!("antialias/ids.wgsl");
+pub(crate) const AA_CANDIDATES: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    AA_SAMPLES,
+    AA_SURFACES,
+    AA_IDS,
+    include_str!("antialias/candidates.wgsl"),
+];
+pub(crate) const AA_SORT: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    AA_SAMPLES,
+    AA_SURFACES,
+    AA_IDS,
+    AA_QUEUE,
+    AA_COUNTERS,
+    AA_QUARTERS,
+    include_str!("antialias/sort.wgsl"),
+];
+pub(crate) const AA_CLASSIFY: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    AA_SAMPLES,
+    AA_SURFACES,
+    AA_IDS,
+    include_str!("antialias/classify.wgsl"),
+];
+pub(crate) const AA_SHADE_FURTHER: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    "// Sub-samples per pixel.\noverride COUNT: u32 = 4u;",
+    AA_WEIGHT,
+    AA_WEIGHTED,
+    AA_QUEUE,
+    AA_QUARTERS,
+    include_str!("antialias/shade_further.wgsl"),
 ];
 pub(crate) const AA_COMBINE: Parts = &[
     FRAME,

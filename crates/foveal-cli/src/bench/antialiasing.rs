@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use foveal::{
-    AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Gpu, Renderer, SamplePattern, Settings,
+    AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, Renderer,
+    SamplePattern, Settings,
 };
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
@@ -77,6 +78,7 @@ struct Row {
     scene: String,
     width: u32,
     height: u32,
+    geometry: Geometry,
     mode: Antialiasing,
     edge_test: EdgeTest,
     pattern: SamplePattern,
@@ -84,7 +86,7 @@ struct Row {
     edge_fraction: f64,
     shaded_samples: u64,
     target_bytes: u64,
-    /// Geometry and merge.
+    /// All from triangles to one surface per pixel.
     gbuffer_ms: f64,
     /// Shading, shading of edges, combination.
     shade_ms: f64,
@@ -122,27 +124,38 @@ impl Times {
                 .sum()
         };
         Self {
-            gbuffer_ms: sum(&["geometry", "merge"]),
+            gbuffer_ms: sum(&[
+                "geometry",
+                "merge",
+                "sorting",
+                "classification",
+                "binning",
+                "material",
+            ]),
             shade_ms: sum(&["shading", "edge shading", "combination"]),
             frame_ms: stats.frame_ms,
         }
     }
 }
 
-/// The modes: the first is what the others are compared with, the second what FLIP is.
+/// The modes: the first by each geometry is what the others are compared with, the second of all what FLIP is.
 fn modes(base: &Settings) -> Vec<Settings> {
     use Antialiasing::{Msaa, None, Ssaa};
     use EdgeTest::{Paper, Surface};
+    use Geometry::{Gbuffer, Visibility};
     use SamplePattern::{Grid, Rotated};
     [
-        (None, Surface, Grid, 4),
-        (Ssaa, Surface, Grid, 4),
-        (Msaa, Surface, Grid, 4),
-        (Msaa, Paper, Grid, 4),
-        (Msaa, Surface, Rotated, 4),
-        (Msaa, Surface, Rotated, 8),
+        (Gbuffer, None, Surface, Grid, 4),
+        (Gbuffer, Ssaa, Surface, Grid, 4),
+        (Gbuffer, Msaa, Surface, Grid, 4),
+        (Visibility, None, Surface, Grid, 4),
+        (Visibility, Msaa, Surface, Grid, 4),
+        (Gbuffer, Msaa, Paper, Grid, 4),
+        (Gbuffer, Msaa, Surface, Rotated, 4),
+        (Gbuffer, Msaa, Surface, Rotated, 8),
     ]
-    .map(|(aa, edge_test, pattern, samples)| Settings {
+    .map(|(geometry, aa, edge_test, pattern, samples)| Settings {
+        geometry,
         aa,
         edge_test,
         pattern,
@@ -223,7 +236,11 @@ fn rows(
         .map(|(mode, picture)| {
             let flip = |truth: &Picture| ErrorMap::between(truth, picture).mean();
             let reference = reference.as_ref().map(flip);
-            mode.row(&scene.name, &modes[0], flip(&pictures[1]), reference)
+            // Each is compared with none by the same geometry.
+            let geometry = mode.renderer.settings().geometry;
+            let same = |m: &&Mode| m.renderer.settings().geometry == geometry;
+            let none = modes.iter().find(same).unwrap_or(mode);
+            mode.row(&scene.name, none, flip(&pictures[1]), reference)
         })
         .collect())
 }
@@ -274,6 +291,7 @@ impl Mode {
             scene: scene.to_owned(),
             width: settings.width,
             height: settings.height,
+            geometry: settings.geometry,
             mode: settings.aa,
             edge_test: settings.edge_test,
             pattern: settings.pattern,
@@ -321,6 +339,7 @@ fn summary(report: &Report) -> String {
     for row in &report.rows {
         let mode = name_of(row.mode);
         let name = match row.mode {
+            _ if row.geometry == Geometry::Visibility => format!("{mode}, visibility"),
             Antialiasing::None => mode.clone(),
             Antialiasing::Ssaa => format!("{mode} {} {}", name_of(row.pattern), row.samples),
             Antialiasing::Msaa => format!(

@@ -1,23 +1,8 @@
 // Merge: from the band of sub-samples to one G-buffer texel per pixel, which the ordinary stages read, and to
-// entries for what else the pixel shows. After surfaces.wgsl and queue.wgsl.
+// entries for what else the pixel shows. After stored.wgsl and counters.wgsl.
 
 // Which pixels are edges: 0 none, 1 all, 2 by depth, 3 by surface.
 override EDGES: u32 = 3u;
-
-// `Queue`, to be counted in.
-struct QueueCounters {
-    band_groups_x: atomic<u32>,
-    band_groups_y: u32,
-    band_groups_z: u32,
-    start: u32,
-    all_groups_x: atomic<u32>,
-    all_groups_y: u32,
-    all_groups_z: u32,
-    total: atomic<u32>,
-    edge_pixels: atomic<u32>,
-    evaluations: atomic<u32>,
-    reserved: vec2u,
-}
 
 @group(2) @binding(2) var<storage, read_write> queue: QueueCounters;
 @group(2) @binding(3) var<storage, read_write> entries: array<Entry>;
@@ -44,25 +29,6 @@ fn depths_differ(pixel: vec2u) -> bool {
         }
     }
     return false;
-}
-
-// Room for a pixel's entries, or false where the queue is full.
-fn reserve(count: u32, evaluations: u32, base: ptr<function, u32>) -> bool {
-    let first = atomicAdd(&queue.total, count);
-    *base = first;
-    let end = first + count;
-    if end > arrayLength(&entries) {
-        // Nothing to shade in what room there is.
-        for (var i = first; i < min(end, arrayLength(&entries)); i++) {
-            entries[i] = Entry(0u, 0u);
-        }
-        return false;
-    }
-    atomicMax(&queue.band_groups_x, (end - queue.start + 63u) / 64u);
-    atomicMax(&queue.all_groups_x, min((end + 63u) / 64u, 65535u));
-    atomicAdd(&queue.edge_pixels, 1u);
-    atomicAdd(&queue.evaluations, evaluations);
-    return true;
 }
 
 @fragment

@@ -12,6 +12,7 @@ mod stage;
 mod targets;
 #[cfg(test)]
 mod tests;
+mod triangles;
 #[cfg(test)]
 mod twin;
 
@@ -22,3 +23,4 @@ pub(crate) use stage::AntialiasStage;
 #[cfg(test)]
 pub(crate) use targets::QueueUniform;
 pub(crate) use targets::SampleTargets;
+pub(crate) use triangles::by_triangles;

@@ -22,8 +22,6 @@ const ROTATED_8: [[u8; 2]; 8] = [
     [15, 1],
 ];
 
-/// Bytes of a sub-sample in the G-buffer.
-pub(crate) const BYTES_PER_SAMPLE: u64 = 28;
 /// A band's G-buffer may have this many bytes.
 const MAX_BAND_BYTES: u64 = 96_000_000;
 /// Pixels of a band: more would need a second row of workgroups.
@@ -78,10 +76,15 @@ impl Pattern {
         }
     }
 
-    /// Rows of pixels in a band of a frame of this width, at most, where a texture has at most
-    /// `max_texels` rows.
-    pub(crate) fn rows_per_band(&self, width: u32, height: u32, max_texels: u32) -> u32 {
-        let bytes_per_row = u64::from(width) * u64::from(self.count()) * BYTES_PER_SAMPLE;
+    /// Rows of pixels in a band of a frame of this size, at most, where a sub-sample takes `bytes` and a texture has
+    /// at most `max_texels` rows.
+    pub(crate) fn rows_per_band(
+        &self,
+        (width, height): (u32, u32),
+        bytes: u64,
+        max_texels: u32,
+    ) -> u32 {
+        let bytes_per_row = u64::from(width) * u64::from(self.count()) * bytes;
         let by_texels = u64::from(max_texels / self.texels(1, 1).1);
         (MAX_BAND_BYTES / bytes_per_row)
             .min(MAX_BAND_PIXELS / u64::from(width))
@@ -204,12 +207,12 @@ mod tests {
         #[test]
         fn bands_fit_the_device(width in 1_u32..8192, height in 1_u32..8192, side in 2_u32..=16) {
             let pattern = Pattern::Grid { side };
-            let rows = pattern.rows_per_band(width, height, 8192);
+            let rows = pattern.rows_per_band((width, height), 28, 8192);
             prop_assert!((1..=height).contains(&rows));
             prop_assert!(rows * side <= 8192);
             let pixels = u64::from(width) * u64::from(rows);
             prop_assert!(pixels <= MAX_BAND_PIXELS);
-            prop_assert!(rows == 1 || pixels * u64::from(side * side) * BYTES_PER_SAMPLE <= MAX_BAND_BYTES);
+            prop_assert!(rows == 1 || pixels * u64::from(side * side) * 28 <= MAX_BAND_BYTES);
         }
     }
 }

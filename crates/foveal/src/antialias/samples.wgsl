@@ -1,5 +1,4 @@
-// The sub-samples of a pixel in the band of the supersampled G-buffer. After shading.wgsl, whose G-buffer is
-// the band here. Rust: `antialias/pattern.rs`.
+// The sub-samples of a pixel in the band of supersampled texels, which the includer binds as `band`. Rust: `antialias/pattern.rs`.
 
 // Sub-samples per pixel.
 override COUNT: u32 = 4u;
@@ -14,9 +13,6 @@ struct Band {
     // Positions within the pixel of a rotated pattern, two in each.
     offsets: array<vec4f, 4>,
 }
-
-@group(2) @binding(0) var<uniform> band: Band;
-@group(2) @binding(1) var sample_identity: texture_2d<u32>;
 
 fn sample_texel(pixel: vec2u, index: u32) -> vec2u {
     let in_band = pixel - vec2u(0u, band.first_row);

@@ -1,4 +1,4 @@
-// Shading of the queue's entries: a further surface, or every sub-sample of a pixel. After surfaces.wgsl,
+// Shading of the queue's entries: a further surface, or every sub-sample of a pixel. After stored.wgsl,
 // weight.wgsl and queue.wgsl.
 
 // An entry stands for every sub-sample of its pixel, else for those of one surface.
@@ -8,10 +8,6 @@ override ALL: bool = false;
 @group(2) @binding(3) var<storage, read> entries: array<Entry>;
 // Per entry: weighted radiance, and the weight in alpha; halves.
 @group(2) @binding(4) var<storage, read_write> sums: array<vec2u>;
-
-fn weighted(radiance: vec3f, coverage: u32) -> vec4f {
-    return vec4f(radiance, 1.0) * (weight_of(radiance) * f32(coverage) / f32(COUNT));
-}
 
 fn all_of(pixel: vec2u) -> vec4f {
     var sum = vec4f(0.0);

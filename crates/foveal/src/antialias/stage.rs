@@ -12,11 +12,11 @@ use crate::{Antialiasing, Settings, View, shader};
 
 use super::pattern::{Band, Pattern};
 use super::pipelines::{AntialiasPipelines, Edges};
-use super::targets::{QueueUniform, SampleTargets};
+use super::targets::{ALL_GROUPS, QueueUniform, SampleTargets};
+use super::triangles::{TriangleStage, by_triangles};
 
-/// Where the queue holds the workgroups of a band, and of all entries.
+/// Where the queue holds the workgroups of a band.
 const BAND_GROUPS: u64 = std::mem::offset_of!(QueueUniform, band_groups) as u64;
-const ALL_GROUPS: u64 = std::mem::offset_of!(QueueUniform, all_groups) as u64;
 
 /// Lighting evaluations of a frame, and where they went.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -32,6 +32,8 @@ pub(crate) struct EdgeCounts {
 pub(crate) struct AntialiasStage {
     edges: Edges,
     pipelines: AntialiasPipelines,
+    /// Over a visibility buffer.
+    triangles: Option<TriangleStage>,
     /// Draws [`View::Edges`] or [`View::Samples`].
     view: Option<(wgpu::RenderPipeline, wgpu::BindGroupLayout)>,
 }
@@ -55,6 +57,8 @@ impl AntialiasStage {
         Some(Self {
             edges: Edges::of(settings),
             pipelines: AntialiasPipelines::new(gpu, settings, frame, shading.input_layout()),
+            triangles: by_triangles(settings)
+                .then(|| TriangleStage::new(gpu, settings, frame, shading.input_layout())),
             view: number.map(|number| view_pipeline(gpu, settings, frame, number)),
         })
     }
@@ -76,9 +80,13 @@ impl AntialiasStage {
         shade: bool,
     ) {
         let Some(t) = &targets.samples else { return };
+        t.begin_frame(recorder.encoder);
+        if let Some(triangles) = &self.triangles {
+            triangles.draw(recorder, scene, list, geometry, t, targets);
+            return;
+        }
         let size = targets.picture_view.texture().size();
         let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights.bits());
-        t.begin_frame(recorder.encoder);
         for (band, uniform) in &t.bands {
             let windows = band.windows(&t.pattern, size.width, size.height);
             geometry.draw_windows(recorder, scene, list, &t.samples, &windows);
@@ -161,10 +169,23 @@ impl AntialiasStage {
     }
 
     /// Joins the entries with the ordinary path's radiance, in the radiance target.
-    pub(crate) fn combine(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
+    pub(crate) fn combine(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        shading: &ShadingPass,
+        lights: &LightAssigner,
+        targets: &Targets,
+    ) {
         let Some(t) = &targets.samples else { return };
         if self.edges == Edges::None {
             return;
+        }
+        if let Some(triangles) = &self.triangles {
+            let gpu = recorder.gpu;
+            let input =
+                |gbuffer: &_| shading.input(gpu, gbuffer, &scene.light_buffer, lights.bits());
+            triangles.shade(recorder, input, t, targets);
         }
         let p = &self.pipelines;
         // Without a rate map it is not looked at.

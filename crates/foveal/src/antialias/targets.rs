@@ -7,7 +7,8 @@ use crate::Settings;
 use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{Gpu, target};
 
-use super::pattern::{BYTES_PER_SAMPLE, Band, BandUniform, Pattern};
+use super::pattern::{Band, BandUniform, Pattern};
+use super::triangles::{FurtherTargets, band_of_triangles, by_triangles};
 
 /// How often each pixel is shaded, and how many sub-samples its G-buffer texel stands for.
 pub(super) const TALLY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Uint;
@@ -30,6 +31,9 @@ pub(crate) struct QueueUniform {
     pub(crate) reserved: [u32; 2],
 }
 
+/// Where the queue holds the workgroups of all entries.
+pub(super) const ALL_GROUPS: u64 = std::mem::offset_of!(QueueUniform, all_groups) as u64;
+
 impl QueueUniform {
     /// Of a frame that has drawn nothing yet.
     const EMPTY: Self = Self {
@@ -49,8 +53,10 @@ pub(crate) struct SampleTargets {
     pub(super) pattern: Pattern,
     /// The bands, top to bottom, each with its uniform block.
     pub(super) bands: Vec<(Band, wgpu::Buffer)>,
-    /// The sub-samples of one band.
+    /// The sub-samples of one band; without surfaces where triangles are sorted.
     pub(crate) samples: GBuffer,
+    /// Where triangles are sorted.
+    pub(super) further: Option<FurtherTargets>,
     pub(crate) tally_view: wgpu::TextureView,
     /// [`QueueUniform`].
     pub(crate) queue: wgpu::Buffer,
@@ -67,7 +73,8 @@ impl SampleTargets {
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let most = gpu.device.limits().max_texture_dimension_2d;
         let pattern = Pattern::of(settings);
-        let rows = pattern.rows_per_band(settings.width, settings.height, most);
+        let size = (settings.width, settings.height);
+        let rows = pattern.rows_per_band(size, bytes_per_sample(settings), most);
         Self::in_bands(gpu, settings, rows)
     }
 
@@ -106,19 +113,26 @@ impl SampleTargets {
             .write_buffer(&empty_queue, 0, bytemuck::bytes_of(&QueueUniform::EMPTY));
         let pixels = u64::from(width) * u64::from(height);
         // One further surface per pixel on average is more than any frame shows.
-        let entry_bytes = ENTRY_BYTES * pixels.min(most_entries(&gpu.device.limits()));
+        let further = by_triangles(settings).then(|| FurtherTargets::new(gpu, width, height));
+        let room = further.as_ref().map_or(pixels, FurtherTargets::entries);
+        let entry_bytes = ENTRY_BYTES * room.min(most_entries(&gpu.device.limits()));
         Self {
             bands: bands.collect(),
-            samples: GBuffer::new(gpu, settings.geometry, texels_x, texels_y),
+            samples: match further {
+                Some(_) => band_of_triangles(gpu, (texels_x, texels_y)),
+                None => GBuffer::new(gpu, settings.geometry, texels_x, texels_y),
+            },
             tally_view,
             queue: buffer("queue", queue_bytes, storage | wgpu::BufferUsages::INDIRECT),
             entries: buffer("queue entries", entry_bytes, storage),
             sums: buffer("queue sums", entry_bytes, storage),
             empty_queue,
             number: buffer("number", 4, wgpu::BufferUsages::empty()),
-            bytes: u64::from(texels_x) * u64::from(texels_y) * BYTES_PER_SAMPLE
+            bytes: u64::from(texels_x) * u64::from(texels_y) * bytes_per_sample(settings)
                 + pixels * TALLY_BYTES
-                + entry_bytes * 2,
+                + entry_bytes * 2
+                + further.as_ref().map_or(0, FurtherTargets::bytes),
+            further,
             pattern,
         }
     }
@@ -147,6 +161,11 @@ impl SampleTargets {
                 .as_ref()
                 .map_or(0, VisibilityTargets::bytes)
     }
+}
+
+/// Bytes of a sub-sample in the band: its surface, identity, triangle and depth, as far as they are kept.
+fn bytes_per_sample(settings: &Settings) -> u64 {
+    if by_triangles(settings) { 16 } else { 28 }
 }
 
 /// Entries that a queue can have on a device.

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::twin::{SampleTexels, resolve};
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
-use crate::{Antialiasing, EdgeTest, Renderer, SamplePattern, Settings};
+use crate::{Antialiasing, EdgeTest, Geometry, Renderer, SamplePattern, Settings};
 
 const WIDTH: u32 = 41;
 const HEIGHT: u32 = 27;
@@ -190,10 +190,15 @@ fn every_mode_is_nearer_to_64_samples_than_none_is() {
 #[test]
 fn bands_leave_no_trace() {
     let scene = generate::cornell();
-    for pattern in [SamplePattern::Grid, SamplePattern::Rotated] {
+    for (pattern, geometry) in [
+        (SamplePattern::Grid, Geometry::Gbuffer),
+        (SamplePattern::Rotated, Geometry::Gbuffer),
+        (SamplePattern::Grid, Geometry::Visibility),
+    ] {
         for aa in [Antialiasing::Ssaa, Antialiasing::Msaa] {
             let settings = Settings {
                 pattern,
+                geometry,
                 ..settings(aa, EdgeTest::Surface, 4)
             };
             let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
@@ -235,25 +240,100 @@ fn two_by_two_at_1080p_stays_under_250_megabytes() {
         aa: Antialiasing::Msaa,
         ..Settings::default()
     };
-    let bytes = crate::targets::Targets::new(crate::testing::gpu(), &settings).bytes();
-    assert!(bytes < 250_000_000, "{bytes}");
+    for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+        let settings = Settings {
+            geometry,
+            ..settings.clone()
+        };
+        let bytes = crate::targets::Targets::new(crate::testing::gpu(), &settings).bytes();
+        assert!(bytes < 300_000_000, "{bytes}");
+        assert!(
+            geometry == Geometry::Visibility || bytes < 250_000_000,
+            "{bytes}"
+        );
+    }
+}
+
+/// The surfaces that triangles are sorted into against those of stored sub-samples, which have a twin.
+#[test]
+fn triangles_are_sorted_into_the_same_surfaces_as_stored_subsamples() {
+    for scene in [generate::cornell(), generate::materials_grid()] {
+        for camera in [scene.cameras[0].clone(), orthographic(&scene.cameras[0])] {
+            for samples in [4, 9, 16] {
+                let stored = settings(Antialiasing::Msaa, EdgeTest::Surface, samples);
+                let sorted = Settings {
+                    geometry: Geometry::Visibility,
+                    ..stored.clone()
+                };
+                let [stored, sorted] =
+                    [stored, sorted].map(|s| tally(&rendered(&scene, &camera, &s)));
+                let edges = stored.iter().filter(|t| t[0] > 1).count();
+                // A stored normal has 8 bits: on round things a sub-sample may fall on either side.
+                let differs = |(a, b): &(&[u8; 2], &[u8; 2])| {
+                    (a[0] > 1) != (b[0] > 1) || u32::from(a[1].abs_diff(b[1])) > samples / 8
+                };
+                let differing = stored.iter().zip(&sorted).filter(differs).count();
+                assert!(edges > 20, "{edges}");
+                assert!(
+                    differing * 20 <= edges,
+                    "{differing} of {edges}, {samples} samples"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn over_a_visibility_buffer_pixels_within_a_triangle_equal_none_and_edges_come_near_ssaa() {
+    let scene = generate::cornell();
+    let with = |aa| Settings {
+        geometry: Geometry::Visibility,
+        ..settings(aa, EdgeTest::Surface, 4)
+    };
+    let draw = |aa| rendered(&scene, &scene.cameras[0], &with(aa));
+    let msaa = draw(Antialiasing::Msaa);
+    let tally = tally(&msaa);
+    let [none, ssaa] = [Antialiasing::None, Antialiasing::Ssaa].map(|aa| radiance(&draw(aa)));
+    let msaa = radiance(&msaa);
+    let distance = |a: Vec3, b: Vec3| (a - b).length() / (a + b).length().max(1e-3);
+    let (mut of_none, mut of_msaa) = (0.0, 0.0);
+    for i in 0..tally.len() {
+        if tally[i][0] > 1 {
+            of_none += distance(none[i], ssaa[i]);
+            of_msaa += distance(msaa[i], ssaa[i]);
+        } else {
+            // The mean of the sub-samples' depths rounds otherwise than the centre's.
+            assert!(distance(msaa[i], none[i]) < 0.01, "{} {}", msaa[i], none[i]);
+        }
+    }
+    assert!(of_msaa < 0.25 * of_none, "{of_msaa} and {of_none}");
 }
 
 #[test]
 fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
     use crate::{RateSource, RefineEdges, Shading};
+    for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+        let fine = Settings {
+            geometry,
+            ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
+        };
+        let coarse = Settings {
+            shading: Shading::Coarse,
+            rate: RateSource::Foveated,
+            refine_edges: RefineEdges::Off,
+            ..fine.clone()
+        };
+        assert_fine_where_the_level_is_0(&fine, &coarse);
+    }
+}
+
+fn assert_fine_where_the_level_is_0(antialiased: &Settings, coarse: &Settings) {
     let scene = generate::cornell();
-    let coarse = Settings {
-        shading: Shading::Coarse,
-        rate: RateSource::Foveated,
-        refine_edges: RefineEdges::Off,
-        ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
-    };
     let draw = |settings: &Settings| rendered(&scene, &scene.cameras[0], settings);
     let radiance =
         |renderer: &Renderer| -> Vec<[u16; 4]> { texels(&renderer.targets().radiance_view) };
-    let both = draw(&coarse);
-    let antialiased = radiance(&draw(&settings(Antialiasing::Msaa, EdgeTest::Surface, 4)));
+    let both = draw(coarse);
+    let antialiased = radiance(&draw(antialiased));
     let owners = &both.targets().coarse.as_ref().expect("coarse").rate.owner;
     let across = owners.texture.width();
     let levels: Vec<u8> = texels(&owners.whole);

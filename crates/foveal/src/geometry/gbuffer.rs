@@ -69,6 +69,8 @@ impl FaceNormals {
     /// What these settings need.
     pub(crate) fn wanted_by(settings: &Settings) -> Self {
         match (settings.aa, settings.edge_test) {
+            // Triangles are asked for theirs where they matter.
+            _ if crate::antialias::by_triangles(settings) => Self::Omitted,
             (Antialiasing::Msaa, EdgeTest::Surface) => Self::Written,
             _ => Self::Omitted,
         }
@@ -81,7 +83,7 @@ pub(crate) enum GeometryPass {
     /// The rasterizer's fragments are surfaces.
     Surfaces(Pipelines),
     /// The rasterizer's fragments are triangles, evaluated afterwards.
-    Triangles(VisibilityPass),
+    Triangles(Box<VisibilityPass>),
 }
 
 impl GeometryPass {
@@ -97,9 +99,15 @@ impl GeometryPass {
             let rotated =
                 settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
             let windows = if rotated { settings.samples } else { 1 };
-            let pass =
-                VisibilityPass::new(gpu, frame_layout, material_layout, face_normals, windows);
-            return Self::Triangles(pass);
+            let further = crate::antialias::by_triangles(settings);
+            return Self::Triangles(Box::new(VisibilityPass::new(
+                gpu,
+                frame_layout,
+                material_layout,
+                face_normals,
+                windows,
+                further,
+            )));
         }
         let face_normal = f64::from(u8::from(face_normals == FaceNormals::Written));
         Self::Surfaces(Pipelines::new(PipelineRecipe {

@@ -7,6 +7,7 @@ mod pipelines;
 mod twin;
 mod visibility;
 
+pub(crate) use crate::scene::geometry_layout;
 pub(crate) use draw_list::DrawList;
 pub(crate) use gbuffer::{
     DEPTH_FORMAT, FaceNormals, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, Window,
@@ -14,4 +15,4 @@ pub(crate) use gbuffer::{
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
 #[cfg(test)]
 pub(crate) use visibility::WindowsUniform;
-pub(crate) use visibility::{VisibilityPass, VisibilityTargets};
+pub(crate) use visibility::{TRIANGLE_FORMAT, VisibilityPass, VisibilityTargets};

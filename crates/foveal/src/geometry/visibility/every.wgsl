@@ -8,3 +8,8 @@ fn is_listed(texel: vec2u) -> bool {
 fn extent_of(texel: vec2u) -> vec2u {
     return vec2u(1u);
 }
+
+// Where its material is evaluated, in texels.
+fn middle_of(texel: vec2u) -> vec2f {
+    return vec2f(texel) + 0.5 * vec2f(extent_of(texel));
+}

@@ -13,10 +13,11 @@ mod resolve;
 #[cfg(test)]
 mod tests;
 
-use super::{DrawList, GBuffer, Window};
+use super::{DrawList, FaceNormals, GBuffer, Window};
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
+use crate::shader;
 use bins::{BinPass, Bins};
 use raster::VisiblePass;
 use resolve::ResolvePass;
@@ -61,25 +62,33 @@ pub(crate) struct VisibilityPass {
     raster: VisiblePass,
     bin: BinPass,
     resolve: ResolvePass,
+    /// For the further surfaces of pixels at edges.
+    further: Option<ResolvePass>,
     bins: Bins,
 }
 
 impl VisibilityPass {
-    /// `windows`: as many as a frame is drawn into at once, 1 to 8.
+    /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: [`VisibilityPass::evaluate_further`]
+    /// will be called.
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
-        face_normals: super::FaceNormals,
+        face_normals: FaceNormals,
         windows: u32,
+        further: bool,
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
         let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout);
         let layouts = [frame_layout, material_layout, &geometry_layout];
+        let resolve = |parts, face_normals, windows| {
+            ResolvePass::new(gpu, parts, layouts, face_normals, windows)
+        };
         Self {
             raster,
             bin: BinPass::new(gpu),
-            resolve: ResolvePass::new(gpu, layouts, face_normals, windows),
+            resolve: resolve(shader::RESOLVE, face_normals, windows),
+            further: further.then(|| resolve(shader::RESOLVE_FURTHER, FaceNormals::Omitted, 1)),
             bins: Bins::new(gpu, 1),
         }
     }
@@ -89,6 +98,9 @@ impl VisibilityPass {
         self.raster.prepare(gpu, list);
         for batch in &list.solid {
             self.resolve.prepare(gpu, batch.key.class);
+            if let Some(further) = &mut self.further {
+                further.prepare(gpu, batch.key.class);
+            }
         }
         let materials = scene.stats.materials as u32;
         if materials > self.bins.count() {
@@ -105,15 +117,68 @@ impl VisibilityPass {
         target: &GBuffer,
         windows: &[Window],
     ) {
+        self.draw_triangles(recorder, scene, list, target, windows);
+        self.evaluate(recorder, scene, list, target, windows);
+    }
+
+    /// Encodes the first pass alone: identity, triangle and depth.
+    pub(crate) fn draw_triangles(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        windows: &[Window],
+    ) {
+        // Targets and passes are made for the same settings.
+        if let Some(visibility) = &target.visibility {
+            self.raster
+                .draw(recorder, scene, list, target, visibility, windows);
+        }
+    }
+
+    /// Encodes the passes after that: from identity and triangle to surfaces.
+    pub(crate) fn evaluate(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        windows: &[Window],
+    ) {
+        self.evaluate_by(&self.resolve, recorder, scene, list, target, windows);
+    }
+
+    /// The same for a target whose texels lie anywhere in the picture: identity's second word tells, as
+    /// `antialias/quarters.wgsl` has it.
+    pub(crate) fn evaluate_further(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        whole: Window,
+    ) {
+        if let Some(further) = &self.further {
+            self.evaluate_by(further, recorder, scene, list, target, &[whole]);
+        }
+    }
+
+    fn evaluate_by(
+        &self,
+        resolve: &ResolvePass,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        windows: &[Window],
+    ) {
         let Some(visibility) = &target.visibility else {
-            // Targets and passes are made for the same settings.
             return;
         };
-        self.raster
-            .draw(recorder, scene, list, target, visibility, windows);
         self.bin
             .sort(recorder, scene, target, visibility, &self.bins);
-        self.resolve.draw(
+        resolve.draw(
             recorder, scene, list, target, visibility, &self.bins, windows,
         );
     }

@@ -48,6 +48,7 @@ pub(super) struct ResolvePass {
 impl ResolvePass {
     pub(super) fn new(
         gpu: &Gpu,
+        parts: shader::Parts,
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
         windows: u32,
@@ -72,7 +73,7 @@ impl ResolvePass {
         );
         let written = u8::from(face_normals == FaceNormals::Written);
         Self {
-            module: shader::module(gpu, "materials of triangles", shader::RESOLVE),
+            module: shader::module(gpu, "materials of triangles", parts),
             layout: shader::pipeline_layout(
                 gpu,
                 "materials of triangles",

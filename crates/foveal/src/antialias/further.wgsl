@@ -1,0 +1,10 @@
+// A pixel's further surface: its texel's place in the picture comes with it. In place of every.wgsl, after
+// quarters.wgsl.
+
+fn extent_of(texel: vec2u) -> vec2u {
+    return vec2u(1u);
+}
+
+fn middle_of(texel: vec2u) -> vec2f {
+    return unpack_quarters(textureLoad(identity, texel, 0).y);
+}

@@ -1,0 +1,54 @@
+// Sub-samples that are known by their triangles alone. After attributes.wgsl and surfaces.wgsl.
+
+@group(1) @binding(0) var<uniform> band: Band;
+@group(1) @binding(1) var sample_identity: texture_2d<u32>;
+@group(1) @binding(2) var sample_triangle: texture_2d<u32>;
+@group(1) @binding(3) var sample_depth: texture_depth_2d;
+
+// Instance number + 1 and triangle.
+fn id_at(pixel: vec2u, index: u32) -> vec2u {
+    let texel = sample_texel(pixel, index);
+    return vec2u(textureLoad(sample_identity, texel, 0).x, textureLoad(sample_triangle, texel, 0).x);
+}
+
+fn depth_at(pixel: vec2u, index: u32) -> f32 {
+    return textureLoad(sample_depth, sample_texel(pixel, index), 0);
+}
+
+// What was looked up once for a pixel: its triangles' corners are dear.
+var<private> known: array<Facet, 16>;
+
+fn facet_at(pixel: vec2u, index: u32) -> Facet {
+    return known[index];
+}
+
+fn look_up_facet(pixel: vec2u, index: u32) -> Facet {
+    let id = id_at(pixel, index);
+    if id.x == 0u {
+        return Facet(0u, 0u, vec3f(0.0), vec3f(0.0));
+    }
+    let position = view_position(sample_position(pixel, index), view_distance(depth_at(pixel, index)));
+    let i = instances[id.x - 1u];
+    let place = places[id.x - 1u];
+    let first = place.first_index + id.y * 3u;
+    let a = instance_position(i, corner_position(place.base_vertex + indices[first]));
+    let b = instance_position(i, corner_position(place.base_vertex + indices[first + 1u]));
+    let c = instance_position(i, corner_position(place.base_vertex + indices[first + 2u]));
+    let face = cross(b - a, c - a);
+    let toward = dot(face, direction_to_eye(view_of(pixel), a)) >= 0.0;
+    return Facet(id.x, id.y, position, select(-face, face, toward));
+}
+
+fn corner_position(vertex: u32) -> vec3f {
+    return bitcast<vec3f>(vertices[vertex * 4u].xyz);
+}
+
+// Mean position of some sub-samples in pixels of the frame, and their mean depth: that at the position, on a plane.
+fn middle_of_members(pixel: vec2u, members: u32) -> vec3f {
+    var sum = vec3f(0.0);
+    for (var left = members; left != 0u; left &= left - 1u) {
+        let index = firstTrailingBit(left);
+        sum += vec3f(sample_position(pixel, index), depth_at(pixel, index));
+    }
+    return sum / f32(countOneBits(members));
+}
