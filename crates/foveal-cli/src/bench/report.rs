@@ -186,7 +186,7 @@ fn measure(
     }
     let mut all = Vec::new();
     for _ in 0..passes {
-        match once(bench, &words) {
+        match pass(bench, &words) {
             Ok(rows) => all.push(rows),
             Err(error) => {
                 result["status"] = "failed".into();
@@ -227,7 +227,31 @@ fn exists(bench: &Bench) -> bool {
     true
 }
 
-/// Runs one pass in a process of its own; the rows it wrote.
+/// One pass: the rows of each variant, or of the bench itself where it has none.
+fn pass(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
+    if bench.variants.is_empty() {
+        return once(bench, words);
+    }
+    let mut rows: Vec<Value> = Vec::new();
+    for variant in bench.variants {
+        let words: Vec<String> = (words.iter().cloned())
+            .chain(variant.iter().map(|&word| word.to_owned()))
+            .collect();
+        for mut row in once(bench, &words)? {
+            row["variant"] = variant.join(" ").into();
+            rows.push(row);
+        }
+    }
+    let first_ms = rows.first().and_then(|row| row[bench.cost].as_f64());
+    for row in &mut rows {
+        if let (Some(first), Some(ms)) = (first_ms, row[bench.cost].as_f64()) {
+            row["ratio_to_first"] = (first / ms).into();
+        }
+    }
+    Ok(rows)
+}
+
+/// Runs the bench in a process of its own; the rows it wrote.
 fn once(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("figures.json");

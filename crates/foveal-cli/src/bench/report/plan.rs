@@ -49,6 +49,8 @@ pub(super) struct Bench {
     full: &'static [&'static str],
     /// Whether it takes `--size`.
     sized: bool,
+    /// Further words, one run and one row each; none: one run that gives all rows.
+    pub(super) variants: &'static [&'static [&'static str]],
     pub(super) rows: fn(&Value) -> Option<Vec<Value>>,
     /// What tells a row from the others; the row's label is made of these.
     pub(super) label: &'static [&'static str],
@@ -78,6 +80,13 @@ fn stages(figures: &Value) -> Option<Vec<Value>> {
     Some(rows)
 }
 
+/// The frame of `foveal render --stats` as one row.
+fn frame(figures: &Value) -> Option<Vec<Value>> {
+    let mut row = figures.get("median")?.as_object()?.clone();
+    row.retain(|_, value| value.is_number());
+    Some(vec![row.into()])
+}
+
 /// In the order of the frame.
 pub(super) const BENCHES: &[Bench] = &[
     Bench {
@@ -88,6 +97,7 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &["--warmup", "2", "--frames", "3"],
         full: &["--warmup", "3", "--frames", "9"],
         sized: true,
+        variants: &[],
         rows: stages,
         label: &["unit", "stage"],
         columns: &[column("ms", "ms", 2)],
@@ -109,6 +119,7 @@ pub(super) const BENCHES: &[Bench] = &[
             "--quiet",
         ],
         sized: false,
+        variants: &[],
         rows: own_rows,
         label: &["camera", "width", "height", "threads"],
         columns: &[
@@ -129,6 +140,32 @@ pub(super) const BENCHES: &[Bench] = &[
         }],
     },
     Bench {
+        name: "culling-frames",
+        title: "Whole frames with culling",
+        about: "The same picture with all objects, with those in the frustum, and with those that nothing hides.",
+        subcommand: &["render"],
+        quick: &["--warmup", "1", "--frames", "3"],
+        full: &["--warmup", "2", "--frames", "9"],
+        sized: true,
+        variants: &[
+            &["--culling", "off"],
+            &["--culling", "frustum"],
+            &["--culling", "occlusion"],
+        ],
+        rows: frame,
+        label: &["variant"],
+        columns: &[
+            column("frame_ms", "frame ms", 2),
+            column("objects_visible", "objects drawn", 0),
+            column("draws", "draws", 0),
+            column("triangles", "triangles", 0),
+            column("ratio_to_first", "first / this", 2),
+        ],
+        cost: "frame_ms",
+        quality: None,
+        pairs: &[],
+    },
+    Bench {
         name: "stereo",
         title: "Instanced stereo",
         about: "Both eyes in one submission.",
@@ -136,6 +173,7 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &[],
         full: &[],
         sized: false,
+        variants: &[],
         rows: own_rows,
         label: &["scene", "mode"],
         columns: &[],
@@ -151,6 +189,7 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &["--pairs", "2"],
         full: &["--pairs", "3"],
         sized: true,
+        variants: &[],
         rows: own_rows,
         label: &["composite", "backend"],
         columns: &[
@@ -185,6 +224,7 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &[],
         full: &[],
         sized: false,
+        variants: &[],
         rows: own_rows,
         label: &["scene", "mode"],
         columns: &[],
@@ -200,6 +240,7 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &["--rounds", "2", "--reference", "16"],
         full: &["--rounds", "5"],
         sized: true,
+        variants: &[],
         rows: own_rows,
         label: &["mode", "pattern", "samples", "edge_test"],
         columns: &[
