@@ -506,6 +506,7 @@ impl App {
     pub(crate) fn is_in_use(&self, stage: &str) -> bool {
         match stage {
             "Coarse shading" => self.settings.shading == Shading::Coarse,
+            "Variable shading" => self.settings.shading == Shading::Variable,
             _ => true,
         }
     }

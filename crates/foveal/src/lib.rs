@@ -36,8 +36,8 @@ pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer, Target};
 pub use settings::{
-    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Culling, EdgeTest, Geometry,
-    Kind, LightAssignment, LightingModel, RateCombine, RateSource, RefineEdges, SamplePattern,
-    Setting, Settings, Shading, ToneMap, View, variant_names,
+    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Contrast, Culling, EdgeTest,
+    Geometry, Kind, LightAssignment, LightingModel, RateCombine, RateSource, RateStage,
+    RefineEdges, SamplePattern, Setting, Settings, Shading, ToneMap, View, variant_names,
 };
-pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing};
+pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing, VariableStats};

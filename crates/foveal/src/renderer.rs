@@ -8,7 +8,7 @@ use crate::composite::CompositePass;
 use crate::culling::{CullingCounts, CullingFigures, CullingStage};
 use crate::forward::ForwardPass;
 use crate::frame::FrameUniform;
-use crate::geometry::{DrawList, GeometryPass};
+use crate::geometry::{DrawList, Evaluation, GeometryPass};
 use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
@@ -17,7 +17,7 @@ use crate::output::{OverlayPass, PresentPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{CoarseShading, Samples, ShadingPass};
+use crate::shading::{CoarseShading, Plan, Samples, ShadingPass, VariableStage};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings, Shading};
 use figures::{Counts, InFlight};
@@ -74,6 +74,7 @@ struct Stages {
     shading: ShadingPass,
     antialias: Option<AntialiasStage>,
     coarse: Option<CoarseStages>,
+    variable: Option<VariableStage>,
     forward: ForwardPass,
     tone_map: ToneMapPass,
     view: Option<ViewPass>,
@@ -130,6 +131,8 @@ impl Stages {
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
+            variable: (settings.shading == Shading::Variable)
+                .then(|| VariableStage::new(gpu, settings, frame, shading.input_layout())),
             shading,
             forward: ForwardPass::new(gpu, settings, frame, material_layout),
             tone_map: ToneMapPass::new(gpu, settings, frame),
@@ -202,6 +205,9 @@ impl Renderer {
             trap.finish().await?;
             self.stages.culling = culling;
             self.stages.targets = targets;
+            if let Some(variable) = &mut self.stages.variable {
+                variable.forget();
+            }
             self.stages.settings = settings.clone();
             return Ok(());
         }
@@ -248,6 +254,9 @@ impl Renderer {
         trap.finish().await?;
         written?;
         self.scene = uploaded;
+        if let Some(variable) = &mut self.stages.variable {
+            variable.forget();
+        }
         Ok(())
     }
 
@@ -259,6 +268,9 @@ impl Renderer {
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
         self.scene.update_pose(&self.gpu, scene);
+        if let Some(variable) = &mut self.stages.variable {
+            variable.scene_moved();
+        }
         self.frame_bindings
             .write_instances(&self.gpu, self.scene.instance_uniforms())?;
         trap.finish().await
@@ -283,6 +295,9 @@ impl Renderer {
         }
         if let Some(edges) = counters.edges {
             counts.edges = Some(read_buffer(&self.gpu, edges).await?);
+        }
+        if let Some(rates) = counters.rates {
+            counts.rates = Some(read_buffer(&self.gpu, rates).await?);
         }
         Ok(self.figures(submitted, &counts, gpu_ms, frame_ms))
     }
@@ -337,10 +352,16 @@ impl Renderer {
             shading,
             antialias,
             coarse,
+            variable,
             forward,
             tone_map,
             view,
         } = stages;
+        let plan = match variable {
+            Some(variable) if settings.view.is_lit() => variable.plan(),
+            _ => Plan::default(),
+        };
+        let at_rates = |stage: bool| plan.active && stage;
 
         let culled = match culling {
             Some(culling)
@@ -393,11 +414,25 @@ impl Renderer {
             antialias.draw(
                 recorder, scene, draw_list, geometry, shading, lights, targets, shade,
             );
+        } else if at_rates(settings.rate_stage.has_material()) {
+            geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
         } else {
             geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
         }
+        if let (Some(variable), true) = (variable.as_mut(), plan.active) {
+            variable.find_rates(recorder, settings, targets, frame.camera, before);
+            if let (Some(t), true) = (&targets.variable, settings.rate_stage.has_material()) {
+                let mut evaluate =
+                    |at| geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at);
+                if plan.compares {
+                    evaluate(Evaluation::COMPARED);
+                }
+                evaluate(Evaluation::at_rates(&t.mask));
+            }
+        }
         if let Some(view) = view {
-            view.show(recorder, &targets.gbuffer, &targets.picture_view);
+            let places = scene.geometry.places();
+            view.show(recorder, &targets.gbuffer, places, &targets.picture_view);
         } else if !antialias
             .as_ref()
             .is_some_and(|a| a.show(recorder, targets))
@@ -409,6 +444,15 @@ impl Renderer {
                     .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
                 coarse.shading.shade(recorder, &input, tiles);
                 coarse.composite.join(recorder, targets, tiles);
+            } else if let (Some(variable), true) = (
+                variable.as_ref(),
+                at_rates(settings.rate_stage.has_lighting()),
+            ) {
+                if plan.compares {
+                    let target = &targets.radiance_view;
+                    shading.shade_every_pixel(recorder, &input, target, "full shading");
+                }
+                variable.shade(recorder, &input, targets);
             } else if antialias
                 .as_ref()
                 .is_none_or(AntialiasStage::needs_ordinary)
@@ -420,7 +464,12 @@ impl Renderer {
                 antialias.combine(recorder, scene, shading, lights, targets);
             }
             forward.draw(recorder, scene, lights.bits(), draw_list, targets);
-            tone_map.map(recorder, &targets.radiance_view, &targets.picture_view);
+            let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
+            let finished = finished.unwrap_or(&targets.picture_view);
+            tone_map.map(recorder, &targets.radiance_view, finished);
+            if let Some(variable) = variable {
+                variable.show(recorder, targets);
+            }
             if let (Some(overlay), Some(tiles)) = (
                 coarse.as_ref().and_then(|c| c.overlay.as_ref()),
                 &targets.coarse,

@@ -14,7 +14,7 @@ pub use coarse::{
 };
 use define::settings;
 pub use define::{Kind, Setting, variant_names};
-pub use variable::Geometry;
+pub use variable::{Contrast, Geometry, RateStage};
 
 /// Which objects are drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,15 +57,19 @@ pub enum View {
     Blocks,
     /// The finished frame where it was shaded, dark elsewhere.
     Shaded,
+    /// The finished frame under red where variable shading knew nothing of a place, green where it measured one anew.
+    Unknown,
+    /// A colour per material: the bins of a visibility buffer.
+    Bins,
 }
 
 impl View {
     /// Whether lighting is evaluated for it.
     pub(crate) fn is_lit(self) -> bool {
         match self {
-            Self::Final | Self::Rate | Self::Blocks | Self::Shaded => true,
+            Self::Final | Self::Rate | Self::Blocks | Self::Shaded | Self::Unknown => true,
             Self::Depth | Self::Normals | Self::BaseColor | Self::Instances | Self::Motion => false,
-            Self::Edges | Self::Samples => false,
+            Self::Edges | Self::Samples | Self::Bins => false,
         }
     }
 }
@@ -199,7 +203,7 @@ settings! {
             edge_test: EdgeTest = EdgeTest::default(), "Edge test", Kind::choice::<EdgeTest>();
         }
         "Shading rate" {
-            /// One lighting evaluation per pixel, or per tile of a rate map
+            /// One lighting evaluation per pixel, per tile of a rate map, or as the content allows
             shading: Shading = Shading::default(), "Shading", Kind::choice::<Shading>();
         }
         "Coarse shading" {
@@ -207,8 +211,8 @@ settings! {
             backend: Backend = Backend::default(), "Backend", Kind::choice::<Backend>();
             /// Coarsest level, 0 to 8: tiles of at most 2^N pixels a side
             coarsest_level: u8 = COARSEST_LEVEL, "Coarsest level", Kind::Integer { least: 0, most: 8 };
-            /// Where wished levels come from: the distance to the gaze, a constant, or an image (black: every
-            /// pixel, white: level 8)
+            /// Where wished levels come from: the distance to the gaze, a constant, an image (black: every
+            /// pixel, white: level 8), or with variable shading the content of the frame before
             rate: RateSource = RateSource::default(), "Rate from", Kind::choice::<RateSource>();
             /// A second source of wishes
             rate_other: RateSource = RateSource::Constant, "Second source", Kind::choice::<RateSource>();
@@ -235,6 +239,20 @@ settings! {
             coarse_sample: CoarseSample = CoarseSample::default(), "Sample", Kind::choice::<CoarseSample>();
             /// How samples become pixels: by continuous patches, by the source's four taps, or as they are
             composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
+        }
+        "Variable shading" {
+            /// What is done once per sample: lighting, or with a visibility buffer materials, as the source does, or both
+            rate_stage: RateStage = RateStage::default(), "Stage", Kind::choice::<RateStage>();
+            /// What contrast is measured by: differences within 2x2 pixels, to the four neighbours, or Sobel kernels
+            contrast: Contrast = Contrast::default(), "Contrast", Kind::choice::<Contrast>();
+            /// Contrast above which pixels are shaded one by one: difference of display luma by its local mean + 0.1
+            contrast_threshold: f32 = 0.04, "Threshold", Kind::Number { least: 0.0, most: 0.5 };
+            /// By what part the threshold grows per pixel that a place moves in a frame
+            velocity_gain: f32 = 0.1, "Velocity", Kind::Number { least: 0.0, most: 1.0 };
+            /// Whether samples may stand for 4x4 pixels
+            rate_4x4: bool = false, "4x4", Kind::Switch;
+            /// Goes on where it costs more than it saves, which else turns it off
+            force_rate: bool = false, "Force", Kind::Switch;
         }
     }
 }
@@ -314,6 +332,7 @@ impl Settings {
             }
         }
         coarse::validate(self)?;
+        variable::validate(self)?;
         crate::antialias::validate(self, limits)
     }
 }

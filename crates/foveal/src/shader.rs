@@ -48,6 +48,26 @@ pub(crate) const VISIBLE_PULLED: Parts = &[
     include_str!("geometry/visibility/pulled.wgsl"),
 ];
 pub(crate) const BINS: Parts = &[EVERY, include_str!("geometry/visibility/bins.wgsl")];
+const RATED: &str = include_str!("geometry/visibility/rated.wgsl");
+/// As [`BINS`] and [`RESOLVE`], with a sample's upper left pixel for all of its pixels.
+pub(crate) const BINS_RATED: Parts = &[
+    RATES,
+    "@group(0) @binding(5) var mask: texture_2d<u32>;",
+    RATED,
+    include_str!("geometry/visibility/bins.wgsl"),
+];
+pub(crate) const RESOLVE_RATED: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    SAMPLE_GRADIENTS,
+    MATERIAL,
+    RATES,
+    "@group(3) @binding(6) var mask: texture_2d<u32>;",
+    RATED,
+    include_str!("geometry/visibility/resolve.wgsl"),
+];
 pub(crate) const RESOLVE: Parts = &[
     FRAME,
     SURFACE,
@@ -194,11 +214,38 @@ pub(crate) const AA_VIEW: Parts = &[include_str!("antialias/view.wgsl")];
 const LEVEL: &str = include_str!("shared/level.wgsl");
 const BLOCKS: &str = include_str!("shared/blocks.wgsl");
 
+const FOVEA: &str = include_str!("rate/fovea.wgsl");
+const RATES: &str = include_str!("shading/variable/rates.wgsl");
+
+pub(crate) const VARIABLE_REPROJECT: Parts = &[
+    FRAME,
+    RATES,
+    include_str!("shading/variable/reproject.wgsl"),
+];
+pub(crate) const VARIABLE_MASK: Parts = &[
+    FRAME,
+    RATES,
+    FOVEA,
+    include_str!("shading/variable/mask.wgsl"),
+];
+pub(crate) const VARIABLE_SIZE: Parts = &[include_str!("shading/variable/size.wgsl")];
+pub(crate) const VARIABLE_SHADE: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    SHADING,
+    RATES,
+    include_str!("shading/variable/shade.wgsl"),
+];
+pub(crate) const VARIABLE_VIEW: Parts = &[FRAME, RATES, include_str!("shading/variable/view.wgsl")];
+
 pub(crate) const RATE_WISH: Parts = &[
     FRAME,
     SURFACE,
     LEVEL,
     BLOCKS,
+    FOVEA,
     include_str!("rate/wish.wgsl"),
 ];
 pub(crate) const RATE_PYRAMID: Parts = &[FRAME, LEVEL, BLOCKS, include_str!("rate/pyramid.wgsl")];

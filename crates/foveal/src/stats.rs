@@ -64,6 +64,35 @@ impl CoarseStats {
     }
 }
 
+/// What variable shading did in a frame, and what it costs and saves; times in milliseconds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct VariableStats {
+    /// Whether the frame was shaded at a rate.
+    pub active: bool,
+    /// Samples of one pixel, two side by side, two one above the other, a quad, and 4 x 4 pixels.
+    pub samples_per_rate: Vec<u64>,
+    /// All samples by all pixels.
+    pub shaded_fraction: f64,
+    /// Share of the quads of which nothing was known.
+    pub unknown_fraction: f64,
+    /// Finding rates and samples.
+    pub mask_ms: f64,
+    /// Carrying over what is known from the frame before.
+    pub reproject_ms: f64,
+    /// Sorting pixels by material; 0 without a visibility buffer.
+    pub binning_ms: f64,
+    /// The stages that run at the rate, in full; as of the last comparison.
+    pub full_ms: f64,
+    /// The same at the rate, in the same frame.
+    pub variable_ms: f64,
+    /// The difference of the two.
+    pub saved_ms: f64,
+    /// What is saved less mask and reprojection.
+    pub net_ms: f64,
+    /// A sentence where it has turned itself off; else empty.
+    pub notice: String,
+}
+
 /// One frame's figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FrameStats {
@@ -98,6 +127,9 @@ pub struct FrameStats {
     /// With coarse shading.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub coarse: Option<CoarseStats>,
+    /// With variable shading.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub variable: Option<VariableStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
     pub frame_ms: f64,
 }

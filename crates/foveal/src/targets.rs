@@ -4,7 +4,7 @@ use crate::antialias::SampleTargets;
 use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
-use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
+use crate::shading::{CoarseTargets, RADIANCE_FORMAT, VariableTargets};
 use crate::{Antialiasing, Settings, Shading};
 
 /// G-buffer, radiance, picture.
@@ -22,6 +22,8 @@ pub(crate) struct Targets {
     pub(crate) samples: Option<SampleTargets>,
     /// With coarse shading.
     pub(crate) coarse: Option<CoarseTargets>,
+    /// With variable shading.
+    pub(crate) variable: Option<VariableTargets>,
 }
 
 impl Targets {
@@ -40,6 +42,8 @@ impl Targets {
             samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseTargets::new(gpu, settings)),
+            variable: (settings.shading == Shading::Variable)
+                .then(|| VariableTargets::new(gpu, settings)),
         }
     }
 
@@ -54,6 +58,7 @@ impl Targets {
                 .map_or(0, VisibilityTargets::bytes)
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
             + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)
+            + self.variable.as_ref().map_or(0, VariableTargets::bytes)
     }
 }
 

@@ -8,6 +8,7 @@ mod coarse;
 mod culling;
 mod report;
 mod table;
+mod variable;
 
 use clap::Subcommand;
 
@@ -20,7 +21,9 @@ pub(crate) enum BenchCommand {
     Coarse(coarse::Args),
     /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
     Antialiasing(antialiasing::Args),
-    /// All of them, as one report: a page with pictures and plots, JSON, CSV
+    /// Shading at a rate that the content decides against shading every pixel
+    Variable(variable::Args),
+    /// Culling, coarse shading and anti-aliasing as one report: a page with pictures and plots, JSON, CSV
     All(report::Args),
     /// What became slower between two reports
     Diff(report::diff::Args),
@@ -33,6 +36,7 @@ impl BenchCommand {
             Self::Culling(_) => "bench culling",
             Self::Coarse(_) => "bench coarse",
             Self::Antialiasing(_) => "bench antialiasing",
+            Self::Variable(_) => "bench variable",
             Self::All(_) => "bench all",
             Self::Diff(_) => "bench diff",
         }
@@ -44,6 +48,7 @@ impl BenchCommand {
             Self::Culling(args) => culling::run(args),
             Self::Coarse(args) => coarse::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),
+            Self::Variable(args) => variable::run(args),
             Self::All(args) => report::run(args),
             Self::Diff(args) => report::diff::run(args),
         }

@@ -192,12 +192,19 @@ fn draw_all(
     let progress = progress_bar(jobs.len() as u64, quiet);
     let mut frames = Vec::with_capacity(jobs.len());
     let mut first_picture_ms = 0.0;
+    let mut noticed = quiet;
     for job in jobs {
         let mut stages = Vec::new();
         let figures = timed(&mut stages, "first_frame", || drawing.draw(job))
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
         let picture = timed(&mut stages, "read_back", || drawing.picture(&figures))?;
         timed(&mut stages, "write", || picture.write_rgb(&job.file))?;
+        if let Some(variable) = &figures.variable
+            && !variable.notice.is_empty()
+            && !std::mem::replace(&mut noticed, true)
+        {
+            console::warn(&variable.notice);
+        }
         if frames.is_empty() {
             load_ms.extend(stages);
             first_picture_ms = now_ms();

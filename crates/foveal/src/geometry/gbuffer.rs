@@ -1,13 +1,13 @@
 //! The G-buffer and the pass that fills it.
 
 use super::{
-    DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource, VisibilityPass,
+    DrawList, Evaluation, PipelineKey, PipelineRecipe, Pipelines, VertexSource, VisibilityPass,
     VisibilityTargets,
 };
 use crate::gpu::{self, Gpu};
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
-use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, shader};
+use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, Shading, shader};
 
 /// Reversed: 1 at the near plane, 0 where nothing is.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -57,6 +57,17 @@ pub(crate) struct Window {
     pub(crate) part: [u32; 4],
 }
 
+impl Window {
+    /// The frame fills the target.
+    fn whole(target: &GBuffer) -> Self {
+        let size = target.depth_view.texture().size();
+        Self {
+            frame: [0.0, 0.0, size.width as f32, size.height as f32],
+            part: [0, 0, size.width, size.height],
+        }
+    }
+}
+
 /// What the geometry pass writes besides the surfaces as they are shaded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FaceNormals {
@@ -100,13 +111,14 @@ impl GeometryPass {
                 settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
             let windows = if rotated { settings.samples } else { 1 };
             let further = crate::antialias::by_triangles(settings);
+            let rated = settings.shading == Shading::Variable && settings.rate_stage.has_material();
             return Self::Triangles(Box::new(VisibilityPass::new(
                 gpu,
                 frame_layout,
                 material_layout,
                 face_normals,
                 windows,
-                further,
+                [further, rated],
             )));
         }
         let face_normal = f64::from(u8::from(face_normals == FaceNormals::Written));
@@ -145,12 +157,36 @@ impl GeometryPass {
         list: &DrawList,
         target: &GBuffer,
     ) {
-        let size = target.depth_view.texture().size();
-        let whole = Window {
-            frame: [0.0, 0.0, size.width as f32, size.height as f32],
-            part: [0, 0, size.width, size.height],
+        self.draw_windows(recorder, scene, list, target, &[Window::whole(target)]);
+    }
+
+    /// Encodes what of [`GeometryPass::draw`] does not depend on materials; `false` where all of it does.
+    pub(crate) fn draw_triangles(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+    ) -> bool {
+        let Self::Triangles(pass) = self else {
+            return false;
         };
-        self.draw_windows(recorder, scene, list, target, &[whole]);
+        pass.draw_triangles(recorder, scene, list, target, &[Window::whole(target)]);
+        true
+    }
+
+    /// Encodes the rest of it.
+    pub(crate) fn evaluate(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        at: &Evaluation<'_>,
+    ) {
+        if let Self::Triangles(pass) = self {
+            pass.evaluate_at(recorder, scene, list, target, &[Window::whole(target)], at);
+        }
     }
 
     /// Encodes the pass, drawing the frame once into each of `windows`.

@@ -15,4 +15,4 @@ pub(crate) use gbuffer::{
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
 #[cfg(test)]
 pub(crate) use visibility::WindowsUniform;
-pub(crate) use visibility::{TRIANGLE_FORMAT, VisibilityPass, VisibilityTargets};
+pub(crate) use visibility::{Evaluation, TRIANGLE_FORMAT, VisibilityPass, VisibilityTargets};

@@ -2,7 +2,7 @@
 
 use super::PICTURE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
 use crate::recorder::{Recorder, overwritten};
 use crate::{View, shader};
 
@@ -18,12 +18,13 @@ impl ViewPass {
     pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
         let number = match view {
             View::Final | View::Edges | View::Samples => return None,
-            View::Rate | View::Blocks | View::Shaded => return None,
+            View::Rate | View::Blocks | View::Shaded | View::Unknown => return None,
             View::Depth => 1,
             View::Normals => 2,
             View::BaseColor => 3,
             View::Instances => 4,
             View::Motion => 5,
+            View::Bins => 6,
         };
         let layout = bind_group_layout(
             &gpu.device,
@@ -33,6 +34,7 @@ impl ViewPass {
                 sampled(wgpu::TextureSampleType::Uint),
                 sampled(wgpu::TextureSampleType::Uint),
                 sampled(wgpu::TextureSampleType::Depth),
+                storage_read(),
             ],
         );
         let module = shader::module(gpu, "view", shader::VIEW);
@@ -54,6 +56,7 @@ impl ViewPass {
         &self,
         recorder: &mut Recorder<'_>,
         gbuffer: &GBuffer,
+        places: &wgpu::Buffer,
         picture: &wgpu::TextureView,
     ) {
         let group = bind_group(
@@ -61,11 +64,11 @@ impl ViewPass {
             "view",
             &self.layout,
             &[
-                &gbuffer.surface_view,
-                &gbuffer.identity_view,
-                &gbuffer.depth_view,
-            ]
-            .map(wgpu::BindingResource::TextureView),
+                wgpu::BindingResource::TextureView(&gbuffer.surface_view),
+                wgpu::BindingResource::TextureView(&gbuffer.identity_view),
+                wgpu::BindingResource::TextureView(&gbuffer.depth_view),
+                places.as_entire_binding(),
+            ],
         );
         let mut pass = recorder.render_pass("view", &[overwritten(picture)], None);
         pass.set_pipeline(&self.pipeline);

@@ -1,11 +1,14 @@
 // The G-buffer made visible. After frame and surface.wgsl.
 
-// Which: 1 depth, 2 normals, 3 base colour, 4 instances, 5 motion.
+// Which: 1 depth, 2 normals, 3 base colour, 4 instances, 5 motion, 6 materials.
 override VIEW: u32 = 1u;
 
 @group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
 @group(1) @binding(1) var gbuffer_identity: texture_2d<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
+
+// Of each instance; the third number is its material.
+@group(1) @binding(3) var<storage, read> places: array<vec4u>;
 
 @vertex
 fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
@@ -44,8 +47,12 @@ fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
             let encoded = unpack4x8unorm(textureLoad(gbuffer_surface, texel, 0).x).rgb;
             return vec4f(encoded, 1.0);
         }
-        case 4u: {
-            let h = hash(identity.x);
+        case 4u, 6u: {
+            var number = identity.x;
+            if VIEW == 6u {
+                number = places[identity.x - 1u].z + 1u;
+            }
+            let h = hash(number);
             return vec4f(0.25 + 0.75 * unpack4x8unorm(h).rgb, 1.0);
         }
         default: {

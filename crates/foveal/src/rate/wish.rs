@@ -68,7 +68,7 @@ impl WishUniform {
                 radii.iter().filter(|&&r| squared >= r).count() as u32
             }
             RateSource::Constant => self.constant_level,
-            RateSource::Image => image.map_or(0, |i| {
+            RateSource::Image | RateSource::Content => image.map_or(0, |i| {
                 let (w, h) = i.size();
                 let texel = y * h / s.height * w + x * w / s.width;
                 u32::from(i.levels()[texel as usize])
@@ -89,7 +89,8 @@ pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
     let number = |source| match source {
         RateSource::Foveated => 0.0,
         RateSource::Constant => 1.0,
-        RateSource::Image => 2.0,
+        // Content is refused by the settings' check.
+        RateSource::Image | RateSource::Content => 2.0,
     };
     let combine = match s.rate_combine {
         RateCombine::First => 0.0,

@@ -1,5 +1,5 @@
 // The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level 1 of the
-// min-pyramid. After frame, surface, level and blocks.wgsl. Rust: `rate/wish.rs`.
+// min-pyramid. After frame, surface, level, blocks and fovea.wgsl. Rust: `rate/wish.rs`.
 
 // 0 foveated, 1 constant, 2 image.
 override SOURCE: u32 = 0u;
@@ -7,41 +7,10 @@ override OTHER: u32 = 1u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
 override COMBINE: u32 = 0u;
 
-struct Wish {
-    // Gaze of the left and of the right eye, xy in pixels of the target.
-    gaze: array<vec4f, 2>,
-    // Squared radii in pixels from which on levels 1 to 8 are wished.
-    squared_radii: array<vec4f, 2>,
-    // Pixels of the target that belong to one eye.
-    eye_width: f32,
-    coarsest: u32,
-    // Level of the constant source.
-    constant_level: u32,
-    // Pixels at edges that wish 1 up to this level wish finer ones instead.
-    refine_up_to: u32,
-    // Edges are looked for where the wish is 1 up to this level.
-    edges_up_to: u32,
-    // By so many levels.
-    refine_by: u32,
-    // Keep the size a multiple of 16 bytes.
-    reserved_1: u32,
-    reserved_2: u32,
-}
-
-@group(1) @binding(0) var<uniform> wish: Wish;
 @group(1) @binding(1) var rate_image: texture_2d<u32>;
 @group(1) @binding(2) var gbuffer_surface: texture_2d<u32>;
 @group(1) @binding(3) var gbuffer_identity: texture_2d<u32>;
 @group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
-
-// Number of radii that the distance to the gaze exceeds.
-fn foveated_level(pixel: vec2f) -> u32 {
-    let eye = u32(pixel.x >= wish.eye_width);
-    let offset = pixel - wish.gaze[eye].xy;
-    let squared = vec4f(dot(offset, offset));
-    let beyond = vec4u(squared >= wish.squared_radii[0]) + vec4u(squared >= wish.squared_radii[1]);
-    return beyond.x + beyond.y + beyond.z + beyond.w;
-}
 
 // The picture is stretched over each eye's.
 fn image_texel(texel: vec2u) -> vec2u {

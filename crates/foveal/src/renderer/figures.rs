@@ -14,6 +14,8 @@ pub(super) struct Counts<T> {
     pub(super) tiles: Option<T>,
     /// Edge pixels and lighting evaluations of anti-aliasing.
     pub(super) edges: Option<T>,
+    /// Samples of variable shading.
+    pub(super) rates: Option<T>,
 }
 
 /// A frame that the device has not finished, or whose figures have not arrived.
@@ -45,9 +47,11 @@ impl InFlight {
         let counts = Counts {
             tiles: record(counters.tiles),
             edges: record(counters.edges),
+            rates: record(counters.rates),
         };
         gpu.queue.submit([encoder.finish()]);
-        for arriving in counts.tiles.iter().chain(&counts.edges) {
+        let all = counts.tiles.iter().chain(&counts.edges);
+        for arriving in all.chain(&counts.rates) {
             arriving.submitted();
         }
         let done = work_done(gpu, move || cpu.since_start_ms());
@@ -73,6 +77,12 @@ impl Renderer {
             edges: samples
                 .filter(|_| stages.antialias.is_some())
                 .map(|samples| &samples.queue),
+            rates: (stages
+                .variable
+                .as_ref()
+                .zip(stages.targets.variable.as_ref()))
+            .filter(|(stage, _)| stage.is_active())
+            .map(|(_, targets)| &targets.listed),
         }
     }
 
@@ -111,7 +121,8 @@ impl Renderer {
             |arriving: &Option<Arriving>| arriving.as_ref().is_none_or(Arriving::is_there);
         if !(in_flight.done.is_given()
             && arrived(&in_flight.counts.tiles)
-            && arrived(&in_flight.counts.edges))
+            && arrived(&in_flight.counts.edges)
+            && arrived(&in_flight.counts.rates))
         {
             return Ok(None);
         }
@@ -135,6 +146,7 @@ impl Renderer {
         let counts = Counts {
             tiles: counts.tiles.and_then(|arriving| arriving.take()),
             edges: counts.edges.and_then(|arriving| arriving.take()),
+            rates: counts.rates.and_then(|arriving| arriving.take()),
         };
         let frame_ms = done.take_now().unwrap_or_default();
         Ok(Some(self.figures(stats, &counts, gpu_ms, frame_ms)))
@@ -149,12 +161,19 @@ impl Renderer {
         frame_ms: f64,
     ) -> FrameStats {
         let coarse = self.coarse_figures(counts, &gpu_ms);
+        let lit = self.stages.settings.view.is_lit();
+        let stages = &mut self.stages;
+        let variable = stages.variable.as_mut().filter(|_| lit);
+        let bytes = counts.rates.as_deref();
+        let variable = variable.map(|v| v.figures(&stages.settings, bytes, &gpu_ms));
         let stages = &self.stages;
         let pixels = u64::from(stats.width) * u64::from(stats.height);
-        let lit = stages.settings.view.is_lit();
-        let mut shaded_samples = match &coarse {
-            Some(coarse) => coarse.shaded_samples(),
-            None => u64::from(lit) * pixels,
+        let mut shaded_samples = match (&coarse, &variable) {
+            (Some(coarse), _) => coarse.shaded_samples(),
+            (None, Some(variable)) if stages.settings.rate_stage.has_lighting() => {
+                variable.samples_per_rate.iter().sum()
+            }
+            _ => u64::from(lit) * pixels,
         };
         let mut edge_fraction = 0.0;
         if let (Some(antialias), Some(bytes)) = (&stages.antialias, &counts.edges) {
@@ -169,6 +188,7 @@ impl Renderer {
             shaded_samples,
             edge_fraction,
             coarse,
+            variable,
             gpu_ms,
             frame_ms,
             ..stats

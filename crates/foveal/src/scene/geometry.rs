@@ -61,16 +61,11 @@ pub(crate) struct SceneGeometry {
     indices: wgpu::Buffer,
     meshes: Vec<MeshRange>,
     deforms: bool,
-    by_shaders: Option<ByShaders>,
+    places: wgpu::Buffer,
+    /// The layout is [`geometry_layout`]; `None` where shaders cannot read so much.
+    group: Option<wgpu::BindGroup>,
     /// Of the larger of the two buffers.
     largest_bytes: u64,
-}
-
-/// What shaders read the geometry by.
-#[derive(Debug)]
-struct ByShaders {
-    places: wgpu::Buffer,
-    group: wgpu::BindGroup,
 }
 
 impl SceneGeometry {
@@ -141,15 +136,20 @@ impl SceneGeometry {
         };
         let largest_bytes = vertices.size().max(indices.size());
         let bindable = largest_bytes <= gpu.device.limits().max_storage_buffer_binding_size;
-        let buffers = [&vertices, &previous_vertices, &indices];
-        let by_shaders = bindable.then(|| ByShaders::new(gpu, buffers, places(scene, &meshes)));
+        let places = upload_places(gpu, scene, &meshes);
+        let group = bindable.then(|| {
+            let buffers = [&vertices, &previous_vertices, &indices, &places];
+            let resources = buffers.map(wgpu::Buffer::as_entire_binding);
+            bind_group(&gpu.device, "geometry", &geometry_layout(gpu), &resources)
+        });
         Ok(Self {
             vertices,
             previous_vertices,
             indices,
             meshes,
             deforms,
-            by_shaders,
+            places,
+            group,
             largest_bytes,
         })
     }
@@ -159,7 +159,7 @@ impl SceneGeometry {
     /// # Errors
     /// [`Error::Limit`] where shaders must read it and it is too large for them.
     pub(crate) fn check(&self, gpu: &Gpu, geometry: Geometry) -> Result<(), Error> {
-        if geometry == Geometry::Gbuffer || self.by_shaders.is_some() {
+        if geometry == Geometry::Gbuffer || self.group.is_some() {
             return Ok(());
         }
         Err(Error::Limit {
@@ -172,12 +172,12 @@ impl SceneGeometry {
 
     /// Bind group 2 of `shared/attributes.wgsl`; `None` for a scene that failed [`SceneGeometry::check`].
     pub(crate) fn group(&self) -> Option<&wgpu::BindGroup> {
-        self.by_shaders.as_ref().map(|s| &s.group)
+        self.group.as_ref()
     }
 
-    /// A [`PlaceUniform`] per instance; `None` as for [`SceneGeometry::group`].
-    pub(crate) fn places(&self) -> Option<&wgpu::Buffer> {
-        self.by_shaders.as_ref().map(|s| &s.places)
+    /// A [`PlaceUniform`] per instance.
+    pub(crate) fn places(&self) -> &wgpu::Buffer {
+        &self.places
     }
 
     /// Uploads the deformed meshes; the vertices so far become the previous ones.
@@ -218,20 +218,7 @@ impl SceneGeometry {
     }
 }
 
-impl ByShaders {
-    fn new(gpu: &Gpu, buffers: [&wgpu::Buffer; 3], places: Vec<PlaceUniform>) -> Self {
-        let bytes: &[u8] = bytemuck::cast_slice(&places);
-        let usage = wgpu::BufferUsages::STORAGE;
-        let places = buffer(gpu, "places of instances", bytes.len() as u64, usage);
-        gpu.queue.write_buffer(&places, 0, bytes);
-        let [vertices, previous, indices] = buffers.map(wgpu::Buffer::as_entire_binding);
-        let resources = [vertices, previous, indices, places.as_entire_binding()];
-        let group = bind_group(&gpu.device, "geometry", &geometry_layout(gpu), &resources);
-        Self { places, group }
-    }
-}
-
-fn places(scene: &Scene, meshes: &[MeshRange]) -> Vec<PlaceUniform> {
+fn upload_places(gpu: &Gpu, scene: &Scene, meshes: &[MeshRange]) -> wgpu::Buffer {
     let place = |instance: &foveal_scene::Instance| {
         let mesh = meshes[instance.mesh as usize];
         PlaceUniform {
@@ -241,7 +228,12 @@ fn places(scene: &Scene, meshes: &[MeshRange]) -> Vec<PlaceUniform> {
             reserved: 0,
         }
     };
-    scene.instances.iter().map(place).collect()
+    let places: Vec<_> = scene.instances.iter().map(place).collect();
+    let bytes: &[u8] = bytemuck::cast_slice(&places);
+    let usage = wgpu::BufferUsages::STORAGE;
+    let buffer = buffer(gpu, "places of instances", bytes.len() as u64, usage);
+    gpu.queue.write_buffer(&buffer, 0, bytes);
+    buffer
 }
 
 fn buffer(gpu: &Gpu, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {

@@ -15,6 +15,8 @@ pub enum Shading {
     Full,
     /// One per square block of pixels, the blocks' sizes taken from the rate map.
     Coarse,
+    /// One per 1 x 1, 2 x 1, 1 x 2 or 2 x 2 pixels, as the picture's content allows.
+    Variable,
 }
 
 /// By what means coarse samples are visited.
@@ -41,6 +43,8 @@ pub enum RateSource {
     Constant,
     /// A picture stretched over the frame: black asks for every pixel, white for the coarsest level.
     Image,
+    /// The contrast of the frame before; for [`Shading::Variable`] alone.
+    Content,
 }
 
 /// What becomes of the second source of wishes.

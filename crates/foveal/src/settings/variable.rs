@@ -2,6 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::{Antialiasing, RateCombine, RateSource, Settings, Shading, View};
+use crate::Error;
+
 /// How the G-buffer is filled.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -12,4 +15,111 @@ pub enum Geometry {
     /// By a visibility buffer: the rasterizer finds the triangle at each pixel, and materials are evaluated once per
     /// pixel afterwards.
     Visibility,
+}
+
+/// What [`Shading::Variable`] does once per sample instead of once per pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RateStage {
+    /// Lighting.
+    #[default]
+    Lighting,
+    /// Materials, as the technique's source does; needs [`Geometry::Visibility`].
+    Material,
+    /// Both; needs [`Geometry::Visibility`].
+    Both,
+}
+
+impl RateStage {
+    /// Materials are evaluated at the rate.
+    pub(crate) fn has_material(self) -> bool {
+        self != Self::Lighting
+    }
+
+    /// Lighting is evaluated at the rate.
+    pub(crate) fn has_lighting(self) -> bool {
+        self != Self::Material
+    }
+}
+
+/// What the content's contrast is measured by.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Contrast {
+    /// Differences within 2 x 2 pixels.
+    #[default]
+    Quad,
+    /// Differences of each pixel to its four neighbours, as in the technique's source.
+    Neighbors,
+    /// Sobel kernels of 3 x 3 pixels.
+    Sobel,
+}
+
+/// Checks the settings of variable shading.
+pub(super) fn validate(s: &Settings) -> Result<(), Error> {
+    let wrong = |name, value: String, expected| {
+        Err(Error::Setting {
+            name,
+            value,
+            expected,
+        })
+    };
+    let name = |value: &dyn std::fmt::Debug| format!("{value:?}").to_lowercase();
+    let variable = s.shading == Shading::Variable;
+    for (setting, source) in [("rate", s.rate), ("rate-other", s.rate_other)] {
+        let used = setting == "rate" || s.rate_combine != RateCombine::First;
+        if used && source == RateSource::Content && s.shading == Shading::Coarse {
+            return wrong(
+                setting,
+                name(&source),
+                "another one unless shading is variable",
+            );
+        }
+        if used && source == RateSource::Image && variable {
+            return wrong(
+                setting,
+                name(&source),
+                "another one where shading is variable",
+            );
+        }
+    }
+    if s.view == View::Unknown && !variable {
+        return wrong(
+            "view",
+            name(&s.view),
+            "another one unless shading is variable",
+        );
+    }
+    if variable && s.view == View::Blocks {
+        return wrong(
+            "view",
+            name(&s.view),
+            "another one unless shading is coarse",
+        );
+    }
+    if variable && s.rate_stage.has_material() {
+        if s.geometry != Geometry::Visibility {
+            return wrong(
+                "rate-stage",
+                name(&s.rate_stage),
+                "lighting unless the geometry is visibility",
+            );
+        }
+        if s.aa != Antialiasing::None {
+            return wrong(
+                "rate-stage",
+                name(&s.rate_stage),
+                "lighting where edges are smoothed",
+            );
+        }
+    }
+    for (setting, value) in [
+        ("contrast-threshold", s.contrast_threshold),
+        ("velocity-gain", s.velocity_gain),
+    ] {
+        if !(0.0..=10.0).contains(&value) {
+            return wrong(setting, value.to_string(), "between 0 and 10");
+        }
+    }
+    Ok(())
 }

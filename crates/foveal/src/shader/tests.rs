@@ -8,6 +8,13 @@ const ALL: &[(&str, Parts)] = &[
     ("visible, pulled", VISIBLE_PULLED),
     ("bins", BINS),
     ("resolve", RESOLVE),
+    ("bins, rated", BINS_RATED),
+    ("resolve, rated", RESOLVE_RATED),
+    ("variable reproject", VARIABLE_REPROJECT),
+    ("variable mask", VARIABLE_MASK),
+    ("variable size", VARIABLE_SIZE),
+    ("variable shade", VARIABLE_SHADE),
+    ("variable view", VARIABLE_VIEW),
     ("clusters", CLUSTERS),
     ("shade every pixel", SHADE_EVERY_PIXEL),
     ("shade list", SHADE_LIST),
@@ -383,6 +390,23 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             reserved_2,
         ]
     );
+    for parts in [VARIABLE_REPROJECT, VARIABLE_MASK] {
+        assert_same_layout!(
+            parts,
+            "Rates",
+            crate::shading::RatesUniform,
+            [
+                threshold,
+                velocity_gain,
+                probe_mask,
+                probe_x,
+                probe_y,
+                reset,
+                reserved_0,
+                reserved_1
+            ]
+        );
+    }
     assert_same_layout!(
         RESOLVE,
         "Windows",

@@ -8,9 +8,13 @@ mod pass;
 mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
+mod variable;
 
 pub(crate) use coarse::{
     CoarseShading, CoarseTargets, CountPass, LevelNumbers, STENCIL_FORMAT, stencil_state,
 };
 pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};
+#[cfg(test)]
+pub(crate) use variable::RatesUniform;
+pub(crate) use variable::{Plan, VariableStage, VariableTargets};

@@ -124,13 +124,7 @@ impl ShadingPass {
         target: &wgpu::TextureView,
     ) {
         match samples {
-            Samples::EveryPixel => {
-                // Every texel is written.
-                let mut pass = recorder.render_pass("shading", &[overwritten(target)], None);
-                pass.set_pipeline(&self.every_pixel);
-                pass.set_bind_group(1, input, &[]);
-                pass.draw(0..3, 0..1);
-            }
+            Samples::EveryPixel => self.shade_every_pixel(recorder, input, target, "shading"),
             Samples::List(list) => {
                 let group = self.list_group(recorder.gpu, list, target);
                 let mut pass = recorder.compute_pass("shading");
@@ -140,6 +134,21 @@ impl ShadingPass {
                 pass.dispatch_workgroups_indirect(&list.dispatch, 0);
             }
         }
+    }
+
+    /// As [`ShadingPass::shade`] for every pixel, timed under `label`.
+    pub(crate) fn shade_every_pixel(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        target: &wgpu::TextureView,
+        label: &str,
+    ) {
+        // Every texel is written.
+        let mut pass = recorder.render_pass(label, &[overwritten(target)], None);
+        pass.set_pipeline(&self.every_pixel);
+        pass.set_bind_group(1, input, &[]);
+        pass.draw(0..3, 0..1);
     }
 
     fn list_group(

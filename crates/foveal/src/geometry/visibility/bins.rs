@@ -1,6 +1,6 @@
 //! The passes that sort the seen pixels by material.
 
-use super::VisibilityTargets;
+use super::{Evaluation, VisibilityTargets, with_mask};
 use crate::geometry::{GBuffer, SURFACE_FORMAT};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write};
 use crate::recorder::Recorder;
@@ -45,24 +45,31 @@ pub(super) struct BinPass {
 }
 
 impl BinPass {
-    pub(super) fn new(gpu: &Gpu) -> Self {
-        let layout = bind_group_layout(
-            &gpu.device,
-            "binning",
-            wgpu::ShaderStages::COMPUTE,
-            &[
-                sampled(wgpu::TextureSampleType::Uint),
-                storage_read(),
-                storage_write(),
-                storage_write(),
-                wgpu::BindingType::StorageTexture {
-                    access: wgpu::StorageTextureAccess::WriteOnly,
-                    format: SURFACE_FORMAT,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                },
-            ],
-        );
-        let module = shader::module(gpu, "binning", shader::BINS);
+    /// `rated`: only pixels that stand for a sample are sorted.
+    pub(super) fn new(gpu: &Gpu, rated: bool) -> Self {
+        let uint = sampled(wgpu::TextureSampleType::Uint);
+        let mut types = vec![
+            uint,
+            storage_read(),
+            storage_write(),
+            storage_write(),
+            wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: SURFACE_FORMAT,
+                view_dimension: wgpu::TextureViewDimension::D2,
+            },
+        ];
+        if rated {
+            types.push(uint);
+        }
+        let compute = wgpu::ShaderStages::COMPUTE;
+        let layout = bind_group_layout(&gpu.device, "binning", compute, &types);
+        let parts = if rated {
+            shader::BINS_RATED
+        } else {
+            shader::BINS
+        };
+        let module = shader::module(gpu, "binning", parts);
         let pipeline = |entry| shader::compute(gpu, "binning", &module, entry, &[&layout], &[]);
         Self {
             count: pipeline("count_pixels"),
@@ -80,27 +87,27 @@ impl BinPass {
         target: &GBuffer,
         visibility: &VisibilityTargets,
         bins: &Bins,
+        at: &Evaluation<'_>,
     ) {
-        let Some(places) = scene.geometry.places() else {
-            // The scene was checked for them.
-            return;
-        };
         recorder.encoder.clear_buffer(&bins.0, 0, None);
         let group = bind_group(
             &recorder.gpu.device,
             "binning",
             &self.layout,
-            &[
-                wgpu::BindingResource::TextureView(&target.identity_view),
-                places.as_entire_binding(),
-                bins.0.as_entire_binding(),
-                visibility.pixels.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&target.surface_view),
-            ],
+            &with_mask(
+                at,
+                &[
+                    wgpu::BindingResource::TextureView(&target.identity_view),
+                    scene.geometry.places().as_entire_binding(),
+                    bins.0.as_entire_binding(),
+                    visibility.pixels.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&target.surface_view),
+                ],
+            ),
         );
         let size = target.identity_view.texture().size();
         let tiles = (size.width.div_ceil(TILE), size.height.div_ceil(TILE));
-        let mut pass = recorder.compute_pass("binning");
+        let mut pass = recorder.compute_pass(at.binning_label);
         pass.set_bind_group(0, &group, &[]);
         for (pipeline, (x, y)) in [
             (&self.count, tiles),

@@ -56,12 +56,62 @@ impl VisibilityTargets {
     }
 }
 
+/// At which pixels materials are evaluated, and what the passes are timed under.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Evaluation<'a> {
+    /// Once per sample of this mask (`shading/variable`); `None`: at every pixel.
+    pub(crate) mask: Option<&'a wgpu::TextureView>,
+    binning_label: &'static str,
+    material_label: &'static str,
+}
+
+impl<'a> Evaluation<'a> {
+    /// At every pixel.
+    pub(crate) const FULL: Self = Self {
+        mask: None,
+        binning_label: "binning",
+        material_label: "material",
+    };
+
+    /// At every pixel, for comparison alone.
+    pub(crate) const COMPARED: Self = Self {
+        mask: None,
+        binning_label: "full binning",
+        material_label: "full material",
+    };
+
+    /// Once per sample of a mask.
+    pub(crate) fn at_rates(mask: &'a wgpu::TextureView) -> Self {
+        Self {
+            mask: Some(mask),
+            ..Self::FULL
+        }
+    }
+}
+
+/// `resources`, and the mask where there is one.
+fn with_mask<'a>(
+    at: &Evaluation<'a>,
+    resources: &[wgpu::BindingResource<'a>],
+) -> Vec<wgpu::BindingResource<'a>> {
+    let mask = at.mask.map(wgpu::BindingResource::TextureView);
+    resources.iter().cloned().chain(mask).collect()
+}
+
+/// Sorts and evaluates.
+#[derive(Debug)]
+struct Materials {
+    bin: BinPass,
+    resolve: ResolvePass,
+}
+
 /// Draws triangles, and evaluates their materials afterwards.
 #[derive(Debug)]
 pub(crate) struct VisibilityPass {
     raster: VisiblePass,
-    bin: BinPass,
-    resolve: ResolvePass,
+    full: Materials,
+    /// Where materials are evaluated at a rate.
+    rated: Option<Materials>,
     /// For the further surfaces of pixels at edges.
     further: Option<ResolvePass>,
     bins: Bins,
@@ -69,26 +119,36 @@ pub(crate) struct VisibilityPass {
 
 impl VisibilityPass {
     /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: [`VisibilityPass::evaluate_further`]
-    /// will be called.
+    /// will be called; `rated`: materials will be evaluated at a rate.
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
         face_normals: FaceNormals,
         windows: u32,
-        further: bool,
+        [further, rated]: [bool; 2],
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
         let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout);
         let layouts = [frame_layout, material_layout, &geometry_layout];
-        let resolve = |parts, face_normals, windows| {
-            ResolvePass::new(gpu, parts, layouts, face_normals, windows)
+        let materials = |rated| {
+            let parts = if rated {
+                shader::RESOLVE_RATED
+            } else {
+                shader::RESOLVE
+            };
+            Materials {
+                bin: BinPass::new(gpu, rated),
+                resolve: ResolvePass::new(gpu, parts, layouts, face_normals, windows, rated),
+            }
         };
+        let none = FaceNormals::Omitted;
         Self {
             raster,
-            bin: BinPass::new(gpu),
-            resolve: resolve(shader::RESOLVE, face_normals, windows),
-            further: further.then(|| resolve(shader::RESOLVE_FURTHER, FaceNormals::Omitted, 1)),
+            full: materials(false),
+            rated: rated.then(|| materials(true)),
+            further: further
+                .then(|| ResolvePass::new(gpu, shader::RESOLVE_FURTHER, layouts, none, 1, false)),
             bins: Bins::new(gpu, 1),
         }
     }
@@ -97,7 +157,10 @@ impl VisibilityPass {
     pub(crate) fn prepare(&mut self, gpu: &Gpu, scene: &SceneOnGpu, list: &DrawList) {
         self.raster.prepare(gpu, list);
         for batch in &list.solid {
-            self.resolve.prepare(gpu, batch.key.class);
+            self.full.resolve.prepare(gpu, batch.key.class);
+            if let Some(rated) = &mut self.rated {
+                rated.resolve.prepare(gpu, batch.key.class);
+            }
             if let Some(further) = &mut self.further {
                 further.prepare(gpu, batch.key.class);
             }
@@ -146,7 +209,26 @@ impl VisibilityPass {
         target: &GBuffer,
         windows: &[Window],
     ) {
-        self.evaluate_by(&self.resolve, recorder, scene, list, target, windows);
+        self.evaluate_at(recorder, scene, list, target, windows, &Evaluation::FULL);
+    }
+
+    /// The same at the pixels of `at`.
+    pub(crate) fn evaluate_at(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        list: &DrawList,
+        target: &GBuffer,
+        windows: &[Window],
+        at: &Evaluation<'_>,
+    ) {
+        let materials = match (at.mask, &self.rated) {
+            (Some(_), rated) => rated.as_ref(),
+            (None, _) => Some(&self.full),
+        };
+        if let Some(Materials { bin, resolve }) = materials {
+            self.evaluate_by((bin, resolve), recorder, scene, list, target, windows, at);
+        }
     }
 
     /// The same for a target whose texels lie anywhere in the picture: identity's second word tells, as
@@ -160,26 +242,32 @@ impl VisibilityPass {
         whole: Window,
     ) {
         if let Some(further) = &self.further {
-            self.evaluate_by(further, recorder, scene, list, target, &[whole]);
+            let passes = (&self.full.bin, further);
+            let at = &Evaluation::FULL;
+            self.evaluate_by(passes, recorder, scene, list, target, &[whole], at);
         }
     }
 
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
     fn evaluate_by(
         &self,
-        resolve: &ResolvePass,
+        (bin, resolve): (&BinPass, &ResolvePass),
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         list: &DrawList,
         target: &GBuffer,
         windows: &[Window],
+        at: &Evaluation<'_>,
     ) {
         let Some(visibility) = &target.visibility else {
             return;
         };
-        self.bin
-            .sort(recorder, scene, target, visibility, &self.bins);
+        bin.sort(recorder, scene, target, visibility, &self.bins, at);
         resolve.draw(
-            recorder, scene, list, target, visibility, &self.bins, windows,
+            recorder, scene, list, target, visibility, &self.bins, windows, at,
         );
     }
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::VisibilityTargets;
 use super::bins::{BIN_BYTES, Bins};
+use super::{Evaluation, VisibilityTargets, with_mask};
 use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read, uniform};
 use crate::recorder::Recorder;
@@ -52,24 +52,29 @@ impl ResolvePass {
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
         windows: u32,
+        rated: bool,
     ) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
+        let mut types = vec![
+            uint,
+            uint,
+            storage_read(),
+            storage_read(),
+            uniform(),
+            wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: SURFACE_FORMAT,
+                view_dimension: wgpu::TextureViewDimension::D2,
+            },
+        ];
+        if rated {
+            types.push(uint);
+        }
         let group_layout = bind_group_layout(
             &gpu.device,
             "materials of triangles",
             wgpu::ShaderStages::COMPUTE,
-            &[
-                uint,
-                uint,
-                storage_read(),
-                storage_read(),
-                uniform(),
-                wgpu::BindingType::StorageTexture {
-                    access: wgpu::StorageTextureAccess::WriteOnly,
-                    format: SURFACE_FORMAT,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                },
-            ],
+            &types,
         );
         let written = u8::from(face_normals == FaceNormals::Written);
         Self {
@@ -121,6 +126,7 @@ impl ResolvePass {
         visibility: &VisibilityTargets,
         bins: &Bins,
         windows: &[Window],
+        at: &Evaluation<'_>,
     ) {
         let gpu = recorder.gpu;
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -136,16 +142,19 @@ impl ResolvePass {
             &gpu.device,
             "materials of triangles",
             &self.group_layout,
-            &[
-                wgpu::BindingResource::TextureView(&target.identity_view),
-                wgpu::BindingResource::TextureView(&visibility.triangle_view),
-                bins.0.as_entire_binding(),
-                visibility.pixels.as_entire_binding(),
-                uniform.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&target.surface_view),
-            ],
+            &with_mask(
+                at,
+                &[
+                    wgpu::BindingResource::TextureView(&target.identity_view),
+                    wgpu::BindingResource::TextureView(&visibility.triangle_view),
+                    bins.0.as_entire_binding(),
+                    visibility.pixels.as_entire_binding(),
+                    uniform.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(&target.surface_view),
+                ],
+            ),
         );
-        let mut pass = recorder.compute_pass("material");
+        let mut pass = recorder.compute_pass(at.material_label);
         pass.set_bind_group(2, scene.geometry.group(), &[]);
         pass.set_bind_group(3, &group, &[]);
         for (material, class) in list.solid_materials() {

@@ -1,0 +1,334 @@
+//! `foveal bench variable`: shading at a rate that the content decides, against full shading, frame by frame in turn
+//! while the camera sways.
+
+use std::path::PathBuf;
+
+use foveal::{
+    AdapterStats, Frame, FrameStats, Geometry, Gpu, RateSource, RateStage, Renderer, Settings,
+    Shading,
+};
+use foveal_scene::{Camera, Scene};
+use pollster::block_on;
+use serde::Serialize;
+
+use super::table::text;
+use crate::compare::ErrorMap;
+use crate::median::median;
+use crate::picture::Picture;
+use crate::render::{CameraArgs, Viewpoint, now_ms};
+use crate::{atomic_file, console, gpu, scene_source, values};
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 1;
+
+/// What the source reports, in milliseconds: mask, reprojection, saved, net.
+const SOURCE_MS: [&str; 4] = ["0.08", "0.02", "0.06", "-0.04"];
+
+/// Frames that compile shaders and fill the history.
+const WARM_UP: u32 = 2;
+
+/// Arguments of `foveal bench variable`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// A glTF 2.0 file or a generated scene
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
+    scene: String,
+
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "960x540")]
+    size: (u32, u32),
+
+    #[command(flatten)]
+    camera: CameraArgs,
+
+    /// Coloured point lights that are added to the scene; may be given several times
+    #[arg(long, value_name = "N", default_values_t = [32, 128])]
+    point_lights: Vec<u32>,
+
+    /// Contrast thresholds; may be given several times
+    #[arg(long, value_name = "X", default_values_t = [0.04])]
+    contrast_threshold: Vec<f32>,
+
+    /// Metres by which the camera moves to the side in each frame
+    #[arg(long, value_name = "M", default_value_t = 0.01)]
+    step: f32,
+
+    /// Frames that are measured, after those that warm up; figures are medians over them
+    #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..))]
+    rounds: u32,
+
+    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    #[arg(long, value_name = "NAME|NUMBER")]
+    adapter: Option<String>,
+
+    /// Write the figures as JSON; `-`: print JSON instead of the table
+    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+}
+
+/// All figures of a run.
+#[derive(Debug, Serialize)]
+struct Report {
+    schema: &'static str,
+    schema_version: u32,
+    adapter: AdapterStats,
+    rounds: u32,
+    rows: Vec<Row>,
+}
+
+/// One measurement; times are medians in milliseconds.
+#[derive(Debug, Serialize)]
+struct Row {
+    scene: String,
+    width: u32,
+    height: u32,
+    stage: RateStage,
+    material_cost: &'static str,
+    lights: u64,
+    contrast_threshold: f32,
+    mask_ms: f64,
+    reproject_ms: f64,
+    binning_ms: f64,
+    full_ms: f64,
+    variable_ms: f64,
+    saved_ms: f64,
+    net_ms: f64,
+    /// Median of the ratios of `full_ms` to `variable_ms` within each frame.
+    ratio: f64,
+    shaded_fraction: f64,
+    /// Of the last frame.
+    flip_mean: f64,
+}
+
+/// How much of the scene's materials is left.
+const COSTS: [&str; 2] = ["plain", "textured"];
+
+/// Runs the benchmark.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    now_ms();
+    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
+    if let Some(path) = to_file {
+        atomic_file::check_writable(path)?;
+    }
+    let gpu = gpu::open(args.adapter.as_deref())?;
+    let mut rows = Vec::new();
+    for &lights in &args.point_lights {
+        for cost in COSTS {
+            let mut scene = scene_source::load(&args.scene)?;
+            if cost == "plain" {
+                strip_textures(&mut scene);
+            }
+            scene_source::add_point_lights(&mut scene, lights, 0);
+            scene.light_by_default();
+            let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
+            for stage in [RateStage::Lighting, RateStage::Material, RateStage::Both] {
+                for &threshold in &args.contrast_threshold {
+                    let row = measure(args, &gpu, &scene, &camera, stage, cost, threshold)?;
+                    eprint!("{}", text(&[line(&row)]));
+                    rows.push(row);
+                }
+            }
+        }
+    }
+    let report = Report {
+        schema: "foveal-bench-variable",
+        schema_version: SCHEMA_VERSION,
+        adapter: gpu.adapter_stats(),
+        rounds: args.rounds,
+        rows,
+    };
+    let json = serde_json::to_string_pretty(&report)? + "\n";
+    match (&args.json, to_file) {
+        (_, Some(path)) => {
+            atomic_file::write(path, json.as_bytes())?;
+            console::print_result(&summary(&report))
+        }
+        (Some(_), None) => console::print_result(&json),
+        (None, None) => console::print_result(&summary(&report)),
+    }
+}
+
+/// Leaves each material its factors alone.
+fn strip_textures(scene: &mut Scene) {
+    for material in &mut scene.materials {
+        material.base_color_texture = None;
+        material.metallic_roughness_texture = None;
+        material.normal_texture = None;
+        material.occlusion_texture = None;
+        material.emissive_texture = None;
+    }
+}
+
+/// A renderer on its way along the path.
+struct Film {
+    renderer: Renderer,
+    last: Option<Camera>,
+}
+
+impl Film {
+    fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
+        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        block_on(renderer.set_scene(scene))?;
+        Ok(Self {
+            renderer,
+            last: None,
+        })
+    }
+
+    fn draw(&mut self, camera: &Camera) -> anyhow::Result<FrameStats> {
+        let frame = Frame {
+            camera,
+            previous_camera: self.last.as_ref(),
+        };
+        let stats = block_on(self.renderer.render(&frame))?;
+        self.last = Some(camera.clone());
+        Ok(stats)
+    }
+
+    fn picture(&self) -> anyhow::Result<Picture> {
+        let bytes = block_on(self.renderer.read_picture())?;
+        let s = self.renderer.settings();
+        Picture::from_rgba(s.width, s.height, &bytes)
+    }
+}
+
+fn ms(stats: &FrameStats, passes: &[&str]) -> f64 {
+    let timings = stats.gpu_ms.iter();
+    timings
+        .filter(|t| passes.contains(&t.name.as_str()))
+        .map(|t| t.ms)
+        .sum::<f64>()
+}
+
+/// The passes that run at the rate.
+fn passes(stage: RateStage) -> &'static [&'static str] {
+    match stage {
+        RateStage::Lighting => &["shading"],
+        RateStage::Material => &["binning", "material"],
+        RateStage::Both => &["binning", "material", "shading"],
+    }
+}
+
+fn measure(
+    args: &Args,
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    stage: RateStage,
+    material_cost: &'static str,
+    contrast_threshold: f32,
+) -> anyhow::Result<Row> {
+    let full_settings = Settings {
+        width: args.size.0,
+        height: args.size.1,
+        geometry: Geometry::Visibility,
+        ..Settings::default()
+    };
+    let variable_settings = Settings {
+        shading: Shading::Variable,
+        rate: RateSource::Content,
+        rate_stage: stage,
+        contrast_threshold,
+        force_rate: true,
+        ..full_settings.clone()
+    };
+    let mut full = Film::new(gpu, scene, &full_settings)?;
+    let mut variable = Film::new(gpu, scene, &variable_settings)?;
+    let (mut frames, mut fraction) = (Vec::new(), 1.0);
+    let side = camera.world_from_view.x_axis.truncate();
+    for round in 0..WARM_UP + args.rounds {
+        let mut camera = camera.clone();
+        let moved = side * (args.step * round as f32);
+        camera.world_from_view.w_axis += moved.extend(0.0);
+        let (a, b) = (full.draw(&camera)?, variable.draw(&camera)?);
+        if round >= WARM_UP {
+            let of = |stats, names| ms(stats, names);
+            let (full, at_rate) = (of(&a, passes(stage)), of(&b, passes(stage)));
+            let (mask, reproject) = (of(&b, &["rate mask"]), of(&b, &["reprojection"]));
+            let binning = of(&b, &["binning"]);
+            frames.push([full, at_rate, mask, reproject, binning]);
+        }
+        fraction = b.variable.map_or(1.0, |v| v.shaded_fraction);
+    }
+    let middle =
+        |figure: &dyn Fn(&[f64; 5]) -> f64| median(&frames.iter().map(figure).collect::<Vec<_>>());
+    Ok(Row {
+        scene: scene.name.clone(),
+        width: args.size.0,
+        height: args.size.1,
+        stage,
+        material_cost,
+        lights: scene.lights.len() as u64,
+        contrast_threshold,
+        mask_ms: middle(&|f| f[2]),
+        reproject_ms: middle(&|f| f[3]),
+        binning_ms: middle(&|f| f[4]),
+        full_ms: middle(&|f| f[0]),
+        variable_ms: middle(&|f| f[1]),
+        saved_ms: middle(&|f| f[0] - f[1]),
+        net_ms: middle(&|f| f[0] - f[1] - f[2] - f[3]),
+        ratio: middle(&|f| f[0] / f[1].max(1e-9)),
+        shaded_fraction: fraction,
+        flip_mean: f64::from(
+            ErrorMap::between(&full.picture()?, &variable.picture()?).mean() as f32,
+        ),
+    })
+}
+
+fn line(row: &Row) -> Vec<String> {
+    let stage = match serde_json::to_value(row.stage) {
+        Ok(serde_json::Value::String(name)) => name,
+        _ => String::new(),
+    };
+    let time = |ms: f64| format!("{ms:.1}");
+    vec![
+        format!("{stage}, {}, {} lights", row.material_cost, row.lights),
+        format!("{:.3}", row.contrast_threshold),
+        time(row.full_ms),
+        time(row.variable_ms),
+        time(row.mask_ms),
+        time(row.reproject_ms),
+        time(row.saved_ms),
+        time(row.net_ms),
+        format!("{:.2}", row.ratio),
+        format!("{:.3}", row.shaded_fraction),
+        format!("{:.4}", row.flip_mean),
+    ]
+}
+
+fn summary(report: &Report) -> String {
+    let head = [
+        "stage",
+        "threshold",
+        "full ms",
+        "variable ms",
+        "mask ms",
+        "reproject ms",
+        "saved ms",
+        "net ms",
+        "ratio",
+        "shaded",
+        "FLIP",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    lines.extend(report.rows.iter().map(line));
+    let [mask, reproject, saved, net] = SOURCE_MS.map(str::to_owned);
+    let none = String::new;
+    lines.push(vec![
+        "the source's, on its GPU".to_owned(),
+        "0.020".to_owned(),
+        none(),
+        none(),
+        mask,
+        reproject,
+        saved,
+        net,
+    ]);
+    let about = report.rows.first().map_or(String::new(), |row| {
+        format!(
+            "{} at {}x{}, {}, medians of {} frames\n",
+            row.scene, row.width, row.height, report.adapter.name, report.rounds
+        )
+    });
+    about + &text(&lines)
+}

@@ -1,0 +1,15 @@
+// A sample's upper left pixel stands for all of its pixels. After the mask's binding and rates.wgsl, before bins.wgsl
+// or resolve.wgsl.
+
+fn is_listed(texel: vec2u) -> bool {
+    return stands_for_sample(texel, textureLoad(mask, texel / 2u, 0).x & RATE);
+}
+
+fn extent_of(texel: vec2u) -> vec2u {
+    return extent_at(textureLoad(mask, texel / 2u, 0).x & RATE);
+}
+
+// The sample's centre, in texels.
+fn middle_of(texel: vec2u) -> vec2f {
+    return vec2f(texel) + 0.5 * vec2f(extent_of(texel));
+}

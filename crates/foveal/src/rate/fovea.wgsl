@@ -1,0 +1,33 @@
+// Where the eye looks. Before wish.wgsl or shading/variable/mask.wgsl. Rust: `rate/wish.rs`.
+
+struct Wish {
+    // Gaze of the left and of the right eye, xy in pixels of the target.
+    gaze: array<vec4f, 2>,
+    // Squared radii in pixels from which on levels 1 to 8 are wished.
+    squared_radii: array<vec4f, 2>,
+    // Pixels of the target that belong to one eye.
+    eye_width: f32,
+    coarsest: u32,
+    // Level of the constant source.
+    constant_level: u32,
+    // Pixels at edges that wish 1 up to this level wish finer ones instead.
+    refine_up_to: u32,
+    // Edges are looked for where the wish is 1 up to this level.
+    edges_up_to: u32,
+    // By so many levels.
+    refine_by: u32,
+    // Keep the size a multiple of 16 bytes.
+    reserved_1: u32,
+    reserved_2: u32,
+}
+
+@group(1) @binding(0) var<uniform> wish: Wish;
+
+// Number of radii that the distance to the gaze exceeds.
+fn foveated_level(pixel: vec2f) -> u32 {
+    let eye = u32(pixel.x >= wish.eye_width);
+    let offset = pixel - wish.gaze[eye].xy;
+    let squared = vec4f(dot(offset, offset));
+    let beyond = vec4u(squared >= wish.squared_radii[0]) + vec4u(squared >= wish.squared_radii[1]);
+    return beyond.x + beyond.y + beyond.z + beyond.w;
+}

@@ -1,0 +1,257 @@
+// At which rate each quad is shaded, and the list of the samples that follows. After frame, rates and fovea.wgsl.
+// CPU twin: `twin.rs`.
+
+struct Rates {
+    threshold: f32,
+    velocity_gain: f32,
+    probe_mask: u32,
+    probe_x: u32,
+    probe_y: u32,
+    reset: u32,
+    reserved_0: u32,
+    reserved_1: u32,
+}
+
+// 0 foveated, 1 constant, 3 content.
+override SOURCE: u32 = 3u;
+override OTHER: u32 = 0u;
+// 0 the first source alone, 1 the coarser of both, 2 the finer.
+override COMBINE: u32 = 0u;
+// Contrast: 0 within the quad, 1 against the four neighbours of each pixel, 2 by 3 x 3 Sobel kernels.
+override CONTRAST: u32 = 1u;
+// Samples may stand for 4 x 4 pixels.
+override BLOCKS: bool = false;
+
+// Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law fails there).
+const DARK: f32 = 0.1;
+// Least cosine between the halves of a quad for them to count as one plane.
+const FLAT: f32 = 0.9;
+
+struct Listed {
+    groups_x: u32,
+    groups_y: u32,
+    groups_z: u32,
+    count: atomic<u32>,
+    // Samples of one pixel, wide, tall, of a quad, of a block.
+    of_rate: array<atomic<u32>, 5>,
+    // Quads of which nothing was known.
+    unknown: atomic<u32>,
+    reserved: array<u32, 6>,
+}
+
+@group(1) @binding(1) var<uniform> rates: Rates;
+@group(1) @binding(2) var identity: texture_2d<u32>;
+@group(1) @binding(3) var depth: texture_depth_2d;
+@group(1) @binding(4) var known: texture_2d<u32>;
+@group(1) @binding(5) var mask: texture_storage_2d<r32uint, write>;
+@group(1) @binding(6) var<storage, read_write> listed: Listed;
+// x | y << 16: the upper left pixel of each sample.
+@group(1) @binding(7) var<storage, read_write> samples: array<u32>;
+
+// Luminances of a quad at an offset; of the quad in the middle where that one is unknown or not there.
+fn luma_of(quad: vec2i, offset: vec2i, middle: vec4f) -> vec4f {
+    let at = quad + offset;
+    let quads = vec2i(textureDimensions(known));
+    let inside = all(at >= vec2i(0)) && all(at < quads);
+    let found = textureLoad(known, clamp(at, vec2i(0), quads - 1), 0);
+    return select(middle, unpack4x8unorm(found.x), inside && found.w != 0u);
+}
+
+// Contrast across and down, relative to the mean.
+fn contrast_of(quad: vec2i, l: vec4f) -> vec2f {
+    let inner = vec2f(max(abs(l.x - l.y), abs(l.z - l.w)), max(abs(l.x - l.z), abs(l.y - l.w)));
+    let sum = dot(l, vec4f(1.0));
+    if CONTRAST == 0u {
+        return inner / (sum * 0.25 + DARK);
+    }
+    let w = luma_of(quad, vec2i(-1, 0), l).yw;
+    let e = luma_of(quad, vec2i(1, 0), l).xz;
+    let n = luma_of(quad, vec2i(0, -1), l).zw;
+    let s = luma_of(quad, vec2i(0, 1), l).xy;
+    let ring = dot(w + e + n + s, vec2f(1.0));
+    if CONTRAST == 1u {
+        let across = max(abs(w - l.xz), abs(e - l.yw));
+        let down = max(abs(n - l.xy), abs(s - l.zw));
+        let outer = vec2f(max(across.x, across.y), max(down.x, down.y));
+        return max(inner, outer) / ((sum + ring) / 12.0 + DARK);
+    }
+    let nw = luma_of(quad, vec2i(-1, -1), l).w;
+    let ne = luma_of(quad, vec2i(1, -1), l).z;
+    let sw = luma_of(quad, vec2i(-1, 1), l).y;
+    let se = luma_of(quad, vec2i(1, 1), l).x;
+    let rows = mat4x4f(
+        vec4f(nw, n, ne),
+        vec4f(w.x, l.xy, e.x),
+        vec4f(w.y, l.zw, e.y),
+        vec4f(sw, s, se),
+    );
+    var steepest = vec2f(0.0);
+    for (var i = 0u; i < 4u; i++) {
+        let x = i & 1u;
+        let y = i >> 1u;
+        let above = vec3f(rows[y][x], rows[y][x + 1u], rows[y][x + 2u]);
+        let level = vec3f(rows[y + 1u][x], rows[y + 1u][x + 1u], rows[y + 1u][x + 2u]);
+        let below = vec3f(rows[y + 2u][x], rows[y + 2u][x + 1u], rows[y + 2u][x + 2u]);
+        let columns = above + 2.0 * level + below;
+        let weights = vec3f(1.0, 2.0, 1.0);
+        let sobel = vec2f(columns.z - columns.x, dot(below - above, weights));
+        // A step of height 1 gives 4.
+        steepest = max(steepest, abs(sobel) * 0.25);
+    }
+    return steepest / ((sum + ring + nw + ne + sw + se) / 16.0 + DARK);
+}
+
+fn content_rate(quad: vec2u, found: vec4u, motion: vec2f) -> u32 {
+    let contrast = contrast_of(vec2i(quad), unpack4x8unorm(found.x));
+    let threshold = rates.threshold * (1.0 + rates.velocity_gain * length(motion));
+    let coarse = vec2u(contrast <= vec2f(threshold));
+    return coarse.x | (coarse.y << 1u);
+}
+
+fn rate_of_level(level: u32) -> u32 {
+    return select(select(0u, 3u, level >= 1u), 7u, level >= 2u);
+}
+
+fn rate_from(source: u32, quad: vec2u, found: vec4u, motion: vec2f) -> u32 {
+    switch source {
+        case 0u: { return rate_of_level(foveated_level(vec2f(quad * 2u) + 1.0)); }
+        case 1u: { return rate_of_level(wish.constant_level); }
+        default: { return content_rate(quad, found, motion); }
+    }
+}
+
+fn wished_rate(quad: vec2u, found: vec4u, motion: vec2f) -> u32 {
+    let rate = rate_from(SOURCE, quad, found, motion);
+    if COMBINE == 1u {
+        return rate | rate_from(OTHER, quad, found, motion);
+    } else if COMBINE == 2u {
+        return rate & rate_from(OTHER, quad, found, motion);
+    }
+    return rate;
+}
+
+fn position_of(texel: vec2u, d: f32) -> vec3f {
+    return view_position(vec2f(texel) + 0.5, view_distance(d));
+}
+
+// The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one plane.
+fn surface_limit(first: vec2u) -> u32 {
+    let last = textureDimensions(identity) - 1u;
+    let texels = array(first, min(first + vec2u(1u, 0u), last), min(first + vec2u(0u, 1u), last), min(first + 1u, last));
+    var who: array<u32, 4>;
+    for (var i = 0u; i < 4u; i++) {
+        who[i] = textureLoad(identity, texels[i], 0).x;
+    }
+    let wide = u32(who[0] == who[1] && who[2] == who[3]);
+    let tall = u32(who[0] == who[2] && who[1] == who[3]);
+    let limit = wide | (tall << 1u);
+    if limit == 0u || any(texels[3] != first + 1u) || who[0] == 0u || who[3] == 0u {
+        return limit;
+    }
+    let p = position_of(texels[0], textureLoad(depth, texels[0], 0));
+    let q = position_of(texels[1], textureLoad(depth, texels[1], 0));
+    let r = position_of(texels[2], textureLoad(depth, texels[2], 0));
+    let s = position_of(texels[3], textureLoad(depth, texels[3], 0));
+    let upper = cross(q - p, r - p);
+    let lower = cross(r - s, q - s);
+    let flat = dot(upper, lower) >= FLAT * length(upper) * length(lower);
+    return select(0u, limit, flat);
+}
+
+var<workgroup> tile_rates: array<u32, 64>;
+var<workgroup> tile_who: array<u32, 64>;
+// Least and greatest luma of each quad.
+var<workgroup> tile_range: array<vec2f, 64>;
+// Samples of each rate, and where they begin: alike ones lie together, so that lanes that light them side by side
+// have equally many pixels to read and write.
+var<workgroup> found_of: array<atomic<u32>, 5>;
+var<workgroup> starts: array<u32, 5>;
+var<workgroup> found_unknown: atomic<u32>;
+
+// Whether the four quads of a block are shaded as one.
+fn is_block(local: vec2u) -> bool {
+    let first = (local.y & 6u) * 8u + (local.x & 6u);
+    let others = array(first, first + 1u, first + 8u, first + 9u);
+    var together = 7u;
+    var range = tile_range[first];
+    var same = true;
+    for (var i = 0u; i < 4u; i++) {
+        let at = others[i];
+        together &= tile_rates[at];
+        same = same && tile_who[at] == tile_who[first];
+        range = vec2f(min(range.x, tile_range[at].x), max(range.y, tile_range[at].y));
+    }
+    let alike = range.y - range.x <= rates.threshold * (0.5 * (range.x + range.y) + DARK);
+    let wanted = (together & RATE_BLOCK) != 0u || (together == 3u && alike);
+    return same && wanted && (together & 3u) == 3u;
+}
+
+@compute @workgroup_size(8, 8)
+fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_id) local: vec3u) {
+    let at = local.y * 8u + local.x;
+    let size = textureDimensions(identity);
+    let quad = id.xy;
+    let first = quad * 2u;
+    let inside = all(first < size);
+    var rate = 0u;
+    var notes = 0u;
+    tile_who[at] = 0xffffffffu;
+    if inside {
+        let found = textureLoad(known, quad, 0);
+        let who = textureLoad(identity, first, 0).xy;
+        let motion = select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
+        let probed = (quad.x & rates.probe_mask) == rates.probe_x && (quad.y & rates.probe_mask) == rates.probe_y;
+        notes = select(0u, RATE_PROBED, probed) | select(RATE_UNKNOWN, 0u, found.w != 0u);
+        if notes == 0u {
+            rate = wished_rate(quad, found, motion);
+            // A level of 2 and more asks for blocks; they are found below.
+            rate &= surface_limit(first) | RATE_BLOCK;
+            rate = select(rate & 3u, rate, (rate & 3u) == 3u);
+        }
+        let l = unpack4x8unorm(found.x);
+        tile_who[at] = who.x;
+        tile_range[at] = vec2f(min(min(l.x, l.y), min(l.z, l.w)), max(max(l.x, l.y), max(l.z, l.w)));
+    }
+    tile_rates[at] = rate;
+    workgroupBarrier();
+    rate = select(rate & 3u, 7u, BLOCKS && is_block(local.xy));
+
+    var mine: array<u32, 4>;
+    var count = 0u;
+    if inside {
+        textureStore(mask, quad, vec4u(rate | notes, 0u, 0u, 0u));
+        for (var i = 0u; i < 4u; i++) {
+            let texel = first + vec2u(i & 1u, i >> 1u);
+            if all(texel < size) && stands_for_sample(texel, rate) {
+                mine[count] = texel.x | (texel.y << 16u);
+                count++;
+            }
+        }
+    }
+    var place = 0u;
+    if count > 0u {
+        place = atomicAdd(&found_of[min(rate, 4u)], count);
+    }
+    if (notes & RATE_UNKNOWN) != 0u {
+        atomicAdd(&found_unknown, 1u);
+    }
+    workgroupBarrier();
+    if at == 0u {
+        var sum = 0u;
+        for (var i = 0u; i < 5u; i++) {
+            let found = atomicLoad(&found_of[i]);
+            starts[i] = sum;
+            sum += found;
+            atomicAdd(&listed.of_rate[i], found);
+        }
+        let start = atomicAdd(&listed.count, sum);
+        for (var i = 0u; i < 5u; i++) {
+            starts[i] += start;
+        }
+        atomicAdd(&listed.unknown, atomicLoad(&found_unknown));
+    }
+    workgroupBarrier();
+    for (var i = 0u; i < count; i++) {
+        samples[starts[min(rate, 4u)] + place + i] = mine[i];
+    }
+}

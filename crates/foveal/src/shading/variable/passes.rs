@@ -1,0 +1,272 @@
+//! The passes that find rates and samples, and the one that lights samples.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::VariableTargets;
+use super::probes::Probe;
+use super::targets::{KNOWN_FORMAT, MASK_FORMAT};
+use crate::gpu::{
+    Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
+};
+use crate::rate::WishUniform;
+use crate::recorder::Recorder;
+use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::targets::Targets;
+use crate::{Contrast, RateCombine, RateSource, Settings, shader};
+
+/// Quads a side that one workgroup looks at.
+const TILE: u32 = 8;
+
+/// Mirrors `Rates` in `reproject.wgsl` and `mask.wgsl`, where the fields are explained.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct RatesUniform {
+    pub(crate) threshold: f32,
+    pub(crate) velocity_gain: f32,
+    pub(crate) probe_mask: u32,
+    pub(crate) probe_x: u32,
+    pub(crate) probe_y: u32,
+    pub(crate) reset: u32,
+    pub(crate) reserved_0: u32,
+    pub(crate) reserved_1: u32,
+}
+
+/// Finds rates and samples, and lights samples.
+#[derive(Debug)]
+pub(crate) struct RatePasses {
+    reproject: wgpu::ComputePipeline,
+    reproject_layout: wgpu::BindGroupLayout,
+    find: wgpu::ComputePipeline,
+    find_layout: wgpu::BindGroupLayout,
+    size: wgpu::ComputePipeline,
+    size_layout: wgpu::BindGroupLayout,
+    shade: wgpu::ComputePipeline,
+    shade_layout: wgpu::BindGroupLayout,
+    rates: wgpu::Buffer,
+    wish: wgpu::Buffer,
+}
+
+const fn written(format: wgpu::TextureFormat) -> wgpu::BindingType {
+    wgpu::BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    }
+}
+
+impl RatePasses {
+    pub(super) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        input: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let layout = |label, types: &[_]| {
+            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
+        };
+        let uint = sampled(wgpu::TextureSampleType::Uint);
+        let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
+        let depth = sampled(wgpu::TextureSampleType::Depth);
+        let (read, write) = (storage_read(), storage_write());
+        let known = written(KNOWN_FORMAT);
+        let mask = written(MASK_FORMAT);
+        let radiance = written(RADIANCE_FORMAT);
+        let reproject_layout = layout(
+            "reprojection",
+            &[uniform(), uint, depth, uint, uint, float, known],
+        );
+        let find_layout = layout(
+            "rate mask",
+            &[uniform(), uniform(), uint, depth, uint, mask, write, write],
+        );
+        let size_layout = layout("rate dispatch", &[write]);
+        let shade_layout = layout("rate samples", &[read, read, uint, radiance]);
+        let pipeline = |label, parts, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
+            let module = shader::module(gpu, label, parts);
+            shader::compute(gpu, label, &module, entry, groups, constants)
+        };
+        let buffer = |label, size: usize| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size: size as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let [model, assignment] = lighting_constants(settings);
+        let one_surface = f64::from(u8::from(settings.rate_stage.has_material()));
+        Self {
+            reproject: pipeline(
+                "reprojection",
+                shader::VARIABLE_REPROJECT,
+                "reproject",
+                &[frame, &reproject_layout],
+                &[],
+            ),
+            find: pipeline(
+                "rate mask",
+                shader::VARIABLE_MASK,
+                "find_rates",
+                &[frame, &find_layout],
+                &find_constants(settings),
+            ),
+            size: pipeline(
+                "rate dispatch",
+                shader::VARIABLE_SIZE,
+                "size_list",
+                &[&size_layout],
+                &[],
+            ),
+            shade: pipeline(
+                "rate samples",
+                shader::VARIABLE_SHADE,
+                "shade_samples",
+                &[frame, input, &shade_layout],
+                &[model, assignment, ("ONE_SURFACE", one_surface)],
+            ),
+            reproject_layout,
+            find_layout,
+            size_layout,
+            shade_layout,
+            rates: buffer("rates", size_of::<RatesUniform>()),
+            wish: buffer("rate wish", size_of::<WishUniform>()),
+        }
+    }
+
+    /// Encodes reprojection from the frame before, into what is known in `even` or odd frames, and from it the rates
+    /// and samples.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
+    pub(super) fn find_rates(
+        &self,
+        recorder: &mut Recorder<'_>,
+        settings: &Settings,
+        targets: &Targets,
+        t: &VariableTargets,
+        even: bool,
+        reset: bool,
+        probe: Probe,
+    ) {
+        let gpu = recorder.gpu;
+        let rates = RatesUniform {
+            threshold: settings.contrast_threshold,
+            velocity_gain: settings.velocity_gain,
+            probe_mask: probe.mask,
+            probe_x: probe.class[0],
+            probe_y: probe.class[1],
+            reset: u32::from(reset),
+            reserved_0: 0,
+            reserved_1: 0,
+        };
+        gpu.queue
+            .write_buffer(&self.rates, 0, bytemuck::bytes_of(&rates));
+        let wish = WishUniform::new(settings);
+        gpu.queue
+            .write_buffer(&self.wish, 0, bytemuck::bytes_of(&wish));
+        let [now, before] = [usize::from(!even), usize::from(even)].map(|i| &t.known[i]);
+        let gbuffer = &targets.gbuffer;
+        let finished = t.finished.as_ref().unwrap_or(&targets.picture_view);
+        let view = wgpu::BindingResource::TextureView;
+        let group =
+            |label, layout, resources: &[_]| bind_group(&gpu.device, label, layout, resources);
+        let reproject = group(
+            "reprojection",
+            &self.reproject_layout,
+            &[
+                self.rates.as_entire_binding(),
+                view(&gbuffer.identity_view),
+                view(&gbuffer.depth_view),
+                view(before),
+                view(&t.mask),
+                view(finished),
+                view(now),
+            ],
+        );
+        let find = group(
+            "rate mask",
+            &self.find_layout,
+            &[
+                self.wish.as_entire_binding(),
+                self.rates.as_entire_binding(),
+                view(&gbuffer.identity_view),
+                view(&gbuffer.depth_view),
+                view(now),
+                view(&t.mask),
+                t.listed.as_entire_binding(),
+                t.samples.as_entire_binding(),
+            ],
+        );
+        let listed = [t.listed.as_entire_binding()];
+        let size = group("rate dispatch", &self.size_layout, &listed);
+        let quads = t.mask.texture().size();
+        let tiles = [quads.width.div_ceil(TILE), quads.height.div_ceil(TILE)];
+        recorder.encoder.clear_buffer(&t.listed, 0, None);
+        {
+            let mut pass = recorder.compute_pass("reprojection");
+            pass.set_pipeline(&self.reproject);
+            pass.set_bind_group(1, &reproject, &[]);
+            pass.dispatch_workgroups(tiles[0], tiles[1], 1);
+        }
+        let mut pass = recorder.compute_pass("rate mask");
+        pass.set_pipeline(&self.find);
+        pass.set_bind_group(1, &find, &[]);
+        pass.dispatch_workgroups(tiles[0], tiles[1], 1);
+        pass.set_pipeline(&self.size);
+        pass.set_bind_group(0, &size, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
+    }
+
+    /// Encodes lighting of the samples into `radiance`.
+    pub(super) fn shade(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        t: &VariableTargets,
+        radiance: &wgpu::TextureView,
+    ) {
+        let group = bind_group(
+            &recorder.gpu.device,
+            "rate samples",
+            &self.shade_layout,
+            &[
+                t.samples.as_entire_binding(),
+                t.listed.as_entire_binding(),
+                wgpu::BindingResource::TextureView(&t.mask),
+                wgpu::BindingResource::TextureView(radiance),
+            ],
+        );
+        let mut pass = recorder.compute_pass("shading");
+        pass.set_pipeline(&self.shade);
+        pass.set_bind_group(1, input, &[]);
+        pass.set_bind_group(2, &group, &[]);
+        pass.dispatch_workgroups_indirect(&t.listed, 0);
+    }
+}
+
+fn find_constants(s: &Settings) -> [(&'static str, f64); 5] {
+    let source = |source| match source {
+        RateSource::Foveated => 0.0,
+        RateSource::Constant => 1.0,
+        // An image is refused by the settings' check.
+        RateSource::Image | RateSource::Content => 3.0,
+    };
+    let combine = match s.rate_combine {
+        RateCombine::First => 0.0,
+        RateCombine::Coarser => 1.0,
+        RateCombine::Finer => 2.0,
+    };
+    let contrast = match s.contrast {
+        Contrast::Quad => 0.0,
+        Contrast::Neighbors => 1.0,
+        Contrast::Sobel => 2.0,
+    };
+    [
+        ("SOURCE", source(s.rate)),
+        ("OTHER", source(s.rate_other)),
+        ("COMBINE", combine),
+        ("CONTRAST", contrast),
+        ("BLOCKS", f64::from(u8::from(s.rate_4x4))),
+    ]
+}

@@ -1,0 +1,68 @@
+//! What variable shading remembers and writes.
+
+use crate::gpu::{self, Gpu};
+use crate::output::PICTURE_FORMAT;
+use crate::{Settings, View};
+
+/// What is known of a quad: `reproject.wgsl`.
+pub(super) const KNOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+/// A quad's rate: `rates.wgsl`.
+pub(super) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Bytes of `Listed` in `mask.wgsl`.
+const LISTED_BYTES: u64 = 64;
+
+/// The targets of one frame size.
+#[derive(Debug)]
+pub(crate) struct VariableTargets {
+    /// What is known of each quad: of even and of odd frames.
+    pub(super) known: [wgpu::TextureView; 2],
+    /// Each quad's rate.
+    pub(crate) mask: wgpu::TextureView,
+    /// The samples, `x | y << 16` of their upper left pixels.
+    pub(super) samples: wgpu::Buffer,
+    /// The dispatch that covers them, and their numbers.
+    pub(crate) listed: wgpu::Buffer,
+    /// The finished frame, where the picture shows rates over it.
+    pub(crate) finished: Option<wgpu::TextureView>,
+    bytes: u64,
+}
+
+impl VariableTargets {
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
+        let size = (settings.width, settings.height);
+        let quads = (size.0.div_ceil(2), size.1.div_ceil(2));
+        let written = wgpu::TextureUsages::STORAGE_BINDING;
+        let known = |label| gpu::target(gpu, label, quads, KNOWN_FORMAT, written);
+        let pixels = u64::from(size.0) * u64::from(size.1);
+        let buffer = |label, size, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage
+                    | wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_SRC
+                    | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            })
+        };
+        let shows_rates = matches!(settings.view, View::Rate | View::Shaded | View::Unknown);
+        let finished = shows_rates.then(|| {
+            let none = wgpu::TextureUsages::empty();
+            gpu::target(gpu, "finished frame", size, PICTURE_FORMAT, none)
+        });
+        let quads_bytes = u64::from(quads.0) * u64::from(quads.1) * (2 * 16 + 4);
+        Self {
+            known: [known("known of quads, even"), known("known of quads, odd")],
+            mask: gpu::target(gpu, "rate mask", quads, MASK_FORMAT, written),
+            samples: buffer("rate samples", pixels * 4, wgpu::BufferUsages::empty()),
+            listed: buffer("listed samples", LISTED_BYTES, wgpu::BufferUsages::INDIRECT),
+            bytes: quads_bytes + pixels * (4 + 4 * u64::from(finished.is_some())),
+            finished,
+        }
+    }
+
+    /// Bytes of all of them.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
+    }
+}

@@ -1,0 +1,391 @@
+//! Variable shading on the device against its twins, against full shading, and against time.
+
+use foveal_scene::{Camera, Scene, generate};
+use glam::{UVec2, Vec2, Vec3};
+
+use super::probes::{Probe, Probes};
+use super::twin::{self, Seen};
+use crate::gpu::read_buffer;
+use crate::shading::twin::{shade, unpack_surface};
+use crate::testing::{f32_of_half, gpu, picture, small, texels};
+use crate::{
+    Contrast, Frame, FrameStats, Geometry, RateCombine, RateSource, RateStage, Renderer, Settings,
+    Shading, View,
+};
+
+/// Odd sizes; the last is smaller than a quad.
+const SIZES: [(u32, u32); 3] = [(157, 101), (64, 48), (1, 1)];
+
+fn scene() -> Scene {
+    let mut scene = generate::cornell();
+    generate::add_point_lights(&mut scene, 8, 5);
+    scene
+}
+
+fn variable(size: (u32, u32)) -> Settings {
+    Settings {
+        shading: Shading::Variable,
+        rate: RateSource::Content,
+        force_rate: true,
+        ..small(size.0, size.1)
+    }
+}
+
+/// A renderer with a scene, and the camera of its last frame.
+struct Film {
+    renderer: Renderer,
+    last: Option<Camera>,
+}
+
+impl Film {
+    fn new(scene: &Scene, settings: &Settings) -> Self {
+        pollster::block_on(async {
+            let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+            renderer.set_scene(scene).await.unwrap();
+            Self {
+                renderer,
+                last: None,
+            }
+        })
+    }
+
+    fn draw(&mut self, camera: &Camera) -> FrameStats {
+        let frame = Frame {
+            camera,
+            previous_camera: self.last.as_ref(),
+        };
+        let stats = pollster::block_on(self.renderer.render(&frame)).unwrap();
+        self.last = Some(camera.clone());
+        stats
+    }
+
+    fn mask(&self) -> Vec<u32> {
+        texels(&self.renderer.targets().variable.as_ref().unwrap().mask)
+    }
+
+    /// What is known after `frames` frames.
+    fn known(&self, frames: u32) -> Vec<[u32; 4]> {
+        let t = self.renderer.targets().variable.as_ref().unwrap();
+        texels(&t.known[usize::from(frames.is_multiple_of(2))])
+    }
+
+    fn seen(&self) -> Seen {
+        let s = self.renderer.settings();
+        let g = &self.renderer.targets().gbuffer;
+        Seen {
+            size: UVec2::new(s.width, s.height),
+            identity: texels(&g.identity_view),
+            depth: texels(&g.depth_view),
+        }
+    }
+
+    fn radiance(&self) -> Vec<[u16; 4]> {
+        texels(&self.renderer.targets().radiance_view)
+    }
+}
+
+fn shifted(camera: &Camera, x: f32) -> Camera {
+    let mut camera = camera.clone();
+    camera.world_from_view.w_axis.x += x;
+    camera
+}
+
+/// Values that differ; a rounded one may fall to either side of a threshold.
+fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).filter(|(a, b)| a != b).count()
+}
+
+#[test]
+fn reprojection_rates_and_samples_equal_their_twins() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    for size in SIZES {
+        for (contrast, rate_4x4, step) in [
+            (Contrast::Quad, false, 0.0),
+            (Contrast::Neighbors, true, 0.02),
+            (Contrast::Sobel, true, 0.1),
+        ] {
+            let settings = Settings {
+                contrast,
+                rate_4x4,
+                ..variable(size)
+            };
+            let mut film = Film::new(&scene, &settings);
+            let mut probes = Probes::default();
+            film.draw(camera);
+            probes.next();
+            let mut rates_seen = [0; 8];
+            for frame in 1..6 {
+                let [now, previous] = [frame, frame - 1].map(|f| shifted(camera, step * f as f32));
+                let (before, mask) = (film.known(frame), film.mask());
+                let shown: Vec<[u8; 4]> = picture(&film.renderer).as_chunks().0.to_vec();
+                film.draw(&now);
+                if step != 0.0 {
+                    probes.disturb();
+                }
+                let probe = probes.next();
+                let seen = film.seen();
+                let known = film.known(frame + 1);
+                let twin = twin::reproject(&seen, [&now, &previous], &before, &mask, &shown);
+                let quads = known.len();
+                let same_luma = |a: &[u32; 4], b: &[u32; 4]| {
+                    let bytes = a[0].to_le_bytes().into_iter().zip(b[0].to_le_bytes());
+                    a[1] == b[1]
+                        && a[3] == b[3]
+                        && bytes.fold(0, |m, (a, b)| m.max(a.abs_diff(b))) <= 1
+                };
+                let off = known.iter().zip(&twin).filter(|(a, b)| !same_luma(a, b));
+                let off = off.count();
+                assert!(off <= quads / 200, "{off} of {quads} known otherwise");
+                let mask = film.mask();
+                let twin = twin::rates(&settings, &seen, &now, &known, probe);
+                let off = differing(&mask, &twin);
+                assert!(off <= quads / 400, "{off} of {quads} rates, {contrast:?}");
+                mask.iter().for_each(|m| rates_seen[*m as usize & 7] += 1);
+
+                let t = film.renderer.targets().variable.as_ref().unwrap();
+                let words = |buffer| -> Vec<u32> {
+                    let bytes = pollster::block_on(read_buffer(gpu(), buffer)).unwrap();
+                    bytemuck::pod_collect_to_vec(&bytes)
+                };
+                let count = words(&t.listed)[3];
+                let mut listed = words(&t.samples)[..count as usize].to_vec();
+                listed.sort_unstable();
+                assert_eq!(listed, twin::samples(&mask, seen.size));
+            }
+            if size.0 > 100 {
+                let wanted = if rate_4x4 { 5 } else { 4 };
+                let found = rates_seen.iter().filter(|&&n| n > 0).count();
+                assert_eq!(found, wanted, "{rates_seen:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    for rate_combine in [RateCombine::Coarser, RateCombine::Finer] {
+        let settings = Settings {
+            rate_other: RateSource::Foveated,
+            rate_combine,
+            rate_4x4: true,
+            fovea_inner: 0.2,
+            fovea_outer: 0.5,
+            ..variable(SIZES[0])
+        };
+        let mut film = Film::new(&scene, &settings);
+        film.draw(camera);
+        film.draw(camera);
+        let twin = twin::rates(&settings, &film.seen(), camera, &film.known(2), Probe::NONE);
+        let mask = film.mask();
+        assert!(differing(&mask, &twin) <= mask.len() / 400);
+        assert!(mask.iter().any(|m| m & 7 == 0) && mask.iter().any(|m| m & 3 == 3));
+    }
+}
+
+#[test]
+fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    for size in SIZES {
+        let settings = Settings {
+            rate_4x4: true,
+            ..variable(size)
+        };
+        let full = {
+            let mut film = Film::new(&scene, &small(size.0, size.1));
+            film.draw(camera);
+            film.radiance()
+        };
+        let mut film = Film::new(&scene, &settings);
+        film.draw(camera);
+        assert!(film.radiance() == full, "the first frame is shaded in full");
+        let stats = film.draw(camera);
+        let (mask, radiance, seen) = (film.mask(), film.radiance(), film.seen());
+        let words: Vec<[u32; 4]> = texels(&film.renderer.targets().gbuffer.surface_view);
+        let lights = film.renderer.lights().1;
+        let mut coarse = 0;
+        for sample in twin::samples(&mask, seen.size) {
+            let first = UVec2::new(sample & 0xffff, sample >> 16);
+            let quad = first / 2;
+            let extent = twin::extent(mask[(quad.y * size.0.div_ceil(2) + quad.x) as usize]);
+            let end = (first + extent).min(seen.size);
+            let at = |x, y| (y * size.0 + x) as usize;
+            let color = radiance[at(first.x, first.y)];
+            let pixels: Vec<usize> = (first.y..end.y)
+                .flat_map(|y| (first.x..end.x).map(move |x| at(x, y)))
+                .collect();
+            assert!(pixels.iter().all(|&i| radiance[i] == color), "at {first}");
+            if pixels.len() == 1 {
+                assert_eq!(color, full[pixels[0]], "at {first}");
+                continue;
+            }
+            coarse += 1;
+            // Surfaces of the box are plain: their average is each of them but for the normals of the balls.
+            let normals = pixels
+                .iter()
+                .map(|&i| unpack_surface(words[i], Vec3::ZERO).normal);
+            let same = normals
+                .clone()
+                .all(|n| n.dot(normals.clone().next().unwrap()) > 0.999_999);
+            if !same {
+                continue;
+            }
+            let depth = pixels.iter().map(|&i| seen.depth[i]).sum::<f32>() / pixels.len() as f32;
+            let centre = 0.5 * (first + end).as_vec2();
+            let expected = shade(
+                &scene,
+                camera,
+                lights,
+                settings.lighting,
+                Vec2::new(size.0 as f32, size.1 as f32),
+                centre,
+                words[pixels[0]],
+                depth,
+            );
+            let shown = Vec3::new(
+                f32_of_half(color[0]),
+                f32_of_half(color[1]),
+                f32_of_half(color[2]),
+            );
+            assert!(
+                (shown - expected).abs().max_element() <= 0.01 * expected.max_element().max(0.02),
+                "at {first}: {shown}, not {expected}"
+            );
+        }
+        assert!(size.0 < 100 || coarse > 1000, "{coarse} coarse samples");
+        let samples = twin::samples(&mask, seen.size).len() as u64;
+        assert_eq!(stats.shaded_samples, samples);
+        let stats = stats.variable.unwrap();
+        assert_eq!(stats.samples_per_rate.iter().sum::<u64>(), samples);
+    }
+}
+
+#[test]
+fn a_still_camera_has_a_constant_mask_and_picture_from_the_third_frame_on() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    for (stage, contrast) in [
+        (RateStage::Lighting, Contrast::Quad),
+        (RateStage::Both, Contrast::Neighbors),
+        (RateStage::Material, Contrast::Sobel),
+    ] {
+        let settings = Settings {
+            geometry: Geometry::Visibility,
+            rate_stage: stage,
+            contrast,
+            ..variable((93, 61))
+        };
+        let mut film = Film::new(&scene, &settings);
+        for _ in 0..3 {
+            film.draw(camera);
+        }
+        let (mask, shown) = (film.mask(), picture(&film.renderer));
+        assert!(mask.contains(&3) && mask.contains(&0));
+        for frame in 4..=100 {
+            film.draw(camera);
+            assert!(film.mask() == mask, "mask of frame {frame}, {stage:?}");
+            assert!(picture(&film.renderer) == shown, "frame {frame}, {stage:?}");
+        }
+    }
+}
+
+#[test]
+fn after_a_walk_and_back_the_mask_is_that_of_a_fresh_start_within_eight_frames() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    for stage in [RateStage::Lighting, RateStage::Both] {
+        let settings = Settings {
+            geometry: Geometry::Visibility,
+            rate_stage: stage,
+            contrast: Contrast::Neighbors,
+            ..variable(SIZES[0])
+        };
+        let mut fresh = Film::new(&scene, &settings);
+        for _ in 0..3 {
+            fresh.draw(camera);
+        }
+        let mut film = Film::new(&scene, &settings);
+        let mut coarse_on_the_way = 0;
+        for frame in 0..=24u16 {
+            let x = 0.03 * f32::from(12 - frame.abs_diff(12));
+            film.draw(&shifted(camera, x));
+            coarse_on_the_way += film.mask().iter().filter(|&&m| m & 7 != 0).count();
+        }
+        assert!(coarse_on_the_way > 10_000, "the walk must be coarse");
+        assert!(film.mask() != fresh.mask(), "the walk must leave traces");
+        for _ in 0..8 {
+            film.draw(camera);
+        }
+        assert!(film.mask() == fresh.mask(), "{stage:?}");
+        assert!(picture(&film.renderer) == picture(&fresh.renderer));
+    }
+}
+
+#[test]
+fn measuring_anew_cannot_change_the_mask_of_a_still_picture() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let mut film = Film::new(&scene, &variable(SIZES[0]));
+    for _ in 0..3 {
+        film.draw(camera);
+    }
+    let mask = film.mask();
+    for frame in 0..20 {
+        // The scene takes the same pose again: quads are probed in turns.
+        pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+        film.draw(camera);
+        let now = film.mask();
+        assert!(now.iter().any(|m| m & twin::PROBED != 0));
+        let kept = now.iter().zip(&mask);
+        assert!(
+            kept.clone()
+                .all(|(now, then)| now & twin::PROBED != 0 || now == then),
+            "frame {frame}"
+        );
+    }
+}
+
+#[test]
+fn what_does_not_follow_the_frame_before_starts_afresh() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let mut film = Film::new(&scene, &variable(SIZES[0]));
+    film.draw(camera);
+    let stats = film.draw(camera);
+    assert!(stats.variable.unwrap().unknown_fraction < 0.01);
+    // A cut: the camera before is not the one of the last frame.
+    film.last = Some(shifted(camera, 1.0));
+    let stats = film.draw(camera);
+    assert!((stats.variable.unwrap().unknown_fraction - 1.0).abs() < 1e-9);
+    assert!(film.mask().iter().all(|&m| m == twin::UNKNOWN));
+    film.draw(camera);
+    pollster::block_on(film.renderer.set_scene(&scene)).unwrap();
+    let stats = film.draw(camera);
+    assert!((stats.variable.unwrap().unknown_fraction - 1.0).abs() < 1e-9);
+    let settings = variable((99, 71));
+    pollster::block_on(film.renderer.set_settings(&settings)).unwrap();
+    let stats = film.draw(camera);
+    assert!((stats.variable.unwrap().unknown_fraction - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn views_of_the_rates_do_not_change_the_rates() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let masks = [View::Final, View::Rate, View::Shaded, View::Unknown].map(|view| {
+        let settings = Settings {
+            view,
+            ..variable(SIZES[0])
+        };
+        let mut film = Film::new(&scene, &settings);
+        for _ in 0..4 {
+            film.draw(camera);
+        }
+        film.mask()
+    });
+    assert!(masks.iter().all(|m| *m == masks[0]));
+}
