@@ -6,6 +6,8 @@
 
 mod drawing;
 mod inbox;
+#[cfg(test)]
+mod tests;
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};

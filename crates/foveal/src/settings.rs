@@ -171,8 +171,8 @@ settings! {
             /// Objects that look smaller are not drawn, by the same measure; Intel's sample takes 0.01. Above 0 the
             /// picture changes
             occludee_size: f32 = 0.0, "Object size", Kind::Number { least: 0.0, most: 1.0 };
-            /// Pixels of the picture per pixel of the occlusion buffer and axis. Up to 4 nothing that the picture shows is
-            /// culled; above, gaps as thin as a pixel may be taken for closed
+            /// Pixels of the picture per pixel of the occlusion buffer and axis. 4 tests at the picture's own pixel
+            /// centres, so that the picture stays the same to the bit; more may take gaps as thin as a pixel for closed
             occlusion_scale: u8 = 4, "Buffer scale", Kind::Integer { least: 1, most: 16 };
             /// Threads that rasterize occluders; 0: as many as there are
             culling_threads: u8 = 0, "Threads", Kind::Integer { least: 0, most: 32 };

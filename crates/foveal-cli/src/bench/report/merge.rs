@@ -11,12 +11,21 @@ pub(super) fn passes(bench: &Bench, passes: &[Vec<Value>]) -> Value {
     let Some(first) = passes.first() else {
         return json!([]);
     };
+    let mut labels: Vec<String> = Vec::new();
     let rows = first.iter().enumerate().map(|(i, row)| {
         let Some(columns) = row.as_object() else {
             return row.clone();
         };
         let mut merged = Map::new();
-        merged.insert("label".to_owned(), label(bench, columns).into());
+        let plain = label(bench, columns);
+        // A bench that has come to tell its rows apart by more than is known here shall not confuse anybody.
+        let same = labels.iter().filter(|label| **label == plain).count();
+        labels.push(plain.clone());
+        let label = match same {
+            0 => plain,
+            _ => format!("{plain}, row {}", i + 1),
+        };
+        merged.insert("label".to_owned(), label.into());
         let mut spread = Map::new();
         for (key, value) in columns {
             let all: Vec<f64> = passes

@@ -242,7 +242,7 @@ pub(super) const BENCHES: &[Bench] = &[
         sized: true,
         variants: &[],
         rows: own_rows,
-        label: &["mode", "pattern", "samples", "edge_test"],
+        label: &["mode", "pattern", "samples", "edge_test", "geometry"],
         columns: &[
             percent("edge_fraction", "edges %"),
             column("shaded_samples", "shaded samples", 0),

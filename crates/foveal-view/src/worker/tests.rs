@@ -1,0 +1,165 @@
+//! The thread as the window sees it: requests in, news out. Needs a graphics adapter.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use anyhow::bail;
+use foveal::{Culling, Settings, Shading};
+use foveal_scene::generate;
+
+use super::{News, Request, Shown, Worker};
+use crate::{Host, Loaded};
+
+fn worker() -> Worker {
+    let load = |name: &str| {
+        if name == "bad" {
+            bail!("there is no scene 'bad'");
+        }
+        let scene = generate::cornell();
+        let camera = scene.cameras[0].clone();
+        Ok(Loaded { scene, camera })
+    };
+    let host = Host {
+        scene: "cornell".to_owned(),
+        generated: Vec::new(),
+        settings: Settings::default(),
+        fit: false,
+        adapter: None,
+        window: (1, 1),
+        load: Box::new(load),
+        read_settings: |_| bail!("no files here"),
+        rate_image: |_| Ok(None),
+        flags: |_| Vec::new(),
+    };
+    Worker::start(Arc::new(host), || ()).expect("threads can be started")
+}
+
+fn request() -> Request {
+    Request {
+        settings: Settings {
+            width: 64,
+            height: 40,
+            culling: Culling::Occlusion,
+            ..Settings::default()
+        },
+        reference: None,
+        camera: generate::cornell().cameras[0].clone(),
+        frozen: false,
+        boxes: true,
+        depth: true,
+        time_s: 0.0,
+        always: false,
+    }
+}
+
+/// The first news that `wanted` takes.
+fn next<T>(worker: &Worker, mut wanted: impl FnMut(News) -> Option<T>) -> T {
+    let start = Instant::now();
+    loop {
+        if let Some(found) = worker.news().find_map(&mut wanted) {
+            return found;
+        }
+        assert!(start.elapsed() < Duration::from_secs(60), "no news");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+fn picture(worker: &Worker) -> Box<Shown> {
+    next(worker, |news| match news {
+        News::Picture(shown) => Some(shown),
+        News::Failed(cause) => panic!("{cause}"),
+        _ => None,
+    })
+}
+
+fn failure(worker: &Worker) -> String {
+    next(worker, |news| match news {
+        News::Failed(cause) => Some(cause),
+        _ => None,
+    })
+}
+
+#[test]
+fn errors_are_news_and_work_goes_on() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.draw(request());
+    let shown = picture(&worker);
+    assert_eq!((shown.picture.width, shown.picture.height), (64, 40));
+    assert_eq!(shown.picture.bytes.len(), 64 * 40 * 4);
+    let found = shown.culling.expect("culling is on");
+    assert_eq!(shown.boxes.len() as u64, found.stats.occludees);
+    let depth = shown.depth.expect("depth was asked for");
+    assert_eq!((depth.width, depth.height), found.buffer);
+    assert_eq!(depth.near_over_distance.len(), 16 * 10);
+
+    worker.load("bad".to_owned());
+    assert!(failure(&worker).contains("'bad'"));
+    // What no device can do is an error too, after which there is a new device with the old scene.
+    let too_large = Settings {
+        width: 1 << 20,
+        ..request().settings
+    };
+    worker.draw(Request {
+        settings: too_large,
+        ..request()
+    });
+    assert!(failure(&worker).contains("width"));
+    worker.draw(request());
+    assert_eq!(picture(&worker).picture.bytes, shown.picture.bytes);
+}
+
+#[test]
+fn the_reference_is_drawn_beside_and_flip_tells_them_apart() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    let compared = |chosen: Settings| {
+        worker.draw(Request {
+            settings: chosen,
+            reference: Some(request().settings),
+            ..request()
+        });
+        next(&worker, |news| match news {
+            News::Picture(shown) => shown.flip.map(|flip| (flip, shown.reference.is_some())),
+            News::Failed(cause) => panic!("{cause}"),
+            _ => None,
+        })
+    };
+    assert_eq!(compared(request().settings), (0.0, true));
+    let coarse = Settings {
+        shading: Shading::Coarse,
+        fovea_inner: 0.0,
+        ..request().settings
+    };
+    let (flip, _) = compared(coarse);
+    assert!(flip > 0.0, "{flip}");
+}
+
+#[test]
+fn frozen_culling_stays_as_it_was_found() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.draw(request());
+    let before = picture(&worker).culling;
+    let mut behind = request();
+    behind.frozen = true;
+    // Looking away, all would be outside.
+    behind.camera.world_from_view *= glam::Mat4::from_rotation_y(std::f32::consts::PI);
+    worker.draw(behind.clone());
+    let frozen = next(&worker, |news| match news {
+        News::Picture(shown) if shown.camera == behind.camera => Some(shown.culling),
+        _ => None,
+    });
+    let counts = |found: &Option<foveal::CullingFigures>| found.map(|found| found.stats);
+    assert_eq!(counts(&frozen), counts(&before));
+    behind.frozen = false;
+    worker.draw(behind);
+    let thawed = next(&worker, |news| match news {
+        News::Picture(shown) if counts(&shown.culling) != counts(&before) => Some(shown.culling),
+        _ => None,
+    });
+    let outside = |found: &Option<foveal::CullingFigures>| {
+        found.map_or(0, |found| found.stats.occludees_outside)
+    };
+    assert!(outside(&thawed) > outside(&before));
+}
