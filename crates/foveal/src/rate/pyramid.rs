@@ -212,6 +212,23 @@ mod tests {
     }
 
     #[test]
+    fn a_picture_of_4096_x_4096_is_tiled_once() {
+        for (patch, balance) in [(3, false), (6, true)] {
+            let side = 4096;
+            let wishes = patches(side, side, patch, 77);
+            let pyramid = MinPyramid::new(side, &wishes, 8, balance);
+            let area: u64 = (0..9).map(|l| pyramid.tiles()[l] << (2 * l)).sum();
+            assert_eq!(area, u64::from(side).pow(2));
+            for (index, &wish) in (0..).zip(&wishes).step_by(97) {
+                let (x, y) = (index % side, index / side);
+                let owners = (0..=8).filter(|&l| pyramid.owns(l, x >> l, y >> l)).count();
+                assert_eq!(owners, 1, "{x}, {y}");
+                assert!(pyramid.owner_level(x, y) <= wish);
+            }
+        }
+    }
+
+    #[test]
     fn a_uniform_wish_is_met_even_at_odd_borders() {
         let pyramid = MinPyramid::new(513, &vec![8; 513 * 257], 8, false);
         assert_eq!(pyramid.tiles(), [0, 0, 0, 0, 0, 0, 0, 0, 6]);

@@ -47,7 +47,7 @@ pub(crate) fn geometry_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     bind_group_layout(
         &gpu.device,
         "geometry",
-        wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
+        wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::COMPUTE,
         &[storage_read(); 4],
     )
 }
