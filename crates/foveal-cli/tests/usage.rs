@@ -10,7 +10,7 @@ fn wrong_words_are_usage_errors() {
         "",
         "paint",
         "render",
-        "render -o a.png --stereo instanced",
+        "render -o a.png --stereo sideways",
         "render -o a.png --view sideways",
         "render -o a.png --lighting phong",
         "render -o a.png --size 12",

@@ -6,6 +6,7 @@ use glam::{Mat4, Vec3};
 
 use crate::Settings;
 use crate::lights::ClusterGrid;
+use crate::stereo::{Eye, EyeLayout};
 
 /// First column of a right eye that there is not: beyond every target.
 const NO_STRIDE: u32 = 1 << 30;
@@ -25,22 +26,16 @@ pub(crate) struct ViewUniform {
 }
 
 impl ViewUniform {
-    fn new(camera: &Camera, previous: &Camera, aspect: f32) -> Self {
-        let clip_from_view = camera.clip_from_view(aspect);
-        let (x, y) = (clip_from_view.x_axis.x, clip_from_view.y_axis.y);
-        let shift = match camera.projection {
-            Projection::Perspective { .. } => clip_from_view.z_axis,
-            Projection::Orthographic { .. } => -clip_from_view.w_axis,
-        };
+    fn new(eye: &Eye, previous: &Eye, cluster_shift: [u32; 2]) -> Self {
         Self {
-            clip_from_world: camera.clip_from_world(aspect).to_cols_array_2d(),
-            previous_clip_from_world: previous.clip_from_world(aspect).to_cols_array_2d(),
-            world_from_view: camera.world_from_view.to_cols_array_2d(),
-            view_from_ndc: [1.0 / x, 1.0 / y, shift.x / x, shift.y / y],
-            eye: camera.eye().to_array(),
-            cluster_shift_x: 0.0,
-            forward: forward(&camera.world_from_view).to_array(),
-            cluster_shift_y: 0.0,
+            clip_from_world: eye.clip_from_world().to_cols_array_2d(),
+            previous_clip_from_world: previous.clip_from_world().to_cols_array_2d(),
+            world_from_view: eye.world_from_view.to_cols_array_2d(),
+            view_from_ndc: eye.view_from_ndc(),
+            eye: eye.position().to_array(),
+            cluster_shift_x: cluster_shift[0] as f32,
+            forward: forward(&eye.world_from_view).to_array(),
+            cluster_shift_y: cluster_shift[1] as f32,
         }
     }
 }
@@ -70,18 +65,20 @@ impl FrameUniform {
     pub(crate) fn new(
         settings: &Settings,
         camera: &Camera,
-        previous: &Camera,
+        eyes: &[Eye; 2],
+        previous: &[Eye; 2],
         environment: &Environment,
         clusters: &ClusterGrid,
     ) -> Self {
-        let aspect = settings.width as f32 / settings.height as f32;
-        let size = [settings.width as f32, settings.height as f32];
+        let layout = EyeLayout::of(settings);
+        let (target_width, target_height) = layout.target_size();
+        let view = |i: usize| ViewUniform::new(&eyes[i], &previous[i], clusters.shifts[i]);
         let (orthographic, near, depth_range) = match camera.projection {
             Projection::Perspective { near_m, .. } => (0, near_m, 0.0),
             Projection::Orthographic { near_m, far_m, .. } => (1, near_m, far_m - near_m),
         };
         Self {
-            views: [ViewUniform::new(camera, previous, aspect); 2],
+            views: [view(0), view(1)],
             zenith: environment.zenith.to_array(),
             near,
             horizon: environment.horizon.to_array(),
@@ -90,10 +87,14 @@ impl FrameUniform {
             cluster_near: clusters.near_m,
             cluster_counts: clusters.counts,
             cluster_scale: clusters.slices_per_doubling,
-            size,
-            target_size: size,
+            size: [layout.width as f32, layout.height as f32],
+            target_size: [target_width as f32, target_height as f32],
             cluster_tile: clusters.tile_px as f32,
-            eye_stride: NO_STRIDE,
+            eye_stride: if layout.eyes == 1 {
+                NO_STRIDE
+            } else {
+                layout.stride
+            },
             exposure: settings.exposure.exp2(),
             orthographic,
         }

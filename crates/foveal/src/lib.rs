@@ -25,6 +25,7 @@ mod settings;
 mod shader;
 mod shading;
 mod stats;
+mod stereo;
 mod targets;
 #[cfg(test)]
 mod testing;
@@ -37,7 +38,10 @@ pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer, Target};
 pub use settings::{
     Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Contrast, Culling, EdgeTest,
-    Geometry, Kind, LightAssignment, LightingModel, RateCombine, RateSource, RateStage,
-    RefineEdges, SamplePattern, Setting, Settings, Shading, ToneMap, View, variant_names,
+    EyeClipping, Geometry, Kind, LensProfile, LightAssignment, LightingModel, Output, RateCombine,
+    RateSource, RateStage, RefineEdges, SamplePattern, Setting, Settings, Shading, Stereo, ToneMap,
+    View, variant_names,
 };
-pub use stats::{AdapterStats, CoarseStats, FrameStats, SceneStats, Timing, VariableStats};
+pub use stats::{
+    AdapterStats, CoarseStats, FrameStats, SceneStats, StereoStats, Timing, VariableStats,
+};

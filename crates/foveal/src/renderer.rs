@@ -13,11 +13,12 @@ use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
 use crate::lights::{ClusterGrid, LightAssigner};
-use crate::output::{OverlayPass, PresentPass, ToneMapPass, ViewPass};
+use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{CoarseShading, Plan, Samples, ShadingPass, VariableStage};
+use crate::stereo::{Eye, EyeLayout, LensFit, Submission, eyes};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings, Shading};
 use figures::{Counts, InFlight};
@@ -63,6 +64,29 @@ pub struct Renderer {
     in_flight: Option<InFlight>,
 }
 
+/// What a frame is seen with.
+struct Seen {
+    eyes: [Eye; 2],
+    eyes_before: [Eye; 2],
+    lenses: Option<[LensFit; 2]>,
+}
+
+impl Seen {
+    /// # Errors
+    /// [`Error::Setting`] where a camera or a lens makes no sense.
+    fn new(settings: &Settings, frame: &Frame<'_>) -> Result<Self, Error> {
+        let eyes_now = eyes(settings, frame.camera)?;
+        Ok(Self {
+            eyes: eyes_now,
+            eyes_before: match frame.previous_camera {
+                Some(before) => eyes(settings, before)?,
+                None => eyes_now,
+            },
+            lenses: LensFit::of(settings, &eyes_now)?,
+        })
+    }
+}
+
 /// What depends on the settings.
 #[derive(Debug)]
 struct Stages {
@@ -78,6 +102,9 @@ struct Stages {
     forward: ForwardPass,
     tone_map: ToneMapPass,
     view: Option<ViewPass>,
+    eyes_shown: Option<EyesPass>,
+    /// How eyes are submitted, and why so.
+    submission: (Submission, String),
 }
 
 /// What stands in for shading every pixel.
@@ -122,21 +149,25 @@ impl Stages {
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let frame = frame_bindings.layout();
         let shading = ShadingPass::new(gpu, settings, frame);
+        let layout = EyeLayout::of(settings);
+        let (submission, reason) = Submission::choose(gpu, settings);
         let stages = Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings)?,
             targets: Targets::new(gpu, settings),
-            lights: LightAssigner::new(gpu, frame),
-            geometry: GeometryPass::new(gpu, settings, frame, material_layout),
+            lights: LightAssigner::new(gpu, layout.eyes, frame),
+            geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
             variable: (settings.shading == Shading::Variable)
                 .then(|| VariableStage::new(gpu, settings, frame, shading.input_layout())),
             shading,
-            forward: ForwardPass::new(gpu, settings, frame, material_layout),
+            forward: ForwardPass::new(gpu, settings, submission, frame, material_layout),
             tone_map: ToneMapPass::new(gpu, settings, frame),
             view: ViewPass::new(gpu, settings.view, frame),
+            eyes_shown: EyesPass::new(gpu, settings, frame),
+            submission: (submission, reason),
         };
         trap.finish().await?;
         Ok(stages)
@@ -281,9 +312,10 @@ impl Renderer {
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`].
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
+        let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
-        let submitted = self.submit(frame, None, &mut cpu);
+        let submitted = self.submit(frame, &seen, None, &mut cpu);
         trap.finish().await?;
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
@@ -314,9 +346,10 @@ impl Renderer {
         target: Target<'_>,
     ) -> Result<Option<FrameStats>, Error> {
         let finished = self.finished()?;
+        let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
-        let submitted = self.submit(frame, Some(target), &mut cpu);
+        let submitted = self.submit(frame, &seen, Some(target), &mut cpu);
         if self.in_flight.is_none() {
             self.in_flight = Some(InFlight::new(&self.gpu, submitted, &self.counters(), cpu));
         }
@@ -328,6 +361,7 @@ impl Renderer {
     fn submit(
         &mut self,
         frame: &Frame<'_>,
+        seen: &Seen,
         target: Option<Target<'_>>,
         cpu: &mut CpuTimer,
     ) -> FrameStats {
@@ -356,6 +390,8 @@ impl Renderer {
             forward,
             tone_map,
             view,
+            eyes_shown,
+            submission: _,
         } = stages;
         let plan = match variable {
             Some(variable) if settings.view.is_lit() => variable.plan(),
@@ -371,7 +407,8 @@ impl Renderer {
             }
             Some(culling) => {
                 let size = (settings.width, settings.height);
-                culling.cull(&scene.culling, frame.camera, size, *clock)
+                let eyes = settings.is_stereo().then_some(&seen.eyes);
+                culling.cull(&scene.culling, frame.camera, eyes, size, *clock)
             }
             None => CullingCounts {
                 visible: scene.stats.objects,
@@ -381,19 +418,23 @@ impl Renderer {
         cpu.stage("culling");
 
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
-        draw_list.build(scene, frame.camera.eye(), is_visible);
+        draw_list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
         geometry.prepare(gpu, scene, draw_list);
         forward.prepare(gpu, draw_list);
         cpu.stage("draw list");
 
-        let clusters =
-            ClusterGrid::new(settings.width, settings.height, frame.camera, &scene.lights);
+        let clusters = ClusterGrid::new(
+            &EyeLayout::of(settings),
+            &seen.eyes,
+            frame.camera,
+            &scene.lights,
+        );
         lights.reserve(gpu, &clusters);
-        let before = frame.previous_camera.unwrap_or(frame.camera);
         let uniform = FrameUniform::new(
             settings,
             frame.camera,
-            before,
+            &seen.eyes,
+            &seen.eyes_before,
             &scene.environment,
             &clusters,
         );
@@ -420,6 +461,7 @@ impl Renderer {
             geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
         }
         if let (Some(variable), true) = (variable.as_mut(), plan.active) {
+            let before = frame.previous_camera.unwrap_or(frame.camera);
             variable.find_rates(recorder, settings, targets, frame.camera, before);
             if let (Some(t), true) = (&targets.variable, settings.rate_stage.has_material()) {
                 let mut evaluate =
@@ -439,9 +481,10 @@ impl Renderer {
         {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
             if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
+                let lens = seen.lenses.as_ref().map(|lenses| &lenses[0]);
                 coarse
                     .rate_map
-                    .draw(recorder, settings, &targets.gbuffer, &tiles.rate);
+                    .draw(recorder, settings, lens, &targets.gbuffer, &tiles.rate);
                 coarse.shading.shade(recorder, &input, tiles);
                 coarse.composite.join(recorder, targets, tiles);
             } else if let (Some(variable), true) = (
@@ -477,8 +520,11 @@ impl Renderer {
                 overlay.draw(recorder, tiles, &targets.picture_view);
             }
         }
+        if let Some(eyes_shown) = eyes_shown {
+            eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
+        }
         if let Some(target) = target {
-            present.present(recorder, &targets.picture_view, target);
+            present.present(recorder, targets.shown(), target);
         }
         timer.resolve(&mut encoder);
         cpu.stage("encode");
@@ -489,13 +535,14 @@ impl Renderer {
         self.submitted(culled, cpu)
     }
 
-    /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes, alpha 255.
+    /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
+    /// [`Settings::picture_size`], alpha 255.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
         let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
-        let bytes = read_texture(&self.gpu, self.stages.targets.picture_view.texture()).await;
+        let bytes = read_texture(&self.gpu, self.stages.targets.shown().texture()).await;
         trap.finish().await?;
         bytes
     }

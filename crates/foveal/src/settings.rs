@@ -7,6 +7,7 @@ use crate::Error;
 
 mod coarse;
 mod define;
+mod stereo;
 mod variable;
 
 pub use coarse::{
@@ -14,6 +15,7 @@ pub use coarse::{
 };
 use define::settings;
 pub use define::{Kind, Setting, variant_names};
+pub use stereo::{EyeClipping, LensProfile, Output, Stereo};
 pub use variable::{Contrast, Geometry, RateStage};
 
 /// Which objects are drawn.
@@ -150,7 +152,7 @@ settings! {
     #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
     pub struct Settings {
         "Picture" {
-            /// Width in pixels, 1 up to the device's limit
+            /// Width of one eye's picture in pixels, 1 up to the device's limit
             width: u32 = 1280, "Width", Kind::Integer { least: 1, most: 16384 };
             /// Height in pixels, 1 up to the device's limit
             height: u32 = 720, "Height", Kind::Integer { least: 1, most: 16384 };
@@ -181,6 +183,8 @@ settings! {
             /// How the G-buffer is filled: by the rasterizer, or by a visibility buffer whose materials are evaluated once
             /// per pixel; the picture is the same but for rounding
             geometry: Geometry = Geometry::default(), "Path", Kind::choice::<Geometry>();
+            /// Whether equal meshes with equal materials become instances of one draw
+            merge_draws: bool = true, "Merge draws", Kind::Switch;
         }
         "Lighting" {
             /// How surfaces reflect light
@@ -253,6 +257,27 @@ settings! {
             rate_4x4: bool = false, "4x4", Kind::Switch;
             /// Goes on where it costs more than it saves, which else turns it off
             force_rate: bool = false, "Force", Kind::Switch;
+        }
+        "Stereo" {
+            /// Whether there are two eyes, and how their geometry is submitted: each draw once for both (instanced), or once
+            /// per eye (two-pass, the reference)
+            stereo: Stereo = Stereo::default(), "Eyes", Kind::choice::<Stereo>();
+            /// What keeps an eye's instances out of the other's half: a clip plane, or discarding
+            eye_clipping: EyeClipping = EyeClipping::default(), "Clipping", Kind::choice::<EyeClipping>();
+            /// Distance between the eyes in metres
+            ipd: f32 = 0.063, "Eye distance", Kind::Number { least: 0.0, most: 0.2 };
+            /// Distance in metres at which a point straight ahead has the same place in both pictures
+            convergence: f32 = 2.0, "Convergence", Kind::Number { least: 0.1, most: 20.0 };
+            /// The eyes' frusta in place of the camera's, as tangents: left, right, bottom and top border of the left eye,
+            /// then of the right, with commas between
+            eye_tangents: String = String::new(), "Frusta", Kind::Text;
+            /// How far the right eye's gaze lies from the left one's, as fractions of the picture
+            gaze_shift: [f32; 2] = [0.0, 0.0], "Gaze shift", Kind::Place;
+            /// How the picture shows what both eyes see
+            show: Output = Output::default(), "Output", Kind::choice::<Output>();
+            /// The lens of the headset output: cardboard-v2, cardboard-v1, dk1, ideal, or its coefficients k1,k2,k3 and, if
+            /// need be, red's c0,c1 and blue's
+            lens: String = "cardboard-v2".to_owned(), "Lens", Kind::Text;
         }
     }
 }
@@ -333,6 +358,7 @@ impl Settings {
         }
         coarse::validate(self)?;
         variable::validate(self)?;
+        stereo::validate(self, limits)?;
         crate::antialias::validate(self, limits)
     }
 }

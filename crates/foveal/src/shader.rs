@@ -10,6 +10,8 @@ const SURFACE: &str = include_str!("shared/surface.wgsl");
 const LIGHT: &str = include_str!("shared/light.wgsl");
 const LIGHTING: &str = include_str!("shared/lighting.wgsl");
 const VERTEX: &str = include_str!("shared/vertex.wgsl");
+const VERTEX_CLIPPED: &str = include_str!("shared/vertex_clipped.wgsl");
+const ENABLE_CLIP_DISTANCES: &str = "enable clip_distances;";
 const MATERIAL: &str = include_str!("shared/material.wgsl");
 const SAMPLE_IMPLICIT: &str = include_str!("shared/sample_implicit.wgsl");
 const SAMPLE_GRADIENTS: &str = include_str!("shared/sample_gradients.wgsl");
@@ -90,6 +92,17 @@ pub(crate) const RESOLVE_FURTHER: Parts = &[
     include_str!("antialias/further.wgsl"),
     include_str!("geometry/visibility/resolve.wgsl"),
 ];
+/// As [`GBUFFER`], with a clip plane between the eyes.
+pub(crate) const GBUFFER_CLIPPED: Parts = &[
+    ENABLE_CLIP_DISTANCES,
+    FRAME,
+    SURFACE,
+    VERTEX,
+    VERTEX_CLIPPED,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    include_str!("geometry/gbuffer.wgsl"),
+];
 pub(crate) const CLUSTERS: Parts = &[FRAME, LIGHT, include_str!("lights/clusters.wgsl")];
 pub(crate) const SHADE_EVERY_PIXEL: Parts = &[
     FRAME,
@@ -117,6 +130,20 @@ pub(crate) const FORWARD: Parts = &[
     MATERIAL,
     include_str!("forward/forward.wgsl"),
 ];
+/// As [`FORWARD`], with a clip plane between the eyes.
+pub(crate) const FORWARD_CLIPPED: Parts = &[
+    ENABLE_CLIP_DISTANCES,
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    VERTEX,
+    VERTEX_CLIPPED,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    include_str!("forward/forward.wgsl"),
+];
+pub(crate) const SHOW_EYES: Parts = &[FRAME, include_str!("output/eyes.wgsl")];
 pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("output/tone_map.wgsl")];
 pub(crate) const PRESENT: Parts = &[FRAME, include_str!("output/present.wgsl")];
 pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];

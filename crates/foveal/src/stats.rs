@@ -93,12 +93,21 @@ pub struct VariableStats {
     pub notice: String,
 }
 
+/// How two eyes were drawn.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct StereoStats {
+    /// `two-pass`, `instanced-clip` or `instanced-discard`.
+    pub mode: String,
+    /// Why it is this one.
+    pub reason: String,
+}
+
 /// One frame's figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FrameStats {
-    /// Width in pixels.
+    /// Width of the picture in pixels.
     pub width: u32,
-    /// Height in pixels.
+    /// Height of the picture in pixels.
     pub height: u32,
     /// CPU time per stage, in the order of the frame. Empty without a clock.
     pub cpu_ms: Vec<Timing>,
@@ -130,6 +139,9 @@ pub struct FrameStats {
     /// With variable shading.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub variable: Option<VariableStats>,
+    /// With two eyes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stereo: Option<StereoStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
     pub frame_ms: f64,
 }

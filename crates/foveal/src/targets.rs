@@ -5,6 +5,7 @@ use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT, VariableTargets};
+use crate::stereo::EyeLayout;
 use crate::{Antialiasing, Settings, Shading};
 
 /// G-buffer, radiance, picture.
@@ -16,8 +17,10 @@ pub(crate) struct Targets {
     pub(crate) gbuffer: GBuffer,
     /// Linear radiance, before exposure.
     pub(crate) radiance_view: wgpu::TextureView,
-    /// The picture.
+    /// The eyes' pictures.
     pub(crate) picture_view: wgpu::TextureView,
+    /// The picture as the output shows it, where that is not the same.
+    pub(crate) shown_view: Option<wgpu::TextureView>,
     /// What anti-aliasing needs besides.
     pub(crate) samples: Option<SampleTargets>,
     /// With coarse shading.
@@ -29,7 +32,7 @@ pub(crate) struct Targets {
 impl Targets {
     /// The targets for settings that were found valid.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let (width, height) = (settings.width, settings.height);
+        let (width, height) = EyeLayout::of(settings).target_size();
         let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
         Self {
             gbuffer: GBuffer::new(gpu, settings.geometry, width, height),
@@ -39,6 +42,10 @@ impl Targets {
                 wgpu::TextureUsages::STORAGE_BINDING,
             ),
             picture_view: target("picture", PICTURE_FORMAT, wgpu::TextureUsages::empty()),
+            shown_view: settings.is_stereo().then(|| {
+                let (size, none) = (settings.picture_size(), wgpu::TextureUsages::empty());
+                gpu::target(gpu, "shown picture", size, PICTURE_FORMAT, none)
+            }),
             samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
             coarse: (settings.shading == Shading::Coarse)
                 .then(|| CoarseTargets::new(gpu, settings)),
@@ -47,15 +54,21 @@ impl Targets {
         }
     }
 
+    /// The picture as it is shown.
+    pub(crate) fn shown(&self) -> &wgpu::TextureView {
+        self.shown_view.as_ref().unwrap_or(&self.picture_view)
+    }
+
     /// Bytes of all targets.
     pub(crate) fn bytes(&self) -> u64 {
-        let size = self.picture_view.texture().size();
-        u64::from(size.width) * u64::from(size.height) * BYTES_PER_PIXEL
-            + self
-                .gbuffer
-                .visibility
-                .as_ref()
-                .map_or(0, VisibilityTargets::bytes)
+        let texels = |view: &wgpu::TextureView| {
+            let size = view.texture().size();
+            u64::from(size.width) * u64::from(size.height)
+        };
+        let visibility = self.gbuffer.visibility.as_ref();
+        texels(&self.picture_view) * BYTES_PER_PIXEL
+            + self.shown_view.as_ref().map_or(0, texels) * 4
+            + visibility.map_or(0, VisibilityTargets::bytes)
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
             + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)
             + self.variable.as_ref().map_or(0, VariableTargets::bytes)

@@ -1,8 +1,9 @@
 //! Arguments of `foveal render`, and which of them exclude each other.
 
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
+use foveal::Settings;
 use glam::Vec3;
 
 use super::settings_args::SettingsArgs;
@@ -17,9 +18,10 @@ pub(crate) struct Args {
     #[arg(default_value = crate::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
-    /// The PNG file to write; for --frames with the number's place in it: frame_####.png or {frame}.png
-    #[arg(short, long, value_name = "FILE.png")]
-    pub(super) output: PathBuf,
+    /// The PNG file to write; for --frames with the number's place in it: frame_####.png or {frame}.png. Given once
+    /// more: how the picture shows what both eyes see, as --show does
+    #[arg(short, long, value_name = "FILE.png|HOW", required = true)]
+    output: Vec<PathBuf>,
 
     #[command(flatten)]
     pub(super) settings: SettingsArgs,
@@ -109,16 +111,43 @@ pub(crate) struct FrameArgs {
 }
 
 impl Args {
+    /// The file to write, and what else `--output` names.
+    fn outputs(&self) -> (Option<&Path>, Option<&str>) {
+        let names = foveal::variant_names::<foveal::Output>();
+        let is_name = |output: &&PathBuf| names.iter().any(|name| output.as_os_str() == *name);
+        let file = self.output.iter().find(|output| !is_name(output));
+        let shown = self.output.iter().find(is_name);
+        (file.map(PathBuf::as_path), shown.and_then(|s| s.to_str()))
+    }
+
+    /// The file to write; empty where none is given.
+    pub(super) fn output(&self) -> &Path {
+        self.outputs().0.unwrap_or(Path::new(""))
+    }
+
+    /// The settings that hold.
+    pub(super) fn settings(&self) -> anyhow::Result<Settings> {
+        let mut settings = self.settings.clone();
+        if let Some(shown) = self.outputs().1 {
+            settings.given.insert("show".to_owned(), shown.into());
+        }
+        settings.resolve()
+    }
+
     /// Finds what clap cannot: contradictions between the values of several arguments.
     pub(super) fn check(&self) -> anyhow::Result<()> {
+        let (file, shown) = self.outputs();
+        if self.output.len() != usize::from(file.is_some()) + usize::from(shown.is_some()) {
+            return usage("--output names one PNG file, and at most one way to show it");
+        }
         if self
-            .output
+            .output()
             .extension()
             .is_none_or(|e| !e.eq_ignore_ascii_case("png"))
         {
             return usage(format!(
                 "'{}' must end in .png: pictures are written as PNG",
-                self.output.display()
+                self.output().display()
             ));
         }
         if let (Some(eye), Some(target)) = (self.camera.eye, self.camera.target) {
@@ -135,7 +164,7 @@ impl Args {
         if self
             .stats
             .as_ref()
-            .is_some_and(|stats| *stats == self.output)
+            .is_some_and(|stats| stats == self.output())
         {
             return usage("--stats and --output name the same file");
         }

@@ -41,7 +41,7 @@ use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunS
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     now_ms();
     args.check()?;
-    let settings = args.settings.resolve()?;
+    let settings = args.settings()?;
     let wanted = jobs(args)?;
     let total = wanted.len();
     let jobs: Vec<FrameJob> = wanted
@@ -83,7 +83,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         program_version: env!("CARGO_PKG_VERSION"),
         command: CommandStats {
             scene: args.scene.clone(),
-            output: args.output.display().to_string(),
+            output: args.output().display().to_string(),
             fps: args.frames.fps,
             point_lights: args.point_lights,
             light_seed: args.light_seed,
@@ -115,13 +115,13 @@ fn jobs(args: &Args) -> anyhow::Result<Vec<FrameJob>> {
     let fps = args.frames.fps;
     match &args.frames.frames {
         Some(range) => {
-            let pattern = FramePattern::parse(&args.output)?;
+            let pattern = FramePattern::parse(args.output())?;
             Ok(frame_files::sequence(range.clone(), fps, &pattern))
         }
         None => Ok(vec![frame_files::still(
             args.frames.time.unwrap_or(0.0),
             fps,
-            &args.output,
+            args.output(),
         )]),
     }
 }

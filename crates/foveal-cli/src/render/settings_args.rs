@@ -9,7 +9,7 @@ use clap::builder::{
     BoolValueParser, PossibleValuesParser, RangedI64ValueParser, TypedValueParser, ValueParser,
 };
 use clap::{Arg, ArgMatches, Command, value_parser};
-use foveal::{Kind, Setting, Settings};
+use foveal::{Kind, LensProfile, Setting, Settings};
 use toml::{Table, Value};
 
 use crate::values;
@@ -89,6 +89,11 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
             "X,Y",
             ValueParser::new(|text: &str| values::vec2(text).map(|at| Value::from(at.to_vec()))),
         ),
+        Kind::Text if setting.key == "lens" => ("NAME|FILE.toml", ValueParser::new(lens)),
+        Kind::Text => (
+            "TEXT",
+            ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
+        ),
         Kind::File => (
             "FILE.png",
             ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
@@ -99,9 +104,29 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
         .value_name(value_name)
         .value_parser(parser)
         .allow_negative_numbers(matches!(setting.kind, Kind::Number { .. }))
-        .allow_hyphen_values(matches!(setting.kind, Kind::Number { .. } | Kind::Place))
+        .allow_hyphen_values(matches!(
+            setting.kind,
+            Kind::Number { .. } | Kind::Place | Kind::Text
+        ))
         .help(format!("{}{default}", setting.help))
         .help_heading(setting.stage)
+}
+
+/// What `--lens` names; a file's coefficients go into the settings themselves.
+fn lens(text: &str) -> Result<Value, String> {
+    if !text.to_lowercase().ends_with(".toml") {
+        return Ok(Value::from(text));
+    }
+    let wrong = |cause: &dyn std::fmt::Display| format!("the lens file '{text}': {cause}");
+    let file = std::fs::read_to_string(text).map_err(|e| wrong(&e))?;
+    let LensProfile {
+        distortion,
+        red,
+        blue,
+    } = toml::from_str(&file).map_err(|e: toml::de::Error| wrong(&e))?;
+    let numbers = distortion.iter().chain(&red).chain(&blue);
+    let numbers: Vec<String> = numbers.map(ToString::to_string).collect();
+    Ok(Value::from(numbers.join(",")))
 }
 
 /// What `--rate` names.

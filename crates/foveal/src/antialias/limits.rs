@@ -1,6 +1,7 @@
 //! Which anti-aliasing settings make sense, and which fit a device.
 
 use super::targets::most_entries;
+use crate::stereo::EyeLayout;
 use crate::{Antialiasing, Error, SamplePattern, Settings, View};
 
 /// Largest side of a grid.
@@ -45,7 +46,8 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
     if settings.aa == Antialiasing::Msaa && samples > MAX_MSAA {
         return wrong("at most 16 with msaa");
     }
-    let longest = u64::from(settings.width.max(settings.height));
+    let (width, height) = EyeLayout::of(settings).target_size();
+    let longest = u64::from(width.max(height));
     let limit = u64::from(limits.max_texture_dimension_2d);
     if longest * u64::from(side) > limit {
         let fits = (limit / longest).min(u64::from(MAX_SIDE));
@@ -68,7 +70,8 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
 
 /// Shading every sub-sample lists every pixel.
 fn fits_buffers(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
-    let pixels = u64::from(settings.width) * u64::from(settings.height);
+    let (width, height) = EyeLayout::of(settings).target_size();
+    let pixels = u64::from(width) * u64::from(height);
     let most = most_entries(limits);
     if settings.aa == Antialiasing::Ssaa && pixels > most {
         return Err(Error::Limit {

@@ -6,6 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use crate::Settings;
 use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{Gpu, target};
+use crate::stereo::EyeLayout;
 
 use super::pattern::{Band, BandUniform, Pattern};
 use super::triangles::{FurtherTargets, band_of_triangles, by_triangles};
@@ -73,14 +74,14 @@ impl SampleTargets {
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let most = gpu.device.limits().max_texture_dimension_2d;
         let pattern = Pattern::of(settings);
-        let size = (settings.width, settings.height);
+        let size = EyeLayout::of(settings).target_size();
         let rows = pattern.rows_per_band(size, bytes_per_sample(settings), most);
         Self::in_bands(gpu, settings, rows)
     }
 
     /// The targets for bands of `rows` rows.
     pub(crate) fn in_bands(gpu: &Gpu, settings: &Settings, rows: u32) -> Self {
-        let (width, height) = (settings.width, settings.height);
+        let (width, height) = EyeLayout::of(settings).target_size();
         let pattern = Pattern::of(settings);
         let (texels_x, texels_y) = pattern.texels(width, rows);
         let tally_view = target(

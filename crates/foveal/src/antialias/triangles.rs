@@ -250,7 +250,7 @@ impl TriangleStage {
         targets: &Targets,
     ) {
         // The settings that lead here have both.
-        let (GeometryPass::Triangles(triangles), Some(further)) = (geometry, &t.further) else {
+        let (Some(triangles), Some(further)) = (geometry.triangles(), &t.further) else {
             return;
         };
         let size = targets.picture_view.texture().size();

@@ -8,6 +8,7 @@ use crate::gpu::{
 };
 use crate::recorder::Recorder;
 use crate::shading::{CoarseTargets, LevelNumbers};
+use crate::stereo::EyeLayout;
 use crate::targets::Targets;
 use crate::{Settings, shader};
 
@@ -55,7 +56,7 @@ impl PatchTargets {
         if coarsest == 0 {
             return None;
         }
-        let size = (settings.width, settings.height);
+        let size = EyeLayout::of(settings).target_size();
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
         let parts =
             PARTS.map(|format| MipChain::new(gpu, "patches", size, 1..=coarsest, format, usage));

@@ -206,18 +206,30 @@ impl CullingStage {
         }))
     }
 
-    /// Tests all objects for a picture of `width` x `height` pixels. A view that makes no sense culls nothing.
+    /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are two eyes: what is
+    /// hidden is hidden from both. A view that makes no sense culls nothing.
     pub(crate) fn cull(
         &mut self,
         scene: &CullingScene,
         camera: &Camera,
+        eyes: Option<&[crate::stereo::Eye; 2]>,
         (width, height): (u32, u32),
         clock: Option<Clock>,
     ) -> CullingCounts {
-        let view = View::mono(Eye {
-            world_from_eye: affine(camera.world_from_view),
-            projection: projection(camera, width, height, self.scale),
-        });
+        let view = match eyes {
+            None => View::mono(Eye {
+                world_from_eye: affine(camera.world_from_view),
+                projection: projection(camera, width, height, self.scale),
+            }),
+            // One result for both, so buffer pixels cannot lie on either's own.
+            Some(eyes) => {
+                let [left, right] = eyes.map(|eye| Eye {
+                    world_from_eye: affine(eye.world_from_view),
+                    projection: eye_projection(&eye, camera),
+                });
+                View::stereo(left, right)
+            }
+        };
         let options = FrameOptions {
             occlusion: self.occlusion,
             occluder_size_threshold: self.occluder_size,
@@ -288,6 +300,23 @@ impl CullingStage {
         self.results
             .get(object as usize)
             .is_none_or(|r| r.is_visible())
+    }
+}
+
+/// An eye's frustum; the near plane is the camera's.
+fn eye_projection(eye: &crate::stereo::Eye, camera: &Camera) -> Projection {
+    let [left, right, bottom, top] = eye.borders().map(f64::from);
+    let near_m = match camera.projection {
+        foveal_scene::Projection::Perspective { near_m, .. }
+        | foveal_scene::Projection::Orthographic { near_m, .. } => near_m,
+    };
+    Projection::Perspective {
+        left,
+        right,
+        bottom,
+        top,
+        near: near_m.into(),
+        far: f64::INFINITY,
     }
 }
 

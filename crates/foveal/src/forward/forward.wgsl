@@ -7,6 +7,9 @@
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
+    if is_beyond(in.now, in.instance) {
+        discard;
+    }
     let view = frame.views[view_at(in.clip.xy)];
     let distance = dot(in.world - view.world_from_view[3].xyz, view.forward);
     let radiance = min(lit(m.surface, in.clip.xy, distance), vec3f(65504.0));

@@ -3,11 +3,12 @@
 #[cfg(test)]
 pub(crate) mod twin;
 
-use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
 use crate::recorder::{Recorder, drawn_over};
 use crate::scene::SceneOnGpu;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
 use crate::{Settings, shader};
 
@@ -15,6 +16,8 @@ use crate::{Settings, shader};
 #[derive(Debug)]
 pub(crate) struct ForwardPass {
     pipelines: Pipelines,
+    submission: Submission,
+    layout: EyeLayout,
     lights_layout: wgpu::BindGroupLayout,
 }
 
@@ -22,6 +25,7 @@ impl ForwardPass {
     pub(crate) fn new(
         gpu: &Gpu,
         settings: &Settings,
+        submission: Submission,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
@@ -31,15 +35,21 @@ impl ForwardPass {
             wgpu::ShaderStages::FRAGMENT,
             &[storage_read(), storage_read()],
         );
+        let mut constants = lighting_constants(settings).to_vec();
+        constants.extend(submission.constants());
+        let parts = match submission {
+            Submission::Instanced { clips: true } => shader::FORWARD_CLIPPED,
+            _ => shader::FORWARD,
+        };
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "forward",
-            module: shader::module(gpu, "forward", shader::FORWARD),
+            module: shader::module(gpu, "forward", parts),
             layout: shader::pipeline_layout(
                 gpu,
                 "forward",
                 &[frame_layout, material_layout, &lights_layout],
             ),
-            vertex: VertexSource::Buffers("vertex"),
+            vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",
             targets: vec![Some(wgpu::ColorTargetState {
                 format: RADIANCE_FORMAT,
@@ -47,11 +57,13 @@ impl ForwardPass {
                 write_mask: wgpu::ColorWrites::ALL,
             })],
             writes_depth: false,
-            constants: lighting_constants(settings).to_vec(),
+            constants,
             has_mask: false,
         });
         Self {
             pipelines,
+            submission,
+            layout: EyeLayout::of(settings),
             lights_layout,
         }
     }
@@ -100,6 +112,11 @@ impl ForwardPass {
         );
         pass.set_bind_group(2, &lights, &[]);
         scene.geometry.bind(&mut pass);
-        DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines);
+        let (width, height) = self.layout.target_size();
+        for &drawn in self.submission.drawn() {
+            let window = self.layout.window_of(drawn, Window::sized(width, height));
+            window.set(&mut pass);
+            DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines, drawn);
+        }
     }
 }

@@ -7,6 +7,7 @@ use glam::Vec3;
 
 use super::{Faces, PipelineKey};
 use crate::scene::SceneOnGpu;
+use crate::stereo::Drawn;
 
 /// One draw: equal meshes with equal materials, `count` instances from `first` in [`DrawList::drawn`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -32,11 +33,13 @@ pub(crate) struct DrawList {
 }
 
 impl DrawList {
-    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`.
+    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`; where they `merge`,
+    /// equal ones become instances of one draw.
     pub(crate) fn build(
         &mut self,
         scene: &SceneOnGpu,
         eye: Vec3,
+        merge: bool,
         is_visible: impl Fn(u32) -> bool,
     ) {
         self.drawn.clear();
@@ -75,6 +78,7 @@ impl DrawList {
                 &mut self.solid,
                 &mut self.drawn,
                 scene,
+                merge,
                 &mut self.triangles,
                 Batch {
                     key,
@@ -105,6 +109,7 @@ impl DrawList {
                     &mut self.blended,
                     &mut self.drawn,
                     scene,
+                    merge,
                     &mut self.triangles,
                     Batch {
                         key,
@@ -123,6 +128,7 @@ impl DrawList {
         list: &mut Vec<Batch>,
         drawn: &mut Vec<u32>,
         scene: &SceneOnGpu,
+        merge: bool,
         triangles: &mut u64,
         batch: Batch,
     ) {
@@ -130,8 +136,9 @@ impl DrawList {
         let instance = batch.count;
         match list.last_mut() {
             Some(last)
-                if (last.key, last.material, last.mesh)
-                    == (batch.key, batch.material, batch.mesh) =>
+                if merge
+                    && (last.key, last.material, last.mesh)
+                        == (batch.key, batch.material, batch.mesh) =>
             {
                 last.count += 1;
             }
@@ -144,14 +151,15 @@ impl DrawList {
         drawn.push(instance);
     }
 
-    /// Issues `batches` into a pass that has bind group 0 and the geometry bound.
+    /// Issues `batches` into a pass that has bind group 0 and the geometry bound, `drawn` for one eye or both.
     pub(crate) fn issue(
         batches: &[Batch],
         pass: &mut wgpu::RenderPass<'_>,
         scene: &SceneOnGpu,
         pipelines: &super::Pipelines,
+        drawn: Drawn,
     ) {
-        Self::issue_with(batches, pass, scene, |key| pipelines.get(key), false);
+        Self::issue_with(batches, pass, scene, |key| pipelines.get(key), false, drawn);
     }
 
     /// As [`DrawList::issue`], with the pipeline that each key gets; `pulled`: the shader fetches the vertices.
@@ -161,6 +169,7 @@ impl DrawList {
         scene: &SceneOnGpu,
         pipeline: impl Fn(PipelineKey) -> &'p wgpu::RenderPipeline,
         pulled: bool,
+        drawn: Drawn,
     ) {
         let (mut key, mut material) = (None, None);
         for batch in batches {
@@ -174,7 +183,7 @@ impl DrawList {
             }
             let mesh = scene.geometry.mesh(batch.mesh);
             let indices = mesh.first_index..mesh.first_index + mesh.index_count;
-            let instances = batch.first..batch.first + batch.count;
+            let instances = drawn.range(batch.first, batch.count);
             if pulled {
                 pass.draw(indices, instances);
             } else {

@@ -7,6 +7,7 @@ use super::{
 use crate::gpu::{self, Gpu};
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
+use crate::stereo::{EyeLayout, Submission};
 use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, Shading, shader};
 
 /// Reversed: 1 at the near plane, 0 where nothing is.
@@ -58,13 +59,25 @@ pub(crate) struct Window {
 }
 
 impl Window {
+    /// The whole of a target of this size.
+    pub(crate) fn sized(width: u32, height: u32) -> Self {
+        Self {
+            frame: [0.0, 0.0, width as f32, height as f32],
+            part: [0, 0, width, height],
+        }
+    }
+
     /// The frame fills the target.
     fn whole(target: &GBuffer) -> Self {
         let size = target.depth_view.texture().size();
-        Self {
-            frame: [0.0, 0.0, size.width as f32, size.height as f32],
-            part: [0, 0, size.width, size.height],
-        }
+        Self::sized(size.width, size.height)
+    }
+
+    /// Restricts a pass to it.
+    pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>) {
+        let Self { frame, part } = self;
+        pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
+        pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
     }
 }
 
@@ -90,10 +103,18 @@ impl FaceNormals {
 
 /// Fills the G-buffer with opaque and masked surfaces.
 #[derive(Debug)]
-pub(crate) enum GeometryPass {
-    /// The rasterizer's fragments are surfaces.
+pub(crate) struct GeometryPass {
+    means: Means,
+    submission: Submission,
+    layout: EyeLayout,
+}
+
+/// What the rasterizer's fragments are.
+#[derive(Debug)]
+enum Means {
+    /// Surfaces.
     Surfaces(Pipelines),
-    /// The rasterizer's fragments are triangles, evaluated afterwards.
+    /// Triangles, evaluated afterwards.
     Triangles(Box<VisibilityPass>),
 }
 
@@ -101,51 +122,90 @@ impl GeometryPass {
     pub(crate) fn new(
         gpu: &Gpu,
         settings: &Settings,
+        submission: Submission,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let face_normals = FaceNormals::wanted_by(settings);
-        if settings.geometry == Geometry::Visibility {
-            // A rotated pattern draws the frame once per sample; there are at most 8.
-            let rotated =
-                settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
-            let windows = if rotated { settings.samples } else { 1 };
-            let further = crate::antialias::by_triangles(settings);
-            let rated = settings.shading == Shading::Variable && settings.rate_stage.has_material();
-            return Self::Triangles(Box::new(VisibilityPass::new(
+        let means = match settings.geometry {
+            Geometry::Visibility => {
+                // A rotated pattern draws the frame once per sample; there are at most 8.
+                let rotated =
+                    settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
+                let windows = if rotated { settings.samples } else { 1 };
+                let further = crate::antialias::by_triangles(settings);
+                let rated =
+                    settings.shading == Shading::Variable && settings.rate_stage.has_material();
+                Means::Triangles(Box::new(VisibilityPass::new(
+                    gpu,
+                    frame_layout,
+                    material_layout,
+                    FaceNormals::wanted_by(settings),
+                    windows,
+                    [further, rated],
+                    (submission, EyeLayout::of(settings)),
+                )))
+            }
+            Geometry::Gbuffer => Means::Surfaces(Self::surfaces(
                 gpu,
+                settings,
+                submission,
                 frame_layout,
                 material_layout,
-                face_normals,
-                windows,
-                [further, rated],
-            )));
+            )),
+        };
+        Self {
+            means,
+            submission,
+            layout: EyeLayout::of(settings),
         }
-        let face_normal = f64::from(u8::from(face_normals == FaceNormals::Written));
-        Self::Surfaces(Pipelines::new(PipelineRecipe {
+    }
+
+    fn surfaces(
+        gpu: &Gpu,
+        settings: &Settings,
+        submission: Submission,
+        frame_layout: &wgpu::BindGroupLayout,
+        material_layout: &wgpu::BindGroupLayout,
+    ) -> Pipelines {
+        let face_normals = FaceNormals::wanted_by(settings) == FaceNormals::Written;
+        let mut constants = submission.constants().to_vec();
+        constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
+        let parts = match submission {
+            Submission::Instanced { clips: true } => shader::GBUFFER_CLIPPED,
+            _ => shader::GBUFFER,
+        };
+        Pipelines::new(PipelineRecipe {
             label: "geometry",
-            module: shader::module(gpu, "geometry", shader::GBUFFER),
+            module: shader::module(gpu, "geometry", parts),
             layout: shader::pipeline_layout(gpu, "geometry", &[frame_layout, material_layout]),
-            vertex: VertexSource::Buffers("vertex"),
+            vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",
             targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],
             writes_depth: true,
-            constants: vec![("FACE_NORMAL", face_normal)],
+            constants,
             has_mask: true,
-        }))
+        })
+    }
+
+    /// The visibility buffer's passes, where they are used.
+    pub(crate) fn triangles(&self) -> Option<&VisibilityPass> {
+        match &self.means {
+            Means::Triangles(pass) => Some(pass),
+            Means::Surfaces(_) => None,
+        }
     }
 
     /// Makes the pipelines that `list` needs.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, scene: &SceneOnGpu, list: &DrawList) {
-        match self {
-            Self::Surfaces(pipelines) => {
+        match &mut self.means {
+            Means::Surfaces(pipelines) => {
                 let mut keys: Vec<PipelineKey> = list.solid.iter().map(|b| b.key).collect();
                 keys.dedup();
                 for key in keys {
                     pipelines.prepare(gpu, key);
                 }
             }
-            Self::Triangles(pass) => pass.prepare(gpu, scene, list),
+            Means::Triangles(pass) => pass.prepare(gpu, scene, list),
         }
     }
 
@@ -168,7 +228,7 @@ impl GeometryPass {
         list: &DrawList,
         target: &GBuffer,
     ) -> bool {
-        let Self::Triangles(pass) = self else {
+        let Means::Triangles(pass) = &self.means else {
             return false;
         };
         pass.draw_triangles(recorder, scene, list, target, &[Window::whole(target)]);
@@ -184,7 +244,7 @@ impl GeometryPass {
         target: &GBuffer,
         at: &Evaluation<'_>,
     ) {
-        if let Self::Triangles(pass) = self {
+        if let Means::Triangles(pass) = &self.means {
             pass.evaluate_at(recorder, scene, list, target, &[Window::whole(target)], at);
         }
     }
@@ -198,9 +258,9 @@ impl GeometryPass {
         target: &GBuffer,
         windows: &[Window],
     ) {
-        let pipelines = match self {
-            Self::Surfaces(pipelines) => pipelines,
-            Self::Triangles(pass) => {
+        let pipelines = match &self.means {
+            Means::Surfaces(pipelines) => pipelines,
+            Means::Triangles(pass) => {
                 return pass.draw_windows(recorder, scene, list, target, windows);
             }
         };
@@ -219,9 +279,12 @@ impl GeometryPass {
         let mut pass = recorder.render_pass("geometry", &colors, Some(depth));
         scene.geometry.bind(&mut pass);
         for &Window { frame, part } in windows {
-            pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
-            pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
-            DrawList::issue(&list.solid, &mut pass, scene, pipelines);
+            for &drawn in self.submission.drawn() {
+                self.layout
+                    .window_of(drawn, Window { frame, part })
+                    .set(&mut pass);
+                DrawList::issue(&list.solid, &mut pass, scene, pipelines, drawn);
+            }
         }
     }
 }

@@ -16,7 +16,7 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
     // Derivatives come first: a discarded neighbour has none.
     let face = cross(dpdx(in.world), dpdy(in.world));
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
-    if MASKED && m.alpha < material.alpha_cutoff {
+    if (MASKED && m.alpha < material.alpha_cutoff) || is_beyond(in.now, in.instance) {
         discard;
     }
     var words = pack_surface(m.surface);
@@ -26,6 +26,6 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
     }
     return GBufferOut(
         words,
-        vec2u(in.instance + 1u, pack2x16float(motion_in_pixels(in.now, in.before))),
+        vec2u((in.instance & ~RIGHT_EYE) + 1u, pack2x16float(motion_in_pixels(in.now, in.before))),
     );
 }

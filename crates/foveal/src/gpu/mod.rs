@@ -120,7 +120,9 @@ impl Gpu {
     /// Features that the renderer uses where they are there; none is required.
     #[must_use]
     pub fn wanted_features() -> wgpu::Features {
-        wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::PRIMITIVE_INDEX
+        wgpu::Features::TIMESTAMP_QUERY
+            | wgpu::Features::PRIMITIVE_INDEX
+            | wgpu::Features::CLIP_DISTANCES
     }
 
     /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.

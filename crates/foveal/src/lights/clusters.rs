@@ -6,6 +6,7 @@ use super::LightUniform;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, storage_write};
 use crate::recorder::Recorder;
 use crate::shader;
+use crate::stereo::{Eye, EyeLayout, cluster_shifts};
 
 /// Slices along the view axis.
 const SLICES: u32 = 24;
@@ -25,11 +26,21 @@ pub(crate) struct ClusterGrid {
     pub(crate) slices_per_doubling: f32,
     /// Lights that share the grid.
     pub(crate) light_count: u32,
+    /// Pixels by which each eye's picture lies to the right and below in the grid.
+    pub(crate) shifts: [[u32; 2]; 2],
 }
 
 impl ClusterGrid {
-    /// A grid for a target of `width` x `height` pixels that resolves the distances at which the lights are.
-    pub(crate) fn new(width: u32, height: u32, camera: &Camera, lights: &[LightUniform]) -> Self {
+    /// A grid for the eyes' pictures that resolves the distances at which the lights are.
+    pub(crate) fn new(
+        layout: &EyeLayout,
+        eyes: &[Eye; 2],
+        camera: &Camera,
+        lights: &[LightUniform],
+    ) -> Self {
+        let shifts = cluster_shifts(eyes, layout);
+        let width = layout.width + shifts[0][0].max(shifts[1][0]);
+        let height = layout.height + shifts[0][1].max(shifts[1][1]);
         let light_count = lights.len() as u32;
         let words = u64::from(light_count.div_ceil(32));
         let mut tile_px = 64;
@@ -61,6 +72,7 @@ impl ClusterGrid {
             near_m,
             slices_per_doubling,
             light_count,
+            shifts,
         }
     }
 
@@ -85,7 +97,8 @@ pub(crate) struct LightAssigner {
 }
 
 impl LightAssigner {
-    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
+    /// For a frame of one or two `eyes`.
+    pub(crate) fn new(gpu: &Gpu, eyes: u32, frame_layout: &wgpu::BindGroupLayout) -> Self {
         let layout = bind_group_layout(
             &gpu.device,
             "light assignment",
@@ -99,7 +112,7 @@ impl LightAssigner {
             &module,
             "assign",
             &[frame_layout, &layout],
-            &[],
+            &[("VIEWS", f64::from(eyes))],
         );
         Self {
             pipeline,

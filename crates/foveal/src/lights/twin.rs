@@ -6,6 +6,7 @@ use glam::{Vec2, Vec3};
 use super::{ClusterGrid, LightUniform};
 use crate::gpu::read_buffer;
 use crate::shading::twin::position_at;
+use crate::stereo::{EyeLayout, eyes};
 use crate::testing::{gpu, rendered, small};
 
 /// The cluster at a pixel position and a distance along the view axis.
@@ -26,7 +27,8 @@ fn assert_assignment(scene: &Scene, camera: &Camera) {
     let settings = small(320, 200);
     let renderer = rendered(scene, camera, &settings);
     let (assigner, lights) = renderer.lights();
-    let grid = ClusterGrid::new(settings.width, settings.height, camera, lights);
+    let eyes = eyes(&settings, camera).expect("a camera that makes sense");
+    let grid = ClusterGrid::new(&EyeLayout::of(&settings), &eyes, camera, lights);
     let bytes = pollster::block_on(read_buffer(gpu(), assigner.bits())).expect("read-back works");
     let bits: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     let size = Vec2::new(settings.width as f32, settings.height as f32);
@@ -102,7 +104,9 @@ fn a_grid_stays_small_however_many_lights_there_are() {
             };
             lights
         ];
-        let grid = ClusterGrid::new(width, height, &scene.cameras[0], &lights);
+        let (settings, camera) = (small(width, height), &scene.cameras[0]);
+        let eyes = eyes(&settings, camera).expect("a camera that makes sense");
+        let grid = ClusterGrid::new(&EyeLayout::of(&settings), &eyes, camera, &lights);
         assert!(grid.total_words() * 4 <= 32 << 20);
         assert!(grid.counts[0] * grid.tile_px >= width && grid.counts[1] * grid.tile_px >= height);
     }

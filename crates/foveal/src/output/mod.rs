@@ -1,5 +1,6 @@
 //! Output: what the picture shows, as 8-bit sRGB.
 
+mod eyes;
 mod overlay;
 mod present;
 mod tone_map;
@@ -7,6 +8,9 @@ mod tone_map;
 mod twin;
 mod view;
 
+pub(crate) use eyes::EyesPass;
+#[cfg(test)]
+pub(crate) use eyes::ShownUniform;
 pub(crate) use overlay::OverlayPass;
 pub(crate) use present::PresentPass;
 pub(crate) use tone_map::ToneMapPass;

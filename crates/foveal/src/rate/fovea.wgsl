@@ -5,7 +5,9 @@ struct Wish {
     gaze: array<vec4f, 2>,
     // Squared radii in pixels from which on levels 1 to 8 are wished.
     squared_radii: array<vec4f, 2>,
-    // Pixels of the target that belong to one eye.
+    // Squared tangents of the angle to the lens's axis from which on levels 1 to 8 are wished.
+    lens_squared_radii: array<vec4f, 2>,
+    // First column of the right eye.
     eye_width: f32,
     coarsest: u32,
     // Level of the constant source.
@@ -27,7 +29,10 @@ struct Wish {
 fn foveated_level(pixel: vec2f) -> u32 {
     let eye = u32(pixel.x >= wish.eye_width);
     let offset = pixel - wish.gaze[eye].xy;
-    let squared = vec4f(dot(offset, offset));
-    let beyond = vec4u(squared >= wish.squared_radii[0]) + vec4u(squared >= wish.squared_radii[1]);
+    return radii_below(dot(offset, offset), wish.squared_radii);
+}
+
+fn radii_below(squared: f32, squared_radii: array<vec4f, 2>) -> u32 {
+    let beyond = vec4u(vec4f(squared) >= squared_radii[0]) + vec4u(vec4f(squared) >= squared_radii[1]);
     return beyond.x + beyond.y + beyond.z + beyond.w;
 }

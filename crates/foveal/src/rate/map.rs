@@ -4,6 +4,7 @@ use super::{RateImage, WishUniform};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, uniform};
 use crate::recorder::{Recorder, overwritten};
+use crate::stereo::{EyeLayout, LensFit};
 use crate::{Settings, shader};
 
 /// A level, and whether a geometric edge lies in the block.
@@ -25,7 +26,7 @@ impl RateTargets {
     }
 
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = (settings.width, settings.height);
+        let size = EyeLayout::of(settings).target_size();
         // Level 0 tiles are found by their parent, so there is always one.
         let coarsest = u32::from(settings.coarsest_level).max(1);
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
@@ -125,11 +126,12 @@ impl RateMapPass {
         &self,
         recorder: &mut Recorder<'_>,
         settings: &Settings,
+        lens: Option<&LensFit>,
         gbuffer: &GBuffer,
         target: &RateTargets,
     ) {
         let gpu = recorder.gpu;
-        let uniform = WishUniform::new(settings);
+        let uniform = WishUniform::new(settings, lens);
         gpu.queue
             .write_buffer(&self.wish_uniform, 0, bytemuck::bytes_of(&uniform));
         let wish_group = bind_group(

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(test)]
 use super::RateImage;
+use crate::stereo::{EyeLayout, LensFit};
 use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
 
 /// Mirrors `Wish` in `rate/wish.wgsl`, where the fields are explained.
@@ -12,6 +13,7 @@ use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
 pub(crate) struct WishUniform {
     pub(crate) gaze: [[f32; 4]; 2],
     pub(crate) squared_radii: [[f32; 4]; 2],
+    pub(crate) lens_squared_radii: [[f32; 4]; 2],
     pub(crate) eye_width: f32,
     pub(crate) coarsest: u32,
     pub(crate) constant_level: u32,
@@ -26,19 +28,26 @@ pub(crate) struct WishUniform {
 const GRADED_BY: u8 = 2;
 
 impl WishUniform {
-    /// The uniform for one eye that fills the target.
-    pub(crate) fn new(s: &Settings) -> Self {
+    /// The uniform for these settings; `lens` is the left eye's where the output has one.
+    pub(crate) fn new(s: &Settings, lens: Option<&LensFit>) -> Self {
         let (width, height) = (s.width as f32, s.height as f32);
-        let gaze = [s.gaze[0] * width, s.gaze[1] * height, 0.0, 0.0];
+        let layout = EyeLayout::of(s);
+        let right = [0, 1].map(|axis| s.gaze[axis] + s.gaze_shift[axis]);
+        let gaze = |eye: u32, [x, y]: [f32; 2]| {
+            let first = (eye * layout.stride) as f32;
+            [first + x * width, y * height, 0.0, 0.0]
+        };
         let refine_up_to = match s.refine_edges {
             RefineEdges::Inner => s.coarsest_level / 2,
             RefineEdges::Graded | RefineEdges::Everywhere => s.coarsest_level,
             RefineEdges::Off => 0,
         };
         Self {
-            gaze: [gaze; 2],
+            gaze: [gaze(0, s.gaze), gaze(1, right)],
             squared_radii: squared_radii(s),
-            eye_width: width,
+            lens_squared_radii: lens
+                .map_or([[f32::MAX; 4]; 2], |lens| halves(lens.squared_radii())),
+            eye_width: layout.stride as f32,
             coarsest: u32::from(s.coarsest_level),
             constant_level: u32::from(s.rate_level),
             refine_up_to: u32::from(refine_up_to),
@@ -55,7 +64,7 @@ impl WishUniform {
         }
     }
 
-    /// The level that the pixel at (x, y) wishes, edges aside.
+    /// The level that the pixel at (x, y) of a picture without a lens wishes, edges aside.
     #[cfg(test)]
     pub(crate) fn level(&self, s: &Settings, x: u32, y: u32, image: Option<&RateImage>) -> u8 {
         let from = |source| match source {
@@ -68,6 +77,7 @@ impl WishUniform {
                 radii.iter().filter(|&&r| squared >= r).count() as u32
             }
             RateSource::Constant => self.constant_level,
+            RateSource::Lens => 0,
             RateSource::Image | RateSource::Content => image.map_or(0, |i| {
                 let (w, h) = i.size();
                 let texel = y * h / s.height * w + x * w / s.width;
@@ -91,6 +101,7 @@ pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
         RateSource::Constant => 1.0,
         // Content is refused by the settings' check.
         RateSource::Image | RateSource::Content => 2.0,
+        RateSource::Lens => 3.0,
     };
     let combine = match s.rate_combine {
         RateCombine::First => 0.0,
@@ -116,7 +127,10 @@ fn squared_radii(s: &Settings) -> [[f32; 4]; 2] {
         let r = inner + (outer - inner).max(0.0) * along;
         *radius = r * r;
     }
-    let [a, b, c, d, e, f, g, h] = radii;
+    halves(radii)
+}
+
+fn halves([a, b, c, d, e, f, g, h]: [f32; 8]) -> [[f32; 4]; 2] {
     [[a, b, c, d], [e, f, g, h]]
 }
 
@@ -134,7 +148,7 @@ mod tests {
             fovea_outer: 0.8,
             ..Settings::default()
         };
-        let uniform = WishUniform::new(&s);
+        let uniform = WishUniform::new(&s, None);
         let along: Vec<u8> = (0..1000).map(|x| uniform.level(&s, x, 0, None)).collect();
         assert!(along[..100].iter().all(|&l| l == 0));
         assert!(along[101..].iter().all(|&l| l > 0));
@@ -156,7 +170,7 @@ mod tests {
                 height: 1,
                 ..Settings::default()
             };
-            [0, 9].map(|x| WishUniform::new(&s).level(&s, x, 0, image.as_ref()))
+            [0, 9].map(|x| WishUniform::new(&s, None).level(&s, x, 0, image.as_ref()))
         };
         assert_eq!(level(RateCombine::First), [3, 3]);
         assert_eq!(level(RateCombine::Coarser), [3, 8]);

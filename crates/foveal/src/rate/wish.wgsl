@@ -1,7 +1,7 @@
 // The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level 1 of the
 // min-pyramid. After frame, surface, level, blocks and fovea.wgsl. Rust: `rate/wish.rs`.
 
-// 0 foveated, 1 constant, 2 image.
+// 0 foveated, 1 constant, 2 image, 3 lens.
 override SOURCE: u32 = 0u;
 override OTHER: u32 = 1u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
@@ -11,6 +11,12 @@ override COMBINE: u32 = 0u;
 @group(1) @binding(2) var gbuffer_surface: texture_2d<u32>;
 @group(1) @binding(3) var gbuffer_identity: texture_2d<u32>;
 @group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
+
+// How much coarser the screen is here than on the lens's axis.
+fn lens_level(pixel: vec2f) -> u32 {
+    let tangent = view_position(pixel, 1.0).xy;
+    return radii_below(dot(tangent, tangent), wish.lens_squared_radii);
+}
 
 // The picture is stretched over each eye's.
 fn image_texel(texel: vec2u) -> vec2u {
@@ -22,6 +28,7 @@ fn level_from(source: u32, texel: vec2u) -> u32 {
     switch source {
         case 0u: { return foveated_level(vec2f(texel) + 0.5); }
         case 1u: { return wish.constant_level; }
+        case 3u: { return lens_level(vec2f(texel) + 0.5); }
         default: { return textureLoad(rate_image, image_texel(texel), 0).x; }
     }
 }

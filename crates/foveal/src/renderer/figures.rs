@@ -1,10 +1,11 @@
 //! A frame's figures: what the CPU knows at once, and what the device counts and times.
 
-use super::Renderer;
+use super::{Renderer, Stages};
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingCounts;
 use crate::gpu::{Arriving, CpuTimer, Gpu, Handover, work_done};
 use crate::shading::CountPass;
+use crate::stereo::EyeLayout;
 use crate::{CoarseStats, Error, FrameStats, Timing};
 
 /// What the device counts, each where the settings ask for it.
@@ -88,18 +89,25 @@ impl Renderer {
 
     /// What the CPU knows of the frame that it has just submitted.
     pub(super) fn submitted(&self, culled: CullingCounts, cpu: &CpuTimer) -> FrameStats {
-        let settings = &self.stages.settings;
+        let Stages {
+            settings,
+            submission: (submission, reason),
+            ..
+        } = &self.stages;
+        let (width, height) = settings.picture_size();
+        let draws = (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64;
         FrameStats {
-            width: settings.width,
-            height: settings.height,
+            width,
+            height,
             cpu_ms: cpu.stages(),
             objects_visible: culled.visible,
             objects_outside: culled.outside,
             objects_occluded: culled.occluded,
             objects_small: culled.small,
             occluder_triangles: culled.occluder_triangles,
-            draws: (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64,
-            triangles: self.draw_list.triangles,
+            draws: draws * submission.passes(),
+            triangles: self.draw_list.triangles * u64::from(EyeLayout::of(settings).eyes),
+            stereo: submission.stats(reason),
             target_bytes: self.stages.targets.bytes(),
             ..FrameStats::default()
         }
@@ -167,7 +175,7 @@ impl Renderer {
         let bytes = counts.rates.as_deref();
         let variable = variable.map(|v| v.figures(&stages.settings, bytes, &gpu_ms));
         let stages = &self.stages;
-        let pixels = u64::from(stats.width) * u64::from(stats.height);
+        let pixels = EyeLayout::of(&stages.settings).pixels();
         let mut shaded_samples = match (&coarse, &variable) {
             (Some(coarse), _) => coarse.shaded_samples(),
             (None, Some(variable)) if stages.settings.rate_stage.has_lighting() => {
@@ -204,7 +212,7 @@ impl Renderer {
         let bytes = counts.tiles.as_ref()?;
         let settings = &self.stages.settings;
         let tiles = CountPass::tiles(bytes, settings.coarsest_level);
-        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let pixels = EyeLayout::of(settings).pixels();
         let coarse = self.stages.coarse.as_mut()?;
         Some(coarse.shading.stats(tiles, pixels, gpu_ms))
     }

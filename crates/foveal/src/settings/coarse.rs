@@ -45,6 +45,8 @@ pub enum RateSource {
     Image,
     /// The contrast of the frame before; for [`Shading::Variable`] alone.
     Content,
+    /// The lens of the headset output: coarser where the screen has fewer pixels.
+    Lens,
 }
 
 /// What becomes of the second source of wishes.

@@ -47,6 +47,8 @@ pub enum Kind {
     Place,
     /// The path of a PNG file.
     File,
+    /// Words or numbers, as the help says.
+    Text,
 }
 
 impl Kind {
@@ -178,7 +180,7 @@ mod tests {
                 Kind::Choice(names) => assert!(names().len() > 1, "{key}"),
                 Kind::Integer { least, most } => assert!(least < most, "{key}"),
                 Kind::Number { least, most } => assert!(least < most, "{key}"),
-                Kind::Switch | Kind::Place | Kind::File => {}
+                Kind::Switch | Kind::Place | Kind::File | Kind::Text => {}
             }
         }
     }

@@ -75,7 +75,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
                 "another one unless shading is variable",
             );
         }
-        if used && source == RateSource::Image && variable {
+        if used && matches!(source, RateSource::Image | RateSource::Lens) && variable {
             return wrong(
                 setting,
                 name(&source),

@@ -15,10 +15,13 @@ const ALL: &[(&str, Parts)] = &[
     ("variable size", VARIABLE_SIZE),
     ("variable shade", VARIABLE_SHADE),
     ("variable view", VARIABLE_VIEW),
+    ("gbuffer, clipped", GBUFFER_CLIPPED),
     ("clusters", CLUSTERS),
     ("shade every pixel", SHADE_EVERY_PIXEL),
     ("shade list", SHADE_LIST),
     ("forward", FORWARD),
+    ("forward, clipped", FORWARD_CLIPPED),
+    ("eyes", SHOW_EYES),
     ("tone map", TONE_MAP),
     ("present", PRESENT),
     ("view", VIEW),
@@ -59,9 +62,12 @@ fn every_shader_validates_without_optional_capabilities() {
         let module = parse(name, parts);
         // Packing to halves belongs to WebGPU itself; naga counts it as a capability.
         let mut capabilities = naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
-        // The one shader that has a stand-in for devices that cannot run it.
+        // These are used where the device has the feature; others stand in for them where not.
         if std::ptr::eq(*parts, VISIBLE_INDEXED) {
             capabilities |= naga::valid::Capabilities::PRIMITIVE_INDEX;
+        }
+        if name.ends_with(", clipped") {
+            capabilities |= naga::valid::Capabilities::CLIP_DISTANCES;
         }
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
             .validate(&module)
@@ -336,6 +342,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         [
             gaze,
             squared_radii,
+            lens_squared_radii,
             eye_width,
             coarsest,
             constant_level,
@@ -345,6 +352,12 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             reserved_1,
             reserved_2
         ]
+    );
+    assert_same_layout!(
+        SHOW_EYES,
+        "Shown",
+        crate::output::ShownUniform,
+        [screen, distortion, fringe]
     );
     assert_same_layout!(
         CLUSTERS,

@@ -33,10 +33,54 @@ struct VertexOut {
     @location(2) tangent: vec4f,
     @location(3) uv: vec4f,
     @location(4) color: vec4f,
+    // The instance's number; the highest bit tells the eye.
     @location(5) @interpolate(flat) instance: u32,
-    // x, y, w of clip space now and in the frame before.
+    // x, y, w of the eye's own clip space now and in the frame before.
     @location(6) now: vec3f,
     @location(7) before: vec3f,
+}
+
+// How eyes are drawn: 0 one view, 1 each in a pass of its own, 2 as instances in turn.
+override EYES: u32 = 0u;
+// An eye's fragments beyond the middle of the target are discarded, not clipped.
+override DISCARD_BEYOND: bool = false;
+
+// Highest bit of an instance's number on its way to the fragments: it is seen by the right eye.
+const RIGHT_EYE: u32 = 0x80000000u;
+
+// An instance's number, and the view that it is drawn for.
+struct Drawn {
+    instance: u32,
+    view: u32,
+}
+
+fn drawn_as(instance_index: u32) -> Drawn {
+    if EYES == 1u {
+        return Drawn(drawn[instance_index & ~RIGHT_EYE], instance_index >> 31u);
+    } else if EYES == 2u {
+        return Drawn(drawn[instance_index >> 1u], instance_index & 1u);
+    }
+    return Drawn(drawn[instance_index], 0u);
+}
+
+// From an eye's own clip space into its part of the target: left -w..w to the leftmost part, right to the rightmost.
+// Two passes do it likewise, so that all ways round alike.
+fn in_target(clip: vec4f, view: u32) -> vec4f {
+    if EYES == 0u {
+        return clip;
+    }
+    let part = frame.size.x / frame.target_size.x;
+    let shift = (1.0 - part) * clip.w;
+    return vec4f(clip.x * part + select(-shift, shift, view == 1u), clip.yzw);
+}
+
+// How far inside an eye's own half of the target, in clip space, from x, y, w there; negative beyond the middle.
+fn inside_own_half(now: vec3f, marked_instance: u32) -> f32 {
+    return now.z + select(-now.x, now.x, (marked_instance & RIGHT_EYE) != 0u);
+}
+
+fn is_beyond(now: vec3f, marked_instance: u32) -> bool {
+    return DISCARD_BEYOND && inside_own_half(now, marked_instance) < 0.0;
 }
 
 // A vertex in the world: unit normal and tangent; a tangent of zero says that there is none.
@@ -78,21 +122,26 @@ fn world_vertex(i: Instance, position: vec3f, normal: vec3f, tangent: vec4f) -> 
 
 @vertex
 fn vertex(in: VertexIn) -> VertexOut {
-    let index = drawn[in.drawn_index];
-    let i = instances[index];
+    return vertex_of(in);
+}
+
+fn vertex_of(in: VertexIn) -> VertexOut {
+    let d = drawn_as(in.drawn_index);
+    let i = instances[d.instance];
     let world = world_vertex(i, in.position, in.normal, in.tangent);
     let previous = previous_instance_position(i, in.previous_position);
 
     var out: VertexOut;
-    out.clip = frame.views[0].clip_from_world * vec4f(world.position, 1.0);
+    let clip = frame.views[d.view].clip_from_world * vec4f(world.position, 1.0);
+    out.clip = in_target(clip, d.view);
+    out.now = clip.xyw;
     out.world = world.position;
     out.normal = world.normal;
     out.tangent = world.tangent;
     out.uv = in.uv;
     out.color = in.color;
-    out.instance = index;
-    out.now = out.clip.xyw;
-    out.before = (frame.views[0].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
+    out.instance = d.instance | (d.view << 31u);
+    out.before = (frame.views[d.view].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
     return out;
 }
 

@@ -11,7 +11,7 @@ struct VisibleIn {
 
 @vertex
 fn vertex_indexed(in: VisibleIn) -> VisibleVertex {
-    return visible_vertex(drawn[in.drawn_index], in.position, in.previous_position, in.uv, in.color.a);
+    return visible_vertex(drawn_as(in.drawn_index), in.position, in.previous_position, in.uv, in.color.a);
 }
 
 @fragment

@@ -18,6 +18,7 @@ use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
 use crate::shader;
+use crate::stereo::{EyeLayout, Submission};
 use bins::{BinPass, Bins};
 use raster::VisiblePass;
 use resolve::ResolvePass;
@@ -127,9 +128,10 @@ impl VisibilityPass {
         face_normals: FaceNormals,
         windows: u32,
         [further, rated]: [bool; 2],
+        eyes: (Submission, EyeLayout),
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
-        let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout);
+        let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout, eyes);
         let layouts = [frame_layout, material_layout, &geometry_layout];
         let materials = |rated| {
             let parts = if rated {

@@ -3,12 +3,12 @@
 
 @vertex
 fn vertex_pulled(@builtin(instance_index) drawn_index: u32, @builtin(vertex_index) at: u32) -> VisibleVertex {
-    let index = drawn[drawn_index];
-    let place = places[index];
+    let d = drawn_as(drawn_index);
+    let place = places[d.instance];
     let vertex = place.base_vertex + indices[at];
     let corner = corner_at(vertex);
     let previous = bitcast<vec3f>(previous_vertices[vertex * 4u].xyz);
-    var out = visible_vertex(index, corner.position, previous, corner.uv, corner.color.a);
+    var out = visible_vertex(d, corner.position, previous, corner.uv, corner.color.a);
     out.triangle = (at - place.first_index) / 3u;
     return out;
 }

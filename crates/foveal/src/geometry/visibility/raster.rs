@@ -9,6 +9,7 @@ use crate::gpu::Gpu;
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::shader;
+use crate::stereo::{EyeLayout, Submission};
 
 /// Draws instance and motion, the triangle's number, and depth.
 #[derive(Debug)]
@@ -16,6 +17,7 @@ pub(super) struct VisiblePass {
     pipelines: Pipelines,
     /// Vertices are fetched by the shader, because the device does not number triangles.
     pulled: bool,
+    eyes: (Submission, EyeLayout),
 }
 
 impl VisiblePass {
@@ -24,6 +26,7 @@ impl VisiblePass {
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
         geometry_layout: &wgpu::BindGroupLayout,
+        eyes: (Submission, EyeLayout),
     ) -> Self {
         let numbered = gpu
             .device
@@ -55,12 +58,13 @@ impl VisiblePass {
             fragment,
             targets: vec![Some(IDENTITY_FORMAT.into()), Some(TRIANGLE_FORMAT.into())],
             writes_depth: true,
-            constants: Vec::new(),
+            constants: eyes.0.constants().to_vec(),
             has_mask: true,
         });
         Self {
             pipelines,
             pulled: !numbered,
+            eyes,
         }
     }
 
@@ -110,11 +114,14 @@ impl VisiblePass {
         } else {
             scene.geometry.bind(&mut pass);
         }
+        let (submission, layout) = &self.eyes;
         for &Window { frame, part } in windows {
-            pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
-            pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
-            let pipeline = |key| self.pipelines.get(Self::key(key));
-            DrawList::issue_with(&list.solid, &mut pass, scene, pipeline, self.pulled);
+            for &drawn in submission.drawn() {
+                let window = layout.window_of(drawn, Window { frame, part });
+                window.set(&mut pass);
+                let pipeline = |key| self.pipelines.get(Self::key(key));
+                DrawList::issue_with(&list.solid, &mut pass, scene, pipeline, self.pulled, drawn);
+            }
         }
     }
 }

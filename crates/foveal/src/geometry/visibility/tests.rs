@@ -8,7 +8,6 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 
 use super::bins::BIN_BYTES;
 use crate::forward::twin::quads;
-use crate::geometry::GeometryPass;
 use crate::gpu::{read_buffer, read_texture};
 use crate::shading::twin::unpack_surface;
 use crate::testing::{gpu, picture, rendered, small, texels};
@@ -305,9 +304,7 @@ fn every_seen_pixel_is_in_its_materials_bin_once() {
                 expected[material as usize].push((i % width) | (i / width) << 16);
             }
         }
-        let GeometryPass::Triangles(pass) = renderer.geometry() else {
-            panic!("asked for")
-        };
+        let pass = renderer.geometry().triangles().expect("asked for");
         let words = |buffer| -> Vec<u32> {
             let bytes = pollster::block_on(read_buffer(gpu(), buffer)).unwrap();
             bytemuck::pod_collect_to_vec(&bytes)

@@ -7,8 +7,9 @@ struct VisibleVertex {
     @invariant @builtin(position) clip: vec4f,
     @location(0) uv: vec4f,
     @location(1) alpha: f32,
+    // The instance's number; the highest bit tells the eye.
     @location(2) @interpolate(flat) instance: u32,
-    // x, y, w of clip space now and in the frame before.
+    // x, y, w of the eye's own clip space now and in the frame before.
     @location(3) now: vec3f,
     @location(4) before: vec3f,
     // Within its mesh; only where vertices are pulled.
@@ -21,17 +22,22 @@ struct VisibleOut {
     @location(1) triangle: u32,
 }
 
-fn visible_vertex(index: u32, position: vec3f, previous_position: vec3f, uv: vec4f, alpha: f32) -> VisibleVertex {
-    let i = instances[index];
-    let clip = frame.views[0].clip_from_world * vec4f(instance_position(i, position), 1.0);
+fn visible_vertex(d: Drawn, position: vec3f, previous_position: vec3f, uv: vec4f, alpha: f32) -> VisibleVertex {
+    let i = instances[d.instance];
+    let clip = frame.views[d.view].clip_from_world * vec4f(instance_position(i, position), 1.0);
     let previous = previous_instance_position(i, previous_position);
-    let before = (frame.views[0].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
-    return VisibleVertex(clip, uv, alpha, index, clip.xyw, before, 0u);
+    let before = (frame.views[d.view].previous_clip_from_world * vec4f(previous, 1.0)).xyw;
+    let marked = d.instance | (d.view << 31u);
+    return VisibleVertex(in_target(clip, d.view), uv, alpha, marked, clip.xyw, before, 0u);
 }
 
 fn visible(in: VisibleVertex, triangle: u32) -> VisibleOut {
     if MASKED && alpha_at(in.uv, in.alpha) < material.alpha_cutoff {
         discard;
     }
-    return VisibleOut(vec2u(in.instance + 1u, pack2x16float(motion_in_pixels(in.now, in.before))), triangle);
+    if is_beyond(in.now, in.instance) {
+        discard;
+    }
+    let instance = in.instance & ~RIGHT_EYE;
+    return VisibleOut(vec2u(instance + 1u, pack2x16float(motion_in_pixels(in.now, in.before))), triangle);
 }

@@ -5,6 +5,7 @@ use crate::composite::PatchTargets;
 use crate::gpu::{Gpu, MipChain};
 use crate::rate::RateTargets;
 use crate::shading::RADIANCE_FORMAT;
+use crate::stereo::EyeLayout;
 use crate::{Backend, Composite, Settings};
 
 /// A stencil whose mips can be attached one by one.
@@ -40,7 +41,7 @@ impl CoarseTargets {
     }
 
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = (settings.width, settings.height);
+        let size = EyeLayout::of(settings).target_size();
         let levels = 0..=u32::from(settings.coarsest_level);
         let buffer = |label, bytes: u64, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {

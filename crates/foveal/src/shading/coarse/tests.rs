@@ -124,7 +124,7 @@ fn wishes_equal_their_twin() {
         let image = noise_image(5, 9);
         let renderer = draw_with_image(&settings, image.clone());
         let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
-        let uniform = crate::rate::WishUniform::new(&settings);
+        let uniform = crate::rate::WishUniform::new(&settings, None);
         let quads = cells(&rate.pyramid, 1);
         let level = |x: u32, y: u32| {
             let (x, y) = (x.min(SIZES[0].0 - 1), y.min(SIZES[0].1 - 1));

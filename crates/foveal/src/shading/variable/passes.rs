@@ -162,7 +162,7 @@ impl RatePasses {
         };
         gpu.queue
             .write_buffer(&self.rates, 0, bytemuck::bytes_of(&rates));
-        let wish = WishUniform::new(settings);
+        let wish = WishUniform::new(settings, None);
         gpu.queue
             .write_buffer(&self.wish, 0, bytemuck::bytes_of(&wish));
         let [now, before] = [usize::from(!even), usize::from(even)].map(|i| &t.known[i]);
@@ -249,8 +249,8 @@ fn find_constants(s: &Settings) -> [(&'static str, f64); 5] {
     let source = |source| match source {
         RateSource::Foveated => 0.0,
         RateSource::Constant => 1.0,
-        // An image is refused by the settings' check.
-        RateSource::Image | RateSource::Content => 3.0,
+        // Image and lens are refused by the settings' check.
+        RateSource::Image | RateSource::Lens | RateSource::Content => 3.0,
     };
     let combine = match s.rate_combine {
         RateCombine::First => 0.0,

@@ -187,7 +187,7 @@ pub(super) fn rates(
     probe: Probe,
 ) -> Vec<u32> {
     let quads = seen.quads();
-    let wish = WishUniform::new(settings);
+    let wish = WishUniform::new(settings, None);
     let each = || (0..quads.y).flat_map(|y| (0..quads.x).map(move |x| UVec2::new(x, y)));
     let of_level = |level: u32| [0, 3, 7][level.min(2) as usize];
     let single: Vec<(u32, u32)> = each()
@@ -207,7 +207,7 @@ pub(super) fn rates(
                     of_level(radii.filter(|&&r| centre.length_squared() >= r).count() as u32)
                 }
                 RateSource::Constant => of_level(wish.constant_level),
-                RateSource::Image | RateSource::Content => {
+                RateSource::Image | RateSource::Lens | RateSource::Content => {
                     let motion = seen.motion(quad * 2).length();
                     let threshold =
                         settings.contrast_threshold * (1.0 + settings.velocity_gain * motion);

@@ -1,0 +1,63 @@
+//! Where each eye has its picture in a target.
+
+use super::Drawn;
+use crate::geometry::Window;
+use crate::{Settings, Shading};
+
+/// The pictures of one or two eyes, side by side in a target.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct EyeLayout {
+    /// 1 or 2.
+    pub(crate) eyes: u32,
+    /// Width of one eye's picture in pixels.
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// First column of the right eye's picture: the width, or more where coarse blocks are not to span both.
+    pub(crate) stride: u32,
+}
+
+impl EyeLayout {
+    pub(crate) fn of(settings: &Settings) -> Self {
+        let coarsest = match settings.shading {
+            Shading::Full | Shading::Variable => 0,
+            // The rate map's cells are 2 x 2 pixels at least.
+            Shading::Coarse => u32::from(settings.coarsest_level).max(1),
+        };
+        let width = settings.width;
+        Self {
+            eyes: 1 + u32::from(settings.is_stereo()),
+            width,
+            height: settings.height,
+            stride: width
+                .checked_next_multiple_of(1 << coarsest)
+                .unwrap_or(width),
+        }
+    }
+
+    /// Width and height of the targets in texels.
+    pub(crate) fn target_size(&self) -> (u32, u32) {
+        let before = self.stride.saturating_mul(self.eyes - 1);
+        (before.saturating_add(self.width), self.height)
+    }
+
+    /// The part of a window onto the whole target that `drawn` goes to.
+    pub(crate) fn window_of(&self, drawn: Drawn, window: Window) -> Window {
+        let Drawn::ForEye(eye) = drawn else {
+            return window;
+        };
+        let part = window.part;
+        let scale = window.frame[2] / self.target_size().0 as f32;
+        let first = eye * self.stride;
+        let low = (first as f32 * scale).round() as u32;
+        let end = ((first + self.width) as f32 * scale).round() as u32;
+        Window {
+            part: [part[0] + low, part[1], end - low, part[3]],
+            ..window
+        }
+    }
+
+    /// Pixels of all eyes' pictures.
+    pub(crate) fn pixels(&self) -> u64 {
+        u64::from(self.eyes) * u64::from(self.width) * u64::from(self.height)
+    }
+}

@@ -1,0 +1,306 @@
+//! What must come out the same: two eyes in one place as one, and all ways of submission.
+
+use foveal_scene::{Camera, Scene, generate};
+use glam::Vec3;
+
+use super::{WAYS, halves, two_eyes};
+use crate::testing::{gpu, picture, rendered, small, texels};
+use crate::{
+    Antialiasing, Backend, Composite, Culling, EyeClipping, LightAssignment, SamplePattern,
+    Settings, Shading, Stereo, View,
+};
+
+/// Differing pixels of two pictures and the largest difference of a channel.
+fn difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> (usize, u8) {
+    let pairs = || a.iter().zip(b).filter(|(a, b)| a != b);
+    let largest = pairs()
+        .flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)))
+        .max();
+    (pairs().count(), largest.unwrap_or(0))
+}
+
+/// Every generated scene, with its first camera.
+fn scenes() -> Vec<Scene> {
+    generate::NAMES
+        .iter()
+        .map(|name| generate::by_name(name).expect("a generated scene"))
+        .collect()
+}
+
+/// Deferred stages in all combinations that read neighbours, and views.
+fn pipelines(base: &Settings) -> Vec<(&'static str, Settings)> {
+    let coarse = |composite, backend| Settings {
+        shading: Shading::Coarse,
+        coarsest_level: 5,
+        composite,
+        backend,
+        ..base.clone()
+    };
+    let msaa = |pattern| Settings {
+        aa: Antialiasing::Msaa,
+        pattern,
+        ..base.clone()
+    };
+    vec![
+        ("full", base.clone()),
+        ("smooth", coarse(Composite::Smooth, Backend::Compute)),
+        ("paper", coarse(Composite::Paper, Backend::Stencil)),
+        ("nearest", coarse(Composite::Nearest, Backend::Compute)),
+        ("msaa, grid", msaa(SamplePattern::Grid)),
+        ("msaa, rotated", msaa(SamplePattern::Rotated)),
+        (
+            "msaa and coarse",
+            Settings {
+                aa: Antialiasing::Msaa,
+                ..coarse(Composite::Smooth, Backend::Compute)
+            },
+        ),
+        (
+            "visibility",
+            Settings {
+                geometry: crate::Geometry::Visibility,
+                ..base.clone()
+            },
+        ),
+        (
+            "depth",
+            Settings {
+                view: View::Depth,
+                ..base.clone()
+            },
+        ),
+    ]
+}
+
+#[test]
+fn two_eyes_in_one_place_see_what_one_eye_sees() {
+    // No multiple of a block, so that the right eye's picture does not begin where the left one's ends.
+    let (width, height) = (150, 101);
+    for scene in [generate::cornell(), generate::alpha()] {
+        let camera = &scene.cameras[0];
+        for (name, mono) in pipelines(&small(width, height)) {
+            let one: Vec<[u8; 4]> =
+                bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono)));
+            for (stereo, eye_clipping) in WAYS {
+                let settings = Settings {
+                    stereo,
+                    eye_clipping,
+                    ipd: 0.0,
+                    show: crate::Output::SideBySide,
+                    ..mono.clone()
+                };
+                for (eye, both) in halves(&scene, camera, &settings).iter().enumerate() {
+                    let (differing, by) = difference(&one, both);
+                    let what = format!(
+                        "{}, {name}, {stereo:?}, {eye_clipping:?}, eye {eye}",
+                        scene.name
+                    );
+                    // Rasterizers interpolate from the target's corner, which lies elsewhere.
+                    assert!(
+                        differing <= 2 && by <= 1,
+                        "{what}: {differing} pixels by {by}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn instancing_equals_two_passes_on_every_generated_scene() {
+    for scene in scenes() {
+        let camera = match scene.cameras.first() {
+            Some(camera) => camera.clone(),
+            None => scene.overview_camera(),
+        };
+        let reference = two_eyes(320, 240);
+        let expected = halves(&scene, &camera, &reference);
+        for (stereo, eye_clipping) in &WAYS[1..] {
+            let settings = Settings {
+                stereo: *stereo,
+                eye_clipping: *eye_clipping,
+                ..reference.clone()
+            };
+            let seen = halves(&scene, &camera, &settings);
+            for (eye, (expected, seen)) in expected.iter().zip(&seen).enumerate() {
+                let (differing, by) = difference(expected, seen);
+                let what = format!("{}, {eye_clipping:?}, eye {eye}", scene.name);
+                if *eye_clipping == EyeClipping::Discard {
+                    assert_eq!((differing, by), (0, 0), "{what}");
+                }
+                // A clipped triangle is another polygon: its last bits differ (0.07 % of the pixels by 1 in the demo
+                // scene, whose ground reaches beyond both borders; elsewhere a pixel or none).
+                let most = expected.len() / 1000;
+                assert!(
+                    differing <= most && by <= 2,
+                    "{what}: {differing} pixels by {by}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn large_objects_do_not_leak_over_the_middle() {
+    // From within the room its walls reach far beyond both borders of either eye.
+    let scene = generate::cornell();
+    let frusta = [
+        "",
+        "-0.4,1.6,-1,1,-1.6,0.4,-1,1",
+        "-1.6,0.4,-1,1,-0.4,1.6,-1,1",
+    ];
+    for (turn, eye_tangents) in frusta.into_iter().enumerate() {
+        let angle = turn as f32 * 2.0 + 0.3;
+        let eye = Vec3::new(0.1, 1.2, 0.05);
+        let at = eye + Vec3::new(angle.sin(), 0.1, angle.cos());
+        let camera = Camera::look_at(eye, at, Vec3::Y, 1.3);
+        for (shading, aa) in [
+            (Shading::Full, Antialiasing::None),
+            (Shading::Coarse, Antialiasing::None),
+            (Shading::Full, Antialiasing::Ssaa),
+        ] {
+            let settings = |(stereo, eye_clipping)| Settings {
+                stereo,
+                eye_clipping,
+                eye_tangents: eye_tangents.to_owned(),
+                shading,
+                aa,
+                coarsest_level: 4,
+                ..two_eyes(121, 97)
+            };
+            let [reference, clip, discard] = WAYS.map(|way| {
+                let renderer = rendered(&scene, &camera, &settings(way));
+                texels::<[u32; 2]>(&renderer.targets().gbuffer.identity_view)
+            });
+            for other in [clip, discard] {
+                let pairs = reference.iter().zip(&other);
+                let differing = pairs.filter(|(a, b)| a[0] != b[0]).count();
+                assert!(
+                    differing <= 8,
+                    "{differing} texels, turn {turn}, {shading:?}, {aa:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn clustered_and_brute_lighting_give_the_same_bytes_for_two_eyes() {
+    let mut scene = generate::cornell();
+    generate::add_point_lights(&mut scene, 150, 7);
+    for eye_tangents in [
+        "",
+        "-1.3,0.7,-1.1,0.9,-0.7,1.3,-0.8,1.2",
+        "-9,-7,-1,1,7,9,-1,1",
+    ] {
+        for camera in [scene.cameras[0].clone(), scene.overview_camera()] {
+            let clustered = Settings {
+                stereo: Stereo::Instanced,
+                ipd: 0.4,
+                convergence: 1.0,
+                eye_tangents: eye_tangents.to_owned(),
+                ..two_eyes(200, 150)
+            };
+            let brute = Settings {
+                lights: LightAssignment::Brute,
+                ..clustered.clone()
+            };
+            let radiance = |settings| {
+                let renderer = rendered(&scene, &camera, settings);
+                texels::<[u16; 4]>(&renderer.targets().radiance_view)
+            };
+            assert!(radiance(&clustered) == radiance(&brute), "{eye_tangents}");
+        }
+    }
+}
+
+#[test]
+fn culling_changes_no_picture_of_two_eyes() {
+    let options = generate::DemoOptions::default();
+    let scene = generate::demo(&options).expect("the demo scene");
+    let mut hidden = 0;
+    for (i, eye_tangents) in ["", "-1.2,0.8,-0.9,1,-0.8,1.2,-0.9,1"]
+        .into_iter()
+        .enumerate()
+    {
+        let camera = generate::demo_path(&options, 0.2 + 0.4 * i as f32);
+        let settings = |culling| Settings {
+            stereo: Stereo::Instanced,
+            culling,
+            eye_tangents: eye_tangents.to_owned(),
+            ..two_eyes(320, 180)
+        };
+        let expected = halves(&scene, &camera, &settings(Culling::Off));
+        for culling in [Culling::Frustum, Culling::Occlusion] {
+            let settings = settings(culling);
+            assert!(
+                expected == halves(&scene, &camera, &settings),
+                "{culling:?}"
+            );
+            let mut renderer = rendered(&scene, &camera, &settings);
+            hidden += renderer.redraw(&camera).objects_occluded;
+        }
+    }
+    assert!(hidden > 100, "the test needs hidden objects: {hidden}");
+}
+
+#[test]
+fn each_eye_has_its_own_gaze() {
+    let scene = generate::cornell();
+    let camera = &scene.cameras[0];
+    let mono = |gaze| Settings {
+        shading: Shading::Coarse,
+        coarsest_level: 5,
+        backend: Backend::Compute,
+        view: View::Rate,
+        gaze,
+        ..small(200, 120)
+    };
+    let settings = Settings {
+        stereo: Stereo::Instanced,
+        ipd: 0.0,
+        show: crate::Output::SideBySide,
+        gaze_shift: [0.6, -0.3],
+        ..mono([0.2, 0.6])
+    };
+    let seen = halves(&scene, camera, &settings);
+    for (seen, gaze) in seen.iter().zip([[0.2, 0.6], [0.8, 0.3]]) {
+        let one: Vec<[u8; 4]> =
+            bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono(gaze))));
+        assert_eq!(difference(seen, &one), (0, 0));
+    }
+    assert!(difference(&seen[0], &seen[1]).0 > 1000);
+}
+
+#[test]
+fn a_device_that_clips_is_asked_to_and_the_stats_say_so() {
+    let scene = generate::cornell();
+    let has_clip = gpu()
+        .device
+        .features()
+        .contains(wgpu::Features::CLIP_DISTANCES);
+    for (stereo, eye_clipping, mode) in [
+        (Stereo::TwoPass, EyeClipping::Auto, "two-pass"),
+        (Stereo::Instanced, EyeClipping::Discard, "instanced-discard"),
+        (
+            Stereo::Instanced,
+            EyeClipping::Clip,
+            if has_clip {
+                "instanced-clip"
+            } else {
+                "instanced-discard"
+            },
+        ),
+    ] {
+        let settings = Settings {
+            stereo,
+            eye_clipping,
+            ..two_eyes(64, 48)
+        };
+        let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
+        let stats = renderer.redraw(&scene.cameras[0]);
+        assert_eq!((stats.width, stats.height), (128, 48));
+        assert_eq!(stats.shaded_samples, 128 * 48);
+        assert_eq!(stats.stereo.expect("two eyes").mode, mode);
+    }
+}

@@ -1,0 +1,84 @@
+//! Two eyes on the device.
+
+mod equal;
+mod lens;
+mod parallax;
+mod present;
+
+use foveal_scene::{Aabb, Camera, Instance, Material, Mesh, Object, Scene, Vertex};
+use glam::{Mat4, Vec3};
+
+use crate::testing::{picture, rendered, small};
+use crate::{EyeClipping, Output, Settings, Stereo};
+
+/// The ways in which two eyes' geometry can be submitted.
+const WAYS: [(Stereo, EyeClipping); 3] = [
+    (Stereo::TwoPass, EyeClipping::Auto),
+    (Stereo::Instanced, EyeClipping::Clip),
+    (Stereo::Instanced, EyeClipping::Discard),
+];
+
+/// Settings for two eyes side by side.
+fn two_eyes(width: u32, height: u32) -> Settings {
+    Settings {
+        stereo: Stereo::TwoPass,
+        show: Output::SideBySide,
+        ..small(width, height)
+    }
+}
+
+/// The left and the right half of a picture drawn with the output `side-by-side`.
+fn halves(scene: &Scene, camera: &Camera, settings: &Settings) -> [Vec<[u8; 4]>; 2] {
+    let renderer = rendered(scene, camera, settings);
+    let both: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&picture(&renderer));
+    let width = settings.width as usize;
+    let half = |first: usize| {
+        let rows = both.chunks_exact(2 * width);
+        rows.flat_map(|row| row[first..first + width].to_vec())
+            .collect()
+    };
+    [half(0), half(width)]
+}
+
+/// A flat shape that faces +z, given by its corners in order, in a scene of its own; white and without light.
+fn shape(corners: &[Vec3]) -> Scene {
+    let vertex = |p: &Vec3| Vertex {
+        position: p.to_array(),
+        normal: [0.0, 0.0, 1.0],
+        color: [255; 4],
+        ..bytemuck::Zeroable::zeroed()
+    };
+    let bounds = corners
+        .iter()
+        .fold(Aabb::EMPTY, |b, &p| b.union(Aabb { min: p, max: p }));
+    let last = corners.len() as u32 - 1;
+    Scene {
+        meshes: vec![Mesh {
+            vertices: corners.iter().map(vertex).collect(),
+            indices: (1..last).flat_map(|i| [0, i, i + 1]).collect(),
+            bounds,
+            ..Mesh::default()
+        }],
+        materials: vec![Material {
+            unlit: true,
+            ..Material::default()
+        }],
+        objects: vec![Object {
+            name: "shape".to_owned(),
+            node: 0,
+            element: 0,
+            occluder: None,
+            set: None,
+            bounds,
+            instances: 0..1,
+        }],
+        instances: vec![Instance {
+            mesh: 0,
+            material: 0,
+            object: 0,
+            world_from_object: Mat4::IDENTITY,
+            bounds,
+        }],
+        ..Scene::default()
+    }
+}

@@ -1,0 +1,181 @@
+//! The presentation's twin: what the shown picture is made from, in plain Rust.
+
+use foveal_scene::{Camera, Scene, generate};
+use glam::{Mat3, Vec2, Vec3};
+
+use super::two_eyes;
+use crate::stereo::{LensFit, eyes};
+use crate::testing::{picture, rendered, texels};
+use crate::{Output, Settings};
+
+pub(super) fn linear(srgb: f32) -> f32 {
+    if srgb <= 0.04045 {
+        srgb / 12.92
+    } else {
+        ((srgb + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+fn encoded(linear: f32) -> f32 {
+    if linear <= 0.0031308 {
+        linear * 12.92
+    } else {
+        1.055 * linear.powf(1.0 / 2.4) - 0.055
+    }
+}
+
+/// The eyes' pictures in the wide target.
+struct Pictures {
+    settings: Settings,
+    texels: Vec<[u8; 4]>,
+    fits: Option<[LensFit; 2]>,
+    camera: Camera,
+}
+
+impl Pictures {
+    fn at(&self, eye: u32, x: i32, y: i32) -> Vec3 {
+        let (w, h) = (self.settings.width as i32, self.settings.height as i32);
+        let (x, y) = (x.clamp(0, w - 1), y.clamp(0, h - 1));
+        let texel = self.texels[(y * 2 * w + eye as i32 * w + x) as usize];
+        Vec3::new(texel[0].into(), texel[1].into(), texel[2].into()) / 255.0
+    }
+
+    fn light(&self, eye: u32, at: Vec2) -> Vec3 {
+        let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
+        let inside = at.min(size - at);
+        let fade = (inside.min_element() / (0.02 * size.y)).clamp(0.0, 1.0);
+        let corner = at.clamp(Vec2::NEG_ONE, size + 1.0) - 0.5;
+        let (first, part) = (corner.floor(), corner - corner.floor());
+        let tap = |dx: i32, dy: i32| {
+            let weight = |d: i32, p: f32| if d == 1 { p } else { 1.0 - p };
+            let value = self.at(eye, first.x as i32 + dx, first.y as i32 + dy);
+            value.map(linear) * weight(dx, part.x) * weight(dy, part.y)
+        };
+        (tap(0, 0) + tap(1, 0) + tap(0, 1) + tap(1, 1)) * fade
+    }
+
+    fn headset(&self, x: u32, y: u32) -> Vec3 {
+        let eye = u32::from(x >= self.settings.width);
+        let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
+        let fit = self.fits.expect("a headset")[eye as usize];
+        let at = (Vec2::new((x - eye * self.settings.width) as f32, y as f32) + 0.5) / size;
+        let [l, r, b, t] = fit.screen;
+        let p = Vec2::new(l + (r - l) * at.x, t + (b - t) * at.y);
+        let u = p.length_squared();
+        let seen = p * (fit.lens.seen(p.length()) / p.length());
+        let borders =
+            eyes(&self.settings, &self.camera).expect("sound eyes")[eye as usize].borders();
+        let [left, right, bottom, top] = borders;
+        let pixel = |tangent: Vec2| {
+            Vec2::new(
+                (tangent.x - left) / (right - left),
+                (top - tangent.y) / (top - bottom),
+            ) * size
+        };
+        let fringe = |c: [f32; 2]| seen * (c[0] + c[1] * u);
+        Vec3::new(
+            self.light(eye, pixel(fringe(fit.lens.red))).x,
+            self.light(eye, pixel(seen)).y,
+            self.light(eye, pixel(fringe(fit.lens.blue))).z,
+        )
+        .map(encoded)
+    }
+
+    fn shown(&self, x: u32, y: u32) -> Vec3 {
+        let (px, py) = (x as i32, y as i32);
+        let (left, right) = (self.at(0, px, py), self.at(1, px, py));
+        let weights = Vec3::new(0.299, 0.587, 0.114);
+        match self.settings.show {
+            Output::Flat => left,
+            Output::SideBySide => {
+                let eye = u32::from(x >= self.settings.width);
+                self.at(eye, px - (eye * self.settings.width) as i32, py)
+            }
+            Output::SideBySideHalf => {
+                let half = self.settings.width.div_ceil(2);
+                let eye = u32::from(x >= half);
+                let first = 2 * (px - (eye * half) as i32);
+                let [a, b] = [0, 1].map(|d| self.at(eye, first + d, py).map(linear));
+                ((a + b) * 0.5).map(encoded)
+            }
+            Output::Anaglyph => {
+                Vec3::new(left.dot(weights), right.dot(weights), right.dot(weights))
+            }
+            Output::AnaglyphDubois => {
+                let from = |rows: [[f32; 3]; 3]| Mat3::from_cols_array_2d(&rows).transpose();
+                let l = from([
+                    [0.4561, 0.500484, 0.176381],
+                    [-0.0400822, -0.0378246, -0.0157589],
+                    [-0.0152161, -0.0205971, -0.00546856],
+                ]);
+                let r = from([
+                    [-0.0434706, -0.0879388, -0.00155529],
+                    [0.378476, 0.73364, -0.0184503],
+                    [-0.0721527, -0.112961, 1.2264],
+                ]);
+                let sum = l * left.map(linear) + r * right.map(linear);
+                sum.clamp(Vec3::ZERO, Vec3::ONE).map(encoded)
+            }
+            Output::Headset => self.headset(x, y),
+        }
+    }
+}
+
+fn assert_equals_twin(scene: &Scene, settings: Settings) {
+    let camera = scene.cameras[0].clone();
+    let renderer = rendered(scene, &camera, &settings);
+    let eyes = eyes(&settings, &camera).expect("sound eyes");
+    let pictures = Pictures {
+        texels: texels(&renderer.targets().picture_view),
+        fits: LensFit::of(&settings, &eyes).expect("the lens fits"),
+        camera,
+        settings,
+    };
+    let (width, height) = pictures.settings.picture_size();
+    let shown: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&picture(&renderer));
+    assert_eq!(shown.len(), (width * height) as usize);
+    let mut lit = 0;
+    for (i, device) in (0..).zip(&shown) {
+        let twin = pictures.shown(i % width, i / width);
+        for channel in 0..3 {
+            let expected = (twin[channel] * 255.0).round() as i32;
+            assert!(
+                (i32::from(device[channel]) - expected).abs() <= 1,
+                "{:?} at {}, {}: device {device:?}, twin {twin}",
+                pictures.settings.show,
+                i % width,
+                i / width,
+            );
+        }
+        lit += usize::from(device[1] > 40);
+    }
+    assert!(lit * 4 > shown.len(), "the test needs something to see");
+}
+
+#[test]
+fn every_output_equals_its_twin() {
+    let scene = generate::cornell();
+    for output in [
+        Output::Flat,
+        Output::SideBySide,
+        Output::SideBySideHalf,
+        Output::Anaglyph,
+        Output::AnaglyphDubois,
+    ] {
+        let settings = Settings {
+            show: output,
+            ipd: 0.3,
+            ..two_eyes(101, 77)
+        };
+        assert_equals_twin(&scene, settings);
+    }
+    for lens in ["cardboard-v1", "dk1"] {
+        let settings = Settings {
+            show: Output::Headset,
+            lens: lens.to_owned(),
+            eye_tangents: "-0.7,0.5,-0.6,0.6,-0.5,0.7,-0.6,0.6".to_owned(),
+            ..two_eyes(101, 77)
+        };
+        assert_equals_twin(&scene, settings);
+    }
+}
