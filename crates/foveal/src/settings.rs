@@ -215,8 +215,8 @@ settings! {
             backend: Backend = Backend::default(), "Backend", Kind::choice::<Backend>();
             /// Coarsest level, 0 to 8: tiles of at most 2^N pixels a side
             coarsest_level: u8 = COARSEST_LEVEL, "Coarsest level", Kind::Integer { least: 0, most: 8 };
-            /// Where wished levels come from: the distance to the gaze, a constant, an image (black: every
-            /// pixel, white: level 8), or with variable shading the content of the frame before
+            /// Where wished levels come from: the distance to the gaze, a constant, an image (black: every pixel, white:
+            /// level 8), the lens of the headset output, or with variable shading the content of the frame before
             rate: RateSource = RateSource::default(), "Rate from", Kind::choice::<RateSource>();
             /// A second source of wishes
             rate_other: RateSource = RateSource::Constant, "Second source", Kind::choice::<RateSource>();

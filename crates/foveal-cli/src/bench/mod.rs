@@ -7,6 +7,7 @@ mod antialiasing;
 mod coarse;
 mod culling;
 mod report;
+mod stereo;
 mod table;
 mod variable;
 
@@ -23,6 +24,8 @@ pub(crate) enum BenchCommand {
     Antialiasing(antialiasing::Args),
     /// Shading at a rate that the content decides against shading every pixel
     Variable(variable::Args),
+    /// Two eyes by each way of submission, against one eye and against two passes
+    Stereo(stereo::Args),
     /// Culling, coarse shading and anti-aliasing as one report: a page with pictures and plots, JSON, CSV
     All(report::Args),
     /// What became slower between two reports
@@ -37,6 +40,7 @@ impl BenchCommand {
             Self::Coarse(_) => "bench coarse",
             Self::Antialiasing(_) => "bench antialiasing",
             Self::Variable(_) => "bench variable",
+            Self::Stereo(_) => "bench stereo",
             Self::All(_) => "bench all",
             Self::Diff(_) => "bench diff",
         }
@@ -49,6 +53,7 @@ impl BenchCommand {
             Self::Coarse(args) => coarse::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),
             Self::Variable(args) => variable::run(args),
+            Self::Stereo(args) => stereo::run(args),
             Self::All(args) => report::run(args),
             Self::Diff(args) => report::diff::run(args),
         }

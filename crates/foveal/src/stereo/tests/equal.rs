@@ -63,6 +63,13 @@ fn pipelines(base: &Settings) -> Vec<(&'static str, Settings)> {
             },
         ),
         (
+            "visibility, msaa",
+            Settings {
+                geometry: crate::Geometry::Visibility,
+                ..msaa(SamplePattern::Grid)
+            },
+        ),
+        (
             "depth",
             Settings {
                 view: View::Depth,

@@ -1,0 +1,308 @@
+//! `foveal bench stereo`: two eyes by each way of submission, and one eye, in turn.
+//!
+//! Each way is drawn twice: the geometry alone (a view of the base colour), as the technique's source measured it, and
+//! the whole frame with all deferred stages.
+
+use std::path::PathBuf;
+
+use foveal::{
+    AdapterStats, Culling, EyeClipping, Frame, FrameStats, Gpu, Renderer, Settings, Stereo, Timing,
+    View,
+};
+use foveal_scene::{Camera, Scene};
+use pollster::block_on;
+use serde::Serialize;
+
+use super::table::text;
+use crate::median::median;
+use crate::render::{CameraArgs, Viewpoint, now_ms};
+use crate::{atomic_file, console, gpu, scene_source, values};
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 1;
+
+/// The source's scenes: each object is a draw of its own there, and nothing is culled.
+const SOURCE_SCENES: [&str; 2] = ["materials", "materials2"];
+
+/// Instanced against two passes in the source: scene, CPU, GPU.
+const SOURCE_RATIOS: [(&str, f64, f64); 2] =
+    [("materials", 1.114, 1.107), ("materials2", 0.805, 1.146)];
+
+/// The ways: one eye, the reference, and what is compared with it.
+const WAYS: [(&str, Stereo, EyeClipping); 4] = [
+    ("mono", Stereo::Off, EyeClipping::Auto),
+    ("two-pass", Stereo::TwoPass, EyeClipping::Auto),
+    ("instanced + clip", Stereo::Instanced, EyeClipping::Clip),
+    (
+        "instanced + discard",
+        Stereo::Instanced,
+        EyeClipping::Discard,
+    ),
+];
+const REFERENCE: usize = 1;
+
+/// Arguments of `foveal bench stereo`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// glTF 2.0 files or generated scenes [default: materials materials2]. All others are culled by occlusion, and their
+    /// equal draws are merged
+    scenes: Vec<String>,
+
+    /// Width and height of one eye's picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "640x480")]
+    size: (u32, u32),
+
+    #[command(flatten)]
+    camera: CameraArgs,
+
+    /// Frames of each way after two that warm up; figures are medians over them
+    #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
+    rounds: u32,
+
+    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    #[arg(long, value_name = "NAME|NUMBER")]
+    adapter: Option<String>,
+
+    /// Write the figures as JSON; `-`: print JSON instead of the table
+    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
+    json: Option<PathBuf>,
+}
+
+/// All figures of a run; docs/program.md describes the fields.
+#[derive(Debug, Serialize)]
+struct Report {
+    schema: &'static str,
+    schema_version: u32,
+    adapter: AdapterStats,
+    width: u32,
+    height: u32,
+    rounds: u32,
+    rows: Vec<Row>,
+}
+
+/// One way's figures; times are medians in milliseconds, ratios medians of the ratios within each round.
+#[derive(Debug, Serialize)]
+struct Row {
+    scene: String,
+    /// `geometry` alone, or the whole `frame`.
+    stages: &'static str,
+    mode: &'static str,
+    draws: u64,
+    triangles: u64,
+    encode_ms: f64,
+    submit_ms: f64,
+    /// The geometry pass, or all passes.
+    gpu_ms: f64,
+    frame_ms: f64,
+    /// Encode and submit, against two passes.
+    ratio_cpu: f64,
+    ratio_gpu: f64,
+    /// Frame, against one eye's.
+    ratio_mono: f64,
+    /// The source's figures for instancing.
+    source_ratio_cpu: Option<f64>,
+    source_ratio_gpu: Option<f64>,
+}
+
+/// One way while it is measured.
+struct Way {
+    name: &'static str,
+    renderer: Renderer,
+    rounds: Vec<Times>,
+    last: FrameStats,
+}
+
+#[derive(Clone, Copy)]
+struct Times {
+    encode_ms: f64,
+    submit_ms: f64,
+    gpu_ms: f64,
+    frame_ms: f64,
+}
+
+impl Times {
+    fn of(stats: &FrameStats, geometry_alone: bool) -> Self {
+        let sum = |timings: &[Timing], wanted: &dyn Fn(&str) -> bool| {
+            let timings = timings.iter().filter(|t| wanted(&t.name));
+            timings.map(|t| t.ms).sum()
+        };
+        Self {
+            encode_ms: sum(&stats.cpu_ms, &|name| name == "encode"),
+            submit_ms: sum(&stats.cpu_ms, &|name| name == "submit"),
+            gpu_ms: sum(&stats.gpu_ms, &|name| !geometry_alone || name == "geometry"),
+            frame_ms: stats.frame_ms,
+        }
+    }
+
+    fn cpu_ms(&self) -> f64 {
+        self.encode_ms + self.submit_ms
+    }
+}
+
+/// Runs the benchmark.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    now_ms();
+    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
+    if let Some(path) = to_file {
+        atomic_file::check_writable(path)?;
+    }
+    let scenes = match args.scenes.as_slice() {
+        [] => SOURCE_SCENES.map(str::to_owned).to_vec(),
+        given => given.to_vec(),
+    };
+    let gpu = gpu::open(args.adapter.as_deref())?;
+    let mut rows = Vec::new();
+    for name in &scenes {
+        let mut scene = scene_source::load(name)?;
+        scene.light_by_default();
+        let camera = Viewpoint::choose(&args.camera, &scene, name)?.at(&scene, 0.0);
+        for (stages, view) in [("geometry", View::BaseColor), ("frame", View::Final)] {
+            rows.extend(measure(args, &gpu, &scene, &camera, name, stages, view)?);
+        }
+    }
+    let report = Report {
+        schema: "foveal-bench-stereo",
+        schema_version: SCHEMA_VERSION,
+        adapter: gpu.adapter_stats(),
+        width: args.size.0,
+        height: args.size.1,
+        rounds: args.rounds,
+        rows,
+    };
+    let json = serde_json::to_string_pretty(&report)? + "\n";
+    match (&args.json, to_file) {
+        (_, Some(path)) => {
+            atomic_file::write(path, json.as_bytes())?;
+            console::print_result(&summary(&report))
+        }
+        (Some(_), None) => console::print_result(&json),
+        (None, None) => console::print_result(&summary(&report)),
+    }
+}
+
+fn measure(
+    args: &Args,
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    name: &str,
+    stages: &'static str,
+    view: View,
+) -> anyhow::Result<Vec<Row>> {
+    let of_source = SOURCE_SCENES.contains(&name);
+    let mut ways = Vec::new();
+    for (mode, stereo, eye_clipping) in WAYS {
+        let settings = Settings {
+            width: args.size.0,
+            height: args.size.1,
+            view,
+            stereo,
+            eye_clipping,
+            culling: if of_source {
+                Culling::Off
+            } else {
+                Culling::Occlusion
+            },
+            merge_draws: !of_source,
+            ..Settings::default()
+        };
+        let mut renderer = block_on(Renderer::new(gpu, &settings, Some(now_ms)))?;
+        block_on(renderer.set_scene(scene))?;
+        ways.push(Way {
+            name: mode,
+            renderer,
+            rounds: Vec::new(),
+            last: FrameStats::default(),
+        });
+    }
+    let frame = Frame {
+        camera,
+        previous_camera: None,
+    };
+    for round in 0..args.rounds + 2 {
+        for way in &mut ways {
+            way.last = block_on(way.renderer.render(&frame))?;
+            if round >= 2 {
+                let times = Times::of(&way.last, view == View::BaseColor);
+                way.rounds.push(times);
+            }
+        }
+    }
+    let rows = ways.iter().map(|way| way.row(name, stages, &ways));
+    Ok(rows.collect())
+}
+
+impl Way {
+    fn row(&self, scene: &str, stages: &'static str, ways: &[Self]) -> Row {
+        let middle =
+            |figure: fn(&Times) -> f64| median(&self.rounds.iter().map(figure).collect::<Vec<_>>());
+        let ratio = |to: usize, figure: fn(&Times) -> f64| {
+            let pairs = self.rounds.iter().zip(&ways[to].rounds);
+            median(
+                &pairs
+                    .map(|(a, b)| figure(a) / figure(b))
+                    .collect::<Vec<_>>(),
+            )
+        };
+        let source = SOURCE_RATIOS
+            .iter()
+            .find(|s| s.0 == scene && self.name.starts_with("instanced"));
+        Row {
+            scene: scene.to_owned(),
+            stages,
+            mode: self.name,
+            draws: self.last.draws,
+            triangles: self.last.triangles,
+            encode_ms: middle(|t| t.encode_ms),
+            submit_ms: middle(|t| t.submit_ms),
+            gpu_ms: middle(|t| t.gpu_ms),
+            frame_ms: middle(|t| t.frame_ms),
+            ratio_cpu: ratio(REFERENCE, Times::cpu_ms),
+            ratio_gpu: ratio(REFERENCE, |t| t.gpu_ms),
+            ratio_mono: ratio(0, |t| t.frame_ms),
+            source_ratio_cpu: source.map(|s| s.1),
+            source_ratio_gpu: source.map(|s| s.2),
+        }
+    }
+}
+
+fn summary(report: &Report) -> String {
+    let head = [
+        "scene",
+        "stages",
+        "mode",
+        "draws",
+        "encode ms",
+        "submit ms",
+        "GPU ms",
+        "frame ms",
+        "CPU/two-pass",
+        "(source)",
+        "GPU/two-pass",
+        "(source)",
+        "frame/mono",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    let optional = |ratio: Option<f64>| ratio.map_or(String::new(), |r| format!("{r:.3}"));
+    for row in &report.rows {
+        lines.push(vec![
+            row.scene.clone(),
+            row.stages.to_owned(),
+            row.mode.to_owned(),
+            row.draws.to_string(),
+            format!("{:.3}", row.encode_ms),
+            format!("{:.3}", row.submit_ms),
+            format!("{:.1}", row.gpu_ms),
+            format!("{:.1}", row.frame_ms),
+            format!("{:.3}", row.ratio_cpu),
+            optional(row.source_ratio_cpu),
+            format!("{:.3}", row.ratio_gpu),
+            optional(row.source_ratio_gpu),
+            format!("{:.3}", row.ratio_mono),
+        ]);
+    }
+    format!(
+        "{}x{} per eye, {}, medians of {} rounds\n",
+        report.width, report.height, report.adapter.name, report.rounds
+    ) + &text(&lines)
+}
