@@ -56,7 +56,10 @@ pub struct FrameOptions<'a> {
     /// Occluder models with `radius² < distance * threshold² * tan(fov_y / 2)` (distance above 1 m) are left
     /// out, as in Intel's sample (1.5 there). 0 takes all.
     pub occluder_size_threshold: f32,
-    /// The same for occludees ([`Visibility::Small`]; 0.01 in the sample). 0 culls none by size.
+    /// Clusters (up to 64 quads) whose rectangle on the screen has fewer pixels than this per quad are left out:
+    /// fine detail costs much and hides little that what lies behind it does not. 0 takes all.
+    pub occluder_pixels_per_quad: f32,
+    /// The same as the first for occludees ([`Visibility::Small`]; 0.01 in the sample). 0 culls none by size.
     pub occludee_size_threshold: f32,
     /// Whether occluders are drawn; off, only frustum and size are tested.
     pub occlusion: bool,
@@ -68,6 +71,7 @@ impl Default for FrameOptions<'_> {
     fn default() -> Self {
         Self {
             occluder_size_threshold: 0.0,
+            occluder_pixels_per_quad: 8.0,
             occludee_size_threshold: 0.0,
             occlusion: true,
             budget: None,
@@ -170,6 +174,7 @@ impl Culler {
             width,
             height,
             size_threshold: options.occluder_size_threshold,
+            pixels_per_quad: options.occluder_pixels_per_quad,
         });
         let radius = (camera.radius > 0.0).then(|| Radius {
             shift: (camera.radius * camera.shift_per_metre) as f32,

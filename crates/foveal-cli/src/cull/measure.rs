@@ -3,7 +3,8 @@
 use std::time::Instant;
 
 use anyhow::Context;
-use foveal_cull::{Culler, Eye, FrameOptions, View, Visibility};
+use foveal_cull::{Culler, Eye, FrameOptions, OccludeeTree, View, Visibility};
+use glam::DVec3;
 use serde::Serialize;
 
 use super::args::CullingArgs;
@@ -41,6 +42,8 @@ pub(crate) struct OccludeeFigures {
     pub(crate) culled_triangles: u64,
     pub(crate) visible_triangles: u64,
     pub(crate) test_ms: f64,
+    /// The same objects by their hierarchy, on one thread.
+    pub(crate) tree_test_ms: f64,
     pub(crate) size_threshold: f32,
 }
 
@@ -72,6 +75,7 @@ pub(crate) fn measure(
     let view = View::mono(*eye);
     let options = FrameOptions {
         occluder_size_threshold: culling.occluder_size_threshold,
+        occluder_pixels_per_quad: culling.occluder_pixels_per_quad,
         occludee_size_threshold: culling.occludee_size_threshold,
         ..FrameOptions::default()
     };
@@ -82,7 +86,9 @@ pub(crate) fn measure(
         ..
     } = &subject.occludees;
     let mut results = vec![Visibility::Visible; boxes.len()];
-    let (mut rasterize_ms, mut test_ms) = (Vec::new(), Vec::new());
+    let tree = OccludeeTree::build(boxes, DVec3::ZERO);
+    let mut by_tree = results.clone();
+    let (mut rasterize_ms, mut test_ms, mut tree_ms) = (Vec::new(), Vec::new(), Vec::new());
     workers
         .enter(|| -> Result<(), foveal_cull::CullError> {
             for frame in 0..=frames {
@@ -90,9 +96,12 @@ pub(crate) fn measure(
                 workers.rasterize(culler, &view, &subject.occluders.set, &options)?;
                 let between = Instant::now();
                 workers.query(culler, boxes, &mut results)?;
+                let tested = Instant::now();
+                culler.query_tree(&tree, &mut by_tree)?;
                 if frame > 0 {
                     rasterize_ms.push((between - start).as_secs_f64() * 1e3);
-                    test_ms.push(between.elapsed().as_secs_f64() * 1e3);
+                    test_ms.push((tested - between).as_secs_f64() * 1e3);
+                    tree_ms.push(tested.elapsed().as_secs_f64() * 1e3);
                 }
             }
             Ok(())
@@ -120,6 +129,7 @@ pub(crate) fn measure(
             culled_triangles: stats.occludee_triangles_culled(),
             visible_triangles: stats.occludee_triangles_visible,
             test_ms: median(&test_ms),
+            tree_test_ms: median(&tree_ms),
             size_threshold: culling.occludee_size_threshold,
         },
         draw_calls: draw_calls(draws, &results),

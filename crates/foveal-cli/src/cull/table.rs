@@ -49,6 +49,7 @@ fn push_camera(text: &mut String, camera: &CameraReport) {
     line("  culled triangles", grouped(o.culled_triangles));
     line("  visible triangles", grouped(o.visible_triangles));
     line("  test time", ms(o.test_ms));
+    line("  test time by hierarchy", ms(o.tree_test_ms));
     line("  size threshold", o.size_threshold.to_string());
     line("total time", ms(f.occluders.rasterize_ms + o.test_ms));
     line("draw calls", grouped(f.draw_calls.occlusion));

@@ -17,6 +17,9 @@ const DILATE: f32 = 0.5;
 /// The same where not only samples count but all that lies between them.
 const DILATE_AROUND: f32 = 1.0;
 
+/// Groups are tested block by block up to this many blocks.
+const GROUP_BLOCKS: u32 = 64;
+
 /// What queries need to know of the frame that was rasterized.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
@@ -120,9 +123,14 @@ impl<'a> Query<'a> {
             y1: p.pixels[3][i] as u32,
         };
         let code = p.code[i].clamp(-32768, 32767) as i16;
+        // Of a large group the members had better be asked.
+        let [x0, y0, x1, y1] = rect.blocks();
+        if !object && (x1 - x0 + 1) * (y1 - y0 + 1) > GROUP_BLOCKS {
+            return Visibility::Visible;
+        }
         // Where even the middle lies before all that is known, nothing closer will hide the box.
         let [x, y, middle] = [0, 1, 2].map(|k| p.middle[k][i]);
-        if object && middle > i32::from(self.buffer.pixel(x as u32, y as u32)) {
+        if middle > i32::from(self.buffer.pixel(x as u32, y as u32)) {
             return Visibility::Visible;
         }
         self.answer_rect(l, rect, code, object.then(|| place(boxes, i)))

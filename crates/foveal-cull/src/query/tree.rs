@@ -11,7 +11,7 @@ use crate::{Aabb, CullError};
 use glam::{DVec3, Vec3};
 
 /// Occludees that are tested together, again and again.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct OccludeeTree {
     nodes: Vec<Node>,
     /// Object numbers in tree order.

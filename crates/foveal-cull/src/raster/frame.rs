@@ -1,12 +1,12 @@
 //! One frame: which clusters are drawn, and in which order.
 //!
-//! Clusters are rejected by frustum, normal cone and size before any vertex is transformed, then sorted
+//! Clusters are rejected by frustum, normal cone, size and detail before any vertex is transformed, then sorted
 //! front to back by a key that belongs to their content (nearest distance, then a hash), so that the result
 //! does not depend on the order in which occluders were added. Just before a cluster is drawn, its rectangle
 //! is tested against the depth so far; one that is hidden there could not have changed anything.
 
 use super::setup::{Facing, Radius, Scratch, draw_cluster};
-use crate::depth::{BLOCK_SAMPLES, Band, encode};
+use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
 use crate::occluder::{Instance, OccluderSet};
 use crate::query::project::{Projected8, Screen, project};
 use crate::simd::{Kernel, Lanes};
@@ -44,6 +44,7 @@ pub(crate) struct Select<'a> {
     pub(crate) width: f32,
     pub(crate) height: f32,
     pub(crate) size_threshold: f32,
+    pub(crate) pixels_per_quad: f32,
 }
 
 impl Kernel for Select<'_> {
@@ -59,7 +60,9 @@ impl Kernel for Select<'_> {
             width,
             height,
             size_threshold,
+            pixels_per_quad,
         } = self;
+        let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
         scratch.candidates.clear();
         scratch.rows.resize(set.instances.len(), [[0.0; 4]; 4]);
         let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
@@ -101,6 +104,10 @@ impl Kernel for Select<'_> {
                     let Some(c) = candidate(&p, i, width, height) else {
                         continue;
                     };
+                    let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]);
+                    if !c.crossing && area < samples_per_quad * f32::from(cluster.quad_count) {
+                        continue;
+                    }
                     scratch.candidates.push(Candidate {
                         key: c.key | u64::from(cluster.hash ^ instance.hash),
                         instance: index as u32,

@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use foveal_cull::{
-    BakeOptions, CullStats, Culler, Eye, FrameOptions, OccluderId, OccluderMesh, OccluderSet, Pool,
-    Projection, SingleThread, Threads, View, Visibility,
+    BakeOptions, CullStats, Culler, Eye, FrameOptions, OccludeeTree, OccluderId, OccluderMesh,
+    OccluderSet, Pool, Projection, SingleThread, Threads, View, Visibility,
 };
 use foveal_scene::{Camera, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
@@ -49,6 +49,8 @@ pub(crate) struct CullingScene {
     boxes: Vec<foveal_cull::Aabb>,
     /// Per object.
     triangles: Vec<u32>,
+    /// Over the boxes.
+    objects: OccludeeTree,
 }
 
 impl CullingScene {
@@ -67,6 +69,7 @@ impl CullingScene {
                 *sum = sum.saturating_add(triangles);
             }
         }
+        this.objects = OccludeeTree::build(&this.boxes, DVec3::ZERO);
         this
     }
 
@@ -110,6 +113,9 @@ impl CullingScene {
             }
         }
         self.take_boxes(scene);
+        if self.objects.refit(&self.boxes).is_err() {
+            self.objects = OccludeeTree::build(&self.boxes, DVec3::ZERO);
+        }
     }
 
     fn take_boxes(&mut self, scene: &Scene) {
@@ -247,7 +253,7 @@ impl CullingStage {
         if rasterized.is_ok()
             && self
                 .culler
-                .query(&scene.boxes, DVec3::ZERO, &mut self.results)
+                .query_tree(&scene.objects, &mut self.results)
                 .is_err()
         {
             self.results.fill(Visibility::Visible);

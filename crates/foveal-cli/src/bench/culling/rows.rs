@@ -88,6 +88,7 @@ impl Case<'_> {
         let view = View::mono(self.eye.eye);
         let options = FrameOptions {
             occluder_size_threshold: self.culling.occluder_size_threshold,
+            occluder_pixels_per_quad: self.culling.occluder_pixels_per_quad,
             occludee_size_threshold: self.culling.occludee_size_threshold,
             ..FrameOptions::default()
         };

@@ -8,6 +8,7 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use foveal_cull::FrameOptions;
 use foveal_scene::Scene;
 use glam::{DAffine3, DVec3};
 
@@ -125,6 +126,7 @@ impl Town {
             culling: &CullingArgs {
                 occluders: Choice::All,
                 occluder_size_threshold: 0.0,
+                occluder_pixels_per_quad: FrameOptions::default().occluder_pixels_per_quad,
                 occludee_size_threshold: 0.0,
             },
         };
