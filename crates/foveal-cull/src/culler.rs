@@ -199,8 +199,10 @@ impl Culler {
         let rows = self.buffer.blocks_y;
         let bands = match threads.count() {
             0 | 1 => 1,
-            n => (n * 4).min(rows as usize).min(MAX_BANDS),
+            n => n.min(rows as usize).min(MAX_BANDS),
         };
+        let mut ends = [0; MAX_BANDS];
+        self.buffer.cut(bands, &mut ends);
         self.scratch
             .resize_with(self.scratch.len().max(bands), Scratch::default);
         self.drawn
@@ -208,18 +210,17 @@ impl Culler {
         type Job<'a> = Option<(crate::depth::Band<'a>, &'a mut Scratch, &'a mut Vec<u32>)>;
         let mut jobs: [Mutex<Job<'_>>; MAX_BANDS] = [const { Mutex::new(None) }; MAX_BANDS];
         let mut rest = self.buffer.band();
-        for (i, ((job, scratch), drawn)) in jobs
+        let mut first = 0;
+        for (((job, scratch), drawn), end) in jobs
             .iter_mut()
             .zip(&mut self.scratch)
             .zip(&mut self.drawn)
-            .take(bands)
-            .enumerate()
+            .zip(&ends[..bands])
         {
             (scratch.polygons, scratch.clusters) = (0, 0);
             drawn.clear();
-            let end = rows as usize * (i + 1) / bands;
-            let (band, after) = rest.split(end as u32 - rest_first(rows, i, bands));
-            rest = after;
+            let (band, after) = rest.split(end - first);
+            (rest, first) = (after, *end);
             *job = Mutex::new(Some((band, scratch, drawn)));
         }
         let frame = &self.frame;
@@ -388,8 +389,4 @@ impl Culler {
     pub fn is_covered(&self, x: u32, y: u32) -> bool {
         x < self.buffer.width && y < self.buffer.height && self.buffer.pixel(x, y) != EMPTY
     }
-}
-
-fn rest_first(rows: u32, i: usize, bands: usize) -> u32 {
-    (rows as usize * i / bands) as u32
 }

@@ -73,6 +73,8 @@ pub(crate) struct DepthBuffer {
     /// Farthest depth per block.
     pub(crate) min: Vec<i16>,
     pub(crate) state: Vec<u8>,
+    /// How much was drawn into each row of blocks, in some unit: the next frame is split by it.
+    pub(crate) work: Vec<u32>,
     /// Once a frame is complete: farthest depths of blocks, then of 2x2, 4x4, ... blocks up to the whole, each
     /// level as if it were as large as the first, and one more value.
     pub(crate) coarse: Vec<i16>,
@@ -99,6 +101,7 @@ impl DepthBuffer {
             ],
             min: vec![EMPTY; n],
             state: vec![STATE_EMPTY; n],
+            work: vec![0; blocks_y as usize],
             coarse: vec![EMPTY; n * levels as usize + 1],
         }
     }
@@ -130,8 +133,30 @@ impl DepthBuffer {
         self.coarse.fill(EMPTY);
     }
 
-    /// Splits into horizontal bands of block rows that threads own.
+    /// Where to cut the rows into `bands` of equal work, as far as the last frame tells: the ends of all bands.
+    pub(crate) fn cut(&self, bands: usize, ends: &mut [u32]) {
+        let all = u64::from(self.blocks_y) + self.work.iter().map(|&w| u64::from(w)).sum::<u64>();
+        let (mut done, mut row) = (0, 0);
+        for (i, end) in ends[..bands].iter_mut().enumerate() {
+            let wanted = all * (i as u64 + 1) / bands as u64;
+            // Every band has a row, and leaves one for each that follows.
+            let (least, most) = (row + 1, self.blocks_y - (bands - 1 - i) as u32);
+            while row < most && (row < least || done < wanted) {
+                // As much of the row as lies before the cut decides on which side it is.
+                let here = 1 + u64::from(self.work[row as usize]);
+                if row >= least && done + here / 2 > wanted {
+                    break;
+                }
+                done += here;
+                row += 1;
+            }
+            *end = if i + 1 == bands { self.blocks_y } else { row };
+        }
+    }
+
+    /// All rows of blocks, to be split into bands that threads own. Work is counted anew.
     pub(crate) fn band(&mut self) -> Band<'_> {
+        self.work.fill(0);
         Band {
             blocks_x: self.blocks_x,
             first_row: 0,
@@ -140,6 +165,7 @@ impl DepthBuffer {
             partial: &mut self.partial,
             min: &mut self.min,
             state: &mut self.state,
+            work: &mut self.work,
         }
     }
 
@@ -163,6 +189,7 @@ pub(crate) struct Band<'a> {
     pub(crate) partial: &'a mut [PartialBlock],
     pub(crate) min: &'a mut [i16],
     pub(crate) state: &'a mut [u8],
+    pub(crate) work: &'a mut [u32],
 }
 
 impl<'a> Band<'a> {
@@ -174,6 +201,7 @@ impl<'a> Band<'a> {
         let (p0, p1) = self.partial.split_at_mut(at);
         let (m0, m1) = self.min.split_at_mut(at);
         let (s0, s1) = self.state.split_at_mut(at);
+        let (w0, w1) = self.work.split_at_mut(rows as usize);
         (
             Band {
                 blocks_x: self.blocks_x,
@@ -183,6 +211,7 @@ impl<'a> Band<'a> {
                 partial: p0,
                 min: m0,
                 state: s0,
+                work: w0,
             },
             Band {
                 blocks_x: self.blocks_x,
@@ -192,7 +221,65 @@ impl<'a> Band<'a> {
                 partial: p1,
                 min: m1,
                 state: s1,
+                work: w1,
             },
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_band_has_rows_and_about_its_share_of_the_work() {
+        for (height, bands) in [(8, 1), (64, 8), (360, 2), (360, 5), (1440, 64)] {
+            let mut buffer = DepthBuffer::new(16, height);
+            for seed in 0..50u32 {
+                for (i, work) in (0u32..).zip(&mut buffer.work) {
+                    *work = (i.wrapping_mul(2_654_435_761).wrapping_add(seed * 97) >> 20)
+                        % (1 + seed * 20);
+                }
+                let mut ends = [0; 64];
+                buffer.cut(bands, &mut ends);
+                let largest = buffer.work.iter().max().map_or(0, |&w| 1 + w);
+                let all = buffer.blocks_y + buffer.work.iter().sum::<u32>();
+                let mut first = 0;
+                for &end in &ends[..bands] {
+                    assert!(end > first, "{height} {bands} {seed}: {ends:?}");
+                    let rows = &buffer.work[first as usize..end as usize];
+                    let work = rows.iter().map(|w| 1 + w).sum::<u32>();
+                    assert!(
+                        rows.len() == 1 || work <= all / bands as u32 + 2 * largest,
+                        "{height} {bands} {seed}: {ends:?}"
+                    );
+                    first = end;
+                }
+                assert_eq!(first, buffer.blocks_y);
+            }
+        }
+    }
+
+    #[test]
+    fn the_summary_is_the_farthest_of_the_blocks_below() {
+        let mut buffer = DepthBuffer::new(72, 40);
+        for (i, min) in (0i16..).zip(&mut buffer.min) {
+            *min = (i * 37) % 101;
+        }
+        buffer.summarize();
+        let (w, h, n) = (9u32, 5u32, buffer.min.len());
+        for level in 0..5u32 {
+            for y in 0..h.div_ceil(1 << level) {
+                for x in 0..w.div_ceil(1 << level) {
+                    let below = (0..h)
+                        .flat_map(|v| (0..w).map(move |u| (u, v)))
+                        .filter(|&(u, v)| u >> level == x && v >> level == y)
+                        .map(|(u, v)| buffer.min[(v * w + u) as usize])
+                        .min();
+                    let at = level as usize * n + (y * w + x) as usize;
+                    assert_eq!(Some(buffer.coarse[at]), below, "{level} {x} {y}");
+                }
+            }
+        }
     }
 }

@@ -118,11 +118,11 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
-    let workers = args
+    let workers: Vec<(u32, Workers)> = args
         .threads
         .iter()
-        .map(|&count| Ok((count, Workers::new(count)?)))
-        .collect::<anyhow::Result<Vec<_>>>()?;
+        .map(|&count| (count, Workers::new(count)))
+        .collect();
     let mut rows = Vec::new();
     for name in &args.scenes {
         let scene = scene_source::load(name)?;

@@ -89,24 +89,24 @@ pub(crate) fn measure(
     let tree = OccludeeTree::build(boxes, DVec3::ZERO);
     let mut by_tree = results.clone();
     let (mut rasterize_ms, mut test_ms, mut tree_ms) = (Vec::new(), Vec::new(), Vec::new());
-    workers
-        .enter(|| -> Result<(), foveal_cull::CullError> {
-            for frame in 0..=frames {
-                let start = Instant::now();
-                workers.rasterize(culler, &view, &subject.occluders.set, &options)?;
-                let between = Instant::now();
-                workers.query(culler, boxes, &mut results)?;
-                let tested = Instant::now();
-                culler.query_tree(&tree, &mut by_tree)?;
-                if frame > 0 {
-                    rasterize_ms.push((between - start).as_secs_f64() * 1e3);
-                    test_ms.push((tested - between).as_secs_f64() * 1e3);
-                    tree_ms.push(tested.elapsed().as_secs_f64() * 1e3);
-                }
-            }
-            Ok(())
-        })
-        .context("this view cannot be culled")?;
+    let mut frame = || -> Result<[f64; 3], foveal_cull::CullError> {
+        let start = Instant::now();
+        workers.rasterize(culler, &view, &subject.occluders.set, &options)?;
+        let between = Instant::now();
+        workers.query(culler, boxes, &mut results)?;
+        let tested = Instant::now();
+        culler.query_tree(&tree, &mut by_tree)?;
+        let times = [between - start, tested - between, tested.elapsed()];
+        Ok(times.map(|d| d.as_secs_f64() * 1e3))
+    };
+    for n in 0..=frames {
+        let [rasterize, test, tree] = frame().context("this view cannot be culled")?;
+        if n > 0 {
+            rasterize_ms.push(rasterize);
+            test_ms.push(test);
+            tree_ms.push(tree);
+        }
+    }
     culler.count(&results, Some(triangles));
     let stats = culler.stats();
     let figures = Figures {

@@ -78,7 +78,7 @@ fn verdict(report: &Report) -> anyhow::Result<()> {
 fn cull(args: &Args) -> anyhow::Result<Report> {
     let (width, height) = args.size;
     let mut culler = Culler::new(width, height).context("--size")?;
-    let workers = Workers::new(args.threads)?;
+    let workers = Workers::new(args.threads);
     let (scene, subjects, mut warnings) = subjects(args)?;
     let total: usize = subjects.iter().map(|s| s.eyes.len()).sum();
     let progress = progress_bar(total as u64, "cameras", args.quiet);

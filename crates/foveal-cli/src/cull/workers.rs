@@ -1,38 +1,29 @@
 //! Threads for a measurement: this one, or a pool of its own.
 
-use anyhow::Context;
+use std::sync::Mutex;
+
 use foveal_cull::{
-    Aabb, CullError, Culler, FrameOptions, OccluderSet, Rayon, SingleThread, Threads, View,
+    Aabb, CullError, Culler, FrameOptions, OccluderSet, Pool, SingleThread, Threads, View,
     Visibility,
 };
 use glam::DVec3;
-use rayon::prelude::*;
 
 /// Who works.
 #[derive(Debug)]
 pub(crate) struct Workers {
-    pool: Option<rayon::ThreadPool>,
-    count: usize,
+    pool: Option<Pool>,
 }
 
 impl Workers {
     /// `count` threads; one is the calling thread itself.
-    pub(crate) fn new(count: u32) -> anyhow::Result<Self> {
-        let count = count.max(1) as usize;
-        let pool = (count > 1)
-            .then(|| rayon::ThreadPoolBuilder::new().num_threads(count).build())
-            .transpose()
-            .context("cannot start the threads")?;
-        Ok(Self { pool, count })
+    pub(crate) fn new(count: u32) -> Self {
+        Self {
+            pool: (count > 1).then(|| Pool::new(count as usize)),
+        }
     }
 
-    /// Runs `work` where [`rasterize`](Self::rasterize) and [`query`](Self::query) find the threads awake: on
-    /// one of them.
-    pub(crate) fn enter<R: Send>(&self, work: impl FnOnce() -> R + Send) -> R {
-        match &self.pool {
-            Some(pool) => pool.install(work),
-            None => work(),
-        }
+    fn threads(&self) -> &dyn Threads {
+        self.pool.as_ref().map_or(&SingleThread, |pool| pool)
     }
 
     /// Begins a frame.
@@ -43,12 +34,7 @@ impl Workers {
         set: &OccluderSet,
         options: &FrameOptions<'_>,
     ) -> Result<(), CullError> {
-        let threads: &dyn Threads = if self.pool.is_some() {
-            &Rayon
-        } else {
-            &SingleThread
-        };
-        culler.rasterize(view, set, options, threads)
+        culler.rasterize(view, set, options, self.threads())
     }
 
     /// Asks about world-space boxes.
@@ -58,17 +44,24 @@ impl Workers {
         boxes: &[Aabb],
         results: &mut [Visibility],
     ) -> Result<(), CullError> {
-        if self.pool.is_none() {
+        let count = self.threads().count();
+        if count == 1 {
             return culler.query(boxes, DVec3::ZERO, results);
         }
-        let part = boxes
-            .len()
-            .div_ceil(self.count * 4)
-            .next_multiple_of(8)
-            .max(8);
-        boxes
-            .par_chunks(part)
-            .zip(results.par_chunks_mut(part))
-            .try_for_each(|(boxes, results)| culler.query(boxes, DVec3::ZERO, results))
+        let part = boxes.len().div_ceil(count * 4).next_multiple_of(8).max(8);
+        let parts: Vec<_> = boxes
+            .chunks(part)
+            .zip(results.chunks_mut(part))
+            .map(|part| Mutex::new((part, Ok(()))))
+            .collect();
+        self.threads().run(parts.len(), &|i| {
+            if let Ok(mut part) = parts[i].lock() {
+                let ((boxes, results), outcome) = &mut *part;
+                *outcome = culler.query(boxes, DVec3::ZERO, results);
+            }
+        });
+        parts
+            .into_iter()
+            .try_for_each(|part| part.into_inner().map_or(Ok(()), |(_, outcome)| outcome))
     }
 }

@@ -12,12 +12,13 @@ use crate::query::project::{Projected8, Screen, project};
 use crate::simd::{Kernel, Lanes};
 use crate::view::Camera;
 use crate::{Budget, CullStats};
+use glam::DVec4;
 
 /// A cluster that may be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
-    /// Order: distance bits, then content hash.
-    key: u64,
+    /// Content hash: decides between equal distances.
+    hash: u32,
     instance: u32,
     cluster: u32,
     /// First and last block, inclusive.
@@ -31,6 +32,8 @@ pub(crate) struct Candidate {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrameScratch {
     pub(crate) candidates: Vec<Candidate>,
+    /// The order of drawing: the bits of the nearest distance, then the number of the candidate.
+    order: Vec<u64>,
     /// Clip rows per instance.
     pub(crate) rows: Vec<[[f32; 4]; 4]>,
 }
@@ -64,6 +67,8 @@ impl Kernel for Select<'_> {
         } = self;
         let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
         scratch.candidates.clear();
+        scratch.order.clear();
+        let planes = instance_planes(camera, f64::from(width), f64::from(height));
         scratch.rows.resize(set.instances.len(), [[0.0; 4]; 4]);
         let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
         for (index, instance) in set.instances.iter().enumerate() {
@@ -73,7 +78,7 @@ impl Kernel for Select<'_> {
             stats.occluder_models += 1;
             stats.occluder_triangles += mesh.triangle_count() as u64;
             stats.clusters += mesh.clusters.len() as u64;
-            if outside(camera, instance, small, f64::from(width), f64::from(height)) {
+            if outside(camera, &planes, instance, small) {
                 continue;
             }
             let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
@@ -108,8 +113,18 @@ impl Kernel for Select<'_> {
                     if !c.crossing && area < samples_per_quad * f32::from(cluster.quad_count) {
                         continue;
                     }
+                    // Perspective: nearest distance; orthographic W is 1, so that the depth decides.
+                    let near = if c.crossing {
+                        0.0
+                    } else {
+                        (1.0 / p.depth[i]).max(0.0)
+                    };
+                    let number = scratch.candidates.len() as u64;
+                    scratch
+                        .order
+                        .push((u64::from(near.to_bits()) << 32) | number);
                     scratch.candidates.push(Candidate {
-                        key: c.key | u64::from(cluster.hash ^ instance.hash),
+                        hash: cluster.hash ^ instance.hash,
                         instance: index as u32,
                         cluster: (first + i) as u32,
                         ..c
@@ -117,7 +132,14 @@ impl Kernel for Select<'_> {
                 }
             }
         }
-        scratch.candidates.sort_unstable_by_key(|c| c.key);
+        scratch.order.sort_unstable();
+        // Equal distances by content, not by the order in which occluders were added.
+        let candidates = &scratch.candidates;
+        for run in scratch.order.chunk_by_mut(|a, b| a >> 32 == b >> 32) {
+            if run.len() > 1 {
+                run.sort_unstable_by_key(|&o| candidates[o as u32 as usize].hash);
+            }
+        }
     }
 }
 
@@ -145,19 +167,13 @@ fn candidate(p: &Projected8, i: usize, width: f32, height: f32) -> Option<Candid
             ((p.y1[i] / size) as u16).min(by),
         ]
     };
-    // Perspective: nearest distance; orthographic W is 1, so that the depth decides.
-    let near = if crossing {
-        0.0
-    } else {
-        (1.0 / p.depth[i]).max(0.0)
-    };
     let code = if crossing {
         i16::MAX
     } else {
         encode(p.depth[i])
     };
     Some(Candidate {
-        key: u64::from(near.to_bits()) << 32,
+        hash: 0,
         instance: 0,
         cluster: 0,
         blocks,
@@ -166,24 +182,37 @@ fn candidate(p: &Projected8, i: usize, width: f32, height: f32) -> Option<Candid
     })
 }
 
+/// The six planes of the frustum for spheres relative to the eye: inside is `n . p + d >= 0`, with unit normals.
+fn instance_planes(camera: &Camera, width: f64, height: f64) -> [DVec4; 6] {
+    let [x, y, z, w] = camera.rows;
+    [
+        x,
+        w * width - x,
+        y,
+        w * height - y,
+        // In front of the near plane, or beyond the far plane.
+        w - z,
+        z - w * camera.far_depth,
+    ]
+    .map(|plane| {
+        let length = plane.truncate().length();
+        // A plane at infinity has everything inside.
+        if length > 0.0 {
+            plane / length
+        } else {
+            DVec4::ZERO
+        }
+    })
+}
+
 /// Whole-instance test: sphere against the frustum, and size.
-fn outside(camera: &Camera, instance: &Instance, small: f64, width: f64, height: f64) -> bool {
+fn outside(camera: &Camera, planes: &[DVec4; 6], instance: &Instance, small: f64) -> bool {
     let c = instance.center - camera.eye;
     let r = instance.radius;
-    let [x, y, z, w] = camera.rows.map(|row| row.truncate().dot(c) + row.w);
-    let beyond = |value: f64, row: glam::DVec4| value < -r * row.truncate().length();
-    let [rx, ry, rz, rw] = camera.rows;
-    if beyond(x, rx)
-        || beyond(width * w - x, rw * width - rx)
-        || beyond(y, ry)
-        || beyond(height * w - y, rw * height - ry)
-    {
+    if planes.iter().any(|p| p.truncate().dot(c) + p.w < -r) {
         return true;
     }
-    // In front of the near plane, or beyond the far plane.
-    if beyond(w - z, rw - rz) || beyond(z - w * camera.far_depth, rz - rw * camera.far_depth) {
-        return true;
-    }
+    let w = camera.rows[3].truncate().dot(c) + camera.rows[3].w;
     w > 1.0 && r * r < w * small
 }
 
@@ -217,7 +246,8 @@ impl Kernel for Draw<'_, '_> {
             band.first_row as u16,
             (band.first_row + band.rows - 1) as u16,
         );
-        for (n, c) in frame.candidates.iter().enumerate() {
+        for (n, &o) in frame.order.iter().enumerate() {
+            let c = &frame.candidates[o as u32 as usize];
             if let Some(b) = budget
                 && n % 16 == 0
                 && (b.clock)() >= b.deadline_ns
@@ -234,7 +264,7 @@ impl Kernel for Draw<'_, '_> {
                 continue;
             };
             if let Some(drawn) = drawn.as_deref_mut() {
-                drawn.push(n as u32);
+                drawn.push(o as u32);
             }
             let facing = Facing {
                 mirrored: instance.mirrored,

@@ -137,6 +137,8 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon) {
             }
             last = last.min(end as u32);
         }
+        // A row of a polygon costs about as much as two blocks.
+        band.work[(by - band.first_row) as usize] += 3 + last.saturating_sub(first);
         for bx in first..=last {
             let left = (bx * BLOCK_SAMPLES) as f32;
             if left >= inner_left && left + size <= inner_right {

@@ -1,5 +1,8 @@
 //! A small pool: the calling thread and helpers that wait for work.
 //!
+//! Sleeping and waking take longer than half a frame's culling, so whoever waits first looks again and again for
+//! some ten microseconds; nobody is woken who does not sleep.
+//!
 //! A task lives on the caller's stack, so helpers reach it through a pointer; the caller does not return
 //! before the last helper has let go of it.
 #![allow(
@@ -8,7 +11,7 @@
 )]
 
 use super::Threads;
-use core::sync::atomic::{AtomicUsize, Ordering};
+use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -22,11 +25,17 @@ pub struct Pool {
     turn: Mutex<()>,
 }
 
+/// How often one looks before going to sleep; a look takes some ten nanoseconds.
+const LOOKS: u32 = 4000;
+
 #[derive(Debug, Default)]
 struct Shared {
     state: Mutex<State>,
     changed: Condvar,
     next: AtomicUsize,
+    /// `State::round` and `State::active`, to be looked at without the lock.
+    round: AtomicU64,
+    active: AtomicUsize,
 }
 
 #[derive(Debug, Default)]
@@ -38,6 +47,8 @@ struct State {
     active: usize,
     panicked: bool,
     stop: bool,
+    /// Threads that wait for `changed`.
+    sleepers: usize,
 }
 
 #[derive(Clone, Copy)]
@@ -57,27 +68,53 @@ impl Shared {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait<'a>(&self, state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
-        self.changed
+    fn wait<'a>(&self, mut state: MutexGuard<'a, State>) -> MutexGuard<'a, State> {
+        state.sleepers += 1;
+        let mut state = self
+            .changed
             .wait(state)
-            .unwrap_or_else(PoisonError::into_inner)
+            .unwrap_or_else(PoisonError::into_inner);
+        state.sleepers -= 1;
+        state
+    }
+
+    /// Lets go of the lock and wakes those who sleep.
+    fn announce(&self, state: MutexGuard<'_, State>) {
+        let sleepers = state.sleepers;
+        drop(state);
+        if sleepers > 0 {
+            self.changed.notify_all();
+        }
+    }
+
+    /// Looks for a while whether something has happened.
+    fn watch(&self, happened: impl Fn(&Self) -> bool) {
+        for _ in 0..LOOKS {
+            if happened(self) {
+                return;
+            }
+            core::hint::spin_loop();
+        }
     }
 
     fn help(&self) {
         let mut seen = 0;
         loop {
+            self.watch(|s| s.round.load(Ordering::Acquire) != seen);
             let mut state = self.lock();
-            while !state.stop && (state.round == seen || state.task.is_none()) {
+            while !state.stop && state.round == seen {
                 state = self.wait(state);
             }
             if state.stop {
                 return;
             }
+            seen = state.round;
+            // None where all was done before this thread came.
             let (Some(task), tasks) = (state.task, state.tasks) else {
                 continue;
             };
-            seen = state.round;
             state.active += 1;
+            self.active.store(state.active, Ordering::Relaxed);
             drop(state);
             let ended = catch_unwind(AssertUnwindSafe(|| {
                 // SAFETY: `active` was raised under the lock while the task was posted, and `Pool::run` keeps
@@ -88,8 +125,8 @@ impl Shared {
             let mut state = self.lock();
             state.active -= 1;
             state.panicked |= ended.is_err();
-            drop(state);
-            self.changed.notify_all();
+            self.active.store(state.active, Ordering::Release);
+            self.announce(state);
         }
     }
 
@@ -109,8 +146,9 @@ struct Posted<'a>(&'a Shared);
 
 impl Drop for Posted<'_> {
     fn drop(&mut self) {
+        self.0.lock().task = None;
+        self.0.watch(|s| s.active.load(Ordering::Acquire) == 0);
         let mut state = self.0.lock();
-        state.task = None;
         while state.active > 0 {
             state = self.0.wait(state);
         }
@@ -155,9 +193,10 @@ impl Threads for Pool {
             self.shared.next.store(0, Ordering::Relaxed);
             (state.task, state.tasks, state.panicked) = (Some(Task(pointer)), tasks, false);
             state.round += 1;
+            self.shared.round.store(state.round, Ordering::Release);
+            self.shared.announce(state);
         }
         let posted = Posted(&self.shared);
-        self.shared.changed.notify_all();
         self.shared.work(tasks, task);
         drop(posted);
         let panicked = self.shared.lock().panicked;
@@ -167,8 +206,9 @@ impl Threads for Pool {
 
 impl Drop for Pool {
     fn drop(&mut self) {
-        self.shared.lock().stop = true;
-        self.shared.changed.notify_all();
+        let mut state = self.shared.lock();
+        state.stop = true;
+        self.shared.announce(state);
         for helper in self.helpers.drain(..) {
             let _ = helper.join();
         }

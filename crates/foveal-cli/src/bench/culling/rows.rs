@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use foveal_cull::{Aabb, CullError, Culler, FrameOptions, View, Visibility};
+use foveal_cull::{Aabb, Culler, FrameOptions, View, Visibility};
 use serde::Serialize;
 
 use crate::cull::CullingArgs;
@@ -96,13 +96,12 @@ impl Case<'_> {
         let mut times: Vec<[Vec<f64>; 2]> = workers.iter().map(|_| Default::default()).collect();
         for repetition in 0..WARM_UP + repetitions {
             for ((_, workers), [raster_ms, query_ms]) in workers.iter().zip(&mut times) {
-                let [raster, query] = workers.enter(|| -> Result<[f64; 2], CullError> {
-                    let start = Instant::now();
-                    workers.rasterize(&mut culler, &view, &self.occluders.set, &options)?;
-                    let between = Instant::now();
-                    workers.query(&culler, self.boxes, &mut results)?;
-                    Ok([between - start, between.elapsed()].map(|d| d.as_secs_f64() * 1e3))
-                })?;
+                let start = Instant::now();
+                workers.rasterize(&mut culler, &view, &self.occluders.set, &options)?;
+                let between = Instant::now();
+                workers.query(&culler, self.boxes, &mut results)?;
+                let [raster, query] =
+                    [between - start, between.elapsed()].map(|d| d.as_secs_f64() * 1e3);
                 if repetition >= WARM_UP {
                     raster_ms.push(raster);
                     query_ms.push(query);

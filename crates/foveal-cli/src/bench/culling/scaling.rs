@@ -130,7 +130,7 @@ impl Town {
                 occludee_size_threshold: 0.0,
             },
         };
-        let workers = [(point.threads, Workers::new(point.threads)?)];
+        let workers = [(point.threads, Workers::new(point.threads))];
         let mut rows = case.measure(&workers, repetitions, false)?;
         Ok(rows.swap_remove(0))
     }
