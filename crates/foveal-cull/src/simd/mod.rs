@@ -46,6 +46,7 @@ macro_rules! four {
 pub(crate) use four;
 
 /// `[e(0), e(1)]`, as [`four!`].
+#[cfg(target_arch = "x86_64")]
 macro_rules! two {
     ($k:ident => $e:expr) => {
         [
@@ -60,6 +61,7 @@ macro_rules! two {
         ]
     };
 }
+#[cfg(target_arch = "x86_64")]
 pub(crate) use two;
 
 /// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.

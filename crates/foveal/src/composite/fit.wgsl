@@ -1,4 +1,4 @@
-// The patch of each listed tile of a level. After seen.wgsl, patches.wgsl and raise.wgsl. CPU twin: `composite/twin.rs`.
+// The patch of each listed tile of a level. After seen.wgsl, patches.wgsl and raise.wgsl.
 //
 // Radiance at a corner is the affine least-squares fit through the samples of the tiles that touch it, so that
 // affine radiance comes out exactly, and all tiles around a corner find the same value. A corner that lies within the
