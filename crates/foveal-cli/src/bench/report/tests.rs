@@ -133,8 +133,5 @@ fn passes_become_their_median_and_their_spread() {
         csv.contains("baseline,\"unit0, stage1\",ms,1235.3178,1234.5678,1236.0678"),
         "{csv}"
     );
-    assert!(
-        csv.contains("stereo,,skipped,no such adapter,,"),
-        "{csv}"
-    );
+    assert!(csv.contains("stereo,,skipped,no such adapter,,"), "{csv}");
 }
