@@ -574,11 +574,11 @@ impl Renderer {
         self.stages.culling.as_ref().map(CullingStage::depth)
     }
 
-    /// The last frame's picture on the device: sRGB-encoded [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after
-    /// [`Renderer::set_settings`].
+    /// The last frame's picture on the device, as [`Renderer::read_picture`] gives it: sRGB-encoded
+    /// [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after [`Renderer::set_settings`].
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
-        &self.stages.targets.picture_view
+        self.stages.targets.shown()
     }
 
     /// Counts of the scene that was set last.
