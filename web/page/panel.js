@@ -45,6 +45,12 @@ const makers = {
     box.append(input);
     return input;
   },
+  text(entry, value, changed, box) {
+    const input = element('input', { type: 'text', value, size: 14 });
+    input.addEventListener('change', () => changed(input.value));
+    box.append(input);
+    return input;
+  },
 };
 
 function range(entry, value, step, changed, box) {

@@ -67,6 +67,8 @@ function parse(entry, text) {
       const place = text.split(',').map(Number);
       return place.length === 2 && place.every(Number.isFinite) ? place : undefined;
     }
+    case 'text':
+      return text;
     default:
       return undefined;
   }

@@ -24,6 +24,7 @@ impl From<&Setting> for Described {
             Kind::Integer { least, most } => ("integer", &[][..], (least as f64, most as f64)),
             Kind::Number { least, most } => ("number", &[][..], (least, most)),
             Kind::Place => ("place", &[][..], (0.0, 1.0)),
+            Kind::Text => ("text", &[][..], (0.0, 0.0)),
             Kind::File => ("file", &[][..], (0.0, 0.0)),
         };
         Self {

@@ -48,7 +48,7 @@ pub fn default_settings() -> String {
 }
 
 /// What is to be known of each setting in order to offer it: a list of `{key, stage, label, help, kind, names, least,
-/// most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and `number` (between `least` and `most`), `place`, `file`.
+/// most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and `number` (between `least` and `most`), `place`, `text`, `file`.
 #[wasm_bindgen]
 #[must_use]
 pub fn settings_table() -> String {
