@@ -78,8 +78,6 @@ test('the picture is the native one', async () => {
   const { page } = await site.visit('#scene=demo:1000&left.anisotropy=1&scale=1&split=1', { width: 848, height: 270 });
   const { bytes, width, height } = await picture(page, false);
   const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
-  
-
   await page.evaluate(async ({ width, height }) => {
     const pixels = new Uint8ClampedArray(await window.foveal.viewer.picture(false));
     const canvas = new OffscreenCanvas(width, height);
@@ -95,7 +93,8 @@ test('the picture is the native one', async () => {
   // The browser's own driver where it can be found: drivers differ in how they choose mip levels.
   const driver = '/usr/lib/chromium/vk_swiftshader_icd.json';
   const env = existsSync(driver) ? { ...process.env, VK_DRIVER_FILES: driver } : process.env;
-  const foveal = (...words) => execFileSync('cargo', ['run', '--quiet', '--package', 'foveal-cli', '--', ...words], { cwd: ROOT, encoding: 'utf8', env });
+  const [program, ...first] = process.env.FOVEAL ? [process.env.FOVEAL] : ['cargo', 'run', '--quiet', '--package', 'foveal-cli', '--'];
+  const foveal = (...words) => execFileSync(program, [...first, ...words], { cwd: ROOT, encoding: 'utf8', env });
   foveal('render', 'demo:1000', '--anisotropy', '1', '--size', `${width}x${height}`, '--output', ours);
   const { flip } = JSON.parse(foveal('compare', ours, theirs, '--json'));
   assert.ok(flip < 0.01, `FLIP to the native picture is ${flip}`);
