@@ -481,10 +481,8 @@ impl Renderer {
         {
             let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
             if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
-                let lens = seen.lenses.as_ref().map(|lenses| &lenses[0]);
-                coarse
-                    .rate_map
-                    .draw(recorder, settings, lens, &targets.gbuffer, &tiles.rate);
+                let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
+                rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
                 coarse.shading.shade(recorder, &input, tiles);
                 coarse.composite.join(recorder, targets, tiles);
             } else if let (Some(variable), true) = (

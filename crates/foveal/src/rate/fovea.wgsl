@@ -5,8 +5,9 @@ struct Wish {
     gaze: array<vec4f, 2>,
     // Squared radii in pixels from which on levels 1 to 8 are wished.
     squared_radii: array<vec4f, 2>,
-    // Squared tangents of the angle to the lens's axis from which on levels 1 to 8 are wished.
-    lens_squared_radii: array<vec4f, 2>,
+    // Squared tangents of the angle to the lens's axis from which on levels 1 to 8 are wished, of the left and of the
+    // right eye.
+    lens_squared_radii: array<array<vec4f, 2>, 2>,
     // First column of the right eye.
     eye_width: f32,
     coarsest: u32,

@@ -126,12 +126,12 @@ impl RateMapPass {
         &self,
         recorder: &mut Recorder<'_>,
         settings: &Settings,
-        lens: Option<&LensFit>,
+        lenses: Option<&[LensFit; 2]>,
         gbuffer: &GBuffer,
         target: &RateTargets,
     ) {
         let gpu = recorder.gpu;
-        let uniform = WishUniform::new(settings, lens);
+        let uniform = WishUniform::new(settings, lenses);
         gpu.queue
             .write_buffer(&self.wish_uniform, 0, bytemuck::bytes_of(&uniform));
         let wish_group = bind_group(

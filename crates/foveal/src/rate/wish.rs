@@ -13,7 +13,7 @@ use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
 pub(crate) struct WishUniform {
     pub(crate) gaze: [[f32; 4]; 2],
     pub(crate) squared_radii: [[f32; 4]; 2],
-    pub(crate) lens_squared_radii: [[f32; 4]; 2],
+    pub(crate) lens_squared_radii: [[[f32; 4]; 2]; 2],
     pub(crate) eye_width: f32,
     pub(crate) coarsest: u32,
     pub(crate) constant_level: u32,
@@ -28,8 +28,8 @@ pub(crate) struct WishUniform {
 const GRADED_BY: u8 = 2;
 
 impl WishUniform {
-    /// The uniform for these settings; `lens` is the left eye's where the output has one.
-    pub(crate) fn new(s: &Settings, lens: Option<&LensFit>) -> Self {
+    /// The uniform for these settings; `lenses` are both eyes' where the output has them.
+    pub(crate) fn new(s: &Settings, lenses: Option<&[LensFit; 2]>) -> Self {
         let (width, height) = (s.width as f32, s.height as f32);
         let layout = EyeLayout::of(s);
         let right = [0, 1].map(|axis| s.gaze[axis] + s.gaze_shift[axis]);
@@ -45,8 +45,9 @@ impl WishUniform {
         Self {
             gaze: [gaze(0, s.gaze), gaze(1, right)],
             squared_radii: squared_radii(s),
-            lens_squared_radii: lens
-                .map_or([[f32::MAX; 4]; 2], |lens| halves(lens.squared_radii())),
+            lens_squared_radii: lenses.map_or([[[f32::MAX; 4]; 2]; 2], |lenses| {
+                lenses.map(|lens| halves(lens.squared_radii()))
+            }),
             eye_width: layout.stride as f32,
             coarsest: u32::from(s.coarsest_level),
             constant_level: u32::from(s.rate_level),

@@ -15,7 +15,7 @@ override COMBINE: u32 = 0u;
 // How much coarser the screen is here than on the lens's axis.
 fn lens_level(pixel: vec2f) -> u32 {
     let tangent = view_position(pixel, 1.0).xy;
-    return radii_below(dot(tangent, tangent), wish.lens_squared_radii);
+    return radii_below(dot(tangent, tangent), wish.lens_squared_radii[view_at(pixel)]);
 }
 
 // The picture is stretched over each eye's.

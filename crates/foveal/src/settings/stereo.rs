@@ -179,11 +179,6 @@ pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error>
             "another source unless stereo is on and the output is a headset's",
         );
     }
-    if s.is_stereo() && s.shading == Shading::Variable {
-        let expected =
-            "full or coarse with two eyes: what it knows of the frame before is one eye's";
-        return wrong("shading", "variable".to_owned(), expected);
-    }
     if !(0.0..=1000.0).contains(&s.ipd) {
         return wrong("ipd", s.ipd.to_string(), "between 0 and 1000 metres");
     }

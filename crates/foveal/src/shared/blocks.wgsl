@@ -1,22 +1,11 @@
-// Blocks of the coarse tiling: level l has square blocks of 2^l pixels. After frame.wgsl.
+// Blocks of the coarse tiling: level l has square blocks of 2^l pixels. Blocks of all levels begin anew where the right
+// eye's picture does, so that none belongs to both; those at a picture's right and lower border may reach beyond it.
+// After frame.wgsl.
 // CPU twins: `rate/pyramid.rs`, `shading/coarse/block.rs`.
 
 // Bits of a rate-map cell: the level, and whether the block holds a geometric edge.
 const CELL_LEVEL: u32 = 15u;
 const CELL_EDGE: u32 = 128u;
-
-// Texels of one eye's picture: from `low` up to but not including `end`. Blocks of all levels begin anew where the
-// right eye's does, so that none belongs to both; those at an eye's right and lower border may reach beyond it.
-struct Picture {
-    low: vec2u,
-    end: vec2u,
-}
-
-// The picture that a texel belongs to.
-fn picture_of(texel: vec2u) -> Picture {
-    let low = vec2u(view_of(texel) * frame.eye_stride, 0u);
-    return Picture(low, low + vec2u(frame.size));
-}
 
 // Blocks across and down the target.
 fn blocks_at(level: u32) -> vec2u {

@@ -60,6 +60,18 @@ fn view_at(pixel: vec2f) -> u32 {
     return u32(pixel.x >= f32(frame.eye_stride));
 }
 
+// Texels of one eye's picture: from `low` up to but not including `end`.
+struct Picture {
+    low: vec2u,
+    end: vec2u,
+}
+
+// The picture that a texel belongs to.
+fn picture_of(texel: vec2u) -> Picture {
+    let low = vec2u(view_of(texel) * frame.eye_stride, 0u);
+    return Picture(low, low + vec2u(frame.size));
+}
+
 // A position in pixels of the target, relative to its eye's picture.
 fn in_eye(pixel: vec2f) -> vec2f {
     return pixel - vec2f(f32(view_at(pixel) * frame.eye_stride), 0.0);

@@ -19,7 +19,9 @@ pub(crate) struct EyeLayout {
 impl EyeLayout {
     pub(crate) fn of(settings: &Settings) -> Self {
         let coarsest = match settings.shading {
-            Shading::Full | Shading::Variable => 0,
+            Shading::Full => 0,
+            // Samples stand for 4 x 4 pixels at most, and every fourth quad across is probed.
+            Shading::Variable => 3,
             // The rate map's cells are 2 x 2 pixels at least.
             Shading::Coarse => u32::from(settings.coarsest_level).max(1),
         };

@@ -48,12 +48,15 @@ struct Listed {
 // x | y << 16: the upper left pixel of each sample.
 @group(1) @binding(7) var<storage, read_write> samples: array<u32>;
 
-// Luminances of a quad at an offset; of the quad in the middle where that one is unknown or not there.
+// Luminances of a quad at an offset; of the quad in the middle where that one is unknown or not there: no eye looks at
+// the other's picture.
 fn luma_of(quad: vec2i, offset: vec2i, middle: vec4f) -> vec4f {
     let at = quad + offset;
-    let quads = vec2i(textureDimensions(known));
-    let inside = all(at >= vec2i(0)) && all(at < quads);
-    let found = textureLoad(known, clamp(at, vec2i(0), quads - 1), 0);
+    let picture = picture_of(vec2u(quad) * 2u);
+    let low = vec2i(picture.low / 2u);
+    let end = vec2i((picture.end + 1u) / 2u);
+    let inside = all(at >= low) && all(at < end);
+    let found = textureLoad(known, clamp(at, low, end - 1), 0);
     return select(middle, unpack4x8unorm(found.x), inside && found.w != 0u);
 }
 
@@ -136,7 +139,7 @@ fn position_of(texel: vec2u, d: f32) -> vec3f {
 
 // The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one plane.
 fn surface_limit(first: vec2u) -> u32 {
-    let last = textureDimensions(identity) - 1u;
+    let last = picture_of(first).end - 1u;
     let texels = array(first, min(first + vec2u(1u, 0u), last), min(first + vec2u(0u, 1u), last), min(first + 1u, last));
     var who: array<u32, 4>;
     for (var i = 0u; i < 4u; i++) {
@@ -189,10 +192,10 @@ fn is_block(local: vec2u) -> bool {
 @compute @workgroup_size(8, 8)
 fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_id) local: vec3u) {
     let at = local.y * 8u + local.x;
-    let size = textureDimensions(identity);
     let quad = id.xy;
     let first = quad * 2u;
-    let inside = all(first < size);
+    let end = picture_of(first).end;
+    let inside = all(first < end);
     var rate = 0u;
     var notes = 0u;
     tile_who[at] = 0xffffffffu;
@@ -222,7 +225,7 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
         textureStore(mask, quad, vec4u(rate | notes, 0u, 0u, 0u));
         for (var i = 0u; i < 4u; i++) {
             let texel = first + vec2u(i & 1u, i >> 1u);
-            if all(texel < size) && stands_for_sample(texel, rate) {
+            if all(texel < end) && stands_for_sample(texel, rate) {
                 mine[count] = texel.x | (texel.y << 16u);
                 count++;
             }

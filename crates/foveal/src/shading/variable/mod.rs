@@ -11,6 +11,8 @@
 //! is that of a fresh start. [`Balance`] compares what is saved with what finding the mask costs.
 
 mod balance;
+#[cfg(test)]
+mod eyes;
 mod passes;
 mod probes;
 mod targets;
@@ -32,6 +34,7 @@ use foveal_scene::Camera;
 
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
+use crate::stereo::EyeLayout;
 use crate::targets::Targets;
 use crate::{Settings, Timing, VariableStats};
 
@@ -151,14 +154,15 @@ impl VariableStage {
         listed: Option<&[u8]>,
         gpu_ms: &[Timing],
     ) -> VariableStats {
-        let pixels = u64::from(settings.width) * u64::from(settings.height);
+        let layout = EyeLayout::of(settings);
+        let pixels = layout.pixels();
         let mut stats = self.balance.observe(settings.rate_stage, gpu_ms);
         stats.active = listed.is_some();
         stats.samples_per_rate = vec![pixels, 0, 0, 0, 0];
         if let Some(bytes) = listed {
             let words: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
             stats.samples_per_rate = words[4..9].iter().map(|&n| u64::from(n)).collect();
-            let quads = settings.width.div_ceil(2) * settings.height.div_ceil(2);
+            let quads = layout.width.div_ceil(2) * layout.height.div_ceil(2) * layout.eyes;
             stats.unknown_fraction = f64::from(words[9]) / f64::from(quads);
         }
         stats.shaded_fraction = stats.samples_per_rate.iter().sum::<u64>() as f64 / pixels as f64;

@@ -35,26 +35,26 @@ const SAME_DISTANCE: f32 = 0.02;
 
 // Rec. 709 luma of display values; the picture may have another size than what is shaded.
 fn luma_at(texel: vec2u) -> f32 {
-    let last = textureDimensions(identity) - 1u;
-    let shown = min(texel, last) * textureDimensions(picture_before) / (last + 1u);
+    let shown = texel * textureDimensions(picture_before) / textureDimensions(identity);
     return dot(textureLoad(picture_before, shown, 0).rgb, vec3f(0.2126, 0.7152, 0.0722));
 }
 
 fn measured(quad: vec2u) -> u32 {
     let texel = quad * 2u;
+    let last = picture_of(texel).end - 1u;
     return pack4x8unorm(vec4f(
         luma_at(texel),
-        luma_at(texel + vec2u(1u, 0u)),
-        luma_at(texel + vec2u(0u, 1u)),
-        luma_at(texel + vec2u(1u, 1u)),
+        luma_at(min(texel + vec2u(1u, 0u), last)),
+        luma_at(min(texel + vec2u(0u, 1u), last)),
+        luma_at(min(texel + vec2u(1u, 1u), last)),
     ));
 }
 
 @compute @workgroup_size(8, 8)
 fn reproject(@builtin(global_invocation_id) id: vec3u) {
-    let size = textureDimensions(identity);
     let texel = id.xy * 2u;
-    if any(texel >= size) {
+    let picture = picture_of(texel);
+    if any(texel >= picture.end) {
         return;
     }
     let who = textureLoad(identity, texel, 0).xy;
@@ -71,8 +71,7 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let motion = select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
     let then = vec2i(floor((vec2f(texel) + 1.0 - motion) * 0.5));
     var found = vec4u(0u, who.x, bitcast<u32>(distance), 0u);
-    let quads = vec2i((size + 1u) / 2u);
-    let inside = all(then >= vec2i(0)) && all(then < quads) && view_of(vec2u(then) * 2u) == view_of(texel);
+    let inside = all(then >= vec2i(picture.low / 2u)) && all(then < vec2i((picture.end + 1u) / 2u));
     if inside && rates.reset == 0u {
         let old = textureLoad(before, then, 0);
         let off = abs(bitcast<f32>(old.z) - expected);

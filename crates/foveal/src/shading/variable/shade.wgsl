@@ -58,7 +58,7 @@ fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_
         return;
     }
     let first = vec2u(samples[index] & 0xffffu, samples[index] >> 16u);
-    let end = min(first + extent_at(textureLoad(mask, first / 2u, 0).x), textureDimensions(gbuffer_depth));
+    let end = min(first + extent_at(textureLoad(mask, first / 2u, 0).x), picture_of(first).end);
     let color = shade_together(first, end);
     for (var y = first.y; y < end.y; y++) {
         for (var x = first.x; x < end.x; x++) {

@@ -2,6 +2,7 @@
 
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
+use crate::stereo::EyeLayout;
 use crate::{Settings, View};
 
 /// What is known of a quad: `reproject.wgsl`.
@@ -29,7 +30,7 @@ pub(crate) struct VariableTargets {
 
 impl VariableTargets {
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = (settings.width, settings.height);
+        let size = EyeLayout::of(settings).target_size();
         let quads = (size.0.div_ceil(2), size.1.div_ceil(2));
         let written = wgpu::TextureUsages::STORAGE_BINDING;
         let known = |label| gpu::target(gpu, label, quads, KNOWN_FORMAT, written);

@@ -22,7 +22,7 @@ fn scene() -> Scene {
     scene
 }
 
-fn variable(size: (u32, u32)) -> Settings {
+pub(super) fn variable(size: (u32, u32)) -> Settings {
     Settings {
         shading: Shading::Variable,
         rate: RateSource::Content,
@@ -32,13 +32,13 @@ fn variable(size: (u32, u32)) -> Settings {
 }
 
 /// A renderer with a scene, and the camera of its last frame.
-struct Film {
-    renderer: Renderer,
+pub(super) struct Film {
+    pub(super) renderer: Renderer,
     last: Option<Camera>,
 }
 
 impl Film {
-    fn new(scene: &Scene, settings: &Settings) -> Self {
+    pub(super) fn new(scene: &Scene, settings: &Settings) -> Self {
         pollster::block_on(async {
             let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
             renderer.set_scene(scene).await.unwrap();
@@ -49,7 +49,7 @@ impl Film {
         })
     }
 
-    fn draw(&mut self, camera: &Camera) -> FrameStats {
+    pub(super) fn draw(&mut self, camera: &Camera) -> FrameStats {
         let frame = Frame {
             camera,
             previous_camera: self.last.as_ref(),
@@ -59,12 +59,12 @@ impl Film {
         stats
     }
 
-    fn mask(&self) -> Vec<u32> {
+    pub(super) fn mask(&self) -> Vec<u32> {
         texels(&self.renderer.targets().variable.as_ref().unwrap().mask)
     }
 
     /// What is known after `frames` frames.
-    fn known(&self, frames: u32) -> Vec<[u32; 4]> {
+    pub(super) fn known(&self, frames: u32) -> Vec<[u32; 4]> {
         let t = self.renderer.targets().variable.as_ref().unwrap();
         texels(&t.known[usize::from(frames.is_multiple_of(2))])
     }
@@ -79,19 +79,19 @@ impl Film {
         }
     }
 
-    fn radiance(&self) -> Vec<[u16; 4]> {
+    pub(super) fn radiance(&self) -> Vec<[u16; 4]> {
         texels(&self.renderer.targets().radiance_view)
     }
 }
 
-fn shifted(camera: &Camera, x: f32) -> Camera {
+pub(super) fn shifted(camera: &Camera, x: f32) -> Camera {
     let mut camera = camera.clone();
     camera.world_from_view.w_axis.x += x;
     camera
 }
 
 /// Values that differ; a rounded one may fall to either side of a threshold.
-fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
+pub(super) fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }

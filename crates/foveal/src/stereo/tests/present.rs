@@ -133,6 +133,10 @@ fn assert_equals_twin(scene: &Scene, settings: Settings) {
     };
     let (width, height) = pictures.settings.picture_size();
     let shown: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&picture(&renderer));
+    // A host that draws the picture itself sees what is read back.
+    let size = renderer.picture().texture().size();
+    assert_eq!((size.width, size.height), (width, height));
+    assert!(texels::<[u8; 4]>(renderer.picture()) == shown);
     assert_eq!(shown.len(), (width * height) as usize);
     let mut lit = 0;
     for (i, device) in (0..).zip(&shown) {
