@@ -34,7 +34,7 @@ function cell(name, text, better) {
 }
 
 /** Fills the table; a side that was not drawn keeps its last figures. */
-export function showFigures(table, passes, { reference, chosen }) {
+export function showFigures(table, passes, notices, { reference, chosen }) {
   const body = table.tBodies[0];
   body.replaceChildren();
   for (const [name, pick, write, compare] of rows) {
@@ -47,6 +47,22 @@ export function showFigures(table, passes, { reference, chosen }) {
     row.append(cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`, ratio < 0.98));
   }
   showPasses(passes, reference, chosen);
+  notices.textContent = noticesOf(chosen).join(' ');
+}
+
+/** What the renderer says of its own choices. */
+function noticesOf(chosen) {
+  const sentences = [];
+  const off = chosen?.variable?.notice;
+  if (off) sentences.push(`${off.replace('--force-rate true', 'the switch Force')}.`);
+  if (chosen?.stereo) sentences.push(`Both eyes: ${chosen.stereo.mode} (${chosen.stereo.reason}).`);
+  if (chosen?.coarse) sentences.push(`Backend: ${chosen.coarse.backend} (${chosen.coarse.backend_reason}).`);
+  return sentences;
+}
+
+/** How long the page took to its first frame, and the memory that it holds. */
+export function showFooting(place, firstFrameMs, wasmBytes) {
+  place.textContent = `First frame after ${(firstFrameMs / 1000).toFixed(1)} s; ${(wasmBytes / 2 ** 20).toFixed(0)} MiB of WebAssembly memory.`;
 }
 
 /** One bar per side, its passes to scale. */

@@ -1,5 +1,5 @@
 // What the page offers at one touch. `reference` and `chosen` are changes to the default settings; `quick` are the
-// settings shown beside it, `still` is its picture where the page cannot draw.
+// settings shown beside it, those that are `shared` go to both sides. `stills/` has a picture of each.
 
 export const TECHNIQUES = [
   {
@@ -26,6 +26,23 @@ export const TECHNIQUES = [
     reference: { culling: 'off' },
     chosen: { culling: 'occlusion' },
     quick: ['culling'],
+  },
+  {
+    key: 'variable',
+    name: 'Variable shading',
+    text: 'Light is found once per 1x1 to 2x2 pixels, as the contrast of the frame before allows. Where finding that out costs more than it saves, it turns itself off; Force keeps it on.',
+    chosen: { shading: 'variable', rate: 'content', 'force-rate': true },
+    quick: ['view', 'contrast-threshold', 'rate-4x4', 'force-rate'],
+    views: ['final', 'rate', 'shaded', 'unknown'],
+  },
+  {
+    key: 'stereo',
+    name: 'Stereo',
+    text: 'Each draw once for both eyes, against a pass per eye: the pictures are the same, the draws are half. Red-cyan glasses show depth; side by side is for crossed eyes or a headset.',
+    reference: { stereo: 'two-pass', show: 'anaglyph-dubois' },
+    chosen: { stereo: 'auto', show: 'anaglyph-dubois' },
+    quick: ['show', 'ipd', 'convergence'],
+    shared: ['show', 'ipd', 'convergence'],
   },
   {
     key: 'both',

@@ -46,8 +46,8 @@ export async function open({ webgpu = true } = {}) {
 /** Waits until a frame of the present settings is on the canvas. */
 export async function settled(page) {
   await page.waitForFunction(() => {
-    const { frames, stale, busy } = window.foveal ?? {};
-    return frames > 0 && !stale && !busy;
+    const { frames, stale, busy, unsettled } = window.foveal ?? {};
+    return frames > 0 && !stale && !busy && !(unsettled > 0);
   });
 }
 

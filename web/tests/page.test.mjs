@@ -53,12 +53,15 @@ test('every technique draws, with every view that it offers', async () => {
     assert.equal(await button.getAttribute('aria-checked'), 'true');
     assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
     await shot(page, `technique-${name}`);
-    const view = page.locator('#quick-view');
-    if (!(await view.count())) continue;
-    for (const option of await view.locator('option').all()) {
-      await page.locator('#quick-view').selectOption(await option.getAttribute('value'));
-      await settled(page);
-      assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
+    for (const id of ['#quick-view', '#quick-show']) {
+      if (!(await page.locator(id).count())) continue;
+      for (const option of await page.locator(`${id} option`).all()) {
+        const value = await option.getAttribute('value');
+        await page.locator(id).selectOption(value);
+        await settled(page);
+        assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
+        await shot(page, `technique-${name}-${value}`);
+      }
     }
   }
   assert.deepEqual(said, []);
@@ -71,6 +74,39 @@ test('culling in WebAssembly hides objects and changes no pixel', async () => {
   const { reference, chosen } = await costs(page);
   assert.ok(chosen.objects_occluded > 0 && chosen.objects_visible < reference.objects_visible);
   assert.ok(left.bytes.equals(right.bytes));
+  await page.context().close();
+});
+
+test('both eyes in one submission give the picture of two passes, with half the draws', async () => {
+  const { page } = await site.visit('#scene=demo:1000&technique=stereo&scale=0.5', SMALL);
+  for (const show of ['anaglyph-dubois', 'side-by-side']) {
+    await page.locator('#quick-show').selectOption(show);
+    const [left, right] = [await picture(page, false), await picture(page, true)];
+    const { reference, chosen } = await costs(page);
+    assert.equal(reference.draws, 2 * chosen.draws);
+    assert.match(chosen.stereo.mode, /^instanced/);
+    assert.ok(difference(left, right) < 0.01, `${show}: ${difference(left, right)}`);
+    if (show !== 'side-by-side') continue;
+    let moved = 0;
+    const half = 2 * right.width;
+    for (let y = 0; y < right.height; y++) {
+      for (let x = 0; x < half; x++) moved += Number(right.bytes[y * 2 * half + x] !== right.bytes[y * 2 * half + half + x]);
+    }
+    assert.ok(moved > 0.1 * half * right.height, 'the eyes see different things');
+  }
+  await page.context().close();
+});
+
+test('variable shading lights fewer samples and is hard to tell from full shading', async () => {
+  const { page } = await site.visit('#scene=demo:1000&technique=variable&scale=0.5', SMALL);
+  const [left, right] = [await picture(page, false), await picture(page, true)];
+  const { reference, chosen } = await costs(page);
+  assert.ok(chosen.variable.active);
+  assert.ok(chosen.shaded_samples < 0.9 * reference.shaded_samples, `${chosen.shaded_samples} of ${reference.shaded_samples}`);
+  assert.ok(difference(left, right) < 3, `${difference(left, right)} of 255`);
+  // A still camera's rates are constant, and so is its picture.
+  await page.evaluate(() => { window.foveal.stale = true; });
+  assert.ok((await picture(page, true)).bytes.equals(right.bytes));
   await page.context().close();
 });
 
@@ -236,8 +272,9 @@ test('on a phone the picture and the controls share the screen', async () => {
   await page.context().close();
 });
 
-test('without WebGPU there is a picture of each technique and a sentence', async () => {
+test('without WebGPU there is a picture of each technique and a sentence', async (t) => {
   const bare = await open({ webgpu: false });
+  t.after(() => bare.close());
   const { page } = await bare.visit();
   await page.locator('#stills img').first().waitFor();
   assert.match(await page.locator('#missing').textContent(), /WebGPU/);
@@ -247,5 +284,4 @@ test('without WebGPU there is a picture of each technique and a sentence', async
   });
   assert.ok(loaded >= 4);
   await shot(page, 'without-webgpu');
-  await bare.close();
 });

@@ -8,6 +8,8 @@ pub(crate) struct Side {
     renderer: Renderer,
     /// What the page wishes; taken over before the next frame.
     wished: Settings,
+    /// Where the last frame was seen from.
+    previous: Option<Camera>,
 }
 
 impl Side {
@@ -22,6 +24,7 @@ impl Side {
         Ok(Self {
             renderer,
             wished: settings.clone(),
+            previous: None,
         })
     }
 
@@ -30,13 +33,14 @@ impl Side {
     }
 
     pub(crate) async fn set_scene(&mut self, scene: &Scene) -> Result<(), String> {
+        self.previous = None;
         self.renderer
             .set_scene(scene)
             .await
             .map_err(|cause| cause.to_string())
     }
 
-    /// Draws the next frame of `width` x `height` pixels. `scene` is what was set last: settings that are baked
+    /// Draws the next frame, shown as `width` x `height` pixels. `scene` is what was set last: settings that are baked
     /// into the upload set it anew.
     pub(crate) async fn draw(
         &mut self,
@@ -44,11 +48,13 @@ impl Side {
         camera: &Camera,
         (width, height): (u32, u32),
     ) -> Result<FrameStats, String> {
-        let settings = Settings {
+        let mut settings = Settings {
             width,
             height,
             ..self.wished.clone()
         };
+        // Some outputs show both eyes in full, side by side.
+        settings.width = (width * width / settings.picture_size().0).max(1);
         let before = self.renderer.settings();
         let uploads =
             before.culling != settings.culling || before.anisotropy != settings.anisotropy;
@@ -61,12 +67,11 @@ impl Side {
         }
         let frame = Frame {
             camera,
-            previous_camera: None,
+            previous_camera: self.previous.as_ref(),
         };
-        self.renderer
-            .render(&frame)
-            .await
-            .map_err(|cause| cause.to_string())
+        let stats = self.renderer.render(&frame).await;
+        self.previous = Some(camera.clone());
+        stats.map_err(|cause| cause.to_string())
     }
 
     /// The last frame, sRGB-encoded.

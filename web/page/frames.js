@@ -1,0 +1,111 @@
+// The clock of frames: draws when something changed, and keeps going when something fails.
+
+import { Camera } from './camera.js';
+import { applySettings, framesToSettle } from './chooser.js';
+import { showFigures, showFooting } from './figures.js';
+import { writeLink } from './link.js';
+import { $, page, redraw, say, wait } from './page.js';
+import { showScene } from './scenes.js';
+
+/** Even widths: side by side each eye has half. */
+function pictureSize() {
+  const box = $('stage').getBoundingClientRect();
+  const ratio = Math.min(devicePixelRatio || 1, 2) * (page.scale === 'auto' ? page.autoScale : Number(page.scale));
+  return { width: Math.max(16, 2 * Math.round((box.width * ratio) / 2)), height: Math.max(16, Math.round(box.height * ratio)) };
+}
+
+/** Halves the resolution while frames take longer than a quarter of a second; doubles it when there is time. */
+function adapt(ms) {
+  if (page.scale !== 'auto') return;
+  if (ms > 250 && page.autoScale > 0.25) page.autoScale /= 2;
+  else if (ms < 40 && page.autoScale < 1) page.autoScale *= 2;
+  else return;
+  redraw();
+}
+
+async function drawFrame() {
+  const wish = { camera: page.camera.place(), split: page.split, ...pictureSize() };
+  const canvas = $('picture');
+  if (canvas.width !== wish.width || canvas.height !== wish.height) {
+    canvas.width = wish.width;
+    canvas.height = wish.height;
+  }
+  page.unsettled = page.stale ? framesToSettle() : page.unsettled;
+  page.stale = false;
+  if (page.moved) writeLink();
+  page.moved = false;
+  const cost = JSON.parse(await page.viewer.draw(JSON.stringify(wish)));
+  page.unsettled -= 1;
+  page.frames += 1;
+  page.firstFrameMs ??= performance.now();
+  page.costs = { reference: cost.reference ?? page.costs.reference, chosen: cost.chosen ?? page.costs.chosen };
+  showFigures($('figures'), $('passes'), $('notices'), page.costs);
+  showFooting($('footing'), page.firstFrameMs, page.memory.buffer.byteLength);
+  adapt(cost.total_ms);
+}
+
+let last = performance.now();
+export async function turn(now) {
+  const seconds = (now - last) / 1000;
+  last = now;
+  if (page.camera.step(seconds) || page.always) redraw();
+  if ((page.stale || page.unsettled > 0) && !page.busy) {
+    page.busy = true;
+    try {
+      await drawFrame();
+    } catch (cause) {
+      page.unsettled = 0;
+      await mend(cause);
+    } finally {
+      page.busy = false;
+    }
+  }
+  requestAnimationFrame(turn);
+}
+
+/** After a failed frame: a lost device is opened anew, once; all else waits for the next change. */
+async function mend(cause) {
+  say(String(cause));
+  if (!/lost/i.test(String(cause))) return;
+  wait('Opening the graphics device again…');
+  const place = page.camera.place();
+  try {
+    await openViewer();
+    applySettings();
+    await showScene(page.scene, place);
+  } catch (again) {
+    say(`${again}. Reload the page to try again.`);
+  }
+  wait();
+}
+
+/** Opens the device on a canvas of its own: one that had a device cannot get another kind. */
+export async function openViewer() {
+  const old = $('picture');
+  const canvas = old.cloneNode();
+  old.replaceWith(canvas);
+  page.viewer = null;
+  page.viewer = await page.Viewer.open(canvas);
+  const touched = page.camera?.touched;
+  const camera = new Camera(canvas, () => {
+    camera.touched = true;
+    page.moved = true;
+    redraw();
+  });
+  camera.touched = touched;
+  camera.orbit = $('orbit').checked;
+  page.camera = camera;
+  canvas.addEventListener('pointermove', follow);
+  const { name, backend } = JSON.parse(page.viewer.adapter());
+  const kind = backend === 'gl' ? 'WebGL 2' : 'WebGPU';
+  $('adapter').textContent = `${kind}${name ? ` on ${name}` : ''} (${backend})`;
+}
+
+/** The gaze goes where the pointer is. */
+function follow(event) {
+  if (!page.gaze || !page.technique.gaze || page.camera.pointers.size) return;
+  const box = $('stage').getBoundingClientRect();
+  const gaze = [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+  page.settings.set('chosen', 'gaze', gaze.map((v) => Math.round(v * 1000) / 1000));
+  applySettings();
+}

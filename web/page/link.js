@@ -1,0 +1,39 @@
+// The address holds what is shown: scene, technique, settings, divider, resolution, place.
+
+import { $, page, say } from './page.js';
+import { TECHNIQUES } from './techniques.js';
+
+export function writeLink() {
+  const link = new URLSearchParams();
+  if (page.reducedOnPurpose) link.set('backend', 'webgl2');
+  if (!page.scene.bytes) link.set('scene', page.scene.name);
+  link.set('technique', page.technique.key);
+  page.settings.write(link);
+  link.set('split', page.split.toFixed(3));
+  if (page.scale !== 'auto') link.set('scale', page.scale);
+  if (page.camera.touched) {
+    const { eye, target } = page.camera.place();
+    link.set('eye', eye.map((v) => v.toFixed(4)).join(','));
+    link.set('target', target.map((v) => v.toFixed(4)).join(','));
+  }
+  history.replaceState(null, '', `#${link}`);
+}
+
+/** Takes over the address's wishes; tells which place it names for the camera. */
+export function readLink() {
+  const link = new URLSearchParams(location.hash.slice(1));
+  const technique = TECHNIQUES.find((t) => t.key === link.get('technique'));
+  page.technique = technique ?? TECHNIQUES[0];
+  page.settings.use(page.technique);
+  const unread = page.settings.read(link);
+  const split = Number(link.get('split') ?? 0.5);
+  page.split = split >= 0 && split <= 1 ? split : 0.5;
+  const scale = link.get('scale');
+  if ([...$('scale').options].some((o) => o.value === scale)) page.scale = scale;
+  page.scene = { name: link.get('scene') ?? 'demo', bytes: null };
+  const numbers = (key) => link.get(key)?.split(',').map(Number);
+  const [eye, target] = [numbers('eye'), numbers('target')];
+  const place = [eye, target].every((p) => p?.length === 3 && p.every(Number.isFinite)) ? { eye, target } : null;
+  if (unread.length) say(`The link asks for what this page does not know: ${unread.join(', ')}`);
+  return place;
+}

@@ -1,0 +1,66 @@
+// What a frame hangs on, and how the page speaks.
+
+import { TECHNIQUES } from './techniques.js';
+
+export const $ = (id) => document.getElementById(id);
+
+/** Everything that a frame hangs on. */
+export const page = {
+  viewer: null,
+  settings: null,
+  technique: TECHNIQUES[0],
+  camera: null,
+  split: 0.5,
+  scale: 'auto',
+  autoScale: 1,
+  always: false,
+  gaze: true,
+  // What is shown: a generated scene's name, or a dropped file's name and bytes.
+  scene: { name: 'demo', bytes: null },
+  home: null,
+  stale: true,
+  // Frames still to be drawn until what adapts from frame to frame has come to rest.
+  unsettled: 0,
+  // The camera moved since the link was written.
+  moved: false,
+  busy: false,
+  frames: 0,
+  // Milliseconds from the page's opening to its first frame.
+  firstFrameMs: null,
+  // Of the WebAssembly.
+  memory: null,
+  costs: { reference: null, chosen: null },
+};
+
+export function redraw() {
+  page.stale = true;
+}
+
+export function say(text) {
+  const message = document.createElement('div');
+  message.className = 'message';
+  const words = document.createElement('span');
+  words.textContent = text;
+  const close = document.createElement('button');
+  close.type = 'button';
+  close.textContent = 'Close';
+  close.addEventListener('click', () => message.remove());
+  message.append(words, close);
+  $('messages').replaceChildren(message);
+}
+
+export function wait(text) {
+  $('wait').textContent = text ?? '';
+  $('wait').hidden = !text;
+}
+
+/** Runs `work` alone: the viewer does one thing at a time. */
+export async function alone(work) {
+  while (page.busy) await new Promise((done) => setTimeout(done, 10));
+  page.busy = true;
+  try {
+    return await work();
+  } finally {
+    page.busy = false;
+  }
+}

@@ -1,0 +1,62 @@
+// Which scene is shown: a generated one, or a file from the user.
+
+import { writeLink } from './link.js';
+import { $, alone, page, redraw, say, wait } from './page.js';
+
+const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
+
+export async function showScene(scene, place) {
+  wait(`Loading ${scene.name}…`);
+  // Let the words appear before the thread is taken.
+  await new Promise((done) => setTimeout(done, 30));
+  try {
+    const text = scene.bytes
+      ? await page.viewer.load(scene.name, new Uint8Array(scene.bytes))
+      : await page.viewer.generate(scene.name);
+    const shown = JSON.parse(text);
+    page.scene = scene;
+    page.home = { place: shown.camera, radius: shown.radius_m };
+    page.camera.reset({ ...shown.camera, ...place }, shown.radius_m);
+    page.camera.touched = Boolean(place);
+    const figures = [`${shown.triangles.toLocaleString('en')} triangles`, `${shown.objects.toLocaleString('en')} objects`, `${shown.lights} lights`];
+    $('scene-figures').textContent = figures.join(', ') + (shown.warnings.length ? `. ${shown.warnings.length} warnings: ${shown.warnings[0]}` : '');
+    const select = $('scene');
+    if (![...select.options].some((o) => o.value === scene.name)) select.add(new Option(scene.name, scene.name));
+    select.value = scene.name;
+    writeLink();
+    redraw();
+    return true;
+  } catch (cause) {
+    say(String(cause));
+    $('scene').value = page.scene.name;
+    return false;
+  } finally {
+    wait();
+  }
+}
+
+async function showFile(file) {
+  const bytes = await file.arrayBuffer();
+  await alone(() => showScene({ name: file.name, bytes }));
+}
+
+export function wireScenes() {
+  for (const scene of SCENES) $('scene').add(new Option(scene, scene));
+  $('scene').addEventListener('change', (event) => alone(() => showScene({ name: event.target.value, bytes: null })));
+  $('file').addEventListener('change', (event) => {
+    const [file] = event.target.files;
+    if (file) showFile(file);
+    event.target.value = '';
+  });
+  let over = 0;
+  addEventListener('dragenter', () => { over += 1; $('drop').hidden = false; });
+  addEventListener('dragleave', () => { over -= 1; $('drop').hidden = over <= 0; });
+  addEventListener('dragover', (event) => event.preventDefault());
+  addEventListener('drop', (event) => {
+    event.preventDefault();
+    over = 0;
+    $('drop').hidden = true;
+    const [file] = event.dataTransfer.files;
+    if (file) showFile(file);
+  });
+}
