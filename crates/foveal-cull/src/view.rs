@@ -350,6 +350,21 @@ impl Camera {
             [v.x as f32, v.y as f32, v.z as f32, w as f32]
         })
     }
+
+    /// Clip rows in the space of an object placed by `world_from_object`, not rounded.
+    pub(crate) fn exact_rows(&self, world_from_object: &DAffine3) -> [[f64; 4]; 4] {
+        let m = world_from_object.matrix3;
+        let origin = world_from_object.translation - self.eye;
+        self.rows.map(|row| {
+            let r = row.truncate();
+            [
+                r.dot(m.x_axis),
+                r.dot(m.y_axis),
+                r.dot(m.z_axis),
+                r.dot(origin) + row.w,
+            ]
+        })
+    }
 }
 
 /// One eye in the middle that sees at least what both see, and the radius that reaches both.

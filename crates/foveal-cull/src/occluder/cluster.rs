@@ -159,6 +159,7 @@ fn emit(mesh: &mut OccluderMesh, points: &[Vec3], items: &[Item]) -> bool {
     let cos = normals.iter().fold(1.0f32, |m, n| m.min(n.dot(axis)));
     // A little wider than measured, for rounding.
     let cos = if axis == Vec3::ZERO { -1.0 } else { cos - 1e-4 };
+    let [lo, hi] = [lo, hi].map(|p| (p.as_dvec3() - mesh.center).as_vec3());
     mesh.clusters.push(Cluster {
         center: (lo + hi) * 0.5,
         half: (hi - lo) * 0.5 * (1.0 + 1e-6) + (lo.abs().max(hi.abs())) * 1e-6,

@@ -2,7 +2,8 @@
 //!
 //! Baking welds equal positions, joins neighbouring triangles to nearly flat quads (half the set-up work),
 //! and groups them into clusters of at most 64 quads with a bounding box and a normal cone. Positions are
-//! kept relative to the mesh's own centre, so that large local coordinates keep their precision.
+//! kept as they are; bounds are relative to the mesh's own centre, so that large local coordinates keep their
+//! precision.
 
 mod cluster;
 mod quads;
@@ -34,7 +35,7 @@ pub struct OccluderMesh {
     pub(crate) clusters: Vec<Cluster>,
     /// Their boxes, eight at a time (NaN after the last).
     pub(crate) bounds8: Vec<Boxes8>,
-    /// The centre that positions are relative to, mesh space.
+    /// The centre that bounds are relative to, mesh space.
     pub(crate) center: DVec3,
     /// Bounds relative to `center`.
     pub(crate) half: Vec3,
@@ -43,7 +44,7 @@ pub struct OccluderMesh {
     triangles: u32,
 }
 
-/// Positions by coordinate; every cluster's part is padded to a multiple of eight.
+/// Positions by coordinate, mesh space; every cluster's part is padded to a multiple of eight.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Vertices {
     pub(crate) x: Vec<f32>,
@@ -54,6 +55,7 @@ pub(crate) struct Vertices {
 /// Up to 64 quads over up to 256 vertices.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Cluster {
+    /// Bounds relative to the mesh's centre.
     pub(crate) center: Vec3,
     pub(crate) half: Vec3,
     /// Mean normal, and the sine and cosine of the largest angle to it; `cone_cos <= 0` where the normals
@@ -128,7 +130,7 @@ impl OccluderMesh {
         } else {
             (bounds.0 + bounds.1) * 0.5
         };
-        let welded = weld::weld(positions, indices, center);
+        let welded = weld::weld(positions, indices);
         let quads = quads::pair(&welded);
         let mut mesh = Self {
             vertices: Vertices::default(),

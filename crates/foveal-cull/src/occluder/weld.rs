@@ -1,16 +1,16 @@
 //! Welding: positions that are bit-equal become one vertex, so that neighbours are found however a mesh
 //! was exported.
 
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use std::collections::HashMap;
 
-/// Points relative to the mesh centre and triangles that index them.
+/// Points and triangles that index them.
 pub(crate) struct Welded {
     pub(crate) points: Vec<Vec3>,
     pub(crate) triangles: Vec<[u32; 3]>,
 }
 
-pub(crate) fn weld(positions: &[Vec3], indices: &[u32], center: DVec3) -> Welded {
+pub(crate) fn weld(positions: &[Vec3], indices: &[u32]) -> Welded {
     let mut unique: HashMap<[u32; 3], u32> = HashMap::with_capacity(positions.len());
     let mut points = Vec::new();
     let mut renumber = |i: u32| {
@@ -19,7 +19,7 @@ pub(crate) fn weld(positions: &[Vec3], indices: &[u32], center: DVec3) -> Welded
         *unique
             .entry(p.to_array().map(f32::to_bits))
             .or_insert_with(|| {
-                points.push((p.as_dvec3() - center).as_vec3());
+                points.push(p);
                 (points.len() - 1) as u32
             })
     };

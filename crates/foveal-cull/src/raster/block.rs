@@ -1,12 +1,13 @@
 //! Coverage and depth of one polygon in one 8x8 block, and how both are merged into the buffer.
 //!
 //! Coverage: the borders are evaluated in float for 32 sample rows (and for the 8 rows through pixel
-//! centres), rounded to the first covered sample, and turned into bit planes, one per sample position in a
-//! pixel, by byte look-ups. Merging then is plain logic on 64-bit planes.
+//! centres), relative to the block, rounded to the first covered sample, and turned into bit planes, one per sample
+//! position in a pixel, by byte look-ups. Where float cannot tell on which side of a border a sample lies, all
+//! is done again in `f64` (about one block in a hundred). Merging then is plain logic on 64-bit planes.
 //!
 //! Depth: the polygon's plane at its farthest point within each pixel, no farther than its farthest vertex.
 
-use super::polygon::Polygon;
+use super::polygon::{Edges, Polygon};
 use crate::depth::{
     BLOCK_SAMPLES, Band, EMPTY, PartialBlock, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
 };
@@ -30,9 +31,12 @@ pub(crate) struct Plane {
 
 /// The borders of a polygon, left two and right two, ready for rows of blocks.
 pub(crate) struct Borders<L: Lanes> {
-    x: [f32; 4],
-    y: [f32; 4],
+    edges: Edges<L>,
     pub(crate) slope: [f32; 4],
+    /// Bound for the rounding of a border anywhere within a block that it crosses, samples along the row.
+    error: [f32; 4],
+    /// The largest of them, if that is small enough not to be asked which borders cross a block.
+    common: Option<f32>,
     /// Change from the first sample row to each.
     rows: [L::R; 4],
     /// The same for the rows through pixel centres.
@@ -41,32 +45,48 @@ pub(crate) struct Borders<L: Lanes> {
 
 /// Rows through pixel centres, in sample rows from the first.
 const CENTER_ROWS: [f32; 8] = [1.5, 5.5, 9.5, 13.5, 17.5, 21.5, 25.5, 29.5];
+/// Of 64 + 48 |slope|: while a border is within a block, its number there, slope times row, their sum and the
+/// slope itself are rounded, each by half a unit in the 24th place of at most that much.
+const ERROR: f32 = 1.0 / 8_388_608.0;
+/// Slopes up to about 16: one block in a hundred is unsure.
+const COMMON_ERROR: f32 = 1e-4;
 const COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
 
 impl<L: Lanes> Borders<L> {
     #[inline(always)]
-    pub(crate) fn new(l: L, polygon: &Polygon) -> Self {
-        let e = [
-            polygon.left.edges[0],
-            polygon.left.edges[1],
-            polygon.right.edges[0],
-            polygon.right.edges[1],
-        ];
+    pub(crate) fn new(l: L, polygon: &Polygon<L>) -> Self {
+        let edges = polygon.borders;
+        let slope = l.qround(edges.slope);
+        let error = four!(i => (64.0 + 48.0 * slope[i].abs()) * ERROR);
+        let common = error[0].max(error[1]).max(error[2].max(error[3]));
         let centers = l.load(&CENTER_ROWS);
         Self {
-            x: four!(i => e[i].x),
-            y: four!(i => e[i].y),
-            slope: four!(i => e[i].slope),
-            rows: four!(i => l.rows(e[i].slope)),
-            centers: four!(i => l.mul(centers, l.splat(e[i].slope))),
+            edges,
+            slope,
+            error,
+            common: (common < COMMON_ERROR).then_some(common),
+            rows: four!(i => l.rows(slope[i])),
+            centers: four!(i => l.mul(centers, l.splat(slope[i]))),
         }
+    }
+
+    /// The error of those borders that cross the block; `at` at its first row.
+    #[inline(always)]
+    fn error_in_block(&self, at: &[f32; 4]) -> f32 {
+        let error = four!(e => {
+            let end = at[e] + self.slope[e] * 31.0;
+            let crosses = (at[e].min(end) < 33.0) & (at[e].max(end) > -1.0);
+            if crosses { self.error[e] } else { 0.0 }
+        });
+        error[0].max(error[1]).max(error[2].max(error[3]))
     }
 
     /// Positions at the first sample row of a row of blocks that begins at `top`, samples.
     #[inline(always)]
-    pub(crate) fn at(&self, top: f32) -> [f32; 4] {
-        let y = top + 0.5;
-        four!(i => (y - self.y[i]) * self.slope[i] + self.x[i])
+    pub(crate) fn at(&self, l: L, top: f32) -> L::Q {
+        let e = &self.edges;
+        let down = l.qsub(l.qsplat(f64::from(top + 0.5)), e.y);
+        l.qadd(l.qmul(down, e.slope), e.x)
     }
 }
 
@@ -74,18 +94,18 @@ impl<L: Lanes> Borders<L> {
 #[inline(always)]
 fn coverage<L: Lanes>(
     l: L,
-    polygon: &Polygon,
+    polygon: &Polygon<L>,
     borders: &Borders<L>,
-    at: &[f32; 4],
+    exact: L::Q,
     left: f32,
     top: f32,
 ) -> (L::P, u64) {
     // Sample n of a row lies at `left + n + 0.5`.
-    let at = four!(e => at[e] - (left - 0.5));
+    let at = l.qround(l.qsub(exact, l.qsplat(f64::from(left - 0.5))));
     let rows = four!(e => l.radd(l.rsplat(at[e]), borders.rows[e]));
     let centers = four!(e => l.add(l.splat(at[e]), borders.centers[e]));
     let mut from = l.rmax(rows[0], rows[1]);
-    let to = l.rmin(rows[2], rows[3]);
+    let mut to = l.rmin(rows[2], rows[3]);
     let mut center_from = l.max(centers[0], centers[1]);
     let center_to = l.min(centers[2], centers[3]);
     if let Some((after, last)) = polygon.rows {
@@ -93,11 +113,71 @@ fn coverage<L: Lanes>(
         center_from = limit_centers(l, center_from, top + 2.0, after, last);
     }
     // The centre of pixel n is at sample 4 n + 1.5 of the row.
-    let pixel = |v: L::F| l.mul(l.add(v, l.splat(1.5)), l.splat(0.25));
-    (
-        l.planes(from, to),
-        l.plane(pixel(center_from), pixel(center_to)),
-    )
+    let quarter = |v: L::F| l.mul(l.add(v, l.splat(1.5)), l.splat(0.25));
+    let mut center_from = quarter(center_from);
+    let mut center_to = quarter(center_to);
+    let error = borders
+        .common
+        .unwrap_or_else(|| borders.error_in_block(&at));
+    if l.runsure(from, to, error) | l.unsure(center_from, center_to, error) {
+        let numbers = exact_numbers(l, polygon, borders, exact, left, top);
+        (from, to) = (l.rload(&numbers.from), l.rload(&numbers.to));
+        center_from = l.load(&numbers.center_from);
+        center_to = l.load(&numbers.center_to);
+    }
+    (l.planes(from, to), l.plane(center_from, center_to))
+}
+
+/// First covered and first uncovered sample (pixel, for centres) of each row, and a half.
+struct Numbers {
+    from: [f32; 32],
+    to: [f32; 32],
+    center_from: [f32; 8],
+    center_to: [f32; 8],
+}
+
+/// The same as in float, in `f64`.
+#[cold]
+fn exact_numbers<L: Lanes>(
+    l: L,
+    polygon: &Polygon<L>,
+    borders: &Borders<L>,
+    exact: L::Q,
+    left: f32,
+    top: f32,
+) -> Numbers {
+    let mut numbers = Numbers {
+        from: [0.0; 32],
+        to: [0.0; 32],
+        center_from: [0.0; 8],
+        center_to: [0.0; 8],
+    };
+    let (mut at, mut slope) = ([0.0; 4], [0.0; 4]);
+    l.qstore(l.qsub(exact, l.qsplat(f64::from(left - 0.5))), &mut at);
+    l.qstore(borders.edges.slope, &mut slope);
+    let ends = |row: f32| {
+        let x = four!(e => at[e] + f64::from(row) * slope[e]);
+        let y = top + 0.5 + row;
+        let inside = polygon
+            .rows
+            .is_none_or(|(after, last)| after < y && y <= last);
+        let from = if inside { x[0].max(x[1]) } else { 1e6 };
+        (from, x[2].min(x[3]))
+    };
+    // Whole numbers and a half, so that rounding them towards zero again is no question.
+    let number = |v: f64, most: f64| v.clamp(0.0, most).floor() as f32 + 0.5;
+    for row in 0..32 {
+        let (from, to) = ends(row as f32);
+        // As Lanes::R has its rows.
+        let place = row % 4 * 8 + row / 4;
+        (numbers.from[place], numbers.to[place]) = (number(from, 32.0), number(to, 32.0));
+    }
+    for (row, center) in CENTER_ROWS.iter().enumerate() {
+        let (from, to) = ends(*center);
+        let pixel = |x: f64| number((x + 1.5) * 0.25, 8.0);
+        (numbers.center_from[row], numbers.center_to[row]) = (pixel(from), pixel(to));
+    }
+    numbers
 }
 
 /// Moves the left border out of sight on rows outside the limits; `y` is the first of the eight rows.
@@ -163,9 +243,9 @@ pub(crate) fn cover_partial<L: Lanes>(
     band: &mut Band<'_>,
     bx: u32,
     by: u32,
-    polygon: &Polygon,
+    polygon: &Polygon<L>,
     borders: &Borders<L>,
-    at: &[f32; 4],
+    exact: L::Q,
 ) {
     let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
     if polygon.plane.max_code <= band.min[i] {
@@ -173,7 +253,7 @@ pub(crate) fn cover_partial<L: Lanes>(
     }
     let d = depths(l, &polygon.plane, bx, by);
     let (left, top) = ((bx * BLOCK_SAMPLES) as f32, (by * BLOCK_SAMPLES) as f32);
-    let (planes, center) = coverage(l, polygon, borders, at, left, top);
+    let (planes, center) = coverage(l, polygon, borders, exact, left, top);
     // From here on without a branch: none of the questions has an answer that could be foreseen.
     let state = band.state[i];
     let (block, partial) = (&mut band.depth[i].0, &mut band.partial[i]);

@@ -6,7 +6,7 @@
 use super::setup::{Facing, GUARD, Scratch, draw_eight};
 use crate::depth::{BLOCK_SAMPLES, Band};
 use crate::occluder::{Cluster, OccluderMesh};
-use crate::simd::{Lanes, four};
+use crate::simd::Lanes;
 use glam::DVec4;
 
 /// A convex polygon of up to nine corners (three, and one per plane), in clip space.
@@ -59,7 +59,7 @@ impl ClipPolygon {
 /// Near plane (`W - Z >= 0`) and guard band.
 pub(crate) const NEAR: DVec4 = DVec4::new(0.0, 0.0, -1.0, 1.0);
 const PLANES: [DVec4; 5] = {
-    let g = GUARD as f64 * 0.999;
+    let g = GUARD * 0.999;
     [
         NEAR,
         DVec4::new(1.0, 0.0, 0.0, g),
@@ -77,10 +77,10 @@ pub(crate) fn draw_clipped<L: Lanes>(
     scratch: &mut Scratch,
     mesh: &OccluderMesh,
     cluster: &Cluster,
-    rows: &[[f32; 4]; 4],
+    rows: &[[f64; 4]; 4],
     facing: Facing,
 ) {
-    let rows = rows.map(|r| DVec4::from_array(r.map(f64::from)));
+    let rows = rows.map(DVec4::from_array);
     let corner = |v: u8| {
         let i = cluster.first_vertex as usize + usize::from(v);
         let p = DVec4::new(
@@ -122,7 +122,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
         if v.iter()
             .fold(0xff, |m, &v| m & scratch.beyond[usize::from(v)])
             != 0
-            || !v.iter().any(|&v| scratch.x[usize::from(v)].is_nan())
+            || !v.iter().any(|&v| scratch.points.x[usize::from(v)].is_nan())
         {
             continue;
         }
@@ -158,45 +158,19 @@ fn draw_fan<L: Lanes>(
     if polygon.count < 3 {
         return;
     }
-    let screen = |i: usize| {
-        let c = polygon.corners[i];
+    let points = &mut scratch.clipped;
+    for (i, c) in polygon.corners[..polygon.count].iter().enumerate() {
         let inv = 1.0 / c.w;
-        [
-            (c.x * inv) as f32,
-            (c.y * inv) as f32,
-            ((c.z * inv) as f32).min(1.0),
-        ]
-    };
-    // Lanes that are not used repeat one point and have no area.
-    let mut lanes = [[[0.0f32; 8]; 4]; 3];
-    let origin = screen(0);
+        let d = (c.z * inv) as f32;
+        points.set(i, c.x * inv, c.y * inv, d.min(1.0));
+    }
+    // A fan; lanes that are not used repeat one point and have no area.
+    let mut index = [[0u8; 8]; 4];
     for i in 1..polygon.count - 1 {
-        let triangle = [origin, screen(i), screen(i + 1), screen(i + 1)];
-        for (k, p) in triangle.iter().enumerate() {
-            for axis in 0..3 {
-                lanes[axis][k][(i - 1) % 8] = p[axis];
-            }
+        for (corner, point) in index.iter_mut().zip([0, i, i + 1, i + 1]) {
+            corner[(i - 1) % 8] = point as u8;
         }
     }
-    let x = four!(k => l.load(&lanes[0][k]));
-    let y = four!(k => l.load(&lanes[1][k]));
-    let depths = &mut scratch.clipped;
-    for k in 0..4 {
-        depths[8 * k..8 * k + 8].copy_from_slice(&lanes[2][k]);
-    }
-    const INDEX: [[u8; 8]; 4] = [
-        [0, 1, 2, 3, 4, 5, 6, 7],
-        [8, 9, 10, 11, 12, 13, 14, 15],
-        [16, 17, 18, 19, 20, 21, 22, 23],
-        [24, 25, 26, 27, 28, 29, 30, 31],
-    ];
-    scratch.polygons += draw_eight(
-        l,
-        band,
-        x,
-        y,
-        &scratch.clipped,
-        four!(k => &INDEX[k]),
-        facing,
-    );
+    let [i0, i1, i2, i3] = &index;
+    scratch.polygons += draw_eight(l, band, points, [i0, i1, i2, i3], facing);
 }

@@ -35,7 +35,7 @@ pub(crate) struct FrameScratch {
     /// The order of drawing: the bits of the nearest distance, then the number of the candidate.
     order: Vec<u64>,
     /// Clip rows per instance.
-    pub(crate) rows: Vec<[[f32; 4]; 4]>,
+    pub(crate) rows: Vec<[[f64; 4]; 4]>,
 }
 
 /// Finds and sorts the candidates.
@@ -82,7 +82,7 @@ impl Kernel for Select<'_> {
                 continue;
             }
             let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
-            scratch.rows[index] = rows;
+            scratch.rows[index] = camera.exact_rows(&instance.world_from_mesh);
             let screen = Screen {
                 rows,
                 width,

@@ -1,120 +1,151 @@
 //! One convex polygon on the screen: which blocks it touches and how.
 //!
-//! The polygon is the intersection of half-planes, left and right borders `x = f(y)`. Two polygons that
-//! share an edge evaluate the same line with the same arithmetic, one as left and one as right border, so
-//! that no sample between them is lost or counted twice. Per row of blocks the borders give the span of
+//! The polygon is the intersection of half-planes, left and right borders `x = f(y)`, with corners and slopes
+//! in `f64`. A point within all half-planes of a convex polygon or of a quad of two triangles is within at least
+//! one front-facing triangle, however thin or folded the quad is: the borders wind around it as often as the
+//! triangles do. Two polygons that share an edge evaluate the same line, one as left and one as right border,
+//! so that no sample between them is lost or counted twice. Per row of blocks the borders give the span of
 //! touched and of fully covered blocks.
 
 use super::block::{self, Borders, Plane};
 use crate::depth::{BLOCK_SAMPLES, Band};
-use crate::simd::Lanes;
-
-/// A border: the line through (x, y), samples, with dx/dy `slope`.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Edge {
-    pub(crate) x: f32,
-    pub(crate) y: f32,
-    pub(crate) slope: f32,
-}
-
-/// Borders of one side: two (the same twice where there is one).
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Side {
-    pub(crate) edges: [Edge; 2],
-    count: usize,
-}
-
-impl Side {
-    #[inline(always)]
-    fn push(&mut self, edge: Edge) {
-        if self.count == 0 {
-            self.edges = [edge; 2];
-        } else {
-            self.edges[1] = edge;
-        }
-        self.count += 1;
-    }
-}
+use crate::simd::{Lanes, four};
 
 /// A front-facing convex polygon.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Polygon {
-    pub(crate) left: Side,
-    pub(crate) right: Side,
-    /// Rows strictly below `.0` and not below `.1` count; only set where an edge is horizontal.
+#[derive(Clone, Copy)]
+pub(crate) struct Polygon<L: Lanes> {
+    pub(crate) borders: Edges<L>,
+    /// Rows below `.0` and not below `.1` count; only set where an edge is horizontal.
     pub(crate) rows: Option<(f32, f32)>,
     pub(crate) plane: Plane,
     /// First and last block, inclusive.
     pub(crate) blocks: [u32; 4],
 }
 
-impl Polygon {
-    pub(crate) fn new(plane: Plane, blocks: [u32; 4]) -> Self {
-        Self {
-            left: Side::default(),
-            right: Side::default(),
-            rows: None,
-            plane,
-            blocks,
+/// Four borders, left two and right two (the same twice where there is one): lines through (x, y), samples,
+/// with dx/dy `slope`.
+#[derive(Clone, Copy)]
+pub(crate) struct Edges<L: Lanes> {
+    pub(crate) x: L::Q,
+    pub(crate) y: L::Q,
+    pub(crate) slope: L::Q,
+}
+
+/// Edges with a larger slope are taken for horizontal, and moved inwards by more than they bend away from it.
+const FLAT: f64 = 1e9;
+const FLAT_MARGIN: f64 = 1e-4;
+
+/// The edges that are left, left, right, right borders, and the corners where these are highest: by a bit per edge
+/// that leads down (corner k to k + 1), then one per edge that leads up. None where a side has no border, or three.
+const ORDER: [Option<([u8; 4], [u8; 4])>; 256] = {
+    let mut order = [None; 256];
+    let mut bits = 0;
+    while bits < 256 {
+        let (mut edges, mut counts, mut k) = ([0u8; 4], [0, 0], 0u8);
+        while k < 8 {
+            let side = k as usize / 4;
+            if bits >> k & 1 != 0 {
+                if counts[side] == 0 {
+                    edges[2 * side] = k % 4;
+                }
+                edges[2 * side + 1] = k % 4;
+                counts[side] += 1;
+            }
+            k += 1;
         }
+        let [a, b, c, d] = edges;
+        if counts[0] > 0 && counts[0] < 3 && counts[1] > 0 && counts[1] < 3 {
+            order[bits] = Some((edges, [a, b, (c + 1) % 4, (d + 1) % 4]));
+        }
+        bits += 1;
+    }
+    order
+};
+
+impl<L: Lanes> Edges<L> {
+    /// The borders of a polygon of three (the first again as the fourth) or four corners, and the rows that
+    /// horizontal edges leave. None where it has no area, or three borders on one side: such a quadrilateral
+    /// must be drawn as two triangles.
+    #[inline(always)]
+    pub(crate) fn of(l: L, x: L::Q, y: L::Q) -> Option<(Self, Option<(f32, f32)>)> {
+        const NEXT: [u8; 4] = [1, 2, 3, 0];
+        let dx = l.qsub(l.qpick(x, NEXT), x);
+        let dy = l.qsub(l.qpick(y, NEXT), y);
+        let slope = l.qdiv(dx, dy);
+        let (zero, size) = (l.qsplat(0.0), l.qabs(slope));
+        let steep = l.qlt(size, l.qsplat(FLAT));
+        let down = l.qlt(zero, dy) & steep;
+        let up = l.qlt(dy, zero) & steep;
+        let (edge, upper) = ORDER[(down | up << 4) as usize]?;
+        let edges = Self {
+            x: l.qpick(x, upper),
+            y: l.qpick(y, upper),
+            slope: l.qpick(slope, edge),
+        };
+        // NaN, where both ends are the same, is not among them.
+        let flat = l.qlt(l.qsplat(FLAT * 0.999), size) & !steep;
+        let rows = (flat != 0).then(|| {
+            let (mut xs, mut ys) = ([0.0; 4], [0.0; 4]);
+            l.qstore(x, &mut xs);
+            l.qstore(y, &mut ys);
+            flat_rows(xs, ys, flat)
+        });
+        Some((edges, rows))
     }
 
-    /// Adds the edge from (x0, y0) to (x1, y1); `slope` is its dx/dy.
+    /// Moves every border inwards by `by` samples.
     #[inline(always)]
-    pub(crate) fn edge(&mut self, x0: f32, y0: f32, x1: f32, y1: f32, slope: f32) -> bool {
-        if y1 > y0 {
-            self.left.push(Edge {
-                x: x0,
-                y: y0,
-                slope,
-            });
-        } else if y1 < y0 {
-            self.right.push(Edge {
-                x: x1,
-                y: y1,
-                slope,
-            });
-        } else {
-            return x0 != x1;
-        }
-        false
+    pub(crate) fn shrink(&mut self, l: L, by: f64) {
+        let mut slope = [0.0; 4];
+        l.qstore(self.slope, &mut slope);
+        let along = four!(i => by * (1.0 + slope[i] * slope[i]).sqrt());
+        let [a, b, c, d] = along;
+        self.x = l.qadd(self.x, l.qload(&[a, b, -c, -d]));
     }
+}
+
+#[cold]
+fn flat_rows(x: [f64; 4], y: [f64; 4], flat: u32) -> (f32, f32) {
+    // Samples lie on half steps, so both limits can be rounded down to one.
+    let step = |y: f64| ((2.0 * y).floor() * 0.5) as f32;
+    let (mut after, mut last) = (f32::NEG_INFINITY, f32::INFINITY);
+    for k in (0..4).filter(|&k| flat >> k & 1 != 0) {
+        let next = (k + 1) % 4;
+        let (x0, y0, x1, y1) = (x[k], y[k], x[next], y[next]);
+        let margin = if y0 == y1 { 0.0 } else { FLAT_MARGIN };
+        if x1 < x0 {
+            after = after.max(step(y0.max(y1) + margin));
+        } else {
+            last = last.min(step(y0.min(y1) - margin));
+        }
+    }
+    (after, last)
 }
 
 /// Slack of the block classification against the rounding of row ends, samples.
 const SLACK: f32 = 1.0;
 
-impl Polygon {
+impl<L: Lanes> Polygon<L> {
     /// Moves every border inwards by `by` samples.
     #[inline(always)]
-    pub(crate) fn shrink(&mut self, by: f32, top: f32, bottom: f32) {
-        for e in &mut self.left.edges {
-            e.x += by * (1.0 + e.slope * e.slope).sqrt();
+    pub(crate) fn shrink(&mut self, l: L, by: f32) {
+        self.borders.shrink(l, by.into());
+        if let Some((after, last)) = &mut self.rows {
+            *after += by;
+            *last -= by;
         }
-        for e in &mut self.right.edges {
-            e.x -= by * (1.0 + e.slope * e.slope).sqrt();
-        }
-        if self.rows.is_some() {
-            self.rows = Some((top + by, bottom - by));
-        }
-    }
-
-    /// Whether each side has one or two borders. A quadrilateral with three on one side must be drawn as two
-    /// triangles; one without a side has no area.
-    #[inline(always)]
-    pub(crate) fn is_drawable(&self) -> bool {
-        (1..=2).contains(&self.left.count) && (1..=2).contains(&self.right.count)
     }
 }
 
 #[inline(always)]
-pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon) {
+pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
     let [bx0, by0, bx1, by1] = polygon.blocks;
     let size = BLOCK_SAMPLES as f32;
     let borders = Borders::new(l, polygon);
     for by in by0..=by1 {
         let top = (by * BLOCK_SAMPLES) as f32;
-        let at = borders.at(top);
+        let exact = borders.at(l, top);
+        let at = l.qround(exact);
         let (mut first, mut last) = (bx0, bx1);
         let (mut inner_left, mut inner_right) = (f32::INFINITY, f32::NEG_INFINITY);
         if bx0 != bx1 {
@@ -144,7 +175,7 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon) {
             if left >= inner_left && left + size <= inner_right {
                 block::cover_full(l, band, bx, by, &polygon.plane);
             } else {
-                block::cover_partial(l, band, bx, by, polygon, &borders, &at);
+                block::cover_partial(l, band, bx, by, polygon, &borders, exact);
             }
         }
     }

@@ -3,16 +3,19 @@
 //! A quad is drawn whole where both triangles face the eye and the outline is convex on the screen;
 //! otherwise triangle by triangle. Its depth is the plane of its larger triangle, lowered by how far the
 //! fourth vertex lies behind it, by half a pixel of slope, and by a bound on the rounding of the gradient.
+//!
+//! Corners are transformed in `f64`, and borders made of that: a sample is covered if the reference says so too.
+//! All else (bounds, facing, depth) is rounded to float and judged with slack.
 
 use super::block::Plane;
 use super::clip;
-use super::polygon::{self, Polygon};
+use super::polygon::{self, Edges, Polygon};
 use crate::depth::{BLOCK_SAMPLES, Band, encode};
 use crate::occluder::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
 
 /// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
-pub(crate) const GUARD: f32 = 32768.0;
+pub(crate) const GUARD: f64 = 32768.0;
 
 /// No point of a pixel is farther from the nearest of its grid points (half the diagonal of a sample, and a
 /// bit): polygons that shrink by this cover every point between the samples that they cover.
@@ -26,11 +29,10 @@ const SAMPLES_ONLY: f32 = 1.5 + 1.0 / 64.0;
 /// Working memory of one thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
-    pub(crate) x: [f32; 256],
-    pub(crate) y: [f32; 256],
-    pub(crate) d: [f32; 256],
-    /// Depths of a clipped polygon's fan.
-    pub(crate) clipped: [f32; 256],
+    /// Corners of a cluster.
+    pub(crate) points: Points,
+    /// Corners of a clipped polygon.
+    pub(crate) clipped: Points,
     /// Screen borders that vertices lie beyond, for the clipper.
     pub(crate) beyond: [u8; 256],
     /// Polygons that were set up, for the statistics.
@@ -42,13 +44,42 @@ pub(crate) struct Scratch {
 impl Default for Scratch {
     fn default() -> Self {
         Self {
-            x: [0.0; 256],
-            y: [0.0; 256],
-            d: [0.0; 256],
-            clipped: [0.0; 256],
+            points: Points::default(),
+            clipped: Points::default(),
             beyond: [0; 256],
             polygons: 0,
             clusters: 0,
+        }
+    }
+}
+
+/// Corners on the screen, samples.
+#[derive(Clone, Debug)]
+pub(crate) struct Points {
+    /// Rounded, for all but coverage; NaN in x for what the clipper must see.
+    pub(crate) x: [f32; 256],
+    y: [f32; 256],
+    depth: [f32; 256],
+    /// What coverage is decided by.
+    exact_x: [f64; 256],
+    exact_y: [f64; 256],
+}
+
+impl Points {
+    pub(crate) fn set(&mut self, i: usize, x: f64, y: f64, depth: f32) {
+        (self.x[i], self.y[i], self.depth[i]) = (x as f32, y as f32, depth);
+        (self.exact_x[i], self.exact_y[i]) = (x, y);
+    }
+}
+
+impl Default for Points {
+    fn default() -> Self {
+        Self {
+            x: [0.0; 256],
+            y: [0.0; 256],
+            depth: [0.0; 256],
+            exact_x: [0.0; 256],
+            exact_y: [0.0; 256],
         }
     }
 }
@@ -79,72 +110,64 @@ pub(crate) fn draw_cluster<L: Lanes>(
     scratch: &mut Scratch,
     mesh: &OccluderMesh,
     cluster: &Cluster,
-    rows: &[[f32; 4]; 4],
+    rows: &[[f64; 4]; 4],
     facing: Facing,
 ) {
     scratch.clusters += 1;
-    let clipped = transform(l, scratch, mesh, cluster, rows);
+    let clipped = transform(&mut scratch.points, mesh, cluster, rows);
     let groups = usize::from(cluster.quad_count).div_ceil(8);
     let first = cluster.first_group as usize;
     for group in &mesh.quads[first..first + groups] {
         let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
         let index = four!(c => &group[order[c]]);
-        let x = four!(c => l.gather(&scratch.x, index[c]));
-        let y = four!(c => l.gather(&scratch.y, index[c]));
-        scratch.polygons += draw_eight(l, band, x, y, &scratch.d, index, facing);
+        scratch.polygons += draw_eight(l, band, &scratch.points, index, facing);
     }
     if clipped {
         clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
     }
 }
 
-/// Fills `scratch`; vertices for the clipper get NaN, which no test accepts. True if there are any.
+/// Fills `points`; vertices for the clipper get NaN, which no test accepts. True if there are any.
 #[inline(always)]
-fn transform<L: Lanes>(
-    l: L,
-    scratch: &mut Scratch,
+fn transform(
+    points: &mut Points,
     mesh: &OccluderMesh,
     cluster: &Cluster,
-    rows: &[[f32; 4]; 4],
+    rows: &[[f64; 4]; 4],
 ) -> bool {
     let first = cluster.first_vertex as usize;
     let n = usize::from(cluster.vertex_count).next_multiple_of(8);
     let v = &mesh.vertices;
-    let r = four!(i => four!(k => l.splat(rows[i][k])));
-    let (xs, _) = v.x[first..first + n].as_chunks::<8>();
-    let (ys, _) = v.y[first..first + n].as_chunks::<8>();
-    let (zs, _) = v.z[first..first + n].as_chunks::<8>();
-    let (out_x, _) = scratch.x.as_chunks_mut::<8>();
-    let (out_y, _) = scratch.y.as_chunks_mut::<8>();
-    let (out_d, _) = scratch.d.as_chunks_mut::<8>();
-    let (one, guard, nan) = (l.splat(1.0), l.splat(GUARD), l.splat(f32::NAN));
-    let mut inside_all = l.isplat(-1);
-    for ((((x, y), z), ox), (oy, od)) in xs
+    let xyz = v.x[first..first + n]
         .iter()
-        .zip(ys)
-        .zip(zs)
-        .zip(out_x)
-        .zip(out_y.iter_mut().zip(out_d))
-    {
-        let (x, y, z) = (l.load(x), l.load(y), l.load(z));
-        let [cx, cy, cz, cw] = four!(i => l.add(
-            l.add(l.mul(x, r[i][0]), l.mul(y, r[i][1])),
-            l.add(l.mul(z, r[i][2]), r[i][3]),
-        ));
-        let inv = l.div(one, cw);
-        let (sx, sy, d) = (l.mul(cx, inv), l.mul(cy, inv), l.mul(cz, inv));
+        .zip(&v.y[first..first + n])
+        .zip(&v.z[first..first + n]);
+    let rounded = points
+        .x
+        .iter_mut()
+        .zip(&mut points.y)
+        .zip(&mut points.depth);
+    let exact = points.exact_x.iter_mut().zip(&mut points.exact_y);
+    let [rx, ry, rz, rw] = rows;
+    let mut beyond = 0;
+    for ((((x, y), z), ((ox, oy), od)), (ex, ey)) in xyz.zip(rounded).zip(exact) {
+        let (x, y, z) = (f64::from(*x), f64::from(*y), f64::from(*z));
+        let cx = (x * rx[0] + y * rx[1]) + (z * rx[2] + rx[3]);
+        let cy = (x * ry[0] + y * ry[1]) + (z * ry[2] + ry[3]);
+        let cz = (x * rz[0] + y * rz[1]) + (z * rz[2] + rz[3]);
+        let cw = (x * rw[0] + y * rw[1]) + (z * rw[2] + rw[3]);
+        let inv = 1.0 / cw;
+        let (sx, sy) = (cx * inv, cy * inv);
         // Beyond the near plane (Z < W, W above zero with it) and within the guard band.
-        let inside = l.iand(
-            l.lt(cz, cw),
-            l.iand(l.lt(l.abs(sx), guard), l.lt(l.abs(sy), guard)),
-        );
-        inside_all = l.iand(inside_all, inside);
-        l.store(l.select(inside, sx, nan), ox);
-        l.store(sy, oy);
-        l.store(d, od);
+        let inside = (cz < cw) & (sx.abs() < GUARD) & (sy.abs() < GUARD);
+        beyond |= i32::from(!inside);
+        *ox = if inside { sx as f32 } else { f32::NAN };
+        *oy = sy as f32;
+        *od = (cz * inv) as f32;
+        (*ex, *ey) = (sx, sy);
     }
-    l.movemask(inside_all) != 0xff
+    beyond != 0
 }
 
 /// Sets up and draws eight quads from screen positions; gives the number of polygons drawn.
@@ -152,13 +175,13 @@ fn transform<L: Lanes>(
 pub(crate) fn draw_eight<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
-    mut x: [L::F; 4],
-    mut y: [L::F; 4],
-    depths: &[f32; 256],
+    points: &Points,
     index: [&[u8; 8]; 4],
     facing: Facing,
 ) -> u64 {
     let (two_sided, radius) = (facing.two_sided, facing.radius);
+    let mut x = four!(c => l.gather(&points.x, index[c]));
+    let mut y = four!(c => l.gather(&points.y, index[c]));
     let zero = l.splat(0.0);
     let mut f0 = area(l, &x, &y, 0, 1, 2);
     let mut f1 = area(l, &x, &y, 0, 2, 3);
@@ -200,7 +223,7 @@ pub(crate) fn draw_eight<L: Lanes>(
         l.iand(front0, front1),
         l.iand(l.lt(zero, f2), l.lt(zero, f3)),
     ));
-    let mut z = four!(c => l.gather(depths, index[c]));
+    let mut z = four!(c => l.gather(&points.depth, index[c]));
     if two_sided {
         z = swap(l, reversed, z);
     }
@@ -247,13 +270,9 @@ pub(crate) fn draw_eight<L: Lanes>(
     let slack = l.add(l.add(fold, rounding), l.mul(reach, l.add(ax, ay)));
     let base = l.sub(z[0], slack);
 
-    let around = four!(k => l.div(l.sub(x[(k + 1) % 4], x[k]), l.sub(y[(k + 1) % 4], y[k])));
-    let diagonal = l.div(l.sub(x[2], x[0]), l.sub(y[2], y[0]));
-
     // One at a time from here.
-    let (xs, ys) = (four!(k => out(l, x[k])), four!(k => out(l, y[k])));
-    let [s0, s1, s2, s3] = four!(k => out(l, around[k]));
-    let slopes = [s0, s1, s2, s3, out(l, diagonal)];
+    let reversed = if two_sided { l.movemask(reversed) } else { 0 };
+    let (x0, y0) = (out(l, x[0]), out(l, y[0]));
     let (base, gx, gy, z_lo, z_hi, y_lo, y_hi, x_lo, x_hi) = (
         out(l, base),
         out(l, gx),
@@ -272,8 +291,8 @@ pub(crate) fn draw_eight<L: Lanes>(
         live &= live - 1;
         let bit = 1u32 << i;
         let plane = Plane {
-            x: xs[0][i],
-            y: ys[0][i],
+            x: x0[i],
+            y: y0[i],
             depth: base[i],
             dx: gx[i],
             dy: gy[i],
@@ -288,6 +307,10 @@ pub(crate) fn draw_eight<L: Lanes>(
             block_of(x_hi[i], 0, band.blocks_x - 1),
             block_of(y_hi[i], band.first_row, last_row),
         ];
+        let swapped = usize::from(reversed & bit != 0) * 2;
+        let n = four!(k => usize::from(index[if k % 2 == 1 { k ^ swapped } else { k }][i]));
+        let x = l.qload(&four!(k => points.exact_x[n[k]]));
+        let y = l.qload(&four!(k => points.exact_y[n[k]]));
         let (first, last) = if convex & bit != 0 {
             (2, 5)
         } else {
@@ -297,66 +320,44 @@ pub(crate) fn draw_eight<L: Lanes>(
             )
         };
         for (n, shape) in SHAPES[first..last].iter().enumerate() {
-            let mut polygon = Polygon::new(plane, blocks);
-            let (mut flat, mut lo, mut hi) = (false, f32::INFINITY, f32::NEG_INFINITY);
-            for k in 0..shape.count {
-                let (a, b, e) = (shape.corners[k], shape.corners[k + 1], shape.edges[k]);
-                flat |= polygon.edge(xs[a][i], ys[a][i], xs[b][i], ys[b][i], slopes[e][i]);
-                lo = lo.min(ys[a][i]);
-                hi = hi.max(ys[a][i]);
-            }
-            if flat {
-                polygon.rows = Some((lo, hi));
-            }
-            if polygon.is_drawable() {
-                if let Some(radius) = radius {
-                    // Every point that stays is hidden for all eyes within the radius: their rays to what lies
-                    // behind it cross this very polygon (Wonka et al. 2000, with a polygon for the occluder).
-                    let near = z_hi[i] * radius.per_depth;
-                    if near > 0.5 {
-                        continue;
-                    }
-                    polygon.shrink(
-                        z_hi[i] * radius.shift / (1.0 - near) * 1.001 + BETWEEN_SAMPLES,
-                        lo,
-                        hi,
-                    );
+            let (x, y) = (l.qpick(x, *shape), l.qpick(y, *shape));
+            let Some((borders, rows)) = Edges::of(l, x, y) else {
+                continue;
+            };
+            let mut polygon = Polygon {
+                borders,
+                rows,
+                plane,
+                blocks,
+            };
+            if let Some(radius) = radius {
+                // Every point that stays is hidden for all eyes within the radius: their rays to what lies
+                // behind it cross this very polygon (Wonka et al. 2000, with a polygon for the occluder).
+                let near = z_hi[i] * radius.per_depth;
+                if near > 0.5 {
+                    continue;
                 }
-                drawn += 1;
-                polygon::draw(l, band, &polygon);
-                if first + n == 2 {
-                    break;
-                }
+                polygon.shrink(
+                    l,
+                    z_hi[i] * radius.shift / (1.0 - near) * 1.001 + BETWEEN_SAMPLES,
+                );
+            }
+            drawn += 1;
+            polygon::draw(l, band, &polygon);
+            if first + n == 2 {
+                break;
             }
         }
     }
     drawn
 }
 
-/// A part of a quad: its corners (the first again at the end) and the slopes of its edges.
-struct Shape {
-    corners: [usize; 5],
-    edges: [usize; 4],
-    count: usize,
-}
-
-const FIRST: Shape = Shape {
-    corners: [0, 1, 2, 0, 0],
-    edges: [0, 1, 4, 0],
-    count: 3,
+/// Parts of a quad, by corners. The triangles alone; then the whole, and the triangles
+/// again for a whole with three borders on one side.
+const SHAPES: [[u8; 4]; 5] = {
+    let (first, second) = ([0, 1, 2, 0], [0, 2, 3, 0]);
+    [first, second, [0, 1, 2, 3], first, second]
 };
-const SECOND: Shape = Shape {
-    corners: [0, 2, 3, 0, 0],
-    edges: [4, 2, 3, 0],
-    count: 3,
-};
-const WHOLE: Shape = Shape {
-    corners: [0, 1, 2, 3, 0],
-    edges: [0, 1, 2, 3],
-    count: 4,
-};
-/// The triangles alone; then the whole, and the triangles again for a whole with three borders on one side.
-const SHAPES: [Shape; 5] = [FIRST, SECOND, WHOLE, FIRST, SECOND];
 
 #[inline(always)]
 fn block_of(v: f32, first: u32, last: u32) -> u32 {

@@ -41,6 +41,7 @@ macro_rules! avx2 {
 impl Lanes for Avx2 {
     type F = __m256;
     type I = __m256i;
+    type Q = __m256d;
     type D = [__m256i; 4];
     type R = [__m256; 4];
     type P = [__m256i; 4];
@@ -224,6 +225,62 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn qload(self, v: &[f64; 4]) -> __m256d {
+        avx2!(_mm256_loadu_pd(v.as_ptr()))
+    }
+    #[inline(always)]
+    fn qstore(self, v: __m256d, to: &mut [f64; 4]) {
+        avx2!(_mm256_storeu_pd(to.as_mut_ptr(), v))
+    }
+    #[inline(always)]
+    fn qsplat(self, v: f64) -> __m256d {
+        avx2!(_mm256_set1_pd(v))
+    }
+    #[inline(always)]
+    fn qadd(self, a: __m256d, b: __m256d) -> __m256d {
+        avx2!(_mm256_add_pd(a, b))
+    }
+    #[inline(always)]
+    fn qsub(self, a: __m256d, b: __m256d) -> __m256d {
+        avx2!(_mm256_sub_pd(a, b))
+    }
+    #[inline(always)]
+    fn qmul(self, a: __m256d, b: __m256d) -> __m256d {
+        avx2!(_mm256_mul_pd(a, b))
+    }
+    #[inline(always)]
+    fn qdiv(self, a: __m256d, b: __m256d) -> __m256d {
+        avx2!(_mm256_div_pd(a, b))
+    }
+    #[inline(always)]
+    fn qabs(self, a: __m256d) -> __m256d {
+        avx2!(_mm256_andnot_pd(_mm256_set1_pd(-0.0), a))
+    }
+    #[inline(always)]
+    fn qlt(self, a: __m256d, b: __m256d) -> u32 {
+        avx2!(_mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(a, b)) as u32)
+    }
+    #[inline(always)]
+    fn qpick(self, v: __m256d, from: [u8; 4]) -> __m256d {
+        avx2!({
+            // Both halves of a number: 2 i and 2 i + 1.
+            let i = _mm256_cvtepu8_epi64(_mm_cvtsi32_si128(i32::from_le_bytes(from)));
+            let i = _mm256_add_epi64(i, i);
+            let both = _mm256_add_epi64(
+                _mm256_or_si256(i, _mm256_slli_epi64::<32>(i)),
+                _mm256_set1_epi64x(1 << 32),
+            );
+            _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(v), both))
+        })
+    }
+    #[inline(always)]
+    fn qround(self, v: __m256d) -> [f32; 4] {
+        let mut to = [0.0; 4];
+        avx2!(_mm_storeu_ps(to.as_mut_ptr(), _mm256_cvtpd_ps(v)));
+        to
+    }
+
+    #[inline(always)]
     fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
         avx2!({
             let (floor, cap) = (_mm256_set1_ps(floor), _mm256_set1_epi16(cap));
@@ -321,6 +378,33 @@ impl Lanes for Avx2 {
         avx2!(four!(k => _mm256_max_ps(a[k], b[k])))
     }
     #[inline(always)]
+    fn rload(self, v: &[f32; 32]) -> Self::R {
+        let p = v.as_ptr();
+        avx2!(four!(k => _mm256_loadu_ps(p.add(8 * k))))
+    }
+    #[inline(always)]
+    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
+        avx2!({
+            let least = four!(k => _mm256_min_ps(
+                near_whole(self, clamped(self, from[k], 32.5)),
+                near_whole(self, clamped(self, to[k], 32.5)),
+            ));
+            let least = two!(k => _mm256_min_ps(least[k], least[k + 2]));
+            any_below(self, _mm256_min_ps(least[0], least[1]), error)
+        })
+    }
+    #[inline(always)]
+    fn unsure(self, from: __m256, to: __m256, error: f32) -> bool {
+        avx2!(any_below(
+            self,
+            _mm256_min_ps(
+                near_whole(self, clamped(self, from, 8.5)),
+                near_whole(self, clamped(self, to, 8.5)),
+            ),
+            error,
+        ))
+    }
+    #[inline(always)]
     fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
         let rows = sample_rows();
         avx2!(four!(k => {
@@ -352,8 +436,7 @@ impl Lanes for Avx2 {
         avx2!({
             let v = [from, to];
             let sides = two!(side => {
-                let v = _mm256_max_ps(v[side], _mm256_setzero_ps());
-                let n = _mm256_cvttps_epi32(_mm256_min_ps(v, _mm256_set1_ps(8.0)));
+                let n = _mm256_cvttps_epi32(clamped(self, v[side], 8.5));
                 _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
             });
             let bits = _mm256_andnot_si256(sides[1], sides[0]);
@@ -418,6 +501,29 @@ fn half_rows(_: Avx2, table: *const f32, at: usize) -> __m256 {
     unsafe { _mm256_loadu2_m128(table.add(at + 24), table.add(at)) }
 }
 
+/// From -0.5 to `most`: half a step beyond the numbers that count, where rounding is no question.
+#[inline(always)]
+pub(super) fn clamped(_: Avx2, v: __m256, most: f32) -> __m256 {
+    avx2!(_mm256_min_ps(
+        _mm256_max_ps(v, _mm256_set1_ps(-0.5)),
+        _mm256_set1_ps(most)
+    ))
+}
+
+/// Distance to the nearest whole number.
+#[inline(always)]
+pub(super) fn near_whole(_: Avx2, v: __m256) -> __m256 {
+    avx2!({
+        let whole = _mm256_round_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(v);
+        _mm256_andnot_ps(_mm256_set1_ps(-0.0), _mm256_sub_ps(v, whole))
+    })
+}
+
+#[inline(always)]
+fn any_below(_: Avx2, v: __m256, limit: f32) -> bool {
+    avx2!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(v, _mm256_set1_ps(limit))) != 0)
+}
+
 #[inline(always)]
 fn sample_rows() -> [__m256; 4] {
     let p = SAMPLE_ROWS.as_ptr();
@@ -427,12 +533,9 @@ fn sample_rows() -> [__m256; 4] {
 
 /// Sample numbers from 0 to 32, a byte each, in the order of the rows.
 #[inline(always)]
-fn bytes(_: Avx2, v: [__m256; 4]) -> __m256i {
+fn bytes(l: Avx2, v: [__m256; 4]) -> __m256i {
     avx2!({
-        let n = four!(k => _mm256_cvttps_epi32(_mm256_min_ps(
-            _mm256_max_ps(v[k], _mm256_setzero_ps()),
-            _mm256_set1_ps(32.0),
-        )));
+        let n = four!(k => _mm256_cvttps_epi32(clamped(l, v[k], 32.5)));
         let b = _mm256_packs_epi16(
             _mm256_packs_epi32(n[0], n[1]),
             _mm256_packs_epi32(n[2], n[3]),

@@ -1,7 +1,7 @@
 //! AVX-512 lanes: whole blocks in two registers, and masks of 64 pixels as they are. Eight-lane work is AVX2's.
 //! An [`Avx512`] exists only where the CPU has all that it needs, which is what makes its methods sound.
 
-use super::avx2::{Avx2, FROM};
+use super::avx2::{self, Avx2, FROM};
 use super::portable::SAMPLE_ROWS;
 use super::{Kernel, Lanes, four, two};
 use crate::depth::CODE_OFFSET;
@@ -56,6 +56,7 @@ macro_rules! as_avx2 {
 impl Lanes for Avx512 {
     type F = __m256;
     type I = __m256i;
+    type Q = __m256d;
     type D = [__m512i; 2];
     type R = [__m512; 2];
     type P = [__m512i; 2];
@@ -77,7 +78,19 @@ impl Lanes for Avx512 {
     codes(a: __m256) -> __m256i;
     gather(table: &[f32; 256], index: &[u8; 8]) -> __m256;
     isplat(v: i32) -> __m256i;
+    qload(v: &[f64; 4]) -> __m256d;
+    qstore(v: __m256d, to: &mut [f64; 4]);
+    qsplat(v: f64) -> __m256d;
+    qadd(a: __m256d, b: __m256d) -> __m256d;
+    qsub(a: __m256d, b: __m256d) -> __m256d;
+    qmul(a: __m256d, b: __m256d) -> __m256d;
+    qdiv(a: __m256d, b: __m256d) -> __m256d;
+    qabs(a: __m256d) -> __m256d;
+    qlt(a: __m256d, b: __m256d) -> u32;
+    qpick(v: __m256d, from: [u8; 4]) -> __m256d;
+    qround(v: __m256d) -> [f32; 4];
     istore(v: __m256i, to: &mut [i32; 8]);
+    unsure(from: __m256, to: __m256, error: f32) -> bool;
     turn(v: &[[f32; 6]; 8]) -> [__m256; 6];
     iadd(a: __m256i, b: __m256i) -> __m256i;
     imin(a: __m256i, b: __m256i) -> __m256i;
@@ -183,6 +196,22 @@ impl Lanes for Avx512 {
         avx512!([_mm512_max_ps(a[0], b[0]), _mm512_max_ps(a[1], b[1])])
     }
     #[inline(always)]
+    fn rload(self, v: &[f32; 32]) -> Self::R {
+        let p = v.as_ptr();
+        avx512!([_mm512_loadu_ps(p), _mm512_loadu_ps(p.add(16))])
+    }
+    #[inline(always)]
+    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
+        avx512!({
+            let least = two!(k => _mm512_min_ps(
+                near_whole(self, clamped(self, from[k])),
+                near_whole(self, clamped(self, to[k])),
+            ));
+            let least = _mm512_min_ps(least[0], least[1]);
+            _mm512_cmp_ps_mask::<_CMP_LT_OQ>(least, _mm512_set1_ps(error)) != 0
+        })
+    }
+    #[inline(always)]
     fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
         let rows = sample_rows(self);
         avx512!(two!(k => {
@@ -214,8 +243,7 @@ impl Lanes for Avx512 {
         avx512!({
             let v = [from, to];
             let sides = two!(side => {
-                let v = _mm256_max_ps(v[side], _mm256_setzero_ps());
-                let n = _mm256_cvttps_epi32(_mm256_min_ps(v, _mm256_set1_ps(8.0)));
+                let n = _mm256_cvttps_epi32(avx2::clamped(self.0, v[side], 8.5));
                 _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
             });
             _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(_mm256_andnot_si256(
@@ -277,6 +305,23 @@ fn store(_: Avx512, v: [__m512i; 2], to: *mut __m512i) {
     });
 }
 
+/// From half a step before the first number that counts to half a step after the last.
+#[inline(always)]
+fn clamped(_: Avx512, v: __m512) -> __m512 {
+    avx512!(_mm512_min_ps(
+        _mm512_max_ps(v, _mm512_set1_ps(-0.5)),
+        _mm512_set1_ps(32.5)
+    ))
+}
+
+/// Distance to the nearest whole number.
+#[inline(always)]
+fn near_whole(_: Avx512, v: __m512) -> __m512 {
+    avx512!(_mm512_abs_ps(_mm512_reduce_ps::<
+        { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
+    >(v)))
+}
+
 #[inline(always)]
 fn sample_rows(_: Avx512) -> [__m512; 2] {
     let p = SAMPLE_ROWS.as_ptr();
@@ -285,12 +330,10 @@ fn sample_rows(_: Avx512) -> [__m512; 2] {
 
 /// Sample numbers from 0 to 32, a byte each, in the order of the rows; twice.
 #[inline(always)]
-fn bytes(_: Avx512, v: [__m512; 2]) -> __m512i {
+fn bytes(l: Avx512, v: [__m512; 2]) -> __m512i {
     avx512!({
         let n = two!(k => {
-            let v = _mm512_max_ps(v[k], _mm512_setzero_ps());
-            let v = _mm512_min_ps(v, _mm512_set1_ps(32.0));
-            _mm512_cvtepi32_epi8(_mm512_cvttps_epi32(v))
+            _mm512_cvtepi32_epi8(_mm512_cvttps_epi32(clamped(l, v[k])))
         });
         _mm512_broadcast_i64x4(_mm256_inserti128_si256::<1>(
             _mm256_castsi128_si256(n[0]),

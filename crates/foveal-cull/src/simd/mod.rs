@@ -125,6 +125,8 @@ pub(crate) trait Lanes: Copy {
     type F: Copy;
     /// 8 x i32.
     type I: Copy;
+    /// 4 x f64: the corners or borders of a polygon.
+    type Q: Copy;
     /// 64 x i16: a block's pixels, row by row.
     type D: Copy;
     /// 32 x f32: a block's sample rows. Row 4 i + k is number 8 k + i.
@@ -177,6 +179,21 @@ pub(crate) trait Lanes: Copy {
     /// Sign bits, lane 0 lowest.
     fn movemask(self, a: Self::I) -> u32;
 
+    fn qload(self, v: &[f64; 4]) -> Self::Q;
+    fn qstore(self, v: Self::Q, to: &mut [f64; 4]);
+    fn qsplat(self, v: f64) -> Self::Q;
+    fn qadd(self, a: Self::Q, b: Self::Q) -> Self::Q;
+    fn qsub(self, a: Self::Q, b: Self::Q) -> Self::Q;
+    fn qmul(self, a: Self::Q, b: Self::Q) -> Self::Q;
+    fn qdiv(self, a: Self::Q, b: Self::Q) -> Self::Q;
+    fn qabs(self, a: Self::Q) -> Self::Q;
+    /// A bit per lane where `a < b`, lane 0 lowest.
+    fn qlt(self, a: Self::Q, b: Self::Q) -> u32;
+    /// Number `i` of the result is number `from[i]`, of which the two lowest bits count.
+    fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q;
+    /// Rounded.
+    fn qround(self, v: Self::Q) -> [f32; 4];
+
     /// Pixels from a value for each column at the top, and its change per row: as depth codes (see
     /// [`crate::depth`]), no value below `floor` and no code above `cap`.
     fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D;
@@ -199,6 +216,12 @@ pub(crate) trait Lanes: Copy {
     fn rmin(self, a: Self::R, b: Self::R) -> Self::R;
     /// As [`Lanes::max`].
     fn rmax(self, a: Self::R, b: Self::R) -> Self::R;
+    /// Rows in their order (see [`Lanes::R`]).
+    fn rload(self, v: &[f32; 32]) -> Self::R;
+    /// Whether any number that [`Lanes::planes`] rounds is nearer than `error` to where it would be rounded otherwise.
+    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool;
+    /// The same for [`Lanes::plane`].
+    fn unsure(self, from: Self::F, to: Self::F, error: f32) -> bool;
     /// `v`, but 1e6 for rows outside `after < first + row <= last`.
     fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R;
     /// Samples whose number in their row is at least `from`, and less than `to`, both rounded towards zero.

@@ -19,9 +19,17 @@ pub(super) const SAMPLE_ROWS: [f32; 32] = {
 #[derive(Clone, Copy)]
 pub(crate) struct Portable;
 
+/// Distance to a whole number from 0 to `most`; a half, or more, far off.
+#[inline(always)]
+fn near_whole(v: f32, most: f32) -> f32 {
+    let v = v.clamp(-0.5, most + 0.5);
+    (v - (v + 0.5).floor()).abs()
+}
+
 impl Lanes for Portable {
     type F = [f32; 8];
     type I = [i32; 8];
+    type Q = [f64; 4];
     type D = [i16; 64];
     type R = [f32; 32];
     type P = [u64; 16];
@@ -155,6 +163,51 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn qload(self, v: &[f64; 4]) -> Self::Q {
+        *v
+    }
+    #[inline(always)]
+    fn qstore(self, v: Self::Q, to: &mut [f64; 4]) {
+        *to = v;
+    }
+    #[inline(always)]
+    fn qsplat(self, v: f64) -> Self::Q {
+        [v; 4]
+    }
+    #[inline(always)]
+    fn qadd(self, a: Self::Q, b: Self::Q) -> Self::Q {
+        from_fn(|i| a[i] + b[i])
+    }
+    #[inline(always)]
+    fn qsub(self, a: Self::Q, b: Self::Q) -> Self::Q {
+        from_fn(|i| a[i] - b[i])
+    }
+    #[inline(always)]
+    fn qmul(self, a: Self::Q, b: Self::Q) -> Self::Q {
+        from_fn(|i| a[i] * b[i])
+    }
+    #[inline(always)]
+    fn qdiv(self, a: Self::Q, b: Self::Q) -> Self::Q {
+        from_fn(|i| a[i] / b[i])
+    }
+    #[inline(always)]
+    fn qabs(self, a: Self::Q) -> Self::Q {
+        a.map(f64::abs)
+    }
+    #[inline(always)]
+    fn qlt(self, a: Self::Q, b: Self::Q) -> u32 {
+        (0..4).fold(0, |m, i| m | (u32::from(a[i] < b[i]) << i))
+    }
+    #[inline(always)]
+    fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q {
+        from.map(|i| v[usize::from(i & 3)])
+    }
+    #[inline(always)]
+    fn qround(self, v: Self::Q) -> [f32; 4] {
+        v.map(|v| v as f32)
+    }
+
+    #[inline(always)]
     fn depths(self, columns: [f32; 8], down: f32, floor: f32, cap: i16) -> Self::D {
         from_fn(|i| {
             let v = columns[i % 8] + (i / 8) as f32 * down;
@@ -218,6 +271,20 @@ impl Lanes for Portable {
     #[inline(always)]
     fn rmax(self, a: Self::R, b: Self::R) -> Self::R {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
+    }
+    #[inline(always)]
+    fn rload(self, v: &[f32; 32]) -> Self::R {
+        *v
+    }
+    #[inline(always)]
+    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
+        let near = |v: f32| near_whole(v, 32.0) < error;
+        (0..32).fold(false, |any, i| any | near(from[i]) | near(to[i]))
+    }
+    #[inline(always)]
+    fn unsure(self, from: Self::F, to: Self::F, error: f32) -> bool {
+        let near = |v: f32| near_whole(v, 8.0) < error;
+        (0..8).fold(false, |any, i| any | near(from[i]) | near(to[i]))
     }
     #[inline(always)]
     fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {

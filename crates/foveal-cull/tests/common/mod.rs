@@ -272,6 +272,27 @@ pub fn answers(
     results
 }
 
+fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Truth {
+    let mut truth = Truth::new(eye, w, h).unwrap();
+    for o in &scene.objects {
+        truth.add(&o.positions, &o.indices, &o.transform, o.two_sided);
+    }
+    truth.finish();
+    truth
+}
+
+/// Per pixel, the farthest depth that the reference has at `n` times `n` samples; 0 where one is not covered.
+pub fn farthest_in_pixels(scene: &Scene, eye: &Eye, (w, h): (u32, u32), n: u32) -> Vec<f32> {
+    let truth = reference(scene, eye, (w * n, h * n));
+    let at = |x: u32, y: u32| truth.depth()[(y * w * n + x) as usize];
+    let pixel = |x: u32, y: u32| {
+        (0..n * n)
+            .map(|i| at(x * n + i % n, y * n + i / n))
+            .fold(f32::INFINITY, f32::min)
+    };
+    (0..w * h).map(|i| pixel(i % w, i / w)).collect()
+}
+
 /// Boxes that the reference at `n` times the size sees although they were culled.
 pub fn wrongly_culled(
     scene: &Scene,
@@ -280,11 +301,7 @@ pub fn wrongly_culled(
     n: u32,
     results: &[Visibility],
 ) -> Vec<usize> {
-    let mut truth = Truth::new(eye, w * n, h * n).unwrap();
-    for o in &scene.objects {
-        truth.add(&o.positions, &o.indices, &o.transform, o.two_sided);
-    }
-    truth.finish();
+    let truth = reference(scene, eye, (w * n, h * n));
     (0..results.len())
         .filter(|&i| {
             !results[i].is_visible() && truth.seen(&scene.boxes[i], scene.origin) == Seen::Visible
