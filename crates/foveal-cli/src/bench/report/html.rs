@@ -43,6 +43,15 @@ impl Figures<'_> {
         escaped(text.unwrap_or_default())
     }
 
+    /// A text or a number of the JSON's, as the JSON has it.
+    pub(super) fn word(&self, pointer: &str) -> String {
+        match self.0.pointer(pointer) {
+            Some(Value::String(text)) => escaped(text),
+            Some(Value::Number(number)) => number.to_string(),
+            _ => String::new(),
+        }
+    }
+
     /// The number at a pointer.
     pub(super) fn number(&self, pointer: &str) -> Option<f64> {
         self.0.pointer(pointer)?.as_f64()

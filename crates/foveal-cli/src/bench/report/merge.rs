@@ -61,7 +61,9 @@ fn label(bench: &Bench, row: &Map<String, Value>) -> String {
                 ));
             }
             (_, "height") if has_size => {}
-            (Some(threads), "threads") => parts.push(format!("{threads} threads")),
+            (Some(count), "threads" | "lights" | "occluder_triangles") => {
+                parts.push(format!("{count} {}", key.replace('_', " ")));
+            }
             (Some(Value::String(text)), _) => parts.push(text.clone()),
             (Some(value), _) => parts.push(value.to_string()),
             (None, _) => {}

@@ -78,19 +78,18 @@ fn section(body: &mut String, f: &Figures<'_>, index: usize, bench: &Bench) {
     body.push_str("<div class=\"columns\">\n");
     published(body, f, &at);
     if f.len(&format!("{at}/rows")) > 0 {
-        let _ = writeln!(
-            body,
-            "<div><h3>{}</h3>{}</div>",
-            if bench.name == "baseline" {
-                "The frame's stages"
-            } else {
-                "Cost, ms"
-            },
-            plots::cost(f, &at, bench)
-        );
-        if let Some(plot) = plots::quality(f, &at, bench) {
-            let _ = writeln!(body, "<div><h3>Quality against speed</h3>{plot}</div>");
+        let mut plot = |title: &str, svg: Option<String>| {
+            if let Some(svg) = svg {
+                let _ = writeln!(body, "<div><h3>{title}</h3>{svg}</div>");
+            }
+        };
+        if bench.name == "baseline" {
+            plot("The frame's timeline", Some(plots::timeline(f, &at)));
+        } else {
+            plot("Cost, ms", Some(plots::cost(f, &at, bench)));
         }
+        plot("Cost against load", plots::load(f, &at, bench));
+        plot("Quality against speed", plots::quality(f, &at, bench));
     }
     body.push_str("</div>\n");
     table(body, f, &at, bench);

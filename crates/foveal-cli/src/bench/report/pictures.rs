@@ -15,6 +15,9 @@ use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, flags};
 use crate::{gpu, scene_source};
 
+/// Frames until a rate that follows the last picture has settled.
+const FRAMES: u32 = 3;
+
 /// How well the page's pictures keep what they show.
 const JPEG_QUALITY: u8 = 88;
 
@@ -34,14 +37,15 @@ pub(super) fn draw(
         let (before, before_settings) = one(&gpu, &scene, &camera, size, pair.before)?;
         let (after, after_settings) = one(&gpu, &scene, &camera, size, pair.after)?;
         let map = ErrorMap::between(&before, &after);
+        let shown = before_settings.picture_size();
         pictures.push(json!({
             "title": pair.title,
             "before_flags": spelled(scene_name, "before.png", &before_settings),
             "after_flags": spelled(scene_name, "after.png", &after_settings),
             "flip_mean": map.mean(),
-            "before": jpeg(&before.rgb_bytes(), size)?,
-            "after": jpeg(&after.rgb_bytes(), size)?,
-            "difference": jpeg(&map.heat_rgb(), size)?,
+            "before": jpeg(&before.rgb_bytes(), shown)?,
+            "after": jpeg(&after.rgb_bytes(), shown)?,
+            "difference": jpeg(&map.heat_rgb(), shown)?,
         }));
     }
     Ok(pictures)
@@ -79,18 +83,24 @@ fn one(
         ..Settings::default()
     })?;
     for &(key, value) in changes {
-        table.insert(key.to_owned(), value.into());
+        let value = value
+            .parse::<bool>()
+            .map_or_else(|_| value.into(), Into::into);
+        table.insert(key.to_owned(), value);
     }
     let settings: Settings = table.try_into()?;
     let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
     block_on(renderer.set_scene(scene))?;
     let frame = Frame {
         camera,
-        previous_camera: None,
+        previous_camera: Some(camera),
     };
-    block_on(renderer.render(&frame))?;
+    for _ in 0..FRAMES {
+        block_on(renderer.render(&frame))?;
+    }
     let bytes = block_on(renderer.read_picture())?;
-    Ok((Picture::from_rgba(size.0, size.1, &bytes)?, settings))
+    let (width, height) = settings.picture_size();
+    Ok((Picture::from_rgba(width, height, &bytes)?, settings))
 }
 
 /// A data URL.

@@ -39,12 +39,28 @@ pub(super) struct Pair {
     pub(super) after: &'static [(&'static str, &'static str)],
 }
 
+/// How cost grows with the load.
+pub(super) struct Load {
+    /// What the rows are loaded with, and its title.
+    pub(super) x: &'static str,
+    pub(super) title: &'static str,
+    /// Costs in milliseconds, and what of the row they are where there are several.
+    pub(super) costs: &'static [(&'static str, &'static str)],
+    /// The cost of the plain way, which all rows of a load share.
+    pub(super) reference: Option<(&'static str, &'static str)>,
+    /// What tells a line from the others.
+    pub(super) series: &'static [&'static str],
+    /// Only rows that have this.
+    pub(super) only: Option<(&'static str, &'static str)>,
+}
+
 /// One bench.
 pub(super) struct Bench {
     pub(super) name: &'static str,
     pub(super) title: &'static str,
     pub(super) about: &'static str,
     pub(super) subcommand: &'static [&'static str],
+    /// Scenes, [`THE_SCENE`] among them for the report's, and flags; fewer where it must be quick.
     quick: &'static [&'static str],
     full: &'static [&'static str],
     /// Whether it takes `--size`.
@@ -59,6 +75,7 @@ pub(super) struct Bench {
     pub(super) cost: &'static str,
     /// Cost and error in the plot of quality against speed.
     pub(super) quality: Option<(&'static str, &'static str)>,
+    pub(super) load: Option<Load>,
     pub(super) pairs: &'static [Pair],
 }
 
@@ -87,6 +104,17 @@ fn frame(figures: &Value) -> Option<Vec<Value>> {
     Some(vec![row.into()])
 }
 
+/// The rows of the first camera: one per scene where scenes are the load.
+fn first_camera(figures: &Value) -> Option<Vec<Value>> {
+    let mut rows = own_rows(figures)?;
+    let first = rows.first()?["camera"].clone();
+    rows.retain(|row| row["camera"] == first);
+    Some(rows)
+}
+
+/// Stands for the scene that the report is about.
+const THE_SCENE: &str = "SCENE";
+
 /// In the order of the frame.
 pub(super) const BENCHES: &[Bench] = &[
     Bench {
@@ -94,8 +122,8 @@ pub(super) const BENCHES: &[Bench] = &[
         title: "Baseline",
         about: "The plain frame that everything else is compared with: every pixel shaded once, no anti-aliasing, objects outside the frustum left out.",
         subcommand: &["render"],
-        quick: &["--warmup", "2", "--frames", "3"],
-        full: &["--warmup", "3", "--frames", "9"],
+        quick: &[THE_SCENE, "--warmup", "2", "--frames", "3"],
+        full: &[THE_SCENE, "--warmup", "3", "--frames", "9"],
         sized: true,
         variants: &[],
         rows: stages,
@@ -103,6 +131,7 @@ pub(super) const BENCHES: &[Bench] = &[
         columns: &[column("ms", "ms", 2)],
         cost: "ms",
         quality: None,
+        load: None,
         pairs: &[],
     },
     Bench {
@@ -110,8 +139,16 @@ pub(super) const BENCHES: &[Bench] = &[
         title: "Software occlusion culling",
         about: "Occluders are rasterized on the processor, then boxes are tested against their depth: what nothing can show is never submitted.",
         subcommand: &["bench", "culling"],
-        quick: &["--repetitions", "9", "--sizes", "640x360", "--quiet"],
+        quick: &[
+            THE_SCENE,
+            "--repetitions",
+            "9",
+            "--sizes",
+            "640x360",
+            "--quiet",
+        ],
         full: &[
+            THE_SCENE,
             "--repetitions",
             "31",
             "--sizes",
@@ -133,6 +170,7 @@ pub(super) const BENCHES: &[Bench] = &[
         ],
         cost: "raster_ms",
         quality: None,
+        load: None,
         pairs: &[Pair {
             title: "All objects, and those that are seen: the same picture",
             before: &[("culling", "off")],
@@ -140,12 +178,65 @@ pub(super) const BENCHES: &[Bench] = &[
         }],
     },
     Bench {
+        name: "culling-load",
+        title: "Culling under load",
+        about: "The demo scene with more and more objects, seen by its first camera; one thread.",
+        subcommand: &["bench", "culling"],
+        quick: &[
+            "demo:1000",
+            "demo:3000",
+            "demo:10000",
+            "--repetitions",
+            "5",
+            "--sizes",
+            "640x360",
+            "--threads",
+            "1",
+            "--quiet",
+        ],
+        full: &[
+            "demo:1000",
+            "demo:3000",
+            "demo:10000",
+            "demo:30000",
+            "--repetitions",
+            "31",
+            "--sizes",
+            "640x360",
+            "--threads",
+            "1",
+            "--quiet",
+        ],
+        sized: false,
+        variants: &[],
+        rows: first_camera,
+        label: &["occluder_triangles"],
+        columns: &[
+            column("occluder_triangles", "occluder triangles", 0),
+            column("raster_ms", "rasterize ms", 3),
+            column("query_boxes", "boxes", 0),
+            column("query_ms", "test ms", 3),
+            column("culled", "culled", 0),
+        ],
+        cost: "raster_ms",
+        quality: None,
+        load: Some(Load {
+            x: "occluder_triangles",
+            title: "occluder triangles",
+            costs: &[("raster_ms", "rasterize"), ("query_ms", "test boxes")],
+            reference: None,
+            series: &[],
+            only: None,
+        }),
+        pairs: &[],
+    },
+    Bench {
         name: "culling-frames",
         title: "Whole frames with culling",
         about: "The same picture with all objects, with those in the frustum, and with those that nothing hides.",
         subcommand: &["render"],
-        quick: &["--warmup", "1", "--frames", "3"],
-        full: &["--warmup", "2", "--frames", "9"],
+        quick: &[THE_SCENE, "--warmup", "1", "--frames", "3"],
+        full: &[THE_SCENE, "--warmup", "2", "--frames", "9"],
         sized: true,
         variants: &[
             &["--culling", "off"],
@@ -163,6 +254,7 @@ pub(super) const BENCHES: &[Bench] = &[
         ],
         cost: "frame_ms",
         quality: None,
+        load: None,
         pairs: &[],
     },
     Bench {
@@ -170,8 +262,8 @@ pub(super) const BENCHES: &[Bench] = &[
         title: "Instanced stereo",
         about: "Both eyes in one submission.",
         subcommand: &["bench", "stereo"],
-        quick: &["--rounds", "3"],
-        full: &[],
+        quick: &["materials", THE_SCENE, "--rounds", "3"],
+        full: &["materials", "materials2", THE_SCENE],
         sized: false,
         variants: &[],
         rows: own_rows,
@@ -188,19 +280,36 @@ pub(super) const BENCHES: &[Bench] = &[
         ],
         cost: "frame_ms",
         quality: None,
-        pairs: &[],
+        load: Some(Load {
+            x: "draws",
+            title: "draws",
+            costs: &[("encode_ms", "")],
+            reference: None,
+            series: &["mode"],
+            only: Some(("stages", "frame")),
+        }),
+        pairs: &[Pair {
+            title: "A pass per eye, and both eyes at once: the same picture",
+            before: &[("stereo", "two-pass"), ("output", "side-by-side")],
+            after: &[("stereo", "instanced"), ("output", "side-by-side")],
+        }],
     },
     Bench {
         name: "coarse",
         title: "Coarse pixel shading",
         about: "Away from the gaze one lighting evaluation serves a whole block of pixels.",
         subcommand: &["bench", "coarse"],
-        quick: &["--pairs", "2"],
-        full: &["--pairs", "3"],
+        quick: &[
+            THE_SCENE, "--pairs", "2", "--lights", "10", "--lights", "50", "--lights", "200",
+        ],
+        full: &[
+            THE_SCENE, "--pairs", "3", "--lights", "10", "--lights", "50", "--lights", "200",
+            "--lights", "1000",
+        ],
         sized: true,
         variants: &[],
         rows: own_rows,
-        label: &["composite", "backend"],
+        label: &["composite", "backend", "lights"],
         columns: &[
             column("lights", "lights", 0),
             percent("shaded_fraction", "shaded %"),
@@ -212,6 +321,14 @@ pub(super) const BENCHES: &[Bench] = &[
         ],
         cost: "coarse_ms",
         quality: Some(("coarse_ms", "flip_mean")),
+        load: Some(Load {
+            x: "lights",
+            title: "lights",
+            costs: &[("coarse_ms", "")],
+            reference: Some(("full_ms", "every pixel")),
+            series: &["composite", "backend"],
+            only: Some(("backend", "compute")),
+        }),
         pairs: &[
             Pair {
                 title: "Every pixel, and the smooth composite",
@@ -230,8 +347,16 @@ pub(super) const BENCHES: &[Bench] = &[
         title: "Variable-rate shading in software",
         about: "Where the picture is flat, one evaluation serves a few pixels.",
         subcommand: &["bench", "variable"],
-        quick: &["--rounds", "3", "--point-lights", "32"],
-        full: &[],
+        quick: &[THE_SCENE, "--rounds", "3", "--point-lights", "32"],
+        full: &[
+            THE_SCENE,
+            "--contrast-threshold",
+            "0.02",
+            "--contrast-threshold",
+            "0.04",
+            "--contrast-threshold",
+            "0.08",
+        ],
         sized: true,
         variants: &[],
         rows: own_rows,
@@ -249,15 +374,32 @@ pub(super) const BENCHES: &[Bench] = &[
         ],
         cost: "variable_ms",
         quality: Some(("variable_ms", "flip_mean")),
-        pairs: &[],
+        load: Some(Load {
+            x: "lights",
+            title: "lights",
+            costs: &[("variable_ms", "")],
+            reference: None,
+            series: &["stage", "material_cost", "contrast_threshold"],
+            only: Some(("material_cost", "plain")),
+        }),
+        pairs: &[Pair {
+            title: "Every pixel, and at the rate that the content asks for",
+            before: &[("geometry", "visibility")],
+            after: &[
+                ("geometry", "visibility"),
+                ("shading", "variable"),
+                ("rate", "content"),
+                ("force_rate", "true"),
+            ],
+        }],
     },
     Bench {
         name: "antialiasing",
         title: "Anti-aliasing in compute",
         about: "Only pixels that several surfaces share are shaded more than once.",
         subcommand: &["bench", "antialiasing"],
-        quick: &["--rounds", "2", "--reference", "16"],
-        full: &["--rounds", "5"],
+        quick: &[THE_SCENE, "--rounds", "2", "--reference", "16"],
+        full: &[THE_SCENE, "--rounds", "5"],
         sized: true,
         variants: &[],
         rows: own_rows,
@@ -274,6 +416,14 @@ pub(super) const BENCHES: &[Bench] = &[
         ],
         cost: "frame_ms",
         quality: Some(("frame_ms", "flip_to_reference")),
+        load: Some(Load {
+            x: "samples",
+            title: "samples",
+            costs: &[("frame_ms", "")],
+            reference: None,
+            series: &["mode", "pattern", "geometry"],
+            only: None,
+        }),
         pairs: &[Pair {
             title: "None, and MSAA",
             before: &[],
@@ -292,14 +442,14 @@ impl Bench {
         adapter: Option<&str>,
     ) -> Vec<String> {
         let mut words: Vec<String> = self.subcommand.iter().map(|&w| w.to_owned()).collect();
-        words.push(scene.to_owned());
         if self.sized {
             words.extend(["--size".to_owned(), format!("{}x{}", size.0, size.1)]);
         }
         let own = if quick { self.quick } else { self.full };
-        words.extend(own.iter().map(|&w| w.to_owned()));
+        let named = |word| if word == THE_SCENE { scene } else { word };
+        words.extend(own.iter().map(|&word| named(word).to_owned()));
         if let Some(adapter) = adapter
-            && self.name != "culling"
+            && self.subcommand != ["bench", "culling"]
         {
             words.extend(["--adapter".to_owned(), adapter.to_owned()]);
         }

@@ -1,6 +1,12 @@
 //! Plots as inline SVG. Their figures are the JSON's; axes say where better is instead of inventing ticks.
 
+mod load;
+mod timeline;
+
 use std::fmt::Write;
+
+pub(super) use load::load;
+pub(super) use timeline::timeline;
 
 use super::html::Figures;
 use super::plan::Bench;

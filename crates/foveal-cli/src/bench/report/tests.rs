@@ -20,8 +20,15 @@ fn report() -> Value {
                     let figure = 1234.5678 * (i + 1) as f64 + 7.125 * j as f64 + step;
                     row.insert(column.key.to_owned(), figure.into());
                 }
+                if let Some(load) = &bench.load {
+                    row.insert(load.x.to_owned(), (100.0 + 20.0 * step).into());
+                    if let Some((key, text)) = load.only {
+                        row.insert(key.to_owned(), text.into());
+                    }
+                }
                 Value::from(row)
             };
+            let passes = [0.0, 1.5].map(|later| vec![row(later), row(later + 40.0)]);
             // One of them stands for those that could not be run.
             let measured = bench.name != "stereo";
             json!({
@@ -32,7 +39,7 @@ fn report() -> Value {
                 "published": published::of(bench.name),
                 "status": if measured { "measured" } else { "skipped" },
                 "cause": if measured { Value::Null } else { "no such adapter".into() },
-                "rows": if measured { merge::passes(bench, &[vec![row(0.0)], vec![row(1.5)]]) } else { json!([]) },
+                "rows": if measured { merge::passes(bench, &passes) } else { json!([]) },
                 "pictures": [{
                     "title": "a & b", "before_flags": "--aa none", "after_flags": "--aa msaa", "flip_mean": 0.01234,
                     "before": "data:,1", "after": "data:,2", "difference": "data:,3",
@@ -120,6 +127,31 @@ fn a_skipped_bench_is_shown_with_its_cause() {
         assert!(page.contains(&format!("<section id=\"{}\">", bench.name)));
     }
     assert!(page.contains("skipped: no such adapter"));
+}
+
+#[test]
+fn what_was_measured_under_load_is_plotted_against_it() {
+    let page = page::of(&report());
+    let section = |name: &str| {
+        let rest = page
+            .split_once(&format!("<section id=\"{name}\">"))
+            .unwrap()
+            .1;
+        rest.split_once("</section>").unwrap().0.to_owned()
+    };
+    for bench in plan::BENCHES {
+        let is_there = section(bench.name).contains("<h3>Cost against load</h3>");
+        // The skipped one has no rows.
+        let expected = bench.load.is_some() && bench.name != "stereo";
+        assert_eq!(is_there, expected, "{}", bench.name);
+    }
+    // A line per cost, each with a dot per load.
+    let culling = section("culling-load");
+    let lines = culling.matches("stroke-width=\"2\"").count();
+    assert_eq!((lines, culling.matches("r=\"4\"").count()), (2, 4));
+    // The plain way is one line, however many composites are compared with it.
+    assert_eq!(section("coarse").matches("every pixel</text>").count(), 1);
+    assert!(section("baseline").contains("The frame's timeline"));
 }
 
 #[test]
