@@ -75,6 +75,8 @@ pub(crate) struct App {
     /// Size of the picture's place, in pixels.
     pub(crate) place: (u32, u32),
     asked: Option<Request>,
+    /// Whether the window's device shall be lost after this frame.
+    pub(crate) loses_devices: bool,
 }
 
 impl App {
@@ -118,6 +120,7 @@ impl App {
             settings_file: "foveal.toml".to_owned(),
             place: (0, 0),
             asked: None,
+            loses_devices: false,
             settings,
             host,
         })
@@ -216,6 +219,29 @@ impl App {
 
     fn take_picture(&mut self, context: &egui::Context, mut shown: Box<Shown>) {
         self.history.push(shown.stats.frame_ms);
+        // The figure stays until the next one: it is measured on some frames only.
+        if shown.flip.is_none()
+            && let Some(before) = &self.shown
+            && before.camera == shown.camera
+            && self.display.compare
+        {
+            shown.flip = before.flip;
+        }
+        self.shown = Some(shown);
+        self.load_textures(context);
+    }
+
+    /// Moves to a context that has none of the textures yet.
+    pub(crate) fn move_to(&mut self, context: &egui::Context) {
+        self.picture = None;
+        self.reference_picture = None;
+        self.depth_picture = None;
+        self.load_textures(context);
+    }
+
+    /// Makes textures of what is shown.
+    fn load_textures(&mut self, context: &egui::Context) {
+        let Some(shown) = &self.shown else { return };
         let load =
             |slot: &mut Option<TextureHandle>, name: &str, image: egui::ColorImage| match slot {
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
@@ -235,15 +261,6 @@ impl App {
             let image = egui::ColorImage::from_gray_iter(size, gray);
             load(&mut self.depth_picture, "depth", image);
         }
-        // The figure stays until the next one: it is measured on some frames only.
-        if shown.flip.is_none()
-            && let Some(before) = &self.shown
-            && before.camera == shown.camera
-            && self.display.compare
-        {
-            shown.flip = before.flip;
-        }
-        self.shown = Some(shown);
     }
 
     /// Keys, unless a text field takes them.
@@ -278,6 +295,10 @@ impl App {
             && let (Some(navigator), Some(scene)) = (&mut self.navigator, &self.scene)
         {
             navigator.go_to(scene.start.clone());
+        }
+        if context.input_mut(|i| i.consume_key(Modifiers::CTRL | Modifiers::SHIFT, Key::F12)) {
+            self.worker.lose_device();
+            self.loses_devices = true;
         }
         if pressed(Key::P) || pressed(Key::F12) {
             self.take_screenshot(context);

@@ -8,6 +8,7 @@
 mod app;
 mod boxes;
 mod clock;
+mod graphics;
 mod history;
 mod legend;
 mod look;

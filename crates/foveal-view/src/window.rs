@@ -1,10 +1,9 @@
 //! The operating system's window: events in, the interface's triangles out.
 
 use std::sync::Arc;
+use std::time::Duration;
 
-use anyhow::{Context, anyhow};
-use egui_wgpu::{RendererOptions, ScreenDescriptor};
-use pollster::block_on;
+use anyhow::Context;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
 use winit::event::WindowEvent;
@@ -13,6 +12,7 @@ use winit::window::{Window, WindowId};
 
 use crate::Host;
 use crate::app::App;
+use crate::graphics::Graphics;
 
 /// There is news from the drawing thread.
 #[derive(Debug)]
@@ -47,12 +47,10 @@ struct Handler {
 
 /// The open window.
 struct Open {
+    // Before the window that it draws to.
+    graphics: Option<Graphics>,
     window: Arc<Window>,
-    surface: wgpu::Surface<'static>,
-    configuration: wgpu::SurfaceConfiguration,
-    device: wgpu::Device,
-    queue: wgpu::Queue,
-    painter: egui_wgpu::Renderer,
+    proxy: EventLoopProxy<Wake>,
     input: egui_winit::State,
     app: App,
 }
@@ -134,55 +132,14 @@ impl Open {
                 .create_window(attributes)
                 .context("cannot open a window")?,
         );
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
-        let surface = instance.create_surface(Arc::clone(&window))?;
-        let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
-            compatible_surface: Some(&surface),
-            ..Default::default()
-        }))
-        .context("no graphics adapter can draw to the window")?;
-        let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("window"),
-            required_limits: wgpu::Limits {
-                max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
-                ..wgpu::Limits::downlevel_defaults()
-            },
-            ..Default::default()
-        }))?;
-        let size = window.inner_size();
-        let mut configuration = surface
-            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
-            .ok_or_else(|| anyhow!("the graphics adapter cannot draw to the window"))?;
-        // The interface blends as if values were sRGB: a target that does not encode suits it.
-        let formats = surface.get_capabilities(&adapter).formats;
-        if let Some(plain) = formats.iter().find(|f| !f.is_srgb()) {
-            configuration.format = *plain;
-        }
-        configuration.present_mode = wgpu::PresentMode::AutoVsync;
-        surface.configure(&device, &configuration);
-        let painter =
-            egui_wgpu::Renderer::new(&device, configuration.format, RendererOptions::default());
+        let graphics = Graphics::new(&window, waker(&proxy))?;
         let context = egui::Context::default();
-        crate::look::apply(&context);
-        let input = egui_winit::State::new(
-            context.clone(),
-            egui::ViewportId::ROOT,
-            &window,
-            None,
-            None,
-            Some(device.limits().max_texture_dimension_2d as usize),
-        );
-        let wake = move || {
-            let _ = proxy.send_event(Wake);
-        };
-        let app = App::new(host, wake).context("cannot start a thread")?;
+        let input = input(context, &window, &graphics);
+        let app = App::new(host, waker(&proxy)).context("cannot start a thread")?;
         Ok(Self {
+            graphics: Some(graphics),
             window,
-            surface,
-            configuration,
-            device,
-            queue,
-            painter,
+            proxy,
             input,
             app,
         })
@@ -190,96 +147,77 @@ impl Open {
 
     fn resize(&mut self, size: PhysicalSize<u32>) {
         if size.width > 0 && size.height > 0 {
-            (self.configuration.width, self.configuration.height) = (size.width, size.height);
-            self.surface.configure(&self.device, &self.configuration);
+            if let Some(graphics) = &mut self.graphics {
+                graphics.resize(size);
+            }
             self.window.request_redraw();
         }
     }
 
+    /// Opens a new device if the last was lost, and has the interface's textures made again.
+    fn recover(&mut self) -> anyhow::Result<()> {
+        if self.graphics.as_ref().is_some_and(Graphics::is_lost) {
+            self.graphics = None;
+            self.app
+                .complain("The window's graphics device was lost; this is a new one");
+        }
+        if self.graphics.is_none() {
+            let graphics = Graphics::new(&self.window, waker(&self.proxy))
+                .context("the window's graphics device was lost")?;
+            let context = egui::Context::default();
+            let memory = self.input.egui_ctx().memory(Clone::clone);
+            context.memory_mut(|fresh| *fresh = memory);
+            self.app.move_to(&context);
+            self.input = input(context, &self.window, &graphics);
+            self.graphics = Some(graphics);
+        }
+        Ok(())
+    }
+
     /// Draws the interface; says after what time to do so again.
-    fn redraw(&mut self) -> anyhow::Result<std::time::Duration> {
+    fn redraw(&mut self) -> anyhow::Result<Duration> {
+        self.recover()?;
+        let Some(graphics) = &mut self.graphics else {
+            return Ok(Duration::MAX);
+        };
+        graphics.set_vsync(self.app.display.vsync);
         let input = self.input.take_egui_input(&self.window);
         let context = self.input.egui_ctx().clone();
         let app = &mut self.app;
-        let mut output = context.run_ui(input, |ui| app.show(ui));
+        let output = context.run_ui(input, |ui| app.show(ui));
         self.input
             .handle_platform_output(&self.window, output.platform_output);
-        let wanted = if self.app.display.vsync {
-            wgpu::PresentMode::AutoVsync
-        } else {
-            wgpu::PresentMode::AutoNoVsync
-        };
-        if self.configuration.present_mode != wanted {
-            self.configuration.present_mode = wanted;
-            self.surface.configure(&self.device, &self.configuration);
-        }
         let triangles = context.tessellate(output.shapes, output.pixels_per_point);
-        let changed = std::mem::take(&mut output.textures_delta.set);
-        let freed = std::mem::take(&mut output.textures_delta.free);
-        for (id, deltas) in &changed {
-            for delta in deltas {
-                self.painter
-                    .update_texture(&self.device, &self.queue, *id, delta);
-            }
+        let is_shown = graphics.show(
+            &self.window,
+            &triangles,
+            output.textures_delta,
+            output.pixels_per_point,
+        );
+        if std::mem::take(&mut self.app.loses_devices) {
+            graphics.lose();
         }
-        self.paint(&triangles, output.pixels_per_point)?;
-        for id in &freed {
-            self.painter.free_texture(id);
+        if !is_shown || graphics.is_lost() {
+            return Ok(Duration::ZERO);
         }
         Ok(output
             .viewport_output
             .get(&egui::ViewportId::ROOT)
-            .map_or(std::time::Duration::MAX, |viewport| viewport.repaint_delay))
+            .map_or(Duration::MAX, |viewport| viewport.repaint_delay))
     }
+}
 
-    fn paint(
-        &mut self,
-        triangles: &[egui::ClippedPrimitive],
-        pixels_per_point: f32,
-    ) -> anyhow::Result<()> {
-        use wgpu::CurrentSurfaceTexture as Current;
-        let frame = match self.surface.get_current_texture() {
-            Current::Success(frame) | Current::Suboptimal(frame) => frame,
-            Current::Outdated | Current::Lost => {
-                self.surface.configure(&self.device, &self.configuration);
-                self.window.request_redraw();
-                return Ok(());
-            }
-            // Hidden, or a frame too many: the next event tries again.
-            _ => return Ok(()),
-        };
-        let view = frame.texture.create_view(&Default::default());
-        let screen = ScreenDescriptor {
-            size_in_pixels: [self.configuration.width, self.configuration.height],
-            pixels_per_point,
-        };
-        let mut encoder = self.device.create_command_encoder(&Default::default());
-        let before = self.painter.update_buffers(
-            &self.device,
-            &self.queue,
-            &mut encoder,
-            triangles,
-            &screen,
-        );
-        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
-            label: Some("interface"),
-            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                view: &view,
-                depth_slice: None,
-                resolve_target: None,
-                ops: wgpu::Operations {
-                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
-                    store: wgpu::StoreOp::Store,
-                },
-            })],
-            ..Default::default()
-        });
-        self.painter
-            .render(&mut pass.forget_lifetime(), triangles, &screen);
-        self.queue
-            .submit(before.into_iter().chain([encoder.finish()]));
-        self.window.pre_present_notify();
-        self.queue.present(frame);
-        Ok(())
+/// Has the window drawn again, from any thread.
+fn waker(proxy: &EventLoopProxy<Wake>) -> impl Fn() + Send + Sync + 'static {
+    let proxy = proxy.clone();
+    move || {
+        let _ = proxy.send_event(Wake);
     }
+}
+
+/// The interface's ears, with its look put on.
+fn input(context: egui::Context, window: &Window, graphics: &Graphics) -> egui_winit::State {
+    crate::look::apply(&context);
+    let largest = Some(graphics.largest_texture());
+    egui_winit::State::new(context, egui::ViewportId::ROOT, window, None, None, largest)
 }

@@ -12,7 +12,7 @@ mod tests;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
-use foveal::{AdapterStats, CullingFigures, FrameStats, SceneStats, Settings, Visibility};
+use foveal::{AdapterStats, CullingFigures, Error, FrameStats, SceneStats, Settings, Visibility};
 use foveal_scene::{Aabb, Camera};
 
 use crate::Host;
@@ -131,6 +131,11 @@ impl Worker {
         self.inbox.draw(request);
     }
 
+    /// Has the device lost, as a driver does that starts anew: to see that work goes on.
+    pub(crate) fn lose_device(&self) {
+        self.inbox.lose_device();
+    }
+
     pub(crate) fn news(&self) -> impl Iterator<Item = News> + '_ {
         self.news.try_iter()
     }
@@ -165,6 +170,7 @@ impl<W: Fn()> Teller<W> {
 fn work<W: Fn()>(host: &Host, inbox: &Inbox, tell: &Teller<W>) {
     let mut drawing = Drawing::default();
     let mut settled = 0;
+    let mut is_second_try = false;
     let mut wanted: Option<Request> = None;
     loop {
         let idle = wanted
@@ -196,6 +202,10 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, tell: &Teller<W>) {
                 settled = 0;
                 wanted = Some(*request);
             }
+            Order::LoseDevice => {
+                drawing.lose_device();
+                settled = 0;
+            }
             Order::Nothing => {}
         }
         let Some(request) = &wanted else { continue };
@@ -204,11 +214,18 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, tell: &Teller<W>) {
             Ok(None) => {}
             Err(error) => {
                 tell.fail(&error);
-                // Not again until something changes, and then on a new device.
                 drawing.give_up_device();
-                wanted = None;
+                // A lost device is no fault of the request: once more, on a new one. All else not again until
+                // something changes.
+                let was_lost = matches!(error.downcast_ref(), Some(Error::DeviceLost { .. }));
+                if !was_lost || std::mem::replace(&mut is_second_try, true) {
+                    wanted = None;
+                }
+                settled = 0;
+                continue;
             }
         }
+        is_second_try = false;
         settled += 1;
     }
 }

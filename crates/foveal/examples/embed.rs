@@ -15,8 +15,18 @@ const FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);
-    let scene = generate::by_name(&arguments.next().unwrap_or_else(|| "cornell".to_owned()))?;
-    let path = arguments.next();
+    let scene = arguments.next().unwrap_or_else(|| "cornell".to_owned());
+    let pixels = embed(&scene)?;
+    if let Some(path) = arguments.next() {
+        image::save_buffer(&path, &pixels, SIZE.0, SIZE.1, image::ColorType::Rgba8)?;
+        println!("{path}");
+    }
+    Ok(())
+}
+
+/// The host's texture after a few frames: rows of RGBA.
+fn embed(scene: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
+    let scene = generate::by_name(scene)?;
     pollster::block_on(async {
         // The host's business: instance, adapter, device, texture.
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
@@ -82,22 +92,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             None => println!("no frame was finished while a hundred were submitted"),
         }
 
-        let pixels = read_back(&device, &queue, &texture)?;
-        let lit = pixels
-            .as_chunks::<4>()
-            .0
-            .iter()
-            .filter(|p| p[..3] != [0; 3]);
-        println!(
-            "{} of {} pixels are not black",
-            lit.count(),
-            SIZE.0 * SIZE.1
-        );
-        if let Some(path) = path {
-            image::save_buffer(&path, &pixels, SIZE.0, SIZE.1, image::ColorType::Rgba8)?;
-            println!("{path}");
-        }
-        Ok(())
+        read_back(&device, &queue, &texture)
     })
 }
 
@@ -130,4 +125,20 @@ fn read_back(
     buffer.map_async(wgpu::MapMode::Read, .., |_| ());
     device.poll(wgpu::PollType::wait_indefinitely())?;
     Ok(buffer.get_mapped_range(..)?.to_vec())
+}
+
+#[test]
+fn the_host_gets_the_picture_over_its_whole_texture() {
+    let pixels = embed("cornell").expect("the example runs");
+    let pixels = pixels.as_chunks::<4>().0;
+    assert_eq!(pixels.len() as u32, SIZE.0 * SIZE.1);
+    let lit = pixels.iter().filter(|p| p[..3] != [0; 3]).count();
+    assert!(lit > pixels.len() * 9 / 10, "{lit} are lit");
+    // The red wall stands on the left, the green one on the right.
+    let at = |x: u32, y: u32| pixels[(y * SIZE.0 + x) as usize];
+    let (left, right) = (at(SIZE.0 / 4, SIZE.1 / 2), at(SIZE.0 * 5 / 6, SIZE.1 / 2));
+    assert!(
+        left[0] > left[1] && right[1] > right[0],
+        "{left:?} {right:?}"
+    );
 }

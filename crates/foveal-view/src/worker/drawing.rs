@@ -37,6 +37,13 @@ impl Drawing {
         Ok(Some(adapter))
     }
 
+    /// What a driver does that starts anew.
+    pub(super) fn lose_device(&self) {
+        if let Some(gpu) = &self.gpu {
+            gpu.device.destroy();
+        }
+    }
+
     /// The next frame is drawn on a new device.
     pub(super) fn give_up_device(&mut self) {
         self.chosen = None;

@@ -9,6 +9,7 @@ pub(super) enum Order {
     Quit,
     Load(String),
     Draw(Box<Request>),
+    LoseDevice,
     Nothing,
 }
 
@@ -17,6 +18,7 @@ struct Orders {
     quit: bool,
     load: Option<String>,
     draw: Option<Request>,
+    lose_device: bool,
 }
 
 #[derive(Default)]
@@ -48,12 +50,20 @@ impl Inbox {
         self.changed.notify_one();
     }
 
+    pub(super) fn lose_device(&self) {
+        self.orders().lose_device = true;
+        self.changed.notify_one();
+    }
+
     /// The next order; waits for one if `idle`.
     pub(super) fn next(&self, idle: bool) -> Order {
         let mut orders = self.orders();
         loop {
             if orders.quit {
                 return Order::Quit;
+            }
+            if std::mem::take(&mut orders.lose_device) {
+                return Order::LoseDevice;
             }
             if let Some(scene) = orders.load.take() {
                 return Order::Load(scene);

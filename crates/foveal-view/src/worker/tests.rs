@@ -163,3 +163,15 @@ fn frozen_culling_stays_as_it_was_found() {
     };
     assert!(outside(&thawed) > outside(&before));
 }
+
+#[test]
+fn a_lost_device_is_news_and_the_picture_is_drawn_on_a_new_one() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.draw(request());
+    let before = picture(&worker);
+    worker.lose_device();
+    assert!(failure(&worker).contains("lost"));
+    // Nobody asked again.
+    assert_eq!(picture(&worker).picture.bytes, before.picture.bytes);
+}

@@ -1,13 +1,4 @@
-//! The real window on a virtual screen, driven by real keys and a real pointer.
-//!
-//! Needs Xvfb and xdotool; without them it says so and passes, unless `FOVEAL_WINDOW_TEST=required`, as `./run test`
-//! sets it. Screenshots come from Xvfb's frame buffer; `FOVEAL_SCREENSHOTS=DIR` keeps them as PNG files.
-
-#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
-#![allow(clippy::print_stdout, reason = "a test says what it skipped")]
-#![cfg(target_os = "linux")]
-
-mod common;
+//! A virtual screen with the window on it: its pixels, and hands for keys and pointer.
 
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
@@ -16,18 +7,20 @@ use std::time::{Duration, Instant};
 
 use tempfile::TempDir;
 
+use super::common;
+
 /// Colours of the interface, as `look.rs` has them.
-const PANEL: [u8; 3] = [0x1c, 0x1f, 0x25];
-const BACKGROUND: [u8; 3] = [0x14, 0x16, 0x1a];
-const CARD: [u8; 3] = [0x25, 0x29, 0x31];
-const BAD: [u8; 3] = [0xff, 0x7b, 0x72];
-const VISIBLE: [u8; 3] = [0x5f, 0xd3, 0x7f];
+pub(crate) const PANEL: [u8; 3] = [0x1c, 0x1f, 0x25];
+pub(crate) const BACKGROUND: [u8; 3] = [0x14, 0x16, 0x1a];
+pub(crate) const CARD: [u8; 3] = [0x25, 0x29, 0x31];
+pub(crate) const BAD: [u8; 3] = [0xff, 0x7b, 0x72];
+pub(crate) const VISIBLE: [u8; 3] = [0x5f, 0xd3, 0x7f];
 
 /// How long anything may take on a busy machine.
-const PATIENCE: Duration = Duration::from_secs(90);
+pub(crate) const PATIENCE: Duration = Duration::from_secs(90);
 
 /// A program that ends with the test.
-struct Running(Child);
+pub(crate) struct Running(Child);
 
 impl Drop for Running {
     fn drop(&mut self) {
@@ -37,17 +30,19 @@ impl Drop for Running {
 }
 
 /// A screen, and the program's window on it.
-struct Screen {
-    window: Running,
+pub(crate) struct Screen {
+    pub(crate) window: Running,
     _server: Running,
-    folder: TempDir,
-    display: String,
+    pub(crate) folder: TempDir,
+    pub(crate) display: String,
+    /// The window's number at the server.
+    pub(crate) id: u32,
     size: (usize, usize),
 }
 
 /// RGB of a screen.
 #[derive(Clone, PartialEq)]
-struct Shot {
+pub(crate) struct Shot {
     width: usize,
     height: usize,
     pixels: Vec<[u8; 3]>,
@@ -55,7 +50,7 @@ struct Shot {
 
 impl Shot {
     /// The pixels of a rectangle, given as fractions of the screen.
-    fn part(&self, left: f64, top: f64, right: f64, bottom: f64) -> Vec<[u8; 3]> {
+    pub(crate) fn part(&self, left: f64, top: f64, right: f64, bottom: f64) -> Vec<[u8; 3]> {
         let x = (left * self.width as f64) as usize..(right * self.width as f64) as usize;
         let y = (top * self.height as f64) as usize..(bottom * self.height as f64) as usize;
         let row = |y: usize| &self.pixels[y * self.width..][..self.width];
@@ -63,7 +58,7 @@ impl Shot {
     }
 
     /// Whether both panels are there, with text on them that stands out; else why not.
-    fn legibility(&self) -> Result<(), String> {
+    pub(crate) fn legibility(&self) -> Result<(), String> {
         let side = 268.0 / self.width as f64;
         for (name, part) in [
             ("settings", self.part(0.0, 0.1, side, 0.9)),
@@ -84,28 +79,28 @@ impl Shot {
     }
 
     /// The middle, where nothing but the picture is.
-    fn picture(&self) -> Vec<[u8; 3]> {
+    pub(crate) fn picture(&self) -> Vec<[u8; 3]> {
         self.part(0.3, 0.3, 0.7, 0.7)
     }
 }
 
-fn count(pixels: &[[u8; 3]], color: [u8; 3], tolerance: u8) -> usize {
+pub(crate) fn count(pixels: &[[u8; 3]], color: [u8; 3], tolerance: u8) -> usize {
     let near = |p: &&[u8; 3]| (0..3).all(|c| p[c].abs_diff(color[c]) <= tolerance);
     pixels.iter().filter(near).count()
 }
 
 /// How many colours, coarsely.
-fn colors(pixels: &[[u8; 3]]) -> usize {
+pub(crate) fn colors(pixels: &[[u8; 3]]) -> usize {
     let coarse: std::collections::HashSet<_> = pixels.iter().map(|p| p.map(|c| c >> 4)).collect();
     coarse.len()
 }
 
-fn differing(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
+pub(crate) fn differing(a: &[[u8; 3]], b: &[[u8; 3]]) -> f64 {
     let differ = a.iter().zip(b).filter(|(a, b)| a != b).count();
     differ as f64 / a.len() as f64
 }
 
-fn has(program: &str) -> bool {
+pub(crate) fn has(program: &str) -> bool {
     let found = Command::new("sh")
         .args(["-c", &format!("command -v {program}")])
         .stdout(Stdio::null())
@@ -114,7 +109,7 @@ fn has(program: &str) -> bool {
 }
 
 /// Whether the test can run; says why not.
-fn is_possible() -> bool {
+pub(crate) fn is_possible() -> bool {
     let missing: Vec<_> = ["Xvfb", "xdotool"]
         .into_iter()
         .filter(|p| !has(p))
@@ -133,7 +128,7 @@ fn is_possible() -> bool {
 
 impl Screen {
     /// A screen of this size, all of it the window of `foveal view` with these words.
-    fn open(size: (usize, usize), words: &[&str]) -> Self {
+    pub(crate) fn open(size: (usize, usize), words: &[&str]) -> Self {
         let folder = common::folder();
         let (server, display) = start_server(folder.path(), size);
         let window_size = format!("{}x{}", size.0, size.1);
@@ -155,14 +150,16 @@ impl Screen {
             _server: server,
             folder,
             display,
+            id: 0,
             size,
         };
-        screen.until("the window is there", |screen| {
+        screen.id = screen.until("the window is there", |screen| {
             let id = screen.xdotool(&["search", "--name", "^Foveal$"])?;
             let id = id.lines().next()?.to_owned();
             // There is no window manager: nobody else places it or gives it the keys.
             screen.xdotool(&["windowmove", &id, "0", "0"])?;
-            screen.xdotool(&["windowfocus", &id])
+            screen.xdotool(&["windowfocus", &id])?;
+            id.parse().ok()
         });
         screen.until("a picture is drawn", |screen| {
             let picture = screen.shot().picture();
@@ -172,7 +169,7 @@ impl Screen {
         screen
     }
 
-    fn xdotool(&self, words: &[&str]) -> Option<String> {
+    pub(crate) fn xdotool(&self, words: &[&str]) -> Option<String> {
         let output = Command::new("xdotool")
             .args(words)
             .env("DISPLAY", &self.display)
@@ -182,12 +179,12 @@ impl Screen {
         output.status.success().then_some(text)
     }
 
-    fn key(&self, key: &str) {
+    pub(crate) fn key(&self, key: &str) {
         self.xdotool(&["key", key]).unwrap();
     }
 
     /// A drag with the first button, from and to fractions of the screen.
-    fn drag(&self, from: (f64, f64), to: (f64, f64)) {
+    pub(crate) fn drag(&self, from: (f64, f64), to: (f64, f64)) {
         let at = |(x, y): (f64, f64)| {
             let [x, y] = [x * self.size.0 as f64, y * self.size.1 as f64];
             [format!("{x:.0}"), format!("{y:.0}")]
@@ -205,7 +202,7 @@ impl Screen {
         self.xdotool(&["mouseup", "1"]).unwrap();
     }
 
-    fn click(&self, x: usize, y: usize) {
+    pub(crate) fn click(&self, x: usize, y: usize) {
         self.xdotool(&["mousemove", &x.to_string(), &y.to_string()])
             .unwrap();
         std::thread::sleep(Duration::from_millis(200));
@@ -213,7 +210,7 @@ impl Screen {
     }
 
     /// The screen once it has stopped changing.
-    fn settled(&mut self) -> Shot {
+    pub(crate) fn settled(&mut self) -> Shot {
         let mut before = self.shot();
         let mut same = 0;
         self.until("the screen stands still", |screen| {
@@ -226,7 +223,7 @@ impl Screen {
     }
 
     /// Tries until `ready` gives something.
-    fn until<T>(&mut self, what: &str, mut ready: impl FnMut(&Self) -> Option<T>) -> T {
+    pub(crate) fn until<T>(&mut self, what: &str, mut ready: impl FnMut(&Self) -> Option<T>) -> T {
         let start = Instant::now();
         loop {
             if let Some(status) = self.window.0.try_wait().unwrap() {
@@ -246,12 +243,12 @@ impl Screen {
         }
     }
 
-    fn said(&self) -> String {
+    pub(crate) fn said(&self) -> String {
         std::fs::read_to_string(self.folder.path().join("stderr")).unwrap_or_default()
     }
 
     /// What is on the screen.
-    fn shot(&self) -> Shot {
+    pub(crate) fn shot(&self) -> Shot {
         let dump = std::fs::read(self.folder.path().join("Xvfb_screen0")).unwrap();
         // XWDFileHeader: big-endian words, then a colour map of 12 bytes an entry, then the rows.
         let word = |i: usize| {
@@ -274,7 +271,7 @@ impl Screen {
     }
 
     /// Writes a screenshot where the caller wants them.
-    fn keep(&self, name: &str, shot: &Shot) {
+    pub(crate) fn keep(&self, name: &str, shot: &Shot) {
         let Some(folder) = std::env::var_os("FOVEAL_SCREENSHOTS") else {
             return;
         };
@@ -292,7 +289,7 @@ impl Screen {
 }
 
 /// A server that answers, and its display.
-fn start_server(folder: &Path, (width, height): (usize, usize)) -> (Running, String) {
+pub(crate) fn start_server(folder: &Path, (width, height): (usize, usize)) -> (Running, String) {
     static NEXT: AtomicU32 = AtomicU32::new(0);
     // Far from where people's displays are, and different in each process and thread.
     let first = 200 + 16 * (std::process::id() % 3000);
@@ -321,125 +318,4 @@ fn start_server(folder: &Path, (width, height): (usize, usize)) -> (Running, Str
         }
     }
     panic!("Xvfb does not start");
-}
-
-#[test]
-fn the_window_shows_a_scene_and_obeys_keys_and_pointer() {
-    if !is_possible() {
-        return;
-    }
-    let words = ["cornell", "--culling", "occlusion"];
-    let mut screen = Screen::open((1280, 720), &words);
-    let start = screen.settled();
-    screen.keep("start", &start);
-    assert_eq!(start.legibility(), Ok(()));
-
-    // Keys that are held move the camera, a drag turns it, Home goes back.
-    screen.xdotool(&["keydown", "w"]).unwrap();
-    screen.until("the camera moves", |s| {
-        (differing(&start.picture(), &s.shot().picture()) > 0.2).then_some(())
-    });
-    screen.xdotool(&["keyup", "w"]).unwrap();
-    let nearer = screen.settled();
-    screen.until("the camera turns", |s| {
-        // On a busy machine the window may see press and release at once, which is no drag.
-        s.drag((0.5, 0.6), (0.56, 0.6));
-        std::thread::sleep(Duration::from_millis(500));
-        (differing(&nearer.picture(), &s.shot().picture()) > 0.2).then_some(())
-    });
-    screen.keep("turned", &screen.shot());
-    screen.key("Home");
-    screen.until("the camera is back", |s| {
-        (differing(&start.picture(), &s.shot().picture()) < 0.01).then_some(())
-    });
-
-    // Boxes, with the depth that hides them.
-    let green = |shot: &Shot| count(&shot.picture(), VISIBLE, 24);
-    screen.key("b");
-    screen.key("z");
-    screen.until("boxes are drawn", |s| {
-        (green(&s.shot()) > green(&start) + 100).then_some(())
-    });
-    let boxes = screen.settled();
-    screen.keep("boxes", &boxes);
-    screen.key("b");
-    screen.key("z");
-
-    // The reference on the left, with a white line between.
-    screen.key("x");
-    screen.until("the split is drawn", |s| {
-        let middle = s.shot().part(0.45, 0.3, 0.55, 0.4);
-        (count(&middle, [255; 3], 2) > 100).then_some(())
-    });
-    let compare = screen.settled();
-    screen.keep("compare", &compare);
-    screen.key("x");
-
-    // Without panels the picture has the whole width.
-    screen.key("h");
-    screen.until("the panels are gone", |s| {
-        let left = s.shot().part(0.0, 0.1, 0.2, 0.9);
-        (count(&left, PANEL, 0) < left.len() / 10).then_some(())
-    });
-    let wide = screen.settled();
-    screen.keep("wide", &wide);
-    screen.key("h");
-    screen.until("the panels are back", |s| s.shot().legibility().ok());
-
-    // A picture of the picture.
-    screen.key("p");
-    let file = screen.folder.path().join("foveal-001.png");
-    screen.until("the screenshot is written", |_| {
-        image::open(&file).is_ok().then_some(())
-    });
-
-    // A scene that is not there is an error in the window, which goes on.
-    screen.click(150, 20);
-    screen.key("ctrl+a");
-    screen.xdotool(&["type", "missing.glb"]).unwrap();
-    screen.key("Return");
-    screen.until("the error is shown", |s| {
-        let above = s.shot().part(0.22, 0.05, 0.78, 0.3);
-        (count(&above, BAD, 24) > 100).then_some(())
-    });
-    let error = screen.settled();
-    screen.keep("error", &error);
-    assert!(colors(&error.picture()) > 12, "the old picture stays");
-    screen.click(640, 400);
-    screen.key("h");
-    screen.until("the window still obeys", |s| {
-        let left = s.shot().part(0.0, 0.1, 0.2, 0.9);
-        (count(&left, PANEL, 0) < left.len() / 10).then_some(())
-    });
-}
-
-#[test]
-fn a_large_window_is_legible_too_and_shows_coarse_shading() {
-    if !is_possible() {
-        return;
-    }
-    let words = ["demo:1000", "--shading", "coarse", "--view", "rate"];
-    let mut screen = Screen::open((1920, 1080), &words);
-    let shot = screen.settled();
-    screen.keep("coarse", &shot);
-    assert_eq!(shot.legibility(), Ok(()));
-}
-
-#[test]
-fn without_a_display_the_error_says_so() {
-    let folder = common::folder();
-    let output = Command::new(env!("CARGO_BIN_EXE_foveal"))
-        .args(["view", "cornell"])
-        .current_dir(folder.path())
-        .env_remove("DISPLAY")
-        .env_remove("WAYLAND_DISPLAY")
-        .env_remove("WAYLAND_SOCKET")
-        .output()
-        .unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    assert!(
-        common::stderr(&output).contains("display"),
-        "{}",
-        common::stderr(&output)
-    );
 }

@@ -1,0 +1,179 @@
+//! What the window draws itself with: a surface, a device and the interface's painter.
+//!
+//! A device can be lost at any time: its driver starts anew, or the machine slept. Then all three are made again.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use anyhow::{Context, anyhow};
+use egui_wgpu::{RendererOptions, ScreenDescriptor};
+use pollster::block_on;
+use winit::dpi::PhysicalSize;
+use winit::window::Window;
+
+pub(crate) struct Graphics {
+    // The surface goes first: its images are the device's.
+    surface: wgpu::Surface<'static>,
+    configuration: wgpu::SurfaceConfiguration,
+    painter: egui_wgpu::Renderer,
+    device: wgpu::Device,
+    queue: wgpu::Queue,
+    lost: Arc<AtomicBool>,
+}
+
+impl Graphics {
+    /// Opens a device for the window; `wake` is called when it is lost.
+    pub(crate) fn new(
+        window: &Arc<Window>,
+        wake: impl Fn() + Send + Sync + 'static,
+    ) -> anyhow::Result<Self> {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        let surface = instance.create_surface(Arc::clone(window))?;
+        let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
+            compatible_surface: Some(&surface),
+            ..Default::default()
+        }))
+        .context("no graphics adapter can draw to the window")?;
+        let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("window"),
+            required_limits: wgpu::Limits {
+                max_texture_dimension_2d: adapter.limits().max_texture_dimension_2d,
+                ..wgpu::Limits::downlevel_defaults()
+            },
+            ..Default::default()
+        }))?;
+        let lost = Arc::new(AtomicBool::new(false));
+        let theirs = Arc::clone(&lost);
+        device.set_device_lost_callback(move |_, _| {
+            theirs.store(true, Ordering::Relaxed);
+            wake();
+        });
+        let size = window.inner_size();
+        let mut configuration = surface
+            .get_default_config(&adapter, size.width.max(1), size.height.max(1))
+            .ok_or_else(|| anyhow!("the graphics adapter cannot draw to the window"))?;
+        // The interface blends as if values were sRGB: a target that does not encode suits it.
+        let formats = surface.get_capabilities(&adapter).formats;
+        if let Some(plain) = formats.iter().find(|f| !f.is_srgb()) {
+            configuration.format = *plain;
+        }
+        configuration.present_mode = wgpu::PresentMode::AutoVsync;
+        surface.configure(&device, &configuration);
+        let painter =
+            egui_wgpu::Renderer::new(&device, configuration.format, RendererOptions::default());
+        Ok(Self {
+            surface,
+            configuration,
+            painter,
+            device,
+            queue,
+            lost,
+        })
+    }
+
+    pub(crate) fn is_lost(&self) -> bool {
+        // A loss that nobody waits for is told when the device is asked.
+        let _ = self.device.poll(wgpu::PollType::Poll);
+        self.lost.load(Ordering::Relaxed)
+    }
+
+    /// What a driver does that starts anew.
+    pub(crate) fn lose(&self) {
+        self.device.destroy();
+    }
+
+    /// Pixels a side of the largest texture.
+    pub(crate) fn largest_texture(&self) -> usize {
+        self.device.limits().max_texture_dimension_2d as usize
+    }
+
+    pub(crate) fn resize(&mut self, size: PhysicalSize<u32>) {
+        (self.configuration.width, self.configuration.height) = (size.width, size.height);
+        self.surface.configure(&self.device, &self.configuration);
+    }
+
+    /// Whether pictures wait for the screen.
+    pub(crate) fn set_vsync(&mut self, vsync: bool) {
+        let wanted = if vsync {
+            wgpu::PresentMode::AutoVsync
+        } else {
+            wgpu::PresentMode::AutoNoVsync
+        };
+        if self.configuration.present_mode != wanted {
+            self.configuration.present_mode = wanted;
+            self.surface.configure(&self.device, &self.configuration);
+        }
+    }
+
+    /// Shows the interface's triangles; `false` where the surface had to be set up again and nothing is shown yet.
+    pub(crate) fn show(
+        &mut self,
+        window: &Window,
+        triangles: &[egui::ClippedPrimitive],
+        mut textures: egui::TexturesDelta,
+        pixels_per_point: f32,
+    ) -> bool {
+        for (id, changes) in std::mem::take(&mut textures.set) {
+            for change in changes {
+                self.painter
+                    .update_texture(&self.device, &self.queue, id, &change);
+            }
+        }
+        let is_shown = self.paint(window, triangles, pixels_per_point);
+        for id in std::mem::take(&mut textures.free) {
+            self.painter.free_texture(&id);
+        }
+        is_shown
+    }
+
+    fn paint(
+        &mut self,
+        window: &Window,
+        triangles: &[egui::ClippedPrimitive],
+        pixels_per_point: f32,
+    ) -> bool {
+        use wgpu::CurrentSurfaceTexture as Current;
+        let frame = match self.surface.get_current_texture() {
+            Current::Success(frame) | Current::Suboptimal(frame) => frame,
+            Current::Outdated | Current::Lost => {
+                self.surface.configure(&self.device, &self.configuration);
+                return false;
+            }
+            // Hidden, or a frame too many: the next event tries again.
+            _ => return true,
+        };
+        let view = frame.texture.create_view(&Default::default());
+        let screen = ScreenDescriptor {
+            size_in_pixels: [self.configuration.width, self.configuration.height],
+            pixels_per_point,
+        };
+        let mut encoder = self.device.create_command_encoder(&Default::default());
+        let before = self.painter.update_buffers(
+            &self.device,
+            &self.queue,
+            &mut encoder,
+            triangles,
+            &screen,
+        );
+        let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("interface"),
+            color_attachments: &[Some(wgpu::RenderPassColorAttachment {
+                view: &view,
+                depth_slice: None,
+                resolve_target: None,
+                ops: wgpu::Operations {
+                    load: wgpu::LoadOp::Clear(wgpu::Color::BLACK),
+                    store: wgpu::StoreOp::Store,
+                },
+            })],
+            ..Default::default()
+        });
+        self.painter
+            .render(&mut pass.forget_lifetime(), triangles, &screen);
+        self.queue
+            .submit(before.into_iter().chain([encoder.finish()]));
+        window.pre_present_notify();
+        self.queue.present(frame);
+        true
+    }
+}
