@@ -10,6 +10,7 @@ use glam::Vec3;
 /// A box with a NaN or with `min > max` in some axis is *not a volume*: queries report it as visible,
 /// because nothing can be proved about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
 pub struct Aabb {
     /// Smallest corner, metres.
     pub min: Vec3,

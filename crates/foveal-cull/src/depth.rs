@@ -76,7 +76,8 @@ pub(crate) struct DepthBuffer {
     /// How much was drawn into each row of blocks, in some unit: the next frame is split by it.
     pub(crate) work: Vec<u32>,
     /// Once a frame is complete: farthest depths of blocks, then of 2x2, 4x4, ... blocks up to the whole, each
-    /// level as if it were as large as the first, and one more value.
+    /// level as if it were as large as the first. All that four times over: of the place itself, with the one to
+    /// its right, with the one below, with both and the fourth. And one more value.
     pub(crate) coarse: Vec<i16>,
 }
 
@@ -102,35 +103,50 @@ impl DepthBuffer {
             min: vec![EMPTY; n],
             state: vec![STATE_EMPTY; n],
             work: vec![0; blocks_y as usize],
-            coarse: vec![EMPTY; n * levels as usize + 1],
+            coarse: vec![EMPTY; 4 * n * levels as usize + 1],
         }
     }
 
     /// Fits the coarse levels to the blocks.
     pub(crate) fn summarize(&mut self) {
-        let n = self.min.len();
-        self.coarse[..n].copy_from_slice(&self.min);
-        let stride = self.blocks_x as usize;
+        let (n, stride) = (self.min.len(), self.blocks_x as usize);
         let (mut w, mut h) = (stride, self.blocks_y as usize);
-        let mut rest = &mut self.coarse[..];
-        while w > 1 || h > 1 {
-            let (below, above) = rest.split_at_mut(n);
-            for y in 0..h.div_ceil(2) {
-                let first = &below[2 * y * stride..][..w];
-                let second = &below[(2 * y + 1).min(h - 1) * stride..][..w];
-                let pairs = first.chunks(2).zip(second.chunks(2));
-                for (out, (a, b)) in above[y * stride..].iter_mut().zip(pairs) {
-                    *out = a.iter().chain(b).fold(i16::MAX, |m, &v| m.min(v));
+        let all = self.coarse.len() / 4;
+        let (mut single, others) = self.coarse.split_at_mut(all);
+        let (mut pairs, others) = others.split_at_mut(all);
+        let (mut stacked, mut fours) = others.split_at_mut(all);
+        single[..n].copy_from_slice(&self.min);
+        loop {
+            for y in 0..h {
+                let row = y * stride;
+                let below = (y + 1).min(h - 1) * stride;
+                farther(&mut stacked[row..], &single[row..row + w], &single[below..]);
+            }
+            for y in 0..h {
+                let row = y * stride;
+                beside(&mut pairs[row..][..w], &single[row..][..w]);
+                beside(&mut fours[row..][..w], &stacked[row..][..w]);
+            }
+            if w == 1 && h == 1 {
+                return;
+            }
+            let next = (w.div_ceil(2), h.div_ceil(2));
+            for y in 0..next.1 {
+                let wide = &fours[2 * y * stride..][..w];
+                let above = &mut single[n + y * stride..];
+                for (out, v) in above.iter_mut().zip(wide.iter().step_by(2)) {
+                    *out = *v;
                 }
             }
-            (w, h, rest) = (w.div_ceil(2), h.div_ceil(2), above);
+            (w, h) = next;
+            (single, pairs) = (&mut single[n..], &mut pairs[n..]);
+            (stacked, fours) = (&mut stacked[n..], &mut fours[n..]);
         }
     }
 
     pub(crate) fn clear(&mut self) {
         self.min.fill(EMPTY);
         self.state.fill(STATE_EMPTY);
-        self.coarse.fill(EMPTY);
     }
 
     /// Where to cut the rows into `bands` of equal work, as far as the last frame tells: the ends of all bands.
@@ -177,6 +193,20 @@ impl DepthBuffer {
         }
         let i = (y % BLOCK * BLOCK + x % BLOCK) as usize;
         self.depth[b].0[i]
+    }
+}
+
+fn farther(out: &mut [i16], a: &[i16], b: &[i16]) {
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+        *out = *a.min(b);
+    }
+}
+
+/// Each with its right neighbour.
+fn beside(out: &mut [i16], v: &[i16]) {
+    farther(out, v, &v[1..]);
+    if let (Some(out), Some(v)) = (out.last_mut(), v.last()) {
+        *out = *v;
     }
 }
 
@@ -278,6 +308,20 @@ mod tests {
                         .min();
                     let at = level as usize * n + (y * w + x) as usize;
                     assert_eq!(Some(buffer.coarse[at]), below, "{level} {x} {y}");
+                    let part = |right: u32, down: u32| {
+                        let last = ((w - 1) >> level, (h - 1) >> level);
+                        let (x, y) = ((x + right).min(last.0), (y + down).min(last.1));
+                        buffer.coarse[level as usize * n + (y * w + x) as usize]
+                    };
+                    for places in 0..4 {
+                        let (right, down) = (places & 1, places >> 1);
+                        let farthest = part(0, 0)
+                            .min(part(right, 0))
+                            .min(part(0, down))
+                            .min(part(right, down));
+                        let at = places as usize * buffer.coarse.len() / 4 + at;
+                        assert_eq!(buffer.coarse[at], farthest, "{level} {x} {y} {places}");
+                    }
                 }
             }
         }

@@ -130,10 +130,19 @@ impl<'a> Query<'a> {
         }
         // Where even the middle lies before all that is known, nothing closer will hide the box.
         let [x, y, middle] = [0, 1, 2].map(|k| p.middle[k][i]);
-        if middle > i32::from(self.buffer.pixel(x as u32, y as u32)) {
+        let known = self.buffer.pixel(x as u32, y as u32);
+        if middle > i32::from(known) {
             return Visibility::Visible;
         }
-        self.answer_rect(l, rect, code, object.then(|| place(boxes, i)))
+        let place = object.then(|| place(boxes, i));
+        // Or where the ray through that pixel enters it.
+        if let (Some(planes), Some((center, half))) = (&self.planes, place) {
+            let sample = |v: i32| (v as f32 + 0.5) * SAMPLES as f32;
+            if planes.entry(sample(x), sample(y), center, half) > known {
+                return Visibility::Visible;
+            }
+        }
+        self.answer_rect(l, rect, code, place)
     }
 
     #[inline(always)]
@@ -251,6 +260,10 @@ pub(crate) struct Flat<'a> {
     pub(crate) results: &'a mut [Visibility],
 }
 
+/// Groups of eight that are projected before any of them is looked at one by one: what is to be done there cannot
+/// be foreseen, and a wrong guess must not throw away what was begun for the next group.
+const AHEAD: usize = 16;
+
 impl Kernel for Flat<'_> {
     type Output = ();
 
@@ -259,14 +272,24 @@ impl Kernel for Flat<'_> {
         let (whole, rest) = self.boxes.as_chunks::<8>();
         let (results, last) = self.results.split_at_mut(whole.len() * 8);
         let (results, _) = results.as_chunks_mut::<8>();
-        for (boxes, results) in whole.iter().zip(results) {
-            self.query.answer_eight(l, boxes, results);
+        let mut eights = [Boxes8::NONE; AHEAD];
+        let mut projected = [Projected8::NONE; AHEAD];
+        for (groups, results) in whole.chunks(AHEAD).zip(results.chunks_mut(AHEAD)) {
+            for ((boxes, eight), p) in groups.iter().zip(&mut eights).zip(&mut projected) {
+                *eight = Boxes8::of(l, boxes);
+                *p = project(l, &self.query.screen, eight);
+            }
+            for ((eight, p), results) in eights.iter().zip(&projected).zip(results) {
+                self.query.answer_eight(l, eight, p, results);
+            }
         }
         if !rest.is_empty() {
             let mut boxes = [Aabb::EMPTY; 8];
             boxes[..rest.len()].copy_from_slice(rest);
             let mut results = [Visibility::Visible; 8];
-            self.query.answer_eight(l, &boxes, &mut results);
+            let eight = Boxes8::of(l, &boxes);
+            let p = project(l, &self.query.screen, &eight);
+            self.query.answer_eight(l, &eight, &p, &mut results);
             last.copy_from_slice(&results[..rest.len()]);
         }
     }
@@ -275,9 +298,13 @@ impl Kernel for Flat<'_> {
 impl Query<'_> {
     /// What most boxes are is known for all eight at once; the others are looked at one by one.
     #[inline(always)]
-    fn answer_eight<L: Lanes>(&self, l: L, boxes: &[Aabb; 8], results: &mut [Visibility; 8]) {
-        let eight = Boxes8::of(l, boxes);
-        let p = project(l, &self.screen, &eight);
+    fn answer_eight<L: Lanes>(
+        &self,
+        l: L,
+        eight: &Boxes8,
+        p: &Projected8,
+        results: &mut [Visibility; 8],
+    ) {
         let mut open = 0xffu32;
         if self.around.is_none() && self.small <= 0.0 {
             open &= !(p.outside | p.hidden);
@@ -292,7 +319,7 @@ impl Query<'_> {
         while open != 0 {
             let i = open.trailing_zeros() as usize;
             open &= open - 1;
-            results[i] = self.answer(l, &p, i, &eight, true);
+            results[i] = self.answer(l, p, i, eight, true);
         }
     }
 }

@@ -5,7 +5,7 @@
 //! a pixel, or a whole block, takes a few multiplications; and where a front plane lies behind a back plane
 //! the ray misses the box.
 
-use crate::depth::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
+use crate::depth::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, encode};
 use crate::simd::Lanes;
 use crate::view::Camera;
 use glam::{DMat3, DVec3, Vec3};
@@ -116,6 +116,37 @@ impl Planes {
             axes,
             per_metre: Some(per_metre.map(|v| v as f32)),
             from_eye,
+        })
+    }
+
+    /// Code of the depth where the ray through (x, y) enters a box; the lowest where it does not. Neither rounded up
+    /// nor down: enough to call a box visible, which is never wrong.
+    #[inline(always)]
+    pub(crate) fn entry(&self, x: f32, y: f32, center: Vec3, half: Vec3) -> i16 {
+        let center = center + self.from_eye;
+        // Distances along the ray in units that grow with distance, from the last front to the first back plane.
+        let (mut enter, mut leave) = (0.0f32, f32::INFINITY);
+        for axis in 0..3 {
+            let a = &self.axes[axis];
+            let depth = a.x * x + a.y * y + a.at_zero;
+            let (lo, hi) = (center[axis] - half[axis], center[axis] + half[axis]);
+            let (lo, hi) = match self.per_metre {
+                None => {
+                    let per_depth = 1.0 / depth;
+                    (lo * per_depth, hi * per_depth)
+                }
+                Some(k) if k[axis].is_nan() => continue,
+                Some(k) => (1.0 - (depth + k[axis] * lo), 1.0 - (depth + k[axis] * hi)),
+            };
+            enter = enter.max(lo.min(hi));
+            leave = leave.min(lo.max(hi));
+        }
+        if enter >= leave {
+            return EMPTY;
+        }
+        encode(match self.per_metre {
+            None => 1.0 / enter,
+            Some(_) => 1.0 - enter,
         })
     }
 

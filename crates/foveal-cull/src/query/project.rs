@@ -1,7 +1,7 @@
 //! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
 
 use crate::Aabb;
-use crate::depth::{BLOCK, DepthBuffer, SAMPLES};
+use crate::depth::{BLOCK, DepthBuffer, EMPTY, SAMPLES};
 use crate::simd::{Lanes, four};
 
 /// Relative growth of boxes against rounding.
@@ -25,11 +25,7 @@ impl Boxes8 {
     /// Centres and half extents of eight boxes, grown against rounding; NaN for what is not a volume.
     #[inline(always)]
     pub(crate) fn of<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Self {
-        let rows: [[f32; 6]; 8] = core::array::from_fn(|i| {
-            let (a, b) = (boxes[i].min, boxes[i].max);
-            [a.x, a.y, a.z, b.x, b.y, b.z]
-        });
-        let v = l.turn(&rows);
+        let v = l.turn(boxes);
         let half = l.splat(0.5);
         let (mut eight, mut reach) = (Self::NONE, [l.splat(0.0); 2]);
         let mut valid = l.isplat(-1);
@@ -74,7 +70,8 @@ pub(crate) struct Projected8 {
     pub(crate) pixels: [[i32; 8]; 4],
     /// Code of the nearest depth.
     pub(crate) code: [i32; 8],
-    /// The pixel that the box's middle lies in, and the code of its depth; a very low one beside the screen.
+    /// The pixel that the box's middle lies in, and the code of its depth; a very low one beside the screen. Only
+    /// where the screen knows its depths.
     pub(crate) middle: [[i32; 8]; 3],
     /// Bit per box: certainly outside the frustum.
     pub(crate) outside: u32,
@@ -130,25 +127,35 @@ impl<'a> Coarse<'a> {
         (buffer.coarse.len() < 1 << 24).then_some(Self { buffer })
     }
 
-    /// The farthest depth in rectangles of pixels (left, top, right, bottom, inclusive) or somewhat farther: of
-    /// the at most four values that cover one on the finest level where four do.
+    /// A bit per code that is farther than all that is known in its rectangle of pixels (left, top, right, bottom,
+    /// inclusive) or somewhat farther: of the at most four places that cover one on the finest level where four do.
     #[inline(always)]
-    fn farthest<L: Lanes>(self, l: L, pixels: [L::I; 4]) -> L::I {
+    fn hides<L: Lanes>(self, l: L, pixels: [L::I; 4], codes: &[i32; 8]) -> u32 {
         let block = l.isplat(BLOCK.trailing_zeros() as i32);
+        let one = l.isplat(1);
         let [x0, y0, x1, y1] = four!(i => l.ishr(pixels[i], block));
         // The smallest `up` with `span <= 2^up`.
         let span = l.imax(l.isub(x1, x0), l.isub(y1, y0));
-        let up = l.ibits(l.imax(l.isub(span, l.isplat(1)), l.isplat(0)));
-        let stride = l.isplat(self.buffer.blocks_x as i32);
-        let level = l.imul(up, l.isplat(self.buffer.min.len() as i32));
+        let up = l.ibits(l.imax(l.isub(span, one), l.isplat(0)));
         let [x0, y0, x1, y1] = four!(i => l.ishr([x0, y0, x1, y1][i], up));
-        let (top, bottom) = (
-            l.iadd(level, l.imul(y0, stride)),
-            l.iadd(level, l.imul(y1, stride)),
-        );
-        let corners = [(top, x0), (top, x1), (bottom, x0), (bottom, x1)];
-        let v = four!(i => l.igather(&self.buffer.coarse, l.iadd(corners[i].0, corners[i].1)));
-        l.imin(l.imin(v[0], v[1]), l.imin(v[2], v[3]))
+        // One place, two beside each other, two above each other, or four.
+        let right = l.imin(l.isub(x1, x0), one);
+        let below = l.imin(l.isub(y1, y0), one);
+        let part = l.isplat((self.buffer.coarse.len() / 4) as i32);
+        let places = l.imul(l.iadd(right, l.iadd(below, below)), part);
+        let level = l.imul(up, l.isplat(self.buffer.min.len() as i32));
+        let row = l.imul(y0, l.isplat(self.buffer.blocks_x as i32));
+        let index = l.iadd(l.iadd(places, level), l.iadd(row, x0));
+        let mut at = [0; 8];
+        l.istore(index, &mut at);
+        // One by one: a gather takes several times as long.
+        let table = &self.buffer.coarse[..];
+        let mut bits = 0;
+        for i in 0..8 {
+            let known = table.get(at[i] as usize).copied().unwrap_or(EMPTY);
+            bits |= u32::from(codes[i] < i32::from(known)) << i;
+        }
+        bits
     }
 }
 
@@ -221,10 +228,10 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Project
     }
     let code = l.codes(l.max(depth, zero));
     l.istore(code, &mut p.code);
-    if let Some(coarse) = s.coarse {
-        let behind = l.isub(code, coarse.farthest(l, clamped));
-        p.hidden = l.movemask(l.iand(beyond, behind)) & !p.outside;
-    }
+    let Some(coarse) = s.coarse else {
+        return p;
+    };
+    p.hidden = coarse.hides(l, clamped, &p.code) & l.movemask(beyond) & !p.outside;
     let w = l.div(pixel, wc);
     let x = l.mul(dot(l, &c, &s.rows[0]), w);
     let y = l.mul(dot(l, &c, &s.rows[1]), w);

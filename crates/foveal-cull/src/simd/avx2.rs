@@ -2,6 +2,7 @@
 
 use super::portable::SAMPLE_ROWS;
 use super::{Kernel, Lanes, four, two};
+use crate::Aabb;
 use crate::depth::CODE_OFFSET;
 use core::arch::x86_64::*;
 
@@ -120,7 +121,9 @@ impl Lanes for Avx2 {
         avx2!(_mm256_set1_epi32(v))
     }
     #[inline(always)]
-    fn turn(self, v: &[[f32; 6]; 8]) -> [__m256; 6] {
+    fn turn(self, v: &[Aabb; 8]) -> [__m256; 6] {
+        // A box is six numbers in a row, nothing else.
+        const { assert!(size_of::<Aabb>() == 24 && core::mem::offset_of!(Aabb, max) == 12) };
         let p: *const f32 = v.as_ptr().cast();
         avx2!({
             // Four rows in a half of each register: rows 0 and 1 are twelve numbers, a; rows 2 and 3 are b.
@@ -179,25 +182,6 @@ impl Lanes for Avx2 {
                 _mm256_setzero_si256(),
             )
         })
-    }
-    #[inline(always)]
-    fn igather(self, table: &[i16], index: __m256i) -> __m256i {
-        let last = i32::try_from(table.len()).unwrap_or(i32::MAX) - 1;
-        // SAFETY: AVX2 is proved by `self`. Lanes whose four bytes do not lie within the table are not read.
-        unsafe {
-            let inside = _mm256_andnot_si256(
-                _mm256_srai_epi32::<31>(index),
-                _mm256_cmpgt_epi32(_mm256_set1_epi32(last), index),
-            );
-            let v = _mm256_mask_i32gather_epi32::<2>(
-                _mm256_set1_epi32(i32::MIN),
-                table.as_ptr().cast(),
-                index,
-                inside,
-            );
-            let short = _mm256_srai_epi32::<16>(_mm256_slli_epi32::<16>(v));
-            _mm256_blendv_epi8(_mm256_set1_epi32(i32::MIN), short, inside)
-        }
     }
     #[inline(always)]
     fn istore(self, v: __m256i, to: &mut [i32; 8]) {
@@ -497,7 +481,7 @@ pub(super) const FROM: [u8; 16] = [
 #[inline(always)]
 fn half_rows(_: Avx2, table: *const f32, at: usize) -> __m256 {
     debug_assert!(at + 28 <= 48);
-    // SAFETY: the caller holds an `Avx2` and a table of 48, of which this reads within 52 - 4.
+    // SAFETY: the caller holds an `Avx2` and a table of 48, of which this reads no further than `at + 28`.
     unsafe { _mm256_loadu2_m128(table.add(at + 24), table.add(at)) }
 }
 

@@ -4,6 +4,7 @@
 use super::avx2::{self, Avx2, FROM};
 use super::portable::SAMPLE_ROWS;
 use super::{Kernel, Lanes, four, two};
+use crate::Aabb;
 use crate::depth::CODE_OFFSET;
 use core::arch::x86_64::*;
 
@@ -91,14 +92,13 @@ impl Lanes for Avx512 {
     qround(v: __m256d) -> [f32; 4];
     istore(v: __m256i, to: &mut [i32; 8]);
     unsure(from: __m256, to: __m256, error: f32) -> bool;
-    turn(v: &[[f32; 6]; 8]) -> [__m256; 6];
+    turn(v: &[Aabb; 8]) -> [__m256; 6];
     iadd(a: __m256i, b: __m256i) -> __m256i;
     imin(a: __m256i, b: __m256i) -> __m256i;
     imax(a: __m256i, b: __m256i) -> __m256i;
     imul(a: __m256i, b: __m256i) -> __m256i;
     ishr(a: __m256i, by: __m256i) -> __m256i;
     ibits(a: __m256i) -> __m256i;
-    igather(table: &[i16], index: __m256i) -> __m256i;
     isub(a: __m256i, b: __m256i) -> __m256i;
     iand(a: __m256i, b: __m256i) -> __m256i;
     ior(a: __m256i, b: __m256i) -> __m256i;

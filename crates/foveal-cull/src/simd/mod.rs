@@ -4,6 +4,8 @@
 //! (plain arrays, which the compiler turns into SSE2, NEON or wasm SIMD), for AVX2 and for AVX-512. There is no fused
 //! multiply-add and no approximate reciprocal anywhere, so that every instruction set gives the same bits.
 
+use crate::Aabb;
+
 pub(crate) mod portable;
 
 #[cfg(target_arch = "x86_64")]
@@ -156,8 +158,8 @@ pub(crate) trait Lanes: Copy {
     fn codes(self, a: Self::F) -> Self::I;
     fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F;
 
-    /// Eight times six numbers, turned over: number k of each eight.
-    fn turn(self, v: &[[f32; 6]; 8]) -> [Self::F; 6];
+    /// Eight boxes by coordinate: smallest x, y and z, largest x, y and z.
+    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6];
 
     fn isplat(self, v: i32) -> Self::I;
     fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
@@ -168,8 +170,6 @@ pub(crate) trait Lanes: Copy {
     fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
     /// How many bits a number from 0 to 2^24 has.
     fn ibits(self, a: Self::I) -> Self::I;
-    /// `table[index]`, `i32::MIN` for an index beyond.
-    fn igather(self, table: &[i16], index: Self::I) -> Self::I;
     fn istore(self, v: Self::I, to: &mut [i32; 8]);
     fn isub(self, a: Self::I, b: Self::I) -> Self::I;
     fn iand(self, a: Self::I, b: Self::I) -> Self::I;

@@ -1,6 +1,7 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
 use super::Lanes;
+use crate::Aabb;
 use crate::depth::CODE_OFFSET;
 use core::array::from_fn;
 
@@ -106,8 +107,8 @@ impl Lanes for Portable {
         [v; 8]
     }
     #[inline(always)]
-    fn turn(self, v: &[[f32; 6]; 8]) -> [Self::F; 6] {
-        from_fn(|k| from_fn(|i| v[i][k]))
+    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6] {
+        from_fn(|k| from_fn(|i| if k < 3 { v[i].min[k] } else { v[i].max[k - 3] }))
     }
     #[inline(always)]
     fn iadd(self, a: Self::I, b: Self::I) -> Self::I {
@@ -132,10 +133,6 @@ impl Lanes for Portable {
     #[inline(always)]
     fn ibits(self, a: Self::I) -> Self::I {
         a.map(|v| (32 - v.leading_zeros()) as i32)
-    }
-    #[inline(always)]
-    fn igather(self, table: &[i16], index: Self::I) -> Self::I {
-        index.map(|i| table.get(i as usize).map_or(i32::MIN, |&v| i32::from(v)))
     }
     #[inline(always)]
     fn istore(self, v: Self::I, to: &mut [i32; 8]) {
