@@ -223,6 +223,19 @@ pub(crate) struct Band<'a> {
 }
 
 impl<'a> Band<'a> {
+    /// Whether nothing of this depth or farther can change any of the blocks (first and last, inclusive).
+    #[inline(always)]
+    pub(crate) fn hides(&self, [x0, y0, x1, y1]: [u32; 4], code: i16) -> bool {
+        for y in y0..=y1 {
+            let row = (y - self.first_row) * self.blocks_x;
+            let row = &self.min[(row + x0) as usize..=(row + x1) as usize];
+            if row.iter().any(|&m| code > m) {
+                return false;
+            }
+        }
+        true
+    }
+
     /// The first `rows` block rows, and the rest.
     pub(crate) fn split(self, rows: u32) -> (Band<'a>, Band<'a>) {
         let rows = rows.min(self.rows);

@@ -255,8 +255,8 @@ impl Kernel for Draw<'_, '_> {
                 return (frame.candidates.len() - n) as u64;
             }
             let [x0, y0, x1, y1] = c.blocks;
-            let (y0, y1) = (y0.max(row0), y1.min(row1));
-            if y0 > y1 || (!c.crossing && hidden(&band, [x0, y0, x1, y1], c.code)) {
+            let blocks = [x0, y0.max(row0), x1, y1.min(row1)].map(u32::from);
+            if blocks[1] > blocks[3] || (!c.crossing && band.hides(blocks, c.code)) {
                 continue;
             }
             let instance = &set.instances[c.instance as usize];
@@ -289,16 +289,4 @@ impl Candidate {
     pub(crate) fn place(&self) -> (u32, u32) {
         (self.instance, self.cluster)
     }
-}
-
-#[inline(always)]
-fn hidden(band: &Band<'_>, [x0, y0, x1, y1]: [u16; 4], code: i16) -> bool {
-    for y in y0..=y1 {
-        let row = (u32::from(y) - band.first_row) * band.blocks_x;
-        let row = &band.min[(row + u32::from(x0)) as usize..=(row + u32::from(x1)) as usize];
-        if row.iter().any(|&m| code > m) {
-            return false;
-        }
-    }
-    true
 }

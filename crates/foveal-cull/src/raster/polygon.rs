@@ -122,8 +122,8 @@ fn flat_rows(x: [f64; 4], y: [f64; 4], flat: u32) -> (f32, f32) {
     (after, last)
 }
 
-/// Slack of the block classification against the rounding of row ends, samples.
-const SLACK: f32 = 1.0;
+/// From a block's border to its first sample, less far more than all rounding, samples.
+const MARGIN: f64 = 0.4;
 
 impl<L: Lanes> Polygon<L> {
     /// Moves every border inwards by `by` samples.
@@ -140,29 +140,31 @@ impl<L: Lanes> Polygon<L> {
 #[inline(always)]
 pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
     let [bx0, by0, bx1, by1] = polygon.blocks;
-    let size = BLOCK_SAMPLES as f32;
+    let size = f64::from(BLOCK_SAMPLES);
     let borders = Borders::new(l, polygon);
     for by in by0..=by1 {
         let top = (by * BLOCK_SAMPLES) as f32;
         let exact = borders.at(l, top);
-        let at = l.qround(exact);
         let (mut first, mut last) = (bx0, bx1);
-        let (mut inner_left, mut inner_right) = (f32::INFINITY, f32::NEG_INFINITY);
+        let (mut inner_left, mut inner_right) = (f64::INFINITY, f64::NEG_INFINITY);
         if bx0 != bx1 {
+            let (mut at, mut end) = ([0.0; 4], [0.0; 4]);
+            l.qstore(exact, &mut at);
             // The same borders at the last sample row.
-            let end: [f32; 4] = core::array::from_fn(|e| at[e] + borders.slope[e] * (size - 1.0));
+            let down = l.qmul(polygon.borders.slope, l.qsplat(size - 1.0));
+            l.qstore(l.qadd(exact, down), &mut end);
             let outer_left = at[0].min(end[0]).max(at[1].min(end[1]));
-            inner_left = at[0].max(end[0]).max(at[1].max(end[1])) + SLACK;
+            inner_left = at[0].max(end[0]).max(at[1].max(end[1])) - MARGIN;
             let outer_right = at[2].max(end[2]).min(at[3].max(end[3]));
-            inner_right = at[2].min(end[2]).min(at[3].min(end[3])) - SLACK;
+            inner_right = at[2].min(end[2]).min(at[3].min(end[3])) + MARGIN;
             if let Some((y0, y1)) = polygon.rows
-                && (top < y0 || top + size > y1)
+                && (top < y0 || top + BLOCK_SAMPLES as f32 > y1)
             {
-                inner_left = f32::INFINITY;
+                inner_left = f64::INFINITY;
             }
             // Casts saturate; borders far off the screen stay far off.
-            first = first.max(((outer_left - SLACK) * (1.0 / size)) as u32);
-            let end = (outer_right + SLACK) * (1.0 / size);
+            first = first.max(((outer_left + MARGIN) * (1.0 / size)) as u32);
+            let end = (outer_right - MARGIN) * (1.0 / size);
             if end < 0.0 {
                 continue;
             }
@@ -171,7 +173,7 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
         // A row of a polygon costs about as much as two blocks.
         band.work[(by - band.first_row) as usize] += 3 + last.saturating_sub(first);
         for bx in first..=last {
-            let left = (bx * BLOCK_SAMPLES) as f32;
+            let left = f64::from(bx * BLOCK_SAMPLES);
             if left >= inner_left && left + size <= inner_right {
                 block::cover_full(l, band, bx, by, &polygon.plane);
             } else {

@@ -307,6 +307,10 @@ pub(crate) fn draw_eight<L: Lanes>(
             block_of(x_hi[i], 0, band.blocks_x - 1),
             block_of(y_hi[i], band.first_row, last_row),
         ];
+        // What is behind all that is known changes nothing.
+        if band.hides(blocks, plane.max_code) {
+            continue;
+        }
         let swapped = usize::from(reversed & bit != 0) * 2;
         let n = four!(k => usize::from(index[if k % 2 == 1 { k ^ swapped } else { k }][i]));
         let x = l.qload(&four!(k => points.exact_x[n[k]]));
