@@ -359,6 +359,9 @@ impl Settings {
         coarse::validate(self)?;
         variable::validate(self)?;
         stereo::validate(self, limits)?;
+        if self.shading == Shading::Coarse && self.composite == Composite::Smooth {
+            crate::composite::check_limits(self, limits)?;
+        }
         crate::antialias::validate(self, limits)
     }
 }

@@ -20,21 +20,17 @@ struct Quads {
     first_instance: u32,
 }
 
-// Patches of the coarser levels, finest of them in mip 0.
-@group(1) @binding(5) var coarser_0: texture_2d<u32>;
-@group(1) @binding(6) var coarser_1: texture_2d<u32>;
-
 @group(2) @binding(0) var<uniform> current: Level;
 @group(2) @binding(1) var<storage, read> dispatches: array<vec4u, 9>;
 // Blocks as x | y << 16.
 @group(2) @binding(2) var<storage, read> blocks: array<u32>;
-@group(2) @binding(3) var patch_0: texture_storage_2d<rgba32uint, write>;
-@group(2) @binding(4) var patch_1: texture_storage_2d<rgba32uint, write>;
-@group(2) @binding(5) var patch_2: texture_storage_2d<r32uint, write>;
+// Two for each patch, and one; those of coarser levels are there already.
+@group(2) @binding(3) var<storage, read_write> patches: array<vec4u>;
+@group(2) @binding(4) var<storage, read_write> upper_raises: array<u32>;
 // All tiles that the composite draws as quads, and those of them that hold an edge.
-@group(2) @binding(6) var<storage, read_write> quads: array<Quads, 2>;
+@group(2) @binding(5) var<storage, read_write> quads: array<Quads, 2>;
 // Those tiles, as `pack_quad` has them: all in the first half, those with edges in the second.
-@group(2) @binding(7) var<storage, read_write> quad_tiles: array<u32>;
+@group(2) @binding(6) var<storage, read_write> quad_tiles: array<u32>;
 
 fn is_inside(picture: Picture, texel: vec2i) -> bool {
     return all(texel >= vec2i(picture.low)) && all(texel < vec2i(picture.end));
@@ -62,10 +58,9 @@ fn quadrant_texel(picture: Picture, corner: vec2i, quadrant: u32) -> vec2i {
     return texel;
 }
 
-fn coarser_patch(tile: Tile, drawn: u32) -> Patch {
-    let mip = tile.level - drawn - 1u;
-    let part_1 = textureLoad(coarser_1, tile.block, mip).xy;
-    return unpack_corners(textureLoad(coarser_0, tile.block, mip), part_1);
+fn corners_of(tile: Tile) -> Patch {
+    let index = patch_index(tile.block, tile.level);
+    return unpack_corners(patches[2u * index], patches[2u * index + 1u].xy);
 }
 
 fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) -> vec3f {
@@ -104,7 +99,7 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
             let low = vec2i(tile_low(tile));
             let high = vec2i(tile_high(tile));
             if any((corner > low) & (corner < high)) && all((corner >= low) & (corner <= high)) {
-                return patch_at(coarser_patch(tile, own.level), within(tile, vec2f(corner)));
+                return patch_at(corners_of(tile), within(tile, vec2f(corner)));
             }
         }
         offsets[i] = vec2f(texel) + 0.5 - vec2f(corner);
@@ -173,9 +168,10 @@ fn fit_patches(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     let left = edge_raise(own, value, seen, 0u, corners[0], corners[2]);
     let upper = edge_raise(own, value, seen, 1u, corners[0], corners[1]);
     let packed = pack_patch(Patch(corners[0], corners[1], corners[2], corners[3], left, upper));
-    textureStore(patch_0, block, packed.part_0);
-    textureStore(patch_1, block, packed.part_1);
-    textureStore(patch_2, block, vec4u(packed.part_2, 0u, 0u, 0u));
+    let number = patch_index(own.block, own.level);
+    patches[2u * number] = packed.part_0;
+    patches[2u * number + 1u] = packed.part_1;
+    upper_raises[number] = packed.part_2;
 
     if own.level >= QUAD_LEVEL || own.has_edge {
         quad_tiles[atomicAdd(&quads[0].count, 1u)] = pack_quad(own);

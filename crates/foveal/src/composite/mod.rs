@@ -8,7 +8,7 @@ mod patches;
 mod smooth;
 mod taps;
 
-pub(crate) use patches::PatchTargets;
+pub(crate) use patches::{PatchTargets, check_limits};
 
 #[cfg(test)]
 mod tests;

@@ -10,17 +10,13 @@ use crate::recorder::Recorder;
 use crate::shading::{CoarseTargets, LevelNumbers};
 use crate::stereo::EyeLayout;
 use crate::targets::Targets;
-use crate::{Settings, shader};
+use crate::{Error, Settings, shader};
 
 /// Tiles of this level and up are drawn as quads, whatever they hold. Smaller ones have more vertices than pixels.
 const QUAD_LEVEL: u32 = 3;
 
-/// Formats of a patch's three texels, which `pack_patch` in `composite/patches.wgsl` describes.
-const PARTS: [wgpu::TextureFormat; 3] = [
-    wgpu::TextureFormat::Rgba32Uint,
-    wgpu::TextureFormat::Rgba32Uint,
-    wgpu::TextureFormat::R32Uint,
-];
+/// Bytes of a patch's parts in the two buffers, which `pack_patch` in `composite/patches.wgsl` describes.
+const PART_BYTES: [u64; 2] = [32, 4];
 
 /// A draw of no quads: vertices, instances, first of either.
 const NO_QUADS: [u32; 4] = [4, 0, 0, 0];
@@ -30,10 +26,9 @@ pub(super) const DRAW_BYTES: u64 = size_of_val(&NO_QUADS) as u64;
 /// The patches of all tiles of one frame size, and which tiles are drawn as quads.
 #[derive(Debug)]
 pub(crate) struct PatchTargets {
-    /// Levels 1 and up: a pixel needs no patch.
-    pub(super) parts: [MipChain; 3],
-    /// For each level from 1 on, the levels above it; empty for the coarsest.
-    above: Vec<Vec<wgpu::TextureView>>,
+    /// The parts of all patches, levels 1 and up: a pixel needs none.
+    pub(super) parts: [wgpu::Buffer; 2],
+    coarsest: u32,
     /// Marks pixels of quads, and of those the ones at edges: a single level, 0.
     pub(super) stencil: MipChain,
     /// Arguments of two draws: all quads, and those that hold an edge.
@@ -46,8 +41,8 @@ pub(crate) struct PatchTargets {
 impl PatchTargets {
     /// Bytes of everything.
     pub(crate) fn bytes(&self) -> u64 {
-        let chains = self.parts.iter().chain([&self.stencil]);
-        chains.map(MipChain::bytes).sum::<u64>() + self.quads.size() + self.quad_tiles.size()
+        let buffers = self.parts.iter().chain([&self.quads, &self.quad_tiles]);
+        self.stencil.bytes() + buffers.map(wgpu::Buffer::size).sum::<u64>()
     }
 
     /// `None` where all tiles are pixels.
@@ -57,16 +52,6 @@ impl PatchTargets {
             return None;
         }
         let size = EyeLayout::of(settings).target_size();
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::STORAGE_BINDING;
-        let parts =
-            PARTS.map(|format| MipChain::new(gpu, "patches", size, 1..=coarsest, format, usage));
-        let above = (1..=coarsest)
-            .map(|level| match level == coarsest {
-                true => Vec::new(),
-                false => parts[..2].iter().map(|p| p.above(level)).collect(),
-            })
-            .collect();
-        let (across, down) = parts[0].blocks(1);
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -76,6 +61,8 @@ impl PatchTargets {
             })
         };
         let storage = wgpu::BufferUsages::STORAGE;
+        let patches = patches(size, coarsest);
+        let [pixels_across, pixels_down] = [size.0, size.1].map(|p| u64::from(p.div_ceil(2)));
         let draws = 2 * DRAW_BYTES;
         let no_quads = buffer("no quads", draws, wgpu::BufferUsages::empty());
         let none = [NO_QUADS; 2];
@@ -92,15 +79,36 @@ impl PatchTargets {
             ),
             quads: buffer("quads", draws, storage | wgpu::BufferUsages::INDIRECT),
             no_quads,
-            quad_tiles: buffer(
-                "quad tiles",
-                2 * 4 * u64::from(across) * u64::from(down),
-                storage,
-            ),
-            parts,
-            above,
+            quad_tiles: buffer("quad tiles", 2 * 4 * pixels_across * pixels_down, storage),
+            parts: PART_BYTES.map(|bytes| buffer("patches", bytes * patches, storage)),
+            coarsest,
         })
     }
+}
+
+/// How many patches there are: one per block of each level from 1 on, of a picture padded to whole blocks of the coarsest.
+fn patches((width, height): (u32, u32), coarsest: u32) -> u64 {
+    let padded = |pixels: u32| u64::from(pixels.next_multiple_of(1 << coarsest));
+    let pixels = padded(width) * padded(height);
+    (1..=coarsest).map(|level| pixels >> (2 * level)).sum()
+}
+
+/// [`Error::Limit`] where the device cannot bind as large a buffer as the patches of these settings need.
+pub(crate) fn check_limits(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
+    let size = EyeLayout::of(settings).target_size();
+    let value = PART_BYTES[0] * patches(size, settings.coarsest_level.into());
+    let limit = limits
+        .max_storage_buffer_binding_size
+        .min(limits.max_buffer_size);
+    if value <= limit {
+        return Ok(());
+    }
+    Err(Error::Limit {
+        what: "bytes for the smooth composite's patches".to_owned(),
+        value,
+        limit,
+        hint: ": make the picture smaller, or take the composite 'nearest' or 'paper'".to_owned(),
+    })
 }
 
 /// Fits patches.
@@ -120,21 +128,15 @@ impl PatchPass {
         let layout = |label, types: &[_]| {
             bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
         };
-        let input_layout = layout("patch input", &[uint, float, uint, uint, depth, uint, uint]);
-        let [part_0, part_1, part_2] = PARTS.map(|format| wgpu::BindingType::StorageTexture {
-            access: wgpu::StorageTextureAccess::WriteOnly,
-            format,
-            view_dimension: wgpu::TextureViewDimension::D2,
-        });
+        let input_layout = layout("patch input", &[uint, float, uint, uint, depth]);
         let output_layout = layout(
             "patch output",
             &[
                 uniform(),
                 storage_read(),
                 storage_read(),
-                part_0,
-                part_1,
-                part_2,
+                storage_write(),
+                storage_write(),
                 storage_write(),
                 storage_write(),
             ],
@@ -163,52 +165,37 @@ impl PatchPass {
         patches: &PatchTargets,
     ) {
         let gpu = recorder.gpu;
-        let levels = patches.parts[0].range().rev();
-        let groups: Vec<_> = levels
-            .map(|level| {
-                let above = match patches.above[level as usize - 1].as_slice() {
-                    [a, b] => [a, b],
-                    // Nothing is coarser than the coarsest: any texture will do, none is read.
-                    _ => [&from.rate.owner.whole; 2],
-                };
-                let views = [
-                    &from.rate.owner.whole,
-                    &from.samples.whole,
-                    &targets.gbuffer.surface_view,
-                    &targets.gbuffer.identity_view,
-                    &targets.gbuffer.depth_view,
-                    above[0],
-                    above[1],
-                ];
-                let views = views.map(wgpu::BindingResource::TextureView);
-                let [part_0, part_1, part_2] = patches
-                    .parts
-                    .each_ref()
-                    .map(|p| wgpu::BindingResource::TextureView(p.level(level)));
-                let output = [
-                    self.level_numbers.binding(level),
-                    from.dispatches.as_entire_binding(),
-                    from.lists[level as usize].as_entire_binding(),
-                    part_0,
-                    part_1,
-                    part_2,
-                    patches.quads.as_entire_binding(),
-                    patches.quad_tiles.as_entire_binding(),
-                ];
-                (
-                    level,
-                    bind_group(&gpu.device, "patch input", &self.input_layout, &views),
-                    bind_group(&gpu.device, "patch output", &self.output_layout, &output),
-                )
-            })
-            .collect();
+        let views = [
+            &from.rate.owner.whole,
+            &from.samples.whole,
+            &targets.gbuffer.surface_view,
+            &targets.gbuffer.identity_view,
+            &targets.gbuffer.depth_view,
+        ];
+        let views = views.map(wgpu::BindingResource::TextureView);
+        let input = bind_group(&gpu.device, "patch input", &self.input_layout, &views);
+        let [corners, raises] = patches.parts.each_ref().map(|p| p.as_entire_binding());
+        let outputs = (1..=patches.coarsest).rev().map(|level| {
+            let output = [
+                self.level_numbers.binding(level),
+                from.dispatches.as_entire_binding(),
+                from.lists[level as usize].as_entire_binding(),
+                corners.clone(),
+                raises.clone(),
+                patches.quads.as_entire_binding(),
+                patches.quad_tiles.as_entire_binding(),
+            ];
+            let group = bind_group(&gpu.device, "patch output", &self.output_layout, &output);
+            (level, group)
+        });
+        let outputs: Vec<_> = outputs.collect();
         recorder
             .encoder
             .copy_buffer_to_buffer(&patches.no_quads, 0, &patches.quads, 0, None);
         let mut pass = recorder.compute_pass("patches");
         pass.set_pipeline(&self.fit);
-        for (level, input, output) in &groups {
-            pass.set_bind_group(1, input, &[]);
+        pass.set_bind_group(1, &input, &[]);
+        for (level, output) in &outputs {
             pass.set_bind_group(2, output, &[]);
             pass.dispatch_workgroups_indirect(&from.dispatches, u64::from(*level) * 16);
         }

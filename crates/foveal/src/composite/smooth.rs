@@ -41,9 +41,8 @@ impl SmoothComposite {
                 uint,
                 uint,
                 depth,
-                uint,
-                uint,
-                uint,
+                storage_read(),
+                storage_read(),
                 storage_read(),
             ],
         );
@@ -119,21 +118,19 @@ impl SmoothComposite {
         patches: &PatchTargets,
     ) {
         self.patches.fit(recorder, targets, from, patches);
-        let [p0, p1, p2] = patches.parts.each_ref().map(|p| &p.whole);
         let views = [
             &from.rate.owner.whole,
             &from.samples.whole,
             &targets.gbuffer.surface_view,
             &targets.gbuffer.identity_view,
             &targets.gbuffer.depth_view,
-            p0,
-            p1,
-            p2,
         ];
+        let [corners, raises] = &patches.parts;
+        let buffers = [corners, raises, &patches.quad_tiles];
         let bindings: Vec<_> = views
             .map(wgpu::BindingResource::TextureView)
             .into_iter()
-            .chain([patches.quad_tiles.as_entire_binding()])
+            .chain(buffers.map(wgpu::Buffer::as_entire_binding))
             .collect();
         let group = bind_group(
             &recorder.gpu.device,

@@ -4,7 +4,7 @@
 // then the other pixels, each looking up its own tile. A pixel on another surface than its tile's sample is marked
 // and drawn again from the patches of the neighbours on its side that sampled its surface.
 
-@group(1) @binding(8) var<storage, read> quad_tiles: array<u32>;
+@group(1) @binding(7) var<storage, read> quad_tiles: array<u32>;
 
 // Clip space position of a tile's corner, numbered as a strip has them.
 fn tile_corner(tile: Tile, number: u32) -> vec4f {
@@ -31,8 +31,7 @@ struct TileVertex {
 @vertex
 fn tile_vertex(@builtin(vertex_index) number: u32, @builtin(instance_index) index: u32) -> TileVertex {
     let tile = unpack_quad(quad_tiles[index], false);
-    let mip = tile.level - 1u;
-    let p = corners_of(tile.block, mip);
+    let p = corners_of(tile.block, tile.level);
     let value = sample_of(tile);
     let peak = within(tile, sample_position(tile.block, tile.level, value.a));
     let next = tile.block + 1u;
@@ -46,10 +45,10 @@ fn tile_vertex(@builtin(vertex_index) number: u32, @builtin(instance_index) inde
         p.c01,
         p.c11,
         value.rgb - patch_at(p, peak),
-        left_raise(tile.block, mip),
-        select(vec3f(0.0), left_raise(vec2u(next.x, tile.block.y), mip), inside.x),
-        upper_raise(tile.block, mip),
-        select(vec3f(0.0), upper_raise(vec2u(tile.block.x, next.y), mip), inside.y),
+        left_raise(tile.block, tile.level),
+        select(vec3f(0.0), left_raise(vec2u(next.x, tile.block.y), tile.level), inside.x),
+        upper_raise(tile.block, tile.level),
+        select(vec3f(0.0), upper_raise(vec2u(tile.block.x, next.y), tile.level), inside.y),
     );
 }
 

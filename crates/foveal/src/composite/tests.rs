@@ -118,3 +118,30 @@ fn the_sources_composite_bends_affine_radiance() {
     };
     assert!(affine_error(&backdrop(), &settings, random_map(7, 3)).0 > 8.0 / 255.0);
 }
+
+#[test]
+fn patches_too_large_for_the_device_are_an_error_that_says_so() {
+    let limits = wgpu::Limits::default();
+    let large = Settings {
+        shading: Shading::Coarse,
+        width: 7680,
+        height: 4320,
+        ..Settings::default()
+    };
+    let said = large.validate(&limits).unwrap_err().to_string();
+    assert!(
+        said.contains("patches") && said.contains("134217728"),
+        "{said}"
+    );
+    let full_hd = Settings {
+        width: 1920,
+        height: 1080,
+        ..large.clone()
+    };
+    assert!(full_hd.validate(&limits).is_ok());
+    let nearest = Settings {
+        composite: Composite::Nearest,
+        ..large
+    };
+    assert!(nearest.validate(&limits).is_ok());
+}

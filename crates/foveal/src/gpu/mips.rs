@@ -77,14 +77,6 @@ impl MipChain {
         &self.levels[(level - self.first) as usize]
     }
 
-    /// A view of the levels that are coarser than `level`, of which there must be one.
-    pub(crate) fn above(&self, level: u32) -> wgpu::TextureView {
-        self.texture.create_view(&wgpu::TextureViewDescriptor {
-            base_mip_level: level + 1 - self.first,
-            ..Default::default()
-        })
-    }
-
     /// All levels, finest first.
     pub(crate) fn range(&self) -> std::ops::Range<u32> {
         self.first..self.first + self.levels.len() as u32

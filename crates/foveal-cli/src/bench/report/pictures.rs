@@ -77,18 +77,7 @@ fn one(
     size: (u32, u32),
     changes: &[(&str, &str)],
 ) -> anyhow::Result<(Picture, Settings)> {
-    let mut table = Table::try_from(Settings {
-        width: size.0,
-        height: size.1,
-        ..Settings::default()
-    })?;
-    for &(key, value) in changes {
-        let value = value
-            .parse::<bool>()
-            .map_or_else(|_| value.into(), Into::into);
-        table.insert(key.to_owned(), value);
-    }
-    let settings: Settings = table.try_into()?;
+    let settings = changed(size, changes)?;
     let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
     block_on(renderer.set_scene(scene))?;
     let frame = Frame {
@@ -101,6 +90,21 @@ fn one(
     let bytes = block_on(renderer.read_picture())?;
     let (width, height) = settings.picture_size();
     Ok((Picture::from_rgba(width, height, &bytes)?, settings))
+}
+
+/// Settings that differ from the defaults by these.
+fn changed(size: (u32, u32), changes: &[(&str, &str)]) -> anyhow::Result<Settings> {
+    let mut table = Table::try_from(Settings {
+        width: size.0,
+        height: size.1,
+        ..Settings::default()
+    })?;
+    for &(key, value) in changes {
+        let switch = value.parse::<bool>();
+        let value = switch.map_or_else(|_| value.into(), toml::Value::from);
+        table.insert(key.to_owned(), value);
+    }
+    Ok(table.try_into()?)
 }
 
 /// A data URL.
@@ -133,7 +137,22 @@ fn base64(bytes: &[u8]) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::base64;
+    use super::super::plan::BENCHES;
+    use super::{base64, changed};
+
+    #[test]
+    fn every_pair_differs_in_settings_that_are_there() {
+        for pair in BENCHES.iter().flat_map(|bench| bench.pairs) {
+            let [before, after] = [pair.before, pair.after].map(|changes| {
+                let settings = changed((64, 48), changes).expect(pair.title);
+                settings
+                    .validate(&wgpu::Limits::default())
+                    .expect(pair.title);
+                settings
+            });
+            assert_ne!(before, after, "{}", pair.title);
+        }
+    }
 
     /// The examples of RFC 4648, section 10.
     #[test]

@@ -290,8 +290,8 @@ pub(super) const BENCHES: &[Bench] = &[
         }),
         pairs: &[Pair {
             title: "A pass per eye, and both eyes at once: the same picture",
-            before: &[("stereo", "two-pass"), ("output", "side-by-side")],
-            after: &[("stereo", "instanced"), ("output", "side-by-side")],
+            before: &[("stereo", "two-pass"), ("show", "side-by-side")],
+            after: &[("stereo", "instanced"), ("show", "side-by-side")],
         }],
     },
     Bench {
@@ -389,7 +389,7 @@ pub(super) const BENCHES: &[Bench] = &[
                 ("geometry", "visibility"),
                 ("shading", "variable"),
                 ("rate", "content"),
-                ("force_rate", "true"),
+                ("force-rate", "true"),
             ],
         }],
     },
