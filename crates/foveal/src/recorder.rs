@@ -1,5 +1,7 @@
 //! What a stage records its passes with.
 
+use std::num::NonZeroU32;
+
 use crate::gpu::{Gpu, GpuTimer};
 use crate::scene::FrameBindings;
 
@@ -19,9 +21,20 @@ impl Recorder<'_> {
         colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
         depth_stencil: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
     ) -> wgpu::RenderPass<'_> {
-        let mut pass = self
-            .timer
-            .render_pass(self.encoder, label, colors, depth_stencil);
+        self.layered_pass(label, colors, depth_stencil, None)
+    }
+
+    /// As [`Recorder::render_pass`], drawing to the layers of a mask at once.
+    pub(crate) fn layered_pass(
+        &mut self,
+        label: &str,
+        colors: &[Option<wgpu::RenderPassColorAttachment<'_>>],
+        depth_stencil: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+        multiview_mask: Option<NonZeroU32>,
+    ) -> wgpu::RenderPass<'_> {
+        let mut pass =
+            self.timer
+                .render_pass(self.encoder, label, colors, depth_stencil, multiview_mask);
         pass.set_bind_group(0, self.frame.group(), &[]);
         pass
     }

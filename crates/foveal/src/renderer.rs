@@ -18,7 +18,7 @@ use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{CoarseShading, Plan, Samples, ShadingPass, VariableStage};
-use crate::stereo::{Eye, EyeLayout, LensFit, Submission, eyes};
+use crate::stereo::{Eye, EyeLayout, LensFit, Submission, Trials, eyes};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings, Shading};
 use figures::{Counts, InFlight};
@@ -56,6 +56,8 @@ pub struct Renderer {
     frame_bindings: FrameBindings,
     material_layout: wgpu::BindGroupLayout,
     stages: Stages,
+    /// How each way of drawing two eyes did on this device.
+    trials: Trials,
     rate_image: Option<RateImage>,
     scene: SceneOnGpu,
     draw_list: DrawList,
@@ -144,17 +146,18 @@ impl Stages {
         frame_bindings: &FrameBindings,
         material_layout: &wgpu::BindGroupLayout,
         rate_image: Option<&RateImage>,
+        (trials, clock): (&mut Trials, Option<Clock>),
     ) -> Result<Self, Error> {
         settings.validate(&gpu.device.limits())?;
+        let (submission, reason) = Submission::choose(gpu, settings, trials, clock).await?;
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let frame = frame_bindings.layout();
         let shading = ShadingPass::new(gpu, settings, frame);
         let layout = EyeLayout::of(settings);
-        let (submission, reason) = Submission::choose(gpu, settings);
         let stages = Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings)?,
-            targets: Targets::new(gpu, settings),
+            targets: Targets::new(gpu, settings, submission),
             lights: LightAssigner::new(gpu, layout.eyes, frame),
             geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
@@ -185,7 +188,17 @@ impl Renderer {
         gpu.check_limits()?;
         let frame_bindings = FrameBindings::new(gpu);
         let material_layout = material_layout(gpu);
-        let stages = Stages::new(gpu, settings, &frame_bindings, &material_layout, None).await?;
+        let mut trials = Trials::default();
+        let trial = (&mut trials, clock);
+        let stages = Stages::new(
+            gpu,
+            settings,
+            &frame_bindings,
+            &material_layout,
+            None,
+            trial,
+        )
+        .await?;
         let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout)?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -194,6 +207,7 @@ impl Renderer {
             frame_bindings,
             material_layout,
             stages,
+            trials,
             rate_image: None,
             scene,
             draw_list: DrawList::default(),
@@ -232,10 +246,13 @@ impl Renderer {
         {
             let culling = CullingStage::new(settings)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
-            let targets = Targets::new(&self.gpu, settings);
+            let submission = self.stages.submission.0;
+            let targets = Targets::new(&self.gpu, settings, submission);
             trap.finish().await?;
             self.stages.culling = culling;
             self.stages.targets = targets;
+            self.stages.geometry.resize(settings);
+            self.stages.forward.resize(settings);
             if let Some(variable) = &mut self.stages.variable {
                 variable.forget();
             }
@@ -248,6 +265,7 @@ impl Renderer {
             &self.frame_bindings,
             &self.material_layout,
             self.rate_image.as_ref(),
+            (&mut self.trials, self.clock),
         )
         .await?;
         Ok(())

@@ -16,6 +16,8 @@ const MATERIAL: &str = include_str!("shared/material.wgsl");
 const SAMPLE_IMPLICIT: &str = include_str!("shared/sample_implicit.wgsl");
 const SAMPLE_GRADIENTS: &str = include_str!("shared/sample_gradients.wgsl");
 const ATTRIBUTES: &str = include_str!("shared/attributes.wgsl");
+const LAYERS: &str = include_str!("shared/layers.wgsl");
+const VERTEX_LAYERED: &str = include_str!("shared/vertex_layered.wgsl");
 const SHADING: &str = include_str!("shading/shading.wgsl");
 
 pub(crate) const GBUFFER: Parts = &[
@@ -39,6 +41,30 @@ pub(crate) const VISIBLE_INDEXED: Parts = &[
     VISIBLE,
     include_str!("geometry/visibility/indexed.wgsl"),
 ];
+/// As [`VISIBLE_INDEXED`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`] too.
+pub(crate) const VISIBLE_INDEXED_LAYERED: Parts = &[
+    "enable primitive_index;",
+    FRAME,
+    SURFACE,
+    VERTEX,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    VISIBLE,
+    include_str!("geometry/visibility/indexed.wgsl"),
+    include_str!("geometry/visibility/indexed_layered.wgsl"),
+];
+/// As [`VISIBLE_PULLED`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`].
+pub(crate) const VISIBLE_PULLED_LAYERED: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    VISIBLE,
+    ATTRIBUTES,
+    include_str!("geometry/visibility/pulled.wgsl"),
+    include_str!("geometry/visibility/pulled_layered.wgsl"),
+];
 pub(crate) const VISIBLE_PULLED: Parts = &[
     FRAME,
     SURFACE,
@@ -49,13 +75,14 @@ pub(crate) const VISIBLE_PULLED: Parts = &[
     ATTRIBUTES,
     include_str!("geometry/visibility/pulled.wgsl"),
 ];
-pub(crate) const BINS: Parts = &[EVERY, include_str!("geometry/visibility/bins.wgsl")];
+pub(crate) const BINS: Parts = &[LAYERS, EVERY, include_str!("geometry/visibility/bins.wgsl")];
 const RATED: &str = include_str!("geometry/visibility/rated.wgsl");
 /// As [`BINS`] and [`RESOLVE`], with a sample's upper left pixel for all of its pixels.
 pub(crate) const BINS_RATED: Parts = &[
     RATES,
     "@group(0) @binding(5) var mask: texture_2d<u32>;",
     RATED,
+    LAYERS,
     include_str!("geometry/visibility/bins.wgsl"),
 ];
 pub(crate) const RESOLVE_RATED: Parts = &[
@@ -68,6 +95,7 @@ pub(crate) const RESOLVE_RATED: Parts = &[
     RATES,
     "@group(3) @binding(6) var mask: texture_2d<u32>;",
     RATED,
+    LAYERS,
     include_str!("geometry/visibility/resolve.wgsl"),
 ];
 pub(crate) const RESOLVE: Parts = &[
@@ -78,6 +106,7 @@ pub(crate) const RESOLVE: Parts = &[
     SAMPLE_GRADIENTS,
     MATERIAL,
     EVERY,
+    LAYERS,
     include_str!("geometry/visibility/resolve.wgsl"),
 ];
 /// As [`RESOLVE`], for the further surfaces of pixels at edges.
@@ -90,6 +119,7 @@ pub(crate) const RESOLVE_FURTHER: Parts = &[
     MATERIAL,
     AA_QUARTERS,
     include_str!("antialias/further.wgsl"),
+    LAYERS,
     include_str!("geometry/visibility/resolve.wgsl"),
 ];
 /// As [`GBUFFER`], with a clip plane between the eyes.
@@ -103,12 +133,23 @@ pub(crate) const GBUFFER_CLIPPED: Parts = &[
     MATERIAL,
     include_str!("geometry/gbuffer.wgsl"),
 ];
+/// As [`GBUFFER`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`].
+pub(crate) const GBUFFER_LAYERED: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    VERTEX_LAYERED,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    include_str!("geometry/gbuffer.wgsl"),
+];
 pub(crate) const CLUSTERS: Parts = &[FRAME, LIGHT, include_str!("lights/clusters.wgsl")];
 pub(crate) const SHADE_EVERY_PIXEL: Parts = &[
     FRAME,
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     include_str!("shading/every_pixel.wgsl"),
 ];
@@ -117,6 +158,7 @@ pub(crate) const SHADE_LIST: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     include_str!("shading/list.wgsl"),
 ];
@@ -143,10 +185,32 @@ pub(crate) const FORWARD_CLIPPED: Parts = &[
     MATERIAL,
     include_str!("forward/forward.wgsl"),
 ];
+/// As [`FORWARD`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`].
+pub(crate) const FORWARD_LAYERED: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    VERTEX,
+    VERTEX_LAYERED,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    include_str!("forward/forward.wgsl"),
+];
+const TRIAL_EYES: &str = include_str!("stereo/trial.wgsl");
+pub(crate) const TRIAL: Parts = &[TRIAL_EYES];
+/// As [`TRIAL`], with a clip plane between the eyes.
+pub(crate) const TRIAL_CLIPPED: Parts = &[
+    ENABLE_CLIP_DISTANCES,
+    TRIAL_EYES,
+    include_str!("stereo/trial_clipped.wgsl"),
+];
+/// As [`TRIAL`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`].
+pub(crate) const TRIAL_LAYERED: Parts = &[TRIAL_EYES, include_str!("stereo/trial_layered.wgsl")];
 pub(crate) const SHOW_EYES: Parts = &[FRAME, include_str!("output/eyes.wgsl")];
 pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("output/tone_map.wgsl")];
 pub(crate) const PRESENT: Parts = &[FRAME, include_str!("output/present.wgsl")];
-pub(crate) const VIEW: Parts = &[FRAME, SURFACE, include_str!("output/view.wgsl")];
+pub(crate) const VIEW: Parts = &[FRAME, SURFACE, LAYERS, include_str!("output/view.wgsl")];
 const AA_SAMPLES: &str = include_str!("antialias/samples.wgsl");
 const AA_SURFACES: &str = include_str!("antialias/surfaces.wgsl");
 const AA_STORED: &str = include_str!("antialias/stored.wgsl");
@@ -160,6 +224,7 @@ pub(crate) const AA_MERGE: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     AA_SAMPLES,
     AA_SURFACES,
@@ -173,6 +238,7 @@ pub(crate) const AA_SHADE: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     AA_SAMPLES,
     AA_SURFACES,
@@ -221,6 +287,7 @@ pub(crate) const AA_SHADE_FURTHER: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     "// Sub-samples per pixel.\noverride COUNT: u32 = 4u;",
     AA_WEIGHT,
@@ -246,6 +313,7 @@ const RATES: &str = include_str!("shading/variable/rates.wgsl");
 
 pub(crate) const VARIABLE_REPROJECT: Parts = &[
     FRAME,
+    LAYERS,
     RATES,
     include_str!("shading/variable/reproject.wgsl"),
 ];
@@ -253,6 +321,7 @@ pub(crate) const VARIABLE_MASK: Parts = &[
     FRAME,
     RATES,
     FOVEA,
+    LAYERS,
     include_str!("shading/variable/mask.wgsl"),
 ];
 pub(crate) const VARIABLE_SIZE: Parts = &[include_str!("shading/variable/size.wgsl")];
@@ -261,6 +330,7 @@ pub(crate) const VARIABLE_SHADE: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     RATES,
     include_str!("shading/variable/shade.wgsl"),
@@ -273,6 +343,7 @@ pub(crate) const RATE_WISH: Parts = &[
     LEVEL,
     BLOCKS,
     FOVEA,
+    LAYERS,
     include_str!("rate/wish.wgsl"),
 ];
 pub(crate) const RATE_PYRAMID: Parts = &[FRAME, LEVEL, BLOCKS, include_str!("rate/pyramid.wgsl")];
@@ -290,6 +361,7 @@ pub(crate) const COARSE_SHADE_DRAW: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     LEVEL,
     BLOCKS,
@@ -301,6 +373,7 @@ pub(crate) const COARSE_SHADE_LIST: Parts = &[
     SURFACE,
     LIGHT,
     LIGHTING,
+    LAYERS,
     SHADING,
     BLOCKS,
     include_str!("shading/coarse/block.wgsl"),
@@ -312,6 +385,7 @@ pub(crate) const COARSE_AFFINE: [Parts; 2] = [
     &[
         FRAME,
         SURFACE,
+        LAYERS,
         include_str!("shading/coarse/affine.wgsl"),
         LEVEL,
         BLOCKS,
@@ -321,6 +395,7 @@ pub(crate) const COARSE_AFFINE: [Parts; 2] = [
     &[
         FRAME,
         SURFACE,
+        LAYERS,
         include_str!("shading/coarse/affine.wgsl"),
         BLOCKS,
         include_str!("shading/coarse/block.wgsl"),
@@ -350,6 +425,7 @@ pub(crate) const COMPOSITE_FIT: Parts = &[
     SURFACE,
     BLOCKS,
     TILING,
+    LAYERS,
     SEEN,
     PATCHES,
     include_str!("composite/raise.wgsl"),
@@ -361,6 +437,7 @@ pub(crate) const COMPOSITE_SMOOTH: Parts = &[
     LEVEL,
     BLOCKS,
     TILING,
+    LAYERS,
     SEEN,
     PATCHES,
     include_str!("composite/curve.wgsl"),

@@ -96,7 +96,7 @@ pub struct VariableStats {
 /// How two eyes were drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct StereoStats {
-    /// `two-pass`, `instanced-clip` or `instanced-discard`.
+    /// `two-pass`, `instanced-clip`, `instanced-discard`, `multiview`, or `once` where both eyes see the same.
     pub mode: String,
     /// Why it is this one.
     pub reason: String,

@@ -5,7 +5,7 @@ use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT, VariableTargets};
-use crate::stereo::EyeLayout;
+use crate::stereo::{EyeLayout, Submission};
 use crate::{Antialiasing, Settings, Shading};
 
 /// G-buffer, radiance, picture.
@@ -17,6 +17,8 @@ pub(crate) struct Targets {
     pub(crate) gbuffer: GBuffer,
     /// Linear radiance, before exposure.
     pub(crate) radiance_view: wgpu::TextureView,
+    /// Where blended surfaces are drawn over it, if that is to a layer for each eye.
+    pub(crate) radiance_layers: Option<wgpu::TextureView>,
     /// The eyes' pictures.
     pub(crate) picture_view: wgpu::TextureView,
     /// The picture as the output shows it, where that is not the same.
@@ -31,16 +33,28 @@ pub(crate) struct Targets {
 
 impl Targets {
     /// The targets for settings that were found valid.
-    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let (width, height) = EyeLayout::of(settings).target_size();
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings, submission: Submission) -> Self {
+        let layout = EyeLayout::of(settings);
+        let (width, height) = layout.target_size();
+        let (size, layers) = layout.layers(submission);
+        let layered = submission == Submission::Multiview;
+        let copied = if layered {
+            wgpu::TextureUsages::COPY_DST
+        } else {
+            wgpu::TextureUsages::empty()
+        };
         let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
         Self {
-            gbuffer: GBuffer::new(gpu, settings.geometry, width, height),
+            gbuffer: GBuffer::new(gpu, settings.geometry, size, layers),
             radiance_view: target(
                 "radiance",
                 RADIANCE_FORMAT,
-                wgpu::TextureUsages::STORAGE_BINDING,
+                wgpu::TextureUsages::STORAGE_BINDING | copied,
             ),
+            radiance_layers: layered.then(|| {
+                let label = "radiance of blended surfaces";
+                gpu::layered_target(gpu, label, size, layers, RADIANCE_FORMAT, copied)
+            }),
             picture_view: target("picture", PICTURE_FORMAT, wgpu::TextureUsages::empty()),
             shown_view: settings.is_stereo().then(|| {
                 let (size, none) = (settings.picture_size(), wgpu::TextureUsages::empty());
@@ -63,11 +77,12 @@ impl Targets {
     pub(crate) fn bytes(&self) -> u64 {
         let texels = |view: &wgpu::TextureView| {
             let size = view.texture().size();
-            u64::from(size.width) * u64::from(size.height)
+            u64::from(size.width) * u64::from(size.height) * u64::from(size.depth_or_array_layers)
         };
         let visibility = self.gbuffer.visibility.as_ref();
         texels(&self.picture_view) * BYTES_PER_PIXEL
             + self.shown_view.as_ref().map_or(0, texels) * 4
+            + self.radiance_layers.as_ref().map_or(0, texels) * 8
             + visibility.map_or(0, VisibilityTargets::bytes)
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
             + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)
@@ -86,7 +101,7 @@ mod tests {
                 shading,
                 ..crate::testing::small(64, 64)
             };
-            Targets::new(crate::testing::gpu(), &settings).bytes()
+            Targets::new(crate::testing::gpu(), &settings, Submission::Mono).bytes()
         };
         let full = bytes(Shading::Full);
         assert_eq!(full, 64 * 64 * BYTES_PER_PIXEL);

@@ -24,12 +24,18 @@ const SCHEMA_VERSION: u32 = 1;
 /// The source's scenes: each object is a draw of its own there, and nothing is culled.
 const SOURCE_SCENES: [&str; 2] = ["materials", "materials2"];
 
+/// What is measured without more: those, and one that is culled.
+const SCENES: [&str; 3] = ["materials", "materials2", "demo"];
+
 /// Instanced against two passes in the source: scene, CPU, GPU.
 const SOURCE_RATIOS: [(&str, f64, f64); 2] =
     [("materials", 1.114, 1.107), ("materials2", 0.805, 1.146)];
 
+/// A way, by its name in the table.
+type Named = (&'static str, Stereo, EyeClipping);
+
 /// The ways: one eye, the reference, and what is compared with it.
-const WAYS: [(&str, Stereo, EyeClipping); 4] = [
+const WAYS: [Named; 5] = [
     ("mono", Stereo::Off, EyeClipping::Auto),
     ("two-pass", Stereo::TwoPass, EyeClipping::Auto),
     ("instanced + clip", Stereo::Instanced, EyeClipping::Clip),
@@ -38,13 +44,14 @@ const WAYS: [(&str, Stereo, EyeClipping); 4] = [
         Stereo::Instanced,
         EyeClipping::Discard,
     ),
+    ("multiview", Stereo::Multiview, EyeClipping::Auto),
 ];
 const REFERENCE: usize = 1;
 
 /// Arguments of `foveal bench stereo`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// glTF 2.0 files or generated scenes [default: materials materials2]. All others are culled by occlusion, and their
+    /// glTF 2.0 files or generated scenes [default: materials materials2 demo]. All but the first two are culled by occlusion, and their
     /// equal draws are merged
     scenes: Vec<String>,
 
@@ -78,6 +85,15 @@ struct Report {
     height: u32,
     rounds: u32,
     rows: Vec<Row>,
+    /// Ways that this device cannot be measured by.
+    skipped: Vec<Skipped>,
+}
+
+/// A way that cannot be used here.
+#[derive(Debug, Serialize)]
+struct Skipped {
+    mode: &'static str,
+    cause: String,
 }
 
 /// One way's figures; times are medians in milliseconds, ratios medians of the ratios within each round.
@@ -147,17 +163,19 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         atomic_file::check_writable(path)?;
     }
     let scenes = match args.scenes.as_slice() {
-        [] => SOURCE_SCENES.map(str::to_owned).to_vec(),
+        [] => SCENES.map(str::to_owned).to_vec(),
         given => given.to_vec(),
     };
     let gpu = gpu::open(args.adapter.as_deref())?;
+    let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();
     for name in &scenes {
         let mut scene = scene_source::load(name)?;
         scene.light_by_default();
         let camera = Viewpoint::choose(&args.camera, &scene, name)?.at(&scene, 0.0);
         for (stages, view) in [("geometry", View::BaseColor), ("frame", View::Final)] {
-            rows.extend(measure(args, &gpu, &scene, &camera, name, stages, view)?);
+            let subject = (name.as_str(), &scene, &camera);
+            rows.extend(measure(args, &gpu, &ways, subject, stages, view)?);
         }
     }
     let report = Report {
@@ -168,6 +186,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         height: args.size.1,
         rounds: args.rounds,
         rows,
+        skipped,
     };
     let json = serde_json::to_string_pretty(&report)? + "\n";
     match (&args.json, to_file) {
@@ -180,18 +199,39 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     }
 }
 
+/// The ways that work on this device, and those that do not.
+fn usable(gpu: &Gpu) -> anyhow::Result<(Vec<Named>, Vec<Skipped>)> {
+    let (mut ways, mut skipped) = (Vec::new(), Vec::new());
+    for (mode, stereo, eye_clipping) in WAYS {
+        let settings = Settings {
+            width: 16,
+            height: 16,
+            stereo,
+            ..Settings::default()
+        };
+        match block_on(Renderer::new(gpu, &settings, None)) {
+            Ok(_) => ways.push((mode, stereo, eye_clipping)),
+            Err(error @ foveal::Error::Setting { .. }) => skipped.push(Skipped {
+                mode,
+                cause: error.to_string(),
+            }),
+            Err(error) => return Err(error.into()),
+        }
+    }
+    Ok((ways, skipped))
+}
+
 fn measure(
     args: &Args,
     gpu: &Gpu,
-    scene: &Scene,
-    camera: &Camera,
-    name: &str,
+    usable: &[Named],
+    (name, scene, camera): (&str, &Scene, &Camera),
     stages: &'static str,
     view: View,
 ) -> anyhow::Result<Vec<Row>> {
     let of_source = SOURCE_SCENES.contains(&name);
     let mut ways = Vec::new();
-    for (mode, stereo, eye_clipping) in WAYS {
+    for &(mode, stereo, eye_clipping) in usable {
         let settings = Settings {
             width: args.size.0,
             height: args.size.1,
@@ -301,8 +341,14 @@ fn summary(report: &Report) -> String {
             format!("{:.3}", row.ratio_mono),
         ]);
     }
+    let notes: Vec<String> = report
+        .skipped
+        .iter()
+        .map(|skipped| format!("{} is left out: {}\n", skipped.mode, skipped.cause))
+        .collect();
     format!(
         "{}x{} per eye, {}, medians of {} rounds\n",
         report.width, report.height, report.adapter.name, report.rounds
     ) + &text(&lines)
+        + &notes.concat()
 }

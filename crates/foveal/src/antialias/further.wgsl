@@ -6,5 +6,5 @@ fn extent_of(texel: vec2u) -> vec2u {
 }
 
 fn middle_of(texel: vec2u) -> vec2f {
-    return unpack_quarters(textureLoad(identity, texel, 0).y);
+    return unpack_quarters(load_words(identity, texel).y);
 }

@@ -22,9 +22,9 @@ fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 // As tatsy's shader has it, on our depth: reversed, 1 at the near plane.
 fn depths_differ(pixel: vec2u) -> bool {
-    let first = textureLoad(gbuffer_depth, sample_texel(pixel, 0u), 0);
+    let first = load_depth(gbuffer_depth, sample_texel(pixel, 0u));
     for (var i = 1u; i < COUNT; i++) {
-        if abs(textureLoad(gbuffer_depth, sample_texel(pixel, i), 0) - first) > 1e-4 {
+        if abs(load_depth(gbuffer_depth, sample_texel(pixel, i)) - first) > 1e-4 {
             return true;
         }
     }
@@ -59,7 +59,7 @@ fn merge(@builtin(position) position: vec4f) -> MergeOut {
         entries[base] = Entry(packed, 1u << 24u);
     }
     let texel = sample_texel(pixel, 0u);
-    let words = textureLoad(gbuffer_surface, texel, 0);
+    let words = load_words(gbuffer_surface, texel);
     let identity = textureLoad(sample_identity, texel, 0).xy;
-    return MergeOut(words, identity, vec2u(shades, 1u), textureLoad(gbuffer_depth, texel, 0));
+    return MergeOut(words, identity, vec2u(shades, 1u), load_depth(gbuffer_depth, texel));
 }

@@ -13,8 +13,8 @@ fn all_of(pixel: vec2u) -> vec4f {
     var sum = vec4f(0.0);
     for (var i = 0u; i < COUNT; i++) {
         let texel = sample_texel(pixel, i);
-        let depth = textureLoad(gbuffer_depth, texel, 0);
-        let words = textureLoad(gbuffer_surface, texel, 0);
+        let depth = load_depth(gbuffer_depth, texel);
+        let words = load_words(gbuffer_surface, texel);
         sum += weighted(radiance_at(sample_position(pixel, i), depth, words).rgb, 1u);
     }
     return sum;

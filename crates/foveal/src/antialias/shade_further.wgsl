@@ -26,7 +26,7 @@ fn shade_further(@builtin(global_invocation_id) id: vec3u) {
         let texel = vec2u(i % row, i / row);
         let position = unpack_quarters(textureLoad(further_identity, texel, 0).y);
         let depth = bitcast<f32>(textureLoad(further_depth, texel, 0).x);
-        let radiance = radiance_at(position, depth, textureLoad(gbuffer_surface, texel, 0)).rgb;
+        let radiance = radiance_at(position, depth, load_words(gbuffer_surface, texel)).rgb;
         sums[i] = pack_half4(weighted(radiance, countOneBits(entry.samples & 0xffffu)));
     }
 }

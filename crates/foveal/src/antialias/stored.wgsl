@@ -16,9 +16,9 @@ fn facet_at(pixel: vec2u, index: u32) -> Facet {
     if instance == 0u {
         return Facet(0u, index, vec3f(0.0), vec3f(0.0));
     }
-    let distance = view_distance(textureLoad(gbuffer_depth, texel, 0));
+    let distance = view_distance(load_depth(gbuffer_depth, texel));
     let position = view_position(sample_position(pixel, index), distance);
-    return Facet(instance, index, position, face_normal(textureLoad(gbuffer_surface, texel, 0).w));
+    return Facet(instance, index, position, face_normal(load_words(gbuffer_surface, texel).w));
 }
 
 // What some sub-samples see on average.
@@ -41,7 +41,7 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         let index = firstTrailingBit(left);
         let texel = sample_texel(pixel, index);
         // Without the face normal.
-        let words = textureLoad(gbuffer_surface, texel, 0) & vec4u(vec3u(0xffffffffu), 0xffffu);
+        let words = load_words(gbuffer_surface, texel) & vec4u(vec3u(0xffffffffu), 0xffffu);
         let s = unpack_surface(words, vec3f(0.0));
         sum.normal += s.normal;
         sum.base_color += s.base_color;
@@ -49,7 +49,7 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         sum.roughness += s.roughness;
         sum.occlusion += s.occlusion;
         sum.emissive += s.emissive;
-        depth += textureLoad(gbuffer_depth, texel, 0);
+        depth += load_depth(gbuffer_depth, texel);
         position += sample_position(pixel, index);
     }
     let part = 1.0 / f32(countOneBits(members));

@@ -245,7 +245,12 @@ fn two_by_two_at_1080p_stays_under_250_megabytes() {
             geometry,
             ..settings.clone()
         };
-        let bytes = crate::targets::Targets::new(crate::testing::gpu(), &settings).bytes();
+        let bytes = crate::targets::Targets::new(
+            crate::testing::gpu(),
+            &settings,
+            crate::stereo::Submission::Mono,
+        )
+        .bytes();
         assert!(bytes < 300_000_000, "{bytes}");
         assert!(
             geometry == Geometry::Visibility || bytes < 250_000_000,

@@ -75,15 +75,15 @@ impl FurtherTargets {
         let no_candidates = buffer("no candidates", wgpu::BufferUsages::empty());
         gpu.queue
             .write_buffer(&no_candidates, 0, bytemuck::cast_slice(&NO_CANDIDATES));
-        let mut visibility = VisibilityTargets::new(gpu, size.0, size.1);
-        visibility.triangle_view = target(gpu, "further triangles", size, TRIANGLE_FORMAT, written);
+        let triangles = target(gpu, "further triangles", size, TRIANGLE_FORMAT, written);
+        let visibility = VisibilityTargets::new(gpu, size, 1).with_triangles(triangles);
         Self {
-            gbuffer: GBuffer {
-                surface_view: target(gpu, "further surfaces", size, SURFACE_FORMAT, written),
-                identity_view: target(gpu, "further identity", size, IDENTITY_FORMAT, written),
-                depth_view: target(gpu, "no depth", NONE, DEPTH_FORMAT, none),
-                visibility: Some(visibility),
-            },
+            gbuffer: GBuffer::of(
+                target(gpu, "further surfaces", size, SURFACE_FORMAT, written),
+                target(gpu, "further identity", size, IDENTITY_FORMAT, written),
+                target(gpu, "no depth", NONE, DEPTH_FORMAT, none),
+                Some(visibility),
+            ),
             depth_view: target(gpu, "further depth", size, WORD, written),
             candidates: buffer(
                 "candidates",
@@ -116,14 +116,14 @@ fn rows_of(height: u32) -> u32 {
 /// A band's sub-samples without surfaces.
 pub(super) fn band_of_triangles(gpu: &Gpu, texels: (u32, u32)) -> GBuffer {
     let none = wgpu::TextureUsages::empty();
-    let mut visibility = VisibilityTargets::new(gpu, 1, 1);
-    visibility.triangle_view = target(gpu, "triangles", texels, TRIANGLE_FORMAT, none);
-    GBuffer {
-        surface_view: target(gpu, "no surfaces", NONE, SURFACE_FORMAT, none),
-        identity_view: target(gpu, "G-buffer identity", texels, IDENTITY_FORMAT, none),
-        depth_view: target(gpu, "G-buffer depth", texels, DEPTH_FORMAT, none),
-        visibility: Some(visibility),
-    }
+    let triangles = target(gpu, "triangles", texels, TRIANGLE_FORMAT, none);
+    let visibility = VisibilityTargets::new(gpu, NONE, 1).with_triangles(triangles);
+    GBuffer::of(
+        target(gpu, "no surfaces", NONE, SURFACE_FORMAT, none),
+        target(gpu, "G-buffer identity", texels, IDENTITY_FORMAT, none),
+        target(gpu, "G-buffer depth", texels, DEPTH_FORMAT, none),
+        Some(visibility),
+    )
 }
 
 /// Sorts triangles into surfaces, and shades the further ones.

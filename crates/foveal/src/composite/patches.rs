@@ -4,7 +4,8 @@
 //! coarser tile's edge follows that edge.
 
 use crate::gpu::{
-    Gpu, MipChain, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
+    Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
+    storage_write, uniform,
 };
 use crate::recorder::Recorder;
 use crate::shading::{CoarseTargets, LevelNumbers};
@@ -124,11 +125,12 @@ impl PatchPass {
     pub(super) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
-        let depth = sampled(wgpu::TextureSampleType::Depth);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
+        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let layout = |label, types: &[_]| {
             bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
         };
-        let input_layout = layout("patch input", &[uint, float, uint, uint, depth]);
+        let input_layout = layout("patch input", &[uint, float, words, words, depth]);
         let output_layout = layout(
             "patch output",
             &[
@@ -168,9 +170,9 @@ impl PatchPass {
         let views = [
             &from.rate.owner.whole,
             &from.samples.whole,
-            &targets.gbuffer.surface_view,
-            &targets.gbuffer.identity_view,
-            &targets.gbuffer.depth_view,
+            &targets.gbuffer.surface_layers,
+            &targets.gbuffer.identity_layers,
+            &targets.gbuffer.depth_layers,
         ];
         let views = views.map(wgpu::BindingResource::TextureView);
         let input = bind_group(&gpu.device, "patch input", &self.input_layout, &views);

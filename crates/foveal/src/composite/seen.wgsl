@@ -1,9 +1,9 @@
 // What is seen at a texel of the G-buffer, and whether two texels show the same surface. After surface.wgsl and
 // tiling.wgsl.
 
-@group(1) @binding(2) var gbuffer_surface: texture_2d<u32>;
-@group(1) @binding(3) var gbuffer_identity: texture_2d<u32>;
-@group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
+@group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
+@group(1) @binding(4) var gbuffer_depth: texture_depth_2d_array;
 
 struct Seen {
     // 0 is the backdrop.
@@ -14,11 +14,11 @@ struct Seen {
 }
 
 fn seen_at(texel: vec2u) -> Seen {
-    let distance = view_distance(max(textureLoad(gbuffer_depth, texel, 0), 1e-20));
+    let distance = view_distance(max(load_depth(gbuffer_depth, texel), 1e-20));
     return Seen(
-        textureLoad(gbuffer_identity, texel, 0).x,
+        load_words(gbuffer_identity, texel).x,
         world_position(vec2f(texel) + 0.5, distance),
-        unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y)),
+        unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, texel).y)),
     );
 }
 

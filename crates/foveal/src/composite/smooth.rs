@@ -5,7 +5,7 @@
 //! branch that no pixel takes.
 
 use super::patches::{DRAW_BYTES, PatchPass, PatchTargets};
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
 use crate::shader;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT, stencil_state};
@@ -30,7 +30,8 @@ impl SmoothComposite {
     pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
-        let depth = sampled(wgpu::TextureSampleType::Depth);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
+        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let layout = bind_group_layout(
             &gpu.device,
             "smooth composite",
@@ -38,8 +39,8 @@ impl SmoothComposite {
             &[
                 uint,
                 float,
-                uint,
-                uint,
+                words,
+                words,
                 depth,
                 storage_read(),
                 storage_read(),
@@ -121,9 +122,9 @@ impl SmoothComposite {
         let views = [
             &from.rate.owner.whole,
             &from.samples.whole,
-            &targets.gbuffer.surface_view,
-            &targets.gbuffer.identity_view,
-            &targets.gbuffer.depth_view,
+            &targets.gbuffer.surface_layers,
+            &targets.gbuffer.identity_layers,
+            &targets.gbuffer.depth_layers,
         ];
         let [corners, raises] = &patches.parts;
         let buffers = [corners, raises, &patches.quad_tiles];

@@ -4,15 +4,25 @@
 @group(2) @binding(0) var<storage, read> lights: Lights;
 @group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
 
+// Each eye is drawn to a layer of its own.
+override LAYERED: bool = false;
+
+// A fragment's position in pixels of the target.
+fn target_position(in: VertexOut) -> vec2f {
+    let beside = LAYERED && (in.instance & RIGHT_EYE) != 0u;
+    return in.clip.xy + vec2f(select(0.0, f32(frame.eye_stride), beside), 0.0);
+}
+
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
     if is_beyond(in.now, in.instance) {
         discard;
     }
-    let view = frame.views[view_at(in.clip.xy)];
+    let pixel = target_position(in);
+    let view = frame.views[view_at(pixel)];
     let distance = dot(in.world - view.world_from_view[3].xyz, view.forward);
-    let radiance = min(lit(m.surface, in.clip.xy, distance), vec3f(65504.0));
+    let radiance = min(lit(m.surface, pixel, distance), vec3f(65504.0));
     let alpha = saturate(m.alpha);
     // Premultiplied.
     return vec4f(radiance * alpha, alpha);

@@ -12,6 +12,13 @@ use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
 use crate::{Settings, shader};
 
+/// Which way radiance is copied.
+#[derive(Clone, Copy)]
+enum Copied {
+    ToLayers,
+    Back,
+}
+
 /// Draws blended surfaces.
 #[derive(Debug)]
 pub(crate) struct ForwardPass {
@@ -37,8 +44,11 @@ impl ForwardPass {
         );
         let mut constants = lighting_constants(settings).to_vec();
         constants.extend(submission.constants());
+        let layered = submission == Submission::Multiview;
+        constants.push(("LAYERED", f64::from(u8::from(layered))));
         let parts = match submission {
             Submission::Instanced { clips: true } => shader::FORWARD_CLIPPED,
+            Submission::Multiview => shader::FORWARD_LAYERED,
             _ => shader::FORWARD,
         };
         let pipelines = Pipelines::new(PipelineRecipe {
@@ -59,6 +69,7 @@ impl ForwardPass {
             writes_depth: false,
             constants,
             has_mask: false,
+            multiview_mask: submission.multiview_mask(),
         });
         Self {
             pipelines,
@@ -66,6 +77,11 @@ impl ForwardPass {
             layout: EyeLayout::of(settings),
             lights_layout,
         }
+    }
+
+    /// Takes over another size of the picture.
+    pub(crate) fn resize(&mut self, settings: &Settings) {
+        self.layout = EyeLayout::of(settings);
     }
 
     /// Makes the pipelines that `list` needs.
@@ -105,11 +121,11 @@ impl ForwardPass {
             depth_ops: None,
             stencil_ops: None,
         };
-        let mut pass = recorder.render_pass(
-            "forward",
-            &[drawn_over(&targets.radiance_view)],
-            Some(depth),
-        );
+        let radiance = targets.radiance_layers.as_ref();
+        let color = drawn_over(radiance.unwrap_or(&targets.radiance_view));
+        let mask = self.submission.multiview_mask();
+        self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
+        let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
         scene.geometry.bind(&mut pass);
         let (width, height) = self.layout.target_size();
@@ -118,5 +134,37 @@ impl ForwardPass {
             window.set(&mut pass);
             DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines, drawn);
         }
+        drop(pass);
+        self.copy_radiance(recorder.encoder, targets, Copied::Back);
+    }
+
+    /// Copies the eyes' radiance to their layers or back, where each eye is drawn to its own: every other stage has them
+    /// side by side, and depth, which the pass tests against, in layers. Only frames with blended surfaces come here.
+    fn copy_radiance(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, copied: Copied) {
+        let Some(layers) = &targets.radiance_layers else {
+            return;
+        };
+        for eye in 0..self.layout.eyes {
+            let wide = place(&targets.radiance_view, [eye * self.layout.stride, 0]);
+            let layer = place(layers, [0, eye]);
+            let (from, to) = match copied {
+                Copied::ToLayers => (wide, layer),
+                Copied::Back => (layer, wide),
+            };
+            let size = wgpu::Extent3d {
+                width: self.layout.width,
+                height: self.layout.height,
+                depth_or_array_layers: 1,
+            };
+            encoder.copy_texture_to_texture(from, to, size);
+        }
+    }
+}
+
+/// From a column and a layer on.
+fn place(view: &wgpu::TextureView, [x, layer]: [u32; 2]) -> wgpu::TexelCopyTextureInfo<'_> {
+    wgpu::TexelCopyTextureInfo {
+        origin: wgpu::Origin3d { x, y: 0, z: layer },
+        ..view.texture().as_image_copy()
     }
 }

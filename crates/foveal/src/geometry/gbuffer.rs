@@ -15,7 +15,8 @@ pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth3
 pub(crate) const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
 pub(crate) const IDENTITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 
-/// What is seen at each pixel; 28 bytes a pixel.
+/// What is seen at each pixel; 28 bytes a pixel. The eyes' pictures lie side by side in one layer, or where geometry is drawn
+/// by multiview each in its own; passes draw into the views, and shaders read the layers (`shared/layers.wgsl`).
 #[derive(Debug)]
 pub(crate) struct GBuffer {
     /// Base colour and occlusion, normal, emissive, metallic and roughness: `pack_surface` in
@@ -25,12 +26,16 @@ pub(crate) struct GBuffer {
     pub(crate) identity_view: wgpu::TextureView,
     /// Reversed depth.
     pub(crate) depth_view: wgpu::TextureView,
+    pub(crate) surface_layers: wgpu::TextureView,
+    pub(crate) identity_layers: wgpu::TextureView,
+    pub(crate) depth_layers: wgpu::TextureView,
     /// Where surfaces are evaluated after the rasterizer.
     pub(crate) visibility: Option<VisibilityTargets>,
 }
 
 impl GBuffer {
-    pub(crate) fn new(gpu: &Gpu, geometry: Geometry, width: u32, height: u32) -> Self {
+    /// `layers` of this size each.
+    pub(crate) fn new(gpu: &Gpu, geometry: Geometry, size: (u32, u32), layers: u32) -> Self {
         let by_triangles = geometry == Geometry::Visibility;
         let drawn = wgpu::TextureUsages::empty();
         let written = if by_triangles {
@@ -38,12 +43,33 @@ impl GBuffer {
         } else {
             drawn
         };
-        let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
+        let target =
+            |label, format, usage| gpu::layered_target(gpu, label, size, layers, format, usage);
+        Self::of(
+            target("G-buffer surface", SURFACE_FORMAT, written),
+            target("G-buffer identity", IDENTITY_FORMAT, drawn),
+            target("G-buffer depth", DEPTH_FORMAT, drawn),
+            by_triangles.then(|| VisibilityTargets::new(gpu, size, layers)),
+        )
+    }
+
+    /// One of these targets.
+    pub(crate) fn of(
+        surface_view: wgpu::TextureView,
+        identity_view: wgpu::TextureView,
+        depth_view: wgpu::TextureView,
+        visibility: Option<VisibilityTargets>,
+    ) -> Self {
+        let [surface_layers, identity_layers, depth_layers] =
+            [&surface_view, &identity_view, &depth_view].map(gpu::layers_of);
         Self {
-            surface_view: target("G-buffer surface", SURFACE_FORMAT, written),
-            identity_view: target("G-buffer identity", IDENTITY_FORMAT, drawn),
-            depth_view: target("G-buffer depth", DEPTH_FORMAT, drawn),
-            visibility: by_triangles.then(|| VisibilityTargets::new(gpu, width, height)),
+            surface_view,
+            identity_view,
+            depth_view,
+            surface_layers,
+            identity_layers,
+            depth_layers,
+            visibility,
         }
     }
 }
@@ -65,12 +91,6 @@ impl Window {
             frame: [0.0, 0.0, width as f32, height as f32],
             part: [0, 0, width, height],
         }
-    }
-
-    /// The frame fills the target.
-    fn whole(target: &GBuffer) -> Self {
-        let size = target.depth_view.texture().size();
-        Self::sized(size.width, size.height)
     }
 
     /// Restricts a pass to it.
@@ -172,6 +192,7 @@ impl GeometryPass {
         constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
         let parts = match submission {
             Submission::Instanced { clips: true } => shader::GBUFFER_CLIPPED,
+            Submission::Multiview => shader::GBUFFER_LAYERED,
             _ => shader::GBUFFER,
         };
         Pipelines::new(PipelineRecipe {
@@ -184,7 +205,22 @@ impl GeometryPass {
             writes_depth: true,
             constants,
             has_mask: true,
+            multiview_mask: submission.multiview_mask(),
         })
+    }
+
+    /// Takes over another size of the picture.
+    pub(crate) fn resize(&mut self, settings: &Settings) {
+        self.layout = EyeLayout::of(settings);
+        if let Means::Triangles(pass) = &mut self.means {
+            pass.resize(self.layout);
+        }
+    }
+
+    /// The frame fills the target.
+    fn whole(&self) -> Window {
+        let (width, height) = self.layout.target_size();
+        Window::sized(width, height)
     }
 
     /// The visibility buffer's passes, where they are used.
@@ -217,7 +253,7 @@ impl GeometryPass {
         list: &DrawList,
         target: &GBuffer,
     ) {
-        self.draw_windows(recorder, scene, list, target, &[Window::whole(target)]);
+        self.draw_windows(recorder, scene, list, target, &[self.whole()]);
     }
 
     /// Encodes what of [`GeometryPass::draw`] does not depend on materials; `false` where all of it does.
@@ -231,7 +267,7 @@ impl GeometryPass {
         let Means::Triangles(pass) = &self.means else {
             return false;
         };
-        pass.draw_triangles(recorder, scene, list, target, &[Window::whole(target)]);
+        pass.draw_triangles(recorder, scene, list, target, &[self.whole()]);
         true
     }
 
@@ -245,7 +281,7 @@ impl GeometryPass {
         at: &Evaluation<'_>,
     ) {
         if let Means::Triangles(pass) = &self.means {
-            pass.evaluate_at(recorder, scene, list, target, &[Window::whole(target)], at);
+            pass.evaluate_at(recorder, scene, list, target, &[self.whole()], at);
         }
     }
 
@@ -276,7 +312,8 @@ impl GeometryPass {
             overwritten(&target.surface_view),
             overwritten(&target.identity_view),
         ];
-        let mut pass = recorder.render_pass("geometry", &colors, Some(depth));
+        let mask = self.submission.multiview_mask();
+        let mut pass = recorder.layered_pass("geometry", &colors, Some(depth), mask);
         scene.geometry.bind(&mut pass);
         for &Window { frame, part } in windows {
             for &drawn in self.submission.drawn() {

@@ -1,6 +1,7 @@
 //! The few pipelines that a geometry or forward pass needs, made when first asked for.
 
 use std::collections::BTreeMap;
+use std::num::NonZeroU32;
 
 use crate::gpu::Gpu;
 use crate::scene::VERTEX_LAYOUTS;
@@ -48,6 +49,8 @@ pub(crate) struct PipelineRecipe {
     pub(crate) constants: Vec<(&'static str, f64)>,
     /// The shader has the override `MASKED`.
     pub(crate) has_mask: bool,
+    /// The layers that a pass draws to at once.
+    pub(crate) multiview_mask: Option<NonZeroU32>,
 }
 
 /// A pass's pipelines.
@@ -130,7 +133,7 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
                 compilation_options,
                 targets: &recipe.targets,
             }),
-            multiview_mask: None,
+            multiview_mask: recipe.multiview_mask,
             cache: None,
         })
 }

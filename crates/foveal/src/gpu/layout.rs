@@ -65,6 +65,24 @@ pub(crate) const fn storage_write() -> BindingType {
     buffer(BufferBindingType::Storage { read_only: false })
 }
 
+/// A target that geometry is drawn into: `shared/layers.wgsl`.
+pub(crate) const fn sampled_layers(sample_type: TextureSampleType) -> BindingType {
+    BindingType::Texture {
+        sample_type,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+        multisampled: false,
+    }
+}
+
+/// The same, written by a shader.
+pub(crate) const fn written_layers(format: wgpu::TextureFormat) -> BindingType {
+    BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2Array,
+    }
+}
+
 pub(crate) const fn sampled(sample_type: TextureSampleType) -> BindingType {
     BindingType::Texture {
         sample_type,

@@ -9,7 +9,8 @@ mod timing;
 mod trap;
 
 pub(crate) use layout::{
-    bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
+    bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write, uniform,
+    written_layers,
 };
 pub(crate) use mips::MipChain;
 #[cfg(test)]
@@ -17,7 +18,7 @@ pub(crate) use readback::read_level;
 pub(crate) use readback::{
     Arriving, Handover, read_buffer, read_texture, submitted_work_done, work_done,
 };
-pub(crate) use target::target;
+pub(crate) use target::{layer_of, layered_target, layers_of, target};
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;
 
@@ -123,6 +124,7 @@ impl Gpu {
         wgpu::Features::TIMESTAMP_QUERY
             | wgpu::Features::PRIMITIVE_INDEX
             | wgpu::Features::CLIP_DISTANCES
+            | wgpu::Features::MULTIVIEW
     }
 
     /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.
@@ -130,6 +132,7 @@ impl Gpu {
     pub fn wanted_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
         wgpu::Limits {
             max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+            max_multiview_view_count: adapter.max_multiview_view_count.min(2),
             max_buffer_size: adapter.max_buffer_size,
             max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
             ..wgpu::Limits::default()
@@ -149,6 +152,12 @@ impl Gpu {
     #[must_use]
     pub fn adapter_stats(&self) -> AdapterStats {
         adapter::describe(&self.device.adapter_info())
+    }
+
+    /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.
+    pub(crate) fn has_multiview(&self) -> bool {
+        self.device.features().contains(wgpu::Features::MULTIVIEW)
+            && self.device.limits().max_multiview_view_count >= 2
     }
 
     /// [`Error::DeviceLost`] once the device is gone.

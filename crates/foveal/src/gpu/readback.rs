@@ -80,12 +80,12 @@ pub(crate) fn work_done<T: Send + 'static>(
     done
 }
 
-/// The bytes of mip 0 of a texture, rows top to bottom without padding.
+/// The bytes of mip 0 of a texture, layer after layer, rows top to bottom without padding.
 pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
     read_level(gpu, texture, 0, (texture.width(), texture.height())).await
 }
 
-/// The bytes of the upper left `width` x `height` texels of a mip, rows top to bottom without padding.
+/// The bytes of the upper left `width` x `height` texels of a mip, layer after layer, rows top to bottom without padding.
 pub(crate) async fn read_level(
     gpu: &Gpu,
     texture: &wgpu::Texture,
@@ -93,9 +93,13 @@ pub(crate) async fn read_level(
     (width, height): (u32, u32),
 ) -> Result<Vec<u8>, Error> {
     let bytes_per_texel = texture.format().block_copy_size(None).unwrap_or(4);
+    let layers = texture.depth_or_array_layers();
     let row = width * bytes_per_texel;
     let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);
-    let buffer = read_back_buffer(gpu, u64::from(padded) * u64::from(height));
+    let buffer = read_back_buffer(
+        gpu,
+        u64::from(padded) * u64::from(height) * u64::from(layers),
+    );
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     encoder.copy_texture_to_buffer(
         wgpu::TexelCopyTextureInfo {
@@ -107,13 +111,13 @@ pub(crate) async fn read_level(
             layout: wgpu::TexelCopyBufferLayout {
                 offset: 0,
                 bytes_per_row: Some(padded),
-                rows_per_image: None,
+                rows_per_image: Some(height),
             },
         },
         wgpu::Extent3d {
             width,
             height,
-            depth_or_array_layers: 1,
+            depth_or_array_layers: layers,
         },
     );
     gpu.queue.submit([encoder.finish()]);

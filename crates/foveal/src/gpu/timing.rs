@@ -1,5 +1,7 @@
 //! How long stages (CPU) and passes (GPU) take.
 
+use std::num::NonZeroU32;
+
 use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings};
 
 use super::Gpu;
@@ -79,13 +81,14 @@ impl GpuTimer {
         })
     }
 
-    /// Opens a render pass that is timed under `label`.
+    /// Opens a render pass that is timed under `label`, to several layers at once where there is a mask.
     pub(crate) fn render_pass<'e>(
         &mut self,
         encoder: &'e mut wgpu::CommandEncoder,
         label: &str,
         color_attachments: &[Option<wgpu::RenderPassColorAttachment<'_>>],
         depth_stencil_attachment: Option<wgpu::RenderPassDepthStencilAttachment<'_>>,
+        multiview_mask: Option<NonZeroU32>,
     ) -> wgpu::RenderPass<'e> {
         let query = self.profiler.begin_pass_query(label, encoder);
         let pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
@@ -93,6 +96,7 @@ impl GpuTimer {
             color_attachments,
             depth_stencil_attachment,
             timestamp_writes: query.render_pass_timestamp_writes(),
+            multiview_mask,
             ..Default::default()
         });
         self.queries.push(query);

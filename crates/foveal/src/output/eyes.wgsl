@@ -25,7 +25,9 @@ fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
 
 // A pixel of an eye's picture.
 fn seen_by(view: u32, pixel: vec2u) -> vec3f {
-    return textureLoad(pictures, pixel + vec2u(view * frame.eye_stride, 0u), 0).rgb;
+    // Both eyes show the same picture where there is one alone.
+    let beside = vec2u(frame.target_size - frame.size);
+    return textureLoad(pictures, pixel + view * beside, 0).rgb;
 }
 
 fn linear(srgb: vec3f) -> vec3f {

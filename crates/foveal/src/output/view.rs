@@ -2,7 +2,7 @@
 
 use super::PICTURE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
 use crate::{View, shader};
 
@@ -31,9 +31,9 @@ impl ViewPass {
             "view",
             wgpu::ShaderStages::FRAGMENT,
             &[
-                sampled(wgpu::TextureSampleType::Uint),
-                sampled(wgpu::TextureSampleType::Uint),
-                sampled(wgpu::TextureSampleType::Depth),
+                sampled_layers(wgpu::TextureSampleType::Uint),
+                sampled_layers(wgpu::TextureSampleType::Uint),
+                sampled_layers(wgpu::TextureSampleType::Depth),
                 storage_read(),
             ],
         );
@@ -64,9 +64,9 @@ impl ViewPass {
             "view",
             &self.layout,
             &[
-                wgpu::BindingResource::TextureView(&gbuffer.surface_view),
-                wgpu::BindingResource::TextureView(&gbuffer.identity_view),
-                wgpu::BindingResource::TextureView(&gbuffer.depth_view),
+                wgpu::BindingResource::TextureView(&gbuffer.surface_layers),
+                wgpu::BindingResource::TextureView(&gbuffer.identity_layers),
+                wgpu::BindingResource::TextureView(&gbuffer.depth_layers),
                 places.as_entire_binding(),
             ],
         );

@@ -3,9 +3,9 @@
 // Which: 1 depth, 2 normals, 3 base colour, 4 instances, 5 motion, 6 materials.
 override VIEW: u32 = 1u;
 
-@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
-@group(1) @binding(1) var gbuffer_identity: texture_2d<u32>;
-@group(1) @binding(2) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(0) var gbuffer_surface: texture_2d_array<u32>;
+@group(1) @binding(1) var gbuffer_identity: texture_2d_array<u32>;
+@group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 
 // Of each instance; the third number is its material.
 @group(1) @binding(3) var<storage, read> places: array<vec4u>;
@@ -27,12 +27,12 @@ fn hash(value: u32) -> u32 {
 @fragment
 fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let texel = vec2u(position.xy);
-    let depth = textureLoad(gbuffer_depth, texel, 0);
-    let identity = textureLoad(gbuffer_identity, texel, 0).xy;
+    let depth = load_depth(gbuffer_depth, texel);
+    let identity = load_words(gbuffer_identity, texel).xy;
     if depth == 0.0 && VIEW != 5u {
         return vec4f(0.0, 0.0, 0.0, 1.0);
     }
-    let surface = unpack_surface(textureLoad(gbuffer_surface, texel, 0), vec3f(0.0));
+    let surface = unpack_surface(load_words(gbuffer_surface, texel), vec3f(0.0));
     switch VIEW {
         case 1u: {
             // One grey step per 1/16 of a doubling: white at the near plane, black 16 doublings (65 km at 1 m) on.
@@ -44,7 +44,7 @@ fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
         }
         case 3u: {
             // Square roots are close to sRGB; the exact curve would only recode them.
-            let encoded = unpack4x8unorm(textureLoad(gbuffer_surface, texel, 0).x).rgb;
+            let encoded = unpack4x8unorm(load_words(gbuffer_surface, texel).x).rgb;
             return vec4f(encoded, 1.0);
         }
         case 4u, 6u: {

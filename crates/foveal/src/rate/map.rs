@@ -2,7 +2,7 @@
 
 use super::{RateImage, WishUniform};
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, uniform};
+use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
 use crate::recorder::{Recorder, overwritten};
 use crate::stereo::{EyeLayout, LensFit};
 use crate::{Settings, shader};
@@ -57,13 +57,14 @@ impl RateMapPass {
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let cells = sampled(wgpu::TextureSampleType::Uint);
-        let depth = sampled(wgpu::TextureSampleType::Depth);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
+        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let stage = wgpu::ShaderStages::FRAGMENT;
         let wish_layout = bind_group_layout(
             &gpu.device,
             "rate wish",
             stage,
-            &[uniform(), cells, cells, cells, depth],
+            &[uniform(), cells, words, words, depth],
         );
         let cells_layout = bind_group_layout(&gpu.device, "rate cells", stage, &[cells]);
         let pipeline = |label, parts, entry, layout, constant: &[(&str, f64)]| {
@@ -141,9 +142,9 @@ impl RateMapPass {
             &[
                 self.wish_uniform.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&self.image),
-                wgpu::BindingResource::TextureView(&gbuffer.surface_view),
-                wgpu::BindingResource::TextureView(&gbuffer.identity_view),
-                wgpu::BindingResource::TextureView(&gbuffer.depth_view),
+                wgpu::BindingResource::TextureView(&gbuffer.surface_layers),
+                wgpu::BindingResource::TextureView(&gbuffer.identity_layers),
+                wgpu::BindingResource::TextureView(&gbuffer.depth_layers),
             ],
         );
         let cells = |view| {

@@ -8,9 +8,9 @@ override OTHER: u32 = 1u;
 override COMBINE: u32 = 0u;
 
 @group(1) @binding(1) var rate_image: texture_2d<u32>;
-@group(1) @binding(2) var gbuffer_surface: texture_2d<u32>;
-@group(1) @binding(3) var gbuffer_identity: texture_2d<u32>;
-@group(1) @binding(4) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
+@group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
+@group(1) @binding(4) var gbuffer_depth: texture_depth_2d_array;
 
 // How much coarser the screen is here than on the lens's axis.
 fn lens_level(pixel: vec2f) -> u32 {
@@ -44,15 +44,15 @@ fn pixel_level(texel: vec2u) -> u32 {
 }
 
 fn instance_at(texel: vec2i) -> u32 {
-    return textureLoad(gbuffer_identity, texel, 0).x;
+    return load_words(gbuffer_identity, vec2u(texel)).x;
 }
 
 fn depth_at(texel: vec2i) -> f32 {
-    return textureLoad(gbuffer_depth, texel, 0);
+    return load_depth(gbuffer_depth, vec2u(texel));
 }
 
 fn normal_at(texel: vec2i) -> vec3f {
-    return unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y));
+    return unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, vec2u(texel)).y));
 }
 
 // Whether a surface ends within a block of 2 x 2 pixels or between it and the blocks to its right and below:

@@ -107,7 +107,7 @@ impl Renderer {
             occluder_triangles: culled.occluder_triangles,
             draws: draws * submission.passes(),
             triangles: self.draw_list.triangles * u64::from(EyeLayout::of(settings).eyes),
-            stereo: submission.stats(reason),
+            stereo: settings.is_stereo().then(|| submission.stats(reason)),
             target_bytes: self.stages.targets.bytes(),
             ..FrameStats::default()
         }

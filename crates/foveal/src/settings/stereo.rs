@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{RateCombine, RateSource, Settings, Shading};
+use super::{Antialiasing, RateCombine, RateSource, Settings, Shading};
 use crate::Error;
 use crate::stereo::EyeLayout;
 
@@ -17,6 +17,8 @@ pub enum Stereo {
     Auto,
     /// Each draw once for both, with twice the instances, into one target of twice the width.
     Instanced,
+    /// Each draw once, which the device repeats into a layer for each eye.
+    Multiview,
     /// Each draw once per eye: the reference.
     TwoPass,
 }
@@ -118,6 +120,13 @@ impl Settings {
         self.stereo != Stereo::Off
     }
 
+    /// Whether two eyes have the same place, frustum and gaze: one picture then shows what both see.
+    pub(crate) fn is_seen_alike(&self) -> bool {
+        let same = matches!(self.frusta(), Ok(None))
+            || matches!(self.frusta(), Ok(Some([a, b])) if a == b);
+        self.is_stereo() && self.ipd == 0.0 && same && self.gaze_shift == [0.0; 2]
+    }
+
     /// Width and height of the picture that [`crate::Renderer::read_picture`] gives.
     #[must_use]
     pub fn picture_size(&self) -> (u32, u32) {
@@ -178,6 +187,10 @@ pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error>
             "lens".to_owned(),
             "another source unless stereo is on and the output is a headset's",
         );
+    }
+    if s.stereo == Stereo::Multiview && s.aa != Antialiasing::None {
+        let expected = "auto, instanced or two-pass where edges are smoothed: sub-samples of both eyes lie in one target";
+        return wrong("stereo", "multiview".to_owned(), expected);
     }
     if !(0.0..=1000.0).contains(&s.ipd) {
         return wrong("ipd", s.ipd.to_string(), "between 0 and 1000 metres");

@@ -16,6 +16,13 @@ const ALL: &[(&str, Parts)] = &[
     ("variable shade", VARIABLE_SHADE),
     ("variable view", VARIABLE_VIEW),
     ("gbuffer, clipped", GBUFFER_CLIPPED),
+    ("gbuffer, layered", GBUFFER_LAYERED),
+    ("forward, layered", FORWARD_LAYERED),
+    ("visible, indexed, layered", VISIBLE_INDEXED_LAYERED),
+    ("visible, pulled, layered", VISIBLE_PULLED_LAYERED),
+    ("trial", TRIAL),
+    ("trial, clipped", TRIAL_CLIPPED),
+    ("trial, layered", TRIAL_LAYERED),
     ("clusters", CLUSTERS),
     ("shade every pixel", SHADE_EVERY_PIXEL),
     ("shade list", SHADE_LIST),
@@ -63,11 +70,14 @@ fn every_shader_validates_without_optional_capabilities() {
         // Packing to halves belongs to WebGPU itself; naga counts it as a capability.
         let mut capabilities = naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
         // These are used where the device has the feature; others stand in for them where not.
-        if std::ptr::eq(*parts, VISIBLE_INDEXED) {
+        if name.starts_with("visible, indexed") {
             capabilities |= naga::valid::Capabilities::PRIMITIVE_INDEX;
         }
         if name.ends_with(", clipped") {
             capabilities |= naga::valid::Capabilities::CLIP_DISTANCES;
+        }
+        if name.ends_with(", layered") {
+            capabilities |= naga::valid::Capabilities::MULTIVIEW;
         }
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
             .validate(&module)

@@ -2,7 +2,7 @@
 
 use super::{SampleList, Samples};
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
@@ -43,8 +43,8 @@ impl ShadingPass {
             "shading input",
             wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             &[
-                sampled(wgpu::TextureSampleType::Uint),
-                sampled(wgpu::TextureSampleType::Depth),
+                sampled_layers(wgpu::TextureSampleType::Uint),
+                sampled_layers(wgpu::TextureSampleType::Depth),
                 storage_read(),
                 storage_read(),
             ],
@@ -107,8 +107,8 @@ impl ShadingPass {
             "shading input",
             &self.input_layout,
             &[
-                wgpu::BindingResource::TextureView(&gbuffer.surface_view),
-                wgpu::BindingResource::TextureView(&gbuffer.depth_view),
+                wgpu::BindingResource::TextureView(&gbuffer.surface_layers),
+                wgpu::BindingResource::TextureView(&gbuffer.depth_layers),
                 lights.as_entire_binding(),
                 cluster_bits.as_entire_binding(),
             ],

@@ -2,8 +2,8 @@
 // A sample is a texel of the G-buffer; which samples are shaded is the caller's choice: the fragments of
 // a draw, or a list.
 
-@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
-@group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(0) var gbuffer_surface: texture_2d_array<u32>;
+@group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(2) var<storage, read> lights: Lights;
 @group(1) @binding(3) var<storage, read> cluster_lights: array<u32>;
 
@@ -22,6 +22,6 @@ fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {
 
 // Radiance at a G-buffer texel.
 fn shade(texel: vec2u) -> vec4f {
-    let depth = textureLoad(gbuffer_depth, texel, 0);
-    return radiance_at(vec2f(texel) + 0.5, depth, textureLoad(gbuffer_surface, texel, 0));
+    let depth = load_depth(gbuffer_depth, texel);
+    return radiance_at(vec2f(texel) + 0.5, depth, load_words(gbuffer_surface, texel));
 }

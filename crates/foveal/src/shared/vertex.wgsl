@@ -40,7 +40,7 @@ struct VertexOut {
     @location(7) before: vec3f,
 }
 
-// How eyes are drawn: 0 one view, 1 each in a pass of its own, 2 as instances in turn.
+// How eyes are drawn: 0 one view to a target or layer, 1 each in a pass of its own, 2 as instances in turn.
 override EYES: u32 = 0u;
 // An eye's fragments beyond the middle of the target are discarded, not clipped.
 override DISCARD_BEYOND: bool = false;
@@ -122,11 +122,10 @@ fn world_vertex(i: Instance, position: vec3f, normal: vec3f, tangent: vec4f) -> 
 
 @vertex
 fn vertex(in: VertexIn) -> VertexOut {
-    return vertex_of(in);
+    return vertex_of(in, drawn_as(in.drawn_index));
 }
 
-fn vertex_of(in: VertexIn) -> VertexOut {
-    let d = drawn_as(in.drawn_index);
+fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
     let i = instances[d.instance];
     let world = world_vertex(i, in.position, in.normal, in.tangent);
     let previous = previous_instance_position(i, in.previous_position);

@@ -17,7 +17,7 @@ struct ClippedVertexOut {
 
 @vertex
 fn vertex_clipped(in: VertexIn) -> ClippedVertexOut {
-    let v = vertex_of(in);
+    let v = vertex_of(in, drawn_as(in.drawn_index));
     // A little beyond the middle, so that rounding takes no pixel away, and less than any sub-sample lies beyond it.
     let slack = v.now.z / (64.0 * frame.size.x);
     let inside = array<f32, 1>(inside_own_half(v.now, v.instance) + slack);

@@ -1,6 +1,6 @@
 //! Where each eye has its picture in a target.
 
-use super::Drawn;
+use super::{Drawn, Submission};
 use crate::geometry::Window;
 use crate::{Settings, Shading};
 
@@ -27,7 +27,7 @@ impl EyeLayout {
         };
         let width = settings.width;
         Self {
-            eyes: 1 + u32::from(settings.is_stereo()),
+            eyes: 1 + u32::from(settings.is_stereo() && !settings.is_seen_alike()),
             width,
             height: settings.height,
             stride: width
@@ -44,8 +44,11 @@ impl EyeLayout {
 
     /// The part of a window onto the whole target that `drawn` goes to.
     pub(crate) fn window_of(&self, drawn: Drawn, window: Window) -> Window {
-        let Drawn::ForEye(eye) = drawn else {
-            return window;
+        let eye = match drawn {
+            Drawn::ForEye(eye) => eye,
+            // A layer holds one eye's picture alone; there is no other window.
+            Drawn::ForEachLayer => return Window::sized(self.width, self.height),
+            Drawn::Once | Drawn::Twice => return window,
         };
         let part = window.part;
         let scale = window.frame[2] / self.target_size().0 as f32;
@@ -55,6 +58,14 @@ impl EyeLayout {
         Window {
             part: [part[0] + low, part[1], end - low, part[3]],
             ..window
+        }
+    }
+
+    /// Width and height of what geometry is drawn into, and its layers.
+    pub(crate) fn layers(&self, submission: Submission) -> ((u32, u32), u32) {
+        match submission {
+            Submission::Multiview => ((self.stride, self.height), self.eyes),
+            _ => (self.target_size(), 1),
         }
     }
 

@@ -11,8 +11,10 @@ mod lens;
 mod submission;
 #[cfg(test)]
 mod tests;
+mod trial;
 
 pub(crate) use eyes::{Eye, cluster_shifts, eyes};
 pub(crate) use layout::EyeLayout;
 pub(crate) use lens::{LensFit, check_lens};
 pub(crate) use submission::{Drawn, Submission};
+pub(crate) use trial::Trials;

@@ -1,7 +1,11 @@
 //! How both eyes' geometry gets into the target.
 
+use std::num::NonZeroU32;
+
+use super::Trials;
+use super::trial::Verdict;
 use crate::gpu::Gpu;
-use crate::{EyeClipping, Geometry, Settings, Stereo, StereoStats};
+use crate::{Antialiasing, Clock, Error, EyeClipping, Geometry, Settings, Stereo, StereoStats};
 
 /// The way in use.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +16,8 @@ pub(crate) enum Submission {
     TwoPass,
     /// Every draw once with twice the instances, clipped at the middle by the rasterizer, or by discarding.
     Instanced { clips: bool },
+    /// Every draw once, to a layer for each eye.
+    Multiview,
 }
 
 /// Which instances a draw issues.
@@ -23,13 +29,15 @@ pub(crate) enum Drawn {
     ForEye(u32),
     /// Each twice, the eyes in turn.
     Twice,
+    /// Each once, which the device repeats for each layer.
+    ForEachLayer,
 }
 
 impl Drawn {
     /// The instance numbers of the instances `first..first + count`.
     pub(crate) fn range(self, first: u32, count: u32) -> std::ops::Range<u32> {
         match self {
-            Self::Once => first..first + count,
+            Self::Once | Self::ForEachLayer => first..first + count,
             Self::ForEye(eye) => (first | eye << 31)..((first + count) | eye << 31),
             Self::Twice => 2 * first..2 * (first + count),
         }
@@ -38,7 +46,15 @@ impl Drawn {
 
 impl Submission {
     /// The way that the settings ask for, on this device, and why it is this one.
-    pub(crate) fn choose(gpu: &Gpu, settings: &Settings) -> (Self, String) {
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where multiview is asked for and the device lacks it or draws it wrong; as [`Trials::of`].
+    pub(crate) async fn choose(
+        gpu: &Gpu,
+        settings: &Settings,
+        trials: &mut Trials,
+        clock: Option<Clock>,
+    ) -> Result<(Self, String), Error> {
         let has_clip = gpu
             .device
             .features()
@@ -47,10 +63,7 @@ impl Submission {
         let clips = has_clip
             && settings.eye_clipping != EyeClipping::Discard
             && settings.geometry == Geometry::Gbuffer;
-        let asked = match settings.stereo {
-            Stereo::Auto => "works everywhere",
-            _ => "asked for",
-        };
+        let instanced = Self::Instanced { clips };
         let lacks = if settings.eye_clipping == EyeClipping::Clip && !has_clip {
             "; discards, as the device has no clip distances"
         } else {
@@ -58,24 +71,108 @@ impl Submission {
         };
         let this = match settings.stereo {
             Stereo::Off => Self::Mono,
+            _ if settings.is_seen_alike() => {
+                let why = "both eyes see the same: drawn once, shown to both";
+                return Ok((Self::Mono, why.to_owned()));
+            }
             Stereo::TwoPass => Self::TwoPass,
-            Stereo::Auto | Stereo::Instanced => Self::Instanced { clips },
+            Stereo::Instanced => instanced,
+            Stereo::Multiview => {
+                Self::check_multiview(gpu, trials, clock).await?;
+                Self::Multiview
+            }
+            Stereo::Auto => {
+                let mut ways = vec![instanced, Self::TwoPass];
+                if gpu.has_multiview() && settings.aa == Antialiasing::None {
+                    ways.insert(0, Self::Multiview);
+                }
+                return Self::fastest(gpu, &ways, trials, clock).await;
+            }
         };
-        (this, format!("{asked}{lacks}"))
+        Ok((this, format!("asked for{lacks}")))
     }
 
-    /// The stats' entry; none with one eye.
-    pub(crate) fn stats(self, reason: &str) -> Option<StereoStats> {
-        let mode = match self {
-            Self::Mono => return None,
+    async fn check_multiview(
+        gpu: &Gpu,
+        trials: &mut Trials,
+        clock: Option<Clock>,
+    ) -> Result<(), Error> {
+        let why = if gpu.has_multiview() {
+            let verdict = trials.of(gpu, Self::Multiview, clock).await?;
+            if verdict.is_right() {
+                return Ok(());
+            }
+            let (wrong, of) = (verdict.wrong, Verdict::TEXELS);
+            format!("the driver draws it wrong: {wrong} of {of} texels of a trial")
+        } else {
+            "the device does not have it".to_owned()
+        };
+        Err(Error::Setting {
+            name: "stereo",
+            value: format!("multiview ({why})"),
+            expected: "auto, instanced or two-pass on this device",
+        })
+    }
+
+    /// Of the ways that are right, the first one that none after it undercuts by a tenth; the first without a clock.
+    async fn fastest(
+        gpu: &Gpu,
+        ways: &[Self],
+        trials: &mut Trials,
+        clock: Option<Clock>,
+    ) -> Result<(Self, String), Error> {
+        let (mut right, mut wrong) = (Vec::new(), Vec::new());
+        for &way in ways {
+            let verdict = trials.of(gpu, way, clock).await?;
+            if verdict.is_right() {
+                right.push((way, verdict.ms));
+            } else {
+                let (texels, of) = (verdict.wrong, Verdict::TEXELS);
+                wrong.push(format!("{} ({texels} of {of} texels)", way.name()));
+            }
+        }
+        // Fewer draws come first, and a moment's noise does not decide. Two passes are what the others are held to.
+        let best = right
+            .iter()
+            .copied()
+            .reduce(|best, way| if way.1 < 0.9 * best.1 { way } else { best });
+        let best = best.map_or(Self::TwoPass, |(way, _)| way);
+        let times: Vec<String> = right
+            .iter()
+            .map(|(way, ms)| format!("{} {ms:.2} ms", way.name()))
+            .collect();
+        let mut why = match clock {
+            Some(_) => format!("fastest in a trial: {}", times.join(", ")),
+            None => "right in a trial; nothing was timed without a clock".to_owned(),
+        };
+        if !wrong.is_empty() {
+            why += &format!("; wrong: {}", wrong.join(", "));
+        }
+        Ok((best, why))
+    }
+
+    /// The name of the way.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Mono => "once",
             Self::TwoPass => "two-pass",
             Self::Instanced { clips: true } => "instanced-clip",
             Self::Instanced { clips: false } => "instanced-discard",
-        };
-        Some(StereoStats {
-            mode: mode.to_owned(),
+            Self::Multiview => "multiview",
+        }
+    }
+
+    /// The stats' entry of two eyes.
+    pub(crate) fn stats(self, reason: &str) -> StereoStats {
+        StereoStats {
+            mode: self.name().to_owned(),
             reason: reason.to_owned(),
-        })
+        }
+    }
+
+    /// The layers that a pass over geometry draws to at once, where there are several.
+    pub(crate) fn multiview_mask(self) -> Option<NonZeroU32> {
+        NonZeroU32::new(0b11).filter(|_| self == Self::Multiview)
     }
 
     /// How often each draw is issued.
@@ -89,13 +186,14 @@ impl Submission {
             Self::Mono => &[Drawn::Once],
             Self::TwoPass => &[Drawn::ForEye(0), Drawn::ForEye(1)],
             Self::Instanced { .. } => &[Drawn::Twice],
+            Self::Multiview => &[Drawn::ForEachLayer],
         }
     }
 
     /// Overrides of `shared/vertex.wgsl`.
     pub(crate) fn constants(self) -> [(&'static str, f64); 2] {
         let eyes = match self {
-            Self::Mono => 0.0,
+            Self::Mono | Self::Multiview => 0.0,
             Self::TwoPass => 1.0,
             Self::Instanced { .. } => 2.0,
         };
@@ -110,6 +208,7 @@ impl Submission {
     pub(crate) fn vertex_entry(self) -> &'static str {
         match self {
             Self::Instanced { clips: true } => "vertex_clipped",
+            Self::Multiview => "vertex_layered",
             _ => "vertex",
         }
     }

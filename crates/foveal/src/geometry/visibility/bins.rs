@@ -2,7 +2,10 @@
 
 use super::{Evaluation, VisibilityTargets, with_mask};
 use crate::geometry::{GBuffer, SURFACE_FORMAT};
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write};
+use crate::gpu::{
+    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
+    written_layers,
+};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
 use crate::shader;
@@ -48,16 +51,13 @@ impl BinPass {
     /// `rated`: only pixels that stand for a sample are sorted.
     pub(super) fn new(gpu: &Gpu, rated: bool) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let mut types = vec![
-            uint,
+            words,
             storage_read(),
             storage_write(),
             storage_write(),
-            wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: SURFACE_FORMAT,
-                view_dimension: wgpu::TextureViewDimension::D2,
-            },
+            written_layers(SURFACE_FORMAT),
         ];
         if rated {
             types.push(uint);
@@ -97,16 +97,17 @@ impl BinPass {
             &with_mask(
                 at,
                 &[
-                    wgpu::BindingResource::TextureView(&target.identity_view),
+                    wgpu::BindingResource::TextureView(&target.identity_layers),
                     scene.geometry.places().as_entire_binding(),
                     bins.0.as_entire_binding(),
                     visibility.pixels.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(&target.surface_view),
+                    wgpu::BindingResource::TextureView(&target.surface_layers),
                 ],
             ),
         );
         let size = target.identity_view.texture().size();
-        let tiles = (size.width.div_ceil(TILE), size.height.div_ceil(TILE));
+        let across = size.width * size.depth_or_array_layers;
+        let tiles = (across.div_ceil(TILE), size.height.div_ceil(TILE));
         let mut pass = recorder.compute_pass(at.binning_label);
         pass.set_bind_group(0, &group, &[]);
         for (pipeline, (x, y)) in [

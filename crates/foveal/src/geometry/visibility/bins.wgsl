@@ -1,4 +1,4 @@
-// The seen pixels sorted by material: counted, summed up, scattered. After nothing. CPU twin: `twin.rs`.
+// The seen pixels sorted by material: counted, summed up, scattered. After layers.wgsl. CPU twin: `twin.rs`.
 //
 // A workgroup looks at 16 x 16 pixels, a thread at 2 x 2 of them. What it finds is gathered in a small hash table
 // first, so that the bins are touched once per workgroup and material.
@@ -26,13 +26,13 @@ struct Bin {
     reserved_1: u32,
 }
 
-@group(0) @binding(0) var identity: texture_2d<u32>;
+@group(0) @binding(0) var identity: texture_2d_array<u32>;
 @group(0) @binding(1) var<storage, read> places: array<Place>;
 // One for each material.
 @group(0) @binding(2) var<storage, read_write> bins: array<Bin>;
 // x | y << 16.
 @group(0) @binding(3) var<storage, read_write> pixels: array<u32>;
-@group(0) @binding(4) var surface: texture_storage_2d<rgba32uint, write>;
+@group(0) @binding(4) var surface: texture_storage_2d_array<rgba32uint, write>;
 
 // The hash table: material + 1, pixels of it, where they go.
 var<workgroup> keys: array<atomic<u32>, 256>;
@@ -41,10 +41,10 @@ var<workgroup> starts: array<u32, 256>;
 
 // Material + 1 at a pixel; 0 where nothing is, or where the pixel is another's to stand for.
 fn key_at(texel: vec2u) -> u32 {
-    if any(texel >= textureDimensions(identity)) || !is_listed(texel) {
+    if any(texel >= whole_size(identity)) || !is_listed(texel) {
         return 0u;
     }
-    let instance = textureLoad(identity, texel, 0).x;
+    let instance = load_words(identity, texel).x;
     if instance == 0u {
         return 0u;
     }
@@ -140,8 +140,9 @@ fn scatter_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invoc
         if key != 0u {
             slots[i] = slot_of(key);
             within[i] = atomicAdd(&counts[slots[i]], 1u);
-        } else if all(texel < textureDimensions(identity)) && textureLoad(identity, texel, 0).x == 0u {
-            textureStore(surface, texel, vec4u(0u));
+        } else if all(texel < whole_size(identity)) && load_words(identity, texel).x == 0u {
+            let at = in_layers(textureDimensions(surface).x, texel);
+            textureStore(surface, at.xy, at.z, vec4u(0u));
         }
     }
     workgroupBarrier();

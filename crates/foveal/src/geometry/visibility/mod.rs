@@ -14,7 +14,7 @@ mod resolve;
 mod tests;
 
 use super::{DrawList, FaceNormals, GBuffer, Window};
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, layered_target, layers_of};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
 use crate::shader;
@@ -32,6 +32,7 @@ pub(crate) const TRIANGLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32
 pub(crate) struct VisibilityTargets {
     /// The triangle's number within its mesh.
     pub(crate) triangle_view: wgpu::TextureView,
+    pub(crate) triangle_layers: wgpu::TextureView,
     /// The seen pixels, `x | y << 16`, material by material.
     pub(crate) pixels: wgpu::Buffer,
 }
@@ -42,17 +43,28 @@ impl VisibilityTargets {
         2 * self.pixels.size()
     }
 
-    pub(crate) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
+    /// `layers` of this size each.
+    pub(crate) fn new(gpu: &Gpu, size: (u32, u32), layers: u32) -> Self {
         let none = wgpu::TextureUsages::empty();
-        let size = (width, height);
+        let triangle_view = layered_target(gpu, "triangles", size, layers, TRIANGLE_FORMAT, none);
         Self {
-            triangle_view: crate::gpu::target(gpu, "triangles", size, TRIANGLE_FORMAT, none),
+            triangle_layers: layers_of(&triangle_view),
+            triangle_view,
             pixels: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("binned pixels"),
-                size: u64::from(width) * u64::from(height) * 4,
+                size: u64::from(size.0) * u64::from(size.1) * u64::from(layers) * 4,
                 usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
+        }
+    }
+
+    /// The same with another target for triangles.
+    pub(crate) fn with_triangles(self, triangle_view: wgpu::TextureView) -> Self {
+        Self {
+            triangle_layers: layers_of(&triangle_view),
+            triangle_view,
+            ..self
         }
     }
 }
@@ -153,6 +165,11 @@ impl VisibilityPass {
                 .then(|| ResolvePass::new(gpu, shader::RESOLVE_FURTHER, layouts, none, 1, false)),
             bins: Bins::new(gpu, 1),
         }
+    }
+
+    /// Takes over another size of the picture.
+    pub(crate) fn resize(&mut self, layout: EyeLayout) {
+        self.raster.resize(layout);
     }
 
     /// Makes the pipelines and the bins that `list` needs.

@@ -3,7 +3,10 @@
 
 @vertex
 fn vertex_pulled(@builtin(instance_index) drawn_index: u32, @builtin(vertex_index) at: u32) -> VisibleVertex {
-    let d = drawn_as(drawn_index);
+    return pulled_vertex(drawn_as(drawn_index), at);
+}
+
+fn pulled_vertex(d: Drawn, at: u32) -> VisibleVertex {
     let place = places[d.instance];
     let vertex = place.base_vertex + indices[at];
     let corner = corner_at(vertex);

@@ -33,22 +33,19 @@ impl VisiblePass {
             .features()
             .contains(wgpu::Features::PRIMITIVE_INDEX);
         let layouts = [frame_layout, material_layout, geometry_layout];
-        let (parts, layouts, vertex, fragment) = if numbered {
-            let vertex = VertexSource::Buffers("vertex_indexed");
-            (
-                shader::VISIBLE_INDEXED,
-                &layouts[..2],
-                vertex,
-                "visible_indexed",
-            )
+        let layered = eyes.0 == Submission::Multiview;
+        let (parts, vertex) = match (numbered, layered) {
+            (true, false) => (shader::VISIBLE_INDEXED, "vertex_indexed"),
+            (true, true) => (shader::VISIBLE_INDEXED_LAYERED, "vertex_indexed_layered"),
+            (false, false) => (shader::VISIBLE_PULLED, "vertex_pulled"),
+            (false, true) => (shader::VISIBLE_PULLED_LAYERED, "vertex_pulled_layered"),
+        };
+        let (layouts, vertex, fragment) = if numbered {
+            let vertex = VertexSource::Buffers(vertex);
+            (&layouts[..2], vertex, "visible_indexed")
         } else {
-            let vertex = VertexSource::Shader("vertex_pulled");
-            (
-                shader::VISIBLE_PULLED,
-                &layouts[..],
-                vertex,
-                "visible_pulled",
-            )
+            let vertex = VertexSource::Shader(vertex);
+            (&layouts[..], vertex, "visible_pulled")
         };
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "visibility",
@@ -60,6 +57,7 @@ impl VisiblePass {
             writes_depth: true,
             constants: eyes.0.constants().to_vec(),
             has_mask: true,
+            multiview_mask: eyes.0.multiview_mask(),
         });
         Self {
             pipelines,
@@ -79,6 +77,10 @@ impl VisiblePass {
             },
             ..key
         }
+    }
+
+    pub(super) fn resize(&mut self, layout: EyeLayout) {
+        self.eyes.1 = layout;
     }
 
     pub(super) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
@@ -108,13 +110,14 @@ impl VisiblePass {
             overwritten(&target.identity_view),
             overwritten(&visibility.triangle_view),
         ];
-        let mut pass = recorder.render_pass("geometry", &colors, Some(depth));
+        let (submission, layout) = &self.eyes;
+        let mask = submission.multiview_mask();
+        let mut pass = recorder.layered_pass("geometry", &colors, Some(depth), mask);
         if self.pulled {
             pass.set_bind_group(2, scene.geometry.group(), &[]);
         } else {
             scene.geometry.bind(&mut pass);
         }
-        let (submission, layout) = &self.eyes;
         for &Window { frame, part } in windows {
             for &drawn in submission.drawn() {
                 let window = layout.window_of(drawn, Window { frame, part });

@@ -7,7 +7,10 @@ use bytemuck::{Pod, Zeroable};
 use super::bins::{BIN_BYTES, Bins};
 use super::{Evaluation, VisibilityTargets, with_mask};
 use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_read, uniform};
+use crate::gpu::{
+    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, uniform,
+    written_layers,
+};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
 use crate::shader;
@@ -55,17 +58,14 @@ impl ResolvePass {
         rated: bool,
     ) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let mut types = vec![
-            uint,
-            uint,
+            words,
+            words,
             storage_read(),
             storage_read(),
             uniform(),
-            wgpu::BindingType::StorageTexture {
-                access: wgpu::StorageTextureAccess::WriteOnly,
-                format: SURFACE_FORMAT,
-                view_dimension: wgpu::TextureViewDimension::D2,
-            },
+            written_layers(SURFACE_FORMAT),
         ];
         if rated {
             types.push(uint);
@@ -145,12 +145,12 @@ impl ResolvePass {
             &with_mask(
                 at,
                 &[
-                    wgpu::BindingResource::TextureView(&target.identity_view),
-                    wgpu::BindingResource::TextureView(&visibility.triangle_view),
+                    wgpu::BindingResource::TextureView(&target.identity_layers),
+                    wgpu::BindingResource::TextureView(&visibility.triangle_layers),
                     bins.0.as_entire_binding(),
                     visibility.pixels.as_entire_binding(),
                     uniform.as_entire_binding(),
-                    wgpu::BindingResource::TextureView(&target.surface_view),
+                    wgpu::BindingResource::TextureView(&target.surface_layers),
                 ],
             ),
         );

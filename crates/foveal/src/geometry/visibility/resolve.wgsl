@@ -23,12 +23,12 @@ struct Windows {
     parts: array<vec4u, 8>,
 }
 
-@group(3) @binding(0) var identity: texture_2d<u32>;
-@group(3) @binding(1) var triangles: texture_2d<u32>;
+@group(3) @binding(0) var identity: texture_2d_array<u32>;
+@group(3) @binding(1) var triangles: texture_2d_array<u32>;
 @group(3) @binding(2) var<storage, read> bins: array<Bin>;
 @group(3) @binding(3) var<storage, read> pixels: array<u32>;
 @group(3) @binding(4) var<uniform> windows: Windows;
-@group(3) @binding(5) var surface: texture_storage_2d<rgba32uint, write>;
+@group(3) @binding(5) var surface: texture_storage_2d_array<rgba32uint, write>;
 
 // The frame around a texel.
 fn frame_around(texel: vec2u) -> vec4f {
@@ -57,8 +57,8 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let pixel = (middle_of(texel) - around.xy) / scale;
     let ndc = ndc_of(in_eye(pixel));
     let step = vec2f(2.0, -2.0) / (frame.size * scale) * vec2f(extent);
-    let instance = textureLoad(identity, texel, 0).x - 1u;
-    let triangle = textureLoad(triangles, texel, 0).x;
+    let instance = load_words(identity, texel).x - 1u;
+    let triangle = load_words(triangles, texel).x;
     let a = attributes_at(frame.views[view_at(pixel)].clip_from_world, instance, triangle, ndc, step);
     uv_right = a.uv_right;
     uv_down = a.uv_down;
@@ -68,10 +68,11 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         let e = octahedral_from_unit(unit_or(a.face, m.surface.normal));
         words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
     }
-    let last = textureDimensions(identity);
-    for (var y = texel.y; y < min(texel.y + extent.y, last.y); y++) {
-        for (var x = texel.x; x < min(texel.x + extent.x, last.x); x++) {
-            textureStore(surface, vec2u(x, y), words);
+    let end = whole_size(identity);
+    for (var y = texel.y; y < min(texel.y + extent.y, end.y); y++) {
+        for (var x = texel.x; x < min(texel.x + extent.x, end.x); x++) {
+            let at = in_layers(textureDimensions(surface).x, vec2u(x, y));
+            textureStore(surface, at.xy, at.z, words);
         }
     }
 }

@@ -4,8 +4,8 @@
 override BLINN_PHONG: bool = false;
 override BRUTE: bool = false;
 
-@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
-@group(1) @binding(1) var gbuffer_depth: texture_depth_2d;
+@group(1) @binding(0) var gbuffer_surface: texture_2d_array<u32>;
+@group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;
 
 fn shade(texel: vec2u) -> vec4f {
     let at = in_eye(vec2f(texel) + 0.5) / frame.size;

@@ -11,8 +11,8 @@ fn typical_candidate(block: vec2u, level: u32) -> u32 {
     var normal_sum = vec3f(0.0);
     for (var i = 0u; i < 5u; i++) {
         let texel = sample_texel(block, level, i);
-        depths[i] = textureLoad(gbuffer_depth, texel, 0);
-        normals[i] = unit_from_octahedral(unpack2x16snorm(textureLoad(gbuffer_surface, texel, 0).y));
+        depths[i] = load_depth(gbuffer_depth, texel);
+        normals[i] = unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, texel).y));
         depth_sum += depths[i];
         normal_sum += normals[i];
     }

@@ -40,8 +40,8 @@ struct Listed {
 }
 
 @group(1) @binding(1) var<uniform> rates: Rates;
-@group(1) @binding(2) var identity: texture_2d<u32>;
-@group(1) @binding(3) var depth: texture_depth_2d;
+@group(1) @binding(2) var identity: texture_2d_array<u32>;
+@group(1) @binding(3) var depth: texture_depth_2d_array;
 @group(1) @binding(4) var known: texture_2d<u32>;
 @group(1) @binding(5) var mask: texture_storage_2d<r32uint, write>;
 @group(1) @binding(6) var<storage, read_write> listed: Listed;
@@ -143,7 +143,7 @@ fn surface_limit(first: vec2u) -> u32 {
     let texels = array(first, min(first + vec2u(1u, 0u), last), min(first + vec2u(0u, 1u), last), min(first + 1u, last));
     var who: array<u32, 4>;
     for (var i = 0u; i < 4u; i++) {
-        who[i] = textureLoad(identity, texels[i], 0).x;
+        who[i] = load_words(identity, texels[i]).x;
     }
     let wide = u32(who[0] == who[1] && who[2] == who[3]);
     let tall = u32(who[0] == who[2] && who[1] == who[3]);
@@ -151,10 +151,10 @@ fn surface_limit(first: vec2u) -> u32 {
     if limit == 0u || any(texels[3] != first + 1u) || who[0] == 0u || who[3] == 0u {
         return limit;
     }
-    let p = position_of(texels[0], textureLoad(depth, texels[0], 0));
-    let q = position_of(texels[1], textureLoad(depth, texels[1], 0));
-    let r = position_of(texels[2], textureLoad(depth, texels[2], 0));
-    let s = position_of(texels[3], textureLoad(depth, texels[3], 0));
+    let p = position_of(texels[0], load_depth(depth, texels[0]));
+    let q = position_of(texels[1], load_depth(depth, texels[1]));
+    let r = position_of(texels[2], load_depth(depth, texels[2]));
+    let s = position_of(texels[3], load_depth(depth, texels[3]));
     let upper = cross(q - p, r - p);
     let lower = cross(r - s, q - s);
     let flat = dot(upper, lower) >= FLAT * length(upper) * length(lower);
@@ -201,7 +201,7 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
     tile_who[at] = 0xffffffffu;
     if inside {
         let found = textureLoad(known, quad, 0);
-        let who = textureLoad(identity, first, 0).xy;
+        let who = load_words(identity, first).xy;
         let motion = select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
         let probed = (quad.x & rates.probe_mask) == rates.probe_x && (quad.y & rates.probe_mask) == rates.probe_y;
         notes = select(0u, RATE_PROBED, probed) | select(RATE_UNKNOWN, 0u, found.w != 0u);

@@ -6,7 +6,8 @@ use super::VariableTargets;
 use super::probes::Probe;
 use super::targets::{KNOWN_FORMAT, MASK_FORMAT};
 use crate::gpu::{
-    Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
+    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
+    uniform,
 };
 use crate::rate::WishUniform;
 use crate::recorder::Recorder;
@@ -66,18 +67,19 @@ impl RatePasses {
         };
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
-        let depth = sampled(wgpu::TextureSampleType::Depth);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
+        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let (read, write) = (storage_read(), storage_write());
         let known = written(KNOWN_FORMAT);
         let mask = written(MASK_FORMAT);
         let radiance = written(RADIANCE_FORMAT);
         let reproject_layout = layout(
             "reprojection",
-            &[uniform(), uint, depth, uint, uint, float, known],
+            &[uniform(), words, depth, uint, uint, float, known],
         );
         let find_layout = layout(
             "rate mask",
-            &[uniform(), uniform(), uint, depth, uint, mask, write, write],
+            &[uniform(), uniform(), words, depth, uint, mask, write, write],
         );
         let size_layout = layout("rate dispatch", &[write]);
         let shade_layout = layout("rate samples", &[read, read, uint, radiance]);
@@ -176,8 +178,8 @@ impl RatePasses {
             &self.reproject_layout,
             &[
                 self.rates.as_entire_binding(),
-                view(&gbuffer.identity_view),
-                view(&gbuffer.depth_view),
+                view(&gbuffer.identity_layers),
+                view(&gbuffer.depth_layers),
                 view(before),
                 view(&t.mask),
                 view(finished),
@@ -190,8 +192,8 @@ impl RatePasses {
             &[
                 self.wish.as_entire_binding(),
                 self.rates.as_entire_binding(),
-                view(&gbuffer.identity_view),
-                view(&gbuffer.depth_view),
+                view(&gbuffer.identity_layers),
+                view(&gbuffer.depth_layers),
                 view(now),
                 view(&t.mask),
                 t.listed.as_entire_binding(),

@@ -20,8 +20,8 @@ struct Rates {
 }
 
 @group(1) @binding(0) var<uniform> rates: Rates;
-@group(1) @binding(1) var identity: texture_2d<u32>;
-@group(1) @binding(2) var depth: texture_depth_2d;
+@group(1) @binding(1) var identity: texture_2d_array<u32>;
+@group(1) @binding(2) var depth: texture_depth_2d_array;
 // Of the frame before: what was known, at which rate it was shaded, its picture.
 @group(1) @binding(3) var before: texture_2d<u32>;
 @group(1) @binding(4) var mask_before: texture_2d<u32>;
@@ -35,7 +35,7 @@ const SAME_DISTANCE: f32 = 0.02;
 
 // Rec. 709 luma of display values; the picture may have another size than what is shaded.
 fn luma_at(texel: vec2u) -> f32 {
-    let shown = texel * textureDimensions(picture_before) / textureDimensions(identity);
+    let shown = texel * textureDimensions(picture_before) / vec2u(frame.target_size);
     return dot(textureLoad(picture_before, shown, 0).rgb, vec3f(0.2126, 0.7152, 0.0722));
 }
 
@@ -57,8 +57,8 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     if any(texel >= picture.end) {
         return;
     }
-    let who = textureLoad(identity, texel, 0).xy;
-    let d = textureLoad(depth, texel, 0);
+    let who = load_words(identity, texel).xy;
+    let d = load_depth(depth, texel);
     let pixel = vec2f(texel) + 0.5;
     var distance = 0.0;
     var expected = 0.0;

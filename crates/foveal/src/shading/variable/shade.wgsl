@@ -13,17 +13,17 @@ override ONE_SURFACE: bool = false;
 // those of the centre. A single pixel is lit to the bit as in full shading, by the same instructions: samples of all
 // sizes lie side by side in a list, and a branch would make a group of lanes light twice.
 fn shade_together(first: vec2u, end: vec2u) -> vec4f {
-    var depth = textureLoad(gbuffer_depth, first, 0);
-    var sum = unpack_surface(textureLoad(gbuffer_surface, first, 0), vec3f(0.0));
+    var depth = load_depth(gbuffer_depth, first);
+    var sum = unpack_surface(load_words(gbuffer_surface, first), vec3f(0.0));
     let extent = end - first;
     let count = extent.x * extent.y;
     for (var y = first.y; y < end.y; y++) {
         // The first pixel is in the sums already.
         for (var x = first.x + u32(y == first.y); x < end.x; x++) {
             let texel = vec2u(x, y);
-            depth += textureLoad(gbuffer_depth, texel, 0);
+            depth += load_depth(gbuffer_depth, texel);
             if !ONE_SURFACE {
-                let one = unpack_surface(textureLoad(gbuffer_surface, texel, 0), vec3f(0.0));
+                let one = unpack_surface(load_words(gbuffer_surface, texel), vec3f(0.0));
                 sum.normal += one.normal;
                 sum.base_color += one.base_color;
                 sum.metallic += one.metallic;

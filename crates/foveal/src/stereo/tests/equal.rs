@@ -11,7 +11,7 @@ use crate::{
 };
 
 /// Differing pixels of two pictures and the largest difference of a channel.
-fn difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> (usize, u8) {
+pub(super) fn difference(a: &[[u8; 4]], b: &[[u8; 4]]) -> (usize, u8) {
     let pairs = || a.iter().zip(b).filter(|(a, b)| a != b);
     let largest = pairs()
         .flat_map(|(a, b)| a.iter().zip(b).map(|(a, b)| a.abs_diff(*b)))
@@ -88,13 +88,23 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
         for (name, mono) in pipelines(&small(width, height)) {
             let one: Vec<[u8; 4]> =
                 bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono)));
+            // What both eyes see alike is drawn once, whatever the way.
+            let once = Settings {
+                stereo: Stereo::Instanced,
+                ipd: 0.0,
+                show: crate::Output::SideBySide,
+                ..mono.clone()
+            };
+            for both in halves(&scene, camera, &once) {
+                assert_eq!(difference(&one, &both), (0, 0), "{}, {name}", scene.name);
+            }
             for (stereo, eye_clipping) in WAYS {
+                // Another gaze has its own picture.
                 let settings = Settings {
                     stereo,
                     eye_clipping,
-                    ipd: 0.0,
-                    show: crate::Output::SideBySide,
-                    ..mono.clone()
+                    gaze_shift: [0.0, f32::MIN_POSITIVE],
+                    ..once.clone()
                 };
                 for (eye, both) in halves(&scene, camera, &settings).iter().enumerate() {
                     let (differing, by) = difference(&one, both);
@@ -108,6 +118,74 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
                         "{what}: {differing} pixels by {by}"
                     );
                 }
+            }
+        }
+    }
+}
+
+#[test]
+fn eyes_that_see_alike_are_drawn_once_whatever_is_asked_for() {
+    let scene = generate::alpha();
+    let camera = &scene.cameras[0];
+    let flat: Vec<[u8; 4]> =
+        bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &small(150, 101))));
+    for stereo in [
+        Stereo::Auto,
+        Stereo::TwoPass,
+        Stereo::Instanced,
+        Stereo::Multiview,
+    ] {
+        for eye_tangents in ["", "-1,1,-0.8,0.6,-1,1,-0.8,0.6"] {
+            let settings = Settings {
+                stereo,
+                ipd: 0.0,
+                eye_tangents: eye_tangents.to_owned(),
+                ..two_eyes(150, 101)
+            };
+            let [left, right] = halves(&scene, camera, &settings);
+            assert!(left == right, "{stereo:?}");
+            assert!(!eye_tangents.is_empty() || left == flat, "{stereo:?}");
+            let stats = rendered(&scene, camera, &settings).redraw(camera);
+            assert_eq!(stats.shaded_samples, 150 * 101);
+            assert_eq!(stats.stereo.expect("two eyes").mode, "once");
+        }
+    }
+    let apart = Settings {
+        eye_tangents: "-1,1,-0.8,0.6,-1,0.9,-0.8,0.6".to_owned(),
+        ipd: 0.0,
+        ..two_eyes(150, 101)
+    };
+    let [left, right] = halves(&scene, camera, &apart);
+    assert!(left != right, "another frustum sees something else");
+}
+
+#[test]
+fn another_size_changes_no_way() {
+    let scene = generate::alpha();
+    let camera = &scene.cameras[0];
+    for (stereo, eye_clipping) in WAYS.into_iter().chain([(Stereo::Off, EyeClipping::Auto)]) {
+        for geometry in [crate::Geometry::Gbuffer, crate::Geometry::Visibility] {
+            let settings = Settings {
+                stereo,
+                eye_clipping,
+                geometry,
+                ..two_eyes(120, 90)
+            };
+            let expected = picture(&rendered(&scene, camera, &settings));
+            for first in [(200, 60), (60, 120)] {
+                let mut renderer = rendered(
+                    &scene,
+                    camera,
+                    &Settings {
+                        width: first.0,
+                        height: first.1,
+                        ..settings.clone()
+                    },
+                );
+                let resized = renderer.set_settings(&settings);
+                pollster::block_on(resized).expect("settings fit");
+                renderer.redraw(camera);
+                assert!(picture(&renderer) == expected, "{stereo:?} from {first:?}");
             }
         }
     }

@@ -2,6 +2,7 @@
 
 mod equal;
 mod lens;
+mod multiview;
 mod parallax;
 mod present;
 

@@ -1,0 +1,66 @@
+// A small scene on which the ways of submission are tried: draws of a few triangles each that lie everywhere and beyond
+// every border. Rust: `stereo/trial.rs`.
+
+// Triangles of a draw.
+const TRIANGLES: u32 = 128u;
+
+struct Corner {
+    @invariant @builtin(position) clip: vec4f,
+    // Of the triangle, from 1 on.
+    @location(0) @interpolate(flat) number: u32,
+    // How far inside the eye's own half of the target; negative beyond the middle.
+    @location(1) inside_own_half: f32,
+}
+
+// Wang 2007.
+fn hash(value: u32) -> u32 {
+    var h = (value ^ 61u) ^ (value >> 16u);
+    h *= 9u;
+    h ^= h >> 4u;
+    h *= 0x27d4eb2du;
+    return h ^ (h >> 15u);
+}
+
+// -1 to 1.
+fn spread(value: u32) -> f32 {
+    return f32(hash(value) >> 8u) / 8388608.0 - 1.0;
+}
+
+// As an eye sees it.
+fn corner(drawn: u32, vertex: u32, eye: u32) -> Corner {
+    let triangle = drawn * TRIANGLES + vertex / 3u;
+    let middle = 1.2 * vec2f(spread(triangle * 3u), spread(triangle * 3u + 1u));
+    let depth = 0.5 + 0.49 * spread(triangle * 3u + 2u);
+    let seed = (triangle * 3u + vertex % 3u) * 2u + 0x10000000u;
+    let away = 0.25 * vec2f(spread(seed), spread(seed + 1u));
+    let shift = select(0.3, -0.3, eye == 1u) * depth;
+    return Corner(vec4f(middle + away + vec2f(shift, 0.0), depth, 1.0), triangle + 1u, 1.0);
+}
+
+// One eye alone: the number's highest bit tells which.
+@vertex
+fn eye_alone(@builtin(instance_index) drawn: u32, @builtin(vertex_index) vertex: u32) -> Corner {
+    return corner(drawn & 0x7fffffffu, vertex, drawn >> 31u);
+}
+
+fn beside(drawn: u32, vertex: u32) -> Corner {
+    let eye = drawn & 1u;
+    var out = corner(drawn >> 1u, vertex, eye);
+    out.inside_own_half = 1.0 + select(-out.clip.x, out.clip.x, eye == 1u);
+    out.clip.x = 0.5 * out.clip.x + select(-0.5, 0.5, eye == 1u);
+    return out;
+}
+
+// Both eyes as instances in turn, side by side.
+@vertex
+fn eyes_beside(@builtin(instance_index) drawn: u32, @builtin(vertex_index) vertex: u32) -> Corner {
+    return beside(drawn, vertex);
+}
+
+@fragment
+fn number(in: Corner) -> @location(0) u32 {
+    if in.inside_own_half < 0.0 {
+        discard;
+    }
+    return in.number;
+}
