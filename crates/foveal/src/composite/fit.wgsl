@@ -146,6 +146,20 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
     return clamp(fitted, max(least - slack, vec3f(0.0)), most + slack);
 }
 
+// Where the tile to the right of one (`axis` 0) or below it has another size, nobody fits a patch of this size there, but
+// this tile looks for its raises there: an earlier frame's must not be found.
+fn clear_beside(own: Tile, axis: u32) {
+    var block = own.block;
+    block[axis] += 1u;
+    let first = block << vec2u(own.level);
+    let inside = first[axis] < picture_of(tile_low(own)).end[axis];
+    if inside && tile_at(first).level != own.level {
+        let number = patch_index(block, own.level);
+        patches[2u * number + 1u] = vec4u(0u);
+        upper_raises[number] = 0u;
+    }
+}
+
 @compute @workgroup_size(64)
 fn fit_patches(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let dispatch = dispatches[current.level];
@@ -172,6 +186,8 @@ fn fit_patches(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
     patches[2u * number] = packed.part_0;
     patches[2u * number + 1u] = packed.part_1;
     upper_raises[number] = packed.part_2;
+    clear_beside(own, 0u);
+    clear_beside(own, 1u);
 
     if own.level >= QUAD_LEVEL || own.has_edge {
         quad_tiles[atomicAdd(&quads[0].count, 1u)] = pack_quad(own);

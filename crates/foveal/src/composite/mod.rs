@@ -12,6 +12,8 @@ pub(crate) use patches::{PatchTargets, check_limits};
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod twin;
 
 use smooth::SmoothComposite;
 use taps::TapComposite;

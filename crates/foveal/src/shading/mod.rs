@@ -10,6 +10,8 @@ mod samples;
 pub(crate) mod twin;
 mod variable;
 
+#[cfg(test)]
+pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
     CoarseShading, CoarseTargets, CountPass, LevelNumbers, STENCIL_FORMAT, stencil_state,
 };

@@ -14,6 +14,8 @@ mod lists;
 mod stencil;
 mod targets;
 
+#[cfg(test)]
+pub(crate) use block::sample_texel;
 pub(crate) use choice::{BackendChoice, UsedBackend};
 pub(crate) use compute::ComputeBackend;
 pub(crate) use count::CountPass;

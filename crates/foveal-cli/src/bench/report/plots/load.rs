@@ -114,7 +114,7 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
         f.svg_figure(
             &format!("{at}/rows/{}/{}", dearest.row, dearest_cost),
             1.0,
-            1
+            if dearest.cost < 10.0 { 2 } else { 1 }
         ),
         FLOOR + 34.0,
         load.title,
