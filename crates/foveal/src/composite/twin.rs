@@ -186,7 +186,8 @@ impl Inputs {
         for (_, tile) in around {
             let sample = self.sample(tile);
             let is_own = tile.block == own.block && tile.level == own.level;
-            if !(all_pure || is_own) && !same_surface(&own_seen, &self.seen(sample.texel)) {
+            let counts = all_pure || is_own || same_surface(&own_seen, &self.seen(sample.texel));
+            if !counts {
                 all_touch = false;
                 continue;
             }
