@@ -649,6 +649,14 @@ impl Renderer {
         self.redraw(camera)
     }
 
+    /// Leaves anti-aliasing room for one entry or, over a visibility buffer, one row of them.
+    pub(crate) fn cut_room_for_edges(&mut self) {
+        let settings = &self.stages.settings;
+        let rows = settings.height;
+        let targets = crate::antialias::SampleTargets::with_room(&self.gpu, settings, rows, 1);
+        self.stages.targets.samples = Some(targets);
+    }
+
     /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.
     pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
         let Self {

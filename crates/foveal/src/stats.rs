@@ -131,6 +131,9 @@ pub struct FrameStats {
     pub shaded_samples: u64,
     /// Share of the pixels that anti-aliasing shades more than once; 0 without anti-aliasing.
     pub edge_fraction: f64,
+    /// Surfaces that anti-aliasing found no room for: their pixels show their largest surface alone. The next frame has room
+    /// for them, unless the device has none.
+    pub surfaces_left_out: u64,
     /// Bytes of all targets that depend on the frame's size: G-buffers, radiance, picture, lists.
     pub target_bytes: u64,
     /// With coarse shading.

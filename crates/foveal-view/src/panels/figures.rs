@@ -40,6 +40,10 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             let edges = 100.0 * stats.edge_fraction;
             figure(ui, "Edge pixels", format!("{edges:.2} %"));
         }
+        if stats.surfaces_left_out > 0 {
+            let left_out = grouped(stats.surfaces_left_out);
+            figure(ui, "Surfaces left out", left_out);
+        }
         let bytes = stats.target_bytes as f64 / f64::from(1 << 20);
         figure(ui, "Targets", format!("{bytes:.1} MiB"));
         if let Some(coarse) = &stats.coarse {

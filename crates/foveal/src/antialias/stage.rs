@@ -25,6 +25,8 @@ pub(crate) struct EdgeCounts {
     pub(crate) edge_pixels: u64,
     /// Evaluations besides the ordinary path's.
     pub(crate) evaluations: u64,
+    /// Entries that were wanted, whether there was room for them or not.
+    pub(crate) entries: u64,
 }
 
 /// Fills the G-buffer from sub-samples, and shades what one evaluation per pixel leaves out.
@@ -240,6 +242,7 @@ impl AntialiasStage {
         let pixels = u64::from(size.width) * u64::from(size.height);
         EdgeCounts {
             edge_pixels: u64::from(queue.edge_pixels),
+            entries: u64::from(queue.total),
             // The device's own sum may have wrapped around.
             evaluations: match self.edges {
                 Edges::All => pixels * u64::from(t.pattern.count()),

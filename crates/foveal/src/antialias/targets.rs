@@ -67,6 +67,8 @@ pub(crate) struct SampleTargets {
     empty_queue: wgpu::Buffer,
     number: wgpu::Buffer,
     bytes: u64,
+    /// Rows of a band.
+    rows: u32,
 }
 
 impl SampleTargets {
@@ -81,6 +83,30 @@ impl SampleTargets {
 
     /// The targets for bands of `rows` rows.
     pub(crate) fn in_bands(gpu: &Gpu, settings: &Settings, rows: u32) -> Self {
+        let (width, height) = EyeLayout::of(settings).target_size();
+        let pixels = u64::from(width) * u64::from(height);
+        let room = if by_triangles(settings) {
+            FurtherTargets::usual_room(width, height)
+        } else {
+            // One further surface per pixel on average is more than most frames show.
+            pixels
+        };
+        Self::with_room(gpu, settings, rows, room)
+    }
+
+    /// Entries that there is room for.
+    pub(crate) fn room(&self) -> u64 {
+        self.entries.size() / ENTRY_BYTES
+    }
+
+    /// Targets with room for `wanted` entries and some more, where the device can have them and these are fewer.
+    pub(crate) fn grown(&self, gpu: &Gpu, settings: &Settings, wanted: u64) -> Option<Self> {
+        let grown = Self::with_room(gpu, settings, self.rows, wanted + wanted / 4);
+        (grown.room() > self.room()).then_some(grown)
+    }
+
+    /// The targets for bands of `rows` rows and at least `room` entries, as far as the device can have them.
+    pub(crate) fn with_room(gpu: &Gpu, settings: &Settings, rows: u32, room: u64) -> Self {
         let (width, height) = EyeLayout::of(settings).target_size();
         let pattern = Pattern::of(settings);
         let (texels_x, texels_y) = pattern.texels(width, rows);
@@ -113,9 +139,8 @@ impl SampleTargets {
         gpu.queue
             .write_buffer(&empty_queue, 0, bytemuck::bytes_of(&QueueUniform::EMPTY));
         let pixels = u64::from(width) * u64::from(height);
-        // One further surface per pixel on average is more than any frame shows.
-        let further = by_triangles(settings).then(|| FurtherTargets::new(gpu, width, height));
-        let room = further.as_ref().map_or(pixels, FurtherTargets::entries);
+        let further = by_triangles(settings).then(|| FurtherTargets::new(gpu, width, height, room));
+        let room = further.as_ref().map_or(room, FurtherTargets::entries);
         let entry_bytes = ENTRY_BYTES * room.min(most_entries(&gpu.device.limits()));
         Self {
             bands: bands.collect(),
@@ -135,6 +160,7 @@ impl SampleTargets {
                 + further.as_ref().map_or(0, FurtherTargets::bytes),
             further,
             pattern,
+            rows,
         }
     }
 

@@ -359,3 +359,24 @@ fn assert_fine_where_the_level_is_0(antialiased: &Settings, coarse: &Settings) {
         "{fine} fine edges, {kept} coarse ones"
     );
 }
+
+#[test]
+fn surfaces_without_room_are_counted_and_have_it_in_the_next_frame() {
+    let scene = generate::cornell();
+    for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+        let settings = Settings {
+            geometry,
+            ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
+        };
+        let camera = &scene.cameras[0];
+        let mut renderer = rendered(&scene, camera, &settings);
+        let whole = picture(&renderer);
+        renderer.cut_room_for_edges();
+        let short = renderer.redraw(camera);
+        assert!(short.surfaces_left_out > 0, "{geometry:?}");
+        assert_ne!(picture(&renderer), whole, "{geometry:?}");
+        let enough = renderer.redraw(camera);
+        assert_eq!(enough.surfaces_left_out, 0, "{geometry:?}");
+        assert_eq!(picture(&renderer), whole, "{geometry:?}");
+    }
+}

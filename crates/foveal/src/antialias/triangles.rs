@@ -57,11 +57,17 @@ const NO_CANDIDATES: [u32; 4] = [0, 1, 1, 0];
 const FURTHER_BYTES: u64 = 16 + 8 + 4 + 4 + 4;
 
 impl FurtherTargets {
-    /// For a picture of this size: room for one further surface in every fourth pixel, more for a small one. A
-    /// small picture of a detailed scene has one in every fifth; where the room ends, a pixel shows its largest
-    /// surface alone.
-    pub(super) fn new(gpu: &Gpu, width: u32, height: u32) -> Self {
-        let size = (width, rows_of(height));
+    /// Room for one further surface in every fourth pixel, more for a small picture: one of a detailed scene has one in
+    /// every fifth. Where the room ends, a pixel shows its largest surface alone, until there is more.
+    pub(super) fn usual_room(width: u32, height: u32) -> u64 {
+        u64::from(width) * u64::from(height.div_ceil(4).max((2 * height).min(128)))
+    }
+
+    /// For a picture of this size, with room for at least so many entries, as far as the device's textures go.
+    pub(super) fn new(gpu: &Gpu, width: u32, height: u32, room: u64) -> Self {
+        let most = gpu.device.limits().max_texture_dimension_2d;
+        let rows = room.div_ceil(width.into()).clamp(1, most.into()) as u32;
+        let size = (width, rows);
         let written = wgpu::TextureUsages::STORAGE_BINDING;
         let none = wgpu::TextureUsages::empty();
         let buffer = |label, usage| {
@@ -106,11 +112,6 @@ impl FurtherTargets {
         let pixels = u64::from(size.width) * u64::from(size.height);
         self.entries() * FURTHER_BYTES + pixels * 8
     }
-}
-
-/// Rows of entries for a picture of `height` rows.
-fn rows_of(height: u32) -> u32 {
-    height.div_ceil(4).max((2 * height).min(128))
 }
 
 /// A band's sub-samples without surfaces.

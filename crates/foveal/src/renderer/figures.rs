@@ -184,6 +184,8 @@ impl Renderer {
             _ => u64::from(lit) * pixels,
         };
         let mut edge_fraction = 0.0;
+        let mut surfaces_left_out = 0;
+        let mut more_samples = None;
         if let (Some(antialias), Some(bytes)) = (&stages.antialias, &counts.edges) {
             let counts = AntialiasStage::counts(antialias, bytes, &stages.targets);
             if !antialias.needs_ordinary() && coarse.is_none() {
@@ -191,10 +193,20 @@ impl Renderer {
             }
             shaded_samples += u64::from(lit) * counts.evaluations;
             edge_fraction = counts.edge_pixels as f64 / pixels as f64;
+            if let Some(samples) = &stages.targets.samples {
+                surfaces_left_out = counts.entries.saturating_sub(samples.room());
+                if surfaces_left_out > 0 {
+                    more_samples = samples.grown(&self.gpu, &stages.settings, counts.entries);
+                }
+            }
+        }
+        if more_samples.is_some() {
+            self.stages.targets.samples = more_samples;
         }
         FrameStats {
             shaded_samples,
             edge_fraction,
+            surfaces_left_out,
             coarse,
             variable,
             gpu_ms,
