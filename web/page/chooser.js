@@ -3,20 +3,27 @@
 import { writeLink } from './link.js';
 import { $, page, redraw, say } from './page.js';
 import { control, fillPanel } from './panel.js';
-import { TECHNIQUES } from './techniques.js';
 
 /** Frames after a change until variable shading has measured every place. */
 const SETTLING_FRAMES = 8;
 
+/** The next frame is drawn with the settings as they are now. */
 export function applySettings() {
+  page.unapplied = true;
+  redraw();
+  writeLink();
+}
+
+/** Tells the viewer; for whoever has it alone. */
+export function tellSettings() {
+  if (!page.unapplied) return;
+  page.unapplied = false;
   const { reference, chosen } = page.settings.sides;
   try {
     page.viewer.set_settings(JSON.stringify(reference), JSON.stringify(chosen));
   } catch (cause) {
     say(String(cause));
   }
-  redraw();
-  writeLink();
 }
 
 /** How often a picture is drawn that nobody changes any more. */
@@ -100,7 +107,7 @@ function nameSides() {
 }
 
 export function wireChooser() {
-  for (const technique of TECHNIQUES) {
+  for (const technique of page.techniques) {
     const button = document.createElement('button');
     button.type = 'button';
     button.setAttribute('role', 'radio');
@@ -112,10 +119,10 @@ export function wireChooser() {
   $('techniques').addEventListener('keydown', (event) => {
     const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
     if (!step) return;
-    const buttons = [...$('techniques').children];
-    const next = (buttons.findIndex((b) => b.dataset.key === page.technique.key) + step + buttons.length) % buttons.length;
-    useTechnique(TECHNIQUES.find((t) => t.key === buttons[next].dataset.key));
-    buttons[next].focus();
+    const count = page.techniques.length;
+    const next = (page.techniques.indexOf(page.technique) + step + count) % count;
+    useTechnique(page.techniques[next]);
+    $('techniques').children[next].focus();
     event.preventDefault();
   });
   const tabs = [$('tab-chosen'), $('tab-reference')];

@@ -1,7 +1,7 @@
 // The clock of frames: draws when something changed, and keeps going when something fails.
 
 import { Camera } from './camera.js';
-import { applySettings, framesToSettle } from './chooser.js';
+import { applySettings, framesToSettle, tellSettings } from './chooser.js';
 import { showFigures, showFooting } from './figures.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
@@ -30,6 +30,7 @@ async function drawFrame() {
     canvas.width = wish.width;
     canvas.height = wish.height;
   }
+  tellSettings();
   page.unsettled = page.stale ? framesToSettle() : page.unsettled;
   page.stale = false;
   if (page.moved) writeLink();

@@ -1,7 +1,6 @@
 // The address holds what is shown: scene, technique, settings, divider, resolution, place.
 
 import { $, page, say } from './page.js';
-import { TECHNIQUES } from './techniques.js';
 
 export function writeLink() {
   const link = new URLSearchParams();
@@ -22,8 +21,8 @@ export function writeLink() {
 /** Takes over the address's wishes; tells which place it names for the camera. */
 export function readLink() {
   const link = new URLSearchParams(location.hash.slice(1));
-  const technique = TECHNIQUES.find((t) => t.key === link.get('technique'));
-  page.technique = technique ?? TECHNIQUES[0];
+  const technique = page.techniques.find((t) => t.key === link.get('technique'));
+  page.technique = technique ?? page.techniques[0];
   page.settings.use(page.technique);
   const unread = page.settings.read(link);
   const split = Number(link.get('split') ?? 0.5);

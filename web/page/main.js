@@ -1,6 +1,5 @@
 // The page: loads the renderer, makes the controls, and starts the clock of frames.
 
-import load, { Viewer, default_settings, settings_table } from './foveal_web.js';
 import { showTechnique, wireChooser } from './chooser.js';
 import { placeSplit, wireControls } from './controls.js';
 import { openViewer, turn } from './frames.js';
@@ -9,22 +8,53 @@ import { $, page } from './page.js';
 import { showScene, wireScenes } from './scenes.js';
 import { Settings } from './settings.js';
 import { showStills } from './stills.js';
+import { TECHNIQUES } from './techniques.js';
 
-async function begin() {
-  if (!navigator.gpu) throw new Error('the browser does not offer it');
-  page.memory = (await load()).memory;
-  page.Viewer = Viewer;
+/** The renderer for WebGPU, or the reduced one for WebGL 2; tells its module. */
+async function begin(reduced) {
+  if (reduced) {
+    if (!document.createElement('canvas').getContext('webgl2')) throw new Error('no WebGL 2');
+  } else if (!(await navigator.gpu?.requestAdapter())) {
+    throw new Error('no WebGPU');
+  }
+  const renderer = await import(reduced ? './webgl2/foveal_web.js' : './foveal_web.js');
+  page.memory = (await renderer.default()).memory;
+  page.Viewer = renderer.Viewer;
   await openViewer();
+  page.reduced = reduced;
+  return renderer;
+}
+
+/** The best that this browser can do; `null` where it can draw nothing. */
+async function beginSomehow() {
+  page.reducedOnPurpose = new URLSearchParams(location.hash.slice(1)).get('backend') === 'webgl2';
+  const causes = [];
+  for (const reduced of page.reducedOnPurpose ? [true] : [false, true]) {
+    try {
+      const renderer = await begin(reduced);
+      if (reduced) showReduced(causes);
+      return renderer;
+    } catch (cause) {
+      causes.push(cause?.message ?? String(cause));
+    }
+  }
+  showStills(causes.join(', '));
+  return null;
+}
+
+/** Says that it is the reduced set, and what is missing. */
+function showReduced(causes) {
+  page.techniques = TECHNIQUES.filter((t) => t.reduced);
+  const missing = TECHNIQUES.filter((t) => !t.reduced && !t.sum).map((t) => t.name.toLowerCase());
+  const why = causes.length ? `This browser offers ${causes.join(', ')}` : 'As the link asks';
+  $('reduced').textContent = `${why}: a reduced renderer draws with WebGL 2. Every pixel is lit, for one eye or two, with or without culling. Missing: ${missing.join(', ')}, the views, and times per pass.`;
+  $('reduced').hidden = false;
 }
 
 async function main() {
-  try {
-    await begin();
-  } catch (cause) {
-    showStills(cause?.message ?? cause);
-    return;
-  }
-  page.settings = new Settings(JSON.parse(default_settings()), JSON.parse(settings_table()));
+  const renderer = await beginSomehow();
+  if (!renderer) return;
+  page.settings = new Settings(JSON.parse(renderer.default_settings()), JSON.parse(renderer.settings_table()));
   wireScenes();
   wireChooser();
   wireControls();

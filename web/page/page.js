@@ -8,6 +8,11 @@ export const $ = (id) => document.getElementById(id);
 export const page = {
   viewer: null,
   settings: null,
+  // The reduced renderer draws, with WebGL 2; on purpose: the link asked for it.
+  reduced: false,
+  reducedOnPurpose: false,
+  // Those that can be drawn, and the one in use.
+  techniques: TECHNIQUES,
   technique: TECHNIQUES[0],
   camera: null,
   split: 0.5,
@@ -19,6 +24,8 @@ export const page = {
   scene: { name: 'demo', bytes: null },
   home: null,
   stale: true,
+  // The viewer has not heard of the settings' last change.
+  unapplied: true,
   // Frames still to be drawn until what adapts from frame to frame has come to rest.
   unsettled: 0,
   // The camera moved since the link was written.

@@ -1,5 +1,6 @@
 // Which scene is shown: a generated one, or a file from the user.
 
+import { tellSettings } from './chooser.js';
 import { writeLink } from './link.js';
 import { $, alone, page, redraw, say, wait } from './page.js';
 
@@ -9,6 +10,7 @@ export async function showScene(scene, place) {
   wait(`Loading ${scene.name}…`);
   // Let the words appear before the thread is taken.
   await new Promise((done) => setTimeout(done, 30));
+  tellSettings();
   try {
     const text = scene.bytes
       ? await page.viewer.load(scene.name, new Uint8Array(scene.bytes))

@@ -1,5 +1,6 @@
 // What the page offers at one touch. `reference` and `chosen` are changes to the default settings; `quick` are the
-// settings shown beside it, those that are `shared` go to both sides. `stills/` has a picture of each.
+// settings shown beside it, those that are `shared` go to both sides. A `sum` is of the others. What is `reduced` needs no more than WebGL 2 has.
+// `stills/` has a picture of each.
 
 export const TECHNIQUES = [
   {
@@ -22,6 +23,7 @@ export const TECHNIQUES = [
   {
     key: 'culling',
     name: 'Occlusion culling',
+    reduced: true,
     text: 'Hidden objects are found on the processor, in WebAssembly, and never drawn. The two pictures are the same; the draws are not.',
     reference: { culling: 'off' },
     chosen: { culling: 'occlusion' },
@@ -38,15 +40,17 @@ export const TECHNIQUES = [
   {
     key: 'stereo',
     name: 'Stereo',
+    reduced: true,
     text: 'Each draw once for both eyes, against a pass per eye: the pictures are the same, the draws are half. Red-cyan glasses show depth; side by side is for crossed eyes or a headset.',
     reference: { stereo: 'two-pass', show: 'anaglyph-dubois' },
-    chosen: { stereo: 'auto', show: 'anaglyph-dubois' },
+    chosen: { stereo: 'instanced', show: 'anaglyph-dubois' },
     quick: ['show', 'ipd', 'convergence'],
     shared: ['show', 'ipd', 'convergence'],
   },
   {
     key: 'both',
     name: 'All together',
+    sum: true,
     text: 'Hidden objects culled, the fovea anti-aliased, the periphery coarse.',
     reference: { culling: 'off' },
     chosen: { culling: 'occlusion', shading: 'coarse', aa: 'msaa' },

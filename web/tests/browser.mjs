@@ -1,11 +1,16 @@
-// A real browser with WebGPU on SwiftShader, a page in it, and what both said.
+// A real browser on SwiftShader, a page in it, and what both said.
 
-import { existsSync } from 'node:fs';
+import { existsSync, writeFileSync } from 'node:fs';
 import { chromium } from 'playwright-core';
 import { serve } from '../serve.mjs';
 
 const QUIET = ['--no-sandbox', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'];
-const WEBGPU = ['--enable-unsafe-webgpu', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--use-webgpu-adapter=swiftshader'];
+/** What the browser offers. Without further words it is WebGL 2 alone. */
+const GRAPHICS = {
+  webgl2: [],
+  nothing: ['--disable-3d-apis'],
+  webgpu: ['--enable-unsafe-webgpu', '--enable-features=Vulkan', '--use-vulkan=swiftshader', '--use-angle=swiftshader', '--use-webgpu-adapter=swiftshader'],
+};
 
 /** Where a frame may take seconds, waiting may take a minute. */
 export const PATIENCE = 120_000;
@@ -16,10 +21,10 @@ function executablePath() {
   return found;
 }
 
-/** A browser and a server for the page; `close` ends both. */
-export async function open({ webgpu = true } = {}) {
+/** A browser with `graphics` (of `GRAPHICS`) and a server for the page; `close` ends both. */
+export async function open(graphics = 'webgpu') {
   const server = await serve(0);
-  const browser = await chromium.launch({ executablePath: executablePath(), args: webgpu ? [...QUIET, ...WEBGPU] : QUIET });
+  const browser = await chromium.launch({ executablePath: executablePath(), args: [...QUIET, ...GRAPHICS[graphics]] });
   const address = `http://localhost:${server.address().port}/`;
   return {
     address,
@@ -63,4 +68,28 @@ export async function picture(page, chosen = true) {
     return { bytes: btoa(text), width, height };
   }, chosen);
   return { bytes: Buffer.from(bytes, 'base64'), width, height };
+}
+
+/** Writes the last picture of one side as a PNG file. */
+export async function savePicture(page, chosen, file) {
+  await settled(page);
+  const text = await page.evaluate(async (side) => {
+    const { viewer, costs } = window.foveal;
+    const { width, height } = side ? costs.chosen : costs.reference;
+    const pixels = new Uint8ClampedArray(await viewer.picture(side));
+    const canvas = new OffscreenCanvas(width, height);
+    canvas.getContext('2d').putImageData(new ImageData(pixels, width, height), 0, 0);
+    const buffer = new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer());
+    let bytes = '';
+    for (const byte of buffer) bytes += String.fromCharCode(byte);
+    return btoa(bytes);
+  }, chosen);
+  writeFileSync(file, Buffer.from(text, 'base64'));
+}
+
+/** What the page says of its own start: printed with the tests. */
+export async function footing(page) {
+  await settled(page);
+  const text = await page.locator('#footing').textContent();
+  return `${await page.locator('#adapter').textContent()}: ${text}`;
 }

@@ -1,14 +1,14 @@
 // The page in a real browser: what a visitor does, and what must come of it.
 
 import assert from 'node:assert/strict';
-import { execFileSync } from 'node:child_process';
-import { existsSync, mkdirSync, mkdtempSync, writeFileSync } from 'node:fs';
+import { mkdirSync, mkdtempSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { open, picture, settled } from './browser.mjs';
+import { footing, open, picture, savePicture, settled } from './browser.mjs';
 import { drop, triangle } from './files.mjs';
+import { difference, flip, foveal, redPixels } from './native.mjs';
 
 const ROOT = fileURLToPath(new URL('../..', import.meta.url));
 const SHOTS = join(ROOT, 'out/web');
@@ -22,12 +22,6 @@ before(async () => {
 after(() => site.close());
 
 const shot = (page, name) => page.screenshot({ path: join(SHOTS, `${name}.png`) });
-/** Mean difference of two pictures' channels, of 255. */
-function difference(a, b) {
-  assert.deepEqual([a.width, a.height], [b.width, b.height]);
-  return a.bytes.reduce((sum, v, i) => sum + Math.abs(v - b.bytes[i]), 0) / a.bytes.length;
-}
-
 const costs = (page) => page.evaluate(() => window.foveal.costs);
 
 test('the page draws, names what it draws with and says nothing in the console', async () => {
@@ -38,6 +32,8 @@ test('the page draws, names what it draws with and says nothing in the console',
   assert.equal(await page.locator('#wait').isVisible(), false);
   assert.ok((await page.locator('#figures tbody tr').count()) >= 7);
   assert.match(await page.locator('#adapter').textContent(), /WebGPU/);
+  assert.equal(await page.locator('#reduced').isVisible(), false);
+  console.log(await footing(page));
   await shot(page, 'desktop');
   assert.deepEqual(said, []);
   await page.context().close();
@@ -86,6 +82,7 @@ test('both eyes in one submission give the picture of two passes, with half the 
     assert.equal(reference.draws, 2 * chosen.draws);
     assert.match(chosen.stereo.mode, /^instanced/);
     assert.ok(difference(left, right) < 0.01, `${show}: ${difference(left, right)}`);
+    assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
     if (show !== 'side-by-side') continue;
     let moved = 0;
     const half = 2 * right.width;
@@ -112,28 +109,12 @@ test('variable shading lights fewer samples and is hard to tell from full shadin
 
 test('the picture is the native one', async () => {
   const { page } = await site.visit('#scene=demo:1000&left.anisotropy=1&scale=1&split=1', { width: 848, height: 270 });
-  const { bytes, width, height } = await picture(page, false);
+  const { width, height } = await picture(page, false);
   const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
-  await page.evaluate(async ({ width, height }) => {
-    const pixels = new Uint8ClampedArray(await window.foveal.viewer.picture(false));
-    const canvas = new OffscreenCanvas(width, height);
-    canvas.getContext('2d').putImageData(new ImageData(pixels, width, height), 0, 0);
-    const buffer = new Uint8Array(await (await canvas.convertToBlob()).arrayBuffer());
-    let text = '';
-    for (const byte of buffer) text += String.fromCharCode(byte);
-    window.png = btoa(text);
-  }, { width, height });
-  const theirs = join(folder, 'page.png');
-  writeFileSync(theirs, Buffer.from(await page.evaluate(() => window.png), 'base64'));
-  const ours = join(folder, 'native.png');
-  // The browser's own driver where it can be found: drivers differ in how they choose mip levels.
-  const driver = '/usr/lib/chromium/vk_swiftshader_icd.json';
-  const env = existsSync(driver) ? { ...process.env, VK_DRIVER_FILES: driver } : process.env;
-  const [program, ...first] = process.env.FOVEAL ? [process.env.FOVEAL] : ['cargo', 'run', '--quiet', '--package', 'foveal-cli', '--'];
-  const foveal = (...words) => execFileSync(program, [...first, ...words], { cwd: ROOT, encoding: 'utf8', env });
+  const [theirs, ours] = [join(folder, 'page.png'), join(folder, 'native.png')];
+  await savePicture(page, false, theirs);
   foveal('render', 'demo:1000', '--anisotropy', '1', '--size', `${width}x${height}`, '--output', ours);
-  const { flip } = JSON.parse(foveal('compare', ours, theirs, '--json'));
-  assert.ok(flip < 0.01, `FLIP to the native picture is ${flip}`);
+  assert.ok(flip(ours, theirs) < 0.01, `FLIP to the native picture is ${flip(ours, theirs)}`);
   await page.context().close();
 });
 
@@ -213,9 +194,7 @@ test('a dropped .glb is shown; a broken one is named, and the page goes on', asy
   await settled(page);
   await drop(page, 'triangle.glb', triangle());
   await page.waitForFunction(() => document.getElementById('scene').value === 'triangle.glb');
-  const { bytes } = await picture(page, false);
-  let red = 0;
-  for (let i = 0; i < bytes.length; i += 4) red += Number(bytes[i] > 2 * bytes[i + 1] && bytes[i] > 60);
+  const red = redPixels(await picture(page, false));
   assert.ok(red > 200, `${red} red pixels`);
   await drop(page, 'broken.glb', triangle().subarray(0, 60));
   await page.locator('.message').waitFor();
@@ -272,16 +251,16 @@ test('on a phone the picture and the controls share the screen', async () => {
   await page.context().close();
 });
 
-test('without WebGPU there is a picture of each technique and a sentence', async (t) => {
-  const bare = await open({ webgpu: false });
+test('without WebGPU and WebGL there is a picture of each technique and a sentence', async (t) => {
+  const bare = await open('nothing');
   t.after(() => bare.close());
   const { page } = await bare.visit();
   await page.locator('#stills img').first().waitFor();
-  assert.match(await page.locator('#missing').textContent(), /WebGPU/);
+  assert.match(await page.locator('#missing').textContent(), /WebGPU.*WebGL/);
   const loaded = await page.locator('#stills img').evaluateAll(async (images) => {
     await Promise.all(images.map((image) => image.decode()));
     return images.length;
   });
-  assert.ok(loaded >= 4);
-  await shot(page, 'without-webgpu');
+  assert.ok(loaded >= 6);
+  await shot(page, 'without-graphics');
 });

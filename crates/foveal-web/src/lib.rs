@@ -2,14 +2,17 @@
 //! settings on the right, divided by a slider.
 //!
 //! The page (`web/page`) holds the controls, the camera and the clock of frames; this crate holds what must be
-//! Rust. Settings and figures cross as JSON, in the words of the native program. Built by `./run web`; on anything
-//! but `wasm32` the crate is empty.
+//! Rust. Settings and figures cross as JSON, in the words of the native program. Built by `./run web`, once for WebGPU
+//! and once, with the feature `webgl`, for browsers that have WebGL 2 alone; on anything but `wasm32` the crate is
+//! empty.
 #![forbid(unsafe_code)]
 
 #[cfg(target_arch = "wasm32")]
 mod camera;
 #[cfg(target_arch = "wasm32")]
 mod present;
+#[cfg(all(target_arch = "wasm32", feature = "webgl"))]
+mod pump;
 #[cfg(target_arch = "wasm32")]
 mod scenes;
 #[cfg(target_arch = "wasm32")]

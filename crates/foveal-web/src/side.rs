@@ -34,6 +34,14 @@ impl Side {
 
     pub(crate) async fn set_scene(&mut self, scene: &Scene) -> Result<(), String> {
         self.previous = None;
+        // What is baked into the upload; settings that cannot be met are the next frame's to report.
+        let Settings { width, height, .. } = *self.renderer.settings();
+        let settings = Settings {
+            width,
+            height,
+            ..self.wished.clone()
+        };
+        let _ = self.renderer.set_settings(&settings).await;
         self.renderer
             .set_scene(scene)
             .await

@@ -40,8 +40,11 @@ impl From<&Setting> for Described {
     }
 }
 
-/// All settings in the order of the frame, as JSON.
+/// All settings that this build can meet, in the order of the frame, as JSON.
 pub(crate) fn json() -> String {
-    let all: Vec<Described> = Settings::ALL.iter().map(Described::from).collect();
+    let offered = |setting: &&Setting| !cfg!(feature = "webgl") || setting.is_in_reduced_set();
+    let all: Vec<Described> = (Settings::ALL.iter().filter(offered))
+        .map(Described::from)
+        .collect();
     serde_json::to_string(&all).unwrap_or_default()
 }

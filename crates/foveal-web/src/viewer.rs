@@ -38,7 +38,16 @@ pub struct Viewer {
     scene: Scene,
     reference: Side,
     chosen: Side,
+    #[cfg(feature = "webgl")]
+    _pump: crate::pump::Pump,
 }
+
+/// What this build draws with.
+const BACKENDS: wgpu::Backends = if cfg!(feature = "webgl") {
+    wgpu::Backends::GL
+} else {
+    wgpu::Backends::BROWSER_WEBGPU
+};
 
 /// The settings of a page that was just opened: the program's own, as JSON.
 #[wasm_bindgen]
@@ -48,7 +57,8 @@ pub fn default_settings() -> String {
 }
 
 /// What is to be known of each setting in order to offer it: a list of `{key, stage, label, help, kind, names, least,
-/// most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and `number` (between `least` and `most`), `place`, `text`, `file`.
+/// most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and `number` (between `least` and `most`), `place`, `text`,
+/// `file`. With the feature `webgl` only those that the reduced renderer can meet.
 #[wasm_bindgen]
 #[must_use]
 pub fn settings_table() -> String {
@@ -65,10 +75,10 @@ impl Viewer {
     /// Opens the browser's graphics device and draws into `canvas`. The scene is empty.
     ///
     /// # Errors
-    /// A sentence: no WebGPU, no adapter, no device.
+    /// A sentence: no WebGPU (with the feature `webgl`: no WebGL 2), no adapter, no device.
     pub async fn open(canvas: web_sys::HtmlCanvasElement) -> Result<Viewer, String> {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::BROWSER_WEBGPU,
+            backends: BACKENDS,
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         let surface = instance
@@ -85,6 +95,8 @@ impl Viewer {
         let gpu = Gpu::from_adapter(&adapter)
             .await
             .map_err(|cause| cause.to_string())?;
+        #[cfg(feature = "webgl")]
+        let pump = crate::pump::Pump::start(&gpu.device)?;
         let present = Present::new(&gpu, surface, &adapter)?;
         let scene = Scene::default();
         let settings = Settings {
@@ -100,6 +112,8 @@ impl Viewer {
             scene,
             reference,
             chosen,
+            #[cfg(feature = "webgl")]
+            _pump: pump,
         })
     }
 

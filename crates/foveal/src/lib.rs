@@ -19,6 +19,8 @@ mod lights;
 mod output;
 mod rate;
 mod recorder;
+#[cfg(test)]
+mod reduced;
 mod renderer;
 mod scene;
 mod settings;

@@ -458,6 +458,7 @@ impl Renderer {
         );
         frame_bindings.write_frame(gpu, &uniform);
         frame_bindings.write_drawn(gpu, &draw_list.drawn);
+        lights.assign_on_cpu(gpu, &uniform, &scene.lights);
         cpu.stage("upload");
 
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -497,7 +498,7 @@ impl Renderer {
             .as_ref()
             .is_some_and(|a| a.show(recorder, targets))
         {
-            let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights.bits());
+            let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights);
             if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
                 let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
                 rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
@@ -522,7 +523,7 @@ impl Renderer {
             if let Some(antialias) = antialias {
                 antialias.combine(recorder, scene, shading, lights, targets);
             }
-            forward.draw(recorder, scene, lights.bits(), draw_list, targets);
+            forward.draw(recorder, scene, lights, draw_list, targets);
             let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
             let finished = finished.unwrap_or(&targets.picture_view);
             tone_map.map(recorder, &targets.radiance_view, finished);
@@ -632,6 +633,16 @@ impl Renderer {
         (&self.stages.lights, &self.scene.lights)
     }
 
+    /// What shaders are told of a frame.
+    pub(crate) fn frame_uniform(&self, camera: &Camera) -> FrameUniform {
+        let settings = &self.stages.settings;
+        let eyes = eyes(settings, camera).expect("a camera that makes sense");
+        let lights = &self.scene.lights;
+        let grid = ClusterGrid::new(&EyeLayout::of(settings), &eyes, camera, lights);
+        let environment = &self.scene.environment;
+        FrameUniform::new(settings, camera, &eyes, &eyes, environment, &grid)
+    }
+
     /// Draws the frame again.
     pub(crate) fn redraw(&mut self, camera: &Camera) -> FrameStats {
         let frame = Frame {
@@ -669,12 +680,10 @@ impl Renderer {
         } = self;
         let targets = &stages.targets;
         let list = crate::shading::SampleList::from_texels(gpu, texels);
-        let input = stages.shading.input(
-            gpu,
-            &targets.gbuffer,
-            &scene.light_buffer,
-            stages.lights.bits(),
-        );
+        let input =
+            stages
+                .shading
+                .input(gpu, &targets.gbuffer, &scene.light_buffer, &stages.lights);
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let recorder = &mut Recorder {
             gpu,

@@ -7,6 +7,7 @@ use crate::Error;
 
 mod coarse;
 mod define;
+mod reduced;
 mod stereo;
 mod variable;
 
@@ -355,6 +356,9 @@ impl Settings {
                     expected,
                 });
             }
+        }
+        if crate::gpu::is_reduced(limits) {
+            reduced::validate(self)?;
         }
         coarse::validate(self)?;
         variable::validate(self)?;

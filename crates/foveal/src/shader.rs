@@ -8,8 +8,14 @@ pub(crate) type Parts = &'static [&'static str];
 const FRAME: &str = include_str!("shared/frame.wgsl");
 const SURFACE: &str = include_str!("shared/surface.wgsl");
 const LIGHT: &str = include_str!("shared/light.wgsl");
-const LIGHTING: &str = include_str!("shared/lighting.wgsl");
-const VERTEX: &str = include_str!("shared/vertex.wgsl");
+const LIGHTING: &str = concat!(
+    include_str!("shared/light_list.wgsl"),
+    include_str!("shared/lighting.wgsl")
+);
+const VERTEX: &str = concat!(
+    include_str!("shared/instances.wgsl"),
+    include_str!("shared/vertex.wgsl")
+);
 const VERTEX_CLIPPED: &str = include_str!("shared/vertex_clipped.wgsl");
 const ENABLE_CLIP_DISTANCES: &str = "enable clip_distances;";
 const MATERIAL: &str = include_str!("shared/material.wgsl");
@@ -18,7 +24,10 @@ const SAMPLE_GRADIENTS: &str = include_str!("shared/sample_gradients.wgsl");
 const ATTRIBUTES: &str = include_str!("shared/attributes.wgsl");
 const LAYERS: &str = include_str!("shared/layers.wgsl");
 const VERTEX_LAYERED: &str = include_str!("shared/vertex_layered.wgsl");
-const SHADING: &str = include_str!("shading/shading.wgsl");
+const SHADING: &str = concat!(
+    include_str!("shading/input.wgsl"),
+    include_str!("shading/shading.wgsl")
+);
 
 pub(crate) const GBUFFER: Parts = &[
     FRAME,
@@ -170,6 +179,7 @@ pub(crate) const FORWARD: Parts = &[
     VERTEX,
     SAMPLE_IMPLICIT,
     MATERIAL,
+    include_str!("forward/lights.wgsl"),
     include_str!("forward/forward.wgsl"),
 ];
 /// As [`FORWARD`], with a clip plane between the eyes.
@@ -183,6 +193,7 @@ pub(crate) const FORWARD_CLIPPED: Parts = &[
     VERTEX_CLIPPED,
     SAMPLE_IMPLICIT,
     MATERIAL,
+    include_str!("forward/lights.wgsl"),
     include_str!("forward/forward.wgsl"),
 ];
 /// As [`FORWARD`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`].
@@ -195,6 +206,7 @@ pub(crate) const FORWARD_LAYERED: Parts = &[
     VERTEX_LAYERED,
     SAMPLE_IMPLICIT,
     MATERIAL,
+    include_str!("forward/lights.wgsl"),
     include_str!("forward/forward.wgsl"),
 ];
 const TRIAL_EYES: &str = include_str!("stereo/trial.wgsl");
@@ -450,6 +462,55 @@ pub(crate) const OVERLAY: Parts = &[
     BLOCKS,
     TILING,
     include_str!("output/overlay.wgsl"),
+];
+
+const MISSING: &str = include_str!("reduced/missing.wgsl");
+const TABLE: &str = include_str!("reduced/table.wgsl");
+const REDUCED_LIGHTING: &str = concat!(
+    include_str!("reduced/lights.wgsl"),
+    include_str!("shared/lighting.wgsl")
+);
+const REDUCED_VERTEX: &str = concat!(
+    include_str!("reduced/instances.wgsl"),
+    include_str!("shared/vertex.wgsl")
+);
+
+/// As [`GBUFFER`], for devices without storage buffers.
+pub(crate) const REDUCED_GBUFFER: Parts = &[
+    MISSING,
+    TABLE,
+    FRAME,
+    SURFACE,
+    REDUCED_VERTEX,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    include_str!("reduced/gbuffer.wgsl"),
+];
+/// As [`SHADE_EVERY_PIXEL`], likewise.
+pub(crate) const REDUCED_SHADE: Parts = &[
+    MISSING,
+    TABLE,
+    FRAME,
+    SURFACE,
+    LIGHT,
+    REDUCED_LIGHTING,
+    include_str!("reduced/input.wgsl"),
+    include_str!("shading/shading.wgsl"),
+    include_str!("shading/every_pixel.wgsl"),
+];
+/// As [`FORWARD`], likewise.
+pub(crate) const REDUCED_FORWARD: Parts = &[
+    MISSING,
+    TABLE,
+    FRAME,
+    SURFACE,
+    LIGHT,
+    REDUCED_LIGHTING,
+    REDUCED_VERTEX,
+    SAMPLE_IMPLICIT,
+    MATERIAL,
+    include_str!("reduced/forward.wgsl"),
+    include_str!("forward/forward.wgsl"),
 ];
 
 /// Joins a shader's parts.

@@ -49,7 +49,11 @@ impl Targets {
             radiance_view: target(
                 "radiance",
                 RADIANCE_FORMAT,
-                wgpu::TextureUsages::STORAGE_BINDING | copied,
+                if gpu.is_reduced() {
+                    wgpu::TextureUsages::empty()
+                } else {
+                    wgpu::TextureUsages::STORAGE_BINDING | copied
+                },
             ),
             radiance_layers: layered.then(|| {
                 let label = "radiance of blended surfaces";

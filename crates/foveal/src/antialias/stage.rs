@@ -88,7 +88,7 @@ impl AntialiasStage {
             return;
         }
         let size = targets.picture_view.texture().size();
-        let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights.bits());
+        let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights);
         for (band, uniform) in &t.bands {
             let windows = band.windows(&t.pattern, size.width, size.height);
             geometry.draw_windows(recorder, scene, list, &t.samples, &windows);
@@ -185,8 +185,7 @@ impl AntialiasStage {
         }
         if let Some(triangles) = &self.triangles {
             let gpu = recorder.gpu;
-            let input =
-                |gbuffer: &_| shading.input(gpu, gbuffer, &scene.light_buffer, lights.bits());
+            let input = |gbuffer: &_| shading.input(gpu, gbuffer, &scene.light_buffer, lights);
             triangles.shade(recorder, input, t, targets);
         }
         let p = &self.pipelines;

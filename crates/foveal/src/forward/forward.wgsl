@@ -1,8 +1,5 @@
 // Forward pass for blended surfaces, back to front over the deferred picture.
-// After frame, surface, vertex, material and lighting.wgsl.
-
-@group(2) @binding(0) var<storage, read> lights: Lights;
-@group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
+// After frame, surface, vertex, material, lighting and lights.wgsl.
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;

@@ -4,7 +4,8 @@
 pub(crate) mod twin;
 
 use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window};
-use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
+use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
+use crate::lights::LightAssigner;
 use crate::recorder::{Recorder, drawn_over};
 use crate::scene::SceneOnGpu;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
@@ -40,7 +41,7 @@ impl ForwardPass {
             &gpu.device,
             "forward lights",
             wgpu::ShaderStages::FRAGMENT,
-            &[storage_read(), storage_read()],
+            &[Table::binding_type(gpu); 2],
         );
         let mut constants = lighting_constants(settings).to_vec();
         constants.extend(submission.constants());
@@ -49,6 +50,7 @@ impl ForwardPass {
         let parts = match submission {
             Submission::Instanced { clips: true } => shader::FORWARD_CLIPPED,
             Submission::Multiview => shader::FORWARD_LAYERED,
+            _ if gpu.is_reduced() => shader::REDUCED_FORWARD,
             _ => shader::FORWARD,
         };
         let pipelines = Pipelines::new(PipelineRecipe {
@@ -99,7 +101,7 @@ impl ForwardPass {
         &self,
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
-        cluster_bits: &wgpu::Buffer,
+        lights: &LightAssigner,
         list: &DrawList,
         targets: &Targets,
     ) {
@@ -110,10 +112,7 @@ impl ForwardPass {
             &recorder.gpu.device,
             "forward lights",
             &self.lights_layout,
-            &[
-                scene.light_buffer.as_entire_binding(),
-                cluster_bits.as_entire_binding(),
-            ],
+            &lights.resources(&scene.light_buffer),
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &targets.gbuffer.depth_view,

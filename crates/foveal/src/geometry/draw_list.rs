@@ -187,7 +187,7 @@ impl DrawList {
             if pulled {
                 pass.draw(indices, instances);
             } else {
-                pass.draw_indexed(indices, mesh.base_vertex, instances);
+                pass.draw_indexed(indices, mesh.index_base, instances);
             }
         }
     }

@@ -189,10 +189,13 @@ impl GeometryPass {
     ) -> Pipelines {
         let face_normals = FaceNormals::wanted_by(settings) == FaceNormals::Written;
         let mut constants = submission.constants().to_vec();
-        constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
+        if !gpu.is_reduced() {
+            constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
+        }
         let parts = match submission {
             Submission::Instanced { clips: true } => shader::GBUFFER_CLIPPED,
             Submission::Multiview => shader::GBUFFER_LAYERED,
+            _ if gpu.is_reduced() => shader::REDUCED_GBUFFER,
             _ => shader::GBUFFER,
         };
         Pipelines::new(PipelineRecipe {

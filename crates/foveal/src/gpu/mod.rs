@@ -4,6 +4,7 @@ mod adapter;
 mod layout;
 mod mips;
 mod readback;
+mod table;
 mod target;
 mod timing;
 mod trap;
@@ -18,6 +19,7 @@ pub(crate) use readback::read_level;
 pub(crate) use readback::{
     Arriving, Handover, read_buffer, read_texture, submitted_work_done, work_done,
 };
+pub(crate) use table::Table;
 pub(crate) use target::{layer_of, layered_target, layers_of, target};
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;
@@ -34,6 +36,11 @@ pub struct Gpu {
     /// Its queue.
     pub queue: wgpu::Queue,
     lost: Arc<Mutex<Option<String>>>,
+}
+
+/// Without storage buffers there is nothing that the full renderer could do.
+pub(crate) fn is_reduced(limits: &wgpu::Limits) -> bool {
+    limits.max_storage_buffers_per_shader_stage == 0
 }
 
 fn note(lost: &Mutex<Option<String>>, reason: String) {
@@ -103,11 +110,30 @@ impl Gpu {
         wgpu::Limits::default()
     }
 
+    /// The limits that suffice for the reduced renderer, which needs neither storage buffers nor compute shaders: what
+    /// WebGL 2 has. It draws every pixel, of one eye or two, culled or not; [`Settings::validate`](crate::Settings::validate)
+    /// refuses all else.
+    #[must_use]
+    pub fn reduced_limits() -> wgpu::Limits {
+        wgpu::Limits::downlevel_webgl2_defaults()
+    }
+
+    /// Whether the device has only what [`Gpu::reduced_limits`] say.
+    #[must_use]
+    pub fn is_reduced(&self) -> bool {
+        is_reduced(&self.device.limits())
+    }
+
     /// [`Error::Limit`] for the first of [`Gpu::required_limits`] that the device does not offer.
     pub(crate) fn check_limits(&self) -> Result<(), Error> {
         let mut missing = Ok(());
         let offered = self.device.limits();
-        Self::required_limits().check_limits_with_fail_fn(&offered, true, |name, value, limit| {
+        let required = if self.is_reduced() {
+            Self::reduced_limits()
+        } else {
+            Self::required_limits()
+        };
+        required.check_limits_with_fail_fn(&offered, true, |name, value, limit| {
             missing = Err(Error::Limit {
                 what: format!("the device limit {name} that the renderer needs"),
                 value,
@@ -130,12 +156,17 @@ impl Gpu {
     /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.
     #[must_use]
     pub fn wanted_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
+        let least = if is_reduced(adapter) {
+            Self::reduced_limits()
+        } else {
+            Self::required_limits()
+        };
         wgpu::Limits {
             max_texture_dimension_2d: adapter.max_texture_dimension_2d,
             max_multiview_view_count: adapter.max_multiview_view_count.min(2),
             max_buffer_size: adapter.max_buffer_size,
             max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
-            ..wgpu::Limits::default()
+            ..least
         }
     }
 
@@ -156,7 +187,8 @@ impl Gpu {
 
     /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.
     pub(crate) fn has_multiview(&self) -> bool {
-        self.device.features().contains(wgpu::Features::MULTIVIEW)
+        !self.is_reduced()
+            && self.device.features().contains(wgpu::Features::MULTIVIEW)
             && self.device.limits().max_multiview_view_count >= 2
     }
 

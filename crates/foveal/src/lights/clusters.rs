@@ -2,7 +2,8 @@
 
 use foveal_scene::{Camera, Projection};
 
-use super::LightUniform;
+use super::{LightTables, LightUniform};
+use crate::frame::FrameUniform;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, storage_write};
 use crate::recorder::Recorder;
 use crate::shader;
@@ -87,18 +88,34 @@ impl ClusterGrid {
     }
 }
 
-/// Fills the clusters' bits on the device.
+/// Fills the clusters' bits.
 #[derive(Debug)]
 pub(crate) struct LightAssigner {
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
+    means: Means,
+    eyes: u32,
     /// One bit per cluster and light; grows when it must.
     bits: wgpu::Buffer,
+}
+
+/// By what it fills them.
+#[derive(Debug)]
+enum Means {
+    /// A pass on the device.
+    Pass(wgpu::ComputePipeline, wgpu::BindGroupLayout),
+    /// The CPU.
+    Tables(LightTables),
 }
 
 impl LightAssigner {
     /// For a frame of one or two `eyes`.
     pub(crate) fn new(gpu: &Gpu, eyes: u32, frame_layout: &wgpu::BindGroupLayout) -> Self {
+        if gpu.is_reduced() {
+            return Self {
+                means: Means::Tables(LightTables::new(gpu)),
+                eyes,
+                bits: bits_buffer(gpu, 1),
+            };
+        }
         let layout = bind_group_layout(
             &gpu.device,
             "light assignment",
@@ -115,13 +132,40 @@ impl LightAssigner {
             &[("VIEWS", f64::from(eyes))],
         );
         Self {
-            pipeline,
-            layout,
+            means: Means::Pass(pipeline, layout),
+            eyes,
             bits: bits_buffer(gpu, 1),
         }
     }
 
-    /// The clusters' bits, as lighting reads them.
+    /// What lighting binds: the lights, which without tables are in `light_buffer`, and the clusters' bits.
+    pub(crate) fn resources<'a>(
+        &'a self,
+        light_buffer: &'a wgpu::Buffer,
+    ) -> [wgpu::BindingResource<'a>; 2] {
+        match &self.means {
+            Means::Pass(..) => [
+                light_buffer.as_entire_binding(),
+                self.bits.as_entire_binding(),
+            ],
+            Means::Tables(tables) => [tables.lights.resource(), tables.clusters.resource()],
+        }
+    }
+
+    /// Where the CPU fills the bits, it does so now.
+    pub(crate) fn assign_on_cpu(
+        &mut self,
+        gpu: &Gpu,
+        frame: &FrameUniform,
+        lights: &[LightUniform],
+    ) {
+        if let Means::Tables(tables) = &mut self.means {
+            tables.write(gpu, frame, self.eyes as usize, lights);
+        }
+    }
+
+    /// The clusters' bits.
+    #[cfg(test)]
     pub(crate) fn bits(&self) -> &wgpu::Buffer {
         &self.bits
     }
@@ -136,13 +180,16 @@ impl LightAssigner {
         grows
     }
 
-    /// Encodes the pass. `lights` holds `grid.light_count` lights.
+    /// Encodes the pass, where there is one. `lights` holds `grid.light_count` lights.
     pub(crate) fn assign(
         &self,
         recorder: &mut Recorder<'_>,
         lights: &wgpu::Buffer,
         grid: &ClusterGrid,
     ) {
+        let Means::Pass(pipeline, layout) = &self.means else {
+            return;
+        };
         recorder
             .encoder
             .clear_buffer(&self.bits, 0, Some(grid.total_words().max(1) * 4));
@@ -152,11 +199,11 @@ impl LightAssigner {
         let group = bind_group(
             &recorder.gpu.device,
             "light assignment",
-            &self.layout,
+            layout,
             &[lights.as_entire_binding(), self.bits.as_entire_binding()],
         );
         let mut pass = recorder.compute_pass("light assignment");
-        pass.set_pipeline(&self.pipeline);
+        pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &group, &[]);
         pass.dispatch_workgroups(grid.light_count, 1, 1);
     }

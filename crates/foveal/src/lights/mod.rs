@@ -5,9 +5,13 @@
 //! nothing overflows, and lights come out in ascending order.
 
 mod clusters;
+mod tables;
 #[cfg(test)]
 mod twin;
 mod upload;
 
 pub(crate) use clusters::{ClusterGrid, LightAssigner};
+pub(crate) use tables::LightTables;
+#[cfg(test)]
+pub(crate) use tables::cluster_bits;
 pub(crate) use upload::{LightUniform, LightsHeader, MAX_LIGHTS};

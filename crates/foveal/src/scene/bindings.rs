@@ -3,7 +3,7 @@
 use super::InstanceUniform;
 use crate::Error;
 use crate::frame::FrameUniform;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, uniform};
+use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, uniform};
 
 /// Bind group 0 of every pass.
 #[derive(Debug)]
@@ -11,31 +11,29 @@ pub(crate) struct FrameBindings {
     layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     frame: wgpu::Buffer,
-    instances: wgpu::Buffer,
-    drawn: wgpu::Buffer,
+    instances: Table,
+    drawn: Table,
 }
 
 impl FrameBindings {
     pub(crate) fn new(gpu: &Gpu) -> Self {
+        let table = Table::binding_type(gpu);
         let layout = bind_group_layout(
             &gpu.device,
             "frame",
             wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
-            &[uniform(), storage_read(), storage_read()],
+            &[uniform(), table, table],
         );
-        let frame = buffer(
-            gpu,
-            "frame",
-            size_of::<FrameUniform>(),
-            wgpu::BufferUsages::UNIFORM,
-        );
-        let instances = buffer(
-            gpu,
-            "instances",
-            size_of::<InstanceUniform>(),
-            wgpu::BufferUsages::STORAGE,
-        );
-        let drawn = buffer(gpu, "drawn", 4, wgpu::BufferUsages::STORAGE);
+        let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("frame"),
+            size: size_of::<FrameUniform>() as u64,
+            usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        });
+        let mut instances = Table::new(gpu, "instances");
+        // A binding must hold one instance, even where there is none.
+        instances.write(gpu, &[0; size_of::<InstanceUniform>()]);
+        let drawn = Table::new(gpu, "drawn");
         let group = group(gpu, &layout, &frame, &instances, &drawn);
         Self {
             layout,
@@ -63,61 +61,34 @@ impl FrameBindings {
     /// Uploads all instances of a scene.
     ///
     /// # Errors
-    /// [`Error::Limit`] where they exceed the device's largest storage buffer.
+    /// [`Error::Limit`] where they are more than the device can bind.
     pub(crate) fn write_instances(
         &mut self,
         gpu: &Gpu,
         uniforms: &[InstanceUniform],
     ) -> Result<(), Error> {
-        let bytes: &[u8] = bytemuck::cast_slice(uniforms);
-        let limit = gpu.device.limits().max_storage_buffer_binding_size;
-        if bytes.len() as u64 > limit {
-            return Err(Error::Limit {
-                what: "the scene's number of instances".to_owned(),
-                value: uniforms.len() as u64,
-                limit: limit / size_of::<InstanceUniform>() as u64,
-                hint: String::new(),
-            });
-        }
-        if bytes.len() as u64 > self.instances.size() {
-            self.instances = buffer(gpu, "instances", bytes.len(), wgpu::BufferUsages::STORAGE);
+        let what = "the scene's number of instances";
+        Table::check(gpu, what, uniforms.len(), size_of::<InstanceUniform>())?;
+        if self.instances.write(gpu, bytemuck::cast_slice(uniforms)) {
             self.group = group(gpu, &self.layout, &self.frame, &self.instances, &self.drawn);
         }
-        gpu.queue.write_buffer(&self.instances, 0, bytes);
         Ok(())
     }
 
     /// Uploads the list of drawn instances.
     pub(crate) fn write_drawn(&mut self, gpu: &Gpu, drawn: &[u32]) {
-        let bytes: &[u8] = bytemuck::cast_slice(drawn);
-        if bytes.len() as u64 > self.drawn.size() {
-            self.drawn = buffer(
-                gpu,
-                "drawn",
-                bytes.len().next_power_of_two(),
-                wgpu::BufferUsages::STORAGE,
-            );
+        if self.drawn.write(gpu, bytemuck::cast_slice(drawn)) {
             self.group = group(gpu, &self.layout, &self.frame, &self.instances, &self.drawn);
         }
-        gpu.queue.write_buffer(&self.drawn, 0, bytes);
     }
-}
-
-fn buffer(gpu: &Gpu, label: &str, bytes: usize, usage: wgpu::BufferUsages) -> wgpu::Buffer {
-    gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(label),
-        size: bytes as u64,
-        usage: usage | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: false,
-    })
 }
 
 fn group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
     frame: &wgpu::Buffer,
-    instances: &wgpu::Buffer,
-    drawn: &wgpu::Buffer,
+    instances: &Table,
+    drawn: &Table,
 ) -> wgpu::BindGroup {
     bind_group(
         &gpu.device,
@@ -125,8 +96,8 @@ fn group(
         layout,
         &[
             frame.as_entire_binding(),
-            instances.as_entire_binding(),
-            drawn.as_entire_binding(),
+            instances.resource(),
+            drawn.resource(),
         ],
     )
 }

@@ -30,6 +30,8 @@ pub(crate) struct MeshRange {
     pub(crate) first_index: u32,
     pub(crate) index_count: u32,
     pub(crate) base_vertex: i32,
+    /// What its indices count from: the base vertex, or 0 where they hold it already.
+    pub(crate) index_base: i32,
 }
 
 /// Where shaders find an instance's triangles: mirrors `Place` in `shared/attributes.wgsl`.
@@ -96,7 +98,11 @@ impl SceneGeometry {
             gpu,
             "indices",
             index_count as u64 * 4,
-            wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE,
+            if gpu.is_reduced() {
+                wgpu::BufferUsages::INDEX
+            } else {
+                wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE
+            },
         );
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let (mut base_vertex, mut first_index) = (0u64, 0u64);
@@ -106,15 +112,30 @@ impl SceneGeometry {
                 base_vertex * STRIDE,
                 bytemuck::cast_slice(&mesh.vertices),
             );
+            // WebGL 2 has no base vertex: there it is in the indices.
+            let shifted: Vec<u32>;
+            let mesh_indices = if gpu.is_reduced() {
+                shifted = (mesh.indices.iter())
+                    .map(|&index| index + base_vertex as u32)
+                    .collect();
+                &shifted
+            } else {
+                &mesh.indices
+            };
             gpu.queue.write_buffer(
                 &indices,
                 first_index * 4,
-                bytemuck::cast_slice(&mesh.indices),
+                bytemuck::cast_slice(mesh_indices),
             );
             meshes.push(MeshRange {
                 first_index: first_index as u32,
                 index_count: mesh.indices.len() as u32,
                 base_vertex: base_vertex as i32,
+                index_base: if gpu.is_reduced() {
+                    0
+                } else {
+                    base_vertex as i32
+                },
             });
             base_vertex += mesh.vertices.len() as u64;
             first_index += mesh.indices.len() as u64;

@@ -55,6 +55,9 @@ const ALL: &[(&str, Parts)] = &[
     ("composite paper", COMPOSITE_PAPER),
     ("composite fit", COMPOSITE_FIT),
     ("composite smooth", COMPOSITE_SMOOTH),
+    ("reduced geometry", REDUCED_GBUFFER),
+    ("reduced shading", REDUCED_SHADE),
+    ("reduced forward", REDUCED_FORWARD),
 ];
 
 fn parse(name: &str, parts: Parts) -> naga::Module {

@@ -2,7 +2,10 @@
 
 use super::{SampleList, Samples};
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled_layers, storage_read};
+use crate::gpu::{
+    Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
+};
+use crate::lights::LightAssigner;
 use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
@@ -27,7 +30,8 @@ pub(crate) fn lighting_constants(settings: &Settings) -> [(&'static str, f64); 2
 #[derive(Debug)]
 pub(crate) struct ShadingPass {
     every_pixel: wgpu::RenderPipeline,
-    list: wgpu::ComputePipeline,
+    /// Where the device has compute shaders.
+    list: Option<wgpu::ComputePipeline>,
     input_layout: wgpu::BindGroupLayout,
     list_layout: wgpu::BindGroupLayout,
 }
@@ -38,49 +42,62 @@ impl ShadingPass {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
+        let (read, depth_type): (fn(_) -> _, _) = if gpu.is_reduced() {
+            (sampled, wgpu::TextureSampleType::Uint)
+        } else {
+            (sampled_layers, wgpu::TextureSampleType::Depth)
+        };
         let input_layout = bind_group_layout(
             &gpu.device,
             "shading input",
             wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             &[
-                sampled_layers(wgpu::TextureSampleType::Uint),
-                sampled_layers(wgpu::TextureSampleType::Depth),
-                storage_read(),
-                storage_read(),
+                read(wgpu::TextureSampleType::Uint),
+                read(depth_type),
+                Table::binding_type(gpu),
+                Table::binding_type(gpu),
             ],
         );
+        let listed = [
+            storage_read(),
+            storage_read(),
+            wgpu::BindingType::StorageTexture {
+                access: wgpu::StorageTextureAccess::WriteOnly,
+                format: RADIANCE_FORMAT,
+                view_dimension: wgpu::TextureViewDimension::D2,
+            },
+        ];
         let list_layout = bind_group_layout(
             &gpu.device,
             "sample list",
             wgpu::ShaderStages::COMPUTE,
-            &[
-                storage_read(),
-                storage_read(),
-                wgpu::BindingType::StorageTexture {
-                    access: wgpu::StorageTextureAccess::WriteOnly,
-                    format: RADIANCE_FORMAT,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                },
-            ],
+            if gpu.is_reduced() { &[] } else { &listed },
         );
+        let every_pixel_parts = if gpu.is_reduced() {
+            shader::REDUCED_SHADE
+        } else {
+            shader::SHADE_EVERY_PIXEL
+        };
         let constants = lighting_constants(settings);
         let every_pixel = shader::full_screen(
             gpu,
             "shading",
-            &shader::module(gpu, "shading, every pixel", shader::SHADE_EVERY_PIXEL),
+            &shader::module(gpu, "shading, every pixel", every_pixel_parts),
             "shade_pixel",
             &[frame_layout, &input_layout],
             RADIANCE_FORMAT,
             &constants,
         );
-        let list = shader::compute(
-            gpu,
-            "shading list",
-            &shader::module(gpu, "shading, list", shader::SHADE_LIST),
-            "shade_list",
-            &[frame_layout, &input_layout, &list_layout],
-            &constants,
-        );
+        let list = (!gpu.is_reduced()).then(|| {
+            shader::compute(
+                gpu,
+                "shading list",
+                &shader::module(gpu, "shading, list", shader::SHADE_LIST),
+                "shade_list",
+                &[frame_layout, &input_layout, &list_layout],
+                &constants,
+            )
+        });
         Self {
             every_pixel,
             list,
@@ -99,18 +116,25 @@ impl ShadingPass {
         &self,
         gpu: &Gpu,
         gbuffer: &GBuffer,
-        lights: &wgpu::Buffer,
-        cluster_bits: &wgpu::Buffer,
+        light_buffer: &wgpu::Buffer,
+        lights: &LightAssigner,
     ) -> wgpu::BindGroup {
+        let [light_list, cluster_bits] = lights.resources(light_buffer);
+        // The reduced G-buffer holds depth where others hold identity, and is no array.
+        let (surface, depth) = if gpu.is_reduced() {
+            (&gbuffer.surface_view, &gbuffer.identity_view)
+        } else {
+            (&gbuffer.surface_layers, &gbuffer.depth_layers)
+        };
         bind_group(
             &gpu.device,
             "shading input",
             &self.input_layout,
             &[
-                wgpu::BindingResource::TextureView(&gbuffer.surface_layers),
-                wgpu::BindingResource::TextureView(&gbuffer.depth_layers),
-                lights.as_entire_binding(),
-                cluster_bits.as_entire_binding(),
+                wgpu::BindingResource::TextureView(surface),
+                wgpu::BindingResource::TextureView(depth),
+                light_list,
+                cluster_bits,
             ],
         )
     }
@@ -126,9 +150,10 @@ impl ShadingPass {
         match samples {
             Samples::EveryPixel => self.shade_every_pixel(recorder, input, target, "shading"),
             Samples::List(list) => {
+                let Some(pipeline) = &self.list else { return };
                 let group = self.list_group(recorder.gpu, list, target);
                 let mut pass = recorder.compute_pass("shading");
-                pass.set_pipeline(&self.list);
+                pass.set_pipeline(pipeline);
                 pass.set_bind_group(1, input, &[]);
                 pass.set_bind_group(2, &group, &[]);
                 pass.dispatch_workgroups_indirect(&list.dispatch, 0);

@@ -1,11 +1,7 @@
-// Deferred shading: one lighting evaluation per sample. After frame, surface and lighting.wgsl.
+// Deferred shading: one lighting evaluation per sample. After frame, surface,
+// lighting and input.wgsl.
 // A sample is a texel of the G-buffer; which samples are shaded is the caller's choice: the fragments of
 // a draw, or a list.
-
-@group(1) @binding(0) var gbuffer_surface: texture_2d_array<u32>;
-@group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;
-@group(1) @binding(2) var<storage, read> lights: Lights;
-@group(1) @binding(3) var<storage, read> cluster_lights: array<u32>;
 
 // Radiance at a position in pixels, from what the G-buffer holds there.
 fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {
@@ -22,6 +18,5 @@ fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {
 
 // Radiance at a G-buffer texel.
 fn shade(texel: vec2u) -> vec4f {
-    let depth = load_depth(gbuffer_depth, texel);
-    return radiance_at(vec2f(texel) + 0.5, depth, load_words(gbuffer_surface, texel));
+    return radiance_at(vec2f(texel) + 0.5, gbuffer_depth_at(texel), gbuffer_words_at(texel));
 }

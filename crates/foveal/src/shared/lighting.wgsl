@@ -1,5 +1,4 @@
-// How a surface is lit: the one lighting model of all passes. Needs frame, surface and light.wgsl; the
-// includer binds `lights` and `cluster_lights`.
+// How a surface is lit: the one lighting model of all passes. Needs frame, surface, light and light_list.wgsl.
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.
 override BLINN_PHONG: bool = false;
@@ -95,7 +94,7 @@ fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
     let moved = in_eye(pixel) + vec2f(frame.views[view].cluster_shift_x, frame.views[view].cluster_shift_y);
     let tile = min(vec2u(moved / frame.cluster_tile), frame.cluster_counts.xy - 1u);
     let cluster = tile.x + frame.cluster_counts.x * (tile.y + frame.cluster_counts.y * cluster_slice(distance));
-    return cluster * lights.words;
+    return cluster * light_words();
 }
 
 // Radiance that leaves a surface towards the eye. Lights are summed in ascending order whichever way they
@@ -104,16 +103,16 @@ fn lit(s: Surface, pixel: vec2f, distance: f32) -> vec3f {
     let v = direction_to_eye(view_at(pixel), s.position);
     var sum = s.emissive + ambient(s, v);
     let first = cluster_words_at(pixel, distance);
-    for (var word = 0u; word < lights.words; word++) {
-        let valid = min(lights.count - word * 32u, 32u);
+    for (var word = 0u; word < light_words(); word++) {
+        let valid = min(light_count() - word * 32u, 32u);
         var bits = select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
         if !BRUTE {
-            bits = cluster_lights[first + word];
+            bits = cluster_word(first + word);
         }
         while bits != 0u {
             let bit = firstTrailingBit(bits);
             bits &= bits - 1u;
-            sum += reflect_light(s, v, lights.items[word * 32u + bit]);
+            sum += reflect_light(s, v, light_at(word * 32u + bit));
         }
     }
     return sum;

@@ -1,4 +1,4 @@
-// From a mesh's vertex to the world and the screen. Needs frame.wgsl. Rust: `scene/instances.rs`.
+// From a mesh's vertex to the world and the screen. Needs frame.wgsl and instances.wgsl. Rust: `scene/instances.rs`.
 
 struct Instance {
     // Rows of the affine world_from_object.
@@ -9,10 +9,6 @@ struct Instance {
     previous_y: vec4f,
     previous_z: vec4f,
 }
-
-@group(0) @binding(1) var<storage, read> instances: array<Instance>;
-// Which instance each drawn one is.
-@group(0) @binding(2) var<storage, read> drawn: array<u32>;
 
 struct VertexIn {
     @builtin(instance_index) drawn_index: u32,
@@ -56,11 +52,11 @@ struct Drawn {
 
 fn drawn_as(instance_index: u32) -> Drawn {
     if EYES == 1u {
-        return Drawn(drawn[instance_index & ~RIGHT_EYE], instance_index >> 31u);
+        return Drawn(drawn_at(instance_index & ~RIGHT_EYE), instance_index >> 31u);
     } else if EYES == 2u {
-        return Drawn(drawn[instance_index >> 1u], instance_index & 1u);
+        return Drawn(drawn_at(instance_index >> 1u), instance_index & 1u);
     }
-    return Drawn(drawn[instance_index], 0u);
+    return Drawn(drawn_at(instance_index), 0u);
 }
 
 // From an eye's own clip space into its part of the target: left -w..w to the leftmost part, right to the rightmost.
@@ -126,7 +122,7 @@ fn vertex(in: VertexIn) -> VertexOut {
 }
 
 fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
-    let i = instances[d.instance];
+    let i = instance_at(d.instance);
     let world = world_vertex(i, in.position, in.normal, in.tangent);
     let previous = previous_instance_position(i, in.previous_position);
 

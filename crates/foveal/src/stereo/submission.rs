@@ -58,7 +58,8 @@ impl Submission {
         let has_clip = gpu
             .device
             .features()
-            .contains(wgpu::Features::CLIP_DISTANCES);
+            .contains(wgpu::Features::CLIP_DISTANCES)
+            && !gpu.is_reduced();
         // The visibility buffer's fragments are so small that a plane would save nothing.
         let clips = has_clip
             && settings.eye_clipping != EyeClipping::Discard
@@ -80,6 +81,9 @@ impl Submission {
             Stereo::Multiview => {
                 Self::check_multiview(gpu, trials, clock).await?;
                 Self::Multiview
+            }
+            Stereo::Auto if gpu.is_reduced() => {
+                return Ok((instanced, "the device has no other".to_owned()));
             }
             Stereo::Auto => {
                 let mut ways = vec![instanced, Self::TwoPass];

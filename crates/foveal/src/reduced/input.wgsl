@@ -1,0 +1,14 @@
+// As shading/input.wgsl, from tables and the reduced G-buffer.
+
+@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(1) var gbuffer_depth: texture_2d<u32>;
+@group(1) @binding(2) var light_table: texture_2d<u32>;
+@group(1) @binding(3) var cluster_table: texture_2d<u32>;
+
+fn gbuffer_words_at(texel: vec2u) -> vec4u {
+    return textureLoad(gbuffer_surface, texel, 0);
+}
+
+fn gbuffer_depth_at(texel: vec2u) -> f32 {
+    return bitcast<f32>(textureLoad(gbuffer_depth, texel, 0).x);
+}

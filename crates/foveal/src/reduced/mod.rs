@@ -1,0 +1,186 @@
+//! The renderer on devices that have neither storage buffers nor compute shaders, held to the full one.
+//!
+//! Such a device (WebGL 2) gets tables in textures for storage buffers (`gpu/table.rs`), lights assigned on the CPU
+//! (`lights/tables.rs`) and a G-buffer that holds depth as an integer; all else is the same code. The shaders of this
+//! folder stand in for those parts that name a storage buffer.
+
+use std::sync::OnceLock;
+
+use foveal_scene::{Camera, Scene, generate};
+
+use crate::gpu::read_buffer;
+use crate::lights::cluster_bits;
+use crate::shader::{self, Parts};
+use crate::testing::{gpu, picture, rendered, small};
+use crate::{Culling, Frame, Gpu, Output, Renderer, Settings, Stereo};
+
+/// A device that was asked for no more than WebGL 2 has.
+fn reduced_gpu() -> &'static Gpu {
+    static GPU: OnceLock<Gpu> = OnceLock::new();
+    GPU.get_or_init(|| {
+        pollster::block_on(async {
+            let instance =
+                wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+            let adapter = instance
+                .request_adapter(&wgpu::RequestAdapterOptions::default())
+                .await
+                .expect("the tests need a graphics adapter");
+            let (device, queue) = adapter
+                .request_device(&wgpu::DeviceDescriptor {
+                    required_limits: Gpu::reduced_limits(),
+                    ..Default::default()
+                })
+                .await
+                .expect("every device has this little");
+            Gpu::from_device(device, queue)
+        })
+    })
+}
+
+fn reduced(scene: &Scene, camera: &Camera, settings: &Settings) -> Renderer {
+    pollster::block_on(async {
+        let mut renderer = Renderer::new(reduced_gpu(), settings, None)
+            .await
+            .expect("settings fit");
+        renderer.set_scene(scene).await.expect("scene fits");
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        renderer.render(&frame).await.expect("frame is drawn");
+        renderer
+    })
+}
+
+/// Channels of the pictures that differ by more than `tolerance`, of all.
+fn differing(a: &[u8], b: &[u8], tolerance: u8) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let count = a.iter().zip(b).filter(|(a, b)| a.abs_diff(**b) > tolerance);
+    count.count() as f64 / a.len() as f64
+}
+
+#[test]
+fn the_reduced_renderer_gives_the_full_ones_picture() {
+    assert!(reduced_gpu().is_reduced() && !gpu().is_reduced());
+    let stereo = Settings {
+        stereo: Stereo::Auto,
+        show: Output::AnaglyphDubois,
+        culling: Culling::Occlusion,
+        ..small(160, 100)
+    };
+    for name in ["cornell", "alpha", "materials-grid", "demo:1000"] {
+        let scene = generate::by_name(name).expect("it is generated");
+        for settings in [small(161, 99), stereo.clone()] {
+            let camera = &scene.cameras[0];
+            let full = picture(&rendered(&scene, camera, &settings));
+            let ours = pollster::block_on(reduced(&scene, camera, &settings).read_picture());
+            let ours = ours.expect("read-back works");
+            // Depth is found anew from the distance: a rounding moves a light's edge now and then.
+            let share = differing(&full, &ours, 2);
+            assert!(share < 1e-3, "{name}: {share} of the channels");
+            assert!(differing(&full, &vec![0; full.len()], 20) > 0.2, "{name}");
+        }
+    }
+}
+
+#[test]
+fn two_eyes_in_one_submission_are_those_of_two_passes() {
+    let scene = generate::by_name("demo:1000").expect("it is generated");
+    let of = |stereo| {
+        let settings = Settings {
+            stereo,
+            show: Output::SideBySide,
+            ..small(96, 64)
+        };
+        let renderer = reduced(&scene, &scene.cameras[0], &settings);
+        pollster::block_on(renderer.read_picture()).expect("read-back works")
+    };
+    assert!(differing(&of(Stereo::Instanced), &of(Stereo::TwoPass), 0) < 1e-3);
+}
+
+#[test]
+fn the_cpu_assigns_lights_to_the_clusters_that_the_device_finds() {
+    let mut scene = generate::cornell();
+    generate::add_point_lights(&mut scene, 70, 3);
+    for light in scene.lights.iter_mut().skip(10) {
+        light.range_m = Some(0.6);
+    }
+    for stereo in [Stereo::Off, Stereo::Auto] {
+        let settings = Settings {
+            stereo,
+            ..small(320, 200)
+        };
+        let camera = &scene.cameras[0];
+        let renderer = rendered(&scene, camera, &settings);
+        let (assigner, lights) = renderer.lights();
+        let bytes =
+            pollster::block_on(read_buffer(gpu(), assigner.bits())).expect("read-back works");
+        let device: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
+        let frame = renderer.frame_uniform(camera);
+        let eyes = if stereo == Stereo::Off { 1 } else { 2 };
+        let cpu = cluster_bits(&frame, eyes, lights);
+        assert!(cpu.len() <= device.len());
+        let set: u32 = cpu.iter().map(|w| w.count_ones()).sum();
+        let differing: u32 = (cpu.iter().zip(&device))
+            .map(|(a, b)| (a ^ b).count_ones())
+            .sum();
+        assert!(set > 1000);
+        // Logarithms round differently: a slice more or less, at the very edge of a light's reach.
+        assert!(differing * 200 < set, "{differing} of {set}");
+    }
+}
+
+/// WebGL 2 takes GLSL ES 3.00 alone.
+#[test]
+fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
+    let all: [(Parts, [&str; 2]); 5] = [
+        (shader::REDUCED_GBUFFER, ["vertex", "fragment"]),
+        (shader::REDUCED_SHADE, ["full_screen", "shade_pixel"]),
+        (shader::REDUCED_FORWARD, ["vertex", "fragment"]),
+        (shader::TONE_MAP, ["full_screen", "tone_map"]),
+        (shader::SHOW_EYES, ["full_screen", "show_eyes"]),
+    ];
+    for (parts, entry_points) in all {
+        let module = naga::front::wgsl::parse_str(&shader::source(parts)).expect("it parses");
+        let mut validator = naga::valid::Validator::new(
+            naga::valid::ValidationFlags::all(),
+            naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,
+        );
+        let types = validator.validate(&module).expect("it is valid");
+        let stages = [naga::ShaderStage::Vertex, naga::ShaderStage::Fragment];
+        for (stage, entry_point) in stages.into_iter().zip(entry_points) {
+            let constants = naga::back::PipelineConstants::default();
+            let (module, types) = naga::back::pipeline_constants::process_overrides(
+                &module,
+                &types,
+                Some((stage, entry_point)),
+                &constants,
+            )
+            .expect("the overrides have defaults");
+            let options = naga::back::glsl::Options {
+                version: naga::back::glsl::Version::new_gles(300),
+                ..Default::default()
+            };
+            let pipeline = naga::back::glsl::PipelineOptions {
+                shader_stage: stage,
+                entry_point: entry_point.to_owned(),
+                multiview: None,
+            };
+            let mut text = String::new();
+            naga::back::glsl::Writer::new(
+                &mut text,
+                &module,
+                &types,
+                &options,
+                &pipeline,
+                naga::proc::BoundsCheckPolicies::default(),
+            )
+            .and_then(|mut writer| writer.write())
+            .unwrap_or_else(|cause| panic!("{entry_point}: {cause}"));
+            // What ES 3.10 brought.
+            for missing in ["findLSB", "packUnorm4x8", " buffer ", "imageStore"] {
+                assert!(!text.contains(missing), "{entry_point} says {missing}");
+            }
+        }
+    }
+}

@@ -1,0 +1,8 @@
+// Tables of words in textures, for devices without storage buffers. Rust: `gpu/table.rs`.
+
+const TABLE_WIDTH: u32 = 1024u;
+
+// Where a table's texel lies, four words each.
+fn table_texel(index: u32) -> vec2u {
+    return vec2u(index % TABLE_WIDTH, index / TABLE_WIDTH);
+}

@@ -1,0 +1,72 @@
+//! What devices without storage buffers and compute shaders can meet: see [`Gpu::reduced_limits`](crate::Gpu::reduced_limits).
+
+use super::{Antialiasing, Geometry, Setting, Settings, Shading, View};
+use crate::Error;
+
+/// Stages that such devices lack altogether.
+const MISSING_STAGES: [&str; 4] = [
+    "Anti-aliasing",
+    "Shading rate",
+    "Coarse shading",
+    "Variable shading",
+];
+/// Single settings that they lack.
+const MISSING_KEYS: [&str; 2] = ["view", "geometry"];
+
+impl Setting {
+    /// Whether it means anything on devices with [`Gpu::reduced_limits`](crate::Gpu::reduced_limits) alone.
+    #[must_use]
+    pub fn is_in_reduced_set(&self) -> bool {
+        !MISSING_STAGES.contains(&self.stage) && !MISSING_KEYS.contains(&self.key)
+    }
+}
+
+/// Checks that the settings ask for nothing that is missing there.
+pub(super) fn validate(s: &Settings) -> Result<(), Error> {
+    let wishes = [
+        ("view", s.view == View::Final, "final"),
+        ("geometry", s.geometry == Geometry::Gbuffer, "gbuffer"),
+        ("aa", s.aa == Antialiasing::None, "none"),
+        ("shading", s.shading == Shading::Full, "full"),
+    ];
+    match wishes.into_iter().find(|(_, is_met, _)| !is_met) {
+        None => Ok(()),
+        Some((name, _, only)) => Err(Error::Setting {
+            name,
+            value: "what needs storage buffers or compute shaders, which this device has not"
+                .to_owned(),
+            expected: only,
+        }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_names_of_what_is_missing_are_those_of_the_list() {
+        for stage in MISSING_STAGES {
+            assert!(Settings::ALL.iter().any(|s| s.stage == stage), "{stage}");
+        }
+        for key in MISSING_KEYS {
+            assert!(Settings::ALL.iter().any(|s| s.key == key), "{key}");
+        }
+    }
+
+    #[test]
+    fn devices_without_storage_buffers_refuse_what_needs_them() {
+        let limits = crate::Gpu::reduced_limits();
+        let mut settings = Settings {
+            width: 64,
+            height: 64,
+            stereo: crate::Stereo::Auto,
+            culling: crate::Culling::Occlusion,
+            ..Settings::default()
+        };
+        settings.validate(&limits).expect("in the reduced set");
+        settings.shading = Shading::Coarse;
+        let refused = settings.validate(&limits).expect_err("needs compute");
+        assert!(refused.to_string().contains("shading"), "{refused}");
+    }
+}

@@ -1,0 +1,108 @@
+// The page in a browser that has WebGL 2 alone: less is drawn, and it is said.
+
+import assert from 'node:assert/strict';
+import { mkdirSync, mkdtempSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import { fileURLToPath } from 'node:url';
+import { footing, open, picture, savePicture, settled } from './browser.mjs';
+import { drop, triangle } from './files.mjs';
+import { difference, flip, redPixels } from './native.mjs';
+
+const SHOTS = fileURLToPath(new URL('../../out/web', import.meta.url));
+const SMALL = { width: 1000, height: 420 };
+
+let site;
+before(async () => {
+  mkdirSync(SHOTS, { recursive: true });
+  site = await open('webgl2');
+});
+after(() => site.close());
+
+const shot = (page, name) => page.screenshot({ path: join(SHOTS, `reduced-${name}.png`) });
+const costs = (page) => page.evaluate(() => window.foveal.costs);
+
+test('the page draws with WebGL 2 and says what is missing', async () => {
+  const { page, said } = await site.visit('#scene=demo:1000&scale=0.5');
+  await settled(page);
+  assert.match(await page.locator('#adapter').textContent(), /WebGL 2/);
+  const notice = await page.locator('#reduced').textContent();
+  for (const word of ['no WebGPU', 'reduced', 'coarse shading', 'anti-aliasing', 'variable shading']) assert.ok(notice.includes(word), notice);
+  const offered = await page.locator('#techniques button').evaluateAll((all) => all.map((b) => b.dataset.key));
+  assert.deepEqual(offered, ['culling', 'stereo']);
+  const keys = await page.evaluate(() => window.foveal.settings.table.map(({ key }) => key));
+  assert.ok(keys.includes('stereo') && !keys.includes('aa') && !keys.includes('shading'));
+  const { reference, chosen } = await costs(page);
+  assert.ok(chosen.objects_occluded > 0 && chosen.objects_visible < reference.objects_visible);
+  const [left, right] = [await picture(page, false), await picture(page, true)];
+  assert.ok(left.bytes.equals(right.bytes), 'culling changes no pixel');
+  console.log(await footing(page));
+  await shot(page, 'desktop');
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('the picture is that of WebGPU', async (t) => {
+  const full = await open('webgpu');
+  t.after(() => full.close());
+  const folder = mkdtempSync(join(tmpdir(), 'foveal-web-'));
+  const files = [];
+  for (const [name, where] of [['webgl2', site], ['webgpu', full]]) {
+    const { page } = await where.visit('#scene=demo:1000&technique=culling&left.anisotropy=1&scale=1&split=1', { width: 848, height: 270 });
+    files.push(join(folder, `${name}.png`));
+    await savePicture(page, false, files.at(-1));
+    await page.context().close();
+  }
+  const error = flip(...files);
+  console.log(`FLIP of WebGL 2 to WebGPU: ${error}`);
+  assert.ok(error < 0.01, `FLIP to WebGPU is ${error}`);
+});
+
+test('both eyes in one submission, by discarding, give the picture of two passes', async () => {
+  const { page, said } = await site.visit('#scene=demo:1000&technique=stereo&scale=0.5', SMALL);
+  for (const show of ['side-by-side', 'anaglyph', 'anaglyph-dubois']) {
+    await page.locator('#quick-show').selectOption(show);
+    const [left, right] = [await picture(page, false), await picture(page, true)];
+    const { reference, chosen } = await costs(page);
+    assert.equal(reference.draws, 2 * chosen.draws);
+    assert.equal(chosen.stereo.mode, 'instanced-discard');
+    assert.ok(difference(left, right) < 0.01, `${show}: ${difference(left, right)}`);
+    assert.equal(await page.locator('.message').count(), 0, await page.locator('#messages').textContent());
+    let coloured = 0;
+    for (let i = 0; i < right.bytes.length; i += 4) coloured += Number(Math.abs(right.bytes[i] - right.bytes[i + 1]) > 40);
+    assert.ok(coloured > 500, `${show}: ${coloured} coloured pixels`);
+    await shot(page, show);
+  }
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('a dropped .glb is shown, a broken one is named, and a link may ask for too much', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  await drop(page, 'triangle.glb', triangle());
+  await page.waitForFunction(() => document.getElementById('scene').value === 'triangle.glb');
+  const red = redPixels(await picture(page, false));
+  assert.ok(red > 200, `${red} red pixels`);
+  await drop(page, 'broken.glb', triangle().subarray(0, 60));
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /broken\.glb/);
+  assert.equal(await page.locator('#scene').inputValue(), 'triangle.glb');
+  assert.deepEqual(said, []);
+  const odd = await site.visit('#scene=cornell&scale=0.25&right.shading=coarse', SMALL);
+  await settled(odd.page);
+  assert.match(await odd.page.locator('#messages').textContent(), /right\.shading=coarse/);
+  for (const p of [page, odd.page]) await p.context().close();
+});
+
+test('a browser that has WebGPU draws with WebGL 2 where the link asks for it', async (t) => {
+  const full = await open('webgpu');
+  t.after(() => full.close());
+  const { page } = await full.visit('#backend=webgl2&scene=cornell&scale=0.25', { width: 390, height: 844 });
+  await settled(page);
+  assert.match(await page.locator('#adapter').textContent(), /WebGL 2/);
+  assert.match(await page.evaluate(() => location.hash), /backend=webgl2/);
+  await shot(page, 'phone');
+  await page.context().close();
+});
