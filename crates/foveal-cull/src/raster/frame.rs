@@ -36,19 +36,70 @@ pub(crate) struct FrameScratch {
     order: Vec<u64>,
     /// Clip rows per instance.
     pub(crate) rows: Vec<[[f64; 4]; 4]>,
+    /// What each thread finds.
+    pub(crate) parts: Vec<Part>,
 }
 
-/// Finds and sorts the candidates.
+/// Candidates from some of the instances, in order.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Part {
+    candidates: Vec<Candidate>,
+    order: Vec<u64>,
+    /// Counts of what was looked at.
+    pub(crate) stats: CullStats,
+}
+
+impl FrameScratch {
+    /// Joins the first `parts`.
+    pub(crate) fn join(&mut self, parts: usize) {
+        self.candidates.clear();
+        self.order.clear();
+        let mut offsets = [0; MAX_PARTS];
+        let mut heads = [0; MAX_PARTS];
+        for (part, offset) in self.parts[..parts].iter().zip(&mut offsets) {
+            *offset = self.candidates.len() as u64;
+            self.candidates.extend_from_slice(&part.candidates);
+        }
+        for _ in 0..self.candidates.len() {
+            let head = |i: usize| self.parts[i].order.get(heads[i]);
+            let first = (0..parts).filter_map(|i| Some((head(i)?, i))).min();
+            if let Some((order, i)) = first {
+                self.order.push(order + offsets[i]);
+                heads[i] += 1;
+            }
+        }
+        // Equal distances by content, not by the order in which occluders were added.
+        let candidates = &self.candidates;
+        for run in self.order.chunk_by_mut(|a, b| a >> 32 == b >> 32) {
+            if run.len() > 1 {
+                run.sort_unstable_by_key(|&o| candidates[o as u32 as usize].hash);
+            }
+        }
+    }
+}
+
+/// Most parts that instances are looked at in.
+pub(crate) const MAX_PARTS: usize = 64;
+
+/// Finds and sorts the candidates among some instances.
 pub(crate) struct Select<'a> {
     pub(crate) camera: &'a Camera,
-    pub(crate) set: &'a OccluderSet,
-    pub(crate) scratch: &'a mut FrameScratch,
-    pub(crate) stats: &'a mut CullStats,
+    pub(crate) instances: &'a [Instance],
+    /// The number of the first of them.
+    pub(crate) first: usize,
+    /// Their clip rows.
+    pub(crate) rows: &'a mut [[[f64; 4]; 4]],
+    pub(crate) part: &'a mut Part,
     pub(crate) width: f32,
     pub(crate) height: f32,
     pub(crate) size_threshold: f32,
     pub(crate) pixels_per_quad: f32,
+    /// Samples that a point at depth 1 shifts by within the validity radius.
+    pub(crate) shift: f32,
 }
+
+/// Clusters of quads with less than this times the square of their shift hide next to nothing.
+const LOSSES: f32 = 16.0;
 
 impl Kernel for Select<'_> {
     type Output = ();
@@ -57,21 +108,24 @@ impl Kernel for Select<'_> {
     fn run<L: Lanes>(self, l: L) {
         let Self {
             camera,
-            set,
-            scratch,
-            stats,
+            instances,
+            first: first_instance,
+            rows: clip_rows,
+            part,
             width,
             height,
             size_threshold,
             pixels_per_quad,
+            shift,
         } = self;
         let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
-        scratch.candidates.clear();
-        scratch.order.clear();
+        part.candidates.clear();
+        part.order.clear();
+        part.stats = CullStats::default();
+        let stats = &mut part.stats;
         let planes = instance_planes(camera, f64::from(width), f64::from(height));
-        scratch.rows.resize(set.instances.len(), [[0.0; 4]; 4]);
         let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
-        for (index, instance) in set.instances.iter().enumerate() {
+        for ((index, instance), clip_rows) in instances.iter().enumerate().zip(clip_rows) {
             let Some(mesh) = instance.mesh.as_deref().filter(|_| instance.enabled) else {
                 continue;
             };
@@ -82,7 +136,7 @@ impl Kernel for Select<'_> {
                 continue;
             }
             let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
-            scratch.rows[index] = camera.exact_rows(&instance.world_from_mesh);
+            *clip_rows = camera.exact_rows(&instance.world_from_mesh);
             let screen = Screen {
                 rows,
                 width,
@@ -110,7 +164,10 @@ impl Kernel for Select<'_> {
                         continue;
                     };
                     let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]);
-                    if !c.crossing && area < samples_per_quad * f32::from(cluster.quad_count) {
+                    // Around the eye, quads must be larger than what they lose on all sides.
+                    let lost = shift * p.depth[i];
+                    let least = samples_per_quad.max(LOSSES * lost * lost);
+                    if !c.crossing && area < least * f32::from(cluster.quad_count) {
                         continue;
                     }
                     // Perspective: nearest distance; orthographic W is 1, so that the depth decides.
@@ -119,27 +176,18 @@ impl Kernel for Select<'_> {
                     } else {
                         (1.0 / p.depth[i]).max(0.0)
                     };
-                    let number = scratch.candidates.len() as u64;
-                    scratch
-                        .order
-                        .push((u64::from(near.to_bits()) << 32) | number);
-                    scratch.candidates.push(Candidate {
+                    let number = part.candidates.len() as u64;
+                    part.order.push((u64::from(near.to_bits()) << 32) | number);
+                    part.candidates.push(Candidate {
                         hash: cluster.hash ^ instance.hash,
-                        instance: index as u32,
+                        instance: (first_instance + index) as u32,
                         cluster: (first + i) as u32,
                         ..c
                     });
                 }
             }
         }
-        scratch.order.sort_unstable();
-        // Equal distances by content, not by the order in which occluders were added.
-        let candidates = &scratch.candidates;
-        for run in scratch.order.chunk_by_mut(|a, b| a >> 32 == b >> 32) {
-            if run.len() > 1 {
-                run.sort_unstable_by_key(|&o| candidates[o as u32 as usize].hash);
-            }
-        }
+        part.order.sort_unstable();
     }
 }
 

@@ -249,6 +249,17 @@ pub(crate) fn draw_eight<L: Lanes>(
     let both = l.iand(front0, front1);
     let fold = l.select(both, l.max(l.sub(at_other, oz), zero), zero);
     let (w, h) = (l.sub(x_hi, x_lo), l.sub(y_hi, y_lo));
+    if let Some(radius) = radius {
+        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at least sqrt(2) (w + h),
+        // times by how much.
+        let by = l.add(l.mul(z_hi, l.splat(radius.shift)), l.splat(BETWEEN_SAMPLES));
+        let least = l.mul(l.mul(by, l.splat(1.414)), l.add(w, h));
+        let twice_area = l.add(l.max(f0, zero), l.max(f1, zero));
+        live &= l.movemask(l.lt(least, twice_area));
+        if live == 0 {
+            return 0;
+        }
+    }
     let (ax, ay) = (l.abs(gx), l.abs(gy));
     let relative = l.add(
         l.splat(1.0 / 262_144.0),
@@ -273,17 +284,22 @@ pub(crate) fn draw_eight<L: Lanes>(
     // One at a time from here.
     let reversed = if two_sided { l.movemask(reversed) } else { 0 };
     let (x0, y0) = (out(l, x[0]), out(l, y[0]));
-    let (base, gx, gy, z_lo, z_hi, y_lo, y_hi, x_lo, x_hi) = (
+    let (base, gx, gy, z_lo, z_hi) = (
         out(l, base),
         out(l, gx),
         out(l, gy),
         out(l, z_lo),
         out(l, z_hi),
-        out(l, y_lo),
-        out(l, y_hi),
-        out(l, x_lo),
-        out(l, x_hi),
     );
+    // Blocks that hold a half-sample step.
+    let per_block = l.isplat((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
+    let ends = [band.blocks_x, band.first_row + band.rows];
+    let [bx0, by0, bx1, by1] = four!(k => {
+        let last = l.isplat(ends[k % 2] as i32 - 1);
+        let mut blocks = [0; 8];
+        l.istore(l.imin(l.ishr([nx0, ny0, nx1, ny1][k], per_block), last), &mut blocks);
+        blocks
+    });
     let (front0, front1) = (l.movemask(front0), l.movemask(front1));
     let mut drawn = 0;
     while live != 0 {
@@ -299,22 +315,15 @@ pub(crate) fn draw_eight<L: Lanes>(
             min: z_lo[i].max(0.0),
             max_code: encode(z_hi[i]),
         };
-        // Blocks that hold a half-sample step.
-        let last_row = band.first_row + band.rows - 1;
-        let blocks = [
-            block_of(x_lo[i], 0, band.blocks_x - 1),
-            block_of(y_lo[i], band.first_row, last_row),
-            block_of(x_hi[i], 0, band.blocks_x - 1),
-            block_of(y_hi[i], band.first_row, last_row),
-        ];
+        let blocks = [bx0[i] as u32, by0[i] as u32, bx1[i] as u32, by1[i] as u32];
         // What is behind all that is known changes nothing.
         if band.hides(blocks, plane.max_code) {
             continue;
         }
         let swapped = usize::from(reversed & bit != 0) * 2;
-        let n = four!(k => usize::from(index[if k % 2 == 1 { k ^ swapped } else { k }][i]));
-        let x = l.qload(&four!(k => points.exact_x[n[k]]));
-        let y = l.qload(&four!(k => points.exact_y[n[k]]));
+        let n = four!(k => index[if k % 2 == 1 { k ^ swapped } else { k }][i]);
+        let x = l.qgather(&points.exact_x, n);
+        let y = l.qgather(&points.exact_y, n);
         let (first, last) = if convex & bit != 0 {
             (2, 5)
         } else {
@@ -362,11 +371,6 @@ const SHAPES: [[u8; 4]; 5] = {
     let (first, second) = ([0, 1, 2, 0], [0, 2, 3, 0]);
     [first, second, [0, 1, 2, 3], first, second]
 };
-
-#[inline(always)]
-fn block_of(v: f32, first: u32, last: u32) -> u32 {
-    (((v * 2.0).max(0.0) as u32) / (2 * BLOCK_SAMPLES)).clamp(first, last)
-}
 
 /// Twice the signed area, positive when facing the eye (y points down).
 #[inline(always)]

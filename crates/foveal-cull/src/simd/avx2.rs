@@ -209,6 +209,11 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
+    fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> __m256d {
+        let [a, b, c, d] = four!(k => table[usize::from(index[k])]);
+        avx2!(_mm256_setr_pd(a, b, c, d))
+    }
+    #[inline(always)]
     fn qload(self, v: &[f64; 4]) -> __m256d {
         avx2!(_mm256_loadu_pd(v.as_ptr()))
     }

@@ -79,6 +79,7 @@ impl Lanes for Avx512 {
     codes(a: __m256) -> __m256i;
     gather(table: &[f32; 256], index: &[u8; 8]) -> __m256;
     isplat(v: i32) -> __m256i;
+    qgather(table: &[f64; 256], index: [u8; 4]) -> __m256d;
     qload(v: &[f64; 4]) -> __m256d;
     qstore(v: __m256d, to: &mut [f64; 4]);
     qsplat(v: f64) -> __m256d;

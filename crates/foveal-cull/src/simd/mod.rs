@@ -20,6 +20,12 @@ pub(crate) mod avx2;
     reason = "as for AVX2; held to the portable twin by the same tests"
 )]
 pub(crate) mod avx512;
+#[cfg(target_arch = "x86_64")]
+#[allow(
+    unsafe_code,
+    reason = "loads and stores of whole arrays; held to the portable twin by the same tests"
+)]
+pub(crate) mod sse2;
 
 /// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of closures: what
 /// is not inlined loses the instruction set.
@@ -77,8 +83,10 @@ pub(crate) trait Kernel {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InstructionSet {
-    /// Plain arrays as the compiler vectorizes them for the target (SSE2 on x86-64).
+    /// Plain arrays as the compiler vectorizes them for the target.
     Portable,
+    /// 128-bit SSE2, which every x86-64 CPU has.
+    Sse2,
     /// 256-bit AVX2.
     Avx2,
     /// AVX-512 (F, BW, DQ, VL): 512-bit registers for whole blocks.
@@ -97,7 +105,9 @@ impl InstructionSet {
             if avx2::Avx2::detect().is_some() {
                 return Self::Avx2;
             }
+            Self::Sse2
         }
+        #[cfg(not(target_arch = "x86_64"))]
         Self::Portable
     }
 
@@ -111,10 +121,13 @@ impl InstructionSet {
             {
                 return lanes.run(kernel);
             }
-            if self != Self::Portable
+            if matches!(self, Self::Avx2 | Self::Avx512)
                 && let Some(lanes) = avx2::Avx2::detect()
             {
                 return lanes.run(kernel);
+            }
+            if self != Self::Portable {
+                return kernel.run(sse2::Sse2);
             }
         }
         kernel.run(portable::Portable)
@@ -179,6 +192,7 @@ pub(crate) trait Lanes: Copy {
     /// Sign bits, lane 0 lowest.
     fn movemask(self, a: Self::I) -> u32;
 
+    fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q;
     fn qload(self, v: &[f64; 4]) -> Self::Q;
     fn qstore(self, v: Self::Q, to: &mut [f64; 4]);
     fn qsplat(self, v: f64) -> Self::Q;

@@ -20,11 +20,29 @@ pub(super) const SAMPLE_ROWS: [f32; 32] = {
 #[derive(Clone, Copy)]
 pub(crate) struct Portable;
 
+/// Pixels whose sample is at or right of the n-th of their row: a byte per sample column.
+pub(super) const FROM: [u32; 64] = {
+    let mut from = [0; 64];
+    let mut n = 0;
+    while n <= 32 {
+        let mut column = 0;
+        while column < 4 {
+            let pixels = (0xff << ((n + 3 - column) >> 2)) & 0xff;
+            from[n] |= pixels << (8 * column);
+            column += 1;
+        }
+        n += 1;
+    }
+    from
+};
+
 /// Distance to a whole number from 0 to `most`; a half, or more, far off.
 #[inline(always)]
 fn near_whole(v: f32, most: f32) -> f32 {
     let v = v.clamp(-0.5, most + 0.5);
-    (v - (v + 0.5).floor()).abs()
+    // 1.5 * 2^23: what is added to it loses its fraction.
+    const WHOLE: f32 = 12_582_912.0;
+    (v - ((v + WHOLE) - WHOLE)).abs()
 }
 
 impl Lanes for Portable {
@@ -160,6 +178,10 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
+    fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q {
+        index.map(|i| table[usize::from(i)])
+    }
+    #[inline(always)]
     fn qload(self, v: &[f64; 4]) -> Self::Q {
         *v
     }
@@ -235,14 +257,29 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn dgt(self, a: Self::D, b: Self::D) -> u64 {
-        (0..64).fold(0, |m, i| m | (u64::from(a[i] > b[i]) << i))
+        let mut bits = [0; 8];
+        for (row, bits) in bits.iter_mut().enumerate() {
+            // Bytes of 0 or 1, gathered into one by a product.
+            let mut ones = [0u8; 8];
+            for (column, one) in ones.iter_mut().enumerate() {
+                *one = u8::from(a[8 * row + column] > b[8 * row + column]);
+            }
+            *bits = (u64::from_le_bytes(ones).wrapping_mul(0x0102_0408_1020_4080) >> 56) as u8;
+        }
+        u64::from_le_bytes(bits)
     }
     #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
-        from_fn(|i| {
-            let mask = -(((bits >> i) & 1) as i16);
-            (mask & a[i]) | (!mask & b[i])
-        })
+        let mut selected = [0; 64];
+        for (row, bits) in bits.to_le_bytes().into_iter().enumerate() {
+            let bits = i16::from(bits);
+            for column in 0..8 {
+                let (i, bit) = (8 * row + column, 1 << column);
+                let mask = if bits & bit == bit { -1i16 } else { 0 };
+                selected[i] = (mask & a[i]) | (!mask & b[i]);
+            }
+        }
+        selected
     }
     #[inline(always)]
     fn dreduce_min(self, a: Self::D) -> i16 {
@@ -292,15 +329,18 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     fn planes(self, from: Self::R, to: Self::R) -> Self::P {
-        let number = |v: f32| v.clamp(0.0, 32.0) as u8;
-        from_fn(|plane| {
-            let (column, k) = (plane as u8 / 4, plane % 4);
-            // The first pixel whose sample in this column is at or right of the n-th sample.
-            let pixels = |n: u8| (0xffu16 << ((n + 3 - column) >> 2)) as u8;
-            u64::from_le_bytes(from_fn(|i| {
-                pixels(number(from[8 * k + i])) & !pixels(number(to[8 * k + i]))
-            }))
-        })
+        let number = |v: f32| v.clamp(0.0, 32.0) as usize;
+        // A byte per column of samples.
+        let rows: [u32; 32] = from_fn(|i| FROM[number(from[i]) & 63] & !FROM[number(to[i]) & 63]);
+        let mut planes = [0; 16];
+        for k in 0..4 {
+            let rows: &[u32; 8] = &from_fn(|i| rows[8 * k + i]);
+            for column in 0..4 {
+                planes[4 * column + k] =
+                    u64::from_le_bytes(from_fn(|i| (rows[i] >> (8 * column)) as u8));
+            }
+        }
+        planes
     }
     #[inline(always)]
     fn plane(self, from: Self::F, to: Self::F) -> u64 {
