@@ -78,6 +78,19 @@ pub(crate) struct CullingArgs {
     /// Cull objects that look smaller than this (Intel's sample: 0.01)
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
     pub(crate) occludee_size_threshold: f32,
+
+    /// Cull for two eyes so many metres apart, with the camera between them: what is culled is hidden from both
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
+    pub(crate) eyes_apart: f32,
+
+    /// The result shall hold while each eye moves by less than this, metres
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
+    pub(crate) validity_radius: f32,
+
+    /// Begin no occluder later than this in a frame, milliseconds: near ones come first, and what is left out
+    /// only makes more visible
+    #[arg(long, value_name = "MS", value_parser = values::non_negative)]
+    pub(crate) budget_ms: Option<f32>,
 }
 
 /// Where the scene is seen from.

@@ -3,11 +3,12 @@
 use std::time::Instant;
 
 use anyhow::Context;
-use foveal_cull::{Culler, Eye, FrameOptions, OccludeeTree, View, Visibility};
+use foveal_cull::{Culler, OccludeeTree, View, Visibility};
 use glam::DVec3;
 use serde::Serialize;
 
 use super::args::CullingArgs;
+use super::around::Clock;
 use super::subject::{Occludees, Subject};
 use super::workers::Workers;
 use crate::median::median;
@@ -27,6 +28,8 @@ pub(crate) struct OccluderFigures {
     pub(crate) triangles: u64,
     pub(crate) rasterized_triangles: u64,
     pub(crate) rasterize_ms: f64,
+    /// Clusters of the last frame that the time budget left out.
+    pub(crate) clusters_over_budget: u64,
     pub(crate) size_threshold: f32,
 }
 
@@ -63,22 +66,15 @@ pub(crate) struct Outcome {
     pub(crate) results: Vec<Visibility>,
 }
 
-/// Culls `frames` times (and once before, to warm up) and takes the medians.
+/// Culls a view `frames` times (and once before, to warm up) and takes the medians.
 pub(crate) fn measure(
     culler: &mut Culler,
     workers: &Workers,
     subject: &Subject,
-    eye: &Eye,
+    view: &View,
     culling: &CullingArgs,
     frames: u32,
 ) -> anyhow::Result<Outcome> {
-    let view = View::mono(*eye);
-    let options = FrameOptions {
-        occluder_size_threshold: culling.occluder_size_threshold,
-        occluder_pixels_per_quad: culling.occluder_pixels_per_quad,
-        occludee_size_threshold: culling.occludee_size_threshold,
-        ..FrameOptions::default()
-    };
     let Occludees {
         boxes,
         triangles,
@@ -91,7 +87,10 @@ pub(crate) fn measure(
     let (mut rasterize_ms, mut test_ms, mut tree_ms) = (Vec::new(), Vec::new(), Vec::new());
     let mut frame = || -> Result<[f64; 3], foveal_cull::CullError> {
         let start = Instant::now();
-        workers.rasterize(culler, &view, &subject.occluders.set, &options)?;
+        let clock = Clock::start();
+        let clock = || clock.now_ns();
+        let options = culling.options(&clock);
+        workers.rasterize(culler, view, &subject.occluders.set, &options)?;
         let between = Instant::now();
         workers.query(culler, boxes, &mut results)?;
         let tested = Instant::now();
@@ -116,6 +115,7 @@ pub(crate) fn measure(
             triangles: subject.occluders.set.triangle_count() as u64,
             rasterized_triangles: stats.occluder_triangles_rasterized,
             rasterize_ms: median(&rasterize_ms),
+            clusters_over_budget: stats.clusters_over_budget,
             size_threshold: culling.occluder_size_threshold,
         },
         occludees: OccludeeFigures {

@@ -4,6 +4,7 @@
 //! boxes, eyes), each eye is culled and timed, compared with the exact reference where wanted, and drawn.
 
 mod args;
+pub(crate) mod around;
 pub(crate) mod camera_file;
 mod frustum;
 pub(crate) mod measure;
@@ -104,6 +105,9 @@ fn cull(args: &Args) -> anyhow::Result<Report> {
         height,
         threads: args.threads,
         frames: args.frames,
+        eyes_apart_m: args.culling.eyes_apart,
+        validity_radius_m: args.culling.validity_radius,
+        budget_ms: args.culling.budget_ms,
         instruction_set: format!("{:?}", culler.instruction_set()),
         warnings,
         cameras,
@@ -141,21 +145,15 @@ fn cull_one(
     subject: &Subject,
     eye: &NamedEye,
 ) -> anyhow::Result<(CameraReport, measure::Outcome)> {
-    let outcome = measure(
-        culler,
-        workers,
-        subject,
-        &eye.eye,
-        &args.culling,
-        args.frames,
-    )?;
+    let view = args.culling.view(&eye.eye)?;
+    let outcome = measure(culler, workers, subject, &view, &args.culling, args.frames)?;
     let check = args
         .check
         .then(|| {
             let boxes = &subject.occludees.boxes;
             Check::new(
                 &subject.occluders,
-                &eye.eye,
+                &view,
                 args.size,
                 boxes,
                 &outcome.results,

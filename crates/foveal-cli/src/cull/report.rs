@@ -24,6 +24,11 @@ pub(super) struct Report {
     pub(super) height: u32,
     pub(super) threads: u32,
     pub(super) frames: u32,
+    /// Between two eyes; 0 for one.
+    pub(super) eyes_apart_m: f32,
+    pub(super) validity_radius_m: f32,
+    /// `null` without one.
+    pub(super) budget_ms: Option<f32>,
     pub(super) instruction_set: String,
     pub(super) warnings: Vec<String>,
     pub(super) cameras: Vec<CameraReport>,

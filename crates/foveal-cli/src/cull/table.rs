@@ -18,6 +18,12 @@ pub(super) fn text(report: &Report) -> String {
         report.instruction_set,
         plural(u64::from(report.frames), "frame"),
     );
+    if report.eyes_apart_m > 0.0 {
+        let _ = writeln!(text, "for two eyes, {} m apart", report.eyes_apart_m);
+    }
+    if report.validity_radius_m > 0.0 {
+        let _ = writeln!(text, "for all places within {} m", report.validity_radius_m);
+    }
     for camera in &report.cameras {
         push_camera(&mut text, camera);
     }
@@ -37,6 +43,10 @@ fn push_camera(text: &mut String, camera: &CameraReport) {
     line("  triangles", grouped(o.triangles));
     line("  rasterized triangles", grouped(o.rasterized_triangles));
     line("  rasterize time", ms(o.rasterize_ms));
+    if o.clusters_over_budget > 0 {
+        let left_out = grouped(o.clusters_over_budget);
+        line("  clusters over the time budget", left_out);
+    }
     line("  size threshold", o.size_threshold.to_string());
     let o = &f.occludees;
     line("occludee models", grouped(o.models));

@@ -80,6 +80,45 @@ fn nothing_visible_is_culled_from_small_scenes() {
 }
 
 #[test]
+fn one_result_holds_for_two_eyes_and_for_all_places_within_a_radius() {
+    let hidden = |words: &[&str]| {
+        let mut line = vec!["demo:1000", "--size", "96x54", "--check"];
+        line.extend(words);
+        let report = culled(&line).unwrap();
+        verdict(&report).unwrap();
+        let figures = report.cameras.iter().map(|c| &c.figures.occludees);
+        figures.map(|f| f.culled_by_occlusion).sum::<u64>()
+    };
+    let one = hidden(&[]);
+    let two = hidden(&["--eyes-apart", "0.066"]);
+    let around = hidden(&["--validity-radius", "0.05"]);
+    assert!(0 < two && two <= one, "{one} {two}");
+    assert!(around <= one, "{one} {around}");
+}
+
+#[test]
+fn an_orthographic_camera_has_no_two_eyes() {
+    let file = std::env::temp_dir().join(format!("foveal-two-eyes-{}.json", std::process::id()));
+    let cameras = r#"[{"eye": [0, 5, 0], "target": [0, 0, 1], "ortho_height": 4, "far": 50}]"#;
+    std::fs::write(&file, cameras).unwrap();
+    let path = file.to_str().unwrap();
+    let error = culled(&["cornell", "--cameras", path, "--eyes-apart", "0.06"]).unwrap_err();
+    assert!(format!("{error:#}").contains("--eyes-apart"), "{error:#}");
+    std::fs::remove_file(&file).unwrap();
+}
+
+#[test]
+fn a_spent_budget_draws_nothing_and_culls_nothing_by_occlusion() {
+    let report = culled(&["demo:1000", "--budget-ms", "0"]).unwrap();
+    for camera in &report.cameras {
+        let occluders = &camera.figures.occluders;
+        assert_eq!(occluders.rasterized_models, 0);
+        assert!(occluders.clusters_over_budget > 0);
+        assert_eq!(camera.figures.occludees.culled_by_occlusion, 0);
+    }
+}
+
+#[test]
 fn threads_do_not_change_an_answer() {
     let results = |threads: &str| -> Vec<&str> {
         let report = culled(&["demo:1000", "--threads", threads]).unwrap();

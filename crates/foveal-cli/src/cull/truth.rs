@@ -2,11 +2,12 @@
 
 use anyhow::Context;
 use foveal_cull::truth::{Seen, Truth};
-use foveal_cull::{Aabb, Eye, Visibility};
+use foveal_cull::{Aabb, Eye, View, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
 use serde::Serialize;
 
+use super::around::places;
 use super::frustum::is_outside;
 use super::occluders::Occluders;
 
@@ -33,26 +34,23 @@ impl Check {
         self.false_occluded == 0 && self.false_occluded_4x == 0
     }
 
-    /// Compares `results`, one per box.
+    /// Compares `results`, one per box, with what can be seen from any place that they hold for.
     pub(crate) fn new(
         occluders: &Occluders,
-        eye: &Eye,
+        view: &View,
         (width, height): (u32, u32),
         boxes: &[Aabb],
         results: &[Visibility],
     ) -> anyhow::Result<Self> {
-        let same = compare(
-            &reference(occluders, eye, width, height)?,
-            eye,
-            boxes,
-            results,
-        );
-        let fine = compare(
-            &reference(occluders, eye, 4 * width, 4 * height)?,
-            eye,
-            boxes,
-            results,
-        );
+        let [same, fine] = [1, 4].map(|n| -> anyhow::Result<Counts> {
+            let mut seen = vec![Seen::Outside; boxes.len()];
+            for eye in places(view) {
+                let truth = reference(occluders, &eye, n * width, n * height)?;
+                look(&truth, &eye, boxes, &mut seen);
+            }
+            Ok(count(&seen, results))
+        });
+        let (same, fine) = (same?, fine?);
         Ok(Self {
             false_occluded: same.culled_but_seen,
             false_occluded_4x: fine.culled_but_seen,
@@ -86,27 +84,27 @@ struct Counts {
     hidden_but_kept: u64,
 }
 
-fn compare(truth: &Truth, eye: &Eye, boxes: &[Aabb], results: &[Visibility]) -> Counts {
-    boxes
-        .par_iter()
-        .zip(results)
-        .map(|(bounds, result)| {
-            // The reference would follow rays through the whole screen for a box behind the eye.
-            let seen = if is_outside(eye, bounds) {
-                Seen::Outside
-            } else {
-                truth.seen(bounds, DVec3::ZERO)
-            };
-            let culled = matches!(result, Visibility::Occluded | Visibility::Outside);
-            Counts {
-                culled_but_seen: u64::from(culled && seen == Seen::Visible),
-                hidden: u64::from(seen == Seen::Hidden),
-                hidden_but_kept: u64::from(result.is_visible() && seen == Seen::Hidden),
-            }
-        })
-        .reduce(Counts::default, |a, b| Counts {
-            culled_but_seen: a.culled_but_seen + b.culled_but_seen,
-            hidden: a.hidden + b.hidden,
-            hidden_but_kept: a.hidden_but_kept + b.hidden_but_kept,
-        })
+/// Adds what one eye sees: visible to one is visible, hidden from all that it is before is hidden.
+fn look(truth: &Truth, eye: &Eye, boxes: &[Aabb], seen: &mut [Seen]) {
+    boxes.par_iter().zip(seen).for_each(|(bounds, seen)| {
+        // The reference would follow rays through the whole screen for a box behind the eye.
+        if *seen == Seen::Visible || is_outside(eye, bounds) {
+            return;
+        }
+        let here = truth.seen(bounds, DVec3::ZERO);
+        if here != Seen::Outside {
+            *seen = here;
+        }
+    });
+}
+
+fn count(seen: &[Seen], results: &[Visibility]) -> Counts {
+    let mut counts = Counts::default();
+    for (seen, result) in seen.iter().zip(results) {
+        let culled = matches!(result, Visibility::Occluded | Visibility::Outside);
+        counts.culled_but_seen += u64::from(culled && *seen == Seen::Visible);
+        counts.hidden += u64::from(*seen == Seen::Hidden);
+        counts.hidden_but_kept += u64::from(result.is_visible() && *seen == Seen::Hidden);
+    }
+    counts
 }

@@ -3,10 +3,11 @@
 use std::fmt::Write;
 use std::time::Instant;
 
-use foveal_cull::{Aabb, Culler, FrameOptions, View, Visibility};
+use foveal_cull::{Aabb, Culler, Visibility};
 use serde::Serialize;
 
 use crate::cull::CullingArgs;
+use crate::cull::around::Clock;
 use crate::cull::occluders::Occluders;
 use crate::cull::truth::Check;
 use crate::cull::views::NamedEye;
@@ -85,18 +86,15 @@ impl Case<'_> {
         check: bool,
     ) -> anyhow::Result<Vec<Row>> {
         let mut culler = Culler::new(self.size.0, self.size.1)?;
-        let view = View::mono(self.eye.eye);
-        let options = FrameOptions {
-            occluder_size_threshold: self.culling.occluder_size_threshold,
-            occluder_pixels_per_quad: self.culling.occluder_pixels_per_quad,
-            occludee_size_threshold: self.culling.occludee_size_threshold,
-            ..FrameOptions::default()
-        };
+        let view = self.culling.view(&self.eye.eye)?;
         let mut results = vec![Visibility::Visible; self.boxes.len()];
         let mut times: Vec<[Vec<f64>; 2]> = workers.iter().map(|_| Default::default()).collect();
         for repetition in 0..WARM_UP + repetitions {
             for ((_, workers), [raster_ms, query_ms]) in workers.iter().zip(&mut times) {
                 let start = Instant::now();
+                let clock = Clock::start();
+                let clock = || clock.now_ns();
+                let options = self.culling.options(&clock);
                 workers.rasterize(&mut culler, &view, &self.occluders.set, &options)?;
                 let between = Instant::now();
                 workers.query(&culler, self.boxes, &mut results)?;
@@ -109,8 +107,7 @@ impl Case<'_> {
             }
         }
         let check = if check {
-            let eye = &self.eye.eye;
-            Check::new(self.occluders, eye, self.size, self.boxes, &results)?.into()
+            Check::new(self.occluders, &view, self.size, self.boxes, &results)?.into()
         } else {
             CheckColumns::default()
         };

@@ -128,6 +128,9 @@ impl Town {
                 occluder_size_threshold: 0.0,
                 occluder_pixels_per_quad: FrameOptions::default().occluder_pixels_per_quad,
                 occludee_size_threshold: 0.0,
+                eyes_apart: 0.0,
+                validity_radius: 0.0,
+                budget_ms: None,
             },
         };
         let workers = [(point.threads, Workers::new(point.threads))];
