@@ -48,7 +48,7 @@ impl ForwardPass {
         let layered = submission == Submission::Multiview;
         constants.push(("LAYERED", f64::from(u8::from(layered))));
         let parts = match submission {
-            Submission::Instanced { clips: true } => shader::FORWARD_CLIPPED,
+            _ if submission.clips() => shader::FORWARD_CLIPPED,
             Submission::Multiview => shader::FORWARD_LAYERED,
             _ if gpu.is_reduced() => shader::REDUCED_FORWARD,
             _ => shader::FORWARD,

@@ -193,7 +193,7 @@ impl GeometryPass {
             constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
         }
         let parts = match submission {
-            Submission::Instanced { clips: true } => shader::GBUFFER_CLIPPED,
+            _ if submission.clips() => shader::GBUFFER_CLIPPED,
             Submission::Multiview => shader::GBUFFER_LAYERED,
             _ if gpu.is_reduced() => shader::REDUCED_GBUFFER,
             _ => shader::GBUFFER,

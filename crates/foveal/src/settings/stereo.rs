@@ -30,7 +30,8 @@ pub enum EyeClipping {
     /// Clip distances where the device has them, else discard.
     #[default]
     Auto,
-    /// A clip plane at the middle.
+    /// A clip plane at the middle; with [`Stereo::TwoPass`] too, which else has scissors alone. Clipped triangles are other
+    /// polygons: their last bits differ.
     Clip,
     /// Fragments beyond the middle are discarded.
     Discard,

@@ -12,8 +12,8 @@ use crate::{Antialiasing, Clock, Error, EyeClipping, Geometry, Settings, Stereo,
 pub(crate) enum Submission {
     /// One eye.
     Mono,
-    /// Every draw once per eye, each within a scissor.
-    TwoPass,
+    /// Every draw once per eye, each within a scissor, or clipped at the middle besides as instancing would.
+    TwoPass { clips: bool },
     /// Every draw once with twice the instances, clipped at the middle by the rasterizer, or by discarding.
     Instanced { clips: bool },
     /// Every draw once, to a layer for each eye.
@@ -76,7 +76,10 @@ impl Submission {
                 let why = "both eyes see the same: drawn once, shown to both";
                 return Ok((Self::Mono, why.to_owned()));
             }
-            Stereo::TwoPass => Self::TwoPass,
+            Stereo::TwoPass => Self::TwoPass {
+                // Scissors do without, unless it is to be compared.
+                clips: clips && settings.eye_clipping == EyeClipping::Clip,
+            },
             Stereo::Instanced => instanced,
             Stereo::Multiview => {
                 Self::check_multiview(gpu, trials, clock).await?;
@@ -86,7 +89,7 @@ impl Submission {
                 return Ok((instanced, "the device has no other".to_owned()));
             }
             Stereo::Auto => {
-                let mut ways = vec![instanced, Self::TwoPass];
+                let mut ways = vec![instanced, Self::TwoPass { clips: false }];
                 if gpu.has_multiview() && settings.aa == Antialiasing::None {
                     ways.insert(0, Self::Multiview);
                 }
@@ -140,7 +143,7 @@ impl Submission {
             .iter()
             .copied()
             .reduce(|best, way| if way.1 < 0.9 * best.1 { way } else { best });
-        let best = best.map_or(Self::TwoPass, |(way, _)| way);
+        let best = best.map_or(Self::TwoPass { clips: false }, |(way, _)| way);
         let times: Vec<String> = right
             .iter()
             .map(|(way, ms)| format!("{} {ms:.2} ms", way.name()))
@@ -159,7 +162,7 @@ impl Submission {
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Mono => "once",
-            Self::TwoPass => "two-pass",
+            Self::TwoPass { .. } => "two-pass",
             Self::Instanced { clips: true } => "instanced-clip",
             Self::Instanced { clips: false } => "instanced-discard",
             Self::Multiview => "multiview",
@@ -179,16 +182,24 @@ impl Submission {
         NonZeroU32::new(0b11).filter(|_| self == Self::Multiview)
     }
 
+    /// Whether the rasterizer clips at the middle: shaders then have a plane.
+    pub(crate) fn clips(self) -> bool {
+        matches!(
+            self,
+            Self::TwoPass { clips: true } | Self::Instanced { clips: true }
+        )
+    }
+
     /// How often each draw is issued.
     pub(crate) fn passes(self) -> u64 {
-        1 + u64::from(self == Self::TwoPass)
+        1 + u64::from(matches!(self, Self::TwoPass { .. }))
     }
 
     /// What draws issue, per viewport.
     pub(crate) fn drawn(self) -> &'static [Drawn] {
         match self {
             Self::Mono => &[Drawn::Once],
-            Self::TwoPass => &[Drawn::ForEye(0), Drawn::ForEye(1)],
+            Self::TwoPass { .. } => &[Drawn::ForEye(0), Drawn::ForEye(1)],
             Self::Instanced { .. } => &[Drawn::Twice],
             Self::Multiview => &[Drawn::ForEachLayer],
         }
@@ -198,7 +209,7 @@ impl Submission {
     pub(crate) fn constants(self) -> [(&'static str, f64); 2] {
         let eyes = match self {
             Self::Mono | Self::Multiview => 0.0,
-            Self::TwoPass => 1.0,
+            Self::TwoPass { .. } => 1.0,
             Self::Instanced { .. } => 2.0,
         };
         let discards = self == Self::Instanced { clips: false };
@@ -211,7 +222,7 @@ impl Submission {
     /// The shaders' vertex entry point.
     pub(crate) fn vertex_entry(self) -> &'static str {
         match self {
-            Self::Instanced { clips: true } => "vertex_clipped",
+            _ if self.clips() => "vertex_clipped",
             Self::Multiview => "vertex_layered",
             _ => "vertex",
         }

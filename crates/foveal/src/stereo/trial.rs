@@ -63,7 +63,9 @@ impl Trials {
             return Ok(*verdict);
         }
         if self.expected.is_empty() {
-            self.expected = draw(gpu, Submission::TwoPass, clock).await?.0;
+            self.expected = draw(gpu, Submission::TwoPass { clips: false }, clock)
+                .await?
+                .0;
         }
         let verdict = match draw(gpu, way, clock).await {
             Ok((seen, ms)) => {
@@ -119,7 +121,7 @@ struct Trial {
 impl Trial {
     fn new(gpu: &Gpu, way: Submission) -> Self {
         let (parts, vertex) = match way {
-            Submission::Mono | Submission::TwoPass => (shader::TRIAL, "eye_alone"),
+            Submission::Mono | Submission::TwoPass { .. } => (shader::TRIAL, "eye_alone"),
             Submission::Instanced { clips: false } => (shader::TRIAL, "eyes_beside"),
             Submission::Instanced { clips: true } => (shader::TRIAL_CLIPPED, "eyes_clipped"),
             Submission::Multiview => (shader::TRIAL_LAYERED, "eyes_layered"),
@@ -144,7 +146,7 @@ impl Trial {
     /// Submits all draws, for both eyes.
     fn submit(&self, gpu: &Gpu) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        if self.way == Submission::TwoPass {
+        if matches!(self.way, Submission::TwoPass { .. }) {
             for eye in 0..2 {
                 let layer = |view: &wgpu::TextureView| gpu::layer_of(view, eye);
                 let (color, depth) = (layer(&self.color), layer(&self.depth));

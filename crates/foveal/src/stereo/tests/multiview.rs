@@ -194,7 +194,7 @@ fn auto_takes_a_way_that_is_right_and_says_why() {
             assert!(stereo.reason.contains(said), "{stereo:?}");
             let way = match stereo.mode.as_str() {
                 "multiview" => Submission::Multiview,
-                "two-pass" => Submission::TwoPass,
+                "two-pass" => Submission::TwoPass { clips: false },
                 mode => Submission::Instanced {
                     clips: mode == "instanced-clip",
                 },
