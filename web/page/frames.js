@@ -35,7 +35,7 @@ async function drawFrame() {
   page.stale = false;
   if (page.moved) writeLink();
   page.moved = false;
-  const cost = JSON.parse(await page.viewer.draw(JSON.stringify(wish)));
+  const cost = JSON.parse(await drawOrFail(JSON.stringify(wish)));
   page.unsettled -= 1;
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
@@ -43,6 +43,15 @@ async function drawFrame() {
   showFigures($('figures'), $('passes'), $('notices'), page.costs);
   showFooting($('footing'), page.firstFrameMs, page.memory.buffer.byteLength);
   adapt(cost.total_ms);
+}
+
+/** The viewer's frame, unless the canvas loses its context before. */
+function drawOrFail(wish) {
+  return new Promise((done, failed) => {
+    if (page.lost) throw page.lost;
+    page.fail = failed;
+    page.viewer.draw(wish).then(done, failed);
+  });
 }
 
 let last = performance.now();
@@ -85,6 +94,13 @@ export async function openViewer() {
   const old = $('picture');
   const canvas = old.cloneNode();
   old.replaceWith(canvas);
+  // Nobody tells wgpu that a WebGL context is gone: its frame would never end.
+  page.lost = null;
+  canvas.addEventListener('webglcontextlost', () => {
+    page.lost = 'the graphics device was lost: the browser took the WebGL context away';
+    page.fail?.(page.lost);
+    redraw();
+  });
   page.viewer = null;
   page.viewer = await page.Viewer.open(canvas);
   const touched = page.camera?.touched;

@@ -7,6 +7,9 @@ export const $ = (id) => document.getElementById(id);
 /** Everything that a frame hangs on. */
 export const page = {
   viewer: null,
+  // Why the canvas has lost its context, and whom to tell.
+  lost: null,
+  fail: null,
   settings: null,
   // The reduced renderer draws, with WebGL 2; on purpose: the link asked for it.
   reduced: false,

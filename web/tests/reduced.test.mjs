@@ -96,6 +96,22 @@ test('a dropped .glb is shown, a broken one is named, and a link may ask for too
   for (const p of [page, odd.page]) await p.context().close();
 });
 
+test('a lost device and a lost context are opened again', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  const first = await picture(page);
+  for (const lose of [
+    () => { window.foveal.viewer.lose_device(); window.foveal.stale = true; },
+    () => document.getElementById('picture').getContext('webgl2').getExtension('WEBGL_lose_context').loseContext(),
+  ]) {
+    await page.evaluate(lose);
+    await page.locator('.message').waitFor();
+    assert.match(await page.locator('.message').textContent(), /lost/i);
+    assert.ok((await picture(page)).bytes.equals(first.bytes));
+    await page.locator('.message button').click();
+  }
+  await page.context().close();
+});
+
 test('a browser that has WebGPU draws with WebGL 2 where the link asks for it', async (t) => {
   const full = await open('webgpu');
   t.after(() => full.close());
