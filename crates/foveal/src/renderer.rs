@@ -13,7 +13,7 @@ use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
 use crate::lights::{ClusterGrid, LightAssigner};
-use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, ViewPass};
+use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
@@ -62,6 +62,9 @@ pub struct Renderer {
     scene: SceneOnGpu,
     draw_list: DrawList,
     present: PresentPass,
+    /// As the caller has them; the stages have those at which the frame is drawn.
+    settings: Settings,
+    upscale: Option<Upscale>,
     frozen: bool,
     in_flight: Option<InFlight>,
 }
@@ -190,15 +193,19 @@ impl Renderer {
         let material_layout = material_layout(gpu);
         let mut trials = Trials::default();
         let trial = (&mut trials, clock);
+        settings.validate(&gpu.device.limits())?;
         let stages = Stages::new(
             gpu,
-            settings,
+            &settings.drawn(),
             &frame_bindings,
             &material_layout,
             None,
             trial,
         )
         .await?;
+        let trap = ErrorTrap::new(gpu, "preparing the renderer");
+        let upscale = Upscale::new(gpu, settings);
+        trap.finish().await?;
         let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout)?;
         Ok(Self {
             gpu: gpu.clone(),
@@ -212,6 +219,8 @@ impl Renderer {
             scene,
             draw_list: DrawList::default(),
             present: PresentPass::new(gpu),
+            settings: settings.clone(),
+            upscale,
             frozen: false,
             in_flight: None,
         })
@@ -220,7 +229,7 @@ impl Renderer {
     /// The settings in force.
     #[must_use]
     pub fn settings(&self) -> &Settings {
-        &self.stages.settings
+        &self.settings
     }
 
     /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
@@ -231,6 +240,20 @@ impl Renderer {
     /// As [`Renderer::new`]; the renderer keeps its old settings then.
     pub async fn set_settings(&mut self, settings: &Settings) -> Result<(), Error> {
         settings.validate(&self.gpu.device.limits())?;
+        if *settings == self.settings {
+            return Ok(());
+        }
+        let trap = ErrorTrap::new(&self.gpu, "resizing the picture");
+        let upscale = Upscale::new(&self.gpu, settings);
+        trap.finish().await?;
+        self.draw_with(&settings.drawn()).await?;
+        self.upscale = upscale;
+        self.settings = settings.clone();
+        Ok(())
+    }
+
+    /// Takes over other settings of what is drawn.
+    async fn draw_with(&mut self, settings: &Settings) -> Result<(), Error> {
         let old = &self.stages.settings;
         if *settings == *old {
             return Ok(());
@@ -391,6 +414,7 @@ impl Renderer {
             scene,
             draw_list,
             present,
+            upscale,
             clock,
             frozen,
             ..
@@ -540,6 +564,9 @@ impl Renderer {
         if let Some(eyes_shown) = eyes_shown {
             eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
         }
+        if let Some(upscale) = upscale {
+            upscale.stretch(recorder, targets.shown());
+        }
         if let Some(target) = target {
             present.present(recorder, targets.shown(), target);
         }
@@ -559,7 +586,7 @@ impl Renderer {
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
         let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
-        let bytes = read_texture(&self.gpu, self.stages.targets.shown().texture()).await;
+        let bytes = read_texture(&self.gpu, self.picture().texture()).await;
         trap.finish().await?;
         bytes
     }
@@ -595,7 +622,10 @@ impl Renderer {
     /// [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after [`Renderer::set_settings`].
     #[must_use]
     pub fn picture(&self) -> &wgpu::TextureView {
-        self.stages.targets.shown()
+        match &self.upscale {
+            Some(upscale) => upscale.picture_view(),
+            None => self.stages.targets.shown(),
+        }
     }
 
     /// Counts of the scene that was set last.

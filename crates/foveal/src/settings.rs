@@ -157,6 +157,8 @@ settings! {
             width: u32 = 1280, "Width", Kind::Integer { least: 1, most: 16384 };
             /// Height in pixels, 1 up to the device's limit
             height: u32 = 720, "Height", Kind::Integer { least: 1, most: 16384 };
+            /// Size at which the frame is drawn, by that of the picture, which is then stretched: 0.5 to 1
+            render_scale: f32 = 1.0, "Render scale", Kind::Number { least: 0.5, most: 1.0 };
             /// What the picture shows
             view: View = View::default(), "View", Kind::choice::<View>();
             /// Exposure in stops: radiance is multiplied by 2^exposure before the tone map, +1 doubles the light
@@ -284,6 +286,18 @@ settings! {
 }
 
 impl Settings {
+    /// The settings at whose size the frame is drawn before it is stretched by [`Settings::render_scale`].
+    #[must_use]
+    pub fn drawn(&self) -> Self {
+        let scaled = |pixels: u32| ((pixels as f32 * self.render_scale).round() as u32).max(1);
+        Self {
+            width: scaled(self.width),
+            height: scaled(self.height),
+            render_scale: 1.0,
+            ..self.clone()
+        }
+    }
+
     /// Checks that the settings make sense and that a device with these limits can meet them.
     ///
     /// # Errors
@@ -313,6 +327,13 @@ impl Settings {
                 name: "exposure",
                 value,
                 expected: "between -64 and 64",
+            });
+        }
+        if !(0.5..=1.0).contains(&self.render_scale) {
+            return Err(Error::Setting {
+                name: "render-scale",
+                value: self.render_scale.to_string(),
+                expected: "between 0.5 and 1",
             });
         }
         if !(1..=16).contains(&self.anisotropy) {

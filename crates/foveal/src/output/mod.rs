@@ -6,6 +6,7 @@ mod present;
 mod tone_map;
 #[cfg(test)]
 mod twin;
+mod upscale;
 mod view;
 
 pub(crate) use eyes::EyesPass;
@@ -14,6 +15,7 @@ pub(crate) use eyes::ShownUniform;
 pub(crate) use overlay::OverlayPass;
 pub(crate) use present::PresentPass;
 pub(crate) use tone_map::ToneMapPass;
+pub(crate) use upscale::Upscale;
 pub(crate) use view::ViewPass;
 
 /// sRGB values, encoded by the shaders, so that every adapter rounds alike.

@@ -4,6 +4,7 @@ use super::{Renderer, Stages};
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingCounts;
 use crate::gpu::{Arriving, CpuTimer, Gpu, Handover, work_done};
+use crate::output::Upscale;
 use crate::shading::CountPass;
 use crate::stereo::EyeLayout;
 use crate::{CoarseStats, Error, FrameStats, Timing};
@@ -94,7 +95,7 @@ impl Renderer {
             submission: (submission, reason),
             ..
         } = &self.stages;
-        let (width, height) = settings.picture_size();
+        let (width, height) = self.settings.picture_size();
         let draws = (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64;
         FrameStats {
             width,
@@ -108,7 +109,8 @@ impl Renderer {
             draws: draws * submission.passes(),
             triangles: self.draw_list.triangles * u64::from(EyeLayout::of(settings).eyes),
             stereo: settings.is_stereo().then(|| submission.stats(reason)),
-            target_bytes: self.stages.targets.bytes(),
+            target_bytes: self.stages.targets.bytes()
+                + self.upscale.as_ref().map_or(0, Upscale::bytes),
             ..FrameStats::default()
         }
     }
