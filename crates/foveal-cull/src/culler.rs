@@ -1,10 +1,10 @@
 //! The culler: one depth buffer, one frame at a time.
 
 use crate::depth::{DepthBuffer, EMPTY, SAMPLES, decode};
-use crate::occluder::Instance;
 use crate::query::answer::{Flat, Frame, Query};
 use crate::query::tree::{OccludeeTree, Walk};
-use crate::raster::frame::{Draw, FrameScratch, MAX_PARTS, Part, Select};
+use crate::raster::frame::{Draw, FrameScratch};
+use crate::raster::select::Choice;
 use crate::raster::setup::{Radius, Scratch};
 use crate::view::Camera;
 use crate::{Aabb, CullError, CullStats, InstructionSet, OccluderSet, Threads, View};
@@ -79,9 +79,6 @@ impl Default for FrameOptions<'_> {
         }
     }
 }
-
-/// Fewer clusters than this are not worth another thread.
-const LEAST_CLUSTERS: usize = 256;
 
 /// Most bands a frame is split into.
 const MAX_BANDS: usize = 64;
@@ -171,7 +168,16 @@ impl Culler {
             return Ok(());
         }
         let shift = (camera.radius * camera.shift_per_metre) as f32;
-        self.select(&camera, occluders, options, shift, threads);
+        let choice = Choice {
+            camera: &camera,
+            set: occluders,
+            width,
+            height,
+            size_threshold: options.occluder_size_threshold,
+            pixels_per_quad: options.occluder_pixels_per_quad,
+            shift,
+        };
+        self.stats = self.frame.select(&choice, self.instruction_set, threads);
         let radius = (camera.radius > 0.0).then(|| Radius {
             shift,
             per_depth: if camera.orthographic {
@@ -183,75 +189,6 @@ impl Culler {
         self.draw(occluders, options.budget, radius, threads);
         self.buffer.summarize();
         Ok(())
-    }
-
-    /// Finds what may be drawn, and its order.
-    fn select(
-        &mut self,
-        camera: &Camera,
-        set: &OccluderSet,
-        options: &FrameOptions<'_>,
-        shift: f32,
-        threads: &dyn Threads,
-    ) {
-        let (width, height) = (
-            (self.buffer.width * SAMPLES) as f32,
-            (self.buffer.height * SAMPLES) as f32,
-        );
-        let clusters = |i: &Instance| i.mesh.as_ref().map_or(0, |m| m.clusters.len());
-        let all: usize = set.instances.iter().map(clusters).sum();
-        let parts = threads
-            .count()
-            .clamp(1, MAX_PARTS)
-            .min(1 + all / LEAST_CLUSTERS);
-        let frame = &mut self.frame;
-        frame.rows.resize(set.instances.len(), [[0.0; 4]; 4]);
-        frame
-            .parts
-            .resize_with(frame.parts.len().max(parts), Part::default);
-        let mut jobs: [Mutex<Option<Select<'_>>>; MAX_PARTS] =
-            [const { Mutex::new(None) }; MAX_PARTS];
-        let (mut rows, mut first, mut done) = (&mut frame.rows[..], 0, 0);
-        for (k, (job, part)) in jobs.iter_mut().zip(&mut frame.parts[..parts]).enumerate() {
-            let wanted = all * (k + 1) / parts;
-            let mut end = first;
-            while end < set.instances.len() && (done < wanted || k + 1 == parts) {
-                done += clusters(&set.instances[end]);
-                end += 1;
-            }
-            let (here, after) = rows.split_at_mut(end - first);
-            *job = Mutex::new(Some(Select {
-                camera,
-                instances: &set.instances[first..end],
-                first,
-                rows: here,
-                part,
-                width,
-                height,
-                size_threshold: options.occluder_size_threshold,
-                pixels_per_quad: options.occluder_pixels_per_quad,
-                shift,
-            }));
-            (rows, first) = (after, end);
-        }
-        let isa = self.instruction_set;
-        let task = |i: usize| {
-            let job = jobs[i].lock().ok().and_then(|mut j| j.take());
-            if let Some(select) = job {
-                isa.run(select);
-            }
-        };
-        if parts == 1 {
-            task(0);
-        } else {
-            threads.run(parts, &task);
-        }
-        frame.join(parts);
-        for part in &frame.parts[..parts] {
-            self.stats.occluder_models += part.stats.occluder_models;
-            self.stats.occluder_triangles += part.stats.occluder_triangles;
-            self.stats.clusters += part.stats.clusters;
-        }
     }
 
     fn draw(

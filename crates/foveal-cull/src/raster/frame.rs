@@ -1,31 +1,27 @@
-//! One frame: which clusters are drawn, and in which order.
+//! One frame: the chosen clusters, drawn in their order.
 //!
-//! Clusters are rejected by frustum, normal cone, size and detail before any vertex is transformed, then sorted
-//! front to back by a key that belongs to their content (nearest distance, then a hash), so that the result
-//! does not depend on the order in which occluders were added. Just before a cluster is drawn, its rectangle
-//! is tested against the depth so far; one that is hidden there could not have changed anything.
+//! Just before a cluster is drawn, its rectangle is tested against the depth so far; one that is hidden there could
+//! not have changed anything.
 
+use super::select::Part;
 use super::setup::{Facing, Radius, Scratch, draw_cluster};
-use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
-use crate::occluder::{Instance, OccluderSet};
-use crate::query::project::{Projected8, Screen, project};
+use crate::Budget;
+use crate::depth::Band;
+use crate::occluder::OccluderSet;
 use crate::simd::{Kernel, Lanes};
-use crate::view::Camera;
-use crate::{Budget, CullStats};
-use glam::DVec4;
 
 /// A cluster that may be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
     /// Content hash: decides between equal distances.
-    hash: u32,
-    instance: u32,
-    cluster: u32,
+    pub(super) hash: u32,
+    pub(super) instance: u32,
+    pub(super) cluster: u32,
     /// First and last block, inclusive.
-    blocks: [u16; 4],
-    code: i16,
+    pub(super) blocks: [u16; 4],
+    pub(super) code: i16,
     /// Not beyond the near plane everywhere: no depth test.
-    crossing: bool,
+    pub(super) crossing: bool,
 }
 
 /// What the frame keeps between its two steps, and from frame to frame (so nothing is allocated).
@@ -33,235 +29,11 @@ pub(crate) struct Candidate {
 pub(crate) struct FrameScratch {
     pub(crate) candidates: Vec<Candidate>,
     /// The order of drawing: the bits of the nearest distance, then the number of the candidate.
-    order: Vec<u64>,
+    pub(super) order: Vec<u64>,
     /// Clip rows per instance.
     pub(crate) rows: Vec<[[f64; 4]; 4]>,
     /// What each thread finds.
     pub(crate) parts: Vec<Part>,
-}
-
-/// Candidates from some of the instances, in order.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Part {
-    candidates: Vec<Candidate>,
-    order: Vec<u64>,
-    /// Counts of what was looked at.
-    pub(crate) stats: CullStats,
-}
-
-impl FrameScratch {
-    /// Joins the first `parts`.
-    pub(crate) fn join(&mut self, parts: usize) {
-        self.candidates.clear();
-        self.order.clear();
-        let mut offsets = [0; MAX_PARTS];
-        let mut heads = [0; MAX_PARTS];
-        for (part, offset) in self.parts[..parts].iter().zip(&mut offsets) {
-            *offset = self.candidates.len() as u64;
-            self.candidates.extend_from_slice(&part.candidates);
-        }
-        for _ in 0..self.candidates.len() {
-            let head = |i: usize| self.parts[i].order.get(heads[i]);
-            let first = (0..parts).filter_map(|i| Some((head(i)?, i))).min();
-            if let Some((order, i)) = first {
-                self.order.push(order + offsets[i]);
-                heads[i] += 1;
-            }
-        }
-        // Equal distances by content, not by the order in which occluders were added.
-        let candidates = &self.candidates;
-        for run in self.order.chunk_by_mut(|a, b| a >> 32 == b >> 32) {
-            if run.len() > 1 {
-                run.sort_unstable_by_key(|&o| candidates[o as u32 as usize].hash);
-            }
-        }
-    }
-}
-
-/// Most parts that instances are looked at in.
-pub(crate) const MAX_PARTS: usize = 64;
-
-/// Finds and sorts the candidates among some instances.
-pub(crate) struct Select<'a> {
-    pub(crate) camera: &'a Camera,
-    pub(crate) instances: &'a [Instance],
-    /// The number of the first of them.
-    pub(crate) first: usize,
-    /// Their clip rows.
-    pub(crate) rows: &'a mut [[[f64; 4]; 4]],
-    pub(crate) part: &'a mut Part,
-    pub(crate) width: f32,
-    pub(crate) height: f32,
-    pub(crate) size_threshold: f32,
-    pub(crate) pixels_per_quad: f32,
-    /// Samples that a point at depth 1 shifts by within the validity radius.
-    pub(crate) shift: f32,
-}
-
-/// Clusters of quads with less than this times the square of their shift hide next to nothing.
-const LOSSES: f32 = 16.0;
-
-impl Kernel for Select<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, l: L) {
-        let Self {
-            camera,
-            instances,
-            first: first_instance,
-            rows: clip_rows,
-            part,
-            width,
-            height,
-            size_threshold,
-            pixels_per_quad,
-            shift,
-        } = self;
-        let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
-        part.candidates.clear();
-        part.order.clear();
-        part.stats = CullStats::default();
-        let stats = &mut part.stats;
-        let planes = instance_planes(camera, f64::from(width), f64::from(height));
-        let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
-        for ((index, instance), clip_rows) in instances.iter().enumerate().zip(clip_rows) {
-            let Some(mesh) = instance.mesh.as_deref().filter(|_| instance.enabled) else {
-                continue;
-            };
-            stats.occluder_models += 1;
-            stats.occluder_triangles += mesh.triangle_count() as u64;
-            stats.clusters += mesh.clusters.len() as u64;
-            if outside(camera, &planes, instance, small) {
-                continue;
-            }
-            let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
-            *clip_rows = camera.exact_rows(&instance.world_from_mesh);
-            let screen = Screen {
-                rows,
-                width,
-                height,
-                far_depth: camera.far_depth as f32 * 0.999_99,
-                dilate: 0.0,
-                grow: 0.0,
-                coarse: None,
-            };
-            let eye = instance.mesh_from_world.transform_point3(camera.eye) - mesh.center;
-            let forward = instance.mesh_from_world.transform_vector3(camera.forward);
-            let (eye, forward) = (eye.as_vec3(), forward.as_vec3());
-            for (g, bounds) in mesh.bounds8.iter().enumerate() {
-                let p = project(l, &screen, bounds);
-                let first = g * 8;
-                let clusters = &mesh.clusters[first..mesh.clusters.len().min(first + 8)];
-                for (i, cluster) in clusters.iter().enumerate() {
-                    if p.outside >> i & 1 != 0 {
-                        continue;
-                    }
-                    if !mesh.two_sided && cluster.faces_away(eye, forward, camera.orthographic) {
-                        continue;
-                    }
-                    let Some(c) = candidate(&p, i, width, height) else {
-                        continue;
-                    };
-                    let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]);
-                    // Around the eye, quads must be larger than what they lose on all sides.
-                    let lost = shift * p.depth[i];
-                    let least = samples_per_quad.max(LOSSES * lost * lost);
-                    if !c.crossing && area < least * f32::from(cluster.quad_count) {
-                        continue;
-                    }
-                    // Perspective: nearest distance; orthographic W is 1, so that the depth decides.
-                    let near = if c.crossing {
-                        0.0
-                    } else {
-                        (1.0 / p.depth[i]).max(0.0)
-                    };
-                    let number = part.candidates.len() as u64;
-                    part.order.push((u64::from(near.to_bits()) << 32) | number);
-                    part.candidates.push(Candidate {
-                        hash: cluster.hash ^ instance.hash,
-                        instance: (first_instance + index) as u32,
-                        cluster: (first + i) as u32,
-                        ..c
-                    });
-                }
-            }
-        }
-        part.order.sort_unstable();
-    }
-}
-
-#[inline(always)]
-fn candidate(p: &Projected8, i: usize, width: f32, height: f32) -> Option<Candidate> {
-    let size = BLOCK_SAMPLES as f32;
-    let crossing = p.crossing >> i & 1 != 0;
-    let (bx, by) = (
-        ((width - 1.0) / size) as u16,
-        ((height - 1.0) / size) as u16,
-    );
-    let blocks = if crossing {
-        [0, 0, bx, by]
-    } else {
-        // Nothing between two half-sample steps: no sample can be covered.
-        if ((p.x0[i] * 2.0).floor() == (p.x1[i] * 2.0).floor())
-            | ((p.y0[i] * 2.0).floor() == (p.y1[i] * 2.0).floor())
-        {
-            return None;
-        }
-        [
-            ((p.x0[i] / size) as u16).min(bx),
-            ((p.y0[i] / size) as u16).min(by),
-            ((p.x1[i] / size) as u16).min(bx),
-            ((p.y1[i] / size) as u16).min(by),
-        ]
-    };
-    let code = if crossing {
-        i16::MAX
-    } else {
-        encode(p.depth[i])
-    };
-    Some(Candidate {
-        hash: 0,
-        instance: 0,
-        cluster: 0,
-        blocks,
-        code,
-        crossing,
-    })
-}
-
-/// The six planes of the frustum for spheres relative to the eye: inside is `n . p + d >= 0`, with unit normals.
-fn instance_planes(camera: &Camera, width: f64, height: f64) -> [DVec4; 6] {
-    let [x, y, z, w] = camera.rows;
-    [
-        x,
-        w * width - x,
-        y,
-        w * height - y,
-        // In front of the near plane, or beyond the far plane.
-        w - z,
-        z - w * camera.far_depth,
-    ]
-    .map(|plane| {
-        let length = plane.truncate().length();
-        // A plane at infinity has everything inside.
-        if length > 0.0 {
-            plane / length
-        } else {
-            DVec4::ZERO
-        }
-    })
-}
-
-/// Whole-instance test: sphere against the frustum, and size.
-fn outside(camera: &Camera, planes: &[DVec4; 6], instance: &Instance, small: f64) -> bool {
-    let c = instance.center - camera.eye;
-    let r = instance.radius;
-    if planes.iter().any(|p| p.truncate().dot(c) + p.w < -r) {
-        return true;
-    }
-    let w = camera.rows[3].truncate().dot(c) + camera.rows[3].w;
-    w > 1.0 && r * r < w * small
 }
 
 /// Draws the candidates into one band.

@@ -36,8 +36,11 @@ pub(super) struct Row {
     pub(super) threads: u32,
     pub(super) occluder_triangles: u64,
     pub(super) raster_ms: f64,
+    /// The shortest.
+    pub(super) raster_min_ms: f64,
     pub(super) query_boxes: u64,
     pub(super) query_ms: f64,
+    pub(super) query_min_ms: f64,
     pub(super) query_ns_per_box: f64,
     pub(super) culled: u64,
     pub(super) visible: u64,
@@ -116,6 +119,8 @@ impl Case<'_> {
         let rows = workers.iter().zip(&mut times);
         Ok(rows
             .map(|(&(threads, _), [raster_ms, query_ms])| {
+                let least = |ms: &[f64]| ms.iter().copied().fold(f64::INFINITY, f64::min);
+                let (raster_min_ms, query_min_ms) = (least(raster_ms), least(query_ms));
                 let query_ms = median(query_ms);
                 Row {
                     scene: self.scene.to_owned(),
@@ -125,8 +130,10 @@ impl Case<'_> {
                     threads,
                     occluder_triangles: self.occluders.set.triangle_count() as u64,
                     raster_ms: median(raster_ms),
+                    raster_min_ms,
                     query_boxes: boxes,
                     query_ms,
+                    query_min_ms,
                     query_ns_per_box: query_ms * 1e6 / (boxes.max(1) as f64),
                     culled: boxes - visible,
                     visible,
