@@ -1,17 +1,19 @@
 //! What the window knows, and what becomes of input: from the hands to the next request for a picture.
 
-use std::path::PathBuf;
+mod files;
+mod hands;
+
 use std::sync::Arc;
 
-use egui::{Key, Modifiers, TextureHandle, TextureOptions};
+use egui::{TextureHandle, TextureOptions};
 use foveal::{AdapterStats, Settings, Shading};
 use foveal_scene::Camera;
-use glam::{Vec2, Vec3};
+use glam::Vec2;
 use toml::Table;
 
 use crate::Host;
 use crate::history::History;
-use crate::navigator::{Hands, Mode, Navigator};
+use crate::navigator::Navigator;
 use crate::worker::{LoadedScene, News, Request, Rgba, Shown, Worker};
 use crate::{panels, viewport};
 
@@ -263,113 +265,6 @@ impl App {
         }
     }
 
-    /// Keys, unless a text field takes them.
-    fn take_keys(&mut self, context: &egui::Context) {
-        if context.text_edit_focused() {
-            return;
-        }
-        let pressed = |key| context.input_mut(|i| i.consume_key(Modifiers::NONE, key));
-        let display = &mut self.display;
-        for (key, switch) in [
-            (Key::C, &mut display.frozen),
-            (Key::B, &mut display.boxes),
-            (Key::Z, &mut display.depth),
-            (Key::X, &mut display.compare),
-            (Key::G, &mut display.gaze_follows),
-            (Key::H, &mut display.panels),
-            (Key::Space, &mut display.playing),
-        ] {
-            if pressed(key) {
-                *switch = !*switch;
-            }
-        }
-        if pressed(Key::F)
-            && let Some(navigator) = &mut self.navigator
-        {
-            navigator.mode = match navigator.mode {
-                Mode::Fly => Mode::Orbit,
-                Mode::Orbit => Mode::Fly,
-            };
-        }
-        if pressed(Key::Home)
-            && let (Some(navigator), Some(scene)) = (&mut self.navigator, &self.scene)
-        {
-            navigator.go_to(scene.start.clone());
-        }
-        if context.input_mut(|i| i.consume_key(Modifiers::CTRL | Modifiers::SHIFT, Key::F12)) {
-            self.worker.lose_device();
-            self.loses_devices = true;
-        }
-        if pressed(Key::P) || pressed(Key::F12) {
-            self.take_screenshot(context);
-        }
-        const DIGITS: [Key; 9] = [
-            Key::Num1,
-            Key::Num2,
-            Key::Num3,
-            Key::Num4,
-            Key::Num5,
-            Key::Num6,
-            Key::Num7,
-            Key::Num8,
-            Key::Num9,
-        ];
-        for (index, key) in DIGITS.into_iter().enumerate() {
-            if context.input_mut(|i| i.consume_key(Modifiers::CTRL, key)) {
-                self.set_bookmark(index);
-            } else if pressed(key) {
-                self.go_to_bookmark(index);
-            }
-        }
-    }
-
-    pub(crate) fn set_bookmark(&mut self, index: usize) {
-        if let Some(navigator) = &self.navigator {
-            self.bookmarks[index] = Some(navigator.camera().clone());
-        }
-    }
-
-    pub(crate) fn go_to_bookmark(&mut self, index: usize) {
-        if let (Some(navigator), Some(camera)) = (&mut self.navigator, &self.bookmarks[index]) {
-            navigator.go_to(camera.clone());
-        }
-    }
-
-    /// Moves the camera by the keys that are held and by what the pointer did over the picture.
-    pub(crate) fn steer(&mut self, context: &egui::Context, mut hands: Hands) {
-        if !context.text_edit_focused() {
-            context.input(|i| {
-                if i.modifiers.ctrl || i.modifiers.command {
-                    return;
-                }
-                let axis = |more: &[Key], less: &[Key]| {
-                    let down = |keys: &[Key]| keys.iter().any(|&key| i.key_down(key));
-                    f32::from(u8::from(down(more))) - f32::from(u8::from(down(less)))
-                };
-                hands.push = Vec3::new(
-                    axis(&[Key::D, Key::ArrowRight], &[Key::A, Key::ArrowLeft]),
-                    axis(&[Key::E, Key::PageUp], &[Key::Q, Key::PageDown]),
-                    axis(&[Key::W, Key::ArrowUp], &[Key::S, Key::ArrowDown]),
-                );
-                hands.hurry = i.modifiers.shift;
-            });
-        }
-        let dt = context.input(|i| i.stable_dt);
-        // A step after a pause is as long as one frame, not as the pause.
-        hands.elapsed_s = dt.min(0.1);
-        if let Some(navigator) = &mut self.navigator
-            && navigator.step(&hands)
-            && hands.push != Vec3::ZERO
-        {
-            context.request_repaint();
-        }
-        let animated = self.scene.as_ref().is_some_and(|scene| scene.is_animated);
-        if animated && self.display.playing {
-            self.display.time_s += hands.elapsed_s;
-            context.request_repaint();
-        }
-    }
-
     /// Where the eye looks, by the pointer's place in the picture.
     pub(crate) fn look_at(&mut self, place: Vec2) {
         let gaze = [place.x, place.y].map(|p| f64::from((p * 1000.0).round() / 1000.0));
@@ -453,76 +348,6 @@ impl App {
         }
     }
 
-    /// Writes the picture, as it was drawn, beside the program's other files.
-    pub(crate) fn take_screenshot(&mut self, context: &egui::Context) {
-        let Some(shown) = &self.shown else { return };
-        let free = (1..).map(|n| PathBuf::from(format!("foveal-{n:03}.png")));
-        let path = free.into_iter().find(|path| !path.exists());
-        let path = path.unwrap_or_else(|| PathBuf::from("foveal.png"));
-        let Rgba {
-            width,
-            height,
-            bytes,
-        } = &shown.picture;
-        match image::save_buffer(&path, bytes, *width, *height, image::ColorType::Rgba8) {
-            Ok(()) => self.say(context, format!("Screenshot: {}", path.display())),
-            Err(error) => {
-                self.complain(format!("cannot write '{}': {error}", path.display()));
-            }
-        }
-    }
-
-    pub(crate) fn save_settings(&mut self, context: &egui::Context) {
-        let path = PathBuf::from(&self.settings_file);
-        let written = toml::to_string(&self.settings)
-            .map_err(anyhow::Error::from)
-            .and_then(|text| Ok(std::fs::write(&path, text)?));
-        match written {
-            Ok(()) => self.say(context, format!("Settings saved: {}", path.display())),
-            Err(error) => self.complain(format!("cannot write '{}': {error}", path.display())),
-        }
-    }
-
-    pub(crate) fn load_settings(&mut self, context: &egui::Context) {
-        match (self.host.read_settings)(&PathBuf::from(&self.settings_file)) {
-            Ok(settings) => {
-                // A file's size holds; what follows the window has none of its own.
-                self.display.fit = false;
-                self.use_settings(&settings);
-                self.say(context, format!("Settings loaded: {}", self.settings_file));
-            }
-            Err(error) => self.complain(format!("{error:#}")),
-        }
-    }
-
-    /// The command that draws this picture to a file.
-    pub(crate) fn command_line(&self) -> String {
-        let mut words = vec!["foveal".to_owned(), "render".to_owned()];
-        words.push(quoted(&self.scene_name));
-        words.extend(["--output".to_owned(), "picture.png".to_owned()]);
-        if let Some(navigator) = &self.navigator {
-            let camera = navigator.camera();
-            let forward = -camera.world_from_view.z_axis.truncate();
-            let eye = camera.eye();
-            let list = |v: Vec3| format!("{},{},{}", v.x, v.y, v.z);
-            if let foveal_scene::Projection::Perspective { fov_y_rad, .. } = camera.projection {
-                words.extend([
-                    "--eye".to_owned(),
-                    list(eye),
-                    "--target".to_owned(),
-                    list(eye + forward),
-                    "--fov".to_owned(),
-                    fov_y_rad.to_degrees().to_string(),
-                ]);
-            } else {
-                words.extend(["--camera".to_owned(), quoted(&camera.name)]);
-            }
-        }
-        let flags = (self.host.flags)(&self.settings);
-        words.extend(flags.iter().map(|flag| quoted(flag)));
-        words.join(" ")
-    }
-
     /// Whether a stage does anything with these settings.
     pub(crate) fn is_in_use(&self, stage: &str) -> bool {
         match stage {
@@ -530,28 +355,5 @@ impl App {
             "Variable shading" => self.settings.shading == Shading::Variable,
             _ => true,
         }
-    }
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=@%#".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn words_with_spaces_and_quotes_survive_a_shell() {
-        assert_eq!(quoted("demo:2000"), "demo:2000");
-        assert_eq!(quoted("my scene.glb"), "'my scene.glb'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
     }
 }

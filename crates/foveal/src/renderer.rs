@@ -1,29 +1,31 @@
-//! One frame, top to bottom.
+//! The renderer as its host sees it; `submit.rs` tells the frame.
 
 use foveal_cull::Visibility;
 use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
 use crate::composite::CompositePass;
-use crate::culling::{CullingCounts, CullingFigures, CullingStage};
+use crate::culling::{CullingFigures, CullingStage};
 use crate::forward::ForwardPass;
-use crate::frame::FrameUniform;
-use crate::geometry::{DrawList, Evaluation, GeometryPass};
+use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
-use crate::lights::{ClusterGrid, LightAssigner};
+use crate::lights::LightAssigner;
 use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
-use crate::recorder::Recorder;
 use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{CoarseShading, Plan, Samples, ShadingPass, VariableStage};
-use crate::stereo::{Eye, EyeLayout, LensFit, Submission, Trials, eyes};
+use crate::shading::{CoarseShading, ShadingPass, VariableStage};
+use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
-use crate::{Error, FrameStats, SceneStats, Settings, Shading};
+use crate::{Error, FrameStats, SceneStats, Settings};
 use figures::{Counts, InFlight};
 
 mod figures;
+mod stages;
+mod submit;
+#[cfg(test)]
+mod testing;
 
 /// The caller's clock: milliseconds since any fixed moment.
 pub type Clock = fn() -> f64;
@@ -76,22 +78,6 @@ struct Seen {
     lenses: Option<[LensFit; 2]>,
 }
 
-impl Seen {
-    /// # Errors
-    /// [`Error::Setting`] where a camera or a lens makes no sense.
-    fn new(settings: &Settings, frame: &Frame<'_>) -> Result<Self, Error> {
-        let eyes_now = eyes(settings, frame.camera)?;
-        Ok(Self {
-            eyes: eyes_now,
-            eyes_before: match frame.previous_camera {
-                Some(before) => eyes(settings, before)?,
-                None => eyes_now,
-            },
-            lenses: LensFit::of(settings, &eyes_now)?,
-        })
-    }
-}
-
 /// What depends on the settings.
 #[derive(Debug)]
 struct Stages {
@@ -119,65 +105,6 @@ struct CoarseStages {
     shading: CoarseShading,
     composite: CompositePass,
     overlay: Option<OverlayPass>,
-}
-
-impl CoarseStages {
-    fn new(
-        gpu: &Gpu,
-        settings: &Settings,
-        frame: &wgpu::BindGroupLayout,
-        full: &ShadingPass,
-        image: Option<&RateImage>,
-    ) -> Self {
-        let mut rate_map = RateMapPass::new(gpu, settings, frame);
-        if let Some(image) = image {
-            rate_map.set_image(gpu, image);
-        }
-        Self {
-            rate_map,
-            shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
-            composite: CompositePass::new(gpu, settings, frame),
-            overlay: OverlayPass::new(gpu, settings.view, frame),
-        }
-    }
-}
-
-impl Stages {
-    async fn new(
-        gpu: &Gpu,
-        settings: &Settings,
-        frame_bindings: &FrameBindings,
-        material_layout: &wgpu::BindGroupLayout,
-        rate_image: Option<&RateImage>,
-        (trials, clock): (&mut Trials, Option<Clock>),
-    ) -> Result<Self, Error> {
-        settings.validate(&gpu.device.limits())?;
-        let (submission, reason) = Submission::choose(gpu, settings, trials, clock).await?;
-        let trap = ErrorTrap::new(gpu, "preparing the renderer");
-        let frame = frame_bindings.layout();
-        let shading = ShadingPass::new(gpu, settings, frame);
-        let layout = EyeLayout::of(settings);
-        let stages = Self {
-            settings: settings.clone(),
-            culling: CullingStage::new(settings)?,
-            targets: Targets::new(gpu, settings, submission),
-            lights: LightAssigner::new(gpu, layout.eyes, frame),
-            geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
-            antialias: AntialiasStage::new(gpu, settings, frame, &shading),
-            coarse: (settings.shading == Shading::Coarse)
-                .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
-            variable: (settings.shading == Shading::Variable)
-                .then(|| VariableStage::new(gpu, settings, frame, shading.input_layout())),
-            shading,
-            forward: ForwardPass::new(gpu, settings, submission, frame, material_layout),
-            tone_map: ToneMapPass::new(gpu, settings, frame),
-            view: ViewPass::new(gpu, settings.view, frame),
-            eyes_shown: EyesPass::new(gpu, settings, frame),
-            submission: (submission, reason),
-        };
-        trap.finish().await?;
-        Ok(stages)
-    }
 }
 
 impl Renderer {
@@ -398,187 +325,6 @@ impl Renderer {
         Ok(finished)
     }
 
-    /// The frame.
-    fn submit(
-        &mut self,
-        frame: &Frame<'_>,
-        seen: &Seen,
-        target: Option<Target<'_>>,
-        cpu: &mut CpuTimer,
-    ) -> FrameStats {
-        let Self {
-            gpu,
-            timer,
-            frame_bindings,
-            stages,
-            scene,
-            draw_list,
-            present,
-            upscale,
-            clock,
-            frozen,
-            ..
-        } = self;
-        let Stages {
-            settings,
-            culling,
-            targets,
-            lights,
-            geometry,
-            shading,
-            antialias,
-            coarse,
-            variable,
-            forward,
-            tone_map,
-            view,
-            eyes_shown,
-            submission: _,
-        } = stages;
-        let plan = match variable {
-            Some(variable) if settings.view.is_lit() => variable.plan(),
-            _ => Plan::default(),
-        };
-        let at_rates = |stage: bool| plan.active && stage;
-
-        let culled = match culling {
-            Some(culling)
-                if *frozen && culling.visibility().len() == scene.stats.objects as usize =>
-            {
-                culling.counts()
-            }
-            Some(culling) => {
-                let size = (settings.width, settings.height);
-                let eyes = settings.is_stereo().then_some(&seen.eyes);
-                culling.cull(&scene.culling, frame.camera, eyes, size, *clock)
-            }
-            None => CullingCounts {
-                visible: scene.stats.objects,
-                ..CullingCounts::default()
-            },
-        };
-        cpu.stage("culling");
-
-        let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
-        draw_list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
-        geometry.prepare(gpu, scene, draw_list);
-        forward.prepare(gpu, draw_list);
-        cpu.stage("draw list");
-
-        let clusters = ClusterGrid::new(
-            &EyeLayout::of(settings),
-            &seen.eyes,
-            frame.camera,
-            &scene.lights,
-        );
-        lights.reserve(gpu, &clusters);
-        let uniform = FrameUniform::new(
-            settings,
-            frame.camera,
-            &seen.eyes,
-            &seen.eyes_before,
-            &scene.environment,
-            &clusters,
-        );
-        frame_bindings.write_frame(gpu, &uniform);
-        frame_bindings.write_drawn(gpu, &draw_list.drawn);
-        lights.assign_on_cpu(gpu, &uniform, &scene.lights);
-        cpu.stage("upload");
-
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let recorder = &mut Recorder {
-            gpu,
-            encoder: &mut encoder,
-            timer,
-            frame: frame_bindings,
-        };
-        lights.assign(recorder, &scene.light_buffer, &clusters);
-        if let Some(antialias) = antialias {
-            let shade = settings.view.is_lit();
-            antialias.draw(
-                recorder, scene, draw_list, geometry, shading, lights, targets, shade,
-            );
-        } else if at_rates(settings.rate_stage.has_material()) {
-            geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
-        } else {
-            geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
-        }
-        if let (Some(variable), true) = (variable.as_mut(), plan.active) {
-            let before = frame.previous_camera.unwrap_or(frame.camera);
-            variable.find_rates(recorder, settings, targets, frame.camera, before);
-            if let (Some(t), true) = (&targets.variable, settings.rate_stage.has_material()) {
-                let mut evaluate =
-                    |at| geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at);
-                if plan.compares {
-                    evaluate(Evaluation::COMPARED);
-                }
-                evaluate(Evaluation::at_rates(&t.mask));
-            }
-        }
-        if let Some(view) = view {
-            let places = scene.geometry.places();
-            view.show(recorder, &targets.gbuffer, places, &targets.picture_view);
-        } else if !antialias
-            .as_ref()
-            .is_some_and(|a| a.show(recorder, targets))
-        {
-            let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights);
-            if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
-                let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
-                rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
-                coarse.shading.shade(recorder, &input, tiles);
-                coarse.composite.join(recorder, targets, tiles);
-            } else if let (Some(variable), true) = (
-                variable.as_ref(),
-                at_rates(settings.rate_stage.has_lighting()),
-            ) {
-                if plan.compares {
-                    let target = &targets.radiance_view;
-                    shading.shade_every_pixel(recorder, &input, target, "full shading");
-                }
-                variable.shade(recorder, &input, targets);
-            } else if antialias
-                .as_ref()
-                .is_none_or(AntialiasStage::needs_ordinary)
-            {
-                let target = &targets.radiance_view;
-                shading.shade(recorder, &input, Samples::EveryPixel, target);
-            }
-            if let Some(antialias) = antialias {
-                antialias.combine(recorder, scene, shading, lights, targets);
-            }
-            forward.draw(recorder, scene, lights, draw_list, targets);
-            let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
-            let finished = finished.unwrap_or(&targets.picture_view);
-            tone_map.map(recorder, &targets.radiance_view, finished);
-            if let Some(variable) = variable {
-                variable.show(recorder, targets);
-            }
-            if let (Some(overlay), Some(tiles)) = (
-                coarse.as_ref().and_then(|c| c.overlay.as_ref()),
-                &targets.coarse,
-            ) {
-                overlay.draw(recorder, tiles, &targets.picture_view);
-            }
-        }
-        if let Some(eyes_shown) = eyes_shown {
-            eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
-        }
-        if let Some(upscale) = upscale {
-            upscale.stretch(recorder, targets.shown());
-        }
-        if let Some(target) = target {
-            present.present(recorder, targets.shown(), target);
-        }
-        timer.resolve(&mut encoder);
-        cpu.stage("encode");
-
-        gpu.queue.submit([encoder.finish()]);
-        timer.end_frame();
-        cpu.stage("submit");
-        self.submitted(culled, cpu)
-    }
-
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
     /// [`Settings::picture_size`], alpha 255.
     ///
@@ -632,103 +378,5 @@ impl Renderer {
     #[must_use]
     pub fn scene_stats(&self) -> SceneStats {
         self.scene.stats
-    }
-}
-
-#[cfg(test)]
-impl Renderer {
-    /// Makes coarse samples affine functions of their position from the next frame on.
-    pub(crate) fn shade_affine(&mut self) {
-        let stages = &mut self.stages;
-        if let Some(coarse) = &mut stages.coarse {
-            coarse.shading = CoarseShading::with_shaders(
-                &self.gpu,
-                &stages.settings,
-                self.frame_bindings.layout(),
-                stages.shading.input_layout(),
-                crate::shader::COARSE_AFFINE,
-            );
-        }
-    }
-
-    pub(crate) fn geometry(&self) -> &GeometryPass {
-        &self.stages.geometry
-    }
-
-    pub(crate) fn targets(&self) -> &Targets {
-        &self.stages.targets
-    }
-
-    pub(crate) fn lights(&self) -> (&LightAssigner, &[crate::lights::LightUniform]) {
-        (&self.stages.lights, &self.scene.lights)
-    }
-
-    /// What shaders are told of a frame.
-    pub(crate) fn frame_uniform(&self, camera: &Camera) -> FrameUniform {
-        let settings = &self.stages.settings;
-        let eyes = eyes(settings, camera).expect("a camera that makes sense");
-        let lights = &self.scene.lights;
-        let grid = ClusterGrid::new(&EyeLayout::of(settings), &eyes, camera, lights);
-        let environment = &self.scene.environment;
-        FrameUniform::new(settings, camera, &eyes, &eyes, environment, &grid)
-    }
-
-    /// Draws the frame again.
-    pub(crate) fn redraw(&mut self, camera: &Camera) -> FrameStats {
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
-        pollster::block_on(self.render(&frame)).expect("frame is drawn")
-    }
-
-    /// Draws the frame again in bands of `rows` rows.
-    pub(crate) fn redraw_in_bands(&mut self, camera: &Camera, rows: u32) -> FrameStats {
-        let settings = &self.stages.settings;
-        let targets = crate::antialias::SampleTargets::in_bands(&self.gpu, settings, rows);
-        self.stages.targets.samples = Some(targets);
-        self.redraw(camera)
-    }
-
-    /// Leaves anti-aliasing room for one entry or, over a visibility buffer, one row of them.
-    pub(crate) fn cut_room_for_edges(&mut self) {
-        let settings = &self.stages.settings;
-        let rows = settings.height;
-        let targets = crate::antialias::SampleTargets::with_room(&self.gpu, settings, rows, 1);
-        self.stages.targets.samples = Some(targets);
-    }
-
-    /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.
-    pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
-        let Self {
-            gpu,
-            timer,
-            frame_bindings,
-            stages,
-            scene,
-            ..
-        } = self;
-        let targets = &stages.targets;
-        let list = crate::shading::SampleList::from_texels(gpu, texels);
-        let input =
-            stages
-                .shading
-                .input(gpu, &targets.gbuffer, &scene.light_buffer, &stages.lights);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let recorder = &mut Recorder {
-            gpu,
-            encoder: &mut encoder,
-            timer,
-            frame: frame_bindings,
-        };
-        stages.shading.shade(
-            recorder,
-            &input,
-            Samples::List(&list),
-            &targets.radiance_view,
-        );
-        timer.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        timer.end_frame();
     }
 }

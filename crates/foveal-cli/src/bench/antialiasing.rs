@@ -1,7 +1,5 @@
 //! `foveal bench antialiasing`: the source's comparison (none, MSAA, SSAA), and ours beside it.
 
-use std::path::PathBuf;
-
 use foveal::{
     AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, Renderer,
     SamplePattern, Settings,
@@ -10,12 +8,13 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
+use super::figures::FigureArgs;
 use super::table::text;
 use crate::compare::ErrorMap;
 use crate::median::median;
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
-use crate::{atomic_file, console, gpu, scene_source, values};
+use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
@@ -50,13 +49,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 64)]
     reference: u32,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
-    #[arg(long, value_name = "NAME|NUMBER")]
-    adapter: Option<String>,
-
-    /// Write the figures as JSON; `-`: print JSON instead of the table
-    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArgs,
 }
 
 /// All figures of a run.
@@ -168,15 +162,12 @@ fn modes(base: &Settings) -> Vec<Settings> {
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     now_ms();
-    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
-    if let Some(path) = to_file {
-        atomic_file::check_writable(path)?;
-    }
+    args.figures.check()?;
     let mut scene = scene_source::load(&args.scene)?;
     scene_source::add_point_lights(&mut scene, args.point_lights, 0);
     scene.light_by_default();
     let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
-    let gpu = gpu::open(args.adapter.as_deref())?;
+    let gpu = gpu::open(args.figures.adapter.as_deref())?;
     let base = Settings {
         width: args.size.0,
         height: args.size.1,
@@ -192,15 +183,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         point_lights: args.point_lights,
         rounds: args.rounds,
     };
-    let json = serde_json::to_string_pretty(&report)? + "\n";
-    match (&args.json, to_file) {
-        (_, Some(path)) => {
-            atomic_file::write(path, json.as_bytes())?;
-            console::print_result(&summary(&report))
-        }
-        (Some(_), None) => console::print_result(&json),
-        (None, None) => console::print_result(&summary(&report)),
-    }
+    args.figures.give(&report, &summary(&report))
 }
 
 fn rows(

@@ -5,8 +5,6 @@
 
 mod side;
 
-use std::path::PathBuf;
-
 use foveal::{
     AdapterStats, Backend, Composite, Gpu, LightAssignment, LightingModel, RefineEdges, Settings,
     Shading,
@@ -15,12 +13,13 @@ use foveal_scene::{Camera, Scene};
 use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
 
+use super::figures::FigureArgs;
 use super::table::text;
 use crate::compare::flip::ErrorMap;
 use crate::median::median;
 use crate::render::{CameraArgs, Viewpoint};
 use crate::values::VariantParser;
-use crate::{atomic_file, console, gpu, scene_source, values};
+use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
@@ -76,13 +75,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 3)]
     pairs: u32,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
-    #[arg(long, value_name = "NAME|NUMBER")]
-    adapter: Option<String>,
-
-    /// Write the figures as JSON; `-`: print JSON instead of the table
-    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArgs,
 }
 
 /// All figures of a run; docs/program.md describes the fields.
@@ -132,10 +126,7 @@ struct Case {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
-    if let Some(path) = to_file {
-        atomic_file::check_writable(path)?;
-    }
+    args.figures.check()?;
     let sizes = match args.size.as_slice() {
         [] => &[(1000, 1500), (1920, 1080)][..],
         given => given,
@@ -144,7 +135,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         [] => &[Backend::Stencil, Backend::Compute][..],
         given => given,
     };
-    let gpu = gpu::open(args.adapter.as_deref())?;
+    let gpu = gpu::open(args.figures.adapter.as_deref())?;
     let mut scene = scene_source::load(&args.scene)?;
     let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
     let mut rows = Vec::new();
@@ -190,15 +181,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         camera: camera.name.clone(),
         rows,
     };
-    let json = serde_json::to_string_pretty(&report)? + "\n";
-    match (&args.json, to_file) {
-        (_, Some(path)) => {
-            atomic_file::write(path, json.as_bytes())?;
-            console::print_result(&beside_the_source(&report.rows))
-        }
-        (Some(_), None) => console::print_result(&json),
-        (None, None) => console::print_result(&beside_the_source(&report.rows)),
-    }
+    args.figures.give(&report, &beside_the_source(&report.rows))
 }
 
 /// Puts `count` point lights in place of the scene's.

@@ -6,6 +6,7 @@
 mod antialiasing;
 mod coarse;
 mod culling;
+mod figures;
 mod report;
 mod stereo;
 mod table;

@@ -3,8 +3,6 @@
 //! Each way is drawn twice: the geometry alone (a view of the base colour), as the technique's source measured it, and
 //! the whole frame with all deferred stages.
 
-use std::path::PathBuf;
-
 use foveal::{
     AdapterStats, Culling, EyeClipping, Frame, FrameStats, Gpu, Renderer, Settings, Stereo, Timing,
     View,
@@ -13,10 +11,11 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
+use super::figures::FigureArgs;
 use super::table::text;
 use crate::median::median;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
-use crate::{atomic_file, console, gpu, scene_source, values};
+use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
@@ -66,13 +65,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
-    #[arg(long, value_name = "NAME|NUMBER")]
-    adapter: Option<String>,
-
-    /// Write the figures as JSON; `-`: print JSON instead of the table
-    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArgs,
 }
 
 /// All figures of a run; docs/program.md describes the fields.
@@ -158,15 +152,12 @@ impl Times {
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     now_ms();
-    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
-    if let Some(path) = to_file {
-        atomic_file::check_writable(path)?;
-    }
+    args.figures.check()?;
     let scenes = match args.scenes.as_slice() {
         [] => SCENES.map(str::to_owned).to_vec(),
         given => given.to_vec(),
     };
-    let gpu = gpu::open(args.adapter.as_deref())?;
+    let gpu = gpu::open(args.figures.adapter.as_deref())?;
     let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();
     for name in &scenes {
@@ -188,15 +179,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         rows,
         skipped,
     };
-    let json = serde_json::to_string_pretty(&report)? + "\n";
-    match (&args.json, to_file) {
-        (_, Some(path)) => {
-            atomic_file::write(path, json.as_bytes())?;
-            console::print_result(&summary(&report))
-        }
-        (Some(_), None) => console::print_result(&json),
-        (None, None) => console::print_result(&summary(&report)),
-    }
+    args.figures.give(&report, &summary(&report))
 }
 
 /// The ways that work on this device, and those that do not.

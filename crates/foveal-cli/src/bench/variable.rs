@@ -1,8 +1,6 @@
 //! `foveal bench variable`: shading at a rate that the content decides, against full shading, frame by frame in turn
 //! while the camera sways.
 
-use std::path::PathBuf;
-
 use foveal::{
     AdapterStats, Frame, FrameStats, Geometry, Gpu, RateSource, RateStage, Renderer, Settings,
     Shading,
@@ -11,12 +9,13 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
+use super::figures::FigureArgs;
 use super::table::text;
 use crate::compare::ErrorMap;
 use crate::median::median;
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
-use crate::{atomic_file, console, gpu, scene_source, values};
+use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
@@ -57,13 +56,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
-    #[arg(long, value_name = "NAME|NUMBER")]
-    adapter: Option<String>,
-
-    /// Write the figures as JSON; `-`: print JSON instead of the table
-    #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
-    json: Option<PathBuf>,
+    #[command(flatten)]
+    figures: FigureArgs,
 }
 
 /// All figures of a run.
@@ -106,11 +100,8 @@ const COSTS: [&str; 2] = ["plain", "textured"];
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     now_ms();
-    let to_file = args.json.as_ref().filter(|path| path.as_os_str() != "-");
-    if let Some(path) = to_file {
-        atomic_file::check_writable(path)?;
-    }
-    let gpu = gpu::open(args.adapter.as_deref())?;
+    args.figures.check()?;
+    let gpu = gpu::open(args.figures.adapter.as_deref())?;
     let mut rows = Vec::new();
     for &lights in &args.point_lights {
         for cost in COSTS {
@@ -137,15 +128,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         rounds: args.rounds,
         rows,
     };
-    let json = serde_json::to_string_pretty(&report)? + "\n";
-    match (&args.json, to_file) {
-        (_, Some(path)) => {
-            atomic_file::write(path, json.as_bytes())?;
-            console::print_result(&summary(&report))
-        }
-        (Some(_), None) => console::print_result(&json),
-        (None, None) => console::print_result(&summary(&report)),
-    }
+    args.figures.give(&report, &summary(&report))
 }
 
 /// Leaves each material its factors alone.

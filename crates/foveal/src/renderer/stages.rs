@@ -1,0 +1,92 @@
+//! What is made anew with the settings.
+
+use super::{Clock, CoarseStages, Frame, Seen, Stages};
+use crate::antialias::AntialiasStage;
+use crate::composite::CompositePass;
+use crate::culling::CullingStage;
+use crate::forward::ForwardPass;
+use crate::geometry::GeometryPass;
+use crate::gpu::{ErrorTrap, Gpu};
+use crate::lights::LightAssigner;
+use crate::output::{EyesPass, OverlayPass, ToneMapPass, ViewPass};
+use crate::rate::{RateImage, RateMapPass};
+use crate::scene::FrameBindings;
+use crate::shading::{CoarseShading, ShadingPass, VariableStage};
+use crate::stereo::{EyeLayout, LensFit, Submission, Trials, eyes};
+use crate::targets::Targets;
+use crate::{Error, Settings, Shading};
+
+impl Seen {
+    /// # Errors
+    /// [`Error::Setting`] where a camera or a lens makes no sense.
+    pub(super) fn new(settings: &Settings, frame: &Frame<'_>) -> Result<Self, Error> {
+        let eyes_now = eyes(settings, frame.camera)?;
+        Ok(Self {
+            eyes: eyes_now,
+            eyes_before: match frame.previous_camera {
+                Some(before) => eyes(settings, before)?,
+                None => eyes_now,
+            },
+            lenses: LensFit::of(settings, &eyes_now)?,
+        })
+    }
+}
+
+impl CoarseStages {
+    fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        full: &ShadingPass,
+        image: Option<&RateImage>,
+    ) -> Self {
+        let mut rate_map = RateMapPass::new(gpu, settings, frame);
+        if let Some(image) = image {
+            rate_map.set_image(gpu, image);
+        }
+        Self {
+            rate_map,
+            shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
+            composite: CompositePass::new(gpu, settings, frame),
+            overlay: OverlayPass::new(gpu, settings.view, frame),
+        }
+    }
+}
+
+impl Stages {
+    pub(super) async fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_bindings: &FrameBindings,
+        material_layout: &wgpu::BindGroupLayout,
+        rate_image: Option<&RateImage>,
+        (trials, clock): (&mut Trials, Option<Clock>),
+    ) -> Result<Self, Error> {
+        settings.validate(&gpu.device.limits())?;
+        let (submission, reason) = Submission::choose(gpu, settings, trials, clock).await?;
+        let trap = ErrorTrap::new(gpu, "preparing the renderer");
+        let frame = frame_bindings.layout();
+        let shading = ShadingPass::new(gpu, settings, frame);
+        let layout = EyeLayout::of(settings);
+        let stages = Self {
+            settings: settings.clone(),
+            culling: CullingStage::new(settings)?,
+            targets: Targets::new(gpu, settings, submission),
+            lights: LightAssigner::new(gpu, layout.eyes, frame),
+            geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
+            antialias: AntialiasStage::new(gpu, settings, frame, &shading),
+            coarse: (settings.shading == Shading::Coarse)
+                .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
+            variable: (settings.shading == Shading::Variable)
+                .then(|| VariableStage::new(gpu, settings, frame, shading.input_layout())),
+            shading,
+            forward: ForwardPass::new(gpu, settings, submission, frame, material_layout),
+            tone_map: ToneMapPass::new(gpu, settings, frame),
+            view: ViewPass::new(gpu, settings.view, frame),
+            eyes_shown: EyesPass::new(gpu, settings, frame),
+            submission: (submission, reason),
+        };
+        trap.finish().await?;
+        Ok(stages)
+    }
+}

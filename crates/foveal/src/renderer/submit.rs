@@ -1,0 +1,196 @@
+//! One frame as commands, stage by stage.
+
+use super::{Frame, Renderer, Seen, Stages, Target};
+use crate::FrameStats;
+use crate::antialias::AntialiasStage;
+use crate::culling::CullingCounts;
+use crate::frame::FrameUniform;
+use crate::geometry::Evaluation;
+use crate::gpu::CpuTimer;
+use crate::lights::ClusterGrid;
+use crate::recorder::Recorder;
+use crate::shading::{Plan, Samples};
+use crate::stereo::EyeLayout;
+
+impl Renderer {
+    /// The frame.
+    pub(super) fn submit(
+        &mut self,
+        frame: &Frame<'_>,
+        seen: &Seen,
+        target: Option<Target<'_>>,
+        cpu: &mut CpuTimer,
+    ) -> FrameStats {
+        let Self {
+            gpu,
+            timer,
+            frame_bindings,
+            stages,
+            scene,
+            draw_list,
+            present,
+            upscale,
+            clock,
+            frozen,
+            ..
+        } = self;
+        let Stages {
+            settings,
+            culling,
+            targets,
+            lights,
+            geometry,
+            shading,
+            antialias,
+            coarse,
+            variable,
+            forward,
+            tone_map,
+            view,
+            eyes_shown,
+            submission: _,
+        } = stages;
+        let plan = match variable {
+            Some(variable) if settings.view.is_lit() => variable.plan(),
+            _ => Plan::default(),
+        };
+        let at_rates = |stage: bool| plan.active && stage;
+
+        let culled = match culling {
+            Some(culling)
+                if *frozen && culling.visibility().len() == scene.stats.objects as usize =>
+            {
+                culling.counts()
+            }
+            Some(culling) => {
+                let size = (settings.width, settings.height);
+                let eyes = settings.is_stereo().then_some(&seen.eyes);
+                culling.cull(&scene.culling, frame.camera, eyes, size, *clock)
+            }
+            None => CullingCounts {
+                visible: scene.stats.objects,
+                ..CullingCounts::default()
+            },
+        };
+        cpu.stage("culling");
+
+        let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
+        draw_list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
+        geometry.prepare(gpu, scene, draw_list);
+        forward.prepare(gpu, draw_list);
+        cpu.stage("draw list");
+
+        let clusters = ClusterGrid::new(
+            &EyeLayout::of(settings),
+            &seen.eyes,
+            frame.camera,
+            &scene.lights,
+        );
+        lights.reserve(gpu, &clusters);
+        let uniform = FrameUniform::new(
+            settings,
+            frame.camera,
+            &seen.eyes,
+            &seen.eyes_before,
+            &scene.environment,
+            &clusters,
+        );
+        frame_bindings.write_frame(gpu, &uniform);
+        frame_bindings.write_drawn(gpu, &draw_list.drawn);
+        lights.assign_on_cpu(gpu, &uniform, &scene.lights);
+        cpu.stage("upload");
+
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorder = &mut Recorder {
+            gpu,
+            encoder: &mut encoder,
+            timer,
+            frame: frame_bindings,
+        };
+        lights.assign(recorder, &scene.light_buffer, &clusters);
+        if let Some(antialias) = antialias {
+            let shade = settings.view.is_lit();
+            antialias.draw(
+                recorder, scene, draw_list, geometry, shading, lights, targets, shade,
+            );
+        } else if at_rates(settings.rate_stage.has_material()) {
+            geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
+        } else {
+            geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
+        }
+        if let (Some(variable), true) = (variable.as_mut(), plan.active) {
+            let before = frame.previous_camera.unwrap_or(frame.camera);
+            variable.find_rates(recorder, settings, targets, frame.camera, before);
+            if let (Some(t), true) = (&targets.variable, settings.rate_stage.has_material()) {
+                let mut evaluate =
+                    |at| geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at);
+                if plan.compares {
+                    evaluate(Evaluation::COMPARED);
+                }
+                evaluate(Evaluation::at_rates(&t.mask));
+            }
+        }
+        if let Some(view) = view {
+            let places = scene.geometry.places();
+            view.show(recorder, &targets.gbuffer, places, &targets.picture_view);
+        } else if !antialias
+            .as_ref()
+            .is_some_and(|a| a.show(recorder, targets))
+        {
+            let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights);
+            if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
+                let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
+                rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
+                coarse.shading.shade(recorder, &input, tiles);
+                coarse.composite.join(recorder, targets, tiles);
+            } else if let (Some(variable), true) = (
+                variable.as_ref(),
+                at_rates(settings.rate_stage.has_lighting()),
+            ) {
+                if plan.compares {
+                    let target = &targets.radiance_view;
+                    shading.shade_every_pixel(recorder, &input, target, "full shading");
+                }
+                variable.shade(recorder, &input, targets);
+            } else if antialias
+                .as_ref()
+                .is_none_or(AntialiasStage::needs_ordinary)
+            {
+                let target = &targets.radiance_view;
+                shading.shade(recorder, &input, Samples::EveryPixel, target);
+            }
+            if let Some(antialias) = antialias {
+                antialias.combine(recorder, scene, shading, lights, targets);
+            }
+            forward.draw(recorder, scene, lights, draw_list, targets);
+            let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
+            let finished = finished.unwrap_or(&targets.picture_view);
+            tone_map.map(recorder, &targets.radiance_view, finished);
+            if let Some(variable) = variable {
+                variable.show(recorder, targets);
+            }
+            if let (Some(overlay), Some(tiles)) = (
+                coarse.as_ref().and_then(|c| c.overlay.as_ref()),
+                &targets.coarse,
+            ) {
+                overlay.draw(recorder, tiles, &targets.picture_view);
+            }
+        }
+        if let Some(eyes_shown) = eyes_shown {
+            eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
+        }
+        if let Some(upscale) = upscale {
+            upscale.stretch(recorder, targets.shown());
+        }
+        if let Some(target) = target {
+            present.present(recorder, targets.shown(), target);
+        }
+        timer.resolve(&mut encoder);
+        cpu.stage("encode");
+
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame();
+        cpu.stage("submit");
+        self.submitted(culled, cpu)
+    }
+}

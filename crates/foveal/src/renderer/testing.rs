@@ -1,0 +1,109 @@
+//! What tests ask of a renderer.
+
+use super::{Frame, Renderer};
+use crate::FrameStats;
+use crate::frame::FrameUniform;
+use crate::geometry::GeometryPass;
+use crate::lights::{ClusterGrid, LightAssigner};
+use crate::recorder::Recorder;
+use crate::shading::{CoarseShading, Samples};
+use crate::stereo::{EyeLayout, eyes};
+use crate::targets::Targets;
+use foveal_scene::Camera;
+
+impl Renderer {
+    /// Makes coarse samples affine functions of their position from the next frame on.
+    pub(crate) fn shade_affine(&mut self) {
+        let stages = &mut self.stages;
+        if let Some(coarse) = &mut stages.coarse {
+            coarse.shading = CoarseShading::with_shaders(
+                &self.gpu,
+                &stages.settings,
+                self.frame_bindings.layout(),
+                stages.shading.input_layout(),
+                crate::shader::COARSE_AFFINE,
+            );
+        }
+    }
+
+    pub(crate) fn geometry(&self) -> &GeometryPass {
+        &self.stages.geometry
+    }
+
+    pub(crate) fn targets(&self) -> &Targets {
+        &self.stages.targets
+    }
+
+    pub(crate) fn lights(&self) -> (&LightAssigner, &[crate::lights::LightUniform]) {
+        (&self.stages.lights, &self.scene.lights)
+    }
+
+    /// What shaders are told of a frame.
+    pub(crate) fn frame_uniform(&self, camera: &Camera) -> FrameUniform {
+        let settings = &self.stages.settings;
+        let eyes = eyes(settings, camera).expect("a camera that makes sense");
+        let lights = &self.scene.lights;
+        let grid = ClusterGrid::new(&EyeLayout::of(settings), &eyes, camera, lights);
+        let environment = &self.scene.environment;
+        FrameUniform::new(settings, camera, &eyes, &eyes, environment, &grid)
+    }
+
+    /// Draws the frame again.
+    pub(crate) fn redraw(&mut self, camera: &Camera) -> FrameStats {
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        pollster::block_on(self.render(&frame)).expect("frame is drawn")
+    }
+
+    /// Draws the frame again in bands of `rows` rows.
+    pub(crate) fn redraw_in_bands(&mut self, camera: &Camera, rows: u32) -> FrameStats {
+        let settings = &self.stages.settings;
+        let targets = crate::antialias::SampleTargets::in_bands(&self.gpu, settings, rows);
+        self.stages.targets.samples = Some(targets);
+        self.redraw(camera)
+    }
+
+    /// Leaves anti-aliasing room for one entry or, over a visibility buffer, one row of them.
+    pub(crate) fn cut_room_for_edges(&mut self) {
+        let settings = &self.stages.settings;
+        let rows = settings.height;
+        let targets = crate::antialias::SampleTargets::with_room(&self.gpu, settings, rows, 1);
+        self.stages.targets.samples = Some(targets);
+    }
+
+    /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.
+    pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
+        let Self {
+            gpu,
+            timer,
+            frame_bindings,
+            stages,
+            scene,
+            ..
+        } = self;
+        let targets = &stages.targets;
+        let list = crate::shading::SampleList::from_texels(gpu, texels);
+        let input =
+            stages
+                .shading
+                .input(gpu, &targets.gbuffer, &scene.light_buffer, &stages.lights);
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorder = &mut Recorder {
+            gpu,
+            encoder: &mut encoder,
+            timer,
+            frame: frame_bindings,
+        };
+        stages.shading.shade(
+            recorder,
+            &input,
+            Samples::List(&list),
+            &targets.radiance_view,
+        );
+        timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame();
+    }
+}
