@@ -17,8 +17,18 @@ pub(crate) fn gpu() -> &'static Gpu {
 
 /// A renderer that has drawn `scene` once from `camera`.
 pub(crate) fn rendered(scene: &Scene, camera: &Camera, settings: &Settings) -> Renderer {
+    rendered_on(gpu(), scene, camera, settings)
+}
+
+/// The same on a device of one's own.
+pub(crate) fn rendered_on(
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+) -> Renderer {
     pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu(), settings, None)
+        let mut renderer = Renderer::new(gpu, settings, None)
             .await
             .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");

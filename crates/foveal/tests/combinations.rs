@@ -1,45 +1,15 @@
-//! Every way of shading with every anti-aliasing, over both geometries, for one eye and for two: what is not refused draws
-//! what full shading of the same kind draws, nearly.
+//! Every way of shading with every anti-aliasing, over both geometries, for one eye and for two: nothing is refused, and
+//! all draw nearly what full shading of the same kind draws.
 #![allow(clippy::print_stdout, reason = "a test says what it measured")]
 
-use foveal::{
-    Antialiasing, Frame, Geometry, Gpu, Output, RateSource, Renderer, Settings, Shading, Stereo,
-};
-use foveal_scene::{Scene, generate};
+mod common;
+
+use common::{drawn, mean_flip};
+use foveal::{Antialiasing, Geometry, Gpu, Output, RateSource, Settings, Shading, Stereo};
+use foveal_scene::generate;
 
 /// Until rates that follow the picture have settled.
 const FRAMES: u32 = 4;
-
-/// A picture and its size; `None` where the settings are refused.
-fn picture(gpu: &Gpu, scene: &Scene, settings: &Settings) -> Option<nv_flip::FlipImageRgb8> {
-    settings.validate(&gpu.device.limits()).ok()?;
-    let camera = &scene.cameras[0];
-    let rgba = pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu, settings, None)
-            .await
-            .expect("settings fit");
-        renderer.set_scene(scene).await.expect("scene fits");
-        for _ in 0..FRAMES {
-            let frame = Frame {
-                camera,
-                previous_camera: Some(camera),
-            };
-            renderer.render(&frame).await.expect("drawn");
-        }
-        renderer.read_picture().await.expect("read back")
-    });
-    let rgb: Vec<u8> = rgba
-        .chunks_exact(4)
-        .flat_map(|p| [p[0], p[1], p[2]])
-        .collect();
-    let (width, height) = settings.picture_size();
-    Some(nv_flip::FlipImageRgb8::with_data(width, height, &rgb))
-}
-
-fn flip(a: &nv_flip::FlipImageRgb8, b: &nv_flip::FlipImageRgb8) -> f32 {
-    let map = nv_flip::flip(a.clone(), b.clone(), nv_flip::DEFAULT_PIXELS_PER_DEGREE);
-    nv_flip::FlipPool::from_image(&map).mean()
-}
 
 /// All shadings and geometries for one anti-aliasing.
 fn compare(aa: Antialiasing, stereo: Stereo) {
@@ -57,7 +27,7 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
         },
         ..Settings::default()
     };
-    let reference = picture(&gpu, &scene, &plain).expect("full shading is never refused");
+    let reference = drawn(&gpu, &scene, &plain, FRAMES);
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
         for shading in [Shading::Full, Shading::Coarse, Shading::Variable] {
             let settings = Settings {
@@ -72,10 +42,7 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
                 coarsest_level: 2,
                 ..plain.clone()
             };
-            let Some(drawn) = picture(&gpu, &scene, &settings) else {
-                panic!("{geometry:?}, {shading:?}, {aa:?}, {stereo:?} is refused");
-            };
-            let error = flip(&reference, &drawn);
+            let error = mean_flip(&reference, &drawn(&gpu, &scene, &settings, FRAMES));
             println!("{geometry:?}, {shading:?}, {aa:?}, {stereo:?}: {error:.4}");
             // Over a visibility buffer a pixel's materials are averaged by surface, not by sub-sample.
             let most = match shading {

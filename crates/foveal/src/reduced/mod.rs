@@ -11,8 +11,8 @@ use foveal_scene::{Camera, Scene, generate};
 use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;
 use crate::shader::{self, Parts};
-use crate::testing::{gpu, picture, rendered, small};
-use crate::{Culling, Frame, Gpu, Output, Renderer, Settings, Stereo};
+use crate::testing::{gpu, picture, rendered, rendered_on, small};
+use crate::{Culling, Gpu, Output, Renderer, Settings, Stereo};
 
 /// A device that was asked for no more than WebGL 2 has.
 fn reduced_gpu() -> &'static Gpu {
@@ -38,18 +38,7 @@ fn reduced_gpu() -> &'static Gpu {
 }
 
 fn reduced(scene: &Scene, camera: &Camera, settings: &Settings) -> Renderer {
-    pollster::block_on(async {
-        let mut renderer = Renderer::new(reduced_gpu(), settings, None)
-            .await
-            .expect("settings fit");
-        renderer.set_scene(scene).await.expect("scene fits");
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
-        renderer.render(&frame).await.expect("frame is drawn");
-        renderer
-    })
+    rendered_on(reduced_gpu(), scene, camera, settings)
 }
 
 /// Channels of the pictures that differ by more than `tolerance`, of all.

@@ -5,10 +5,11 @@ use crate::FrameStats;
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingCounts;
 use crate::frame::FrameUniform;
-use crate::geometry::Evaluation;
+use crate::geometry::{DrawList, Evaluation};
 use crate::gpu::CpuTimer;
 use crate::lights::ClusterGrid;
 use crate::recorder::Recorder;
+use crate::scene::SceneOnGpu;
 use crate::shading::{Plan, Samples};
 use crate::stereo::EyeLayout;
 
@@ -37,24 +38,16 @@ impl Renderer {
         let Stages {
             settings,
             culling,
-            targets,
             lights,
             geometry,
-            shading,
-            antialias,
-            coarse,
             variable,
             forward,
-            tone_map,
-            view,
-            eyes_shown,
-            submission: _,
+            ..
         } = stages;
         let plan = match variable {
             Some(variable) if settings.view.is_lit() => variable.plan(),
             _ => Plan::default(),
         };
-        let at_rates = |stage: bool| plan.active && stage;
 
         let culled = match culling {
             Some(culling)
@@ -108,12 +101,54 @@ impl Renderer {
             frame: frame_bindings,
         };
         lights.assign(recorder, &scene.light_buffer, &clusters);
+        stages.see(recorder, scene, draw_list, frame, &plan);
+        stages.light(recorder, scene, draw_list, seen, &plan);
+        let targets = &stages.targets;
+        if let Some(eyes_shown) = &stages.eyes_shown {
+            eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
+        }
+        if let Some(upscale) = upscale {
+            upscale.stretch(recorder, targets.shown());
+        }
+        if let Some(target) = target {
+            present.present(recorder, targets.shown(), target);
+        }
+        timer.resolve(&mut encoder);
+        cpu.stage("encode");
+
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame();
+        cpu.stage("submit");
+        self.submitted(culled, cpu)
+    }
+}
+
+impl Stages {
+    /// Encodes geometry, and the rates that what is seen asks for.
+    fn see(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        draw_list: &DrawList,
+        frame: &Frame<'_>,
+        plan: &Plan,
+    ) {
+        let Self {
+            settings,
+            targets,
+            lights,
+            geometry,
+            shading,
+            antialias,
+            variable,
+            ..
+        } = self;
         if let Some(antialias) = antialias {
             let shade = settings.view.is_lit();
             antialias.draw(
                 recorder, scene, draw_list, geometry, shading, lights, targets, shade,
             );
-        } else if at_rates(settings.rate_stage.has_material()) {
+        } else if plan.active && settings.rate_stage.has_material() {
             geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
         } else {
             geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
@@ -130,67 +165,78 @@ impl Renderer {
                 evaluate(Evaluation::at_rates(&t.mask));
             }
         }
+    }
+
+    /// Encodes the picture of what is seen: a view of the G-buffer, or light and what is made of it.
+    fn light(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        draw_list: &DrawList,
+        seen: &Seen,
+        plan: &Plan,
+    ) {
+        let Self {
+            settings,
+            targets,
+            lights,
+            shading,
+            antialias,
+            coarse,
+            variable,
+            forward,
+            tone_map,
+            view,
+            ..
+        } = self;
         if let Some(view) = view {
             let places = scene.geometry.places();
             view.show(recorder, &targets.gbuffer, places, &targets.picture_view);
-        } else if !antialias
+            return;
+        }
+        if antialias
             .as_ref()
             .is_some_and(|a| a.show(recorder, targets))
         {
-            let input = shading.input(gpu, &targets.gbuffer, &scene.light_buffer, lights);
-            if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
-                let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
-                rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
-                coarse.shading.shade(recorder, &input, tiles);
-                coarse.composite.join(recorder, targets, tiles);
-            } else if let (Some(variable), true) = (
-                variable.as_ref(),
-                at_rates(settings.rate_stage.has_lighting()),
-            ) {
-                if plan.compares {
-                    let target = &targets.radiance_view;
-                    shading.shade_every_pixel(recorder, &input, target, "full shading");
-                }
-                variable.shade(recorder, &input, targets);
-            } else if antialias
-                .as_ref()
-                .is_none_or(AntialiasStage::needs_ordinary)
-            {
+            return;
+        }
+        let input = shading.input(recorder.gpu, &targets.gbuffer, &scene.light_buffer, lights);
+        if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
+            let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
+            rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
+            coarse.shading.shade(recorder, &input, tiles);
+            coarse.composite.join(recorder, targets, tiles);
+        } else if let (Some(variable), true) = (
+            variable.as_ref(),
+            plan.active && settings.rate_stage.has_lighting(),
+        ) {
+            if plan.compares {
                 let target = &targets.radiance_view;
-                shading.shade(recorder, &input, Samples::EveryPixel, target);
+                shading.shade_every_pixel(recorder, &input, target, "full shading");
             }
-            if let Some(antialias) = antialias {
-                antialias.combine(recorder, scene, shading, lights, targets);
-            }
-            forward.draw(recorder, scene, lights, draw_list, targets);
-            let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
-            let finished = finished.unwrap_or(&targets.picture_view);
-            tone_map.map(recorder, &targets.radiance_view, finished);
-            if let Some(variable) = variable {
-                variable.show(recorder, targets);
-            }
-            if let (Some(overlay), Some(tiles)) = (
-                coarse.as_ref().and_then(|c| c.overlay.as_ref()),
-                &targets.coarse,
-            ) {
-                overlay.draw(recorder, tiles, &targets.picture_view);
-            }
+            variable.shade(recorder, &input, targets);
+        } else if antialias
+            .as_ref()
+            .is_none_or(AntialiasStage::needs_ordinary)
+        {
+            let target = &targets.radiance_view;
+            shading.shade(recorder, &input, Samples::EveryPixel, target);
         }
-        if let Some(eyes_shown) = eyes_shown {
-            eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
+        if let Some(antialias) = antialias {
+            antialias.combine(recorder, scene, shading, lights, targets);
         }
-        if let Some(upscale) = upscale {
-            upscale.stretch(recorder, targets.shown());
+        forward.draw(recorder, scene, lights, draw_list, targets);
+        let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
+        let finished = finished.unwrap_or(&targets.picture_view);
+        tone_map.map(recorder, &targets.radiance_view, finished);
+        if let Some(variable) = variable {
+            variable.show(recorder, targets);
         }
-        if let Some(target) = target {
-            present.present(recorder, targets.shown(), target);
+        if let (Some(overlay), Some(tiles)) = (
+            coarse.as_ref().and_then(|c| c.overlay.as_ref()),
+            &targets.coarse,
+        ) {
+            overlay.draw(recorder, tiles, &targets.picture_view);
         }
-        timer.resolve(&mut encoder);
-        cpu.stage("encode");
-
-        gpu.queue.submit([encoder.finish()]);
-        timer.end_frame();
-        cpu.stage("submit");
-        self.submitted(culled, cpu)
     }
 }

@@ -1,16 +1,5 @@
-// At which rate each quad is shaded, and the list of the samples that follows. After frame, rates and fovea.wgsl.
+// At which rate each quad is shaded, and the list of the samples that follows. After frame, rates, passes and fovea.wgsl.
 // CPU twin: `twin.rs`.
-
-struct Rates {
-    threshold: f32,
-    velocity_gain: f32,
-    probe_mask: u32,
-    probe_x: u32,
-    probe_y: u32,
-    reset: u32,
-    reserved_0: u32,
-    reserved_1: u32,
-}
 
 // 0 foveated, 1 constant, 3 content.
 override SOURCE: u32 = 3u;

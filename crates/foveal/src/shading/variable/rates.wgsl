@@ -1,4 +1,4 @@
-// Shading rates of quads (2 x 2 pixels) and what they make of pixels. Rust: `shading/variable/rate.rs`.
+// Shading rates of quads (2 x 2 pixels) and what they make of pixels. CPU twin: `twin.rs`.
 
 // Bits of a mask's texel. Both of the first two: one sample for the quad; the third besides: one for 2 x 2 quads.
 const RATE_WIDE: u32 = 1u;

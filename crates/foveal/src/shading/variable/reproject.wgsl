@@ -1,23 +1,8 @@
-// What is known of each quad, carried over from the frame before. After frame.wgsl and rates.wgsl.
+// What is known of each quad, carried over from the frame before. After frame, rates and passes.wgsl.
 // CPU twin: `twin.rs`.
 //
 // Known are the luminances of the quad's four pixels when they were last shaded one by one: a quad that was shaded
 // coarsely keeps those from before. So no rate ever depends on what coarse shading made of the picture.
-
-struct Rates {
-    // Least relative contrast that is shaded in full.
-    threshold: f32,
-    // By what part the threshold grows per pixel of motion.
-    velocity_gain: f32,
-    // Quads whose number's bits under the mask are these are probed, x and y.
-    probe_mask: u32,
-    probe_x: u32,
-    probe_y: u32,
-    // 1: the frame before tells nothing.
-    reset: u32,
-    reserved_0: u32,
-    reserved_1: u32,
-}
 
 @group(1) @binding(0) var<uniform> rates: Rates;
 @group(1) @binding(1) var identity: texture_2d_array<u32>;
