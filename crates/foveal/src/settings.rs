@@ -247,9 +247,12 @@ settings! {
             /// How samples become pixels: by continuous patches, by the source's four taps, or as they are
             composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
         }
-        "Variable shading" {
-            /// What is done once per sample: lighting, or with a visibility buffer materials, as the source does, or both
+        "Coarse and variable shading" {
+            /// What is done once per sample: lighting, or with a visibility buffer materials too (both) or, where shading is
+            /// variable, alone; auto: both with a visibility buffer and without anti-aliasing
             rate_stage: RateStage = RateStage::default(), "Stage", Kind::choice::<RateStage>();
+        }
+        "Variable shading" {
             /// What contrast is measured by: differences within 2x2 pixels, to the four neighbours, or Sobel kernels
             contrast: Contrast = Contrast::default(), "Contrast", Kind::choice::<Contrast>();
             /// Contrast above which pixels are shaded one by one: difference of display luma by its local mean + 0.1

@@ -1,13 +1,14 @@
 //! `foveal bench coarse`: full shading and coarse shading by each backend and composite, in turn, medians of all.
 //!
 //! Timed is lighting with composite: all passes but geometry, light assignment, forward, tone map and the counting
-//! of tiles for the statistics; the rate map is part of it.
+//! of tiles for the statistics; the rate map is part of it. Materials that are evaluated after the rasterizer are timed
+//! besides.
 
 mod side;
 
 use foveal::{
-    AdapterStats, Backend, Composite, Gpu, LightAssignment, LightingModel, RefineEdges, Settings,
-    Shading,
+    AdapterStats, Backend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateStage,
+    RefineEdges, Settings, Shading,
 };
 use foveal_scene::{Camera, Scene};
 use serde::Serialize;
@@ -63,6 +64,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WHERE", value_parser = VariantParser::<RefineEdges>::new())]
     refine_edges: Option<RefineEdges>,
 
+    /// How the G-buffer is filled [default: gbuffer]
+    #[arg(long, value_name = "HOW", value_parser = VariantParser::<Geometry>::new())]
+    geometry: Option<Geometry>,
+
+    /// What is done once per sample; may be given several times [default: auto]
+    #[arg(long, value_name = "STAGE", value_parser = VariantParser::<RateStage>::new())]
+    rate_stage: Vec<RateStage>,
+
     /// Backends; may be given several times [default: stencil and compute]
     #[arg(long, value_name = "HOW", value_parser = VariantParser::<Backend>::new())]
     backend: Vec<Backend>,
@@ -101,6 +110,8 @@ struct Row {
     lighting: LightingModel,
     fovea_inner: f32,
     refine_edges: RefineEdges,
+    geometry: Geometry,
+    rate_stage: RateStage,
     backend: Backend,
     composite: Composite,
     levels: u32,
@@ -108,6 +119,9 @@ struct Row {
     full_ms: f64,
     coarse_ms: f64,
     ratio: f64,
+    /// Binning and evaluation of materials after the rasterizer; 0 where it does that itself.
+    full_material_ms: f64,
+    coarse_material_ms: f64,
     full_frame_ms: f64,
     coarse_frame_ms: f64,
     flip_mean: f64,
@@ -211,19 +225,27 @@ fn measure(
         lighting: args.lighting.unwrap_or_default(),
         refine_edges: args.refine_edges.unwrap_or_default(),
         fovea_inner: case.fovea_inner,
+        geometry: args.geometry.unwrap_or_default(),
         ..Settings::default()
     };
     let mut full = Side::new(gpu, scene, camera, &full_settings)?;
     let mut sides = Vec::new();
-    for &backend in backends {
-        for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
-            let settings = Settings {
-                shading: Shading::Coarse,
-                backend,
-                composite,
-                ..full_settings.clone()
-            };
-            sides.push(Side::new(gpu, scene, camera, &settings)?);
+    let rate_stages = match args.rate_stage.as_slice() {
+        [] => &[RateStage::Auto][..],
+        given => given,
+    };
+    for &rate_stage in rate_stages {
+        for &backend in backends {
+            for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+                let settings = Settings {
+                    shading: Shading::Coarse,
+                    backend,
+                    composite,
+                    rate_stage,
+                    ..full_settings.clone()
+                };
+                sides.push(Side::new(gpu, scene, camera, &settings)?);
+            }
         }
     }
     for _ in 0..args.pairs.max(1) {
@@ -248,6 +270,8 @@ fn measure(
                 lighting: settings.lighting,
                 fovea_inner: settings.fovea_inner,
                 refine_edges: settings.refine_edges,
+                geometry: settings.geometry,
+                rate_stage: settings.rate_stage,
                 backend: settings.backend,
                 composite: settings.composite,
                 levels: u32::from(settings.coarsest_level) + 1,
@@ -255,6 +279,8 @@ fn measure(
                 full_ms,
                 coarse_ms,
                 ratio: full_ms / coarse_ms,
+                full_material_ms: median(&full.material_ms),
+                coarse_material_ms: median(&coarse.material_ms),
                 full_frame_ms: median(&full.frame_ms),
                 coarse_frame_ms: median(&coarse.frame_ms),
                 flip_mean: ErrorMap::between(&reference, &picture).mean(),
@@ -267,7 +293,7 @@ fn measure(
 
 fn print(row: &Row) {
     eprintln!(
-        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: lighting {:.1} -> {:.1} ms ({:.1}x), frame {:.1} -> {:.1} ms, FLIP {:.4}, fovea {:.4}",
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, frame {:.1} -> {:.1} ms, FLIP {:.4}, fovea {:.4}",
         row.scene,
         row.width,
         row.height,
@@ -279,6 +305,8 @@ fn print(row: &Row) {
         row.full_ms,
         row.coarse_ms,
         row.ratio,
+        row.full_material_ms,
+        row.coarse_material_ms,
         row.full_frame_ms,
         row.coarse_frame_ms,
         row.flip_mean,

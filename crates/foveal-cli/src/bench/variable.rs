@@ -188,7 +188,7 @@ fn passes(stage: RateStage) -> &'static [&'static str] {
     match stage {
         RateStage::Lighting => &["shading"],
         RateStage::Material => &["binning", "material"],
-        RateStage::Both => &["binning", "material", "shading"],
+        RateStage::Both | RateStage::Auto => &["binning", "material", "shading"],
     }
 }
 

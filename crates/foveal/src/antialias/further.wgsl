@@ -1,6 +1,10 @@
 // A pixel's further surface: its texel's place in the picture comes with it. In place of every.wgsl, after
 // quarters.wgsl.
 
+fn covered_by(texel: vec2u) -> vec2u {
+    return vec2u(1u);
+}
+
 fn extent_of(texel: vec2u) -> vec2u {
     return vec2u(1u);
 }

@@ -41,7 +41,7 @@ impl CompositePass {
         match settings.composite {
             // Where all tiles are pixels there is nothing to smooth.
             Composite::Smooth if settings.coarsest_level > 0 => {
-                Self::Smooth(SmoothComposite::new(gpu, frame_layout))
+                Self::Smooth(SmoothComposite::new(gpu, settings, frame_layout))
             }
             Composite::Paper => taps(shader::COMPOSITE_PAPER, "paper"),
             Composite::Nearest | Composite::Smooth => taps(shader::COMPOSITE_NEAREST, "nearest"),

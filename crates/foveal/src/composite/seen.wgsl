@@ -1,5 +1,5 @@
-// What is seen at a texel of the G-buffer, and whether two texels show the same surface. After surface.wgsl and
-// tiling.wgsl.
+// What is seen at a texel of the G-buffer, and whether two texels show the same surface. After tiling.wgsl,
+// normal_of_surface.wgsl or normal_of_depth.wgsl.
 
 @group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
@@ -18,7 +18,7 @@ fn seen_at(texel: vec2u) -> Seen {
     return Seen(
         load_words(gbuffer_identity, texel).x,
         world_position(vec2f(texel) + 0.5, distance),
-        unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, texel).y)),
+        normal_seen(texel),
     );
 }
 

@@ -7,9 +7,9 @@
 use super::patches::{DRAW_BYTES, PatchPass, PatchTargets};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
-use crate::shader;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT, stencil_state};
 use crate::targets::Targets;
+use crate::{Settings, shader};
 
 /// What a pixel's stencil says: a quad covered it, or another surface than its tile's sample is seen there.
 const COVERED: u32 = 1;
@@ -27,7 +27,12 @@ pub(crate) struct SmoothComposite {
 }
 
 impl SmoothComposite {
-    pub(crate) fn new(gpu: &Gpu, frame_layout: &wgpu::BindGroupLayout) -> Self {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let by_depth = usize::from(settings.sees_by_depth());
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
@@ -47,7 +52,7 @@ impl SmoothComposite {
                 storage_read(),
             ],
         );
-        let module = shader::module(gpu, "smooth composite", shader::COMPOSITE_SMOOTH);
+        let module = shader::module(gpu, "smooth composite", shader::COMPOSITE_SMOOTH[by_depth]);
         let target = |write_mask| wgpu::ColorTargetState {
             format: RADIANCE_FORMAT,
             blend: None,

@@ -5,9 +5,9 @@ use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use crate::gpu::read_level;
 use crate::shading::sample_texel;
-use crate::shading::twin::{position_at, unit_from_octahedral};
+use crate::shading::twin::{normal_of_depth, position_at, unit_from_octahedral};
 use crate::testing::{f32_of_half, gpu, rendered, small, texels};
-use crate::{CoarseSample, Composite, Frame, RefineEdges, Renderer, Settings, Shading};
+use crate::{CoarseSample, Composite, Frame, Geometry, RefineEdges, Renderer, Settings, Shading};
 
 /// Bits of a rate map's cell.
 const CELL_LEVEL: u8 = 15;
@@ -65,6 +65,7 @@ struct Inputs {
     /// Instance and triangle.
     identity: Vec<[u32; 2]>,
     depth: Vec<f32>,
+    by_depth: bool,
 }
 
 impl Inputs {
@@ -91,6 +92,7 @@ impl Inputs {
             surface: texels(&targets.gbuffer.surface_view),
             identity: texels(&targets.gbuffer.identity_view),
             depth: texels(&targets.gbuffer.depth_view),
+            by_depth: renderer.settings().sees_by_depth(),
         }
     }
 
@@ -133,6 +135,15 @@ impl Inputs {
             ),
             normal: unit_from_octahedral(self.surface[i][1]),
         }
+    }
+
+    /// As pixels are compared: `normal_of_depth.wgsl` where only samples have surfaces.
+    fn compared(&self, texel: UVec2) -> Seen {
+        let mut seen = self.seen(texel);
+        if self.by_depth {
+            seen.normal = normal_of_depth(&self.camera, self.size, &self.depth, texel);
+        }
+        seen
     }
 
     fn low(&self, tile: Tile) -> UVec2 {
@@ -321,7 +332,7 @@ impl Inputs {
                 continue;
             }
             let tile = self.tile_at(probe.as_uvec2());
-            if same_surface(seen, &self.seen(self.sample(tile).texel)) {
+            if same_surface(seen, &self.compared(self.sample(tile).texel)) {
                 let weight = 1.0 / ((probe - position).length_squared() + 1.0);
                 sum += weight * self.tile_radiance(tile, position);
                 total += weight;
@@ -336,8 +347,8 @@ impl Inputs {
     fn pixel(&self, texel: UVec2) -> Vec3 {
         let tile = self.tile_at(texel);
         let position = texel.as_vec2() + 0.5;
-        let seen = self.seen(texel);
-        if tile.has_edge && !same_surface(&seen, &self.seen(self.sample(tile).texel)) {
+        let seen = self.compared(texel);
+        if tile.has_edge && !same_surface(&seen, &self.compared(self.sample(tile).texel)) {
             return self.across_edge(position, tile, &seen);
         }
         self.tile_radiance(tile, position)
@@ -348,10 +359,38 @@ impl Inputs {
 fn smooth_equals_its_twin() {
     let mut scene = generate::cornell();
     generate::add_point_lights(&mut scene, 20, 5);
-    for (size, refine_edges, coarse_sample) in [
-        ((150, 93), RefineEdges::Off, CoarseSample::Center),
-        ((150, 93), RefineEdges::Graded, CoarseSample::Center),
-        ((67, 131), RefineEdges::Off, CoarseSample::Typical),
+    let by_triangles = Geometry::Visibility;
+    for (size, refine_edges, coarse_sample, geometry) in [
+        (
+            (150, 93),
+            RefineEdges::Off,
+            CoarseSample::Center,
+            Geometry::Gbuffer,
+        ),
+        (
+            (150, 93),
+            RefineEdges::Graded,
+            CoarseSample::Center,
+            Geometry::Gbuffer,
+        ),
+        (
+            (67, 131),
+            RefineEdges::Off,
+            CoarseSample::Typical,
+            Geometry::Gbuffer,
+        ),
+        (
+            (150, 93),
+            RefineEdges::Graded,
+            CoarseSample::Center,
+            by_triangles,
+        ),
+        (
+            (67, 131),
+            RefineEdges::Off,
+            CoarseSample::Typical,
+            by_triangles,
+        ),
     ] {
         let settings = Settings {
             shading: Shading::Coarse,
@@ -361,6 +400,7 @@ fn smooth_equals_its_twin() {
             gaze: [0.3, 0.6],
             refine_edges,
             coarse_sample,
+            geometry,
             ..small(size.0, size.1)
         };
         let camera = &scene.cameras[0];

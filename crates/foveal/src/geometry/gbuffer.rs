@@ -1,14 +1,14 @@
 //! The G-buffer and the pass that fills it.
 
 use super::{
-    DrawList, Evaluation, PipelineKey, PipelineRecipe, Pipelines, VertexSource, VisibilityPass,
-    VisibilityTargets,
+    DrawList, Evaluation, PipelineKey, PipelineRecipe, Pipelines, Rates, VertexSource,
+    VisibilityPass, VisibilityTargets,
 };
 use crate::gpu::{self, Gpu};
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::stereo::{EyeLayout, Submission};
-use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, Shading, shader};
+use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, shader};
 
 /// Reversed: 1 at the near plane, 0 where nothing is.
 pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
@@ -153,15 +153,13 @@ impl GeometryPass {
                     settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
                 let windows = if rotated { settings.samples } else { 1 };
                 let further = crate::antialias::by_triangles(settings);
-                let rated =
-                    settings.shading == Shading::Variable && settings.rate_stage.has_material();
                 Means::Triangles(Box::new(VisibilityPass::new(
                     gpu,
                     frame_layout,
                     material_layout,
                     FaceNormals::wanted_by(settings),
                     windows,
-                    [further, rated],
+                    (further, Rates::wanted_by(settings)),
                     (submission, EyeLayout::of(settings)),
                 )))
             }

@@ -13,6 +13,8 @@ pub(crate) use gbuffer::{
     DEPTH_FORMAT, FaceNormals, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, Window,
 };
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+pub(crate) use visibility::{
+    Evaluation, Rates, TRIANGLE_FORMAT, VisibilityPass, VisibilityTargets,
+};
 #[cfg(test)]
-pub(crate) use visibility::WindowsUniform;
-pub(crate) use visibility::{Evaluation, TRIANGLE_FORMAT, VisibilityPass, VisibilityTargets};
+pub(crate) use visibility::{WindowsUniform, level_scene};

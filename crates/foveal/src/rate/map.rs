@@ -90,7 +90,7 @@ impl RateMapPass {
         Self {
             wish: pipeline(
                 "rate wish",
-                shader::RATE_WISH,
+                shader::RATE_WISH[usize::from(settings.sees_by_depth())],
                 "wish_level",
                 &wish_layout,
                 &super::wish::wish_constants(settings),

@@ -51,10 +51,6 @@ fn depth_at(texel: vec2i) -> f32 {
     return load_depth(gbuffer_depth, vec2u(texel));
 }
 
-fn normal_at(texel: vec2i) -> vec3f {
-    return unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, vec2u(texel)).y));
-}
-
 // Whether a surface ends within a block of 2 x 2 pixels or between it and the blocks to its right and below:
 // another instance, a crease of more than 45 degrees, or a jump in depth. Reversed depth is affine in screen space
 // along a plane however it is tilted, so a jump shows as a second difference.
@@ -85,8 +81,7 @@ fn holds_edge(block: vec2u) -> bool {
             return true;
         }
     }
-    let normal = normal_at(first);
-    return min(dot(normal, normal_at(right)), dot(normal, normal_at(down))) < 0.7;
+    return turns(first, last);
 }
 
 @fragment

@@ -180,7 +180,7 @@ impl Renderer {
         let pixels = EyeLayout::of(&stages.settings).pixels();
         let mut shaded_samples = match (&coarse, &variable) {
             (Some(coarse), _) => coarse.shaded_samples(),
-            (None, Some(variable)) if stages.settings.rate_stage.has_lighting() => {
+            (None, Some(variable)) if stages.settings.stage().has_lighting() => {
                 variable.samples_per_rate.iter().sum()
             }
             _ => u64::from(lit) * pixels,

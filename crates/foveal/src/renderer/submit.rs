@@ -101,8 +101,8 @@ impl Renderer {
             frame: frame_bindings,
         };
         lights.assign(recorder, &scene.light_buffer, &clusters);
-        stages.see(recorder, scene, draw_list, frame, &plan);
-        stages.light(recorder, scene, draw_list, seen, &plan);
+        stages.see(recorder, scene, draw_list, (frame, seen), &plan);
+        stages.light(recorder, scene, draw_list, &plan);
         let targets = &stages.targets;
         if let Some(eyes_shown) = &stages.eyes_shown {
             eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
@@ -124,13 +124,13 @@ impl Renderer {
 }
 
 impl Stages {
-    /// Encodes geometry, and the rates that what is seen asks for.
+    /// Encodes geometry, the rates that what is seen asks for, and materials that are evaluated at these.
     fn see(
         &mut self,
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         draw_list: &DrawList,
-        frame: &Frame<'_>,
+        (frame, seen): (&Frame<'_>, &Seen),
         plan: &Plan,
     ) {
         let Self {
@@ -140,29 +140,45 @@ impl Stages {
             geometry,
             shading,
             antialias,
+            coarse,
             variable,
             ..
         } = self;
+        let material = settings.stage().has_material();
+        let coarse = match (coarse, &targets.coarse) {
+            (Some(coarse), Some(tiles)) if settings.view.is_lit() => Some((coarse, tiles)),
+            _ => None,
+        };
         if let Some(antialias) = antialias {
             let shade = settings.view.is_lit();
             antialias.draw(
                 recorder, scene, draw_list, geometry, shading, lights, targets, shade,
             );
-        } else if plan.active && settings.rate_stage.has_material() {
+        } else if material && (plan.active || coarse.is_some()) {
             geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
         } else {
             geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
         }
+        let evaluate = |recorder: &mut _, at| {
+            geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at)
+        };
+        if let Some((coarse, tiles)) = coarse {
+            let lenses = seen.lenses.as_ref();
+            coarse
+                .rate_map
+                .draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
+            if material {
+                evaluate(recorder, Evaluation::at_rates(&tiles.rate.owner.whole));
+            }
+        }
         if let (Some(variable), true) = (variable.as_mut(), plan.active) {
             let before = frame.previous_camera.unwrap_or(frame.camera);
             variable.find_rates(recorder, settings, targets, frame.camera, before);
-            if let (Some(t), true) = (&targets.variable, settings.rate_stage.has_material()) {
-                let mut evaluate =
-                    |at| geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at);
+            if let (Some(t), true) = (&targets.variable, material) {
                 if plan.compares {
-                    evaluate(Evaluation::COMPARED);
+                    evaluate(recorder, Evaluation::COMPARED);
                 }
-                evaluate(Evaluation::at_rates(&t.mask));
+                evaluate(recorder, Evaluation::at_rates(&t.mask));
             }
         }
     }
@@ -173,7 +189,6 @@ impl Stages {
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         draw_list: &DrawList,
-        seen: &Seen,
         plan: &Plan,
     ) {
         let Self {
@@ -202,13 +217,11 @@ impl Stages {
         }
         let input = shading.input(recorder.gpu, &targets.gbuffer, &scene.light_buffer, lights);
         if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
-            let (rate_map, lenses) = (&coarse.rate_map, seen.lenses.as_ref());
-            rate_map.draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
             coarse.shading.shade(recorder, &input, tiles);
             coarse.composite.join(recorder, targets, tiles);
         } else if let (Some(variable), true) = (
             variable.as_ref(),
-            plan.active && settings.rate_stage.has_lighting(),
+            plan.active && settings.stage().has_lighting(),
         ) {
             if plan.compares {
                 let target = &targets.radiance_view;

@@ -17,14 +17,16 @@ pub enum Geometry {
     Visibility,
 }
 
-/// What [`Shading::Variable`] does once per sample instead of once per pixel.
+/// What is done once per sample instead of once per pixel where shading is coarse or variable.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateStage {
-    /// Lighting.
+    /// [`RateStage::Both`] where it can be: with [`Geometry::Visibility`] and without anti-aliasing; else lighting.
     #[default]
+    Auto,
+    /// Lighting.
     Lighting,
-    /// Materials, as the technique's source does; needs [`Geometry::Visibility`].
+    /// Materials, as variable shading's source does; needs [`Geometry::Visibility`] and [`Shading::Variable`].
     Material,
     /// Both; needs [`Geometry::Visibility`].
     Both,
@@ -33,12 +35,30 @@ pub enum RateStage {
 impl RateStage {
     /// Materials are evaluated at the rate.
     pub(crate) fn has_material(self) -> bool {
-        self != Self::Lighting
+        matches!(self, Self::Material | Self::Both)
     }
 
     /// Lighting is evaluated at the rate.
     pub(crate) fn has_lighting(self) -> bool {
         self != Self::Material
+    }
+}
+
+impl Settings {
+    /// What is done once per sample, the choice having been made.
+    pub(crate) fn stage(&self) -> RateStage {
+        let material = self.geometry == Geometry::Visibility && self.aa == Antialiasing::None;
+        match (self.shading, self.rate_stage) {
+            (Shading::Full, _) => RateStage::Lighting,
+            (_, RateStage::Auto) if material => RateStage::Both,
+            (_, RateStage::Auto) => RateStage::Lighting,
+            (_, stage) => stage,
+        }
+    }
+
+    /// Coarse shading's samples alone have surfaces: what looks at other pixels goes by their depth.
+    pub(crate) fn sees_by_depth(&self) -> bool {
+        self.shading == Shading::Coarse && self.stage().has_material()
     }
 }
 
@@ -97,7 +117,14 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             "another one unless shading is coarse",
         );
     }
-    if variable && s.rate_stage.has_material() {
+    if s.shading == Shading::Coarse && s.rate_stage == RateStage::Material {
+        return wrong(
+            "rate-stage",
+            name(&s.rate_stage),
+            "another one unless shading is variable",
+        );
+    }
+    if s.stage().has_material() {
         if s.geometry != Geometry::Visibility {
             return wrong(
                 "rate-stage",

@@ -20,6 +20,8 @@ const SAMPLE_IMPLICIT: &str = include_str!("../shared/sample_implicit.wgsl");
 const SAMPLE_GRADIENTS: &str = include_str!("../shared/sample_gradients.wgsl");
 const ATTRIBUTES: &str = include_str!("../shared/attributes.wgsl");
 const LAYERS: &str = include_str!("../shared/layers.wgsl");
+const NORMAL_OF_SURFACE: &str = include_str!("../shared/normal_of_surface.wgsl");
+const NORMAL_OF_DEPTH: &str = include_str!("../shared/normal_of_depth.wgsl");
 const VERTEX_LAYERED: &str = include_str!("../shared/vertex_layered.wgsl");
 const SHADING: &str = concat!(
     include_str!("../shading/input.wgsl"),
@@ -82,6 +84,7 @@ pub(crate) const VISIBLE_PULLED: Parts = &[
     include_str!("../geometry/visibility/pulled.wgsl"),
 ];
 pub(crate) const BINS: Parts = &[
+    FRAME,
     LAYERS,
     EVERY,
     include_str!("../geometry/visibility/bins.wgsl"),
@@ -89,8 +92,9 @@ pub(crate) const BINS: Parts = &[
 const RATED: &str = include_str!("../geometry/visibility/rated.wgsl");
 /// As [`BINS`] and [`RESOLVE`], with a sample's upper left pixel for all of its pixels.
 pub(crate) const BINS_RATED: Parts = &[
+    FRAME,
     RATES,
-    "@group(0) @binding(5) var mask: texture_2d<u32>;",
+    "@group(1) @binding(5) var mask: texture_2d<u32>;",
     RATED,
     LAYERS,
     include_str!("../geometry/visibility/bins.wgsl"),
@@ -105,6 +109,29 @@ pub(crate) const RESOLVE_RATED: Parts = &[
     RATES,
     "@group(3) @binding(6) var mask: texture_2d<u32>;",
     RATED,
+    LAYERS,
+    include_str!("../geometry/visibility/resolve.wgsl"),
+];
+const TILED: &str = include_str!("../geometry/visibility/tiled.wgsl");
+/// As [`BINS`] and [`RESOLVE`], where tiles are sampled alone.
+pub(crate) const BINS_TILED: Parts = &[
+    FRAME,
+    BLOCKS,
+    "@group(1) @binding(5) var mask: texture_2d<u32>;",
+    TILED,
+    LAYERS,
+    include_str!("../geometry/visibility/bins.wgsl"),
+];
+pub(crate) const RESOLVE_TILED: Parts = &[
+    FRAME,
+    SURFACE,
+    VERTEX,
+    ATTRIBUTES,
+    SAMPLE_GRADIENTS,
+    MATERIAL,
+    BLOCKS,
+    "@group(3) @binding(6) var mask: texture_2d<u32>;",
+    TILED,
     LAYERS,
     include_str!("../geometry/visibility/resolve.wgsl"),
 ];
@@ -354,14 +381,29 @@ pub(crate) const VARIABLE_SHADE: Parts = &[
 pub(crate) const VARIABLE_VIEW: Parts =
     &[FRAME, RATES, include_str!("../shading/variable/view.wgsl")];
 
-pub(crate) const RATE_WISH: Parts = &[
-    FRAME,
-    SURFACE,
-    LEVEL,
-    BLOCKS,
-    FOVEA,
-    LAYERS,
-    include_str!("../rate/wish.wgsl"),
+/// By surfaces, and by depth.
+pub(crate) const RATE_WISH: [Parts; 2] = [
+    &[
+        FRAME,
+        SURFACE,
+        LEVEL,
+        BLOCKS,
+        FOVEA,
+        LAYERS,
+        include_str!("../rate/crease_of_surface.wgsl"),
+        include_str!("../rate/wish.wgsl"),
+    ],
+    &[
+        FRAME,
+        SURFACE,
+        LEVEL,
+        BLOCKS,
+        FOVEA,
+        LAYERS,
+        NORMAL_OF_DEPTH,
+        include_str!("../rate/crease_of_depth.wgsl"),
+        include_str!("../rate/wish.wgsl"),
+    ],
 ];
 pub(crate) const RATE_PYRAMID: Parts =
     &[FRAME, LEVEL, BLOCKS, include_str!("../rate/pyramid.wgsl")];
@@ -444,22 +486,40 @@ pub(crate) const COMPOSITE_FIT: Parts = &[
     BLOCKS,
     TILING,
     LAYERS,
+    NORMAL_OF_SURFACE,
     SEEN,
     PATCHES,
     include_str!("../composite/raise.wgsl"),
     include_str!("../composite/fit.wgsl"),
 ];
-pub(crate) const COMPOSITE_SMOOTH: Parts = &[
-    FRAME,
-    SURFACE,
-    LEVEL,
-    BLOCKS,
-    TILING,
-    LAYERS,
-    SEEN,
-    PATCHES,
-    include_str!("../composite/curve.wgsl"),
-    include_str!("../composite/smooth.wgsl"),
+/// By the surfaces' normals, and by those of depth where only samples have surfaces.
+pub(crate) const COMPOSITE_SMOOTH: [Parts; 2] = [
+    &[
+        FRAME,
+        SURFACE,
+        LEVEL,
+        BLOCKS,
+        TILING,
+        LAYERS,
+        NORMAL_OF_SURFACE,
+        SEEN,
+        PATCHES,
+        include_str!("../composite/curve.wgsl"),
+        include_str!("../composite/smooth.wgsl"),
+    ],
+    &[
+        FRAME,
+        SURFACE,
+        LEVEL,
+        BLOCKS,
+        TILING,
+        LAYERS,
+        NORMAL_OF_DEPTH,
+        SEEN,
+        PATCHES,
+        include_str!("../composite/curve.wgsl"),
+        include_str!("../composite/smooth.wgsl"),
+    ],
 ];
 
 pub(crate) const OVERLAY: Parts = &[

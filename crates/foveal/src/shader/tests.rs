@@ -10,6 +10,8 @@ const ALL: &[(&str, Parts)] = &[
     ("resolve", RESOLVE),
     ("bins, rated", BINS_RATED),
     ("resolve, rated", RESOLVE_RATED),
+    ("bins, tiled", BINS_TILED),
+    ("resolve, tiled", RESOLVE_TILED),
     ("variable reproject", VARIABLE_REPROJECT),
     ("variable mask", VARIABLE_MASK),
     ("variable size", VARIABLE_SIZE),
@@ -42,7 +44,8 @@ const ALL: &[(&str, Parts)] = &[
     ("combination", AA_COMBINE),
     ("combination, store", AA_STORE),
     ("tally", AA_VIEW),
-    ("rate wish", RATE_WISH),
+    ("rate wish", RATE_WISH[0]),
+    ("rate wish, by depth", RATE_WISH[1]),
     ("rate pyramid", RATE_PYRAMID),
     ("rate owner", RATE_OWNER),
     ("coarse mark", COARSE_MARK),
@@ -54,7 +57,8 @@ const ALL: &[(&str, Parts)] = &[
     ("composite nearest", COMPOSITE_NEAREST),
     ("composite paper", COMPOSITE_PAPER),
     ("composite fit", COMPOSITE_FIT),
-    ("composite smooth", COMPOSITE_SMOOTH),
+    ("composite smooth", COMPOSITE_SMOOTH[0]),
+    ("composite smooth, by depth", COMPOSITE_SMOOTH[1]),
     ("reduced geometry", REDUCED_GBUFFER),
     ("reduced shading", REDUCED_SHADE),
     ("reduced forward", REDUCED_FORWARD),
@@ -349,7 +353,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         ]
     );
     assert_same_layout!(
-        RATE_WISH,
+        RATE_WISH[0],
         "Wish",
         WishUniform,
         [

@@ -1,7 +1,7 @@
 //! The CPU twin of deferred shading: `surface.wgsl`, `lighting.wgsl` and `shading.wgsl` in plain Rust.
 
 use foveal_scene::{Camera, Projection, Scene, generate};
-use glam::{Vec2, Vec2Swizzles, Vec3, Vec4};
+use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
 use crate::lights::LightUniform;
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
@@ -72,6 +72,42 @@ pub(crate) fn position_at(camera: &Camera, size: Vec2, pixel: Vec2, depth: f32) 
         }
     };
     camera.world_from_view.transform_point3(view)
+}
+
+/// The normal seen at a texel, world space, from reversed depth alone: `shared/normal_of_depth.wgsl`.
+pub(crate) fn normal_of_depth(camera: &Camera, size: UVec2, depths: &[f32], at: UVec2) -> Vec3 {
+    let depth = |at: UVec2| depths[(at.y * size.x + at.x) as usize];
+    let here = depth(at);
+    let step = |axis: IVec2| {
+        let depth_at = |away: i32| {
+            let texel = at.as_ivec2() + away * axis;
+            depth(texel.clamp(IVec2::ZERO, size.as_ivec2() - 1).as_uvec2())
+        };
+        let [before_2, before, after, after_2] = [-2, -1, 1, 2].map(depth_at);
+        let bend_before = (before_2 - 2.0 * before + here).abs();
+        let bend_after = (after_2 - 2.0 * after + here).abs();
+        let along = at.as_ivec2().dot(axis);
+        let is_last = along == size.as_ivec2().dot(axis) - 1;
+        if along == 0 || (!is_last && bend_after <= bend_before) {
+            after - here
+        } else {
+            here - before
+        }
+    };
+    let steps = Vec2::new(step(IVec2::X), step(IVec2::Y));
+    let size = size.as_vec2();
+    let clip_from_view = camera.clip_from_view(size.x / size.y);
+    let scale = Vec2::new(clip_from_view.x_axis.x, clip_from_view.y_axis.y);
+    let pixel = at.as_vec2() + 0.5;
+    let place = (Vec2::new(2.0, -2.0) * pixel / size + Vec2::new(-1.0, 1.0)) / scale;
+    let slope = steps / (Vec2::new(2.0, -2.0) / size / scale);
+    let in_view = match camera.projection {
+        Projection::Perspective { .. } => (-slope).extend(here - place.dot(slope)),
+        Projection::Orthographic { near_m, far_m, .. } => (-slope * (far_m - near_m)).extend(1.0),
+    };
+    camera
+        .world_from_view
+        .transform_vector3(in_view.normalize())
 }
 
 fn environment(scene: &Scene, direction: Vec3) -> Vec3 {

@@ -12,6 +12,7 @@ pub(super) struct Side<'a> {
     pub(super) renderer: Renderer,
     camera: &'a Camera,
     pub(super) lighting_ms: Vec<f64>,
+    pub(super) material_ms: Vec<f64>,
     pub(super) frame_ms: Vec<f64>,
     pub(super) shaded_fraction: f64,
 }
@@ -29,12 +30,14 @@ impl<'a> Side<'a> {
             renderer,
             camera,
             lighting_ms: Vec::new(),
+            material_ms: Vec::new(),
             frame_ms: Vec::new(),
             shaded_fraction: 1.0,
         };
         // The first frame compiles.
         side.draw()?;
         side.lighting_ms.clear();
+        side.material_ms.clear();
         side.frame_ms.clear();
         Ok(side)
     }
@@ -45,7 +48,10 @@ impl<'a> Side<'a> {
             previous_camera: None,
         };
         let stats = block_on(self.renderer.render(&frame))?;
-        self.lighting_ms.push(lighting_ms(&stats));
+        self.lighting_ms
+            .push(sum_ms(&stats, |pass| !OTHER.contains(&pass)));
+        self.material_ms
+            .push(sum_ms(&stats, |pass| MATERIAL.contains(&pass)));
         self.frame_ms.push(stats.frame_ms);
         if let Some(coarse) = &stats.coarse {
             self.shaded_fraction = coarse.shaded_fraction;
@@ -60,21 +66,22 @@ impl<'a> Side<'a> {
     }
 }
 
-fn lighting_ms(stats: &FrameStats) -> f64 {
-    const OTHER: [&str; 7] = [
-        "geometry",
-        "binning",
-        "material",
-        "light assignment",
-        "forward",
-        "tone map",
-        "tile counting",
-    ];
+const MATERIAL: [&str; 2] = ["binning", "material"];
+
+/// What is not lighting.
+const OTHER: [&str; 7] = [
+    "geometry",
+    MATERIAL[0],
+    MATERIAL[1],
+    "light assignment",
+    "forward",
+    "tone map",
+    "tile counting",
+];
+
+fn sum_ms(stats: &FrameStats, counts: impl Fn(&str) -> bool) -> f64 {
     let passes = stats.gpu_ms.iter();
-    passes
-        .filter(|pass| !OTHER.contains(&pass.name.as_str()))
-        .map(|pass| pass.ms)
-        .sum()
+    passes.filter(|pass| counts(&pass.name)).map(|p| p.ms).sum()
 }
 
 pub(super) fn fovea_differing(a: &Picture, b: &Picture, s: &Settings) -> f64 {

@@ -1,6 +1,6 @@
 //! The passes that sort the seen pixels by material.
 
-use super::{Evaluation, VisibilityTargets, with_mask};
+use super::{Evaluation, Rates, VisibilityTargets, with_mask};
 use crate::geometry::{GBuffer, SURFACE_FORMAT};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
@@ -48,8 +48,12 @@ pub(super) struct BinPass {
 }
 
 impl BinPass {
-    /// `rated`: only pixels that stand for a sample are sorted.
-    pub(super) fn new(gpu: &Gpu, rated: bool) -> Self {
+    /// `rates`: only pixels that stand for a sample are sorted.
+    pub(super) fn new(
+        gpu: &Gpu,
+        frame_layout: &wgpu::BindGroupLayout,
+        rates: Option<Rates>,
+    ) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let mut types = vec![
@@ -59,22 +63,21 @@ impl BinPass {
             storage_write(),
             written_layers(SURFACE_FORMAT),
         ];
-        if rated {
+        if rates.is_some() {
             types.push(uint);
         }
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = bind_group_layout(&gpu.device, "binning", compute, &types);
-        let parts = if rated {
-            shader::BINS_RATED
-        } else {
-            shader::BINS
+        let module = shader::module(gpu, "binning", rates.map_or(shader::BINS, Rates::bins));
+        let constant = rates.and_then(Rates::constant);
+        let pipeline = |entry, constants: &[_]| {
+            let groups = [frame_layout, &layout];
+            shader::compute(gpu, "binning", &module, entry, &groups, constants)
         };
-        let module = shader::module(gpu, "binning", parts);
-        let pipeline = |entry| shader::compute(gpu, "binning", &module, entry, &[&layout], &[]);
         Self {
-            count: pipeline("count_pixels"),
-            sum: pipeline("sum_bins"),
-            scatter: pipeline("scatter_pixels"),
+            count: pipeline("count_pixels", constant.as_slice()),
+            sum: pipeline("sum_bins", constant.as_slice()),
+            scatter: pipeline("scatter_pixels", constant.as_slice()),
             layout,
         }
     }
@@ -109,7 +112,7 @@ impl BinPass {
         let across = size.width * size.depth_or_array_layers;
         let tiles = (across.div_ceil(TILE), size.height.div_ceil(TILE));
         let mut pass = recorder.compute_pass(at.binning_label);
-        pass.set_bind_group(0, &group, &[]);
+        pass.set_bind_group(1, &group, &[]);
         for (pipeline, (x, y)) in [
             (&self.count, tiles),
             (&self.sum, (1, 1)),

@@ -26,13 +26,13 @@ struct Bin {
     reserved_1: u32,
 }
 
-@group(0) @binding(0) var identity: texture_2d_array<u32>;
-@group(0) @binding(1) var<storage, read> places: array<Place>;
+@group(1) @binding(0) var identity: texture_2d_array<u32>;
+@group(1) @binding(1) var<storage, read> places: array<Place>;
 // One for each material.
-@group(0) @binding(2) var<storage, read_write> bins: array<Bin>;
+@group(1) @binding(2) var<storage, read_write> bins: array<Bin>;
 // x | y << 16.
-@group(0) @binding(3) var<storage, read_write> pixels: array<u32>;
-@group(0) @binding(4) var surface: texture_storage_2d_array<rgba32uint, write>;
+@group(1) @binding(3) var<storage, read_write> pixels: array<u32>;
+@group(1) @binding(4) var surface: texture_storage_2d_array<rgba32uint, write>;
 
 // The hash table: material + 1, pixels of it, where they go.
 var<workgroup> keys: array<atomic<u32>, 256>;
@@ -140,7 +140,7 @@ fn scatter_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invoc
         if key != 0u {
             slots[i] = slot_of(key);
             within[i] = atomicAdd(&counts[slots[i]], 1u);
-        } else if all(texel < whole_size(identity)) && load_words(identity, texel).x == 0u {
+        } else if all(texel < whole_size(identity)) && is_read(texel) && load_words(identity, texel).x == 0u {
             let at = in_layers(textureDimensions(surface).x, texel);
             textureStore(surface, at.xy, at.z, vec4u(0u));
         }

@@ -4,7 +4,17 @@ fn is_listed(texel: vec2u) -> bool {
     return true;
 }
 
-// Pixels across and down for which a listed pixel stands.
+// Whether the surface there is read, or emptied where nothing is seen.
+fn is_read(texel: vec2u) -> bool {
+    return true;
+}
+
+// Pixels across and down to which a listed pixel's surface is written.
+fn covered_by(texel: vec2u) -> vec2u {
+    return vec2u(1u);
+}
+
+// Pixels across and down for which it stands.
 fn extent_of(texel: vec2u) -> vec2u {
     return vec2u(1u);
 }

@@ -17,13 +17,15 @@ use super::{DrawList, FaceNormals, GBuffer, Window};
 use crate::gpu::{Gpu, layered_target, layers_of};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
-use crate::shader;
 use crate::stereo::{EyeLayout, Submission};
+use crate::{CoarseSample, Settings, Shading, shader};
 use bins::{BinPass, Bins};
 use raster::VisiblePass;
 use resolve::ResolvePass;
 #[cfg(test)]
 pub(crate) use resolve::WindowsUniform;
+#[cfg(test)]
+pub(crate) use tests::level_scene;
 
 pub(crate) const TRIANGLE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
@@ -72,7 +74,8 @@ impl VisibilityTargets {
 /// At which pixels materials are evaluated, and what the passes are timed under.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Evaluation<'a> {
-    /// Once per sample of this mask (`shading/variable`); `None`: at every pixel.
+    /// Once per sample of this mask (`shading/variable`), or per tile of these owner levels (`rate/`); `None`: at every
+    /// pixel.
     pub(crate) mask: Option<&'a wgpu::TextureView>,
     binning_label: &'static str,
     material_label: &'static str,
@@ -93,7 +96,7 @@ impl<'a> Evaluation<'a> {
         material_label: "full material",
     };
 
-    /// Once per sample of a mask.
+    /// Once per sample of a mask, or per tile of owner levels, whichever the pass was made for.
     pub(crate) fn at_rates(mask: &'a wgpu::TextureView) -> Self {
         Self {
             mask: Some(mask),
@@ -109,6 +112,51 @@ fn with_mask<'a>(
 ) -> Vec<wgpu::BindingResource<'a>> {
     let mask = at.mask.map(wgpu::BindingResource::TextureView);
     resources.iter().cloned().chain(mask).collect()
+}
+
+/// Where materials may be evaluated other than at every pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Rates {
+    /// At the samples of a mask of rates: each stands for a rectangle of pixels.
+    Samples,
+    /// Where the tiles of a rate map are sampled.
+    Tiles(CoarseSample),
+}
+
+impl Rates {
+    /// What these settings need.
+    pub(crate) fn wanted_by(settings: &Settings) -> Option<Self> {
+        match settings.shading {
+            _ if !settings.stage().has_material() => None,
+            Shading::Coarse => Some(Self::Tiles(settings.coarse_sample)),
+            _ => Some(Self::Samples),
+        }
+    }
+
+    fn bins(self) -> shader::Parts {
+        match self {
+            Self::Samples => shader::BINS_RATED,
+            Self::Tiles(_) => shader::BINS_TILED,
+        }
+    }
+
+    fn resolve(self) -> shader::Parts {
+        match self {
+            Self::Samples => shader::RESOLVE_RATED,
+            Self::Tiles(_) => shader::RESOLVE_TILED,
+        }
+    }
+
+    /// Of both shaders.
+    fn constant(self) -> Option<(&'static str, f64)> {
+        match self {
+            Self::Samples => None,
+            Self::Tiles(sample) => {
+                let typical = sample == CoarseSample::Typical;
+                Some(("TYPICAL", f64::from(u8::from(typical))))
+            }
+        }
+    }
 }
 
 /// Sorts and evaluates.
@@ -132,37 +180,33 @@ pub(crate) struct VisibilityPass {
 
 impl VisibilityPass {
     /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: [`VisibilityPass::evaluate_further`]
-    /// will be called; `rated`: materials will be evaluated at a rate.
+    /// will be called; `rates`: materials will be evaluated there.
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
         face_normals: FaceNormals,
         windows: u32,
-        [further, rated]: [bool; 2],
+        (further, rates): (bool, Option<Rates>),
         eyes: (Submission, EyeLayout),
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
         let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout, eyes);
         let layouts = [frame_layout, material_layout, &geometry_layout];
-        let materials = |rated| {
-            let parts = if rated {
-                shader::RESOLVE_RATED
-            } else {
-                shader::RESOLVE
-            };
+        let materials = |rates: Option<Rates>| {
+            let parts = rates.map_or(shader::RESOLVE, Rates::resolve);
             Materials {
-                bin: BinPass::new(gpu, rated),
-                resolve: ResolvePass::new(gpu, parts, layouts, face_normals, windows, rated),
+                bin: BinPass::new(gpu, frame_layout, rates),
+                resolve: ResolvePass::new(gpu, parts, layouts, face_normals, windows, rates),
             }
         };
         let none = FaceNormals::Omitted;
         Self {
             raster,
-            full: materials(false),
-            rated: rated.then(|| materials(true)),
+            full: materials(None),
+            rated: rates.map(|rates| materials(Some(rates))),
             further: further
-                .then(|| ResolvePass::new(gpu, shader::RESOLVE_FURTHER, layouts, none, 1, false)),
+                .then(|| ResolvePass::new(gpu, shader::RESOLVE_FURTHER, layouts, none, 1, None)),
             bins: Bins::new(gpu, 1),
         }
     }

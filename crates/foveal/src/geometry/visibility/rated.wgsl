@@ -5,6 +5,14 @@ fn is_listed(texel: vec2u) -> bool {
     return stands_for_sample(texel, textureLoad(mask, texel / 2u, 0).x & RATE);
 }
 
+fn is_read(texel: vec2u) -> bool {
+    return true;
+}
+
+fn covered_by(texel: vec2u) -> vec2u {
+    return extent_of(texel);
+}
+
 fn extent_of(texel: vec2u) -> vec2u {
     return extent_at(textureLoad(mask, texel / 2u, 0).x & RATE);
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use bytemuck::{Pod, Zeroable};
 
 use super::bins::{BIN_BYTES, Bins};
-use super::{Evaluation, VisibilityTargets, with_mask};
+use super::{Evaluation, Rates, VisibilityTargets, with_mask};
 use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, uniform,
@@ -43,7 +43,7 @@ pub(super) struct ResolvePass {
     module: wgpu::ShaderModule,
     layout: wgpu::PipelineLayout,
     group_layout: wgpu::BindGroupLayout,
-    constants: [(&'static str, f64); 2],
+    constants: Vec<(&'static str, f64)>,
     /// By material class.
     pipelines: BTreeMap<u32, wgpu::ComputePipeline>,
 }
@@ -55,7 +55,7 @@ impl ResolvePass {
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
         windows: u32,
-        rated: bool,
+        rates: Option<Rates>,
     ) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
@@ -67,7 +67,7 @@ impl ResolvePass {
             uniform(),
             written_layers(SURFACE_FORMAT),
         ];
-        if rated {
+        if rates.is_some() {
             types.push(uint);
         }
         let group_layout = bind_group_layout(
@@ -88,7 +88,10 @@ impl ResolvePass {
             constants: [
                 ("FACE_NORMAL", f64::from(written)),
                 ("WINDOWS", f64::from(windows)),
-            ],
+            ]
+            .into_iter()
+            .chain(rates.and_then(Rates::constant))
+            .collect(),
             pipelines: BTreeMap::new(),
         }
     }
@@ -96,7 +99,8 @@ impl ResolvePass {
     /// Makes the pipeline for materials of `class` unless it is there.
     pub(super) fn prepare(&mut self, gpu: &Gpu, class: u32) {
         self.pipelines.entry(class).or_insert_with(|| {
-            let [face_normal, windows] = self.constants;
+            let mut constants = self.constants.clone();
+            constants.push(("MATERIAL_CLASS", f64::from(class)));
             gpu.device
                 .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
                     label: Some("materials of triangles"),
@@ -104,7 +108,7 @@ impl ResolvePass {
                     module: &self.module,
                     entry_point: Some("resolve"),
                     compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: &[face_normal, windows, ("MATERIAL_CLASS", f64::from(class))],
+                        constants: &constants,
                         ..Default::default()
                     },
                     cache: None,

@@ -68,9 +68,9 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
         let e = octahedral_from_unit(unit_or(a.face, m.surface.normal));
         words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
     }
-    let end = whole_size(identity);
-    for (var y = texel.y; y < min(texel.y + extent.y, end.y); y++) {
-        for (var x = texel.x; x < min(texel.x + extent.x, end.x); x++) {
+    let end = min(texel + covered_by(texel), whole_size(identity));
+    for (var y = texel.y; y < end.y; y++) {
+        for (var x = texel.x; x < end.x; x++) {
             let at = in_layers(textureDimensions(surface).x, vec2u(x, y));
             textureStore(surface, at.xy, at.z, words);
         }

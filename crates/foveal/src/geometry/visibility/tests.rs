@@ -163,9 +163,14 @@ fn floor(texture: Texture) -> (Scene, Camera) {
     (scene, camera)
 }
 
+/// A floor on which the red that is seen tells the level of detail.
+pub(crate) fn level_scene() -> (Scene, Camera) {
+    floor(level_texture(256))
+}
+
 #[test]
 fn extreme_perspective_has_the_rasterizers_levels_of_detail() {
-    let (scene, camera) = floor(level_texture(256));
+    let (scene, camera) = level_scene();
     let settings = small(157, 101);
     let [raster, triangles] = [settings.clone(), by_triangles(&settings)]
         .map(|settings| rendered(&scene, &camera, &settings));

@@ -133,4 +133,6 @@ impl CoarseShading {
 }
 
 #[cfg(test)]
+mod materials;
+#[cfg(test)]
 mod tests;

@@ -156,7 +156,7 @@ impl VariableStage {
     ) -> VariableStats {
         let layout = EyeLayout::of(settings);
         let pixels = layout.pixels();
-        let mut stats = self.balance.observe(settings.rate_stage, gpu_ms);
+        let mut stats = self.balance.observe(settings.stage(), gpu_ms);
         stats.active = listed.is_some();
         stats.samples_per_rate = vec![pixels, 0, 0, 0, 0];
         if let Some(bytes) = listed {

@@ -96,7 +96,7 @@ impl RatePasses {
             })
         };
         let [model, assignment] = lighting_constants(settings);
-        let one_surface = f64::from(u8::from(settings.rate_stage.has_material()));
+        let one_surface = f64::from(u8::from(settings.stage().has_material()));
         Self {
             reproject: pipeline(
                 "reprojection",

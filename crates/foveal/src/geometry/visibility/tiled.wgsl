@@ -1,0 +1,39 @@
+// Where tiles of a rate map are sampled, and nowhere else: the shading looks at no other pixel. After frame.wgsl,
+// blocks.wgsl and the binding of `mask`, the owner levels; before bins.wgsl or resolve.wgsl.
+
+// Any of five candidates may be asked for: as in shading/coarse/block.wgsl.
+override TYPICAL: bool = false;
+
+fn level_of(texel: vec2u) -> u32 {
+    return textureLoad(mask, texel / 2u, 0).x & CELL_LEVEL;
+}
+
+fn is_listed(texel: vec2u) -> bool {
+    let level = level_of(texel);
+    let block = texel >> vec2u(level);
+    var found = all(texel == sample_texel(block, level, 0u));
+    if TYPICAL {
+        for (var candidate = 1u; candidate < 5u; candidate++) {
+            found = found || all(texel == sample_texel(block, level, candidate));
+        }
+    }
+    return found;
+}
+
+fn is_read(texel: vec2u) -> bool {
+    return is_listed(texel);
+}
+
+fn covered_by(texel: vec2u) -> vec2u {
+    return vec2u(1u);
+}
+
+// Textures are filtered over the tile.
+fn extent_of(texel: vec2u) -> vec2u {
+    return vec2u(1u << level_of(texel));
+}
+
+// Depth is the texel's own: so is its surface.
+fn middle_of(texel: vec2u) -> vec2f {
+    return vec2f(texel) + 0.5;
+}
