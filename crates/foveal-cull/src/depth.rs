@@ -2,8 +2,8 @@
 //!
 //! 8x8-pixel blocks of 16-bit depth. A pixel's value is a *proof*: every point of a 4x4 grid over the pixel,
 //! and its centre, is covered by occluders at that depth or nearer. Partly covered pixels keep what they
-//! have so far (which grid points, and the farthest depth among them) until the rest arrives. Every block
-//! also keeps its farthest depth, which answers most questions alone.
+//! have so far (which grid points, and the farthest depth among them) until the rest arrives, in two layers where
+//! the parts lie far apart. Every block also keeps its farthest depth, which answers most questions alone.
 //!
 //! Depth is `near / distance` (or linear, for orthographic views), stored as a shortened float with five
 //! bits of exponent and eleven of mantissa, always rounded away from the eye. Larger is nearer.
@@ -48,10 +48,21 @@ pub(crate) struct DepthBlock(pub(crate) [i16; 64]);
 pub(crate) struct PartialBlock {
     /// Planes by sample column, then sample row.
     pub(crate) planes: [u64; 16],
-    /// Farthest depth so far.
+    /// Farthest depth so far, of pixels that have anything.
     pub(crate) depth: [i16; 64],
     /// The plane of pixel centres.
     pub(crate) center: u64,
+    /// Pixels that have anything.
+    pub(crate) any: u64,
+}
+
+impl PartialBlock {
+    const NONE: Self = Self {
+        planes: [0; 16],
+        depth: [i16::MAX; 64],
+        center: 0,
+        any: 0,
+    };
 }
 
 /// Block holds nothing; its memory is stale.
@@ -60,6 +71,8 @@ pub(crate) const STATE_EMPTY: u8 = 0;
 pub(crate) const STATE_DEPTH: u8 = 1;
 /// Block has depth and partly covered pixels.
 pub(crate) const STATE_PARTIAL: u8 = 2;
+/// And these in two layers.
+pub(crate) const STATE_LAYERS: u8 = 3;
 
 /// The buffer. See the module.
 #[derive(Clone, Debug)]
@@ -70,6 +83,8 @@ pub(crate) struct DepthBuffer {
     pub(crate) blocks_y: u32,
     pub(crate) depth: Vec<DepthBlock>,
     pub(crate) partial: Vec<PartialBlock>,
+    /// All parts together, where those in `partial` are only the near ones.
+    pub(crate) all: Vec<PartialBlock>,
     /// Farthest depth per block.
     pub(crate) min: Vec<i16>,
     pub(crate) state: Vec<u8>,
@@ -92,14 +107,8 @@ impl DepthBuffer {
             blocks_x,
             blocks_y,
             depth: vec![DepthBlock([EMPTY; 64]); n],
-            partial: vec![
-                PartialBlock {
-                    planes: [0; 16],
-                    depth: [i16::MAX; 64],
-                    center: 0
-                };
-                n
-            ],
+            partial: vec![PartialBlock::NONE; n],
+            all: vec![PartialBlock::NONE; n],
             min: vec![EMPTY; n],
             state: vec![STATE_EMPTY; n],
             work: vec![0; blocks_y as usize],
@@ -179,6 +188,7 @@ impl DepthBuffer {
             rows: self.blocks_y,
             depth: &mut self.depth,
             partial: &mut self.partial,
+            all: &mut self.all,
             min: &mut self.min,
             state: &mut self.state,
             work: &mut self.work,
@@ -217,6 +227,7 @@ pub(crate) struct Band<'a> {
     pub(crate) rows: u32,
     pub(crate) depth: &'a mut [DepthBlock],
     pub(crate) partial: &'a mut [PartialBlock],
+    pub(crate) all: &'a mut [PartialBlock],
     pub(crate) min: &'a mut [i16],
     pub(crate) state: &'a mut [u8],
     pub(crate) work: &'a mut [u32],
@@ -242,6 +253,7 @@ impl<'a> Band<'a> {
         let at = (rows * self.blocks_x) as usize;
         let (d0, d1) = self.depth.split_at_mut(at);
         let (p0, p1) = self.partial.split_at_mut(at);
+        let (a0, a1) = self.all.split_at_mut(at);
         let (m0, m1) = self.min.split_at_mut(at);
         let (s0, s1) = self.state.split_at_mut(at);
         let (w0, w1) = self.work.split_at_mut(rows as usize);
@@ -252,6 +264,7 @@ impl<'a> Band<'a> {
                 rows,
                 depth: d0,
                 partial: p0,
+                all: a0,
                 min: m0,
                 state: s0,
                 work: w0,
@@ -262,6 +275,7 @@ impl<'a> Band<'a> {
                 rows: self.rows - rows,
                 depth: d1,
                 partial: p1,
+                all: a1,
                 min: m1,
                 state: s1,
                 work: w1,

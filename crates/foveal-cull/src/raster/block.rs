@@ -7,9 +7,10 @@
 //!
 //! Depth: the polygon's plane at its farthest point within each pixel, no farther than its farthest vertex.
 
+use super::layers::{self, APART, Layer};
 use super::polygon::{Edges, Polygon};
 use crate::depth::{
-    BLOCK_SAMPLES, Band, EMPTY, PartialBlock, STATE_DEPTH, STATE_EMPTY, STATE_PARTIAL,
+    BLOCK_SAMPLES, Band, EMPTY, STATE_DEPTH, STATE_EMPTY, STATE_LAYERS, STATE_PARTIAL,
 };
 use crate::simd::{Lanes, four};
 
@@ -218,22 +219,11 @@ pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, 
     }
     l.dstore(d, block);
     band.min[i] = l.dreduce_min(d);
-    if state == STATE_PARTIAL {
-        forget_hidden(l, &mut band.partial[i], d);
-    } else {
-        band.state[i] = STATE_DEPTH;
+    match state {
+        STATE_PARTIAL => layers::forget_hidden(l, &mut band.partial[i], d),
+        STATE_LAYERS => layers::forget_hidden_layers(l, band, i, d),
+        _ => band.state[i] = STATE_DEPTH,
     }
-}
-
-/// Drops partial coverage that can no longer bring anything nearer than the depth that is there.
-#[inline(always)]
-fn forget_hidden<L: Lanes>(l: L, partial: &mut PartialBlock, d: L::D) {
-    let old = l.dload(&partial.depth);
-    let kept = l.dgt(old, d);
-    let planes = l.pkeep(l.pload(&partial.planes), kept);
-    l.pstore(planes, &mut partial.planes);
-    partial.center &= kept;
-    l.dstore(l.dselect(kept, old, l.dsplat(i16::MAX)), &mut partial.depth);
 }
 
 /// Merges a polygon that covers a part of the block.
@@ -254,11 +244,11 @@ pub(crate) fn cover_partial<L: Lanes>(
     let d = depths(l, &polygon.plane, bx, by);
     let (left, top) = ((bx * BLOCK_SAMPLES) as f32, (by * BLOCK_SAMPLES) as f32);
     let (planes, center) = coverage(l, polygon, borders, exact, left, top);
-    // From here on without a branch: none of the questions has an answer that could be foreseen.
+    // From here on all but without a branch: hardly any of the questions has an answer that could be foreseen.
     let state = band.state[i];
     let (block, partial) = (&mut band.depth[i].0, &mut band.partial[i]);
     let known = u64::from(state == STATE_EMPTY).wrapping_sub(1);
-    let begun = u64::from(state != STATE_PARTIAL).wrapping_sub(1);
+    let begun = u64::from(state < STATE_PARTIAL).wrapping_sub(1);
     let far = l.dsplat(i16::MAX);
     let old = l.dselect(known, l.dload(block), l.dsplat(EMPTY));
     // Only pixels where the polygon is nearer than what is proven already. Those that it covers alone need no
@@ -267,14 +257,23 @@ pub(crate) fn cover_partial<L: Lanes>(
     let alone = l.pall(planes) & center & nearer;
     let joined = (l.pany(planes) | center) & nearer & !alone;
     let new = l.dselect(alone, d, old);
-    let planes = l.por(
-        l.pkeep(planes, joined),
-        l.pkeep(l.pload(&partial.planes), begun),
-    );
-    let center = (center & joined) | (partial.center & begun);
+    let (ours, our_center) = (l.pkeep(planes, joined), center & joined);
+    let theirs = l.dload(&partial.depth);
+    let apart = l.dapart(d, theirs, APART) & joined & partial.any & begun;
+    if (apart != 0) | (state == STATE_LAYERS) {
+        let ours = Layer {
+            planes: ours,
+            center: our_center,
+            depth: d,
+        };
+        layers::join(l, band, i, &ours, joined, new);
+        return;
+    }
+    let planes = l.por(ours, l.pkeep(l.pload(&partial.planes), begun));
+    let center = our_center | (partial.center & begun);
     let depth = l.dmin(
         l.dselect(joined, d, far),
-        l.dselect(begun, l.dload(&partial.depth), far),
+        l.dselect(partial.any & begun, theirs, far),
     );
     let full = l.pall(planes) & center;
     let new = l.dselect(full, l.dmax(new, depth), new);
@@ -286,7 +285,11 @@ pub(crate) fn cover_partial<L: Lanes>(
     band.min[i] = l.dreduce_min(new);
     l.pstore(planes, &mut partial.planes);
     partial.center = center;
-    l.dstore(l.dselect(kept, depth, far), &mut partial.depth);
-    let any = l.pany(planes) | center != 0;
-    band.state[i] = if any { STATE_PARTIAL } else { STATE_DEPTH };
+    l.dstore(depth, &mut partial.depth);
+    partial.any = l.pany(planes) | center;
+    band.state[i] = if partial.any != 0 {
+        STATE_PARTIAL
+    } else {
+        STATE_DEPTH
+    };
 }

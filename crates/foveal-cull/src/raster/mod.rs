@@ -7,6 +7,7 @@
 pub(crate) mod block;
 pub(crate) mod clip;
 pub(crate) mod frame;
+mod layers;
 pub(crate) mod polygon;
 pub(crate) mod select;
 pub(crate) mod setup;

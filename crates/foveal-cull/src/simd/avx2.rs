@@ -322,6 +322,13 @@ impl Lanes for Avx2 {
         })
     }
     #[inline(always)]
+    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64 {
+        let distance = avx2!(four!(i => {
+            _mm256_max_epi16(_mm256_subs_epi16(a[i], b[i]), _mm256_subs_epi16(b[i], a[i]))
+        }));
+        self.dgt(distance, self.dsplat(by))
+    }
+    #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
         avx2!({
             let bit = _mm256_setr_epi16(

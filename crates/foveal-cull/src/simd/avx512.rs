@@ -157,6 +157,13 @@ impl Lanes for Avx512 {
         u64::from(low) | (u64::from(high) << 32)
     }
     #[inline(always)]
+    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64 {
+        let distance = avx512!(two!(i => {
+            _mm512_max_epi16(_mm512_subs_epi16(a[i], b[i]), _mm512_subs_epi16(b[i], a[i]))
+        }));
+        self.dgt(distance, self.dsplat(by))
+    }
+    #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
         avx512!([
             _mm512_mask_blend_epi16(bits as u32, b[0], a[0]),

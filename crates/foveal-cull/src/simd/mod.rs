@@ -218,6 +218,8 @@ pub(crate) trait Lanes: Copy {
     fn dmax(self, a: Self::D, b: Self::D) -> Self::D;
     /// A bit per pixel where `a > b`.
     fn dgt(self, a: Self::D, b: Self::D) -> u64;
+    /// A bit per pixel where `a` and `b` are further apart than `by`.
+    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64;
     /// `a` where the bit is set, else `b`.
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D;
     fn dreduce_min(self, a: Self::D) -> i16;

@@ -269,6 +269,11 @@ impl Lanes for Portable {
         u64::from_le_bytes(bits)
     }
     #[inline(always)]
+    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64 {
+        let distance = |i: usize| a[i].saturating_sub(b[i]).max(b[i].saturating_sub(a[i]));
+        self.dgt(from_fn(distance), [by; 64])
+    }
+    #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
         let mut selected = [0; 64];
         for (row, bits) in bits.to_le_bytes().into_iter().enumerate() {

@@ -156,6 +156,13 @@ impl Lanes for Sse2 {
         })
     }
     #[inline(always)]
+    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64 {
+        let distance = sse2!(eight!(i => {
+            _mm_max_epi16(_mm_subs_epi16(a[i], b[i]), _mm_subs_epi16(b[i], a[i]))
+        }));
+        self.dgt(distance, self.dsplat(by))
+    }
+    #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
         sse2!({
             let bit = _mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128);
