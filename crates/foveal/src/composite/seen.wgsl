@@ -22,7 +22,7 @@ fn seen_at(texel: vec2u) -> Seen {
     );
 }
 
-// Neither leaves the other's tangent plane by much: 27 degrees of arc, 60 of the normal (which may be bumpy).
+// Neither leaves the other's tangent plane by much: 27 degrees of arc; nor do the normals differ much.
 fn same_surface(a: Seen, b: Seen) -> bool {
     if a.instance != b.instance {
         return false;
@@ -32,5 +32,5 @@ fn same_surface(a: Seen, b: Seen) -> bool {
     }
     let between = b.position - a.position;
     let away = max(abs(dot(between, a.normal)), abs(dot(between, b.normal)));
-    return away <= 0.45 * length(between) && dot(a.normal, b.normal) > 0.5;
+    return away <= 0.45 * length(between) && dot(a.normal, b.normal) > SAME_NORMAL;
 }

@@ -97,24 +97,32 @@ fn mark_edge_pixel(in: EdgeVertex) {
 }
 
 // Radiance at a pixel whose tile sampled another surface: a mean over the neighbours on the pixel's side of the tile
-// that sampled the pixel's, nearer ones counting more; without any, the tile's own.
+// that sampled the pixel's, nearer ones counting more; without any, over those across from them; else the tile's own.
 fn across_edge(position: vec2f, own: Tile, seen: Seen) -> vec3f {
     let low = vec2f(tile_low(own));
     let high = vec2f(tile_high(own));
     let picture = picture_of(tile_low(own));
-    let near = select(low - 0.5, high + 0.5, 2.0 * position > low + high);
+    let is_far = 2.0 * position > low + high;
+    let near = select(low - 0.5, high + 0.5, is_far);
+    let across = select(high + 0.5, low - 0.5, is_far);
     var sum = vec3f(0.0);
     var total = 0.0;
-    for (var i = 0u; i < 4u; i++) {
-        // The last turn is for the tile itself, should no neighbour do.
-        let probe = select(position, near, (vec2u(i + 1u, (i + 1u) >> 1u) & vec2u(1u)) == vec2u(1u));
-        if any(probe < vec2f(picture.low)) || any(probe >= vec2f(picture.end)) || (i == 3u && total > 0.0) {
+    for (var i = 0u; i < 6u; i++) {
+        if i >= 3u && total > 0.0 {
+            break;
+        }
+        // Beside, above or below, both; then across; the last turn is for the tile itself, should no neighbour do.
+        let turn = vec2u(i + 1u, (i + 1u) >> 1u) & vec2u(1u);
+        let turn_across = vec2u(u32(i == 3u), u32(i == 4u));
+        let probe_near = select(position, near, turn == vec2u(1u));
+        let probe = select(probe_near, select(position, across, turn_across == vec2u(1u)), i >= 3u);
+        if any(probe < vec2f(picture.low)) || any(probe >= vec2f(picture.end)) {
             continue;
         }
         let tile = tile_at(vec2u(probe));
         let value = sample_of(tile);
         let texel = sample_texel(tile.block, tile.level, u32(value.a + 0.5) - 1u);
-        if i == 3u || same_surface(seen, seen_at(texel)) {
+        if i == 5u || same_surface(seen, seen_at(texel)) {
             let away = probe - position;
             let weight = 1.0 / (dot(away, away) + 1.0);
             sum += weight * tile_radiance(tile, value, position);

@@ -33,8 +33,8 @@ struct Seen {
     normal: Vec3,
 }
 
-/// `shared/seen.wgsl`.
-fn same_surface(a: &Seen, b: &Seen) -> bool {
+/// `composite/seen.wgsl`.
+fn same_surface(a: &Seen, b: &Seen, same_normal: f32) -> bool {
     if a.instance != b.instance {
         return false;
     }
@@ -43,7 +43,7 @@ fn same_surface(a: &Seen, b: &Seen) -> bool {
     }
     let between = b.position - a.position;
     let away = between.dot(a.normal).abs().max(between.dot(b.normal).abs());
-    away <= 0.45 * between.length() && a.normal.dot(b.normal) > 0.5
+    away <= 0.45 * between.length() && a.normal.dot(b.normal) > same_normal
 }
 
 /// Radiance at a tile's corners: upper left, upper right, lower left, lower right.
@@ -146,6 +146,12 @@ impl Inputs {
         seen
     }
 
+    /// Whether what a pixel shows is what a tile's sample looked at.
+    fn looks_the_same(&self, pixel: &Seen, tile: Tile) -> bool {
+        let sampled = self.compared(self.sample(tile).texel);
+        same_surface(pixel, &sampled, if self.by_depth { 0.7 } else { 0.5 })
+    }
+
     fn low(&self, tile: Tile) -> UVec2 {
         tile.block << tile.level
     }
@@ -197,7 +203,8 @@ impl Inputs {
         for (_, tile) in around {
             let sample = self.sample(tile);
             let is_own = tile.block == own.block && tile.level == own.level;
-            let counts = all_pure || is_own || same_surface(&own_seen, &self.seen(sample.texel));
+            let counts =
+                all_pure || is_own || same_surface(&own_seen, &self.seen(sample.texel), 0.5);
             if !counts {
                 all_touch = false;
                 continue;
@@ -267,7 +274,7 @@ impl Inputs {
         let (a, b) = (self.sample(tile), self.sample(other));
         let both_pure = !tile.has_edge && !other.has_edge;
         if other.level != tile.level
-            || !(both_pure || same_surface(&self.seen(a.texel), &self.seen(b.texel)))
+            || !(both_pure || same_surface(&self.seen(a.texel), &self.seen(b.texel), 0.5))
         {
             return Vec3::ZERO;
         }
@@ -320,19 +327,29 @@ impl Inputs {
     /// `smooth.wgsl`, `across_edge`.
     fn across_edge(&self, position: Vec2, own: Tile, seen: &Seen) -> Vec3 {
         let (low, high) = (self.low(own).as_vec2(), self.high(own).as_vec2());
-        let near = Vec2::select((2.0 * position).cmpgt(low + high), high + 0.5, low - 0.5);
+        let is_far = (2.0 * position).cmpgt(low + high);
+        let near = Vec2::select(is_far, high + 0.5, low - 0.5);
+        let across = Vec2::select(is_far, low - 0.5, high + 0.5);
         let size = self.size.as_vec2();
         let (mut sum, mut total) = (Vec3::ZERO, 0.0);
-        for probe in [
+        for (turn, probe) in [
             Vec2::new(near.x, position.y),
             Vec2::new(position.x, near.y),
             near,
-        ] {
+            Vec2::new(across.x, position.y),
+            Vec2::new(position.x, across.y),
+        ]
+        .into_iter()
+        .enumerate()
+        {
+            if turn >= 3 && total > 0.0 {
+                break;
+            }
             if probe.cmplt(Vec2::ZERO).any() || probe.cmpge(size).any() {
                 continue;
             }
             let tile = self.tile_at(probe.as_uvec2());
-            if same_surface(seen, &self.compared(self.sample(tile).texel)) {
+            if self.looks_the_same(seen, tile) {
                 let weight = 1.0 / ((probe - position).length_squared() + 1.0);
                 sum += weight * self.tile_radiance(tile, position);
                 total += weight;
@@ -348,7 +365,7 @@ impl Inputs {
         let tile = self.tile_at(texel);
         let position = texel.as_vec2() + 0.5;
         let seen = self.compared(texel);
-        if tile.has_edge && !same_surface(&seen, &self.compared(self.sample(tile).texel)) {
+        if tile.has_edge && !self.looks_the_same(&seen, tile) {
             return self.across_edge(position, tile, &seen);
         }
         self.tile_radiance(tile, position)

@@ -1,18 +1,19 @@
 // Creases between blocks of 2 x 2 pixels, by depth alone. After normal_of_depth.wgsl, before wish.wgsl.
 
-// Of four texels in a row from `first` on: depth's step between the first two, and between the last two. These are the same
-// beyond the picture's border, and where depth jumps behind the third: that is the next block's edge.
+// Of five texels in a row from `first` on: depth's step between the first two, and between the last two, so that a crease
+// anywhere between the second and the fourth lies between both steps; those before and after are the neighbours'. Both are
+// the same beyond the picture's border, and where depth jumps there: that is the next block's edge.
 fn steps_along(first: vec2i, axis: u32, last: vec2i) -> vec2f {
     var one = vec2i(0);
     one[axis] = 1;
-    var d: array<f32, 4>;
-    for (var i = 0; i < 4; i++) {
+    var d: array<f32, 5>;
+    for (var i = 0; i < 5; i++) {
         d[i] = depth_at(min(first + i * one, last));
     }
     let near = d[1] - d[0];
-    let jumps = abs(d[1] - 2.0 * d[2] + d[3]) > 0.02 * d[2];
-    let goes_on = first[axis] + 3 <= last[axis] && !jumps;
-    return vec2f(near, select(near, d[3] - d[2], goes_on));
+    let bend = max(abs(d[1] - 2.0 * d[2] + d[3]), abs(d[2] - 2.0 * d[3] + d[4]));
+    let goes_on = first[axis] + 4 <= last[axis] && bend <= 0.02 * d[2];
+    return vec2f(near, select(near, d[4] - d[3], goes_on));
 }
 
 // As in crease_of_surface.wgsl.

@@ -3,6 +3,9 @@
 //
 // Reversed depth is affine on the screen along a plane: its change per texel tells how the plane is tilted.
 
+// As in normal_of_surface.wgsl: 45 degrees, as at the creases that mark tiles (rate/crease_of_depth.wgsl).
+const SAME_NORMAL: f32 = 0.7;
+
 // Unit normal, view space, of the plane through a texel whose depth changes by `steps` per texel right and down.
 fn normal_from_steps(texel: vec2u, depth: f32, steps: vec2f) -> vec3f {
     let to_view = frame.views[view_of(texel)].view_from_ndc;
