@@ -180,6 +180,7 @@ impl Culler {
         self.stats = self.frame.select(&choice, self.instruction_set, threads);
         let radius = (camera.radius > 0.0).then(|| Radius {
             shift,
+            shifts: camera.shift.map(|s| s as f32),
             per_depth: if camera.orthographic {
                 0.0
             } else {

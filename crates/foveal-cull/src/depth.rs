@@ -88,6 +88,8 @@ pub(crate) struct DepthBuffer {
     /// Farthest depth per block.
     pub(crate) min: Vec<i16>,
     pub(crate) state: Vec<u8>,
+    /// Pixels that the cluster being drawn must leave alone; all zero between clusters.
+    pub(crate) erased: Vec<u64>,
     /// How much was drawn into each row of blocks, in some unit: the next frame is split by it.
     pub(crate) work: Vec<u32>,
     /// Once a frame is complete: farthest depths of blocks, then of 2x2, 4x4, ... blocks up to the whole, each
@@ -111,6 +113,7 @@ impl DepthBuffer {
             all: vec![PartialBlock::NONE; n],
             min: vec![EMPTY; n],
             state: vec![STATE_EMPTY; n],
+            erased: vec![0; n],
             work: vec![0; blocks_y as usize],
             coarse: vec![EMPTY; 4 * n * levels as usize + 1],
         }
@@ -191,6 +194,7 @@ impl DepthBuffer {
             all: &mut self.all,
             min: &mut self.min,
             state: &mut self.state,
+            erased: &mut self.erased,
             work: &mut self.work,
         }
     }
@@ -230,6 +234,7 @@ pub(crate) struct Band<'a> {
     pub(crate) all: &'a mut [PartialBlock],
     pub(crate) min: &'a mut [i16],
     pub(crate) state: &'a mut [u8],
+    pub(crate) erased: &'a mut [u64],
     pub(crate) work: &'a mut [u32],
 }
 
@@ -256,6 +261,7 @@ impl<'a> Band<'a> {
         let (a0, a1) = self.all.split_at_mut(at);
         let (m0, m1) = self.min.split_at_mut(at);
         let (s0, s1) = self.state.split_at_mut(at);
+        let (e0, e1) = self.erased.split_at_mut(at);
         let (w0, w1) = self.work.split_at_mut(rows as usize);
         (
             Band {
@@ -267,6 +273,7 @@ impl<'a> Band<'a> {
                 all: a0,
                 min: m0,
                 state: s0,
+                erased: e0,
                 work: w0,
             },
             Band {
@@ -278,6 +285,7 @@ impl<'a> Band<'a> {
                 all: a1,
                 min: m1,
                 state: s1,
+                erased: e1,
                 work: w1,
             },
         )

@@ -261,6 +261,8 @@ pub(crate) struct Camera {
     /// Samples per unit of `1 / distance` and metre: how far a point at depth 1 shifts for one metre of eye
     /// movement, samples.
     pub(crate) shift_per_metre: f64,
+    /// By how much a point at depth 1 can shift along x and y within the radius, or from eye to eye, samples.
+    pub(crate) shift: [f64; 2],
     /// Tangent of half the vertical field of view, or half the height for orthographic views.
     pub(crate) tan_half_fov_y: f64,
     pub(crate) near: f64,
@@ -273,14 +275,14 @@ impl Camera {
         if !(view.validity_radius_m.is_finite() && view.validity_radius_m >= 0.0) {
             return Err(CullError::NotFinite);
         }
-        let (eye, eyes_apart) = match view.second_eye {
-            None => (view.eye, 0.0),
+        let (eye, to_eye) = match view.second_eye {
+            None => (view.eye, DVec3::ZERO),
             Some(second) => {
                 second.check()?;
                 join_eyes(&view.eye, &second)?
             }
         };
-        let radius = eyes_apart + view.validity_radius_m;
+        let radius = to_eye.length() + view.validity_radius_m;
         let (projection, clamp_depth) = if radius > 0.0 {
             widen(eye.projection, radius)
         } else {
@@ -329,6 +331,22 @@ impl Camera {
                 let (x, y) = (l.abs().max(r.abs()), b.abs().max(t.abs()));
                 sx.max(sy) * (1.0 + x * x + y * y).sqrt() / near
             },
+            shift: if projection.is_orthographic() {
+                [0.0; 2]
+            } else {
+                // The same along each axis: a step (sx, sy, sz) of the eye shifts a point at tangent x and distance z by
+                // (sx - x sz) / z.
+                let along = forward.dot(to_eye).abs();
+                let axis = |scale: f64, side: DVec3, reach: f64| {
+                    let step = side.dot(to_eye).abs() + reach * along;
+                    let around = view.validity_radius_m * (1.0 + reach * reach).sqrt();
+                    scale * (step + around) / near
+                };
+                [
+                    axis(sx, right, l.abs().max(r.abs())),
+                    axis(sy, up, b.abs().max(t.abs())),
+                ]
+            },
             clamp_depth,
             tan_half_fov_y: (t - b) * 0.5,
             near,
@@ -367,13 +385,14 @@ impl Camera {
     }
 }
 
-/// One eye in the middle that sees at least what both see, and the radius that reaches both.
-fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, f64), CullError> {
+/// One eye in the middle that sees at least what both see, and the way from there to the second (to the first it is the
+/// opposite).
+fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
     if a.projection.is_orthographic() || b.projection.is_orthographic() {
         return Err(CullError::BadProjection);
     }
     let position = (a.position() + b.position()) * 0.5;
-    let radius = (a.position() - b.position()).length() * 0.5;
+    let to_second = (b.position() - a.position()) * 0.5;
     // Middle orientation: the mean of the axes, made orthonormal again (eyes of a headset are canted by
     // some degrees at most).
     let (ma, mb) = (a.world_from_eye.matrix3, b.world_from_eye.matrix3);
@@ -425,7 +444,7 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, f64), CullError> {
             world_from_eye: DAffine3::from_mat3_translation(rotation, position),
             projection,
         },
-        radius,
+        to_second,
     ))
 }
 

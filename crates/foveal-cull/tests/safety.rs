@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Random, answers, eye, farthest_in_pixels, occluders, scene, wrongly_culled};
+use common::{Random, Scene, answers, eye, farthest_in_pixels, occluders, scene, wrongly_culled};
 use foveal_cull::{
     Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, Pool, SingleThread, View, Visibility,
 };
@@ -61,10 +61,90 @@ fn culls_nothing_visible(
                 .collect::<Vec<_>>()
         );
     }
-    Ok(results
+    Ok(hidden(&results))
+}
+
+fn see_nothing_culled(
+    scene: &Scene,
+    eyes: &[Eye],
+    size: (u32, u32),
+    results: &[Visibility],
+) -> Result<(), TestCaseError> {
+    for (eye, n) in eyes.iter().flat_map(|e| [(e, 1), (e, 4)]) {
+        let wrong = wrongly_culled(scene, eye, size, n, results);
+        prop_assert!(
+            wrong.is_empty(),
+            "{}x: {:?} {:?}",
+            n,
+            &wrong,
+            wrong
+                .iter()
+                .map(|&i| (scene.boxes[i], results[i]))
+                .collect::<Vec<_>>()
+        );
+    }
+    Ok(())
+}
+
+fn hidden(results: &[Visibility]) -> usize {
+    results
         .iter()
         .filter(|r| **r == Visibility::Occluded)
-        .count())
+        .count()
+}
+
+fn culls_nothing_visible_around(seed: u64) -> Result<(), TestCaseError> {
+    let mut r = Random::new(seed);
+    let objects = 1 + r.below(6);
+    let scene = scene(&mut r, objects, 150, DVec3::ZERO);
+    let middle = eye(&mut r, DVec3::ZERO, seed.is_multiple_of(5));
+    let size = size(&mut r);
+    let radius = [0.005, 0.03, 0.2][r.below(3)];
+    let view = View::mono(middle).with_validity_radius(radius);
+    let results = answers_to_all(&scene, &view, size);
+    let eyes = [0, 1, 2].map(|k| {
+        let far = if k == 0 { 1.0 } else { r.next() };
+        let step = r.vec(1.0).normalize() * (radius * far);
+        Eye {
+            world_from_eye: DAffine3::from_translation(step) * middle.world_from_eye,
+            ..middle
+        }
+    });
+    see_nothing_culled(&scene, &eyes, size, &results)
+}
+
+/// Gives how many boxes are hidden from one eye, and from both.
+fn culls_nothing_that_either_eye_sees(seed: u64) -> Result<[usize; 2], TestCaseError> {
+    let mut r = Random::new(seed);
+    let objects = 1 + r.below(6);
+    let scene = scene(&mut r, objects, 150, DVec3::ZERO);
+    let left = eye(&mut r, DVec3::ZERO, false);
+    // The other eye: beside it, turned a little outwards, with its own asymmetric frustum.
+    let cant = DAffine3::from_rotation_y(r.range(-0.15, 0.15));
+    let apart = DAffine3::from_translation(DVec3::new(0.063, 0.0, 0.0));
+    let mut right = eye(&mut r, DVec3::ZERO, false);
+    right.world_from_eye = left.world_from_eye * apart * cant;
+    let size = size(&mut r);
+    let results = answers_to_all(&scene, &View::stereo(left, right), size);
+    see_nothing_culled(&scene, &[left, right], size, &results)?;
+    let of_one = answers_to_all(&scene, &View::mono(left), size);
+    Ok([hidden(&of_one), hidden(&results)])
+}
+
+/// Answers where fine detail is not left out.
+fn answers_to_all(scene: &Scene, view: &View, (w, h): (u32, u32)) -> Vec<Visibility> {
+    let all = FrameOptions {
+        occluder_pixels_per_quad: 0.0,
+        ..FrameOptions::default()
+    };
+    let set = occluders(scene, &(0..scene.objects.len()).collect::<Vec<_>>());
+    let mut culler = Culler::new(w, h).unwrap();
+    culler.rasterize(view, &set, &all, &SingleThread).unwrap();
+    let mut results = vec![Visibility::Visible; scene.boxes.len()];
+    culler
+        .query(&scene.boxes, scene.origin, &mut results)
+        .unwrap();
+    results
 }
 
 proptest! {
@@ -123,45 +203,12 @@ proptest! {
 
     #[test]
     fn within_the_validity_radius_nothing_visible_is_culled(seed in any::<u64>()) {
-        let mut r = Random::new(seed);
-        let objects = 1 + r.below(6);
-        let scene = scene(&mut r, objects, 150, DVec3::ZERO);
-        let middle = eye(&mut r, DVec3::ZERO, seed % 5 == 0);
-        let (w, h) = size(&mut r);
-        let radius = [0.005, 0.03, 0.2][r.below(3)];
-        let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
-        let view = View::mono(middle).with_validity_radius(radius);
-        let results = answers(&mut Culler::new(w, h).unwrap(), &view, &set, &scene, &SingleThread);
-        for k in 0..3 {
-            let step = r.vec(1.0).normalize() * (radius * if k == 0 { 1.0 } else { r.next() });
-            let moved = Eye { world_from_eye: DAffine3::from_translation(step) * middle.world_from_eye, ..middle };
-            for n in [1, 4] {
-                let wrong = wrongly_culled(&scene, &moved, (w, h), n, &results);
-                prop_assert!(wrong.is_empty(), "{}x: {:?} {:?}", n, &wrong, wrong.iter().map(|&i| (scene.boxes[i], results[i])).collect::<Vec<_>>());
-            }
-        }
+        culls_nothing_visible_around(seed)?;
     }
 
     #[test]
     fn what_either_eye_sees_is_not_culled(seed in any::<u64>()) {
-        let mut r = Random::new(seed);
-        let objects = 1 + r.below(6);
-        let scene = scene(&mut r, objects, 150, DVec3::ZERO);
-        let left = eye(&mut r, DVec3::ZERO, false);
-        // The other eye: beside it, turned a little outwards, with its own asymmetric frustum.
-        let cant = DAffine3::from_rotation_y(r.range(-0.15, 0.15));
-        let apart = DAffine3::from_translation(DVec3::new(0.063, 0.0, 0.0));
-        let mut right = eye(&mut r, DVec3::ZERO, false);
-        right.world_from_eye = left.world_from_eye * apart * cant;
-        let (w, h) = size(&mut r);
-        let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
-        let results = answers(&mut Culler::new(w, h).unwrap(), &View::stereo(left, right), &set, &scene, &SingleThread);
-        for eye in [left, right] {
-            for n in [1, 4] {
-                let wrong = wrongly_culled(&scene, &eye, (w, h), n, &results);
-                prop_assert!(wrong.is_empty(), "{}x: {:?} {:?}", n, &wrong, wrong.iter().map(|&i| (scene.boxes[i], results[i])).collect::<Vec<_>>());
-            }
-        }
+        culls_nothing_that_either_eye_sees(seed)?;
     }
 
     #[test]
@@ -217,6 +264,8 @@ fn soak() {
         culls_nothing_visible(seed, false, DVec3::ZERO).unwrap();
         culls_nothing_visible(seed, true, DVec3::ZERO).unwrap();
         culls_nothing_visible(seed, i % 4 == 0, DVec3::new(1e6, -2e5, 3e6)).unwrap();
+        culls_nothing_visible_around(seed).unwrap();
+        culls_nothing_that_either_eye_sees(seed).unwrap();
     }
 }
 
@@ -226,4 +275,8 @@ fn random_scenes_do_hide_something() {
         .map(|seed| culls_nothing_visible(seed, seed % 4 == 0, DVec3::ZERO).unwrap())
         .sum();
     assert!(hidden > 100, "{hidden}");
+    let [one, both] = (0..40)
+        .map(|seed| culls_nothing_that_either_eye_sees(seed).unwrap())
+        .fold([0; 2], |[a, b], [c, d]| [a + c, b + d]);
+    assert!(both > 100 && both > one / 2, "{both} of {one}");
 }

@@ -4,6 +4,7 @@
 //! their normal cones narrow. Each cluster gets its own vertex list (numbers fit a byte).
 
 use super::quads::Quad;
+use super::ring::{self, Neighbours};
 use super::{Cluster, OccluderMesh, hash_words};
 use crate::query::project::Boxes8;
 use glam::Vec3;
@@ -18,7 +19,12 @@ struct Item {
     normal: Vec3,
 }
 
-pub(crate) fn build(mesh: &mut OccluderMesh, points: &[Vec3], quads: Vec<Quad>) {
+pub(crate) fn build(
+    mesh: &mut OccluderMesh,
+    points: &[Vec3],
+    near: &Neighbours<'_>,
+    quads: Vec<Quad>,
+) {
     let mut items: Vec<Item> = quads
         .into_iter()
         .map(|quad| {
@@ -38,7 +44,7 @@ pub(crate) fn build(mesh: &mut OccluderMesh, points: &[Vec3], quads: Vec<Quad>) 
             }
         })
         .collect();
-    split(mesh, points, &mut items);
+    split(mesh, points, near, &mut items);
     mesh.half = mesh
         .clusters
         .iter()
@@ -70,11 +76,11 @@ fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
     [n(p[0], p[1], p[2]), n(p[0], p[2], p[3])]
 }
 
-fn split(mesh: &mut OccluderMesh, points: &[Vec3], items: &mut [Item]) {
+fn split(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: &mut [Item]) {
     if items.is_empty() {
         return;
     }
-    if items.len() <= MAX_QUADS && emit(mesh, points, items) {
+    if items.len() <= MAX_QUADS && emit(mesh, points, near, items) {
         return;
     }
     let spread = |f: &dyn Fn(&Item) -> Vec3| {
@@ -107,12 +113,12 @@ fn split(mesh: &mut OccluderMesh, points: &[Vec3], items: &mut [Item]) {
         key(a).total_cmp(&key(b)).then_with(|| a.quad.cmp(&b.quad))
     });
     let (left, right) = items.split_at_mut(middle);
-    split(mesh, points, left);
-    split(mesh, points, right);
+    split(mesh, points, near, left);
+    split(mesh, points, near, right);
 }
 
 /// Appends one cluster; false when its vertices do not fit a byte.
-fn emit(mesh: &mut OccluderMesh, points: &[Vec3], items: &[Item]) -> bool {
+fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: &[Item]) -> bool {
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
     used.sort_unstable();
     used.dedup();
@@ -178,5 +184,6 @@ fn emit(mesh: &mut OccluderMesh, points: &[Vec3], items: &[Item]) -> bool {
                 .chain(items.iter().flat_map(|i| i.quad)),
         ),
     });
+    ring::build(mesh, near, &used, items.iter().map(|i| i.quad));
     true
 }

@@ -7,9 +7,11 @@
 
 mod cluster;
 mod quads;
+mod ring;
 mod set;
 mod weld;
 
+pub(crate) use ring::{RING, Ring, Rings};
 pub(crate) use set::Instance;
 pub use set::{OccluderId, OccluderSet};
 
@@ -33,6 +35,8 @@ pub struct OccluderMesh {
     /// third.
     pub(crate) quads: Vec<[[u8; 8]; 4]>,
     pub(crate) clusters: Vec<Cluster>,
+    /// What surrounds each of them.
+    pub(crate) rings: Rings,
     /// Their boxes, eight at a time (NaN after the last).
     pub(crate) bounds8: Vec<Boxes8>,
     /// The centre that bounds are relative to, mesh space.
@@ -136,6 +140,7 @@ impl OccluderMesh {
             vertices: Vertices::default(),
             quads: Vec::new(),
             clusters: Vec::new(),
+            rings: Rings::default(),
             bounds8: Vec::new(),
             center,
             half: Vec3::ZERO,
@@ -143,7 +148,8 @@ impl OccluderMesh {
             hash: 0,
             triangles: (welded.triangles.len()) as u32,
         };
-        cluster::build(&mut mesh, &welded.points, quads);
+        let near = ring::Neighbours::new(&welded.points, &welded.triangles);
+        cluster::build(&mut mesh, &welded.points, &near, quads);
         Ok(mesh)
     }
 

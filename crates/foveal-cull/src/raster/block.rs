@@ -214,6 +214,9 @@ pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, 
     let mut d = depths(l, plane, bx, by);
     let state = band.state[i];
     let block = &mut band.depth[i].0;
+    if band.erased[i] != 0 {
+        d = l.dselect(band.erased[i], l.dsplat(EMPTY), d);
+    }
     if state != STATE_EMPTY {
         d = l.dmax(d, l.dload(block));
     }
@@ -253,7 +256,7 @@ pub(crate) fn cover_partial<L: Lanes>(
     let old = l.dselect(known, l.dload(block), l.dsplat(EMPTY));
     // Only pixels where the polygon is nearer than what is proven already. Those that it covers alone need no
     // partner, and what they have so far stays apart from them.
-    let nearer = l.dgt(d, old);
+    let nearer = l.dgt(d, old) & !band.erased[i];
     let alone = l.pall(planes) & center & nearer;
     let joined = (l.pany(planes) | center) & nearer & !alone;
     let new = l.dselect(alone, d, old);

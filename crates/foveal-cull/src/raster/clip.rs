@@ -172,5 +172,5 @@ fn draw_fan<L: Lanes>(
         }
     }
     let [i0, i1, i2, i3] = &index;
-    scratch.polygons += draw_eight(l, band, points, [i0, i1, i2, i3], facing);
+    scratch.polygons += draw_eight(l, band, points, [i0, i1, i2, i3], None, facing);
 }

@@ -89,6 +89,7 @@ impl Kernel for Draw<'_, '_> {
             let facing = Facing {
                 mirrored: instance.mirrored,
                 two_sided: mesh.two_sided,
+                cluster: c.cluster as usize,
                 radius,
             };
             draw_cluster(

@@ -10,8 +10,9 @@
 use super::block::Plane;
 use super::clip;
 use super::polygon::{self, Edges, Polygon};
+use super::sheet::{self, Sheet};
 use crate::depth::{BLOCK_SAMPLES, Band, encode};
-use crate::occluder::{Cluster, OccluderMesh};
+use crate::occluder::{Cluster, OccluderMesh, Vertices};
 use crate::simd::{Lanes, four};
 
 /// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
@@ -35,6 +36,8 @@ pub(crate) struct Scratch {
     pub(crate) clipped: Points,
     /// Screen borders that vertices lie beyond, for the clipper.
     pub(crate) beyond: [u8; 256],
+    /// What belongs together, for a result that holds around the eye.
+    pub(crate) sheet: Sheet,
     /// Polygons that were set up, for the statistics.
     pub(crate) polygons: u64,
     /// Clusters drawn.
@@ -47,6 +50,7 @@ impl Default for Scratch {
             points: Points::default(),
             clipped: Points::default(),
             beyond: [0; 256],
+            sheet: Sheet::default(),
             polygons: 0,
             clusters: 0,
         }
@@ -58,8 +62,8 @@ impl Default for Scratch {
 pub(crate) struct Points {
     /// Rounded, for all but coverage; NaN in x for what the clipper must see.
     pub(crate) x: [f32; 256],
-    y: [f32; 256],
-    depth: [f32; 256],
+    pub(crate) y: [f32; 256],
+    pub(crate) depth: [f32; 256],
     /// What coverage is decided by.
     exact_x: [f64; 256],
     exact_y: [f64; 256],
@@ -90,6 +94,8 @@ pub(crate) struct Facing {
     /// The transform mirrors, so winding is reversed.
     pub(crate) mirrored: bool,
     pub(crate) two_sided: bool,
+    /// Number of the cluster in its mesh.
+    pub(crate) cluster: usize,
     /// For a result that holds around the eye.
     pub(crate) radius: Option<Radius>,
 }
@@ -99,6 +105,8 @@ pub(crate) struct Facing {
 pub(crate) struct Radius {
     /// Samples that a point at depth 1 shifts by.
     pub(crate) shift: f32,
+    /// The same along x and y.
+    pub(crate) shifts: [f32; 2],
     /// The radius as a part of the near distance.
     pub(crate) per_depth: f32,
 }
@@ -114,41 +122,65 @@ pub(crate) fn draw_cluster<L: Lanes>(
     facing: Facing,
 ) {
     scratch.clusters += 1;
-    let clipped = transform(&mut scratch.points, mesh, cluster, rows);
+    let n = usize::from(cluster.vertex_count).next_multiple_of(8);
+    let own = (&mesh.vertices, cluster.first_vertex as usize, n);
+    let clipped = transform(&mut scratch.points, 0, own, rows);
+    let sheet = facing.radius.filter(|_| !facing.two_sided);
+    if let Some(radius) = sheet {
+        let ring = &mesh.rings.rings[facing.cluster];
+        let around = (
+            &mesh.rings.vertices,
+            ring.first_vertex as usize,
+            usize::from(ring.vertex_count),
+        );
+        transform(&mut scratch.points, n, around, rows);
+        sheet::prepare(
+            l,
+            band,
+            &mut scratch.sheet,
+            &scratch.points,
+            mesh,
+            (cluster, ring),
+            (facing, radius),
+        );
+    }
     let groups = usize::from(cluster.quad_count).div_ceil(8);
     let first = cluster.first_group as usize;
-    for group in &mesh.quads[first..first + groups] {
+    for (group, kept) in mesh.quads[first..first + groups]
+        .iter()
+        .zip(&scratch.sheet.kept)
+    {
         let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
         let index = four!(c => &group[order[c]]);
-        scratch.polygons += draw_eight(l, band, &scratch.points, index, facing);
+        let kept = sheet.is_some().then_some((kept, scratch.sheet.slack));
+        scratch.polygons += draw_eight(l, band, &scratch.points, index, kept, facing);
     }
+    scratch.sheet.restore(band);
     if clipped {
         clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
     }
 }
 
-/// Fills `points`; vertices for the clipper get NaN, which no test accepts. True if there are any.
+/// Fills `points` from `at` on; vertices for the clipper get NaN, which no test accepts. True if there are any.
 #[inline(always)]
 fn transform(
     points: &mut Points,
-    mesh: &OccluderMesh,
-    cluster: &Cluster,
+    at: usize,
+    (v, first, n): (&Vertices, usize, usize),
     rows: &[[f64; 4]; 4],
 ) -> bool {
-    let first = cluster.first_vertex as usize;
-    let n = usize::from(cluster.vertex_count).next_multiple_of(8);
-    let v = &mesh.vertices;
     let xyz = v.x[first..first + n]
         .iter()
         .zip(&v.y[first..first + n])
         .zip(&v.z[first..first + n]);
-    let rounded = points
-        .x
+    let rounded = points.x[at..]
         .iter_mut()
-        .zip(&mut points.y)
-        .zip(&mut points.depth);
-    let exact = points.exact_x.iter_mut().zip(&mut points.exact_y);
+        .zip(&mut points.y[at..])
+        .zip(&mut points.depth[at..]);
+    let exact = points.exact_x[at..]
+        .iter_mut()
+        .zip(&mut points.exact_y[at..]);
     let [rx, ry, rz, rw] = rows;
     let mut beyond = 0;
     for ((((x, y), z), ((ox, oy), od)), (ex, ey)) in xyz.zip(rounded).zip(exact) {
@@ -177,9 +209,10 @@ pub(crate) fn draw_eight<L: Lanes>(
     band: &mut Band<'_>,
     points: &Points,
     index: [&[u8; 8]; 4],
+    kept: Option<(&[[f32; 8]; 2], f32)>,
     facing: Facing,
 ) -> u64 {
-    let (two_sided, radius) = (facing.two_sided, facing.radius);
+    let (two_sided, radius) = (facing.two_sided, facing.radius.filter(|_| kept.is_none()));
     let mut x = four!(c => l.gather(&points.x, index[c]));
     let mut y = four!(c => l.gather(&points.y, index[c]));
     let zero = l.splat(0.0);
@@ -194,8 +227,12 @@ pub(crate) fn draw_eight<L: Lanes>(
         f0 = area(l, &x, &y, 0, 1, 2);
         f1 = area(l, &x, &y, 0, 2, 3);
     }
-    let front0 = l.lt(zero, f0);
-    let front1 = l.lt(zero, f1);
+    let mut front0 = l.lt(zero, f0);
+    let mut front1 = l.lt(zero, f1);
+    if let Some(([first, second], _)) = kept {
+        front0 = l.iand(front0, l.lt(zero, l.load(first)));
+        front1 = l.iand(front1, l.lt(zero, l.load(second)));
+    }
     let front = l.ior(front0, front1);
     if l.movemask(front) == 0 {
         return 0;
@@ -278,7 +315,11 @@ pub(crate) fn draw_eight<L: Lanes>(
     } else {
         SAMPLES_ONLY
     });
-    let slack = l.add(l.add(fold, rounding), l.mul(reach, l.add(ax, ay)));
+    let lower = kept.map_or(0.0, |(_, slack)| slack);
+    let slack = l.add(
+        l.add(fold, l.add(rounding, l.splat(lower))),
+        l.mul(reach, l.add(ax, ay)),
+    );
     let base = l.sub(z[0], slack);
 
     // One at a time from here.
@@ -312,7 +353,7 @@ pub(crate) fn draw_eight<L: Lanes>(
             depth: base[i],
             dx: gx[i],
             dy: gy[i],
-            min: z_lo[i].max(0.0),
+            min: (z_lo[i] - lower).max(0.0),
             max_code: encode(z_hi[i]),
         };
         let blocks = [bx0[i] as u32, by0[i] as u32, bx1[i] as u32, by1[i] as u32];
@@ -374,7 +415,14 @@ const SHAPES: [[u8; 4]; 5] = {
 
 /// Twice the signed area, positive when facing the eye (y points down).
 #[inline(always)]
-fn area<L: Lanes>(l: L, x: &[L::F; 4], y: &[L::F; 4], a: usize, b: usize, c: usize) -> L::F {
+pub(super) fn area<L: Lanes>(
+    l: L,
+    x: &[L::F; 4],
+    y: &[L::F; 4],
+    a: usize,
+    b: usize,
+    c: usize,
+) -> L::F {
     l.sub(
         l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])),
         l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])),

@@ -1,0 +1,217 @@
+//! Around every cluster: the triangles that touch it, and which edges join which triangles.
+//!
+//! Results that hold around the eye treat a cluster and its ring as one sheet (see [`crate::raster::sheet`]): the
+//! sheet's border must stay clear of what it hides, and without the ring every cluster would end in a border.
+
+use super::quads::Quad;
+use super::{OccluderMesh, Vertices};
+use glam::Vec3;
+use std::collections::HashMap;
+
+/// No triangle: beyond an edge that ends a mesh.
+pub(crate) const NONE: u8 = 255;
+/// Most triangles of a ring, so that their numbers, from [`RING`] on, stay below [`NONE`].
+const MAX_TRIANGLES: usize = 127;
+/// Where a ring's numbers begin; before it come the first triangles of the cluster's quads, then their second ones.
+pub(crate) const RING: usize = 128;
+const SECOND: u8 = 64;
+/// Vertices of a cluster and its ring, so that a number fits a byte.
+const MAX_VERTICES: usize = 256;
+
+/// What surrounds one cluster.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ring {
+    /// In [`Rings::vertices`]; the numbers go on after the cluster's own, padded ones.
+    pub(crate) first_vertex: u32,
+    pub(crate) vertex_count: u16,
+    /// Groups of eight triangles; the first corner is the one alone on its side (on the cluster, or off it).
+    pub(crate) first_group: u32,
+    pub(crate) triangle_count: u8,
+    /// Edges with a vertex of the cluster.
+    pub(crate) first_edge: u32,
+    pub(crate) edges: u16,
+}
+
+/// The rings of a mesh, one per cluster.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Rings {
+    pub(crate) rings: Vec<Ring>,
+    pub(crate) vertices: Vertices,
+    pub(crate) triangles: Vec<[[u8; 8]; 3]>,
+    /// Two triangles (or [`NONE`]), two vertices.
+    pub(crate) edges: Vec<[u8; 4]>,
+}
+
+/// Which triangles meet where, by welded vertices.
+pub(super) struct Neighbours<'a> {
+    points: &'a [Vec3],
+    triangles: &'a [[u32; 3]],
+    /// Per directed edge its triangle; `None` where several have it.
+    edges: HashMap<(u32, u32), Option<u32>>,
+    /// Triangles by vertex: where each vertex's begin, and they.
+    starts: Vec<u32>,
+    around: Vec<u32>,
+}
+
+impl<'a> Neighbours<'a> {
+    pub(super) fn new(points: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
+        let mut edges = HashMap::with_capacity(triangles.len() * 3);
+        let mut starts = vec![0u32; points.len() + 1];
+        for (i, t) in (0u32..).zip(triangles) {
+            for e in 0..3 {
+                edges
+                    .entry((t[e], t[(e + 1) % 3]))
+                    .and_modify(|several| *several = None)
+                    .or_insert(Some(i));
+                starts[t[e] as usize + 1] += 1;
+            }
+        }
+        let mut sum = 0;
+        for start in &mut starts {
+            sum += *start;
+            *start = sum;
+        }
+        let mut next = starts.clone();
+        let mut around = vec![0; triangles.len() * 3];
+        for (i, t) in (0u32..).zip(triangles) {
+            for v in t {
+                let at = &mut next[*v as usize];
+                around[*at as usize] = i;
+                *at += 1;
+            }
+        }
+        Self {
+            points,
+            triangles,
+            edges,
+            starts,
+            around,
+        }
+    }
+
+    fn around(&self, vertex: u32) -> &[u32] {
+        let v = vertex as usize;
+        &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
+    }
+
+    /// The triangle of which `a` to `b` is an edge, if it and its reverse have one triangle at most.
+    fn beyond(&self, a: u32, b: u32) -> Option<u32> {
+        let here = self.edges.get(&(a, b)).copied().flatten();
+        here?;
+        self.edges.get(&(b, a)).copied().flatten()
+    }
+}
+
+/// A triangle's corners from the smallest on: what names it.
+fn name([a, b, c]: [u32; 3]) -> [u32; 3] {
+    if a < b && a < c {
+        [a, b, c]
+    } else if b < c {
+        [b, c, a]
+    } else {
+        [c, a, b]
+    }
+}
+
+/// Appends the ring of the cluster that was appended last; `own` are its vertices in their order.
+pub(super) fn build(
+    mesh: &mut OccluderMesh,
+    near: &Neighbours<'_>,
+    own: &[u32],
+    quads: impl Iterator<Item = Quad>,
+) {
+    let rings = &mut mesh.rings;
+    let (first_vertex, first_group, first_edge) = (
+        rings.vertices.x.len() as u32,
+        rings.triangles.len() as u32,
+        rings.edges.len() as u32,
+    );
+    let mut numbers: HashMap<[u32; 3], u8> = HashMap::new();
+    let mut twice = false;
+    for (n, [a, b, c, d]) in (0u8..).zip(quads) {
+        twice |= numbers.insert(name([a, b, c]), n).is_some();
+        if c != d {
+            twice |= numbers.insert(name([a, c, d]), n + SECOND).is_some();
+        }
+    }
+    let base = own.len().next_multiple_of(8);
+    let mut others: Vec<u32> = Vec::new();
+    let mut around: Vec<[u32; 3]> = Vec::new();
+    let is_own = |v: u32| own.binary_search(&v).is_ok();
+    // Equal triangles have no edge of their own; without a number they only make borders.
+    if !twice {
+        for &t in own.iter().flat_map(|&v| near.around(v)) {
+            let corners = near.triangles[t as usize];
+            if numbers.contains_key(&name(corners)) || around.len() == MAX_TRIANGLES {
+                continue;
+            }
+            let new: Vec<u32> = corners
+                .into_iter()
+                .filter(|&v| !is_own(v) && !others.contains(&v))
+                .collect();
+            if base + (others.len() + new.len()).next_multiple_of(8) > MAX_VERTICES {
+                continue;
+            }
+            others.extend(new);
+            numbers.insert(name(corners), (RING + around.len()) as u8);
+            around.push(corners);
+        }
+    }
+    let local = |v: u32| {
+        let there = || others.iter().position(|&o| o == v).map(|i| base + i);
+        own.binary_search(&v).ok().or_else(there).unwrap_or(0) as u8
+    };
+    let mut edges = Vec::new();
+    let mut all: Vec<([u32; 3], u8)> = numbers.iter().map(|(&t, &n)| (t, n)).collect();
+    all.sort_unstable_by_key(|&(_, n)| n);
+    for &(t, n) in &all {
+        for e in 0..3 {
+            let (a, b) = (t[e], t[(e + 1) % 3]);
+            if !is_own(a) && !is_own(b) {
+                continue;
+            }
+            let beyond = near
+                .beyond(a, b)
+                .and_then(|i| numbers.get(&name(near.triangles[i as usize])));
+            match beyond {
+                None => edges.push([n, NONE, local(a), local(b)]),
+                Some(&other) if n < other => edges.push([n, other, local(a), local(b)]),
+                Some(_) => {}
+            }
+        }
+    }
+    for corners in around.chunks(8) {
+        let mut group = [[0u8; 8]; 3];
+        for (i, &t) in corners.iter().enumerate() {
+            let on = t.map(is_own);
+            let odd = (0..3)
+                .find(|&k| on[k] != on[(k + 1) % 3] && on[k] != on[(k + 2) % 3])
+                .unwrap_or(0);
+            for (k, corner) in group.iter_mut().enumerate() {
+                corner[i] = local(t[(odd + k) % 3]);
+            }
+        }
+        rings.triangles.push(group);
+    }
+    let padding = others.len().next_multiple_of(8) - others.len();
+    let last = others.last().copied();
+    for v in others
+        .iter()
+        .copied()
+        .chain(last.into_iter().cycle().take(padding))
+    {
+        let p = near.points[v as usize];
+        rings.vertices.x.push(p.x);
+        rings.vertices.y.push(p.y);
+        rings.vertices.z.push(p.z);
+    }
+    rings.rings.push(Ring {
+        first_vertex,
+        vertex_count: (others.len() + padding) as u16,
+        first_group,
+        triangle_count: around.len() as u8,
+        first_edge,
+        edges: edges.len() as u16,
+    });
+    rings.edges.extend(edges);
+}

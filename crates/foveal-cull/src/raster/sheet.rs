@@ -1,0 +1,277 @@
+//! Results that hold around the eye: a cluster and its ring as one sheet.
+//!
+//! Take all triangles of a cluster, and of the ring around it, that surely face the eye in the middle, m. Let a
+//! point q lie behind one of them as seen from m, and let another eye e be near. In the plane through m, e and q
+//! the sheet is a line that begins between m and q, and as every triangle faces m it never turns back: seen from m, it
+//! goes on in the direction in which e lies, until it crosses the ray from e to q, and q is hidden there too, or ends at
+//! the sheet's border. From m that part of the plane appears as a piece of a straight line that begins at q and, for
+//! what lies at depth d, is no longer than the shift of depth d. So a pixel is safe unless a border comes
+//! within its own shift of it; such pixels are erased: the cluster covers nothing there. (For the exact places of
+//! eyes, erosion by image has been done since Wonka et al. 2000; that inner edges need none is what makes it cheap.)
+//!
+//! A border is an edge with the sheet on one side only: of the mesh, of a silhouette, of triangles too thin or too steep
+//! to say anything about. The ring's outer border needs no look: of the ring, only triangles count that are higher than
+//! the shift, from their corner on the cluster to the opposite edge (or the other way round). A function that is 0 on
+//! the cluster and 1 on the outer border changes by at most one per height, so that no way within the sheet
+//! from the one to the other is shorter.
+//!
+//! Between samples the sheet may be another triangle than at the nearest of them, half a sample away in each axis;
+//! depths are lowered by what the steepest triangle of the sheet changes there.
+
+use super::setup::{Facing, Points, Radius, area};
+use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
+use crate::occluder::{Cluster, OccluderMesh, RING, Ring};
+use crate::simd::{Lanes, four};
+
+/// A triangle surely faces the eye if it is higher than this over the sum of its quad's sides, samples: corners are
+/// rounded by 1/512 at most.
+const LEAST_HEIGHT: f32 = 0.125;
+/// Steeper triangles, by their nearest depth per sample, do not count: they lie within 32 samples of the line where their
+/// plane is seen from its side.
+const STEEPEST: f32 = 32.0;
+/// From a sample to all points that are nearer to it than to others, and more than all rounding, samples.
+const AROUND_SAMPLE: f32 = 0.8;
+/// More than all rounding, samples.
+const MARGIN: f32 = 0.0625;
+
+/// What belongs to the sheet of the cluster that is being drawn.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Sheet {
+    /// Above zero for triangles that belong to it: by group the first and the second of each quad.
+    pub(crate) kept: [[[f32; 8]; 2]; 8],
+    /// By how much depths are lowered.
+    pub(crate) slack: f32,
+    /// Blocks with erased pixels.
+    erased: Vec<u32>,
+}
+
+impl Sheet {
+    /// Forgets what was erased.
+    pub(super) fn restore(&mut self, band: &mut Band<'_>) {
+        for i in self.erased.drain(..) {
+            band.erased[i as usize] = 0;
+        }
+    }
+}
+
+/// Finds the sheet of a cluster and erases what is too near to its border.
+#[inline(always)]
+pub(super) fn prepare<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    sheet: &mut Sheet,
+    points: &Points,
+    mesh: &OccluderMesh,
+    (cluster, ring): (&Cluster, &Ring),
+    (facing, radius): (Facing, Radius),
+) {
+    let quads = usize::from(cluster.quad_count);
+    let own = &mesh.quads[cluster.first_group as usize..][..quads.div_ceil(8)];
+    let around = usize::from(ring.triangle_count);
+    let groups = &mesh.rings.triangles[ring.first_group as usize..][..around.div_ceil(8)];
+    let (zero, one) = (l.splat(0.0), l.splat(1.0));
+    let mut steepest = zero;
+    let mut nearest = zero;
+    let mut members = [0u64; 4];
+    for ((g, group), kept) in own.iter().enumerate().zip(&mut sheet.kept) {
+        let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
+        let order = [0, i1, 2, i3];
+        let x = four!(c => l.gather(&points.x, &group[order[c]]));
+        let y = four!(c => l.gather(&points.y, &group[order[c]]));
+        let z = four!(c => l.gather(&points.depth, &group[order[c]]));
+        let sides = l.add(
+            l.sub(
+                l.max(l.max(x[0], x[1]), l.max(x[2], x[3])),
+                l.min(l.min(x[0], x[1]), l.min(x[2], x[3])),
+            ),
+            l.sub(
+                l.max(l.max(y[0], y[1]), l.max(y[2], y[3])),
+                l.min(l.min(y[0], y[1]), l.min(y[2], y[3])),
+            ),
+        );
+        let z_hi = l.max(l.max(z[0], z[1]), l.max(z[2], z[3]));
+        let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
+        // Without corners for the clipper.
+        let whole = l.lt(l.sub(sum, sum), one);
+        nearest = l.select(whole, l.max(nearest, z_hi), nearest);
+        for (second, kept) in kept.iter_mut().enumerate() {
+            let (b, c) = (1 + second, 2 + second);
+            let corners = [(x[0], y[0], z[0]), (x[b], y[b], z[b]), (x[c], y[c], z[c])];
+            let (steepness, member) = judge(l, corners, sides, z_hi);
+            let member = l.iand(member, whole);
+            steepest = l.max(steepest, l.select(member, steepness, zero));
+            l.store(l.select(member, one, zero), kept);
+            // Numbers are those of triangles that are not mirrored.
+            let set = second ^ usize::from(facing.mirrored);
+            members[set] |= u64::from(l.movemask(member)) << (8 * g);
+        }
+    }
+    for group in groups {
+        let z = l.max(
+            l.gather(&points.depth, &group[0]),
+            l.gather(&points.depth, &group[1]),
+        );
+        nearest = l.max(nearest, l.max(z, l.gather(&points.depth, &group[2])));
+    }
+    let mut at = [0.0; 8];
+    l.store(nearest, &mut at);
+    let nearest = at.iter().fold(0.0f32, |m, &v| m.max(v)).min(1.0);
+    let [shift_x, shift_y] = radius.shifts;
+    let height = l.splat(AROUND_SAMPLE + nearest * shift_x.hypot(shift_y) * 1.001);
+    for (g, group) in groups.iter().enumerate() {
+        let order = if facing.mirrored {
+            [0, 2, 1]
+        } else {
+            [0, 1, 2]
+        };
+        let a = corner(l, points, &group[order[0]]);
+        let b = corner(l, points, &group[order[1]]);
+        let c = corner(l, points, &group[order[2]]);
+        let (dx, dy) = (l.sub(c.0, b.0), l.sub(c.1, b.1));
+        let sides = l.add(l.add(l.abs(dx), l.abs(dy)), {
+            let (dx, dy) = (l.sub(c.0, a.0), l.sub(c.1, a.1));
+            l.add(l.abs(dx), l.abs(dy))
+        });
+        let z_hi = l.max(a.2, l.max(b.2, c.2));
+        let (steepness, member) = judge(l, [a, b, c], sides, z_hi);
+        let f = area(l, &[a.0, b.0, c.0, c.0], &[a.1, b.1, c.1, c.1], 0, 1, 2);
+        let base = l.add(l.mul(dx, dx), l.mul(dy, dy));
+        let high = l.lt(l.mul(l.mul(height, height), base), l.mul(f, f));
+        let member = l.iand(member, high);
+        steepest = l.max(steepest, l.select(member, steepness, zero));
+        let bits = u64::from(l.movemask(member));
+        members[(RING + 8 * g) / 64] |= bits << (8 * g % 64);
+    }
+    // Lanes after the last triangle have no area.
+    l.store(steepest, &mut at);
+    // Half a sample along each axis, and the rounding of gradients.
+    sheet.slack = at.iter().fold(0.0f32, |m, &v| m.max(v)) * 0.6;
+    let edges = &mesh.rings.edges[ring.first_edge as usize..][..usize::from(ring.edges)];
+    let is_member = |t: u8| members[usize::from(t >> 6)] >> (t & 63) & 1;
+    for &[a, b, v0, v1] in edges {
+        if is_member(a) != is_member(b) {
+            let end = |v: u8| {
+                let v = usize::from(v);
+                [points.x[v], points.y[v], points.depth[v]]
+            };
+            erase(l, band, &mut sheet.erased, end(v0), end(v1), radius.shifts);
+        }
+    }
+}
+
+#[inline(always)]
+fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (L::F, L::F, L::F) {
+    (
+        l.gather(&points.x, index),
+        l.gather(&points.y, index),
+        l.gather(&points.depth, index),
+    )
+}
+
+/// How steep a triangle is (change of depth per sample along x plus along y), and whether it may belong to a sheet.
+#[inline(always)]
+fn judge<L: Lanes>(
+    l: L,
+    [a, b, c]: [(L::F, L::F, L::F); 3],
+    sides: L::F,
+    z_hi: L::F,
+) -> (L::F, L::I) {
+    let (bx, by, bz) = (l.sub(b.0, a.0), l.sub(b.1, a.1), l.sub(b.2, a.2));
+    let (cx, cy, cz) = (l.sub(c.0, a.0), l.sub(c.1, a.1), l.sub(c.2, a.2));
+    // Positive where it faces the eye (y points down).
+    let f = l.sub(l.mul(cx, by), l.mul(bx, cy));
+    let change = l.add(
+        l.abs(l.sub(l.mul(cz, by), l.mul(bz, cy))),
+        l.abs(l.sub(l.mul(bz, cx), l.mul(cz, bx))),
+    );
+    let faces = l.lt(l.mul(sides, l.splat(LEAST_HEIGHT)), f);
+    let flat = l.lt(l.mul(change, l.splat(STEEPEST)), l.mul(z_hi, f));
+    (l.div(change, f), l.iand(faces, flat))
+}
+
+/// Erases the pixels to which an edge comes within its shift.
+#[inline(always)]
+fn erase<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    erased: &mut Vec<u32>,
+    a: [f32; 3],
+    b: [f32; 3],
+    shifts: [f32; 2],
+) {
+    const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
+    let near = a[2].max(b[2]);
+    let [reach_x, reach_y] = [0, 1].map(|k: usize| near * shifts[k] * 1.001 + MARGIN);
+    let (x_lo, x_hi) = (a[0].min(b[0]), a[0].max(b[0]));
+    let (y_lo, y_hi) = (a[1].min(b[1]), a[1].max(b[1]));
+    let scale = 1.0 / BLOCK_SAMPLES as f32;
+    let ends = [band.blocks_x, band.first_row + band.rows];
+    if x_hi + reach_x < 0.0
+        || y_hi + reach_y < (band.first_row * BLOCK_SAMPLES) as f32
+        || x_lo - reach_x >= (ends[0] * BLOCK_SAMPLES) as f32
+        || y_lo - reach_y >= (ends[1] * BLOCK_SAMPLES) as f32
+    {
+        return;
+    }
+    // Casts saturate.
+    let column = |x: f32| ((x * scale) as u32).min(ends[0] - 1);
+    let row = |y: f32| ((y * scale) as u32).clamp(band.first_row, ends[1] - 1);
+    let (by0, by1) = (row(y_lo - reach_y), row(y_hi + reach_y));
+    let blocks = [column(x_lo - reach_x), by0, column(x_hi + reach_x), by1];
+    // What lies behind all that is known there is hidden whatever this edge does; what lies before it, the edge is
+    // behind.
+    let code = encode(near * 1.001).saturating_add(1);
+    if band.hides(blocks, code) {
+        return;
+    }
+    let slope = (b[0] - a[0]) / (b[1] - a[1]);
+    // Of an edge that is all but level every row has the whole.
+    let level = slope.is_nan() || slope.abs() > 1e4;
+    let (lo, hi) = (l.splat(x_lo), l.splat(x_hi));
+    for by in by0..=by1 {
+        let top = (by * BLOCK_SAMPLES) as f32;
+        let rows = l.add(l.load(&PIXELS), l.splat(top));
+        let (above, below) = (
+            l.sub(rows, l.splat(reach_y)),
+            l.add(rows, l.splat(reach_y + SAMPLES as f32)),
+        );
+        let beside = l.ior(l.lt(l.splat(y_hi), above), l.lt(below, l.splat(y_lo)));
+        let (mut from, mut to) = (lo, hi);
+        if !level {
+            let (top, bottom) = (l.splat(y_lo), l.splat(y_hi));
+            let p = l.sub(l.min(l.max(above, top), bottom), l.splat(a[1]));
+            let q = l.sub(l.min(l.max(below, top), bottom), l.splat(a[1]));
+            let p = l.add(l.splat(a[0]), l.mul(p, l.splat(slope)));
+            let q = l.add(l.splat(a[0]), l.mul(q, l.splat(slope)));
+            from = l.min(l.max(l.min(p, q), lo), hi);
+            to = l.min(l.max(l.max(p, q), lo), hi);
+        }
+        let from = l.select(beside, l.splat(1e9), l.sub(from, l.splat(reach_x)));
+        let to = l.select(beside, l.splat(-1e9), l.add(to, l.splat(reach_x)));
+        let (mut starts, mut stops) = ([0.0; 8], [0.0; 8]);
+        l.store(from, &mut starts);
+        l.store(to, &mut stops);
+        let start = starts.iter().fold(f32::INFINITY, |m, &v| m.min(v));
+        let stop = stops.iter().fold(f32::NEG_INFINITY, |m, &v| m.max(v));
+        if stop < 0.0 || start >= (ends[0] * BLOCK_SAMPLES) as f32 {
+            continue;
+        }
+        for bx in column(start)..=column(stop) {
+            let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
+            if code <= band.min[i] {
+                continue;
+            }
+            let left = l.splat((bx * BLOCK_SAMPLES) as f32);
+            let pixel = l.splat(1.0 / SAMPLES as f32);
+            let first = l.mul(l.sub(from, left), pixel);
+            let last = l.mul(l.sub(to, left), pixel);
+            let bits = l.plane(first, l.add(last, l.splat(1.0)));
+            if bits != 0 {
+                if band.erased[i] == 0 {
+                    erased.push(i as u32);
+                }
+                band.erased[i] |= bits;
+            }
+        }
+    }
+}
