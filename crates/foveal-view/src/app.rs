@@ -351,6 +351,7 @@ impl App {
     /// Whether a stage does anything with these settings.
     pub(crate) fn is_in_use(&self, stage: &str) -> bool {
         match stage {
+            "Shading at a rate" => self.settings.shading != Shading::Full,
             "Coarse shading" => self.settings.shading == Shading::Coarse,
             "Variable shading" => self.settings.shading == Shading::Variable,
             _ => true,

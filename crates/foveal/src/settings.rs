@@ -247,7 +247,7 @@ settings! {
             /// How samples become pixels: by continuous patches, by the source's four taps, or as they are
             composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
         }
-        "Coarse and variable shading" {
+        "Shading at a rate" {
             /// What is done once per sample: lighting, or with a visibility buffer materials too (both) or, where shading is
             /// variable, alone; auto: both with a visibility buffer and without anti-aliasing
             rate_stage: RateStage = RateStage::default(), "Stage", Kind::choice::<RateStage>();
