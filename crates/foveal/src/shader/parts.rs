@@ -351,20 +351,16 @@ const BLOCKS: &str = include_str!("../shared/blocks.wgsl");
 const FOVEA: &str = include_str!("../rate/fovea.wgsl");
 const RATES: &str = include_str!("../shading/variable/rates.wgsl");
 const RATE_PASSES: &str = include_str!("../shading/variable/passes.wgsl");
+const REPROJECT: &str = include_str!("../shading/variable/reproject.wgsl");
 
-pub(crate) const VARIABLE_REPROJECT: Parts = &[
-    FRAME,
-    LAYERS,
-    RATES,
-    RATE_PASSES,
-    include_str!("../shading/variable/reproject.wgsl"),
-];
+pub(crate) const VARIABLE_REPROJECT: Parts = &[FRAME, LAYERS, FOVEA, RATE_PASSES, REPROJECT];
 pub(crate) const VARIABLE_MASK: Parts = &[
     FRAME,
-    RATES,
-    RATE_PASSES,
-    FOVEA,
     LAYERS,
+    RATES,
+    FOVEA,
+    RATE_PASSES,
+    REPROJECT,
     include_str!("../shading/variable/mask.wgsl"),
 ];
 pub(crate) const VARIABLE_SIZE: Parts = &[include_str!("../shading/variable/size.wgsl")];

@@ -39,16 +39,43 @@ var<workgroup> keys: array<atomic<u32>, 256>;
 var<workgroup> counts: array<atomic<u32>, 256>;
 var<workgroup> starts: array<u32, 256>;
 
-// Material + 1 at a pixel; 0 where nothing is, or where the pixel is another's to stand for.
-fn key_at(texel: vec2u) -> u32 {
-    if any(texel >= whole_size(identity)) || !is_listed(texel) {
-        return 0u;
+// What a thread finds at its 2 x 2 pixels: material + 1, or 0 where nothing is, or where the pixel is another's to stand
+// for.
+struct Quad {
+    keys: array<u32, 4>,
+    // The surface is read, but nothing is seen.
+    empty: array<bool, 4>,
+}
+
+fn texel_of(quad: vec2u, i: u32) -> vec2u {
+    return quad * 2u + vec2u(i & 1u, i >> 1u);
+}
+
+fn keys_of(quad: vec2u) -> Quad {
+    let rate = rate_at(quad);
+    var found: Quad;
+    // Pixels side by side mostly show one instance, whose material is looked up once.
+    var instance = 0u;
+    var key = 0u;
+    for (var i = 0u; i < 4u; i++) {
+        let texel = texel_of(quad, i);
+        let there = all(texel < whole_size(identity));
+        let read = there && is_read(texel, rate);
+        var seen = 0u;
+        if read {
+            seen = load_words(identity, texel).x;
+        }
+        if seen != instance {
+            instance = seen;
+            key = 0u;
+            if seen != 0u {
+                key = places[seen - 1u].material + 1u;
+            }
+        }
+        found.keys[i] = select(0u, key, is_listed(texel, rate));
+        found.empty[i] = read && seen == 0u;
     }
-    let instance = load_words(identity, texel).x;
-    if instance == 0u {
-        return 0u;
-    }
-    return places[instance - 1u].material + 1u;
+    return found;
 }
 
 fn slot_of(key: u32) -> u32 {
@@ -64,21 +91,18 @@ fn slot_of(key: u32) -> u32 {
     return slot;
 }
 
-fn texel_of(id: vec2u, i: u32) -> vec2u {
-    return id * 2u + vec2u(i & 1u, i >> 1u);
-}
-
 @compute @workgroup_size(8, 8)
 fn count_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    let quad = keys_of(id.xy);
     var run_key = 0u;
     var run = 0u;
     for (var i = 0u; i < 4u; i++) {
-        let key = key_at(texel_of(id.xy, i));
-        if key != run_key && run > 0u {
+        let key = quad.keys[i];
+        if key != 0u && key != run_key && run > 0u {
             atomicAdd(&counts[slot_of(run_key)], run);
             run = 0u;
         }
-        run_key = key;
+        run_key = select(run_key, key, key != 0u);
         run += u32(key != 0u);
     }
     if run > 0u {
@@ -131,16 +155,23 @@ fn sum_bins(@builtin(local_invocation_index) local: u32) {
 
 @compute @workgroup_size(8, 8)
 fn scatter_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
+    let quad = keys_of(id.xy);
     var slots: array<u32, 4>;
     var within: array<u32, 4>;
+    var run_key = 0u;
+    var slot = 256u;
     for (var i = 0u; i < 4u; i++) {
-        let texel = texel_of(id.xy, i);
-        let key = key_at(texel);
-        slots[i] = 256u;
+        let key = quad.keys[i];
         if key != 0u {
-            slots[i] = slot_of(key);
-            within[i] = atomicAdd(&counts[slots[i]], 1u);
-        } else if all(texel < whole_size(identity)) && is_read(texel) && load_words(identity, texel).x == 0u {
+            if key != run_key {
+                run_key = key;
+                slot = slot_of(key);
+            }
+            within[i] = atomicAdd(&counts[slot], 1u);
+        }
+        slots[i] = select(256u, slot, key != 0u);
+        if quad.empty[i] {
+            let texel = texel_of(id.xy, i);
             let at = in_layers(textureDimensions(surface).x, texel);
             textureStore(surface, at.xy, at.z, vec4u(0u));
         }

@@ -1,11 +1,16 @@
 // Every pixel stands for itself. Before bins.wgsl or resolve.wgsl.
 
-fn is_listed(texel: vec2u) -> bool {
+// What tells which pixels of a quad are listed.
+fn rate_at(quad: vec2u) -> u32 {
+    return 0u;
+}
+
+fn is_listed(texel: vec2u, rate: u32) -> bool {
     return true;
 }
 
-// Whether the surface there is read, or emptied where nothing is seen.
-fn is_read(texel: vec2u) -> bool {
+// Whether the surface there is read, or emptied where nothing is seen; so are all that are listed.
+fn is_read(texel: vec2u, rate: u32) -> bool {
     return true;
 }
 

@@ -1,11 +1,15 @@
 // A sample's upper left pixel stands for all of its pixels. After the mask's binding and rates.wgsl, before bins.wgsl
 // or resolve.wgsl.
 
-fn is_listed(texel: vec2u) -> bool {
-    return stands_for_sample(texel, textureLoad(mask, texel / 2u, 0).x & RATE);
+fn rate_at(quad: vec2u) -> u32 {
+    return textureLoad(mask, quad, 0).x & RATE;
 }
 
-fn is_read(texel: vec2u) -> bool {
+fn is_listed(texel: vec2u, rate: u32) -> bool {
+    return stands_for_sample(texel, rate);
+}
+
+fn is_read(texel: vec2u, rate: u32) -> bool {
     return true;
 }
 

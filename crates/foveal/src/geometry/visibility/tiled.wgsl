@@ -4,12 +4,12 @@
 // Any of five candidates may be asked for: as in shading/coarse/block.wgsl.
 override TYPICAL: bool = false;
 
-fn level_of(texel: vec2u) -> u32 {
-    return textureLoad(mask, texel / 2u, 0).x & CELL_LEVEL;
+// The owner level.
+fn rate_at(quad: vec2u) -> u32 {
+    return textureLoad(mask, quad, 0).x & CELL_LEVEL;
 }
 
-fn is_listed(texel: vec2u) -> bool {
-    let level = level_of(texel);
+fn is_listed(texel: vec2u, level: u32) -> bool {
     let block = texel >> vec2u(level);
     var found = all(texel == sample_texel(block, level, 0u));
     if TYPICAL {
@@ -20,8 +20,8 @@ fn is_listed(texel: vec2u) -> bool {
     return found;
 }
 
-fn is_read(texel: vec2u) -> bool {
-    return is_listed(texel);
+fn is_read(texel: vec2u, level: u32) -> bool {
+    return is_listed(texel, level);
 }
 
 fn covered_by(texel: vec2u) -> vec2u {
@@ -30,7 +30,7 @@ fn covered_by(texel: vec2u) -> vec2u {
 
 // Textures are filtered over the tile.
 fn extent_of(texel: vec2u) -> vec2u {
-    return vec2u(1u << level_of(texel));
+    return vec2u(1u << rate_at(texel / 2u));
 }
 
 // Depth is the texel's own: so is its surface.

@@ -1,5 +1,5 @@
-// At which rate each quad is shaded, and the list of the samples that follows. After frame, rates, passes and fovea.wgsl.
-// CPU twin: `twin.rs`.
+// At which rate each quad is shaded, and the list of the samples that follows. After frame, layers, rates, fovea, passes
+// and reproject.wgsl. CPU twin: `twin.rs`.
 
 // 0 foveated, 1 constant, 3 content.
 override SOURCE: u32 = 3u;
@@ -10,6 +10,8 @@ override COMBINE: u32 = 0u;
 override CONTRAST: u32 = 1u;
 // Samples may stand for 4 x 4 pixels.
 override BLOCKS: bool = false;
+// Contrast needs what is known of other quads, which a pass before this one has carried over.
+override LOOKS_AROUND: bool = true;
 
 // Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law fails there).
 const DARK: f32 = 0.1;
@@ -28,14 +30,9 @@ struct Listed {
     reserved: array<u32, 6>,
 }
 
-@group(1) @binding(1) var<uniform> rates: Rates;
-@group(1) @binding(2) var identity: texture_2d_array<u32>;
-@group(1) @binding(3) var depth: texture_depth_2d_array;
-@group(1) @binding(4) var known: texture_2d<u32>;
-@group(1) @binding(5) var mask: texture_storage_2d<r32uint, write>;
-@group(1) @binding(6) var<storage, read_write> listed: Listed;
-// x | y << 16: the upper left pixel of each sample.
-@group(1) @binding(7) var<storage, read_write> samples: array<u32>;
+@group(1) @binding(9) var<storage, read_write> listed: Listed;
+// rates.wgsl.
+@group(1) @binding(10) var<storage, read_write> samples: array<u32>;
 
 // Luminances of a quad at an offset; of the quad in the middle where that one is unknown or not there: no eye looks at
 // the other's picture.
@@ -45,8 +42,8 @@ fn luma_of(quad: vec2i, offset: vec2i, middle: vec4f) -> vec4f {
     let low = vec2i(picture.low / 2u);
     let end = vec2i((picture.end + 1u) / 2u);
     let inside = all(at >= low) && all(at < end);
-    let found = textureLoad(known, clamp(at, low, end - 1), 0);
-    return select(middle, unpack4x8unorm(found.x), inside && found.w != 0u);
+    let found = textureLoad(carried, clamp(at, low, end - 1), 0);
+    return select(middle, unpack4x8unorm(found.x), inside && (found.y & KNOWN_AT_ALL) != 0u);
 }
 
 // Contrast across and down, relative to the mean.
@@ -93,8 +90,8 @@ fn contrast_of(quad: vec2i, l: vec4f) -> vec2f {
     return steepest / ((sum + ring + nw + ne + sw + se) / 16.0 + DARK);
 }
 
-fn content_rate(quad: vec2u, found: vec4u, motion: vec2f) -> u32 {
-    let contrast = contrast_of(vec2i(quad), unpack4x8unorm(found.x));
+fn content_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
+    let contrast = contrast_of(vec2i(quad), lumas);
     let threshold = rates.threshold * (1.0 + rates.velocity_gain * length(motion));
     let coarse = vec2u(contrast <= vec2f(threshold));
     return coarse.x | (coarse.y << 1u);
@@ -104,50 +101,46 @@ fn rate_of_level(level: u32) -> u32 {
     return select(select(0u, 3u, level >= 1u), 7u, level >= 2u);
 }
 
-fn rate_from(source: u32, quad: vec2u, found: vec4u, motion: vec2f) -> u32 {
+fn rate_from(source: u32, quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     switch source {
         case 0u: { return rate_of_level(foveated_level(vec2f(quad * 2u) + 1.0)); }
         case 1u: { return rate_of_level(wish.constant_level); }
-        default: { return content_rate(quad, found, motion); }
+        default: { return content_rate(quad, lumas, motion); }
     }
 }
 
-fn wished_rate(quad: vec2u, found: vec4u, motion: vec2f) -> u32 {
-    let rate = rate_from(SOURCE, quad, found, motion);
+fn wished_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
+    let rate = rate_from(SOURCE, quad, lumas, motion);
     if COMBINE == 1u {
-        return rate | rate_from(OTHER, quad, found, motion);
+        return rate | rate_from(OTHER, quad, lumas, motion);
     } else if COMBINE == 2u {
-        return rate & rate_from(OTHER, quad, found, motion);
+        return rate & rate_from(OTHER, quad, lumas, motion);
     }
     return rate;
 }
 
-fn position_of(texel: vec2u, d: f32) -> vec3f {
-    return view_position(vec2f(texel) + 0.5, view_distance(d));
+// The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one plane. `last` is the
+// quad's last pixel within the picture.
+fn surface_limit(picture: Picture, maps: EyeMaps, first: vec2u, last: vec2u, who: vec4u, d: vec4f) -> u32 {
+    let wide = u32(who.x == who.y && who.z == who.w);
+    let tall = u32(who.x == who.z && who.y == who.w);
+    let limit = wide | (tall << 1u);
+    // Depth is affine in the picture on a plane, so its slopes across and down give the plane's normal, up to a factor:
+    // of the quad's upper left three pixels and of its lower right three.
+    let step = vec2f(2.0, -2.0) / frame.size * maps.view_from_ndc.xy;
+    let upper = normal_of(vec2f(d.y - d.x, d.z - d.x) / step, on_plane(maps, picture, first), d.x);
+    let lower = normal_of(vec2f(d.w - d.z, d.w - d.y) / step, on_plane(maps, picture, last), d.w);
+    let along = dot(upper, lower);
+    let flat = along > 0.0 && along * along >= FLAT * FLAT * dot(upper, upper) * dot(lower, lower);
+    // At the picture's edge pixels stand in for each other.
+    let whole = all(last == first + 1u) && who.x != 0u && who.w != 0u;
+    return select(0u, limit, flat || !whole);
 }
 
-// The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one plane.
-fn surface_limit(first: vec2u) -> u32 {
-    let last = picture_of(first).end - 1u;
-    let texels = array(first, min(first + vec2u(1u, 0u), last), min(first + vec2u(0u, 1u), last), min(first + 1u, last));
-    var who: array<u32, 4>;
-    for (var i = 0u; i < 4u; i++) {
-        who[i] = load_words(identity, texels[i]).x;
-    }
-    let wide = u32(who[0] == who[1] && who[2] == who[3]);
-    let tall = u32(who[0] == who[2] && who[1] == who[3]);
-    let limit = wide | (tall << 1u);
-    if limit == 0u || any(texels[3] != first + 1u) || who[0] == 0u || who[3] == 0u {
-        return limit;
-    }
-    let p = position_of(texels[0], load_depth(depth, texels[0]));
-    let q = position_of(texels[1], load_depth(depth, texels[1]));
-    let r = position_of(texels[2], load_depth(depth, texels[2]));
-    let s = position_of(texels[3], load_depth(depth, texels[3]));
-    let upper = cross(q - p, r - p);
-    let lower = cross(r - s, q - s);
-    let flat = dot(upper, lower) >= FLAT * length(upper) * length(lower);
-    return select(0u, limit, flat);
+// Of the plane through the point seen at `at` with depth `d`, from depth's slopes. The scale keeps products in range.
+fn normal_of(slopes: vec2f, at: vec2f, d: f32) -> vec3f {
+    let z = select(dot(slopes, at) - d, -1.0 / frame.depth_range, frame.orthographic != 0u);
+    return vec3f(slopes, z) / max(d, 1e-20);
 }
 
 var<workgroup> tile_rates: array<u32, 64>;
@@ -155,7 +148,7 @@ var<workgroup> tile_who: array<u32, 64>;
 // Least and greatest luma of each quad.
 var<workgroup> tile_range: array<vec2f, 64>;
 // Samples of each rate, and where they begin: alike ones lie together, so that lanes that light them side by side
-// have equally many pixels to read and write.
+// have equally many pixels to write.
 var<workgroup> found_of: array<atomic<u32>, 5>;
 var<workgroup> starts: array<u32, 5>;
 var<workgroup> found_unknown: atomic<u32>;
@@ -183,46 +176,66 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
     let at = local.y * 8u + local.x;
     let quad = id.xy;
     let first = quad * 2u;
-    let end = picture_of(first).end;
-    let inside = all(first < end);
+    let picture = picture_of(first);
+    let inside = all(first < picture.end);
+    let last = min(first + 1u, picture.end - 1u);
     var rate = 0u;
     var notes = 0u;
-    tile_who[at] = 0xffffffffu;
+    var found = vec2u(0u);
+    var who = 0u;
     if inside {
-        let found = textureLoad(known, quad, 0);
-        let who = load_words(identity, first).xy;
-        let motion = select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
+        let corner = load_words(identity, first).xy;
+        let motion = motion_of(corner);
+        who = corner.x;
+        let d = load_depth(depth, first);
+        let maps = maps_at(first);
+        if LOOKS_AROUND {
+            found = textureLoad(carried, quad, 0).xy;
+        } else {
+            found = carried_over(picture, maps, first, who, d, motion);
+        }
         let probed = (quad.x & rates.probe_mask) == rates.probe_x && (quad.y & rates.probe_mask) == rates.probe_y;
-        notes = select(0u, RATE_PROBED, probed) | select(RATE_UNKNOWN, 0u, found.w != 0u);
+        notes = select(0u, RATE_PROBED, probed) | select(RATE_UNKNOWN, 0u, (found.y & KNOWN_AT_ALL) != 0u);
         if notes == 0u {
-            rate = wished_rate(quad, found, motion);
+            let right = vec2u(last.x, first.y);
+            let below = vec2u(first.x, last.y);
+            let ids = vec4u(
+                who,
+                load_words(identity, right).x,
+                load_words(identity, below).x,
+                load_words(identity, last).x,
+            );
+            let depths = vec4f(d, load_depth(depth, right), load_depth(depth, below), load_depth(depth, last));
+            rate = wished_rate(quad, unpack4x8unorm(found.x), motion);
             // A level of 2 and more asks for blocks; they are found below.
-            rate &= surface_limit(first) | RATE_BLOCK;
+            rate &= surface_limit(picture, maps, first, last, ids, depths) | RATE_BLOCK;
             rate = select(rate & 3u, rate, (rate & 3u) == 3u);
         }
-        let l = unpack4x8unorm(found.x);
-        tile_who[at] = who.x;
-        tile_range[at] = vec2f(min(min(l.x, l.y), min(l.z, l.w)), max(max(l.x, l.y), max(l.z, l.w)));
     }
-    tile_rates[at] = rate;
-    workgroupBarrier();
-    rate = select(rate & 3u, 7u, BLOCKS && is_block(local.xy));
+    if BLOCKS {
+        let l = unpack4x8unorm(found.x);
+        tile_who[at] = select(0xffffffffu, who, inside);
+        tile_range[at] = vec2f(min(min(l.x, l.y), min(l.z, l.w)), max(max(l.x, l.y), max(l.z, l.w)));
+        tile_rates[at] = rate;
+        workgroupBarrier();
+        rate = select(rate & 3u, 7u, is_block(local.xy));
+    } else {
+        rate &= 3u;
+    }
 
-    var mine: array<u32, 4>;
     var count = 0u;
     if inside {
         textureStore(mask, quad, vec4u(rate | notes, 0u, 0u, 0u));
-        for (var i = 0u; i < 4u; i++) {
-            let texel = first + vec2u(i & 1u, i >> 1u);
-            if all(texel < end) && stands_for_sample(texel, rate) {
-                mine[count] = texel.x | (texel.y << 16u);
-                count++;
-            }
-        }
+        textureStore(known, quad, vec4u(found.x, found.y | select(0u, KNOWN_FULL, rate == 0u), 0u, 0u));
+        let there = last - first + 1u;
+        // A wide sample takes a row, a tall one a column.
+        count = select(there.x, 1u, (rate & RATE_WIDE) != 0u) * select(there.y, 1u, (rate & RATE_TALL) != 0u);
+        count = select(count, 0u, (rate & RATE_BLOCK) != 0u && !stands_for_sample(first, rate));
     }
+    let group = min(rate, 4u);
     var place = 0u;
     if count > 0u {
-        place = atomicAdd(&found_of[min(rate, 4u)], count);
+        place = atomicAdd(&found_of[group], count);
     }
     if (notes & RATE_UNKNOWN) != 0u {
         atomicAdd(&found_unknown, 1u);
@@ -243,7 +256,14 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
         atomicAdd(&listed.unknown, atomicLoad(&found_unknown));
     }
     workgroupBarrier();
-    for (var i = 0u; i < count; i++) {
-        samples[starts[min(rate, 4u)] + place + i] = mine[i];
+    if count > 0u {
+        var next = starts[group] + place;
+        for (var i = 0u; i < 4u; i++) {
+            let texel = first + vec2u(i & 1u, i >> 1u);
+            if all(texel <= last) && stands_for_sample(texel, rate) {
+                samples[next] = packed_sample(texel, rate);
+                next++;
+            }
+        }
     }
 }

@@ -18,7 +18,7 @@ use crate::{Contrast, RateCombine, RateSource, Settings, shader};
 /// Quads a side that one workgroup looks at.
 const TILE: u32 = 8;
 
-/// Mirrors `Rates` in `reproject.wgsl` and `mask.wgsl`, where the fields are explained.
+/// Mirrors `Rates` in `passes.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct RatesUniform {
@@ -35,8 +35,8 @@ pub(crate) struct RatesUniform {
 /// Finds rates and samples, and lights samples.
 #[derive(Debug)]
 pub(crate) struct RatePasses {
-    reproject: wgpu::ComputePipeline,
-    reproject_layout: wgpu::BindGroupLayout,
+    /// A pass of its own where contrast is looked for beyond the quad; else the mask's carries over too.
+    reproject: Option<wgpu::ComputePipeline>,
     find: wgpu::ComputePipeline,
     find_layout: wgpu::BindGroupLayout,
     size: wgpu::ComputePipeline,
@@ -73,16 +73,24 @@ impl RatePasses {
         let known = written(KNOWN_FORMAT);
         let mask = written(MASK_FORMAT);
         let radiance = written(RADIANCE_FORMAT);
-        let reproject_layout = layout(
-            "reprojection",
-            &[uniform(), words, depth, uint, uint, float, known],
-        );
         let find_layout = layout(
             "rate mask",
-            &[uniform(), uniform(), words, depth, uint, mask, write, write],
+            &[
+                uniform(),
+                uniform(),
+                words,
+                depth,
+                uint,
+                float,
+                uint,
+                known,
+                mask,
+                write,
+                write,
+            ],
         );
         let size_layout = layout("rate dispatch", &[write]);
-        let shade_layout = layout("rate samples", &[read, read, uint, radiance]);
+        let shade_layout = layout("rate samples", &[read, read, radiance]);
         let pipeline = |label, parts, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
             let module = shader::module(gpu, label, parts);
             shader::compute(gpu, label, &module, entry, groups, constants)
@@ -98,13 +106,15 @@ impl RatePasses {
         let [model, assignment] = lighting_constants(settings);
         let one_surface = f64::from(u8::from(settings.stage().has_material()));
         Self {
-            reproject: pipeline(
-                "reprojection",
-                shader::VARIABLE_REPROJECT,
-                "reproject",
-                &[frame, &reproject_layout],
-                &[],
-            ),
+            reproject: looks_around(settings).then(|| {
+                pipeline(
+                    "reprojection",
+                    shader::VARIABLE_REPROJECT,
+                    "reproject",
+                    &[frame, &find_layout],
+                    &[],
+                )
+            }),
             find: pipeline(
                 "rate mask",
                 shader::VARIABLE_MASK,
@@ -126,7 +136,6 @@ impl RatePasses {
                 &[frame, input, &shade_layout],
                 &[model, assignment, ("ONE_SURFACE", one_surface)],
             ),
-            reproject_layout,
             find_layout,
             size_layout,
             shade_layout,
@@ -136,7 +145,7 @@ impl RatePasses {
     }
 
     /// Encodes reprojection from the frame before, into what is known in `even` or odd frames, and from it the rates
-    /// and samples.
+    /// and samples; one pass does it all unless contrast is looked for beyond the quad.
     #[expect(
         clippy::too_many_arguments,
         reason = "a stage names all that it reads and writes"
@@ -171,46 +180,35 @@ impl RatePasses {
         let gbuffer = &targets.gbuffer;
         let finished = t.finished.as_ref().unwrap_or(&targets.picture_view);
         let view = wgpu::BindingResource::TextureView;
-        let group =
-            |label, layout, resources: &[_]| bind_group(&gpu.device, label, layout, resources);
-        let reproject = group(
-            "reprojection",
-            &self.reproject_layout,
-            &[
-                self.rates.as_entire_binding(),
-                view(&gbuffer.identity_layers),
-                view(&gbuffer.depth_layers),
-                view(before),
-                view(&t.mask),
-                view(finished),
-                view(now),
-            ],
-        );
-        let find = group(
-            "rate mask",
-            &self.find_layout,
-            &[
+        let group = |label, carried, written| {
+            let resources = [
                 self.wish.as_entire_binding(),
                 self.rates.as_entire_binding(),
                 view(&gbuffer.identity_layers),
                 view(&gbuffer.depth_layers),
-                view(now),
+                view(before),
+                view(finished),
+                view(carried),
+                view(written),
                 view(&t.mask),
                 t.listed.as_entire_binding(),
                 t.samples.as_entire_binding(),
-            ],
-        );
-        let listed = [t.listed.as_entire_binding()];
-        let size = group("rate dispatch", &self.size_layout, &listed);
+            ];
+            bind_group(&gpu.device, label, &self.find_layout, &resources)
+        };
         let quads = t.mask.texture().size();
         let tiles = [quads.width.div_ceil(TILE), quads.height.div_ceil(TILE)];
         recorder.encoder.clear_buffer(&t.listed, 0, None);
-        {
+        if let (Some(reproject), Some(carried)) = (&self.reproject, &t.carried) {
+            let group = group("reprojection", before, carried);
             let mut pass = recorder.compute_pass("reprojection");
-            pass.set_pipeline(&self.reproject);
-            pass.set_bind_group(1, &reproject, &[]);
+            pass.set_pipeline(reproject);
+            pass.set_bind_group(1, &group, &[]);
             pass.dispatch_workgroups(tiles[0], tiles[1], 1);
         }
+        let find = group("rate mask", t.carried.as_ref().unwrap_or(before), now);
+        let listed = [t.listed.as_entire_binding()];
+        let size = bind_group(&gpu.device, "rate dispatch", &self.size_layout, &listed);
         let mut pass = recorder.compute_pass("rate mask");
         pass.set_pipeline(&self.find);
         pass.set_bind_group(1, &find, &[]);
@@ -235,7 +233,6 @@ impl RatePasses {
             &[
                 t.samples.as_entire_binding(),
                 t.listed.as_entire_binding(),
-                wgpu::BindingResource::TextureView(&t.mask),
                 wgpu::BindingResource::TextureView(radiance),
             ],
         );
@@ -247,7 +244,12 @@ impl RatePasses {
     }
 }
 
-fn find_constants(s: &Settings) -> [(&'static str, f64); 5] {
+/// Whether contrast is looked for beyond the quad.
+pub(super) fn looks_around(s: &Settings) -> bool {
+    s.contrast != Contrast::Quad
+}
+
+fn find_constants(s: &Settings) -> [(&'static str, f64); 6] {
     let source = |source| match source {
         RateSource::Foveated => 0.0,
         RateSource::Constant => 1.0,
@@ -270,5 +272,6 @@ fn find_constants(s: &Settings) -> [(&'static str, f64); 5] {
         ("COMBINE", combine),
         ("CONTRAST", contrast),
         ("BLOCKS", f64::from(u8::from(s.rate_4x4))),
+        ("LOOKS_AROUND", f64::from(u8::from(looks_around(s)))),
     ]
 }

@@ -20,3 +20,27 @@ fn extent_at(rate: u32) -> vec2u {
 fn stands_for_sample(texel: vec2u, rate: u32) -> bool {
     return all((texel & (extent_at(rate) - 1u)) == vec2u(0u));
 }
+
+// A sample in one word: its quad (14 bits across, 14 down: pictures of up to 32,768 pixels a side), the column and row
+// of its upper left pixel there, and whether it is wide and tall. A wide one begins in the first column, so that bit
+// marks a block.
+fn packed_sample(texel: vec2u, rate: u32) -> u32 {
+    let quad = texel >> vec2u(1u);
+    let within = (texel.x & 1u) | ((texel.y & 1u) << 1u) | u32((rate & RATE_BLOCK) != 0u);
+    return quad.x | (quad.y << 14u) | (within << 28u) | ((rate & 3u) << 30u);
+}
+
+struct Sample {
+    // Its upper left pixel.
+    first: vec2u,
+    // Pixels across and down.
+    extent: vec2u,
+}
+
+fn unpacked_sample(word: u32) -> Sample {
+    let wide = vec2u(word >> 30u, word >> 31u) & vec2u(1u);
+    let within = vec2u(word >> 28u, word >> 29u) & vec2u(1u);
+    let block = wide.x & within.x;
+    let first = vec2u(word & 0x3fffu, (word >> 14u) & 0x3fffu) * 2u + (within & (1u - wide));
+    return Sample(first, select(1u + wide, vec2u(4u), block != 0u));
+}

@@ -1,40 +1,98 @@
-// What is known of each quad, carried over from the frame before. After frame, rates and passes.wgsl.
+// What is known of each quad, carried over from the frame before. After frame, layers and passes.wgsl.
 // CPU twin: `twin.rs`.
 //
 // Known are the luminances of the quad's four pixels when they were last shaded one by one: a quad that was shaded
 // coarsely keeps those from before. So no rate ever depends on what coarse shading made of the picture.
+//
+// x: luminances, 8 bits each (upper left, upper right, lower left, lower right). y: the distance's upper half, as a
+// rounded float of 16 bits, which is 0.4 % apart; the notes below; 14 bits of the instance's number + 1.
 
-@group(1) @binding(0) var<uniform> rates: Rates;
-@group(1) @binding(1) var identity: texture_2d_array<u32>;
-@group(1) @binding(2) var depth: texture_depth_2d_array;
-// Of the frame before: what was known, at which rate it was shaded, its picture.
-@group(1) @binding(3) var before: texture_2d<u32>;
-@group(1) @binding(4) var mask_before: texture_2d<u32>;
-@group(1) @binding(5) var picture_before: texture_2d<f32>;
-// Luminances (8 bits each: upper left, upper right, lower left, lower right), instance number + 1, distance, and
-// whether anything is known.
-@group(1) @binding(6) var known: texture_storage_2d<rgba32uint, write>;
+const KNOWN_INSTANCE: u32 = 0x3fffu;
+// Something is known.
+const KNOWN_AT_ALL: u32 = 0x4000u;
+// Shaded pixel by pixel in that frame: its picture says more than what is kept.
+const KNOWN_FULL: u32 = 0x8000u;
 
 // Relative difference of distances that counts as the same surface.
 const SAME_DISTANCE: f32 = 0.02;
 
-// Rec. 709 luma of display values; the picture may have another size than what is shaded.
-fn luma_at(texel: vec2u) -> f32 {
-    let shown = texel * textureDimensions(picture_before) / vec2u(frame.target_size);
-    return dot(textureLoad(picture_before, shown, 0).rgb, vec3f(0.2126, 0.7152, 0.0722));
+// An eye's affine maps. Both eyes' are read at constant places and chosen from: a place that differs from lane to lane
+// is gathered lane by lane on some devices, which took as long as all textures together.
+struct EyeMaps {
+    // View-space xy at distance 1 from normalized device coordinates: (ndc * xy + zw).
+    view_from_ndc: vec4f,
+    // Distance in the frame before, of a point in view space.
+    distance_before: vec4f,
 }
 
-fn measured(quad: vec2u) -> u32 {
+fn distance_before_in(now: mat4x4f, previous: mat4x4f) -> vec4f {
+    return vec4f(previous[0].w, previous[1].w, previous[2].w, previous[3].w) * now;
+}
+
+fn maps_at(texel: vec2u) -> EyeMaps {
+    let right = view_of(texel) != 0u;
+    let left_before = distance_before_in(frame.views[0].world_from_view, frame.views[0].previous_clip_from_world);
+    let right_before = distance_before_in(frame.views[1].world_from_view, frame.views[1].previous_clip_from_world);
+    return EyeMaps(
+        select(frame.views[0].view_from_ndc, frame.views[1].view_from_ndc, right),
+        select(left_before, right_before, right),
+    );
+}
+
+// A pixel's place on the plane at distance 1, or on any with parallel rays.
+fn on_plane(maps: EyeMaps, picture: Picture, texel: vec2u) -> vec2f {
+    return ndc_of(vec2f(texel - picture.low) + 0.5) * maps.view_from_ndc.xy + maps.view_from_ndc.zw;
+}
+
+// Rec. 709 luma of display values.
+fn luma_at(texel: vec2u) -> f32 {
+    return dot(textureLoad(picture_before, texel, 0).rgb, vec3f(0.2126, 0.7152, 0.0722));
+}
+
+fn measured(picture: Picture, quad: vec2u) -> u32 {
     let texel = quad * 2u;
-    let last = picture_of(texel).end - 1u;
+    let last = min(texel + 1u, picture.end - 1u);
     return pack4x8unorm(vec4f(
         luma_at(texel),
-        luma_at(min(texel + vec2u(1u, 0u), last)),
-        luma_at(min(texel + vec2u(0u, 1u), last)),
-        luma_at(min(texel + vec2u(1u, 1u), last)),
+        luma_at(vec2u(last.x, texel.y)),
+        luma_at(vec2u(texel.x, last.y)),
+        luma_at(last),
     ));
 }
 
+// What is known of the quad that begins at `texel`, where instance `who` (+ 1) is seen at depth `d`.
+fn carried_over(picture: Picture, maps: EyeMaps, texel: vec2u, who: u32, d: f32, motion: vec2f) -> vec2u {
+    var distance = 0.0;
+    var expected = 0.0;
+    if d > 0.0 {
+        distance = view_distance(d);
+        let parallel = frame.orthographic != 0u;
+        let xy = on_plane(maps, picture, texel) * select(distance, 1.0, parallel);
+        let w = dot(maps.distance_before, vec4f(xy, -distance, 1.0));
+        expected = select(w, distance, parallel);
+    }
+    let place = ((bitcast<u32>(distance) + 0x8000u) & 0xffff0000u) | (who & KNOWN_INSTANCE);
+    let then = vec2i(floor((vec2f(texel) + 1.0 - motion) * 0.5));
+    let inside = all(then >= vec2i(picture.low / 2u)) && all(then < vec2i((picture.end + 1u) / 2u));
+    var found = vec2u(0u, place);
+    if inside && rates.reset == 0u {
+        let old = textureLoad(before, then, 0).xy;
+        let off = abs(bitcast<f32>(old.y & 0xffff0000u) - expected);
+        if ((old.y ^ who) & KNOWN_INSTANCE) == 0u && off <= SAME_DISTANCE * expected {
+            found = vec2u(old.x, place | (old.y & KNOWN_AT_ALL));
+            if (old.y & KNOWN_FULL) != 0u {
+                found = vec2u(measured(picture, vec2u(then)), place | KNOWN_AT_ALL);
+            }
+        }
+    }
+    return found;
+}
+
+fn motion_of(who: vec2u) -> vec2f {
+    return select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
+}
+
+// The first of two passes, where contrast is looked for beyond the quad.
 @compute @workgroup_size(8, 8)
 fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let texel = id.xy * 2u;
@@ -44,31 +102,6 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     }
     let who = load_words(identity, texel).xy;
     let d = load_depth(depth, texel);
-    let pixel = vec2f(texel) + 0.5;
-    var distance = 0.0;
-    var expected = 0.0;
-    if d > 0.0 {
-        distance = view_distance(d);
-        let position = vec4f(world_position(pixel, distance), 1.0);
-        let w = (frame.views[view_of(texel)].previous_clip_from_world * position).w;
-        expected = select(w, distance, frame.orthographic != 0u);
-    }
-    let motion = select(unpack2x16float(who.y), vec2f(0.0), who.x == 0u);
-    let then = vec2i(floor((vec2f(texel) + 1.0 - motion) * 0.5));
-    var found = vec4u(0u, who.x, bitcast<u32>(distance), 0u);
-    let inside = all(then >= vec2i(picture.low / 2u)) && all(then < vec2i((picture.end + 1u) / 2u));
-    if inside && rates.reset == 0u {
-        let old = textureLoad(before, then, 0);
-        let off = abs(bitcast<f32>(old.z) - expected);
-        if old.y == who.x && off <= SAME_DISTANCE * expected {
-            let full = (textureLoad(mask_before, then, 0).x & RATE) == 0u;
-            found.x = old.x;
-            found.w = old.w;
-            if full {
-                found.x = measured(vec2u(then));
-                found.w = 1u;
-            }
-        }
-    }
-    textureStore(known, id.xy, found);
+    let found = carried_over(picture, maps_at(texel), texel, who.x, d, motion_of(who));
+    textureStore(known, id.xy, vec4u(found, 0u, 0u));
 }

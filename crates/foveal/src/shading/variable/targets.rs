@@ -1,12 +1,13 @@
 //! What variable shading remembers and writes.
 
+use super::passes::looks_around;
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::stereo::EyeLayout;
 use crate::{Settings, View};
 
 /// What is known of a quad: `reproject.wgsl`.
-pub(super) const KNOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
+pub(super) const KNOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
 /// A quad's rate: `rates.wgsl`.
 pub(super) const MASK_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// Bytes of `Listed` in `mask.wgsl`.
@@ -17,9 +18,11 @@ const LISTED_BYTES: u64 = 64;
 pub(crate) struct VariableTargets {
     /// What is known of each quad: of even and of odd frames.
     pub(super) known: [wgpu::TextureView; 2],
+    /// The same between reprojection and mask, where these are two passes.
+    pub(super) carried: Option<wgpu::TextureView>,
     /// Each quad's rate.
     pub(crate) mask: wgpu::TextureView,
-    /// The samples, `x | y << 16` of their upper left pixels.
+    /// The samples, packed as in `rates.wgsl`.
     pub(super) samples: wgpu::Buffer,
     /// The dispatch that covers them, and their numbers.
     pub(crate) listed: wgpu::Buffer,
@@ -51,9 +54,12 @@ impl VariableTargets {
             let none = wgpu::TextureUsages::empty();
             gpu::target(gpu, "finished frame", size, PICTURE_FORMAT, none)
         });
-        let quads_bytes = u64::from(quads.0) * u64::from(quads.1) * (2 * 16 + 4);
+        let carried = looks_around(settings).then(|| known("known of quads, carried over"));
+        let histories = 2 + u64::from(carried.is_some());
+        let quads_bytes = u64::from(quads.0) * u64::from(quads.1) * (histories * 8 + 4);
         Self {
             known: [known("known of quads, even"), known("known of quads, odd")],
+            carried,
             mask: gpu::target(gpu, "rate mask", quads, MASK_FORMAT, written),
             samples: buffer("rate samples", pixels * 4, wgpu::BufferUsages::empty()),
             listed: buffer("listed samples", LISTED_BYTES, wgpu::BufferUsages::INDIRECT),

@@ -64,7 +64,7 @@ impl Film {
     }
 
     /// What is known after `frames` frames.
-    pub(super) fn known(&self, frames: u32) -> Vec<[u32; 4]> {
+    pub(super) fn known(&self, frames: u32) -> Vec<[u32; 2]> {
         let t = self.renderer.targets().variable.as_ref().unwrap();
         texels(&t.known[usize::from(frames.is_multiple_of(2))])
     }
@@ -96,6 +96,29 @@ pub(super) fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
+/// What was carried over into what is known, whose notes of quads shaded in full must be those of `mask`.
+pub(super) fn carried(known: &[[u32; 2]], mask: &[u32]) -> Vec<[u32; 2]> {
+    let cells = known.iter().zip(mask);
+    cells
+        .map(|(&[lumas, place], rate)| {
+            assert_eq!(place & twin::FULL != 0, rate & 7 == 0);
+            [lumas, place & !twin::FULL]
+        })
+        .collect()
+}
+
+/// Quads of which other things are known: luminances may differ by one step, distances by one of theirs.
+pub(super) fn known_otherwise(a: &[[u32; 2]], b: &[[u32; 2]]) -> usize {
+    let alike = |a: &[u32; 2], b: &[u32; 2]| {
+        let bytes = a[0].to_le_bytes().into_iter().zip(b[0].to_le_bytes());
+        let [x, y] = [a[1], b[1]].map(twin::distance_of);
+        a[1] & 0xffff == b[1] & 0xffff
+            && (x - y).abs() <= 0.008 * x
+            && bytes.fold(0, |m, (a, b)| m.max(a.abs_diff(b))) <= 1
+    };
+    a.iter().zip(b).filter(|(a, b)| !alike(a, b)).count()
+}
+
 #[test]
 fn reprojection_rates_and_samples_equal_their_twins() {
     let scene = scene();
@@ -118,7 +141,7 @@ fn reprojection_rates_and_samples_equal_their_twins() {
             let mut rates_seen = [0; 8];
             for frame in 1..6 {
                 let [now, previous] = [frame, frame - 1].map(|f| shifted(camera, step * f as f32));
-                let (before, mask) = (film.known(frame), film.mask());
+                let before = film.known(frame);
                 let shown: Vec<[u8; 4]> = picture(&film.renderer).as_chunks().0.to_vec();
                 film.draw(&now);
                 if step != 0.0 {
@@ -126,20 +149,13 @@ fn reprojection_rates_and_samples_equal_their_twins() {
                 }
                 let probe = probes.next();
                 let seen = film.seen();
-                let known = film.known(frame + 1);
-                let twin = twin::reproject(&seen, [&now, &previous], &before, &mask, &shown);
+                let (known, mask) = (film.known(frame + 1), film.mask());
+                let carried = carried(&known, &mask);
                 let quads = known.len();
-                let same_luma = |a: &[u32; 4], b: &[u32; 4]| {
-                    let bytes = a[0].to_le_bytes().into_iter().zip(b[0].to_le_bytes());
-                    a[1] == b[1]
-                        && a[3] == b[3]
-                        && bytes.fold(0, |m, (a, b)| m.max(a.abs_diff(b))) <= 1
-                };
-                let off = known.iter().zip(&twin).filter(|(a, b)| !same_luma(a, b));
-                let off = off.count();
+                let twin = twin::reproject(&seen, [&now, &previous], &before, &shown);
+                let off = known_otherwise(&carried, &twin);
                 assert!(off <= quads / 200, "{off} of {quads} known otherwise");
-                let mask = film.mask();
-                let twin = twin::rates(&settings, &seen, &now, &known, probe);
+                let twin = twin::rates(&settings, &seen, &now, &carried, probe);
                 let off = differing(&mask, &twin);
                 assert!(off <= quads / 400, "{off} of {quads} rates, {contrast:?}");
                 mask.iter().for_each(|m| rates_seen[*m as usize & 7] += 1);
@@ -179,8 +195,9 @@ fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
         let mut film = Film::new(&scene, &settings);
         film.draw(camera);
         film.draw(camera);
-        let twin = twin::rates(&settings, &film.seen(), camera, &film.known(2), Probe::NONE);
         let mask = film.mask();
+        let known = carried(&film.known(2), &mask);
+        let twin = twin::rates(&settings, &film.seen(), camera, &known, Probe::NONE);
         assert!(differing(&mask, &twin) <= mask.len() / 400);
         assert!(mask.iter().any(|m| m & 7 == 0) && mask.iter().any(|m| m & 3 == 3));
     }
@@ -209,7 +226,7 @@ fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
         let lights = film.renderer.lights().1;
         let mut coarse = 0;
         for sample in twin::samples(&mask, seen.size) {
-            let first = UVec2::new(sample & 0xffff, sample >> 16);
+            let first = twin::first_pixel(sample);
             let quad = first / 2;
             let extent = twin::extent(mask[(quad.y * size.0.div_ceil(2) + quad.x) as usize]);
             let end = (first + extent).min(seen.size);
@@ -234,7 +251,8 @@ fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
             if !same {
                 continue;
             }
-            let depth = pixels.iter().map(|&i| seen.depth[i]).sum::<f32>() / pixels.len() as f32;
+            let last = pixels[pixels.len() - 1];
+            let depth = 0.5 * (seen.depth[pixels[0]] + seen.depth[last]);
             let centre = 0.5 * (first + end).as_vec2();
             let expected = shade(
                 &scene,

@@ -20,6 +20,9 @@ pub(super) struct Seen {
 const DARK: f32 = 0.1;
 const FLAT: f32 = 0.9;
 const SAME_DISTANCE: f32 = 0.02;
+const INSTANCE: u32 = 0x3fff;
+pub(super) const KNOWN: u32 = 0x4000;
+pub(super) const FULL: u32 = 0x8000;
 pub(super) const PROBED: u32 = 16;
 pub(super) const UNKNOWN: u32 = 32;
 
@@ -49,14 +52,18 @@ fn texel_of(texel: IVec2, size: UVec2) -> Option<usize> {
     inside.then(|| (texel.y as u32 * size.x + texel.x as u32) as usize)
 }
 
-/// What `reproject.wgsl` knows of each quad; perspective cameras.
+/// The distance that is kept with what is known.
+pub(super) fn distance_of(place: u32) -> f32 {
+    f32::from_bits(place & 0xffff_0000)
+}
+
+/// What `reproject.wgsl` knows of each quad, but for whether it is shaded in full now; perspective cameras.
 pub(super) fn reproject(
     seen: &Seen,
     [camera, previous]: [&Camera; 2],
-    before: &[[u32; 4]],
-    mask: &[u32],
+    before: &[[u32; 2]],
     picture: &[[u8; 4]],
-) -> Vec<[u32; 4]> {
+) -> Vec<[u32; 2]> {
     let size = seen.size.as_vec2();
     let quads = seen.quads();
     let luma = |texel: UVec2| {
@@ -78,18 +85,19 @@ pub(super) fn reproject(
                 let world = position_at(camera, size, texel.as_vec2() + 0.5, depth);
                 expected = (previous.clip_from_world(size.x / size.y) * world.extend(1.0)).w;
             }
-            let mut found = [0, who, distance.to_bits(), 0];
+            let place = (distance.to_bits() + 0x8000) & 0xffff_0000 | who & INSTANCE;
+            let mut found = [0, place];
             let then = ((texel.as_vec2() + 1.0 - seen.motion(texel)) * 0.5).floor();
             if let Some(then_at) = texel_of(then.as_ivec2(), quads) {
-                let old = before[then_at];
-                let off = (f32::from_bits(old[2]) - expected).abs();
-                if old[1] == who && off <= SAME_DISTANCE * expected {
-                    (found[0], found[3]) = (old[0], old[3]);
-                    if mask[then_at] & 7 == 0 {
+                let [lumas, old] = before[then_at];
+                let off = (distance_of(old) - expected).abs();
+                if old & INSTANCE == who & INSTANCE && off <= SAME_DISTANCE * expected {
+                    found = [lumas, place | old & KNOWN];
+                    if old & FULL != 0 {
                         let first = then.as_uvec2() * 2;
                         let of = |x, y| luma(first + UVec2::new(x, y));
-                        found[0] = u32::from_le_bytes([of(0, 0), of(1, 0), of(0, 1), of(1, 1)]);
-                        found[3] = 1;
+                        let lumas = [of(0, 0), of(1, 0), of(0, 1), of(1, 1)];
+                        found = [u32::from_le_bytes(lumas), place | KNOWN];
                     }
                 }
             }
@@ -103,13 +111,15 @@ fn lumas(word: u32) -> Vec4 {
 }
 
 /// Contrast of each quad across and down.
-fn contrast(kind: Contrast, known: &[[u32; 4]], quads: UVec2, quad: UVec2) -> Vec2 {
+fn contrast(kind: Contrast, known: &[[u32; 2]], quads: UVec2, quad: UVec2) -> Vec2 {
     let own = lumas(known[(quad.y * quads.x + quad.x) as usize][0]);
     // Luma of a pixel of the 4 x 4 around and in the quad; a quad that is not there or unknown is like this one.
     let pixel = |x: i32, y: i32| {
         let at = quad.as_ivec2() * 2 + IVec2::new(x, y);
         let cell = texel_of(at.div_euclid(IVec2::splat(2)), quads).map(|i| known[i]);
-        let l = cell.filter(|c| c[3] != 0).map_or(own, |c| lumas(c[0]));
+        let l = cell
+            .filter(|c| c[1] & KNOWN != 0)
+            .map_or(own, |c| lumas(c[0]));
         let within = at.rem_euclid(IVec2::splat(2));
         l[(within.x + 2 * within.y) as usize]
     };
@@ -183,7 +193,7 @@ pub(super) fn rates(
     settings: &Settings,
     seen: &Seen,
     camera: &Camera,
-    known: &[[u32; 4]],
+    known: &[[u32; 2]],
     probe: Probe,
 ) -> Vec<u32> {
     let quads = seen.quads();
@@ -195,7 +205,8 @@ pub(super) fn rates(
             let cell = known[(quad.y * quads.x + quad.x) as usize];
             let probed =
                 quad.x & probe.mask == probe.class[0] && quad.y & probe.mask == probe.class[1];
-            let notes = if probed { PROBED } else { 0 } | if cell[3] == 0 { UNKNOWN } else { 0 };
+            let notes =
+                if probed { PROBED } else { 0 } | if cell[1] & KNOWN == 0 { UNKNOWN } else { 0 };
             if notes != 0 {
                 return (0, notes);
             }
@@ -262,17 +273,30 @@ pub(super) fn extent(rate: u32) -> UVec2 {
     }
 }
 
-/// The samples of a mask, `x | y << 16` of their upper left pixels, sorted.
+/// The samples of a mask, packed as in `rates.wgsl`, sorted.
 pub(super) fn samples(mask: &[u32], size: UVec2) -> Vec<u32> {
     let across = size.x.div_ceil(2);
     let mut samples: Vec<u32> = (0..size.y)
         .flat_map(|y| (0..size.x).map(move |x| UVec2::new(x, y)))
-        .filter(|t| {
-            let extent = extent(mask[(t.y / 2 * across + t.x / 2) as usize]);
-            t.x % extent.x == 0 && t.y % extent.y == 0
+        .filter_map(|t| {
+            let rate = mask[(t.y / 2 * across + t.x / 2) as usize] & 7;
+            (t % extent(rate) == UVec2::ZERO).then(|| packed(t, rate))
         })
-        .map(|t| t.x | t.y << 16)
         .collect();
     samples.sort_unstable();
     samples
+}
+
+/// A sample in one word.
+fn packed(texel: UVec2, rate: u32) -> u32 {
+    let [quad, within] = [texel / 2, texel % 2];
+    let column = if rate == 7 { 1 } else { within.x };
+    quad.x | quad.y << 14 | column << 28 | within.y << 29 | (rate & 3) << 30
+}
+
+/// The upper left pixel of a sample in one word.
+pub(super) fn first_pixel(sample: u32) -> UVec2 {
+    let quad = UVec2::new(sample & 0x3fff, sample >> 14 & 0x3fff);
+    let wide = sample >> 30 & 1;
+    quad * 2 + UVec2::new((sample >> 28 & 1) & !wide, sample >> 29 & 1)
 }
