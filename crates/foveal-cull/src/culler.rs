@@ -1,7 +1,8 @@
 //! The culler: one depth buffer, one frame at a time.
 
 use crate::depth::{DepthBuffer, EMPTY, SAMPLES, decode};
-use crate::query::answer::{Flat, Frame, Query};
+use crate::query::answer::{Frame, Query};
+use crate::query::flat::Flat;
 use crate::query::tree::{OccludeeTree, Walk};
 use crate::raster::frame::{Draw, FrameScratch};
 use crate::raster::select::Choice;

@@ -202,11 +202,13 @@ impl DepthBuffer {
     /// Code of one pixel.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> i16 {
         let b = (y / BLOCK * self.blocks_x + x / BLOCK) as usize;
-        if self.state[b] == STATE_EMPTY {
-            return EMPTY;
-        }
         let i = (y % BLOCK * BLOCK + x % BLOCK) as usize;
-        self.depth[b].0[i]
+        let depth = self.depth[b].0[i];
+        if self.state[b] == STATE_EMPTY {
+            EMPTY
+        } else {
+            depth
+        }
     }
 }
 

@@ -2,12 +2,12 @@
 
 use super::faces::Planes;
 use super::near::{Clipped, clip_box};
-use super::project::{Boxes8, Coarse, Projected8, ROUNDING, Screen, project};
+use super::project::{Boxes8, Coarse, Projected8, ROUNDING, Screen};
 use super::test::{PixelRect, hidden};
 use crate::depth::{DepthBuffer, SAMPLES, encode};
-use crate::simd::{Kernel, Lanes};
+use crate::simd::Lanes;
 use crate::view::{Camera, frustum_planes};
-use crate::{Aabb, View, Visibility};
+use crate::{View, Visibility};
 use glam::{DVec3, Vec3};
 
 /// Boxes grow by this on the screen before they are tested, samples: their rectangles then touch every pixel
@@ -39,7 +39,7 @@ pub(crate) struct Query<'a> {
     /// For a result that holds around the eye.
     around: Option<Around>,
     /// For boxes whose rectangle does not say enough; only for one eye at its exact place.
-    planes: Option<Planes>,
+    pub(super) planes: Option<Planes>,
 }
 
 impl<'a> Query<'a> {
@@ -116,13 +116,7 @@ impl<'a> Query<'a> {
         if !self.occlusion {
             return Visibility::Visible;
         }
-        let rect = PixelRect {
-            x0: p.pixels[0][i] as u32,
-            y0: p.pixels[1][i] as u32,
-            x1: p.pixels[2][i] as u32,
-            y1: p.pixels[3][i] as u32,
-        };
-        let code = p.code[i].clamp(-32768, 32767) as i16;
+        let (rect, code) = rectangle(p, i);
         // Of a large group the members had better be asked.
         let [x0, y0, x1, y1] = rect.blocks();
         if !object && (x1 - x0 + 1) * (y1 - y0 + 1) > GROUP_BLOCKS {
@@ -143,6 +137,34 @@ impl<'a> Query<'a> {
             }
         }
         self.answer_rect(l, rect, code, place)
+    }
+
+    /// Whether a code lies before all that is known in a pixel.
+    #[inline(always)]
+    pub(super) fn before(&self, x: i32, y: i32, code: i32) -> bool {
+        code > i32::from(self.buffer.pixel(x as u32, y as u32))
+    }
+
+    /// Whether frustum and summary alone tell what most boxes are.
+    #[inline(always)]
+    pub(super) fn is_plain(&self) -> bool {
+        self.occlusion && self.around.is_none() && self.small <= 0.0 && self.screen.coarse.is_some()
+    }
+
+    /// Answers for a box of which a look at its middle says nothing, in plain frames.
+    #[inline(always)]
+    pub(super) fn answer_open<L: Lanes>(
+        &self,
+        l: L,
+        p: &Projected8,
+        i: usize,
+        boxes: &Boxes8,
+    ) -> Visibility {
+        if p.crossing >> i & 1 != 0 {
+            return self.answer_crossing(l, i, boxes);
+        }
+        let (rect, code) = rectangle(p, i);
+        self.answer_rect(l, rect, code, Some(place(boxes, i)))
     }
 
     #[inline(always)]
@@ -242,6 +264,14 @@ struct Around {
     clamp_depth: f32,
 }
 
+/// The rectangle of one of eight, and the code of its depth.
+#[inline(always)]
+fn rectangle(p: &Projected8, i: usize) -> (PixelRect, i16) {
+    let [x0, y0, x1, y1] = p.pixels.map(|v| v[i] as u32);
+    let code = p.code[i].clamp(-32768, 32767) as i16;
+    (PixelRect { x0, y0, x1, y1 }, code)
+}
+
 /// Centre and half extent of one of eight.
 #[inline(always)]
 fn place(boxes: &Boxes8, i: usize) -> (Vec3, Vec3) {
@@ -251,75 +281,4 @@ fn place(boxes: &Boxes8, i: usize) -> (Vec3, Vec3) {
         Vec3::new(cx[i], cy[i], cz[i]),
         Vec3::new(hx[i], hy[i], hz[i]),
     )
-}
-
-/// All boxes, eight at a time.
-pub(crate) struct Flat<'a> {
-    pub(crate) query: &'a Query<'a>,
-    pub(crate) boxes: &'a [Aabb],
-    pub(crate) results: &'a mut [Visibility],
-}
-
-/// Groups of eight that are projected before any of them is looked at one by one: what is to be done there cannot
-/// be foreseen, and a wrong guess must not throw away what was begun for the next group.
-const AHEAD: usize = 16;
-
-impl Kernel for Flat<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, l: L) {
-        let (whole, rest) = self.boxes.as_chunks::<8>();
-        let (results, last) = self.results.split_at_mut(whole.len() * 8);
-        let (results, _) = results.as_chunks_mut::<8>();
-        let mut eights = [Boxes8::NONE; AHEAD];
-        let mut projected = [Projected8::NONE; AHEAD];
-        for (groups, results) in whole.chunks(AHEAD).zip(results.chunks_mut(AHEAD)) {
-            for ((boxes, eight), p) in groups.iter().zip(&mut eights).zip(&mut projected) {
-                *eight = Boxes8::of(l, boxes);
-                *p = project(l, &self.query.screen, eight);
-            }
-            for ((eight, p), results) in eights.iter().zip(&projected).zip(results) {
-                self.query.answer_eight(l, eight, p, results);
-            }
-        }
-        if !rest.is_empty() {
-            let mut boxes = [Aabb::EMPTY; 8];
-            boxes[..rest.len()].copy_from_slice(rest);
-            let mut results = [Visibility::Visible; 8];
-            let eight = Boxes8::of(l, &boxes);
-            let p = project(l, &self.query.screen, &eight);
-            self.query.answer_eight(l, &eight, &p, &mut results);
-            last.copy_from_slice(&results[..rest.len()]);
-        }
-    }
-}
-
-impl Query<'_> {
-    /// What most boxes are is known for all eight at once; the others are looked at one by one.
-    #[inline(always)]
-    fn answer_eight<L: Lanes>(
-        &self,
-        l: L,
-        eight: &Boxes8,
-        p: &Projected8,
-        results: &mut [Visibility; 8],
-    ) {
-        let mut open = 0xffu32;
-        if self.around.is_none() && self.small <= 0.0 {
-            open &= !(p.outside | p.hidden);
-            for (i, r) in results.iter_mut().enumerate() {
-                *r = if p.outside >> i & 1 != 0 {
-                    Visibility::Outside
-                } else {
-                    Visibility::Occluded
-                };
-            }
-        }
-        while open != 0 {
-            let i = open.trailing_zeros() as usize;
-            open &= open - 1;
-            results[i] = self.answer(l, p, i, eight, true);
-        }
-    }
 }

@@ -6,6 +6,7 @@
 //! the ray misses the box.
 
 use crate::depth::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, encode};
+use crate::query::project::Boxes8;
 use crate::simd::Lanes;
 use crate::view::Camera;
 use glam::{DMat3, DVec3, Vec3};
@@ -148,6 +149,40 @@ impl Planes {
             None => 1.0 / enter,
             Some(_) => 1.0 - enter,
         })
+    }
+
+    /// The same for eight boxes in perspective views, each at its own pixel.
+    #[inline(always)]
+    pub(crate) fn entries<L: Lanes>(
+        &self,
+        l: L,
+        pixels: [&[i32; 8]; 2],
+        boxes: &Boxes8,
+    ) -> Option<[i32; 8]> {
+        if self.per_metre.is_some() {
+            return None;
+        }
+        let [x, y] = pixels.map(|v| l.load(&v.map(|v| (v as f32 + 0.5) * SAMPLES as f32)));
+        let (one, mut enter, mut leave) = (l.splat(1.0), l.splat(0.0), l.splat(f32::INFINITY));
+        for (axis, a) in self.axes.iter().enumerate() {
+            let depth = l.add(
+                l.add(l.mul(l.splat(a.x), x), l.mul(l.splat(a.y), y)),
+                l.splat(a.at_zero),
+            );
+            let per_depth = l.div(one, depth);
+            let center = l.add(l.load(&boxes.center[axis]), l.splat(self.from_eye[axis]));
+            let half = l.load(&boxes.half[axis]);
+            let (lo, hi) = (
+                l.mul(l.sub(center, half), per_depth),
+                l.mul(l.add(center, half), per_depth),
+            );
+            enter = l.max(enter, l.min(lo, hi));
+            leave = l.min(leave, l.max(lo, hi));
+        }
+        let depth = l.select(l.lt(enter, leave), l.div(one, enter), l.splat(0.0));
+        let mut codes = [0; 8];
+        l.istore(l.codes(depth), &mut codes);
+        Some(codes)
     }
 
     #[inline(always)]

@@ -118,7 +118,7 @@ pub(crate) struct Screen<'a> {
 /// The summary of a finished depth buffer.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Coarse<'a> {
-    buffer: &'a DepthBuffer,
+    pub(super) buffer: &'a DepthBuffer,
 }
 
 impl<'a> Coarse<'a> {
@@ -148,14 +148,23 @@ impl<'a> Coarse<'a> {
         let index = l.iadd(l.iadd(places, level), l.iadd(row, x0));
         let mut at = [0; 8];
         l.istore(index, &mut at);
-        // One by one: a gather takes several times as long.
-        let table = &self.buffer.coarse[..];
         let mut bits = 0;
         for i in 0..8 {
-            let known = table.get(at[i] as usize).copied().unwrap_or(EMPTY);
-            bits |= u32::from(codes[i] < i32::from(known)) << i;
+            bits |= u32::from(codes[i] < self.known(at[i])) << i;
         }
         bits
+    }
+
+    /// The farthest code at a place of the summary. One by one: a gather takes several times as long.
+    #[inline(always)]
+    pub(super) fn known(self, at: i32) -> i32 {
+        i32::from(
+            self.buffer
+                .coarse
+                .get(at as usize)
+                .copied()
+                .unwrap_or(EMPTY),
+        )
     }
 }
 
@@ -232,20 +241,36 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Project
         return p;
     };
     p.hidden = coarse.hides(l, clamped, &p.code) & l.movemask(beyond) & !p.outside;
-    let w = l.div(pixel, wc);
-    let x = l.mul(dot(l, &c, &s.rows[0]), w);
-    let y = l.mul(dot(l, &c, &s.rows[1]), w);
-    let z = l.mul(zc, l.mul(w, l.splat(SAMPLES as f32)));
-    l.istore(l.trunc(l.min(l.max(x, zero), right)), &mut p.middle[0]);
-    l.istore(l.trunc(l.min(l.max(y, zero), bottom)), &mut p.middle[1]);
-    // Beside the screen it says nothing.
+    p.middle = middles(l, s, boxes);
+    p
+}
+
+/// The pixel that each box's middle lies in, and the code of its depth; a very low one where that is not on the screen.
+#[inline(always)]
+pub(super) fn middles<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
+    let c = [
+        l.load(&boxes.center[0]),
+        l.load(&boxes.center[1]),
+        l.load(&boxes.center[2]),
+    ];
+    let [x, y, z, w] = four!(i => dot(l, &c, &s.rows[i]));
+    let (zero, one) = (l.splat(0.0), l.splat(1.0));
+    let behind = l.iandnot(l.lt(z, w), l.isplat(-1));
+    let w = l.div(l.splat(1.0 / SAMPLES as f32), w);
+    let (x, y) = (l.mul(x, w), l.mul(y, w));
+    let z = l.mul(z, l.mul(w, l.splat(SAMPLES as f32)));
+    let right = l.splat(s.width / SAMPLES as f32 - 1.0);
+    let bottom = l.splat(s.height / SAMPLES as f32 - 1.0);
     let beside = l.ior(
         l.ior(l.lt(x, zero), l.lt(l.add(right, one), x)),
         l.ior(l.lt(y, zero), l.lt(l.add(bottom, one), y)),
     );
-    let z = l.select(beside, zero, l.max(z, zero));
-    l.istore(l.codes(z), &mut p.middle[2]);
-    p
+    let z = l.select(l.ior(behind, beside), zero, l.max(z, zero));
+    let mut middle = [[0; 8]; 3];
+    l.istore(l.trunc(l.min(l.max(x, zero), right)), &mut middle[0]);
+    l.istore(l.trunc(l.min(l.max(y, zero), bottom)), &mut middle[1]);
+    l.istore(l.codes(z), &mut middle[2]);
+    middle
 }
 
 #[inline(always)]

@@ -66,11 +66,12 @@ pub(crate) fn hidden<L: Lanes>(
     let [bx0, by0, bx1, by1] = rect.blocks();
     for by in by0..=by1 {
         let row = (by * buffer.blocks_x) as usize;
-        for bx in bx0..=bx1 {
-            let b = row + bx as usize;
-            if code < buffer.min[b] {
+        let farthest = &buffer.min[row + bx0 as usize..=row + bx1 as usize];
+        for (bx, min) in (bx0..).zip(farthest) {
+            if code < *min {
                 continue;
             }
+            let b = row + bx as usize;
             let here = rect.bits(bx, by);
             let depth = if buffer.state[b] == STATE_EMPTY {
                 l.dsplat(crate::depth::EMPTY)
@@ -104,7 +105,7 @@ pub(crate) fn hidden<L: Lanes>(
             let Some(faces) = &faces else {
                 return false;
             };
-            if faces.seen(l, bx, by, seen, buffer.min[b], depth) {
+            if faces.seen(l, bx, by, seen, *min, depth) {
                 return false;
             }
         }

@@ -1,6 +1,7 @@
 //! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods sound.
 
 use super::portable::SAMPLE_ROWS;
+use super::wide::Twice;
 use super::{Kernel, Lanes, four, two};
 use crate::Aabb;
 use crate::depth::CODE_OFFSET;
@@ -46,6 +47,12 @@ impl Lanes for Avx2 {
     type D = [__m256i; 4];
     type R = [__m256; 4];
     type P = [__m256i; 4];
+    type W = Twice<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
 
     #[inline(always)]
     fn splat(self, v: f32) -> __m256 {
@@ -182,6 +189,10 @@ impl Lanes for Avx2 {
                 _mm256_setzero_si256(),
             )
         })
+    }
+    #[inline(always)]
+    fn iload(self, v: &[i32; 8]) -> __m256i {
+        avx2!(_mm256_loadu_si256(v.as_ptr().cast()))
     }
     #[inline(always)]
     fn istore(self, v: __m256i, to: &mut [i32; 8]) {

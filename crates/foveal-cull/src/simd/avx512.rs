@@ -61,6 +61,12 @@ impl Lanes for Avx512 {
     type D = [__m512i; 2];
     type R = [__m512; 2];
     type P = [__m512i; 2];
+    type W = super::avx512x16::Wide512;
+
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        super::avx512x16::Wide512(self)
+    }
 
     as_avx2! {
     splat(v: f32) -> __m256;
@@ -91,6 +97,7 @@ impl Lanes for Avx512 {
     qlt(a: __m256d, b: __m256d) -> u32;
     qpick(v: __m256d, from: [u8; 4]) -> __m256d;
     qround(v: __m256d) -> [f32; 4];
+    iload(v: &[i32; 8]) -> __m256i;
     istore(v: __m256i, to: &mut [i32; 8]);
     unsure(from: __m256, to: __m256, error: f32) -> bool;
     turn(v: &[Aabb; 8]) -> [__m256; 6];

@@ -7,6 +7,7 @@
 use crate::Aabb;
 
 pub(crate) mod portable;
+pub(crate) mod wide;
 
 #[cfg(target_arch = "x86_64")]
 #[allow(
@@ -20,6 +21,12 @@ pub(crate) mod avx2;
     reason = "as for AVX2; held to the portable twin by the same tests"
 )]
 pub(crate) mod avx512;
+#[cfg(target_arch = "x86_64")]
+#[allow(
+    unsafe_code,
+    reason = "as for AVX2; held to the portable twin by the same tests"
+)]
+mod avx512x16;
 #[cfg(target_arch = "x86_64")]
 #[allow(
     unsafe_code,
@@ -54,7 +61,6 @@ macro_rules! four {
 pub(crate) use four;
 
 /// `[e(0), e(1)]`, as [`four!`].
-#[cfg(target_arch = "x86_64")]
 macro_rules! two {
     ($k:ident => $e:expr) => {
         [
@@ -69,7 +75,6 @@ macro_rules! two {
         ]
     };
 }
-#[cfg(target_arch = "x86_64")]
 pub(crate) use two;
 
 /// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.
@@ -148,6 +153,10 @@ pub(crate) trait Lanes: Copy {
     type R: Copy;
     /// 16 x u64: a block's samples, a plane per place in a pixel (4 times its column, plus its row).
     type P: Copy;
+    /// Sixteen lanes.
+    type W: wide::Wide;
+
+    fn wide(self) -> Self::W;
 
     fn splat(self, v: f32) -> Self::F;
     fn load(self, v: &[f32; 8]) -> Self::F;
@@ -183,6 +192,7 @@ pub(crate) trait Lanes: Copy {
     fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
     /// How many bits a number from 0 to 2^24 has.
     fn ibits(self, a: Self::I) -> Self::I;
+    fn iload(self, v: &[i32; 8]) -> Self::I;
     fn istore(self, v: Self::I, to: &mut [i32; 8]);
     fn isub(self, a: Self::I, b: Self::I) -> Self::I;
     fn iand(self, a: Self::I, b: Self::I) -> Self::I;

@@ -1,6 +1,7 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
 use super::Lanes;
+use super::wide::Twice;
 use crate::Aabb;
 use crate::depth::CODE_OFFSET;
 use core::array::from_fn;
@@ -52,6 +53,12 @@ impl Lanes for Portable {
     type D = [i16; 64];
     type R = [f32; 32];
     type P = [u64; 16];
+    type W = Twice<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
 
     #[inline(always)]
     fn splat(self, v: f32) -> Self::F {
@@ -151,6 +158,10 @@ impl Lanes for Portable {
     #[inline(always)]
     fn ibits(self, a: Self::I) -> Self::I {
         a.map(|v| (32 - v.leading_zeros()) as i32)
+    }
+    #[inline(always)]
+    fn iload(self, v: &[i32; 8]) -> Self::I {
+        *v
     }
     #[inline(always)]
     fn istore(self, v: Self::I, to: &mut [i32; 8]) {

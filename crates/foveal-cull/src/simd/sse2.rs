@@ -2,6 +2,7 @@
 //! use them. All else is as the portable lanes have it.
 
 use super::portable::{Portable, SAMPLE_ROWS};
+use super::wide::Twice;
 use super::{Lanes, four};
 use crate::Aabb;
 use crate::depth::CODE_OFFSET;
@@ -47,6 +48,12 @@ impl Lanes for Sse2 {
     type D = [__m128i; 8];
     type R = [__m128; 8];
     type P = [u64; 16];
+    type W = Twice<Self>;
+
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
 
     as_portable! {
     splat(v: f32) -> [f32; 8];
@@ -72,6 +79,7 @@ impl Lanes for Sse2 {
     imul(a: [i32; 8], b: [i32; 8]) -> [i32; 8];
     ishr(a: [i32; 8], by: [i32; 8]) -> [i32; 8];
     ibits(a: [i32; 8]) -> [i32; 8];
+    iload(v: &[i32; 8]) -> [i32; 8];
     istore(v: [i32; 8], to: &mut [i32; 8]);
     isub(a: [i32; 8], b: [i32; 8]) -> [i32; 8];
     iand(a: [i32; 8], b: [i32; 8]) -> [i32; 8];

@@ -1,0 +1,252 @@
+//! All boxes one after the other.
+//!
+//! A first look at sixteen at a time tells what most of them are. What is to be done with the others cannot be foreseen,
+//! and a wrong guess throws away what was begun. So at each step those that are left are put into a list without a
+//! branch, and the list is gone through by itself.
+
+use super::answer::Query;
+use super::project::{Boxes8, Projected8, middles as middles_of, project};
+use super::sift::{Sieve, Sifted16};
+use crate::simd::{Kernel, Lanes};
+use crate::{Aabb, Visibility};
+
+/// Boxes against a frame.
+pub(crate) struct Flat<'a> {
+    pub(crate) query: &'a Query<'a>,
+    pub(crate) boxes: &'a [Aabb],
+    pub(crate) results: &'a mut [Visibility],
+}
+
+/// Groups of eight that are looked at together.
+const GROUPS: usize = 16;
+const BOXES: usize = 8 * GROUPS;
+
+/// Answers for eight boxes of which none is seen: by a bit for each that is outside.
+const TOLD: [[Visibility; 8]; 256] = {
+    let mut told = [[Visibility::Occluded; 8]; 256];
+    let mut n = 0;
+    while n < 256 * 8 {
+        if (n / 8) >> (n % 8) & 1 != 0 {
+            told[n / 8][n % 8] = Visibility::Outside;
+        }
+        n += 1;
+    }
+    told
+};
+
+/// The numbers of the bits that are set in a byte, a byte each.
+const BITS: [u64; 256] = {
+    let mut bits = [0; 256];
+    let mut n = 0;
+    while n < 256 {
+        let (mut i, mut count) = (0, 0);
+        while i < 8 {
+            if n >> i & 1 != 0 {
+                bits[n] |= i << (8 * count);
+                count += 1;
+            }
+            i += 1;
+        }
+        n += 1;
+    }
+    bits
+};
+
+/// Boxes that are left: their numbers.
+struct List {
+    numbers: [u8; BOXES + 8],
+    count: usize,
+}
+
+impl List {
+    const NONE: Self = Self {
+        numbers: [0; BOXES + 8],
+        count: 0,
+    };
+
+    /// Adds those of group `g` whose bit is set.
+    #[inline(always)]
+    fn add_eight(&mut self, g: usize, wanted: usize) {
+        let numbers = BITS[wanted] + g as u64 * 0x0808_0808_0808_0808;
+        if let Some(to) = self.numbers[self.count..].first_chunk_mut() {
+            *to = numbers.to_le_bytes();
+        }
+        self.count += wanted.count_ones() as usize;
+    }
+
+    /// Drops numbers from `end` on, which come last.
+    #[inline(always)]
+    fn end(&mut self, end: usize) {
+        while self.count > 0 && usize::from(self.numbers[self.count - 1]) >= end {
+            self.count -= 1;
+        }
+    }
+
+    /// Adds a box if `wanted`.
+    #[inline(always)]
+    fn add(&mut self, n: usize, wanted: bool) {
+        self.numbers[self.count] = n as u8;
+        self.count += usize::from(wanted);
+    }
+}
+
+/// Working memory for some boxes.
+struct Work {
+    boxes: [Aabb; BOXES],
+    results: [Visibility; BOXES],
+    sifted: [Sifted16; BOXES / 16],
+    left: List,
+    open: List,
+    copies: [[Aabb; 8]; GROUPS],
+    eights: [Boxes8; GROUPS],
+    middles: [[[i32; 8]; 3]; GROUPS],
+    projected: [Projected8; GROUPS],
+}
+
+impl Work {
+    const NEW: Self = Self {
+        boxes: [Aabb::EMPTY; BOXES],
+        results: [Visibility::Visible; BOXES],
+        sifted: [Sifted16::NONE; BOXES / 16],
+        left: List::NONE,
+        open: List::NONE,
+        copies: [[Aabb::EMPTY; 8]; GROUPS],
+        eights: [Boxes8::NONE; GROUPS],
+        middles: [[[0; 8]; 3]; GROUPS],
+        projected: [Projected8::NONE; GROUPS],
+    };
+}
+
+impl Kernel for Flat<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let query = self.query;
+        let sieve = query
+            .is_plain()
+            .then(|| Sieve::new(&query.screen))
+            .flatten();
+        let mut work = Work::NEW;
+        for (boxes, results) in self.boxes.chunks(BOXES).zip(self.results.chunks_mut(BOXES)) {
+            work.boxes[..boxes.len()].copy_from_slice(boxes);
+            query.answer_all(l, sieve.as_ref(), boxes.len(), &mut work);
+            results.copy_from_slice(&work.results[..results.len()]);
+        }
+    }
+}
+
+impl Query<'_> {
+    /// Answers for the first `count` boxes.
+    #[inline(always)]
+    fn answer_all<L: Lanes>(&self, l: L, sieve: Option<&Sieve<'_>>, count: usize, work: &mut Work) {
+        work.left.count = 0;
+        if let Some(sieve) = sieve {
+            sift_all(l, sieve, count, work);
+            work.left.end(count);
+            self.keep_open(l, work);
+        } else {
+            (0..count).for_each(|n| work.left.add(n, true));
+        }
+        // The others exactly.
+        let list = &work.left.numbers[..work.left.count];
+        let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
+        let projected = &mut work.projected[..groups];
+        for (p, eight) in projected.iter_mut().zip(&work.eights) {
+            *p = project(l, &self.screen, eight);
+        }
+        work.open.count = 0;
+        for (g, (p, eight)) in projected.iter().zip(&work.eights).enumerate() {
+            // Where the rays through their middles enter them.
+            let [x, y, _] = &p.middle;
+            let planes = self.planes.as_ref().filter(|_| sieve.is_some());
+            let entries = planes.and_then(|planes| planes.entries(l, [x, y], eight));
+            let told = p.outside | p.hidden;
+            for (i, n) in list[8 * g..].iter().take(8).enumerate() {
+                let outside = p.outside >> i & 1 != 0;
+                let told = told >> i & 1 != 0;
+                let seen = entries.is_some_and(|codes| self.before(x[i], y[i], codes[i]));
+                work.results[usize::from(*n)] = if outside {
+                    Visibility::Outside
+                } else if told {
+                    Visibility::Occluded
+                } else {
+                    Visibility::Visible
+                };
+                work.open.add(8 * g + i, sieve.is_none() | !(told | seen));
+            }
+        }
+        for &k in &work.open.numbers[..work.open.count] {
+            let (g, i) = (usize::from(k) / 8, usize::from(k) % 8);
+            let n = usize::from(list[usize::from(k)]);
+            let (p, eight) = (&projected[g], &work.eights[g]);
+            work.results[n] = if sieve.is_some() {
+                self.answer_open(l, p, i, eight)
+            } else {
+                self.answer(l, p, i, eight, true)
+            };
+        }
+    }
+
+    /// Of the boxes that are left most are simply seen, in the middle. Lists the others.
+    #[inline(always)]
+    fn keep_open<L: Lanes>(&self, l: L, work: &mut Work) {
+        let list = &work.left.numbers[..work.left.count];
+        let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
+        let middles = &mut work.middles[..groups];
+        for (middle, eight) in middles.iter_mut().zip(&work.eights) {
+            *middle = middles_of(l, &self.screen, eight);
+        }
+        work.open.count = 0;
+        for (k, n) in list.iter().enumerate() {
+            let ([x, y, code], i) = (&middles[k / 8], k % 8);
+            work.results[usize::from(*n)] = Visibility::Visible;
+            work.open
+                .add(usize::from(*n), !self.before(x[i], y[i], code[i]));
+        }
+        core::mem::swap(&mut work.left, &mut work.open);
+    }
+}
+
+/// Groups of eight from the boxes of a list; gives how many.
+#[inline(always)]
+fn copy<L: Lanes>(
+    l: L,
+    boxes: &[Aabb; BOXES],
+    list: &[u8],
+    copies: &mut [[Aabb; 8]; GROUPS],
+    eights: &mut [Boxes8; GROUPS],
+) -> usize {
+    for (copy, n) in copies.as_flattened_mut().iter_mut().zip(list) {
+        *copy = boxes[usize::from(*n)];
+    }
+    let groups = list.len().div_ceil(8);
+    for (copies, eight) in copies[..groups].iter().zip(eights) {
+        *eight = Boxes8::of(l, copies);
+    }
+    groups
+}
+
+/// Answers for what a first look at the first `count` boxes tells, and lists the others.
+#[inline(always)]
+fn sift_all<L: Lanes>(l: L, sieve: &Sieve<'_>, count: usize, work: &mut Work) {
+    let w = l.wide();
+    let (boxes, _) = work.boxes.as_chunks::<16>();
+    let (results, _) = work.results.as_chunks_mut::<8>();
+    let (results, _) = results.as_chunks_mut::<2>();
+    let sifted = &mut work.sifted[..count.div_ceil(16)];
+    for (sifted, boxes) in sifted.iter_mut().zip(boxes) {
+        *sifted = sieve.sift(w, boxes);
+    }
+    for sifted in &mut *sifted {
+        sifted.look_up(sieve.coarse);
+    }
+    for ((g, sifted), results) in sifted.iter().enumerate().zip(results) {
+        let told = sifted.outside | sifted.hidden(w);
+        for (half, results) in results.iter_mut().enumerate() {
+            let bits = |mask: u32| (mask >> (8 * half)) as usize % 256;
+            *results = TOLD[bits(sifted.outside)];
+            work.left.add_eight(2 * g + half, bits(!told));
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! A first look at sixteen boxes: a rectangle on the screen that holds theirs, against the summary of the buffer.
+//!
+//! Exact rectangles need eight divisions a box. Here a box is taken for its reach along each axis of the screen, at the
+//! distances of its nearest and its farthest point: two divisions, and most boxes are told from that. What it hides,
+//! the exact rectangle would be hidden by too; the others are projected anew.
+
+use super::project::{Coarse, ROUNDING, Screen};
+use crate::Aabb;
+use crate::depth::BLOCK_SAMPLES;
+use crate::simd::four;
+use crate::simd::wide::Wide;
+
+/// What boxes are sifted with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sieve<'a> {
+    /// As those of the screen, but X and Y are blocks from its middle.
+    rows: [[f32; 4]; 4],
+    /// Half the screen, blocks.
+    middle: [f32; 2],
+    dilate: f32,
+    grow: f32,
+    far_depth: f32,
+    pub(super) coarse: Coarse<'a>,
+}
+
+/// What is known of sixteen boxes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Sifted16 {
+    /// Code of a depth in front of which there is nothing of the box.
+    code: [i32; 16],
+    /// Its place in the summary, and what is known there.
+    at: [i32; 16],
+    /// Bit per box: certainly outside the frustum.
+    pub(crate) outside: u32,
+    /// Bit per box: certainly beyond the near plane.
+    beyond: u32,
+}
+
+impl Sifted16 {
+    pub(crate) const NONE: Self = Self {
+        code: [0; 16],
+        at: [0; 16],
+        outside: 0,
+        beyond: 0,
+    };
+
+    /// Looks up what is known at the places.
+    #[inline(always)]
+    pub(crate) fn look_up(&mut self, coarse: Coarse<'_>) {
+        for at in &mut self.at {
+            *at = coarse.known(*at);
+        }
+    }
+
+    /// Bit per box: certainly behind what is known, which has been looked up.
+    #[inline(always)]
+    pub(crate) fn hidden<W: Wide>(&self, w: W) -> u32 {
+        let farther = w.isub(w.iload(&self.code), w.iload(&self.at));
+        w.negative(farther) & self.beyond
+    }
+}
+
+impl<'a> Sieve<'a> {
+    /// None where the screen has no summary.
+    pub(crate) fn new(screen: &Screen<'a>) -> Option<Self> {
+        let size = BLOCK_SAMPLES as f32;
+        let middle = [screen.width * 0.5, screen.height * 0.5];
+        let mut rows = screen.rows;
+        let distance = rows[3];
+        for (row, middle) in rows.iter_mut().zip(middle) {
+            for (v, w) in row.iter_mut().zip(distance) {
+                *v = (*v - middle * w) / size;
+            }
+        }
+        Some(Self {
+            rows,
+            middle: middle.map(|m| m / size),
+            dilate: screen.dilate / size,
+            grow: screen.grow,
+            far_depth: screen.far_depth,
+            coarse: screen.coarse?,
+        })
+    }
+
+    #[inline(always)]
+    pub(crate) fn sift<W: Wide>(&self, w: W, boxes: &[Aabb; 16]) -> Sifted16 {
+        let v = w.turn(boxes);
+        // Centres and half extents, grown as for exact rectangles.
+        let half = w.splat(0.5);
+        let [lo, hi] = [[v[0], v[1], v[2]], [v[3], v[4], v[5]]];
+        let (mut c, mut h, mut largest) = (lo, hi, w.splat(0.0));
+        let mut volume = !0;
+        for k in 0..3 {
+            let (low, high) = (w.mul(lo[k], half), w.mul(hi[k], half));
+            (c[k], h[k]) = (w.add(low, high), w.sub(high, low));
+            volume &= !w.lt(hi[k], lo[k]);
+            largest = w.max(largest, w.add(w.abs(c[k]), h[k]));
+        }
+        let grow = w.add(w.mul(largest, w.splat(2.0 * ROUNDING)), w.splat(self.grow));
+        for h in &mut h {
+            *h = w.add(*h, grow);
+        }
+        let center = four!(i => dot(w, &c, &self.rows[i]));
+        let reach = four!(i => reach(w, &h, &self.rows[i]));
+        let lo = four!(i => w.sub(center[i], reach[i]));
+        let hi = four!(i => w.add(center[i], reach[i]));
+        let one = w.splat(1.0);
+        let (near, far) = (w.div(one, lo[3]), w.div(one, hi[3]));
+        let behind = w.lt(hi[3], lo[2]) & volume;
+        let beyond = w.lt(hi[2], lo[3]) & volume;
+        let depth = w.mul(w.mul(hi[2], near), w.splat(1.0 + 2e-6));
+        let [x0, y0] = [0, 1].map(|i| self.middle[i] - self.dilate);
+        let [x1, y1] = [0, 1].map(|i| self.middle[i] + self.dilate);
+        let x0 = w.add(w.min(w.mul(lo[0], near), w.mul(lo[0], far)), w.splat(x0));
+        let y0 = w.add(w.min(w.mul(lo[1], near), w.mul(lo[1], far)), w.splat(y0));
+        let x1 = w.add(w.max(w.mul(hi[0], near), w.mul(hi[0], far)), w.splat(x1));
+        let y1 = w.add(w.max(w.mul(hi[1], near), w.mul(hi[1], far)), w.splat(y1));
+        let zero = w.splat(0.0);
+        let [right, bottom] = [0, 1].map(|i| w.splat(2.0 * self.middle[i]));
+        let off = w.lt(x1, zero) | w.lt(right, x0) | w.lt(y1, zero) | w.lt(bottom, y0);
+        let off = beyond & (off | w.lt(depth, w.splat(self.far_depth)));
+        let last = [
+            self.coarse.buffer.blocks_x as f32 - 1.0,
+            self.coarse.buffer.blocks_y as f32 - 1.0,
+        ];
+        let blocks = four!(i => {
+            let v = [x0, y0, x1, y1][i];
+            w.trunc(w.min(w.max(v, zero), w.splat(last[i % 2])))
+        });
+        let mut sifted = Sifted16::NONE;
+        w.istore(self.place(w, blocks), &mut sifted.at);
+        w.istore(w.codes(w.max(depth, zero)), &mut sifted.code);
+        sifted.outside = behind | off;
+        sifted.beyond = beyond;
+        sifted
+    }
+}
+
+impl Sieve<'_> {
+    /// Where the summary tells of rectangles of blocks (left, top, right, bottom, inclusive), as [`Coarse::hides`].
+    #[inline(always)]
+    fn place<W: Wide>(&self, w: W, blocks: [W::I; 4]) -> W::I {
+        let buffer = self.coarse.buffer;
+        let one = w.isplat(1);
+        let [x0, y0, x1, y1] = blocks;
+        let span = w.imax(w.isub(x1, x0), w.isub(y1, y0));
+        let up = w.ibits(w.imax(w.isub(span, one), w.isplat(0)));
+        let [x0, y0, x1, y1] = four!(i => w.ishr([x0, y0, x1, y1][i], up));
+        let right = w.imin(w.isub(x1, x0), one);
+        let below = w.imin(w.isub(y1, y0), one);
+        let part = w.isplat((buffer.coarse.len() / 4) as i32);
+        let places = w.imul(w.iadd(right, w.iadd(below, below)), part);
+        let level = w.imul(up, w.isplat(buffer.min.len() as i32));
+        let row = w.imul(y0, w.isplat(buffer.blocks_x as i32));
+        w.iadd(w.iadd(places, level), w.iadd(row, x0))
+    }
+}
+
+#[inline(always)]
+fn dot<W: Wide>(w: W, c: &[W::F; 3], r: &[f32; 4]) -> W::F {
+    w.add(
+        w.add(w.mul(c[0], w.splat(r[0])), w.mul(c[1], w.splat(r[1]))),
+        w.add(w.mul(c[2], w.splat(r[2])), w.splat(r[3])),
+    )
+}
+
+#[inline(always)]
+fn reach<W: Wide>(w: W, h: &[W::F; 3], r: &[f32; 4]) -> W::F {
+    w.add(
+        w.add(
+            w.mul(h[0], w.splat(r[0].abs())),
+            w.mul(h[1], w.splat(r[1].abs())),
+        ),
+        w.mul(h[2], w.splat(r[2].abs())),
+    )
+}
