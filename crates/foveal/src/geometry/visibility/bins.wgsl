@@ -42,6 +42,8 @@ var<workgroup> starts: array<u32, 256>;
 // What a thread finds at its 2 x 2 pixels: material + 1, or 0 where nothing is, or where the pixel is another's to stand
 // for.
 struct Quad {
+    // Pixels to look at: all, or none. A loop of none costs nothing, a branch that none takes does.
+    count: u32,
     keys: array<u32, 4>,
     // The surface is read, but nothing is seen.
     empty: array<bool, 4>,
@@ -54,10 +56,11 @@ fn texel_of(quad: vec2u, i: u32) -> vec2u {
 fn keys_of(quad: vec2u) -> Quad {
     let rate = rate_at(quad);
     var found: Quad;
+    found.count = select(0u, 4u, has_listed(quad, rate));
     // Pixels side by side mostly show one instance, whose material is looked up once.
     var instance = 0u;
     var key = 0u;
-    for (var i = 0u; i < 4u; i++) {
+    for (var i = 0u; i < found.count; i++) {
         let texel = texel_of(quad, i);
         let there = all(texel < whole_size(identity));
         let read = there && is_read(texel, rate);
@@ -96,7 +99,7 @@ fn count_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocat
     let quad = keys_of(id.xy);
     var run_key = 0u;
     var run = 0u;
-    for (var i = 0u; i < 4u; i++) {
+    for (var i = 0u; i < quad.count; i++) {
         let key = quad.keys[i];
         if key != 0u && key != run_key && run > 0u {
             atomicAdd(&counts[slot_of(run_key)], run);
@@ -160,7 +163,7 @@ fn scatter_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invoc
     var within: array<u32, 4>;
     var run_key = 0u;
     var slot = 256u;
-    for (var i = 0u; i < 4u; i++) {
+    for (var i = 0u; i < quad.count; i++) {
         let key = quad.keys[i];
         if key != 0u {
             if key != run_key {
@@ -185,7 +188,7 @@ fn scatter_pixels(@builtin(global_invocation_id) id: vec3u, @builtin(local_invoc
         }
     }
     workgroupBarrier();
-    for (var i = 0u; i < 4u; i++) {
+    for (var i = 0u; i < quad.count; i++) {
         if slots[i] < 256u {
             let texel = texel_of(id.xy, i);
             pixels[starts[slots[i]] + within[i]] = texel.x | (texel.y << 16u);

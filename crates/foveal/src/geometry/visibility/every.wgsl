@@ -5,6 +5,11 @@ fn rate_at(quad: vec2u) -> u32 {
     return 0u;
 }
 
+// Whether any of a quad's pixels is listed or read.
+fn has_listed(quad: vec2u, rate: u32) -> bool {
+    return true;
+}
+
 fn is_listed(texel: vec2u, rate: u32) -> bool {
     return true;
 }

@@ -9,15 +9,23 @@ fn rate_at(quad: vec2u) -> u32 {
     return textureLoad(mask, quad, 0).x & CELL_LEVEL;
 }
 
-fn is_listed(texel: vec2u, level: u32) -> bool {
-    let block = texel >> vec2u(level);
-    var found = all(texel == sample_texel(block, level, 0u));
+// Whether a block is sampled within one of 2^shift pixels a side.
+fn is_sampled(block: vec2u, level: u32, within: vec2u, shift: u32) -> bool {
+    var found = all(within == sample_texel(block, level, 0u) >> vec2u(shift));
     if TYPICAL {
         for (var candidate = 1u; candidate < 5u; candidate++) {
-            found = found || all(texel == sample_texel(block, level, candidate));
+            found = found || all(within == sample_texel(block, level, candidate) >> vec2u(shift));
         }
     }
     return found;
+}
+
+fn has_listed(quad: vec2u, level: u32) -> bool {
+    return level == 0u || is_sampled((quad * 2u) >> vec2u(level), level, quad, 1u);
+}
+
+fn is_listed(texel: vec2u, level: u32) -> bool {
+    return is_sampled(texel >> vec2u(level), level, texel, 0u);
 }
 
 fn is_read(texel: vec2u, level: u32) -> bool {
