@@ -88,8 +88,10 @@ pub(crate) struct DepthBuffer {
     /// Farthest depth per block.
     pub(crate) min: Vec<i16>,
     pub(crate) state: Vec<u8>,
-    /// Pixels that the cluster being drawn must leave alone; all zero between clusters.
+    /// Pixels to which a border of the cluster being drawn comes too near; none between clusters.
     pub(crate) erased: Vec<u64>,
+    /// Farthest and nearest depth of these borders.
+    pub(crate) border: Vec<[i16; 2]>,
     /// How much was drawn into each row of blocks, in some unit: the next frame is split by it.
     pub(crate) work: Vec<u32>,
     /// Once a frame is complete: farthest depths of blocks, then of 2x2, 4x4, ... blocks up to the whole, each
@@ -114,6 +116,7 @@ impl DepthBuffer {
             min: vec![EMPTY; n],
             state: vec![STATE_EMPTY; n],
             erased: vec![0; n],
+            border: vec![[0; 2]; n],
             work: vec![0; blocks_y as usize],
             coarse: vec![EMPTY; 4 * n * levels as usize + 1],
         }
@@ -195,6 +198,7 @@ impl DepthBuffer {
             min: &mut self.min,
             state: &mut self.state,
             erased: &mut self.erased,
+            border: &mut self.border,
             work: &mut self.work,
         }
     }
@@ -237,6 +241,7 @@ pub(crate) struct Band<'a> {
     pub(crate) min: &'a mut [i16],
     pub(crate) state: &'a mut [u8],
     pub(crate) erased: &'a mut [u64],
+    pub(crate) border: &'a mut [[i16; 2]],
     pub(crate) work: &'a mut [u32],
 }
 
@@ -254,6 +259,19 @@ impl<'a> Band<'a> {
         true
     }
 
+    /// The pixels of a block that something from `far` to `near` must leave alone.
+    #[inline(always)]
+    pub(crate) fn erased(&self, i: usize, far: i16, near: i16) -> u64 {
+        let pixels = self.erased[i];
+        if pixels != 0 {
+            let [border_far, border_near] = self.border[i];
+            if (near < border_far) | (far > border_near) {
+                return 0;
+            }
+        }
+        pixels
+    }
+
     /// The first `rows` block rows, and the rest.
     pub(crate) fn split(self, rows: u32) -> (Band<'a>, Band<'a>) {
         let rows = rows.min(self.rows);
@@ -264,6 +282,7 @@ impl<'a> Band<'a> {
         let (m0, m1) = self.min.split_at_mut(at);
         let (s0, s1) = self.state.split_at_mut(at);
         let (e0, e1) = self.erased.split_at_mut(at);
+        let (r0, r1) = self.border.split_at_mut(at);
         let (w0, w1) = self.work.split_at_mut(rows as usize);
         (
             Band {
@@ -276,6 +295,7 @@ impl<'a> Band<'a> {
                 min: m0,
                 state: s0,
                 erased: e0,
+                border: r0,
                 work: w0,
             },
             Band {
@@ -288,6 +308,7 @@ impl<'a> Band<'a> {
                 min: m1,
                 state: s1,
                 erased: e1,
+                border: r1,
                 work: w1,
             },
         )

@@ -8,13 +8,13 @@ use super::{OccluderMesh, Vertices};
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// No triangle: beyond an edge that ends a mesh.
-pub(crate) const NONE: u8 = 255;
+/// No triangle: beyond an edge that ends a mesh. Numbers are less than 384.
+pub(crate) const NONE: u16 = 383;
 /// Most triangles of a ring, so that their numbers, from [`RING`] on, stay below [`NONE`].
-const MAX_TRIANGLES: usize = 127;
+const MAX_TRIANGLES: usize = 255;
 /// Where a ring's numbers begin; before it come the first triangles of the cluster's quads, then their second ones.
 pub(crate) const RING: usize = 128;
-const SECOND: u8 = 64;
+const SECOND: u16 = 64;
 /// Vertices of a cluster and its ring, so that a number fits a byte.
 const MAX_VERTICES: usize = 256;
 
@@ -26,10 +26,18 @@ pub(crate) struct Ring {
     pub(crate) vertex_count: u16,
     /// Groups of eight triangles; the first corner is the one alone on its side (on the cluster, or off it).
     pub(crate) first_group: u32,
-    pub(crate) triangle_count: u8,
+    pub(crate) triangle_count: u16,
     /// Edges with a vertex of the cluster.
     pub(crate) first_edge: u32,
     pub(crate) edges: u16,
+}
+
+/// An edge of a cluster or its ring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    /// On either side; [`NONE`] where there is no triangle.
+    pub(crate) triangles: [u16; 2],
+    pub(crate) vertices: [u8; 2],
 }
 
 /// The rings of a mesh, one per cluster.
@@ -38,8 +46,7 @@ pub(crate) struct Rings {
     pub(crate) rings: Vec<Ring>,
     pub(crate) vertices: Vertices,
     pub(crate) triangles: Vec<[[u8; 8]; 3]>,
-    /// Two triangles (or [`NONE`]), two vertices.
-    pub(crate) edges: Vec<[u8; 4]>,
+    pub(crate) edges: Vec<Edge>,
 }
 
 /// Which triangles meet where, by welded vertices.
@@ -126,9 +133,9 @@ pub(super) fn build(
         rings.triangles.len() as u32,
         rings.edges.len() as u32,
     );
-    let mut numbers: HashMap<[u32; 3], u8> = HashMap::new();
+    let mut numbers: HashMap<[u32; 3], u16> = HashMap::new();
     let mut twice = false;
-    for (n, [a, b, c, d]) in (0u8..).zip(quads) {
+    for (n, [a, b, c, d]) in (0u16..).zip(quads) {
         twice |= numbers.insert(name([a, b, c]), n).is_some();
         if c != d {
             twice |= numbers.insert(name([a, c, d]), n + SECOND).is_some();
@@ -153,7 +160,7 @@ pub(super) fn build(
                 continue;
             }
             others.extend(new);
-            numbers.insert(name(corners), (RING + around.len()) as u8);
+            numbers.insert(name(corners), (RING + around.len()) as u16);
             around.push(corners);
         }
     }
@@ -162,7 +169,7 @@ pub(super) fn build(
         own.binary_search(&v).ok().or_else(there).unwrap_or(0) as u8
     };
     let mut edges = Vec::new();
-    let mut all: Vec<([u32; 3], u8)> = numbers.iter().map(|(&t, &n)| (t, n)).collect();
+    let mut all: Vec<([u32; 3], u16)> = numbers.iter().map(|(&t, &n)| (t, n)).collect();
     all.sort_unstable_by_key(|&(_, n)| n);
     for &(t, n) in &all {
         for e in 0..3 {
@@ -173,10 +180,12 @@ pub(super) fn build(
             let beyond = near
                 .beyond(a, b)
                 .and_then(|i| numbers.get(&name(near.triangles[i as usize])));
-            match beyond {
-                None => edges.push([n, NONE, local(a), local(b)]),
-                Some(&other) if n < other => edges.push([n, other, local(a), local(b)]),
-                Some(_) => {}
+            let other = beyond.copied().unwrap_or(NONE);
+            if n < other {
+                edges.push(Edge {
+                    triangles: [n, other],
+                    vertices: [local(a), local(b)],
+                });
             }
         }
     }
@@ -209,7 +218,7 @@ pub(super) fn build(
         first_vertex,
         vertex_count: (others.len() + padding) as u16,
         first_group,
-        triangle_count: around.len() as u8,
+        triangle_count: around.len() as u16,
         first_edge,
         edges: edges.len() as u16,
     });

@@ -27,6 +27,7 @@ pub(crate) struct Plane {
     pub(crate) dy: f32,
     /// Farthest and nearest vertex.
     pub(crate) min: f32,
+    pub(crate) min_code: i16,
     pub(crate) max_code: i16,
 }
 
@@ -213,9 +214,10 @@ pub(crate) fn cover_full<L: Lanes>(l: L, band: &mut Band<'_>, bx: u32, by: u32, 
     }
     let mut d = depths(l, plane, bx, by);
     let state = band.state[i];
+    let erased = band.erased(i, plane.min_code, plane.max_code);
     let block = &mut band.depth[i].0;
-    if band.erased[i] != 0 {
-        d = l.dselect(band.erased[i], l.dsplat(EMPTY), d);
+    if erased != 0 {
+        d = l.dselect(erased, l.dsplat(EMPTY), d);
     }
     if state != STATE_EMPTY {
         d = l.dmax(d, l.dload(block));
@@ -245,6 +247,7 @@ pub(crate) fn cover_partial<L: Lanes>(
         return;
     }
     let d = depths(l, &polygon.plane, bx, by);
+    let erased = band.erased(i, polygon.plane.min_code, polygon.plane.max_code);
     let (left, top) = ((bx * BLOCK_SAMPLES) as f32, (by * BLOCK_SAMPLES) as f32);
     let (planes, center) = coverage(l, polygon, borders, exact, left, top);
     // From here on all but without a branch: hardly any of the questions has an answer that could be foreseen.
@@ -256,7 +259,7 @@ pub(crate) fn cover_partial<L: Lanes>(
     let old = l.dselect(known, l.dload(block), l.dsplat(EMPTY));
     // Only pixels where the polygon is nearer than what is proven already. Those that it covers alone need no
     // partner, and what they have so far stays apart from them.
-    let nearer = l.dgt(d, old) & !band.erased[i];
+    let nearer = l.dgt(d, old) & !erased;
     let alone = l.pall(planes) & center & nearer;
     let joined = (l.pany(planes) | center) & nearer & !alone;
     let new = l.dselect(alone, d, old);

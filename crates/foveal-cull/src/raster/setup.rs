@@ -96,6 +96,8 @@ pub(crate) struct Facing {
     pub(crate) two_sided: bool,
     /// Number of the cluster in its mesh.
     pub(crate) cluster: usize,
+    /// Its first and last block in the band, inclusive.
+    pub(crate) blocks: [u32; 4],
     /// For a result that holds around the eye.
     pub(crate) radius: Option<Radius>,
 }
@@ -354,6 +356,7 @@ pub(crate) fn draw_eight<L: Lanes>(
             dx: gx[i],
             dy: gy[i],
             min: (z_lo[i] - lower).max(0.0),
+            min_code: encode(z_lo[i] - lower),
             max_code: encode(z_hi[i]),
         };
         let blocks = [bx0[i] as u32, by0[i] as u32, bx1[i] as u32, by1[i] as u32];

@@ -6,14 +6,17 @@
 //! goes on in the direction in which e lies, until it crosses the ray from e to q, and q is hidden there too, or ends at
 //! the sheet's border. From m that part of the plane appears as a piece of a straight line that begins at q and, for
 //! what lies at depth d, is no longer than the shift of depth d. So a pixel is safe unless a border comes
-//! within its own shift of it; such pixels are erased: the cluster covers nothing there. (For the exact places of
-//! eyes, erosion by image has been done since Wonka et al. 2000; that inner edges need none is what makes it cheap.)
+//! within its own shift of it; such pixels are erased: the cluster covers nothing there. (Wonka et
+//! al. 2000 shrink occluders by as much; that inner edges need none of it is what keeps tessellated surfaces closed.)
 //!
 //! A border is an edge with the sheet on one side only: of the mesh, of a silhouette, of triangles too thin or too steep
 //! to say anything about. The ring's outer border needs no look: of the ring, only triangles count that are higher than
 //! the shift, from their corner on the cluster to the opposite edge (or the other way round). A function that is 0 on
 //! the cluster and 1 on the outer border changes by at most one per height, so that no way within the sheet
 //! from the one to the other is shorter.
+//!
+//! A border erases only what lies as deep as the sheet can be where that border is within reach of it; where the cluster folds,
+//! its farther part stays.
 //!
 //! Between samples the sheet may be another triangle than at the nearest of them, half a sample away in each axis;
 //! depths are lowered by what the steepest triangle of the sheet changes there.
@@ -72,7 +75,7 @@ pub(super) fn prepare<L: Lanes>(
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
     let mut steepest = zero;
     let mut nearest = zero;
-    let mut members = [0u64; 4];
+    let mut members = [0u64; 8];
     for ((g, group), kept) in own.iter().enumerate().zip(&mut sheet.kept) {
         let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
@@ -106,12 +109,10 @@ pub(super) fn prepare<L: Lanes>(
             members[set] |= u64::from(l.movemask(member)) << (8 * g);
         }
     }
-    for group in groups {
-        let z = l.max(
-            l.gather(&points.depth, &group[0]),
-            l.gather(&points.depth, &group[1]),
-        );
-        nearest = l.max(nearest, l.max(z, l.gather(&points.depth, &group[2])));
+    let base = usize::from(cluster.vertex_count).next_multiple_of(8);
+    let (eights, _) = points.depth[base..][..usize::from(ring.vertex_count)].as_chunks::<8>();
+    for depths in eights {
+        nearest = l.max(l.load(depths), nearest);
     }
     let mut at = [0.0; 8];
     l.store(nearest, &mut at);
@@ -144,17 +145,32 @@ pub(super) fn prepare<L: Lanes>(
     }
     // Lanes after the last triangle have no area.
     l.store(steepest, &mut at);
+    let steepest = at.iter().fold(0.0f32, |m, &v| m.max(v));
     // Half a sample along each axis, and the rounding of gradients.
-    sheet.slack = at.iter().fold(0.0f32, |m, &v| m.max(v)) * 0.6;
+    sheet.slack = steepest * 0.6;
+    let border = Border {
+        shifts: radius.shifts,
+        steepness: steepest * 1.2,
+        blocks: facing.blocks,
+    };
     let edges = &mesh.rings.edges[ring.first_edge as usize..][..usize::from(ring.edges)];
-    let is_member = |t: u8| members[usize::from(t >> 6)] >> (t & 63) & 1;
-    for &[a, b, v0, v1] in edges {
-        if is_member(a) != is_member(b) {
-            let end = |v: u8| {
-                let v = usize::from(v);
-                [points.x[v], points.y[v], points.depth[v]]
-            };
-            erase(l, band, &mut sheet.erased, end(v0), end(v1), radius.shifts);
+    // Few edges are borders, and which ones cannot be foreseen: found without a branch, and then taken.
+    for edges in edges.chunks(64) {
+        let mut borders = 0u64;
+        for (k, edge) in edges.iter().enumerate() {
+            let [a, b] = edge.triangles;
+            let a = members[usize::from(a / 64) % 8] >> (a % 64);
+            let b = members[usize::from(b / 64) % 8] >> (b % 64);
+            borders |= ((a ^ b) & 1) << k;
+        }
+        while borders != 0 {
+            let edge = &edges[borders.trailing_zeros() as usize];
+            borders &= borders - 1;
+            let [a, b] = edge.vertices;
+            let (a, b) = (usize::from(a), usize::from(b));
+            let a = [points.x[a], points.y[a], points.depth[a]];
+            let b = [points.x[b], points.y[b], points.depth[b]];
+            erase(l, band, &mut sheet.erased, a, b, border);
         }
     }
 }
@@ -189,6 +205,17 @@ fn judge<L: Lanes>(
     (l.div(change, f), l.iand(faces, flat))
 }
 
+/// How far borders reach.
+#[derive(Clone, Copy, Debug)]
+struct Border {
+    /// Of a point at depth 1, along x and y, samples.
+    shifts: [f32; 2],
+    /// Most change of depth per sample on the sheet, along x plus along y.
+    steepness: f32,
+    /// Where the cluster is: first and last block, inclusive.
+    blocks: [u32; 4],
+}
+
 /// Erases the pixels to which an edge comes within its shift.
 #[inline(always)]
 fn erase<L: Lanes>(
@@ -197,25 +224,25 @@ fn erase<L: Lanes>(
     erased: &mut Vec<u32>,
     a: [f32; 3],
     b: [f32; 3],
-    shifts: [f32; 2],
+    border: Border,
 ) {
     const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
     let near = a[2].max(b[2]);
-    let [reach_x, reach_y] = [0, 1].map(|k: usize| near * shifts[k] * 1.001 + MARGIN);
+    let [reach_x, reach_y] = [0, 1].map(|k: usize| near * border.shifts[k] * 1.001 + MARGIN);
     let (x_lo, x_hi) = (a[0].min(b[0]), a[0].max(b[0]));
     let (y_lo, y_hi) = (a[1].min(b[1]), a[1].max(b[1]));
-    let scale = 1.0 / BLOCK_SAMPLES as f32;
-    let ends = [band.blocks_x, band.first_row + band.rows];
-    if x_hi + reach_x < 0.0
-        || y_hi + reach_y < (band.first_row * BLOCK_SAMPLES) as f32
-        || x_lo - reach_x >= (ends[0] * BLOCK_SAMPLES) as f32
-        || y_lo - reach_y >= (ends[1] * BLOCK_SAMPLES) as f32
+    let [first_x, first_y, last_x, last_y] = border.blocks;
+    if x_hi + reach_x < (first_x * BLOCK_SAMPLES) as f32
+        || y_hi + reach_y < (first_y * BLOCK_SAMPLES) as f32
+        || x_lo - reach_x >= ((last_x + 1) * BLOCK_SAMPLES) as f32
+        || y_lo - reach_y >= ((last_y + 1) * BLOCK_SAMPLES) as f32
     {
         return;
     }
     // Casts saturate.
-    let column = |x: f32| ((x * scale) as u32).min(ends[0] - 1);
-    let row = |y: f32| ((y * scale) as u32).clamp(band.first_row, ends[1] - 1);
+    let scale = 1.0 / BLOCK_SAMPLES as f32;
+    let column = |x: f32| ((x * scale) as u32).clamp(first_x, last_x);
+    let row = |y: f32| ((y * scale) as u32).clamp(first_y, last_y);
     let (by0, by1) = (row(y_lo - reach_y), row(y_hi + reach_y));
     let blocks = [column(x_lo - reach_x), by0, column(x_hi + reach_x), by1];
     // What lies behind all that is known there is hidden whatever this edge does; what lies before it, the edge is
@@ -224,6 +251,12 @@ fn erase<L: Lanes>(
     if band.hides(blocks, code) {
         return;
     }
+    // As deep as the sheet can be where the edge is within reach of it.
+    let around = border.steepness * (AROUND_SAMPLE + reach_x.max(reach_y)) + near * 1e-5;
+    let depths = (
+        encode(a[2].min(b[2]) - around),
+        encode(near + around).saturating_add(1),
+    );
     let slope = (b[0] - a[0]) / (b[1] - a[1]);
     // Of an edge that is all but level every row has the whole.
     let level = slope.is_nan() || slope.abs() > 1e4;
@@ -253,7 +286,8 @@ fn erase<L: Lanes>(
         l.store(to, &mut stops);
         let start = starts.iter().fold(f32::INFINITY, |m, &v| m.min(v));
         let stop = stops.iter().fold(f32::NEG_INFINITY, |m, &v| m.max(v));
-        if stop < 0.0 || start >= (ends[0] * BLOCK_SAMPLES) as f32 {
+        if stop < (first_x * BLOCK_SAMPLES) as f32 || start >= ((last_x + 1) * BLOCK_SAMPLES) as f32
+        {
             continue;
         }
         for bx in column(start)..=column(stop) {
@@ -267,10 +301,13 @@ fn erase<L: Lanes>(
             let last = l.mul(l.sub(to, left), pixel);
             let bits = l.plane(first, l.add(last, l.splat(1.0)));
             if bits != 0 {
-                if band.erased[i] == 0 {
+                let (pixels, border) = (&mut band.erased[i], &mut band.border[i]);
+                if *pixels == 0 {
                     erased.push(i as u32);
+                    *border = [i16::MAX, i16::MIN];
                 }
-                band.erased[i] |= bits;
+                *pixels |= bits;
+                *border = [border[0].min(depths.0), border[1].max(depths.1)];
             }
         }
     }
