@@ -72,6 +72,15 @@ impl Targets {
         }
     }
 
+    /// Makes room for blended surfaces at the sub-samples, where there are sub-samples and no room.
+    pub(crate) fn blend_samples(&mut self, gpu: &Gpu, settings: &Settings) {
+        if let Some(samples) = &mut self.samples
+            && let Some(blending) = samples.blending(gpu, settings)
+        {
+            *samples = blending;
+        }
+    }
+
     /// The picture as it is shown.
     pub(crate) fn shown(&self) -> &wgpu::TextureView {
         self.shown_view.as_ref().unwrap_or(&self.picture_view)

@@ -5,6 +5,7 @@
 //! becomes the pixel's texel in the ordinary G-buffer, so that every other stage works as without
 //! anti-aliasing, and only the further surfaces are shaded besides, weighted by their coverage.
 
+mod blended;
 mod limits;
 mod pattern;
 mod pipelines;
@@ -23,4 +24,4 @@ pub(crate) use stage::AntialiasStage;
 #[cfg(test)]
 pub(crate) use targets::QueueUniform;
 pub(crate) use targets::SampleTargets;
-pub(crate) use triangles::by_triangles;
+pub(crate) use triangles::{by_triangles, footprint};

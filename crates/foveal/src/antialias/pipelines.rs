@@ -85,11 +85,13 @@ impl AntialiasPipelines {
         let combination = shader::module(gpu, "combination", shader::AA_COMBINE);
 
         let [model, brute] = lighting_constants(settings);
+        // Views of the G-buffer show averages.
+        let mirror = ("MIRROR", f64::from(u8::from(settings.view.is_lit())));
         Self {
             merge: merge(
                 gpu,
                 &[frame, shading_input, &merge_layout],
-                &[count, side, ("EDGES", f64::from(edges as u8))],
+                &[count, side, mirror, ("EDGES", f64::from(edges as u8))],
             ),
             shade: shader::compute(
                 gpu,
@@ -97,7 +99,7 @@ impl AntialiasPipelines {
                 &shader::module(gpu, "edge shading", shader::AA_SHADE),
                 "shade_entries",
                 &[frame, shading_input, &shade_layout],
-                &[model, brute, count, side, ("ALL", all)],
+                &[model, brute, count, side, mirror, ("ALL", all)],
             ),
             combine: shader::compute(
                 gpu,

@@ -1,6 +1,7 @@
 //! One frame of anti-aliasing, band by band.
 
-use crate::geometry::{DrawList, GeometryPass};
+use crate::forward::ForwardPass;
+use crate::geometry::{DrawList, GeometryPass, Window};
 use crate::gpu::{Gpu, bind_group};
 use crate::lights::LightAssigner;
 use crate::output::PICTURE_FORMAT;
@@ -10,6 +11,7 @@ use crate::shading::ShadingPass;
 use crate::targets::Targets;
 use crate::{Antialiasing, Settings, View, shader};
 
+use super::blended::BlendedStage;
 use super::pattern::{Band, Pattern};
 use super::pipelines::{AntialiasPipelines, Edges};
 use super::targets::{ALL_GROUPS, QueueUniform, SampleTargets};
@@ -36,6 +38,7 @@ pub(crate) struct AntialiasStage {
     pipelines: AntialiasPipelines,
     /// Over a visibility buffer.
     triangles: Option<TriangleStage>,
+    blended: BlendedStage,
     /// Draws [`View::Edges`] or [`View::Samples`].
     view: Option<(wgpu::RenderPipeline, wgpu::BindGroupLayout)>,
 }
@@ -61,6 +64,7 @@ impl AntialiasStage {
             pipelines: AntialiasPipelines::new(gpu, settings, frame, shading.input_layout()),
             triangles: by_triangles(settings)
                 .then(|| TriangleStage::new(gpu, settings, frame, shading.input_layout())),
+            blended: BlendedStage::new(gpu, settings, frame),
             view: number.map(|number| view_pipeline(gpu, settings, frame, number)),
         })
     }
@@ -77,21 +81,32 @@ impl AntialiasStage {
         list: &DrawList,
         geometry: &GeometryPass,
         shading: &ShadingPass,
+        forward: &ForwardPass,
         lights: &LightAssigner,
         targets: &Targets,
         shade: bool,
     ) {
         let Some(t) = &targets.samples else { return };
         t.begin_frame(recorder.encoder);
+        let blend =
+            |recorder: &mut Recorder<'_>, band: &(Band, wgpu::Buffer), windows: &[Window]| {
+                if let (Some(blended), true) = (&t.blended, shade && !list.blended.is_empty()) {
+                    let (target, depth) = (&blended.samples_view, &t.samples.depth_view);
+                    forward.draw_alone(recorder, scene, lights, list, target, depth, windows);
+                    self.blended.average(recorder, blended, band.0, &band.1);
+                }
+            };
         if let Some(triangles) = &self.triangles {
-            triangles.draw(recorder, scene, list, geometry, t, targets);
+            triangles.draw(recorder, scene, list, geometry, t, targets, blend);
             return;
         }
         let size = targets.picture_view.texture().size();
         let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights);
-        for (band, uniform) in &t.bands {
+        for at in &t.bands {
+            let (band, uniform) = at;
             let windows = band.windows(&t.pattern, size.width, size.height);
             geometry.draw_windows(recorder, scene, list, &t.samples, &windows);
+            blend(recorder, at, &windows);
             t.begin_band(recorder.encoder);
             self.merge(recorder, &input, t, targets, *band, uniform);
             if shade && self.edges != Edges::None {
@@ -211,6 +226,17 @@ impl AntialiasStage {
             pass.set_pipeline(pipeline);
             pass.set_bind_group(1, &group, &[]);
             pass.dispatch_workgroups_indirect(&t.queue, ALL_GROUPS);
+        }
+    }
+
+    /// Lays the blended surfaces that were drawn at the sub-samples over the picture's radiance.
+    pub(crate) fn blend(&self, recorder: &mut Recorder<'_>, list: &DrawList, targets: &Targets) {
+        let Some(t) = &targets.samples else { return };
+        if let (Some(blended), Some((_, band)), false) =
+            (&t.blended, t.bands.first(), list.blended.is_empty())
+        {
+            let radiance = &targets.radiance_view;
+            self.blended.lay_over(recorder, blended, band, radiance);
         }
     }
 

@@ -21,6 +21,9 @@ fn facet_at(pixel: vec2u, index: u32) -> Facet {
     return Facet(instance, index, position, face_normal(load_words(gbuffer_surface, texel).w));
 }
 
+// What is mirrored of the surroundings is averaged too, not found for the average: it changes too fast with the normal.
+override MIRROR: bool = false;
+
 // What some sub-samples see on average.
 struct Blend {
     words: vec4u,
@@ -42,15 +45,20 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         let texel = sample_texel(pixel, index);
         // Without the face normal.
         let words = load_words(gbuffer_surface, texel) & vec4u(vec3u(0xffffffffu), 0xffffu);
-        let s = unpack_surface(words, vec3f(0.0));
+        let sample_depth = load_depth(gbuffer_depth, texel);
+        let at = sample_position(pixel, index);
+        let s = unpack_surface(words, world_position(at, view_distance(sample_depth)));
         sum.normal += s.normal;
         sum.base_color += s.base_color;
         sum.metallic += s.metallic;
         sum.roughness += s.roughness;
         sum.occlusion += s.occlusion;
         sum.emissive += s.emissive;
-        depth += load_depth(gbuffer_depth, texel);
-        position += sample_position(pixel, index);
+        if MIRROR {
+            sum.emissive += s.occlusion * mirrored(s, direction_to_eye(view_at(at), s.position));
+        }
+        depth += sample_depth;
+        position += at;
     }
     let part = 1.0 / f32(countOneBits(members));
     let mean = Surface(
@@ -67,5 +75,6 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
     let color = vec3u(round(sqrt(saturate(mean.base_color)) * 4080.0));
     words.x = (words.x & 0xff000000u) | (color.r >> 4u) | ((color.g >> 4u) << 8u) | ((color.b >> 4u) << 16u);
     words.w |= ((color.r & 15u) << 16u) | ((color.g & 15u) << 20u) | ((color.b & 15u) << 24u);
+    words.w |= select(0u, MIRRORED, MIRROR);
     return Blend(words, depth * part, position * part);
 }

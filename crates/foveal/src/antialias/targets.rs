@@ -8,6 +8,7 @@ use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{Gpu, target};
 use crate::stereo::EyeLayout;
 
+use super::blended::BlendedTargets;
 use super::pattern::{Band, BandUniform, Pattern};
 use super::triangles::{FurtherTargets, band_of_triangles, by_triangles};
 
@@ -16,6 +17,8 @@ pub(super) const TALLY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Uin
 
 /// Bytes per pixel of the tally.
 const TALLY_BYTES: u64 = 2;
+/// Bytes of a sub-sample of blended surfaces.
+const BLENDED_BYTES: u64 = 8;
 /// Bytes of an entry of the queue, and of what it comes to.
 const ENTRY_BYTES: u64 = 8;
 
@@ -58,6 +61,8 @@ pub(crate) struct SampleTargets {
     pub(crate) samples: GBuffer,
     /// Where triangles are sorted.
     pub(super) further: Option<FurtherTargets>,
+    /// Where blended surfaces are seen.
+    pub(super) blended: Option<BlendedTargets>,
     pub(crate) tally_view: wgpu::TextureView,
     /// [`QueueUniform`].
     pub(crate) queue: wgpu::Buffer,
@@ -102,7 +107,31 @@ impl SampleTargets {
     /// Targets with room for `wanted` entries and some more, where the device can have them and these are fewer.
     pub(crate) fn grown(&self, gpu: &Gpu, settings: &Settings, wanted: u64) -> Option<Self> {
         let grown = Self::with_room(gpu, settings, self.rows, wanted + wanted / 4);
-        (grown.room() > self.room()).then_some(grown)
+        (grown.room() > self.room()).then_some(grown.with_blended_as(self, gpu))
+    }
+
+    /// Targets that blended surfaces have a place in too, if these have none.
+    pub(crate) fn blending(&self, gpu: &Gpu, settings: &Settings) -> Option<Self> {
+        if self.blended.is_some() {
+            return None;
+        }
+        let most = gpu.device.limits().max_texture_dimension_2d;
+        let size = EyeLayout::of(settings).target_size();
+        let bytes = bytes_per_sample(settings) + BLENDED_BYTES;
+        let rows = self.pattern.rows_per_band(size, bytes, most).min(self.rows);
+        let mut targets = Self::with_room(gpu, settings, rows, self.room());
+        let texels = targets.pattern.texels(size.0, rows);
+        targets.blended = Some(BlendedTargets::new(gpu, texels, size));
+        Some(targets)
+    }
+
+    /// The same, with a place for blended surfaces if `other` has one.
+    fn with_blended_as(self, other: &Self, gpu: &Gpu) -> Self {
+        let size = self.tally_view.texture().size();
+        let texels = self.pattern.texels(size.width, self.rows);
+        let new = |_: &BlendedTargets| BlendedTargets::new(gpu, texels, (size.width, size.height));
+        let blended = other.blended.as_ref().map(new);
+        Self { blended, ..self }
     }
 
     /// The targets for bands of `rows` rows and at least `room` entries, as far as the device can have them.
@@ -159,6 +188,7 @@ impl SampleTargets {
                 + entry_bytes * 2
                 + further.as_ref().map_or(0, FurtherTargets::bytes),
             further,
+            blended: None,
             pattern,
             rows,
         }
@@ -187,6 +217,7 @@ impl SampleTargets {
                 .visibility
                 .as_ref()
                 .map_or(0, VisibilityTargets::bytes)
+            + self.blended.as_ref().map_or(0, BlendedTargets::bytes)
     }
 }
 

@@ -314,6 +314,40 @@ fn over_a_visibility_buffer_pixels_within_a_triangle_equal_none_and_edges_come_n
     assert!(of_msaa < 0.25 * of_none, "{of_msaa} and {of_none}");
 }
 
+/// Mean distance of msaa and of none to ssaa, over pixels that msaa shades once.
+fn within_surfaces(scene: &Scene, geometry: Geometry) -> [f32; 2] {
+    let draw = |aa| {
+        let settings = Settings {
+            geometry,
+            ..settings(aa, EdgeTest::Surface, 4)
+        };
+        rendered(scene, &scene.cameras[0], &settings)
+    };
+    let msaa = draw(Antialiasing::Msaa);
+    let tally = tally(&msaa);
+    let [ssaa, none] = [Antialiasing::Ssaa, Antialiasing::None].map(|aa| radiance(&draw(aa)));
+    [radiance(&msaa), none].map(|picture| {
+        let off = (picture.iter().zip(&ssaa).zip(&tally))
+            .filter(|(_, tally)| tally[0] == 1)
+            .map(|((a, b), _)| (a - b).length() / (a + b).length().max(1e-3));
+        off.clone().sum::<f32>() / off.count() as f32
+    })
+}
+
+#[test]
+fn within_surfaces_msaa_is_near_to_ssaa_by_gbuffer_and_nearer_than_none_over_a_visibility_buffer() {
+    let options = generate::DemoOptions {
+        instances: 1000,
+        lights: 20,
+        seed: 1,
+    };
+    let scene = generate::demo(&options).expect("it can be");
+    let [msaa, none] = within_surfaces(&scene, Geometry::Gbuffer);
+    assert!(msaa < 0.2 * none, "{msaa} and {none}");
+    let [msaa, none] = within_surfaces(&scene, Geometry::Visibility);
+    assert!(msaa < 0.8 * none, "{msaa} and {none}");
+}
+
 #[test]
 fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
     use crate::{RateSource, RefineEdges, Shading};

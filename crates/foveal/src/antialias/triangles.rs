@@ -31,6 +31,14 @@ pub(crate) fn by_triangles(settings: &Settings) -> bool {
         && settings.pattern == SamplePattern::Grid
 }
 
+/// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated once for n x n
+/// sub-samples: n x n trilinear samples of 1 / n each, 1 / n apart, blur as much as one of this size. In variances: one of
+/// size s has s^2 / 4 (a mip level's box and the filter's tent), their places (1 - 1 / n^2) / 12.
+pub(crate) fn footprint(settings: &Settings) -> Option<f64> {
+    let samples = f64::from(Pattern::of(settings).count());
+    by_triangles(settings).then(|| ((1.0 + 2.0 / samples) / 3.0).sqrt())
+}
+
 /// A word per texel: bits of an entry's depth, a candidate, a pixel's largest surface.
 const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 
@@ -240,7 +248,12 @@ impl TriangleStage {
         }
     }
 
-    /// Encodes all but the shading: fills the ordinary G-buffer and that of the further surfaces.
+    /// Encodes all but the shading: fills the ordinary G-buffer and that of the further surfaces. `blend` draws each
+    /// band's blended surfaces.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
     pub(super) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
@@ -249,6 +262,7 @@ impl TriangleStage {
         geometry: &GeometryPass,
         t: &SampleTargets,
         targets: &Targets,
+        blend: impl Fn(&mut Recorder<'_>, &(Band, wgpu::Buffer), &[Window]),
     ) {
         // The settings that lead here have both.
         let (Some(triangles), Some(further)) = (geometry.triangles(), &t.further) else {
@@ -258,9 +272,11 @@ impl TriangleStage {
         // Entries that no pixel has show nothing.
         let emptied = [overwritten(&further.gbuffer.identity_view)];
         drop(recorder.render_pass("classification", &emptied, None));
-        for (band, uniform) in &t.bands {
+        for at in &t.bands {
+            let (band, uniform) = at;
             let windows = band.windows(&t.pattern, size.width, size.height);
             triangles.draw_triangles(recorder, scene, list, &t.samples, &windows);
+            blend(recorder, at, &windows);
             self.classify(recorder, scene, t, further, targets, *band, uniform);
         }
         let whole = Window {

@@ -3,10 +3,17 @@
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;
+// Drawn at sub-samples: what is drawn to has other texels than the picture.
+override SAMPLED: bool = false;
 
 // A fragment's position in pixels of the target.
 fn target_position(in: VertexOut) -> vec2f {
-    let beside = LAYERED && (in.instance & RIGHT_EYE) != 0u;
+    let right = (in.instance & RIGHT_EYE) != 0u;
+    if SAMPLED {
+        let in_picture = (in.now.xy / in.now.z * vec2f(0.5, -0.5) + 0.5) * frame.size;
+        return in_picture + vec2f(select(0.0, f32(frame.eye_stride), right), 0.0);
+    }
+    let beside = LAYERED && right;
     return in.clip.xy + vec2f(select(0.0, f32(frame.eye_stride), beside), 0.0);
 }
 

@@ -6,12 +6,12 @@ pub(crate) mod twin;
 use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window};
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
 use crate::lights::LightAssigner;
-use crate::recorder::{Recorder, drawn_over};
+use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
-use crate::{Settings, shader};
+use crate::{Antialiasing, Settings, shader};
 
 /// Which way radiance is copied.
 #[derive(Clone, Copy)]
@@ -47,6 +47,8 @@ impl ForwardPass {
         constants.extend(submission.constants());
         let layered = submission == Submission::Multiview;
         constants.push(("LAYERED", f64::from(u8::from(layered))));
+        let sampled = settings.aa != Antialiasing::None;
+        constants.push(("SAMPLED", f64::from(u8::from(sampled))));
         let parts = match submission {
             _ if submission.clips() => shader::FORWARD_CLIPPED,
             Submission::Multiview => shader::FORWARD_LAYERED,
@@ -108,6 +110,49 @@ impl ForwardPass {
         if list.blended.is_empty() {
             return;
         }
+        let radiance = targets.radiance_layers.as_ref();
+        let color = drawn_over(radiance.unwrap_or(&targets.radiance_view));
+        let (width, height) = self.layout.target_size();
+        let whole = [Window::sized(width, height)];
+        let depth = &targets.gbuffer.depth_view;
+        self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
+        self.draw_windows(recorder, scene, lights, list, color, depth, &whole);
+        self.copy_radiance(recorder.encoder, targets, Copied::Back);
+    }
+
+    /// Encodes the pass over nothing, for the frame drawn once into each of `windows`: sub-samples.
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
+    pub(crate) fn draw_alone(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        lights: &LightAssigner,
+        list: &DrawList,
+        target: &wgpu::TextureView,
+        depth: &wgpu::TextureView,
+        windows: &[Window],
+    ) {
+        let color = overwritten(target);
+        self.draw_windows(recorder, scene, lights, list, color, depth, windows);
+    }
+
+    #[expect(
+        clippy::too_many_arguments,
+        reason = "a stage names all that it reads and writes"
+    )]
+    fn draw_windows(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        lights: &LightAssigner,
+        list: &DrawList,
+        color: Option<wgpu::RenderPassColorAttachment<'_>>,
+        depth: &wgpu::TextureView,
+        windows: &[Window],
+    ) {
         let lights = bind_group(
             &recorder.gpu.device,
             "forward lights",
@@ -115,26 +160,22 @@ impl ForwardPass {
             &lights.resources(&scene.light_buffer),
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
-            view: &targets.gbuffer.depth_view,
+            view: depth,
             // Read-only: it is sampled by other passes of the frame.
             depth_ops: None,
             stencil_ops: None,
         };
-        let radiance = targets.radiance_layers.as_ref();
-        let color = drawn_over(radiance.unwrap_or(&targets.radiance_view));
         let mask = self.submission.multiview_mask();
-        self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
         let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
         scene.geometry.bind(&mut pass);
-        let (width, height) = self.layout.target_size();
-        for &drawn in self.submission.drawn() {
-            let window = self.layout.window_of(drawn, Window::sized(width, height));
-            window.set(&mut pass);
-            DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines, drawn);
+        for &Window { frame, part } in windows {
+            for &drawn in self.submission.drawn() {
+                let window = self.layout.window_of(drawn, Window { frame, part });
+                window.set(&mut pass);
+                DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines, drawn);
+            }
         }
-        drop(pass);
-        self.copy_radiance(recorder.encoder, targets, Copied::Back);
     }
 
     /// Copies the eyes' radiance to their layers or back, where each eye is drawn to its own: every other stage has them

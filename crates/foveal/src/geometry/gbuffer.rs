@@ -152,7 +152,7 @@ impl GeometryPass {
                 let rotated =
                     settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
                 let windows = if rotated { settings.samples } else { 1 };
-                let further = crate::antialias::by_triangles(settings);
+                let further = crate::antialias::footprint(settings);
                 Means::Triangles(Box::new(VisibilityPass::new(
                     gpu,
                     frame_layout,

@@ -42,6 +42,7 @@ impl Renderer {
             geometry,
             variable,
             forward,
+            targets,
             ..
         } = stages;
         let plan = match variable {
@@ -71,6 +72,9 @@ impl Renderer {
         draw_list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
         geometry.prepare(gpu, scene, draw_list);
         forward.prepare(gpu, draw_list);
+        if !draw_list.blended.is_empty() {
+            targets.blend_samples(gpu, settings);
+        }
         cpu.stage("draw list");
 
         let clusters = ClusterGrid::new(
@@ -142,6 +146,7 @@ impl Stages {
             antialias,
             coarse,
             variable,
+            forward,
             ..
         } = self;
         let material = settings.stage().has_material();
@@ -152,7 +157,7 @@ impl Stages {
         if let Some(antialias) = antialias {
             let shade = settings.view.is_lit();
             antialias.draw(
-                recorder, scene, draw_list, geometry, shading, lights, targets, shade,
+                recorder, scene, draw_list, geometry, shading, forward, lights, targets, shade,
             );
         } else if material && (plan.active || coarse.is_some()) {
             geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
@@ -237,8 +242,10 @@ impl Stages {
         }
         if let Some(antialias) = antialias {
             antialias.combine(recorder, scene, shading, lights, targets);
+            antialias.blend(recorder, draw_list, targets);
+        } else {
+            forward.draw(recorder, scene, lights, draw_list, targets);
         }
-        forward.draw(recorder, scene, lights, draw_list, targets);
         let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
         let finished = finished.unwrap_or(&targets.picture_view);
         tone_map.map(recorder, &targets.radiance_view, finished);

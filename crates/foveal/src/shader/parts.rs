@@ -343,6 +343,7 @@ pub(crate) const AA_COMBINE: Parts = &[
     include_str!("../antialias/combine.wgsl"),
 ];
 pub(crate) const AA_STORE: Parts = &[AA_QUEUE, include_str!("../antialias/store.wgsl")];
+pub(crate) const AA_BLENDED: Parts = &[AA_SAMPLES, include_str!("../antialias/blended.wgsl")];
 pub(crate) const AA_VIEW: Parts = &[include_str!("../antialias/view.wgsl")];
 
 const LEVEL: &str = include_str!("../shared/level.wgsl");

@@ -72,19 +72,22 @@ fn reflect_light(s: Surface, v: vec3f, light: Light) -> vec3f {
     return reflect_ggx(s, v, a.direction, n_dot_l) * a.irradiance * n_dot_l;
 }
 
-// The surroundings' light: a cosine-weighted look along the normal, and a rough mirror
-// (environment BRDF after Karis 2014, 'Physically Based Shading on Mobile').
-fn ambient(s: Surface, v: vec3f) -> vec3f {
+// The surroundings' light in a rough mirror (environment BRDF after Karis 2014, 'Physically Based Shading on Mobile').
+fn mirrored(s: Surface, v: vec3f) -> vec3f {
     let n_dot_v = saturate(dot(s.normal, v));
     let f0 = mix(vec3f(0.04), s.base_color, s.metallic);
     let r = s.roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a004 = min(r.x * r.x, exp2(-9.28 * n_dot_v)) * r.x + r.y;
     let scale_bias = vec2f(-1.04, 1.04) * a004 + r.zw;
     let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
+    return (f0 * scale_bias.x + scale_bias.y) * environment(normalize(mirror));
+}
+
+// The surroundings' light: a cosine-weighted look along the normal, and the mirror.
+fn ambient(s: Surface, v: vec3f) -> vec3f {
     let irradiance = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);
     let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
-    let specular = (f0 * scale_bias.x + scale_bias.y) * environment(normalize(mirror));
-    return (diffuse + specular) * s.occlusion;
+    return (diffuse + select(mirrored(s, v), vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
 }
 
 // Index of the first light word of the cluster at a position in pixels of the target and a distance along the view

@@ -9,9 +9,13 @@ struct Surface {
     metallic: f32,
     // Perceptual.
     roughness: f32,
+    // Negative: what the surface mirrors of its surroundings is in the emissive already.
     occlusion: f32,
     emissive: vec3f,
 }
+
+// In the last word of a packed surface: the occlusion is negative.
+const MIRRORED: u32 = 1u << 28u;
 
 fn sign_not_zero(v: vec2f) -> vec2f {
     return select(vec2f(-1.0), vec2f(1.0), v >= vec2f(0.0));
@@ -54,7 +58,7 @@ fn exp2_integer(n: i32) -> f32 {
 }
 
 // x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic, roughness, and
-// 4 more bits of each base colour, which only an average has.
+// 4 more bits of each base colour and `MIRRORED`, which only an average has.
 fn pack_surface(s: Surface) -> vec4u {
     return vec4u(
         pack4x8unorm(vec4f(sqrt(saturate(s.base_color)), s.occlusion)),
@@ -74,7 +78,7 @@ fn unpack_surface(words: vec4u, position: vec3f) -> Surface {
         color.rgb * color.rgb,
         material.x,
         material.y,
-        color.a,
+        select(color.a, -color.a, (words.w & MIRRORED) != 0u),
         unpack_shared_exponent(words.z),
     );
 }

@@ -179,15 +179,15 @@ pub(crate) struct VisibilityPass {
 }
 
 impl VisibilityPass {
-    /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: [`VisibilityPass::evaluate_further`]
-    /// will be called; `rates`: materials will be evaluated there.
+    /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: the footprint of a pixel's textures, in
+    /// pixels, where [`VisibilityPass::evaluate_further`] will be called; `rates`: materials will be evaluated there.
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
         face_normals: FaceNormals,
         windows: u32,
-        (further, rates): (bool, Option<Rates>),
+        (further, rates): (Option<f64>, Option<Rates>),
         eyes: (Submission, EyeLayout),
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
@@ -197,7 +197,15 @@ impl VisibilityPass {
             let parts = rates.map_or(shader::RESOLVE, Rates::resolve);
             Materials {
                 bin: BinPass::new(gpu, frame_layout, rates),
-                resolve: ResolvePass::new(gpu, parts, layouts, face_normals, windows, rates),
+                resolve: ResolvePass::new(
+                    gpu,
+                    parts,
+                    layouts,
+                    face_normals,
+                    windows,
+                    further.unwrap_or(1.0),
+                    rates,
+                ),
             }
         };
         let none = FaceNormals::Omitted;
@@ -205,8 +213,10 @@ impl VisibilityPass {
             raster,
             full: materials(None),
             rated: rates.map(|rates| materials(Some(rates))),
-            further: further
-                .then(|| ResolvePass::new(gpu, shader::RESOLVE_FURTHER, layouts, none, 1, None)),
+            further: further.map(|footprint| {
+                let parts = shader::RESOLVE_FURTHER;
+                ResolvePass::new(gpu, parts, layouts, none, 1, footprint, None)
+            }),
             bins: Bins::new(gpu, 1),
         }
     }

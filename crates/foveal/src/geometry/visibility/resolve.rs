@@ -55,6 +55,7 @@ impl ResolvePass {
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
         windows: u32,
+        footprint: f64,
         rates: Option<Rates>,
     ) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
@@ -88,6 +89,7 @@ impl ResolvePass {
             constants: [
                 ("FACE_NORMAL", f64::from(written)),
                 ("WINDOWS", f64::from(windows)),
+                ("FOOTPRINT", footprint),
             ]
             .into_iter()
             .chain(rates.and_then(Rates::constant))

@@ -3,6 +3,8 @@
 
 // As in geometry/gbuffer.wgsl.
 override FACE_NORMAL: bool = false;
+// Side of what textures are filtered over, in pixels.
+override FOOTPRINT: f32 = 1.0;
 // Windows in use, 1 to 8.
 override WINDOWS: u32 = 1u;
 
@@ -56,7 +58,7 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let scale = around.zw / frame.target_size;
     let pixel = (middle_of(texel) - around.xy) / scale;
     let ndc = ndc_of(in_eye(pixel));
-    let step = vec2f(2.0, -2.0) / (frame.size * scale) * vec2f(extent);
+    let step = vec2f(2.0, -2.0) / (frame.size * scale) * vec2f(extent) * FOOTPRINT;
     let instance = load_words(identity, texel).x - 1u;
     let triangle = load_words(triangles, texel).x;
     let a = attributes_at(frame.views[view_at(pixel)].clip_from_world, instance, triangle, ndc, step);

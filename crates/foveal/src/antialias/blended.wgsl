@@ -1,0 +1,25 @@
+// Blended surfaces, drawn at the sub-samples over nothing: averaged band by band, then laid over the pixels' radiance.
+// After samples.wgsl. CPU twin: `antialias/blended.rs`.
+
+@group(1) @binding(0) var<uniform> band: Band;
+// Premultiplied: of sub-samples, or averaged.
+@group(1) @binding(1) var blended: texture_2d<f32>;
+
+@vertex
+fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
+    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
+}
+
+@fragment
+fn average(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    var sum = vec4f(0.0);
+    for (var i = 0u; i < COUNT; i++) {
+        sum += textureLoad(blended, sample_texel(vec2u(position.xy), i), 0);
+    }
+    return sum / f32(COUNT);
+}
+
+@fragment
+fn lay_over(@builtin(position) position: vec4f) -> @location(0) vec4f {
+    return textureLoad(blended, vec2u(position.xy), 0);
+}
