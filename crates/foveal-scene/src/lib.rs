@@ -40,7 +40,7 @@ pub use camera::{Camera, Projection};
 pub use error::SceneError;
 pub use light::{Environment, Light, LightKind};
 pub use load::{LoadOptions, MissingNormals, load, load_bytes};
-pub use material::{AlphaMode, Material, TextureRef};
+pub use material::{AlphaMode, Material, ProceduralLayers, TextureRef};
 pub use mesh::{Mesh, Vertex};
 pub use pose::Rig;
 pub use scene::{Instance, Object, Scene, Warning};

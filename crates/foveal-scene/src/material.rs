@@ -60,6 +60,19 @@ pub struct Material {
     pub double_sided: bool,
     /// KHR_materials_unlit: base colour straight to the screen.
     pub unlit: bool,
+    /// Noise that is computed at each point instead of looked up in textures.
+    pub procedural: Option<ProceduralLayers>,
+}
+
+/// A surface of eight layers of noise in world space, each over those before where its height is great. Each has its own
+/// colour, which multiplies the base colour, its own roughness, which replaces the material's, and raises the
+/// normal. Needs neither texture nor UVs. Layers whose lumps are finer than two pixels fade into their mean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProceduralLayers {
+    /// What colours, roughnesses and noise follow from.
+    pub seed: u32,
+    /// Lumps per metre of the coarsest layer; each further one has 1.7 times as many.
+    pub frequency: f32,
 }
 
 impl Default for Material {
@@ -81,6 +94,7 @@ impl Default for Material {
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
+            procedural: None,
         }
     }
 }

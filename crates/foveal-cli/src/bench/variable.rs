@@ -5,7 +5,7 @@ use foveal::{
     AdapterStats, Frame, FrameStats, Geometry, Gpu, RateSource, RateStage, Renderer, Settings,
     Shading,
 };
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{Camera, ProceduralLayers, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
@@ -94,8 +94,8 @@ struct Row {
     flip_mean: f64,
 }
 
-/// How much of the scene's materials is left.
-const COSTS: [&str; 2] = ["plain", "textured"];
+/// What is made of the scene's materials: their factors alone, as they are, factors and eight layers of noise.
+const COSTS: [&str; 3] = ["plain", "textured", "procedural"];
 
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
@@ -106,8 +106,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     for &lights in &args.point_lights {
         for cost in COSTS {
             let mut scene = scene_source::load(&args.scene)?;
-            if cost == "plain" {
+            if cost != "textured" {
                 strip_textures(&mut scene);
+            }
+            if cost == "procedural" {
+                add_layers(&mut scene);
             }
             scene_source::add_point_lights(&mut scene, lights, 0);
             scene.light_by_default();
@@ -139,6 +142,16 @@ fn strip_textures(scene: &mut Scene) {
         material.normal_texture = None;
         material.occlusion_texture = None;
         material.emissive_texture = None;
+    }
+}
+
+/// Gives each material layers of noise of its own.
+fn add_layers(scene: &mut Scene) {
+    for (seed, material) in (0..).zip(&mut scene.materials) {
+        material.procedural = Some(ProceduralLayers {
+            seed,
+            frequency: 1.0,
+        });
     }
 }
 
@@ -180,7 +193,9 @@ fn ms(stats: &FrameStats, passes: &[&str]) -> f64 {
     timings
         .filter(|t| passes.contains(&t.name.as_str()))
         .map(|t| t.ms)
+        // A sum of nothing is -0.
         .sum::<f64>()
+        .max(0.0)
 }
 
 /// The passes that run at the rate.

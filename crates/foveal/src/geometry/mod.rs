@@ -4,6 +4,8 @@ mod draw_list;
 mod gbuffer;
 mod pipelines;
 #[cfg(test)]
+mod procedural;
+#[cfg(test)]
 mod twin;
 mod visibility;
 

@@ -20,9 +20,9 @@ pub(crate) struct MaterialUniform {
     pub(crate) alpha_cutoff: f32,
     pub(crate) uv: [[[f32; 4]; 2]; 5],
     pub(crate) number: u32,
+    pub(crate) procedural_seed: u32,
+    pub(crate) procedural_frequency: f32,
     pub(crate) reserved_0: u32,
-    pub(crate) reserved_1: u32,
-    pub(crate) reserved_2: u32,
 }
 
 /// A material's texture slots in the order of the shader's bindings; their positions are the flags' bits.
@@ -37,15 +37,21 @@ fn slots(material: &Material) -> [Option<TextureRef>; 5] {
 }
 
 const IS_UNLIT: u32 = 32;
+const IS_PROCEDURAL: u32 = 64;
 
-/// What the shader is specialized to: one bit per texture slot in use, and one for unlit.
+/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for procedural.
 pub(crate) fn material_class(material: &Material) -> u32 {
     let slots = slots(material);
     let textures = slots
         .iter()
         .enumerate()
         .map(|(i, slot)| u32::from(slot.is_some()) << i);
-    textures.sum::<u32>() | if material.unlit { IS_UNLIT } else { 0 }
+    let flags = [
+        (material.unlit, IS_UNLIT),
+        (material.procedural.is_some(), IS_PROCEDURAL),
+    ];
+    let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
+    textures.sum::<u32>() | flags.sum::<u32>()
 }
 
 impl MaterialUniform {
@@ -64,9 +70,9 @@ impl MaterialUniform {
             },
             uv: slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
             number,
+            procedural_seed: material.procedural.map_or(0, |p| p.seed),
+            procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
             reserved_0: 0,
-            reserved_1: 0,
-            reserved_2: 0,
         }
     }
 }

@@ -15,7 +15,10 @@ const VERTEX: &str = concat!(
 );
 const VERTEX_CLIPPED: &str = include_str!("../shared/vertex_clipped.wgsl");
 const ENABLE_CLIP_DISTANCES: &str = "enable clip_distances;";
-const MATERIAL: &str = include_str!("../shared/material.wgsl");
+const MATERIAL: &str = concat!(
+    include_str!("../shared/procedural.wgsl"),
+    include_str!("../shared/material.wgsl")
+);
 const SAMPLE_IMPLICIT: &str = include_str!("../shared/sample_implicit.wgsl");
 const SAMPLE_GRADIENTS: &str = include_str!("../shared/sample_gradients.wgsl");
 const ATTRIBUTES: &str = include_str!("../shared/attributes.wgsl");

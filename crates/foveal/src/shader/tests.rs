@@ -415,9 +415,9 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             alpha_cutoff,
             uv,
             number,
+            procedural_seed,
+            procedural_frequency,
             reserved_0,
-            reserved_1,
-            reserved_2,
         ]
     );
     for parts in [VARIABLE_REPROJECT, VARIABLE_MASK] {

@@ -1,4 +1,4 @@
-// The material at a point of a surface. Needs frame.wgsl and surface.wgsl, and sample_implicit.wgsl or
+// The material at a point of a surface. Needs frame, surface and procedural.wgsl, and sample_implicit.wgsl or
 // sample_gradients.wgsl. Rust: `scene/materials.rs`.
 
 // What the material has, known when the pipeline is made: bits as below.
@@ -10,6 +10,7 @@ const HAS_NORMAL: u32 = 4u;
 const HAS_OCCLUSION: u32 = 8u;
 const HAS_EMISSIVE: u32 = 16u;
 const IS_UNLIT: u32 = 32u;
+const IS_PROCEDURAL: u32 = 64u;
 
 struct UvMap {
     // u = dot(x.xyz, (u0, v0, 1)); x.w is the UV set.
@@ -30,9 +31,10 @@ struct Material {
     uv: array<UvMap, 5>,
     // Which of the scene's materials it is.
     number: u32,
+    procedural_seed: u32,
+    // Lumps per metre.
+    procedural_frequency: f32,
     reserved_0: u32,
-    reserved_1: u32,
-    reserved_2: u32,
 }
 
 @group(1) @binding(0) var<uniform> material: Material;
@@ -90,6 +92,12 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
             let scaled = vec3f(texel.xy * material.normal_scale, texel.z);
             n = normalize(scaled.x * tangent.xyz + scaled.y * bitangent + scaled.z * normal) * facing;
         }
+    }
+    if (MATERIAL_CLASS & IS_PROCEDURAL) != 0u {
+        let layers = procedural_at(position, material.procedural_seed, material.procedural_frequency, pixel_size(position));
+        base = vec4f(base.rgb * layers.tint, base.a);
+        roughness = layers.roughness;
+        n = procedural_normal(n, layers.slope);
     }
     var occlusion = 1.0;
     if (MATERIAL_CLASS & HAS_OCCLUSION) != 0u {
