@@ -181,6 +181,12 @@ settings! {
             occlusion_scale: u8 = 4, "Buffer scale", Kind::Integer { least: 1, most: 16 };
             /// Threads that rasterize occluders; 0: as many as there are
             culling_threads: u8 = 0, "Threads", Kind::Integer { least: 0, most: 32 };
+            /// Metres that the eye may move, without turning, before culling looks again: what was found holds as far as that.
+            /// It then hides a little less; 0 looks again in every frame
+            culling_radius: f32 = 0.0, "Valid for (m)", Kind::Number { least: 0.0, most: 1.0 };
+            /// Milliseconds after which no further occluder is begun; the nearest come first, and what is left out only
+            /// makes more objects drawn. 0: no limit. Without a clock there is none either
+            culling_budget: f32 = 0.0, "Budget (ms)", Kind::Number { least: 0.0, most: 10.0 };
         }
         "Geometry" {
             /// How the G-buffer is filled: by the rasterizer, or by a visibility buffer whose materials are evaluated once
@@ -350,6 +356,8 @@ impl Settings {
         for (name, value) in [
             ("occluder-size", self.occluder_size),
             ("occludee-size", self.occludee_size),
+            ("culling-radius", self.culling_radius),
+            ("culling-budget", self.culling_budget),
         ] {
             if !(0.0..=1e6).contains(&value) {
                 return Err(Error::Setting {

@@ -123,6 +123,10 @@ pub struct FrameStats {
     pub objects_small: u64,
     /// Triangles that were rasterized on the CPU to find the hidden ones.
     pub occluder_triangles: u64,
+    /// Groups of occluders that the time budget of culling left out.
+    pub occluders_over_budget: u64,
+    /// Whether what is seen was found in an earlier frame, and still holds.
+    pub culling_reused: bool,
     /// Draw calls issued.
     pub draws: u64,
     /// Triangles submitted.

@@ -5,11 +5,18 @@
 )]
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use foveal::{Culling, Frame, FrameStats, Gpu, Renderer, Settings};
 use foveal_scene::generate::{self, DemoOptions};
 use foveal_scene::{Camera, LoadOptions, Projection, Scene};
-use glam::Vec3;
+use glam::{Mat4, Vec3};
+
+/// Every look takes a microsecond.
+fn clock_ms() -> f64 {
+    static LOOKS: AtomicU64 = AtomicU64::new(0);
+    LOOKS.fetch_add(1, Ordering::Relaxed) as f64 * 1e-3
+}
 
 /// One picture and its figures per camera.
 fn draw(scene: &Scene, cameras: &[Camera], settings: &Settings) -> Vec<(Vec<u8>, FrameStats)> {
@@ -17,7 +24,7 @@ fn draw(scene: &Scene, cameras: &[Camera], settings: &Settings) -> Vec<(Vec<u8>,
         let gpu = Gpu::open(None)
             .await
             .expect("the tests need a graphics adapter");
-        let mut renderer = Renderer::new(&gpu, settings, None)
+        let mut renderer = Renderer::new(&gpu, settings, Some(clock_ms))
             .await
             .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");
@@ -93,6 +100,79 @@ fn the_walk_through_the_demo_scene_looks_the_same_with_and_without_culling() {
         occluded > 500 && outside > 500,
         "{occluded} hidden, {outside} outside"
     );
+}
+
+#[test]
+fn a_result_that_is_kept_while_the_eye_moves_a_little_leaves_the_picture_as_it_is() {
+    let options = DemoOptions {
+        instances: 1500,
+        ..DemoOptions::default()
+    };
+    let scene = generate::demo(&options).expect("options fit");
+    // Two places, and small steps around each, all with the same direction.
+    let cameras: Vec<Camera> = [0.1, 0.6]
+        .map(|t| generate::demo_path(&options, t))
+        .iter()
+        .flat_map(|camera| {
+            [
+                [0.0; 3],
+                [0.03, 0.0, 0.0],
+                [0.0, -0.02, 0.03],
+                [-0.049, 0.0, 0.0],
+            ]
+            .map(|step| {
+                let mut moved = camera.clone();
+                moved.world_from_view =
+                    Mat4::from_translation(Vec3::from_array(step)) * camera.world_from_view;
+                moved
+            })
+        })
+        .collect();
+    let settings = |culling| Settings {
+        width: 253,
+        height: 143,
+        culling,
+        culling_radius: 0.05,
+        ..Settings::default()
+    };
+    let reference = draw(&scene, &cameras, &settings(Culling::Off));
+    for culling in [Culling::Frustum, Culling::Occlusion] {
+        let culled = draw(&scene, &cameras, &settings(culling));
+        let mut hidden = 0;
+        for (i, ((expected, _), (picture, stats))) in reference.iter().zip(&culled).enumerate() {
+            assert!(expected == picture, "{culling:?}, camera {i}");
+            assert_eq!(stats.culling_reused, i % 4 != 0, "{culling:?}, camera {i}");
+            hidden += stats.objects_occluded;
+        }
+        assert_eq!(hidden > 200, culling == Culling::Occlusion, "{hidden}");
+    }
+}
+
+#[test]
+fn a_time_budget_draws_more_and_leaves_the_picture_as_it_is() {
+    let scene = generate::demo(&DemoOptions {
+        instances: 1500,
+        ..DemoOptions::default()
+    })
+    .expect("options fit");
+    let draw = |culling, culling_budget| {
+        let settings = Settings {
+            width: 120,
+            height: 90,
+            culling,
+            culling_budget,
+            culling_threads: 1,
+            ..Settings::default()
+        };
+        draw(&scene, &scene.cameras[..1], &settings).remove(0)
+    };
+    let (expected, _) = draw(Culling::Off, 0.0);
+    let (all, free) = draw(Culling::Occlusion, 0.0);
+    let (some, short) = draw(Culling::Occlusion, 0.002);
+    assert!(expected == all && expected == some);
+    assert_eq!(free.occluders_over_budget, 0);
+    assert!(short.occluders_over_budget > 0);
+    assert!(short.objects_visible > free.objects_visible);
 }
 
 #[test]

@@ -26,6 +26,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         figure(ui, "Rasterized", grouped(s.occluder_models_rasterized));
         figure(ui, "Triangles", grouped(s.occluder_triangles));
         figure(ui, "Rasterized", grouped(s.occluder_triangles_rasterized));
+        figure(ui, "Over budget", grouped(s.clusters_over_budget));
         figure(ui, "Rasterizer", look::ms(found.rasterize_ms));
         part(ui, "Occludees");
         figure(ui, "Models", grouped(s.occludees));

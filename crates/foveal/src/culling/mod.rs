@@ -5,10 +5,11 @@
 //! own pixel centres, so that what is culled could not have changed a single pixel.
 
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use foveal_cull::{
-    BakeOptions, CullStats, Culler, Eye, FrameOptions, OccludeeTree, OccluderId, OccluderMesh,
-    OccluderSet, Pool, Projection, SingleThread, Threads, View, Visibility,
+    BakeOptions, Budget, CullStats, Culler, Eye, FrameOptions, OccludeeTree, OccluderId,
+    OccluderMesh, OccluderSet, Pool, Projection, SingleThread, Threads, View, Visibility,
 };
 use foveal_scene::{Camera, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
@@ -28,6 +29,8 @@ pub struct CullingFigures {
     pub rasterize_ms: f64,
     /// Time for the tests of all objects, in milliseconds; 0 without a clock.
     pub test_ms: f64,
+    /// Whether the result is an earlier frame's, which still holds.
+    pub reused: bool,
 }
 
 /// What culling found in a frame.
@@ -38,6 +41,10 @@ pub(crate) struct CullingCounts {
     pub(crate) occluded: u64,
     pub(crate) small: u64,
     pub(crate) occluder_triangles: u64,
+    /// Clusters of occluders that the time budget left out.
+    pub(crate) over_budget: u64,
+    /// Whether the result is an earlier frame's.
+    pub(crate) reused: bool,
 }
 
 /// A scene's occluders and boxes.
@@ -51,13 +58,23 @@ pub(crate) struct CullingScene {
     triangles: Vec<u32>,
     /// Over the boxes.
     objects: OccludeeTree,
+    /// No other scene, and no other pose, has this number.
+    pose: u64,
+}
+
+fn new_pose() -> u64 {
+    static POSES: AtomicU64 = AtomicU64::new(1);
+    POSES.fetch_add(1, Ordering::Relaxed)
 }
 
 impl CullingScene {
     /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the objects that are
     /// marked as occluders, or of all objects where none is marked.
     pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
-        let mut this = Self::default();
+        let mut this = Self {
+            pose: new_pose(),
+            ..Self::default()
+        };
         if mode == Culling::Occlusion {
             this.bake(scene);
         }
@@ -105,6 +122,7 @@ impl CullingScene {
 
     /// Takes over a new pose of the same scene.
     pub(crate) fn update_pose(&mut self, scene: &Scene) {
+        self.pose = new_pose();
         for &(id, instance) in &self.placed {
             let place = affine(scene.instances[instance as usize].world_from_object);
             if self.occluders.set_transform(id, place).is_err() {
@@ -146,6 +164,38 @@ pub(crate) struct CullingStage {
     of_eye: Vec<Visibility>,
     rasterize_ms: f64,
     test_ms: f64,
+    /// Metres that eyes may move while the result holds.
+    radius_m: f64,
+    /// 0: none.
+    budget_ms: f64,
+    /// What the result was found for.
+    found_for: Option<FoundFor>,
+    reused: bool,
+    over_budget: u64,
+}
+
+/// What a result holds for: a pose of the scene, and eyes.
+#[derive(Clone, Copy, Debug)]
+struct FoundFor {
+    pose: u64,
+    eyes: [Option<Eye>; 2],
+}
+
+impl FoundFor {
+    /// Whether a result that holds within `radius_m` of this one's eyes answers for the other's.
+    fn holds_for(&self, other: &Self, radius_m: f64) -> bool {
+        let near = |(a, b): (&Option<Eye>, &Option<Eye>)| match (a, b) {
+            (Some(a), Some(b)) => {
+                let (p, q) = (a.world_from_eye, b.world_from_eye);
+                a.projection == b.projection
+                    && p.matrix3 == q.matrix3
+                    && (p.translation - q.translation).length() < 0.999 * radius_m
+            }
+            (None, None) => true,
+            _ => false,
+        };
+        self.pose == other.pose && self.eyes.iter().zip(&other.eyes).all(near)
+    }
 }
 
 /// Who rasterizes.
@@ -211,14 +261,19 @@ impl CullingStage {
             of_eye: Vec::new(),
             rasterize_ms: 0.0,
             test_ms: 0.0,
+            radius_m: settings.culling_radius.into(),
+            budget_ms: settings.culling_budget.into(),
+            found_for: None,
+            reused: false,
+            over_budget: 0,
         }))
     }
 
     /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are two eyes: what is
     /// hidden is hidden from both. A view that makes no sense culls nothing.
     ///
-    /// Each eye is tested for itself, exactly. One test for both ([`View::stereo`]) must shrink every occluder and hides
-    /// a tenth as much, for no less work; the figures and the buffer that are shown are then the left eye's.
+    /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then the left eye's. A result
+    /// that holds for some way around the eyes is kept until they leave it.
     pub(crate) fn cull(
         &mut self,
         scene: &CullingScene,
@@ -228,42 +283,54 @@ impl CullingStage {
         clock: Option<Clock>,
     ) -> CullingCounts {
         (self.rasterize_ms, self.test_ms) = (0.0, 0.0);
-        self.results.clear();
         let size = (width, height);
-        match eyes {
-            None => self.cull_for(
-                scene,
-                camera.world_from_view,
-                projection(camera, size, self.scale),
-                clock,
-            ),
-            Some(eyes) => {
-                for eye in eyes.iter().rev() {
-                    let projection = eye_projection(eye, camera, size, self.scale);
-                    self.cull_for(scene, eye.world_from_view, projection, clock);
+        let eye = |world_from_view: Mat4, projection: Projection| Eye {
+            world_from_eye: affine(world_from_view),
+            projection,
+        };
+        let wanted = FoundFor {
+            pose: scene.pose,
+            eyes: match eyes {
+                None => {
+                    let projection = projection(camera, size, self.scale);
+                    [Some(eye(camera.world_from_view, projection)), None]
                 }
-            }
+                Some(eyes) => eyes.each_ref().map(|e| {
+                    let projection = eye_projection(e, camera, size, self.scale);
+                    Some(eye(e.world_from_view, projection))
+                }),
+            },
+        };
+        self.reused = self
+            .found_for
+            .is_some_and(|found| found.holds_for(&wanted, self.radius_m));
+        if self.reused {
+            return self.counts();
         }
+        self.results.clear();
+        self.over_budget = 0;
+        // The figures that are shown are the first eye's.
+        for eye in wanted.eyes.into_iter().flatten().rev() {
+            self.cull_for(scene, eye, clock);
+        }
+        self.found_for = Some(wanted);
         self.culler.count(&self.results, Some(&scene.triangles));
         self.counts()
     }
 
     /// Adds what one eye sees to the results.
-    fn cull_for(
-        &mut self,
-        scene: &CullingScene,
-        world_from_view: Mat4,
-        projection: Projection,
-        clock: Option<Clock>,
-    ) {
-        let view = View::mono(Eye {
-            world_from_eye: affine(world_from_view),
-            projection,
-        });
+    fn cull_for(&mut self, scene: &CullingScene, eye: Eye, clock: Option<Clock>) {
+        let view = View::mono(eye).with_validity_radius(self.radius_m);
+        let clock_ns = clock.map(|clock| move || (clock() * 1e6) as u64);
+        let budget = clock_ns.as_ref().filter(|_| self.budget_ms > 0.0);
         let options = FrameOptions {
             occlusion: self.occlusion,
             occluder_size_threshold: self.occluder_size,
             occludee_size_threshold: self.occludee_size,
+            budget: budget.map(|clock| Budget {
+                clock,
+                deadline_ns: clock() + (self.budget_ms * 1e6) as u64,
+            }),
             ..FrameOptions::default()
         };
         self.of_eye.clear();
@@ -283,6 +350,7 @@ impl CullingStage {
         {
             self.of_eye.fill(Visibility::Visible);
         }
+        self.over_budget += self.culler.stats().clusters_over_budget;
         self.rasterize_ms += rasterized_ms - start_ms;
         self.test_ms += now() - rasterized_ms;
         if self.results.is_empty() {
@@ -304,6 +372,8 @@ impl CullingStage {
             occluded: s.occludees_occluded,
             small: s.occludees_small,
             occluder_triangles: s.occluder_triangles_rasterized,
+            over_budget: self.over_budget,
+            reused: self.reused,
         }
     }
 
@@ -315,6 +385,7 @@ impl CullingStage {
             threads: self.threads.threads().count(),
             rasterize_ms: self.rasterize_ms,
             test_ms: self.test_ms,
+            reused: self.reused,
         }
     }
 

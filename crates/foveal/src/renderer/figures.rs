@@ -106,6 +106,8 @@ impl Renderer {
             objects_occluded: culled.occluded,
             objects_small: culled.small,
             occluder_triangles: culled.occluder_triangles,
+            occluders_over_budget: culled.over_budget,
+            culling_reused: culled.reused,
             draws: draws * submission.passes(),
             triangles: self.draw_list.triangles * u64::from(EyeLayout::of(settings).eyes),
             stereo: settings.is_stereo().then(|| submission.stats(reason)),
