@@ -81,7 +81,9 @@ const OTHER: [&str; 7] = [
 
 fn sum_ms(stats: &FrameStats, counts: impl Fn(&str) -> bool) -> f64 {
     let passes = stats.gpu_ms.iter();
-    passes.filter(|pass| counts(&pass.name)).map(|p| p.ms).sum()
+    let counted = passes.filter(|pass| counts(&pass.name));
+    // An empty sum of floats is minus zero.
+    counted.map(|pass| pass.ms).sum::<f64>() + 0.0
 }
 
 pub(super) fn fovea_differing(a: &Picture, b: &Picture, s: &Settings) -> f64 {
