@@ -28,6 +28,9 @@ pub struct Pool {
 /// How often one looks before going to sleep; a look takes some ten nanoseconds.
 const LOOKS: u32 = 4000;
 
+/// After so many looks another thread of the same core may run: it may be the one that is waited for.
+const LOOKS_IN_A_ROW: u32 = 64;
+
 #[derive(Debug, Default)]
 struct Shared {
     state: Mutex<State>,
@@ -89,11 +92,15 @@ impl Shared {
 
     /// Looks for a while whether something has happened.
     fn watch(&self, happened: impl Fn(&Self) -> bool) {
-        for _ in 0..LOOKS {
+        for look in 1..=LOOKS {
             if happened(self) {
                 return;
             }
-            core::hint::spin_loop();
+            if look % LOOKS_IN_A_ROW == 0 {
+                std::thread::yield_now();
+            } else {
+                core::hint::spin_loop();
+            }
         }
     }
 
