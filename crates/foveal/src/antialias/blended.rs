@@ -8,7 +8,7 @@ use crate::shading::RADIANCE_FORMAT;
 use crate::{Settings, shader};
 
 /// Bytes of a sub-sample, and of a pixel.
-const TEXEL_BYTES: u64 = 8;
+pub(super) const TEXEL_BYTES: u64 = 8;
 
 /// What blended surfaces are drawn into, premultiplied.
 #[derive(Debug)]

@@ -8,7 +8,7 @@ use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{Gpu, target};
 use crate::stereo::EyeLayout;
 
-use super::blended::BlendedTargets;
+use super::blended::{self, BlendedTargets};
 use super::pattern::{Band, BandUniform, Pattern};
 use super::triangles::{FurtherTargets, band_of_triangles, by_triangles};
 
@@ -17,8 +17,6 @@ pub(super) const TALLY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Uin
 
 /// Bytes per pixel of the tally.
 const TALLY_BYTES: u64 = 2;
-/// Bytes of a sub-sample of blended surfaces.
-const BLENDED_BYTES: u64 = 8;
 /// Bytes of an entry of the queue, and of what it comes to.
 const ENTRY_BYTES: u64 = 8;
 
@@ -117,7 +115,7 @@ impl SampleTargets {
         }
         let most = gpu.device.limits().max_texture_dimension_2d;
         let size = EyeLayout::of(settings).target_size();
-        let bytes = bytes_per_sample(settings) + BLENDED_BYTES;
+        let bytes = bytes_per_sample(settings) + blended::TEXEL_BYTES;
         let rows = self.pattern.rows_per_band(size, bytes, most).min(self.rows);
         let mut targets = Self::with_room(gpu, settings, rows, self.room());
         let texels = targets.pattern.texels(size.0, rows);
