@@ -58,8 +58,9 @@ pub struct FrameOptions<'a> {
     /// Occluder models with `radius² < distance * threshold² * tan(fov_y / 2)` (distance above 1 m) are left
     /// out, as in Intel's sample (1.5 there). 0 takes all.
     pub occluder_size_threshold: f32,
-    /// Clusters (up to 64 quads) whose rectangle on the screen has fewer pixels than this per quad are left out:
-    /// fine detail costs much and hides little that what lies behind it does not. 0 takes all.
+    /// Clusters (up to 64 quads) that cannot cover more pixels than this per quad, by their rectangle on the screen and
+    /// how much of it their triangles fill in the mean, are left out: fine detail costs much and hides little that what
+    /// lies behind it does not. 0 takes all.
     pub occluder_pixels_per_quad: f32,
     /// The same as the first for occludees ([`Visibility::Small`]; 0.01 in the sample). 0 culls none by size.
     pub occludee_size_threshold: f32,
@@ -73,7 +74,7 @@ impl Default for FrameOptions<'_> {
     fn default() -> Self {
         Self {
             occluder_size_threshold: 0.0,
-            occluder_pixels_per_quad: 8.0,
+            occluder_pixels_per_quad: 6.0,
             occludee_size_threshold: 0.0,
             occlusion: true,
             budget: None,

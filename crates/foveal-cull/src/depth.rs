@@ -8,6 +8,8 @@
 //! Depth is `near / distance` (or linear, for orthographic views), stored as a shortened float with five
 //! bits of exponent and eleven of mantissa, always rounded away from the eye. Larger is nearer.
 
+use crate::simd::Lanes;
+
 /// Grid points per pixel and axis.
 pub(crate) const SAMPLES: u32 = 4;
 /// Pixels per block side.
@@ -257,6 +259,20 @@ impl<'a> Band<'a> {
             }
         }
         true
+    }
+
+    /// Fetches what drawing something of this depth into the blocks (first and last, inclusive) will touch.
+    #[inline(always)]
+    pub(crate) fn prefetch<L: Lanes>(&self, l: L, [x0, y0, x1, y1]: [u32; 4], code: i16) {
+        for y in y0..=y1 {
+            let row = (y - self.first_row) * self.blocks_x;
+            for i in (row + x0) as usize..=(row + x1) as usize {
+                if code > self.min[i] {
+                    l.prefetch(&self.depth[i]);
+                    l.prefetch(&self.partial[i]);
+                }
+            }
+        }
     }
 
     /// The pixels of a block that something from `far` to `near` must leave alone.

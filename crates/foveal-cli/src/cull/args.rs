@@ -71,8 +71,8 @@ pub(crate) struct CullingArgs {
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
     pub(crate) occluder_size_threshold: f32,
 
-    /// Leave out parts of occluders that have fewer pixels of the depth buffer than this per quadrilateral
-    #[arg(long, value_name = "PX", default_value_t = 8.0, value_parser = values::non_negative)]
+    /// Leave out parts of occluders that can cover fewer pixels of the depth buffer than this per quadrilateral
+    #[arg(long, value_name = "PX", default_value_t = 6.0, value_parser = values::non_negative)]
     pub(crate) occluder_pixels_per_quad: f32,
 
     /// Cull objects that look smaller than this (Intel's sample: 0.01)

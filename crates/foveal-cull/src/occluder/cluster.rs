@@ -117,6 +117,21 @@ fn split(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items:
     split(mesh, points, near, right);
 }
 
+/// How much of its box's outline a cluster can fill. The outline of a convex body is a fourth of its surface in the mean
+/// over all directions (Cauchy's formula), and triangles that face one way fill up to half their area: a flat wall and a
+/// closed body fill all, what is made of bars or leaves next to nothing.
+fn fill(quads: impl Iterator<Item = [Vec3; 4]>, size: Vec3) -> f32 {
+    let surface: f32 = quads
+        .map(|[a, b, c, d]| {
+            let twice = (b - a).cross(c - a).length() + (c - a).cross(d - a).length();
+            twice * 0.5
+        })
+        .sum();
+    let fill = surface / size.dot(Vec3::new(size.y, size.z, size.x));
+    // Too small or too large for float: nothing is known.
+    if fill.is_finite() { fill.min(1.0) } else { 1.0 }
+}
+
 /// Appends one cluster; false when its vertices do not fit a byte.
 fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: &[Item]) -> bool {
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
@@ -165,6 +180,10 @@ fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: 
     let cos = normals.iter().fold(1.0f32, |m, n| m.min(n.dot(axis)));
     // A little wider than measured, for rounding.
     let cos = if axis == Vec3::ZERO { -1.0 } else { cos - 1e-4 };
+    let fill = fill(
+        items.iter().map(|i| i.quad.map(|v| points[v as usize])),
+        hi - lo,
+    );
     let [lo, hi] = [lo, hi].map(|p| (p.as_dvec3() - mesh.center).as_vec3());
     mesh.clusters.push(Cluster {
         center: (lo + hi) * 0.5,
@@ -177,6 +196,7 @@ fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: 
         vertex_count: used.len() as u16,
         quad_count: items.len() as u8,
         triangle_count: triangles,
+        fill,
         hash: hash_words(
             items.len() as u32,
             used.iter()
@@ -186,4 +206,40 @@ fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: 
     });
     ring::build(mesh, near, &used, items.iter().map(|i| i.quad));
     true
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Aabb, BakeOptions, OccluderMesh};
+    use glam::Vec3;
+
+    fn fills(mesh: &OccluderMesh) -> Vec<f32> {
+        mesh.clusters.iter().map(|c| c.fill).collect()
+    }
+
+    /// Upright strips of a width, 1 m apart.
+    fn strips(width: f32) -> OccluderMesh {
+        let mut points = Vec::new();
+        let mut indices = Vec::new();
+        for (at, x) in (0u32..).step_by(4).zip([0.0, 1.0, 2.0, 3.0]) {
+            let corner = |dx: f32, y: f32| Vec3::new(x + dx, y, -0.3 * x);
+            points.extend([
+                corner(0.0, 0.0),
+                corner(width, 0.0),
+                corner(width, 4.0),
+                corner(0.0, 4.0),
+            ]);
+            indices.extend([0, 1, 2, 0, 2, 3].map(|i| at + i));
+        }
+        OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn walls_and_closed_bodies_fill_their_outline_and_bars_do_not() {
+        let solid = OccluderMesh::from_box(Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0)));
+        assert_eq!(fills(&solid.unwrap()), [1.0]);
+        let (wide, thin) = (fills(&strips(1.0)), fills(&strips(0.1)));
+        assert!(wide[0] > 0.6, "{wide:?}");
+        assert!((0.05..0.1).contains(&thin[0]), "{thin:?}");
+    }
 }

@@ -72,6 +72,8 @@ pub(crate) struct Cluster {
     pub(crate) vertex_count: u16,
     pub(crate) quad_count: u8,
     pub(crate) triangle_count: u8,
+    /// How much of its box's outline its triangles can fill, 0 to 1, in the mean over all directions.
+    pub(crate) fill: f32,
     /// Content hash: breaks ties in the drawing order, so that it never depends on submission order.
     pub(crate) hash: u32,
 }

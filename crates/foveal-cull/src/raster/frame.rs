@@ -10,6 +10,9 @@ use crate::depth::Band;
 use crate::occluder::OccluderSet;
 use crate::simd::{Kernel, Lanes};
 
+/// Larger rectangles of blocks are not fetched before they are drawn into.
+const MOST_FETCHED: u32 = 64;
+
 /// A cluster that may be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
@@ -83,6 +86,10 @@ impl Kernel for Draw<'_, '_> {
             let Some(mesh) = instance.mesh.as_deref() else {
                 continue;
             };
+            let [x0, y0, x1, y1] = blocks;
+            if (x1 + 1 - x0) * (y1 + 1 - y0) <= MOST_FETCHED {
+                band.prefetch(l, blocks, c.code);
+            }
             if let Some(drawn) = drawn.as_deref_mut() {
                 drawn.push(o as u32);
             }

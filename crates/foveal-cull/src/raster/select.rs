@@ -208,7 +208,7 @@ impl Kernel for Select<'_> {
                     let Some(c) = candidate(&p, i, width, height) else {
                         continue;
                     };
-                    let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]);
+                    let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]) * cluster.fill;
                     // Around the eye, quads must be larger than what they lose on all sides.
                     let lost = shift * p.depth[i];
                     let least = samples_per_quad.max(LOSSES * lost * lost);

@@ -53,6 +53,10 @@ impl Lanes for Avx2 {
     fn wide(self) -> Self::W {
         Twice(self)
     }
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        super::sse2::prefetch(soon);
+    }
 
     #[inline(always)]
     fn splat(self, v: f32) -> __m256 {

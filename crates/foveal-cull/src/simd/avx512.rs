@@ -67,6 +67,10 @@ impl Lanes for Avx512 {
     fn wide(self) -> Self::W {
         super::avx512x16::Wide512(self)
     }
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        super::sse2::prefetch(soon);
+    }
 
     as_avx2! {
     splat(v: f32) -> __m256;

@@ -158,6 +158,10 @@ pub(crate) trait Lanes: Copy {
 
     fn wide(self) -> Self::W;
 
+    /// Asks for memory that will be needed soon; changes nothing.
+    #[inline(always)]
+    fn prefetch<T>(self, _soon: &T) {}
+
     fn splat(self, v: f32) -> Self::F;
     fn load(self, v: &[f32; 8]) -> Self::F;
     fn store(self, v: Self::F, to: &mut [f32; 8]);

@@ -41,6 +41,15 @@ macro_rules! as_portable {
     };
 }
 
+/// Asks for every line of cache that `soon` begins.
+#[inline(always)]
+pub(super) fn prefetch<T>(soon: &T) {
+    let start: *const i8 = core::ptr::from_ref(soon).cast();
+    for line in 0..size_of::<T>().div_ceil(64) {
+        sse2!(_mm_prefetch::<_MM_HINT_T0>(start.add(64 * line)));
+    }
+}
+
 impl Lanes for Sse2 {
     type F = [f32; 8];
     type I = [i32; 8];
@@ -53,6 +62,10 @@ impl Lanes for Sse2 {
     #[inline(always)]
     fn wide(self) -> Self::W {
         Twice(self)
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        prefetch(soon);
     }
 
     as_portable! {
