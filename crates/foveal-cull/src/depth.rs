@@ -261,6 +261,14 @@ impl<'a> Band<'a> {
         true
     }
 
+    /// Counts work for some rows, the same for each.
+    pub(crate) fn share(&mut self, rows: core::ops::Range<u32>, work: u32) {
+        let each = work.div_ceil(rows.len() as u32);
+        for row in &mut self.work[rows.start as usize..rows.end as usize] {
+            *row += each;
+        }
+    }
+
     /// Fetches what drawing something of this depth into the blocks (first and last, inclusive) will touch.
     #[inline(always)]
     pub(crate) fn prefetch<L: Lanes>(&self, l: L, [x0, y0, x1, y1]: [u32; 4], code: i16) {

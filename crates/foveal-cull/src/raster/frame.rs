@@ -13,6 +13,10 @@ use crate::simd::{Kernel, Lanes};
 /// Larger rectangles of blocks are not fetched before they are drawn into.
 const MOST_FETCHED: u32 = 64;
 
+/// What the set-up of a cluster takes, besides one for each quad, in the unit of
+/// [`WORK_OF_FULL`](super::block::WORK_OF_FULL).
+const WORK_OF_CLUSTER: u32 = 16;
+
 /// A cluster that may be drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Candidate {
@@ -93,6 +97,10 @@ impl Kernel for Draw<'_, '_> {
             if let Some(drawn) = drawn.as_deref_mut() {
                 drawn.push(o as u32);
             }
+            let cluster = &mesh.clusters[c.cluster as usize];
+            let rows = blocks[1] - band.first_row..blocks[3] + 1 - band.first_row;
+            let work = WORK_OF_CLUSTER + u32::from(cluster.quad_count);
+            band.share(rows, work);
             let facing = Facing {
                 mirrored: instance.mirrored,
                 two_sided: mesh.two_sided,
@@ -105,7 +113,7 @@ impl Kernel for Draw<'_, '_> {
                 &mut band,
                 scratch,
                 mesh,
-                &mesh.clusters[c.cluster as usize],
+                cluster,
                 &frame.rows[c.instance as usize],
                 facing,
             );

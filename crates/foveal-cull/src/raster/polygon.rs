@@ -137,11 +137,16 @@ impl<L: Lanes> Polygon<L> {
     }
 }
 
+/// What the set-up of a polygon takes, and a row of blocks of it, in the unit of [`block::WORK_OF_FULL`].
+const WORK_OF_POLYGON: u32 = 5;
+const WORK_OF_ROW: u32 = 1;
+
 #[inline(always)]
 pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
     let [bx0, by0, bx1, by1] = polygon.blocks;
     let size = f64::from(BLOCK_SAMPLES);
     let borders = Borders::new(l, polygon);
+    band.work[(by0 - band.first_row) as usize] += WORK_OF_POLYGON;
     for by in by0..=by1 {
         let top = (by * BLOCK_SAMPLES) as f32;
         let exact = borders.at(l, top);
@@ -170,15 +175,15 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
             }
             last = last.min(end as u32);
         }
-        // A row of a polygon costs about as much as two blocks.
-        band.work[(by - band.first_row) as usize] += 3 + last.saturating_sub(first);
+        let mut work = WORK_OF_ROW;
         for bx in first..=last {
             let left = f64::from(bx * BLOCK_SAMPLES);
             if left >= inner_left && left + size <= inner_right {
-                block::cover_full(l, band, bx, by, &polygon.plane);
+                work += block::cover_full(l, band, bx, by, &polygon.plane);
             } else {
-                block::cover_partial(l, band, bx, by, polygon, &borders, exact);
+                work += block::cover_partial(l, band, bx, by, polygon, &borders, exact);
             }
         }
+        band.work[(by - band.first_row) as usize] += work;
     }
 }

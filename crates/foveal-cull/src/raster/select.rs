@@ -2,8 +2,8 @@
 //!
 //! Clusters are rejected by frustum, normal cone, size and detail before any vertex is transformed, then sorted
 //! front to back by a key that belongs to their content (nearest distance, then a hash), so that the result
-//! does not depend on the order in which occluders were added. Instances are looked at in parts, one per thread; each
-//! part gives a sorted list, and the lists are merged.
+//! does not depend on the order in which occluders were added. Several threads look at clusters in parts, a few for each,
+//! and take the next one when they are done.
 
 use super::frame::{Candidate, FrameScratch};
 use crate::depth::{BLOCK_SAMPLES, SAMPLES, encode};
@@ -15,7 +15,7 @@ use crate::{CullStats, InstructionSet, Threads};
 use glam::DVec4;
 use std::sync::Mutex;
 
-/// Candidates from some of the instances, in order.
+/// Candidates from some of the clusters.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     candidates: Vec<Candidate>,
@@ -24,10 +24,11 @@ pub(crate) struct Part {
     stats: CullStats,
 }
 
-/// Most parts that instances are looked at in.
+/// Most parts that clusters are looked at in, and how many for each thread: how long one takes cannot be foreseen.
 const MAX_PARTS: usize = 64;
-/// Fewer clusters than this are not worth another thread.
-const LEAST_CLUSTERS: usize = 256;
+const PARTS_PER_THREAD: usize = 4;
+/// Fewer groups of eight clusters than this are not worth a part.
+const LEAST_GROUPS: usize = 32;
 /// Clusters of quads with less than this times the square of their shift hide next to nothing.
 const LOSSES: f32 = 16.0;
 
@@ -54,33 +55,41 @@ impl FrameScratch {
         threads: &dyn Threads,
     ) -> CullStats {
         let instances = &choice.set.instances;
-        let clusters = |i: &Instance| i.mesh.as_ref().map_or(0, |m| m.clusters.len());
-        let all: usize = instances.iter().map(clusters).sum();
-        let parts = threads.count().clamp(1, MAX_PARTS);
-        let parts = parts.min(1 + all / LEAST_CLUSTERS);
+        let groups = |i: &Instance| i.mesh.as_ref().map_or(0, |m| m.bounds8.len());
+        let all: usize = instances.iter().map(groups).sum();
+        let parts = match threads.count() {
+            0 | 1 => 1,
+            n => (n * PARTS_PER_THREAD).min(MAX_PARTS),
+        };
+        let parts = parts.min(1 + all / LEAST_GROUPS);
         self.rows.resize(instances.len(), [[0.0; 4]; 4]);
         self.parts
             .resize_with(self.parts.len().max(parts), Part::default);
         let mut jobs: [Mutex<Option<Select<'_>>>; MAX_PARTS] =
             [const { Mutex::new(None) }; MAX_PARTS];
-        let (mut rows, mut first, mut done) = (&mut self.rows[..], 0, 0);
+        let (mut rows, mut first, mut first_group, mut done) = (&mut self.rows[..], 0, 0, 0);
         for (k, (job, part)) in jobs.iter_mut().zip(&mut self.parts[..parts]).enumerate() {
-            // As many clusters for each.
+            // As many groups for each; `done` of them lie before instance `end`.
             let wanted = all * (k + 1) / parts;
             let mut end = first;
-            while end < instances.len() && (done < wanted || k + 1 == parts) {
-                done += clusters(&instances[end]);
+            while end < instances.len() && done + groups(&instances[end]) <= wanted {
+                done += groups(&instances[end]);
                 end += 1;
             }
-            let (here, after) = rows.split_at_mut(end - first);
+            // The part after goes on with an instance that is cut; its clip rows are for whoever begins it.
+            let (last_groups, begun) = (wanted - done, usize::from(first_group > 0));
+            let cut = usize::from(last_groups > 0);
+            let (here, after) = rows.split_at_mut(end + cut - first - begun);
             *job = Mutex::new(Some(Select {
                 choice: *choice,
-                instances: &instances[first..end],
+                instances: &instances[first..end + cut],
                 first,
+                first_group,
+                end_group: if cut > 0 { last_groups } else { usize::MAX },
                 rows: here,
                 part,
             }));
-            (rows, first) = (after, end);
+            (rows, first, first_group) = (after, end, last_groups);
         }
         let task = |i: usize| {
             let job = jobs[i].lock().ok().and_then(|mut j| j.take());
@@ -107,20 +116,12 @@ impl FrameScratch {
     fn join(&mut self, parts: usize) {
         self.candidates.clear();
         self.order.clear();
-        let mut offsets = [0; MAX_PARTS];
-        let mut heads = [0; MAX_PARTS];
-        for (part, offset) in self.parts[..parts].iter().zip(&mut offsets) {
-            *offset = self.candidates.len() as u64;
+        for part in &self.parts[..parts] {
+            let offset = self.candidates.len() as u64;
             self.candidates.extend_from_slice(&part.candidates);
+            self.order.extend(part.order.iter().map(|o| o + offset));
         }
-        for _ in 0..self.candidates.len() {
-            let head = |i: usize| self.parts[i].order.get(heads[i]);
-            let first = (0..parts).filter_map(|i| Some((head(i)?, i))).min();
-            if let Some((order, i)) = first {
-                self.order.push(order + offsets[i]);
-                heads[i] += 1;
-            }
-        }
+        self.order.sort_unstable();
         // Equal distances by content, not by the order in which occluders were added.
         let candidates = &self.candidates;
         for run in self.order.chunk_by_mut(|a, b| a >> 32 == b >> 32) {
@@ -131,13 +132,16 @@ impl FrameScratch {
     }
 }
 
-/// Finds and sorts the candidates among some instances.
+/// Finds the candidates among the clusters of some instances.
 struct Select<'a> {
     choice: Choice<'a>,
     instances: &'a [Instance],
     /// The number of the first of them.
     first: usize,
-    /// Their clip rows.
+    /// The first group of eight clusters of the first instance, and the end of those of the last.
+    first_group: usize,
+    end_group: usize,
+    /// Clip rows of the instances, but for the first one if another part begins it.
     rows: &'a mut [[[f64; 4]; 4]],
     part: &'a mut Part,
 }
@@ -151,6 +155,8 @@ impl Kernel for Select<'_> {
             choice,
             instances,
             first: first_instance,
+            first_group,
+            end_group,
             rows: clip_rows,
             part,
         } = self;
@@ -170,18 +176,24 @@ impl Kernel for Select<'_> {
         let stats = &mut part.stats;
         let planes = instance_planes(camera, f64::from(width), f64::from(height));
         let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
-        for ((index, instance), clip_rows) in instances.iter().enumerate().zip(clip_rows) {
+        let begun = usize::from(first_group > 0);
+        for (index, instance) in instances.iter().enumerate() {
             let Some(mesh) = instance.mesh.as_deref().filter(|_| instance.enabled) else {
                 continue;
             };
-            stats.occluder_models += 1;
-            stats.occluder_triangles += mesh.triangle_count() as u64;
-            stats.clusters += mesh.clusters.len() as u64;
+            let begins = index >= begun;
+            if begins {
+                stats.occluder_models += 1;
+                stats.occluder_triangles += mesh.triangle_count() as u64;
+                stats.clusters += mesh.clusters.len() as u64;
+            }
             if outside(camera, &planes, instance, small) {
                 continue;
             }
             let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
-            *clip_rows = camera.exact_rows(&instance.world_from_mesh);
+            if begins {
+                clip_rows[index - begun] = camera.exact_rows(&instance.world_from_mesh);
+            }
             let screen = Screen {
                 rows,
                 width,
@@ -194,7 +206,13 @@ impl Kernel for Select<'_> {
             let eye = instance.mesh_from_world.transform_point3(camera.eye) - mesh.center;
             let forward = instance.mesh_from_world.transform_vector3(camera.forward);
             let (eye, forward) = (eye.as_vec3(), forward.as_vec3());
-            for (g, bounds) in mesh.bounds8.iter().enumerate() {
+            let from = if begins { 0 } else { first_group };
+            let end = if index + 1 == instances.len() {
+                end_group.min(mesh.bounds8.len())
+            } else {
+                mesh.bounds8.len()
+            };
+            for (g, bounds) in (from..end).zip(&mesh.bounds8[from..end]) {
                 let p = project(l, &screen, bounds);
                 let first = g * 8;
                 let clusters = &mesh.clusters[first..mesh.clusters.len().min(first + 8)];
@@ -232,7 +250,6 @@ impl Kernel for Select<'_> {
                 }
             }
         }
-        part.order.sort_unstable();
     }
 }
 
