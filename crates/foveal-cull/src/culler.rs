@@ -3,7 +3,8 @@
 use crate::depth::{DepthBuffer, EMPTY, SAMPLES, decode};
 use crate::query::answer::{Frame, Query};
 use crate::query::flat::Flat;
-use crate::query::tree::{OccludeeTree, Walk};
+use crate::query::tree::OccludeeTree;
+use crate::query::walk::Walk;
 use crate::raster::frame::{Draw, FrameScratch};
 use crate::raster::select::Choice;
 use crate::raster::setup::{Radius, Scratch};
@@ -311,7 +312,8 @@ impl Culler {
 
     /// Tests a whole tree of occludees: one answer per object, in the order of the boxes it was built from.
     /// Equal to [`Culler::query`] on the same boxes but for objects whose own rectangle is larger than it
-    /// needs to be: a hidden group answers for its members, and it is hidden only if they are.
+    /// needs to be: a hidden group answers for its members, and it is hidden only if they are. They are called
+    /// occluded then, although some may lie outside the frustum or be small.
     ///
     /// # Errors
     /// [`CullError::LengthMismatch`] when `results` is not as long as the tree.

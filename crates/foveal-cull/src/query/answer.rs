@@ -3,6 +3,7 @@
 use super::faces::Planes;
 use super::near::{Clipped, clip_box};
 use super::project::{Boxes8, Coarse, Projected8, ROUNDING, Screen};
+use super::sift::Sieve;
 use super::test::{PixelRect, hidden};
 use crate::depth::{DepthBuffer, SAMPLES, encode};
 use crate::simd::Lanes;
@@ -118,8 +119,7 @@ impl<'a> Query<'a> {
         }
         let (rect, code) = rectangle(p, i);
         // Of a large group the members had better be asked.
-        let [x0, y0, x1, y1] = rect.blocks();
-        if !object && (x1 - x0 + 1) * (y1 - y0 + 1) > GROUP_BLOCKS {
+        if !object && rect.block_count() > GROUP_BLOCKS {
             return Visibility::Visible;
         }
         // Where even the middle lies before all that is known, nothing closer will hide the box.
@@ -145,10 +145,12 @@ impl<'a> Query<'a> {
         code > i32::from(self.buffer.pixel(x as u32, y as u32))
     }
 
-    /// Whether frustum and summary alone tell what most boxes are.
+    /// What a first look is taken with, where frustum and summary alone tell what most boxes are.
     #[inline(always)]
-    pub(super) fn is_plain(&self) -> bool {
-        self.occlusion && self.around.is_none() && self.small <= 0.0 && self.screen.coarse.is_some()
+    pub(super) fn sieve(&self) -> Option<Sieve<'a>> {
+        (self.occlusion && self.around.is_none())
+            .then(|| Sieve::new(&self.screen))
+            .flatten()
     }
 
     /// Answers for a box of which a look at its middle says nothing, in plain frames.
@@ -167,6 +169,32 @@ impl<'a> Query<'a> {
         self.answer_rect(l, rect, code, Some(place(boxes, i)))
     }
 
+    /// The same for a group, which is to be opened where that is the better way.
+    #[inline(always)]
+    pub(super) fn answer_group<L: Lanes>(
+        &self,
+        l: L,
+        p: &Projected8,
+        i: usize,
+        boxes: &Boxes8,
+    ) -> Visibility {
+        if p.crossing >> i & 1 != 0 {
+            // Its members seldom cross the near plane too.
+            let (center, half) = place(boxes, i);
+            let beside = self.screen.is_beside(center, half + self.screen.grow);
+            return if beside {
+                Visibility::Outside
+            } else {
+                Visibility::Visible
+            };
+        }
+        let (rect, code) = rectangle(p, i);
+        if rect.block_count() > GROUP_BLOCKS {
+            return Visibility::Visible;
+        }
+        self.answer_rect(l, rect, code, None)
+    }
+
     #[inline(always)]
     fn is_small(&self, i: usize, boxes: &Boxes8, object: bool) -> bool {
         if !(object && self.small > 0.0) {
@@ -174,7 +202,8 @@ impl<'a> Query<'a> {
         }
         let (c, h) = place(boxes, i);
         let [x, y, z, w] = self.screen.rows[3];
-        let distance = c.dot(Vec3::new(x, y, z)) + w;
+        // In the order in which lanes are added.
+        let distance = (c.x * x + c.y * y) + (c.z * z + w);
         distance > 1.0 && h.length_squared() < distance * self.small
     }
 
@@ -201,6 +230,9 @@ impl<'a> Query<'a> {
     #[inline(always)]
     fn answer_crossing<L: Lanes>(&self, l: L, i: usize, boxes: &Boxes8) -> Visibility {
         let (center, half) = place(boxes, i);
+        if self.screen.is_beside(center, half + self.screen.grow) {
+            return Visibility::Outside;
+        }
         match clip_box(&self.screen, center, half + self.screen.grow) {
             Clipped::Outside => Visibility::Outside,
             Clipped::Visible => Visibility::Visible,

@@ -5,6 +5,7 @@
 //! branch, and the list is gone through by itself.
 
 use super::answer::Query;
+use super::list::List;
 use super::project::{Boxes8, Projected8, middles as middles_of, project};
 use super::sift::{Sieve, Sifted16};
 use crate::simd::{Kernel, Lanes};
@@ -33,62 +34,6 @@ const TOLD: [[Visibility; 8]; 256] = {
     }
     told
 };
-
-/// The numbers of the bits that are set in a byte, a byte each.
-const BITS: [u64; 256] = {
-    let mut bits = [0; 256];
-    let mut n = 0;
-    while n < 256 {
-        let (mut i, mut count) = (0, 0);
-        while i < 8 {
-            if n >> i & 1 != 0 {
-                bits[n] |= i << (8 * count);
-                count += 1;
-            }
-            i += 1;
-        }
-        n += 1;
-    }
-    bits
-};
-
-/// Boxes that are left: their numbers.
-struct List {
-    numbers: [u8; BOXES + 8],
-    count: usize,
-}
-
-impl List {
-    const NONE: Self = Self {
-        numbers: [0; BOXES + 8],
-        count: 0,
-    };
-
-    /// Adds those of group `g` whose bit is set.
-    #[inline(always)]
-    fn add_eight(&mut self, g: usize, wanted: usize) {
-        let numbers = BITS[wanted] + g as u64 * 0x0808_0808_0808_0808;
-        if let Some(to) = self.numbers[self.count..].first_chunk_mut() {
-            *to = numbers.to_le_bytes();
-        }
-        self.count += wanted.count_ones() as usize;
-    }
-
-    /// Drops numbers from `end` on, which come last.
-    #[inline(always)]
-    fn end(&mut self, end: usize) {
-        while self.count > 0 && usize::from(self.numbers[self.count - 1]) >= end {
-            self.count -= 1;
-        }
-    }
-
-    /// Adds a box if `wanted`.
-    #[inline(always)]
-    fn add(&mut self, n: usize, wanted: bool) {
-        self.numbers[self.count] = n as u8;
-        self.count += usize::from(wanted);
-    }
-}
 
 /// Working memory for some boxes.
 struct Work {
@@ -123,10 +68,7 @@ impl Kernel for Flat<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         let query = self.query;
-        let sieve = query
-            .is_plain()
-            .then(|| Sieve::new(&query.screen))
-            .flatten();
+        let sieve = query.sieve().filter(|_| query.small <= 0.0);
         let mut work = Work::NEW;
         for (boxes, results) in self.boxes.chunks(BOXES).zip(self.results.chunks_mut(BOXES)) {
             work.boxes[..boxes.len()].copy_from_slice(boxes);
@@ -149,7 +91,7 @@ impl Query<'_> {
             (0..count).for_each(|n| work.left.add(n, true));
         }
         // The others exactly.
-        let list = &work.left.numbers[..work.left.count];
+        let list = work.left.numbers();
         let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
         let projected = &mut work.projected[..groups];
         for (p, eight) in projected.iter_mut().zip(&work.eights) {
@@ -162,10 +104,13 @@ impl Query<'_> {
             let planes = self.planes.as_ref().filter(|_| sieve.is_some());
             let entries = planes.and_then(|planes| planes.entries(l, [x, y], eight));
             let told = p.outside | p.hidden;
+            // A ray may enter what crosses the near plane before that.
+            let beyond = !p.crossing;
             for (i, n) in list[8 * g..].iter().take(8).enumerate() {
                 let outside = p.outside >> i & 1 != 0;
                 let told = told >> i & 1 != 0;
-                let seen = entries.is_some_and(|codes| self.before(x[i], y[i], codes[i]));
+                let seen = (beyond >> i & 1 != 0)
+                    & entries.is_some_and(|codes| self.before(x[i], y[i], codes[i]));
                 work.results[usize::from(*n)] = if outside {
                     Visibility::Outside
                 } else if told {
@@ -176,7 +121,7 @@ impl Query<'_> {
                 work.open.add(8 * g + i, sieve.is_none() | !(told | seen));
             }
         }
-        for &k in &work.open.numbers[..work.open.count] {
+        for &k in work.open.numbers() {
             let (g, i) = (usize::from(k) / 8, usize::from(k) % 8);
             let n = usize::from(list[usize::from(k)]);
             let (p, eight) = (&projected[g], &work.eights[g]);
@@ -191,7 +136,7 @@ impl Query<'_> {
     /// Of the boxes that are left most are simply seen, in the middle. Lists the others.
     #[inline(always)]
     fn keep_open<L: Lanes>(&self, l: L, work: &mut Work) {
-        let list = &work.left.numbers[..work.left.count];
+        let list = work.left.numbers();
         let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
         let middles = &mut work.middles[..groups];
         for (middle, eight) in middles.iter_mut().zip(&work.eights) {

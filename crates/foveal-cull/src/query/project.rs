@@ -3,6 +3,7 @@
 use crate::Aabb;
 use crate::depth::{BLOCK, DepthBuffer, EMPTY, SAMPLES};
 use crate::simd::{Lanes, four};
+use glam::Vec3;
 
 /// Relative growth of boxes against rounding.
 pub(crate) const ROUNDING: f32 = 6e-7;
@@ -48,7 +49,16 @@ impl Boxes8 {
         eight
     }
 
-    pub(crate) fn set(&mut self, lane: usize, center: glam::Vec3, half: glam::Vec3) {
+    /// Box `lane` becomes box `from` of `boxes`.
+    #[inline(always)]
+    pub(super) fn copy(&mut self, lane: usize, boxes: &Self, from: usize) {
+        for axis in 0..3 {
+            self.center[axis][lane] = boxes.center[axis][from];
+            self.half[axis][lane] = boxes.half[axis][from];
+        }
+    }
+
+    pub(crate) fn set(&mut self, lane: usize, center: Vec3, half: Vec3) {
         for axis in 0..3 {
             self.center[axis][lane] = center[axis];
             self.half[axis][lane] = half[axis];
@@ -113,6 +123,30 @@ pub(crate) struct Screen<'a> {
     pub(crate) grow: f32,
     /// Boxes are tested against it at once.
     pub(crate) coarse: Option<Coarse<'a>>,
+}
+
+impl Screen<'_> {
+    /// Whether all of a box, grown for rounding, lies beyond one border of the screen, wherever the near plane is.
+    #[inline(always)]
+    pub(super) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
+        let [x, y, _, w] = self.rows;
+        let ends = |row: [f32; 4], size: f32| {
+            // By rows that are above zero within the border.
+            let low = core::array::from_fn(|k| row[k] + self.dilate * w[k]);
+            let high = core::array::from_fn(|k| (size + self.dilate) * w[k] - row[k]);
+            [low, high]
+        };
+        let beyond = |[a, b, c, d]: [f32; 4]| {
+            let n = Vec3::new(a, b, c);
+            let most = n.dot(center) + n.abs().dot(half) + d;
+            let terms = n.abs().dot(center.abs() + half) + d.abs();
+            most < -ROUNDING * terms
+        };
+        ends(x, self.width)
+            .into_iter()
+            .chain(ends(y, self.height))
+            .any(beyond)
+    }
 }
 
 /// The summary of a finished depth buffer.

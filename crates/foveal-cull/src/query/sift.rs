@@ -4,11 +4,11 @@
 //! distances of its nearest and its farthest point: two divisions, and most boxes are told from that. What it hides,
 //! the exact rectangle would be hidden by too; the others are projected anew.
 
-use super::project::{Coarse, ROUNDING, Screen};
+use super::project::{Boxes8, Coarse, ROUNDING, Screen};
 use crate::Aabb;
-use crate::depth::BLOCK_SAMPLES;
-use crate::simd::four;
+use crate::depth::{BLOCK, BLOCK_SAMPLES};
 use crate::simd::wide::Wide;
+use crate::simd::{four, three};
 
 /// What boxes are sifted with.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +35,27 @@ pub(crate) struct Sifted16 {
     pub(crate) outside: u32,
     /// Bit per box: certainly beyond the near plane.
     beyond: u32,
+}
+
+/// What is known of the children of two nodes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Looked16 {
+    pub(crate) sifted: Sifted16,
+    /// The pixel that a box's middle lies in, and the code of its depth.
+    pub(crate) middle: [[i32; 16]; 3],
+    /// Bit per box: its middle is on the screen; else the pixel means nothing.
+    pub(crate) on: u32,
+    /// Bit per box: below the size threshold.
+    pub(crate) small: u32,
+}
+
+impl Looked16 {
+    pub(crate) const NONE: Self = Self {
+        sifted: Sifted16::NONE,
+        middle: [[0; 16]; 3],
+        on: 0,
+        small: 0,
+    };
 }
 
 impl Sifted16 {
@@ -101,6 +122,18 @@ impl<'a> Sieve<'a> {
         for h in &mut h {
             *h = w.add(*h, grow);
         }
+        self.told(w, c, h, volume).0
+    }
+
+    /// The same from centres and half extents, with a bit for each that is a volume; and where the centres are, by rows.
+    #[inline(always)]
+    fn told<W: Wide>(
+        &self,
+        w: W,
+        c: [W::F; 3],
+        h: [W::F; 3],
+        volume: u32,
+    ) -> (Sifted16, [W::F; 4]) {
         let center = four!(i => dot(w, &c, &self.rows[i]));
         let reach = four!(i => reach(w, &h, &self.rows[i]));
         let lo = four!(i => w.sub(center[i], reach[i]));
@@ -133,7 +166,50 @@ impl<'a> Sieve<'a> {
         w.istore(w.codes(w.max(depth, zero)), &mut sifted.code);
         sifted.outside = behind | off;
         sifted.beyond = beyond;
-        sifted
+        (sifted, center)
+    }
+
+    /// The same for two nodes of a hierarchy, whose boxes are grown already; and where their middles are.
+    #[inline(always)]
+    pub(crate) fn look<W: Wide>(&self, w: W, pair: [&Boxes8; 2], small: f32) -> Looked16 {
+        let [a, b] = pair;
+        let c = three!(k => w.pair(&a.center[k], &b.center[k]));
+        let own = three!(k => w.pair(&a.half[k], &b.half[k]));
+        let mut largest = w.splat(0.0);
+        for k in 0..3 {
+            largest = w.max(largest, w.add(w.abs(c[k]), own[k]));
+        }
+        let grow = w.add(w.mul(largest, w.splat(ROUNDING)), w.splat(self.grow));
+        let h = three!(k => w.add(own[k], grow));
+        // NaN where it is no volume, which is neither less nor more than anything.
+        let (sifted, [x, y, z, distance]) = self.told(w, c, h, !0);
+        let mut looked = Looked16 {
+            sifted,
+            ..Looked16::NONE
+        };
+        let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        let squares = three!(k => w.mul(own[k], own[k]));
+        let squared = w.add(w.add(squares[0], squares[1]), squares[2]);
+        looked.small = w.lt(one, distance) & w.lt(squared, w.mul(distance, w.splat(small)));
+        let per = w.div(one, distance);
+        let size = BLOCK as f32;
+        let x = w.mul(w.add(w.mul(x, per), w.splat(self.middle[0])), w.splat(size));
+        let y = w.mul(w.add(w.mul(y, per), w.splat(self.middle[1])), w.splat(size));
+        let [right, bottom] = self.middle.map(|m| 2.0 * m * size);
+        let (below_right, below_bottom) = (w.lt(x, w.splat(right)), w.lt(y, w.splat(bottom)));
+        let on = w.lt(z, distance) & !w.lt(x, zero) & !w.lt(y, zero) & below_right & below_bottom;
+        looked.on = on;
+        let last = [right, bottom].map(|v| w.splat(v - 1.0));
+        w.istore(
+            w.trunc(w.min(w.max(x, zero), last[0])),
+            &mut looked.middle[0],
+        );
+        w.istore(
+            w.trunc(w.min(w.max(y, zero), last[1])),
+            &mut looked.middle[1],
+        );
+        w.istore(w.codes(w.max(w.mul(z, per), zero)), &mut looked.middle[2]);
+        looked
     }
 }
 

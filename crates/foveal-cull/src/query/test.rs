@@ -39,6 +39,12 @@ impl PixelRect {
         ]
     }
 
+    #[inline(always)]
+    pub(crate) fn block_count(self) -> u32 {
+        let [x0, y0, x1, y1] = self.blocks();
+        (x1 - x0 + 1) * (y1 - y0 + 1)
+    }
+
     /// The part in one block, a bit per pixel.
     #[inline(always)]
     fn bits(self, bx: u32, by: u32) -> u64 {

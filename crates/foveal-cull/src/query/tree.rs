@@ -3,10 +3,7 @@
 //! Nodes have eight children whose boxes lie side by side, so that one pass of the projection kernel tests
 //! all of them. Every child covers one run of the tree's own order of objects.
 
-use super::project::{Boxes8, ROUNDING, project};
-use crate::Visibility;
-use crate::query::answer::Query;
-use crate::simd::{Kernel, Lanes};
+use super::project::{Boxes8, ROUNDING};
 use crate::{Aabb, CullError};
 use glam::{DVec3, Vec3};
 
@@ -20,23 +17,53 @@ pub struct OccludeeTree {
     len: usize,
 }
 
+/// Four cache lines: a walk waits for memory more than for anything else.
 #[derive(Clone, Copy, Debug)]
-struct Node {
-    boxes: Boxes8,
-    children: [Child; 8],
-    count: u8,
+#[repr(C, align(64))]
+pub(super) struct Node {
+    pub(super) boxes: Boxes8,
+    /// Child `i` covers `order[first[i]..first[i + 1]]`.
+    first: [u32; 9],
+    /// The first of the children that are nodes; the others follow it.
+    below: u32,
+    /// Bit per lane: there is a child.
+    pub(super) lanes: u8,
+    /// Bit per lane: it is an object.
+    pub(super) objects: u8,
 }
 
-#[derive(Clone, Copy, Debug, Default)]
-struct Child {
-    /// Node, or [`OBJECT`].
-    node: u32,
-    /// Run of `order`.
-    first: u32,
-    count: u32,
-}
+impl Node {
+    /// A node whose children cover the given runs, which lie side by side; one of a single object is that object.
+    fn over(runs: &[core::ops::Range<usize>]) -> Self {
+        let end = runs.last().map_or(0, |run| run.end as u32);
+        let mut node = Self {
+            boxes: Boxes8::NONE,
+            first: [end; 9],
+            below: 0,
+            lanes: 0,
+            objects: 0,
+        };
+        for (lane, run) in runs.iter().enumerate() {
+            node.first[lane] = run.start as u32;
+            node.lanes |= 1 << lane;
+            node.objects |= u8::from(run.len() == 1) << lane;
+        }
+        node
+    }
 
-const OBJECT: u32 = u32::MAX;
+    /// The node that a child is.
+    #[inline(always)]
+    pub(super) fn child(&self, lane: usize) -> u32 {
+        let before = (1u32 << lane) - 1;
+        self.below + (u32::from(self.lanes & !self.objects) & before).count_ones()
+    }
+
+    /// The run of the order that a child covers.
+    #[inline(always)]
+    pub(super) fn run(&self, lane: usize) -> core::ops::Range<usize> {
+        self.first[lane] as usize..self.first[lane + 1] as usize
+    }
+}
 
 impl OccludeeTree {
     /// Builds a tree over boxes in metres relative to `origin` (world). A box that is not a volume is always
@@ -53,59 +80,43 @@ impl OccludeeTree {
         // Boxes that are no volumes go to the end, into nodes of their own, so that they spoil no other.
         order.sort_by_key(|&i| !boxes[i as usize].is_valid());
         let valid = order.partition_point(|&i| boxes[i as usize].is_valid());
-        if !order.is_empty() {
-            let mut children = Vec::new();
-            for (first, part) in [(0, 0..valid), (valid, valid..order.len())] {
-                if !part.is_empty() {
-                    children.push((first, part.len()));
-                }
+        let runs: Vec<_> = [0..valid, valid..order.len()]
+            .into_iter()
+            .filter(|run| !run.is_empty())
+            .collect();
+        if !runs.is_empty() {
+            tree.nodes.push(Node::over(&runs));
+        }
+        // Breadth first: the children of a node lie side by side.
+        let mut n = 0;
+        while n < tree.nodes.len() {
+            tree.nodes[n].below = tree.nodes.len() as u32;
+            let node = tree.nodes[n];
+            for lane in (0..8).filter(|lane| (node.lanes & !node.objects) >> lane & 1 != 0) {
+                let runs = eight_of(boxes, &mut order, node.run(lane));
+                tree.nodes.push(Node::over(&runs));
             }
-            tree.node(boxes, &mut order, &children);
+            n += 1;
         }
         tree.order = order;
         tree.refit_all(boxes);
         tree
     }
 
-    /// Appends a node whose children cover the given runs, and all below it.
-    fn node(&mut self, boxes: &[Aabb], order: &mut [u32], runs: &[(usize, usize)]) -> u32 {
-        let index = self.nodes.len();
-        self.nodes.push(Node {
-            boxes: Boxes8::NONE,
-            children: [Child::default(); 8],
-            count: runs.len() as u8,
-        });
-        for (lane, &(first, count)) in runs.iter().enumerate() {
-            let node = if count == 1 {
-                OBJECT
-            } else {
-                self.node_over(boxes, order, first, count)
-            };
-            self.nodes[index].children[lane] = Child {
-                node,
-                first: first as u32,
-                count: count as u32,
-            };
-        }
-        index as u32
+    pub(crate) fn origin(&self) -> DVec3 {
+        self.origin
     }
 
-    fn node_over(&mut self, boxes: &[Aabb], order: &mut [u32], first: usize, count: usize) -> u32 {
-        let mut runs: Vec<(usize, usize)> = vec![(first, count)];
-        // Split the largest run until there are eight.
-        while runs.len() < 8 {
-            let Some(at) = (0..runs.len())
-                .filter(|&r| runs[r].1 > 1)
-                .max_by_key(|&r| runs[r].1)
-            else {
-                break;
-            };
-            let (first, count) = runs[at];
-            let middle = split(boxes, &mut order[first..first + count]);
-            runs[at] = (first, middle);
-            runs.insert(at + 1, (first + middle, count - middle));
-        }
-        self.node(boxes, order, &runs)
+    /// The first one is the root, where there is any.
+    #[inline(always)]
+    pub(super) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Object numbers in the order of the runs.
+    #[inline(always)]
+    pub(super) fn order(&self) -> &[u32] {
+        &self.order
     }
 
     /// How many occludees there are.
@@ -139,13 +150,13 @@ impl OccludeeTree {
     fn refit_all(&mut self, boxes: &[Aabb]) {
         // Children come after their parents.
         for n in (0..self.nodes.len()).rev() {
-            for lane in 0..usize::from(self.nodes[n].count) {
-                let child = self.nodes[n].children[lane];
-                let (center, half) = if child.node == OBJECT {
-                    grown(&boxes[self.order[child.first as usize] as usize])
+            let node = self.nodes[n];
+            for lane in (0..8).filter(|lane| node.lanes >> lane & 1 != 0) {
+                let (center, half) = if node.objects >> lane & 1 != 0 {
+                    grown(&boxes[self.order[node.run(lane).start] as usize])
                 } else {
-                    let below = &self.nodes[child.node as usize];
-                    (0..usize::from(below.count))
+                    let below = &self.nodes[node.child(lane) as usize];
+                    (0..below.lanes.count_ones() as usize)
                         .fold(None, |all: Option<(Vec3, Vec3)>, i| {
                             let (c, h) = (
                                 Vec3::from_array(below.boxes.center.map(|v| v[i])),
@@ -185,6 +196,29 @@ fn grown(b: &Aabb) -> (Vec3, Vec3) {
     )
 }
 
+/// Cuts a run into eight, or into as many as it has members.
+fn eight_of(
+    boxes: &[Aabb],
+    order: &mut [u32],
+    run: core::ops::Range<usize>,
+) -> Vec<core::ops::Range<usize>> {
+    let mut runs = vec![run];
+    // Split the largest run until there are eight.
+    while runs.len() < 8 {
+        let Some(at) = (0..runs.len())
+            .filter(|&r| runs[r].len() > 1)
+            .max_by_key(|&r| runs[r].len())
+        else {
+            break;
+        };
+        let (start, end) = (runs[at].start, runs[at].end);
+        let middle = start + split(boxes, &mut order[start..end]);
+        runs[at] = start..middle;
+        runs.insert(at + 1, middle..end);
+    }
+    runs
+}
+
 /// Orders a run by the median of its widest axis; gives the number in the first part.
 fn split(boxes: &[Aabb], run: &mut [u32]) -> usize {
     let (lo, hi) = run
@@ -208,57 +242,4 @@ fn split(boxes: &[Aabb], run: &mut [u32]) -> usize {
             .then(a.cmp(&b))
     });
     middle
-}
-
-/// Answers for a whole tree.
-pub(crate) struct Walk<'a> {
-    pub(crate) query: &'a Query<'a>,
-    pub(crate) tree: &'a OccludeeTree,
-    pub(crate) results: &'a mut [Visibility],
-}
-
-impl OccludeeTree {
-    pub(crate) fn origin(&self) -> DVec3 {
-        self.origin
-    }
-}
-
-impl Kernel for Walk<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, l: L) {
-        let Self {
-            query,
-            tree,
-            results,
-        } = self;
-        if tree.nodes.is_empty() {
-            return;
-        }
-        // Depth-first; eight children per level and a depth that 32-bit counts bound.
-        let mut stack = [0u32; 128];
-        let mut top = 1;
-        while top > 0 {
-            top -= 1;
-            let node = &tree.nodes[stack[top] as usize];
-            let p = project(l, &query.screen, &node.boxes);
-            for lane in 0..usize::from(node.count) {
-                let child = node.children[lane];
-                let answer = query.answer(l, &p, lane, &node.boxes, child.node == OBJECT);
-                if child.node == OBJECT {
-                    results[tree.order[child.first as usize] as usize] = answer;
-                } else if answer == Visibility::Visible && top < stack.len() {
-                    stack[top] = child.node;
-                    top += 1;
-                } else {
-                    for &i in
-                        &tree.order[child.first as usize..(child.first + child.count) as usize]
-                    {
-                        results[i as usize] = answer;
-                    }
-                }
-            }
-        }
-    }
 }

@@ -28,6 +28,13 @@ impl Wide for Wide512 {
         avx512!(_mm512_set1_ps(v))
     }
     #[inline(always)]
+    fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> __m512 {
+        avx512!({
+            let low = _mm512_castps256_ps512(_mm256_loadu_ps(low.as_ptr()));
+            _mm512_insertf32x8::<1>(low, _mm256_loadu_ps(high.as_ptr()))
+        })
+    }
+    #[inline(always)]
     fn add(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_add_ps(a, b))
     }

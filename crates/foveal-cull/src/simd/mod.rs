@@ -60,6 +60,27 @@ macro_rules! four {
 }
 pub(crate) use four;
 
+/// `[e(0), e(1), e(2)]`, as [`four!`].
+macro_rules! three {
+    ($k:ident => $e:expr) => {
+        [
+            {
+                let $k = 0usize;
+                $e
+            },
+            {
+                let $k = 1usize;
+                $e
+            },
+            {
+                let $k = 2usize;
+                $e
+            },
+        ]
+    };
+}
+pub(crate) use three;
+
 /// `[e(0), e(1)]`, as [`four!`].
 macro_rules! two {
     ($k:ident => $e:expr) => {

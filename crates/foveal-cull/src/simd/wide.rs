@@ -12,6 +12,8 @@ pub(crate) trait Wide: Copy {
     type I: Copy;
 
     fn splat(self, v: f32) -> Self::F;
+    /// The first eight lanes, and the others.
+    fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F;
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
     fn sub(self, a: Self::F, b: Self::F) -> Self::F;
     fn mul(self, a: Self::F, b: Self::F) -> Self::F;
@@ -78,6 +80,10 @@ impl<L: Lanes> Wide for Twice<L> {
     #[inline(always)]
     fn splat(self, v: f32) -> Self::F {
         [self.0.splat(v); 2]
+    }
+    #[inline(always)]
+    fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F {
+        [self.0.load(low), self.0.load(high)]
     }
     #[inline(always)]
     fn isplat(self, v: i32) -> Self::I {
