@@ -1,8 +1,8 @@
 //! `foveal bench antialiasing`: the source's comparison (none, MSAA, SSAA), and ours beside it.
 
 use foveal::{
-    AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, Renderer,
-    SamplePattern, Settings,
+    AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment,
+    LightingModel, Renderer, SamplePattern, Settings,
 };
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
@@ -14,6 +14,7 @@ use crate::compare::ErrorMap;
 use crate::median::median;
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
+use crate::values::VariantParser;
 use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
@@ -41,6 +42,14 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", default_value_t = 200)]
     point_lights: u32,
 
+    /// Which lights a sample looks at; the technique's source has no clusters: brute [default: clustered]
+    #[arg(long, value_name = "WHICH", value_parser = VariantParser::<LightAssignment>::new())]
+    lights: Option<LightAssignment>,
+
+    /// How light is reflected; the technique's source uses blinn-phong [default: ggx]
+    #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
+    lighting: Option<LightingModel>,
+
     /// Frames of each mode after one that warms up; figures are medians over them
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
@@ -62,6 +71,8 @@ struct Report {
     scene: String,
     camera: String,
     point_lights: u32,
+    lights: LightAssignment,
+    lighting: LightingModel,
     rounds: u32,
     rows: Vec<Row>,
 }
@@ -69,6 +80,8 @@ struct Report {
 /// One mode's figures; times are medians in milliseconds.
 #[derive(Debug, Serialize)]
 struct Row {
+    /// What tells it from the others: "msaa grid 4 surface".
+    name: String,
     scene: String,
     width: u32,
     height: u32,
@@ -171,6 +184,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let base = Settings {
         width: args.size.0,
         height: args.size.1,
+        lights: args.lights.unwrap_or_default(),
+        lighting: args.lighting.unwrap_or_default(),
         ..Settings::default()
     };
     let report = Report {
@@ -181,6 +196,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         scene: scene.name,
         camera: camera.name,
         point_lights: args.point_lights,
+        lights: base.lights,
+        lighting: base.lighting,
         rounds: args.rounds,
     };
     args.figures.give(&report, &summary(&report))
@@ -271,6 +288,7 @@ impl Mode {
             )
         };
         Row {
+            name: called(settings),
             scene: scene.to_owned(),
             width: settings.width,
             height: settings.height,
@@ -292,6 +310,20 @@ impl Mode {
             ratio_to_none: ratio(|t| t.frame_ms),
             flip_to_ssaa: to_ssaa,
             flip_to_reference: to_reference,
+        }
+    }
+}
+
+/// What tells a mode from the others.
+fn called(settings: &Settings) -> String {
+    let (mode, pattern) = (name_of(settings.aa), name_of(settings.pattern));
+    match settings.aa {
+        _ if settings.geometry == Geometry::Visibility => format!("{mode}, visibility"),
+        Antialiasing::None => mode,
+        Antialiasing::Ssaa => format!("{mode} {pattern} {}", settings.samples),
+        Antialiasing::Msaa => {
+            let test = name_of(settings.edge_test);
+            format!("{mode} {pattern} {} {test}", settings.samples)
         }
     }
 }
@@ -321,20 +353,9 @@ fn summary(report: &Report) -> String {
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     for row in &report.rows {
         let mode = name_of(row.mode);
-        let name = match row.mode {
-            _ if row.geometry == Geometry::Visibility => format!("{mode}, visibility"),
-            Antialiasing::None => mode.clone(),
-            Antialiasing::Ssaa => format!("{mode} {} {}", name_of(row.pattern), row.samples),
-            Antialiasing::Msaa => format!(
-                "{mode} {} {} {}",
-                name_of(row.pattern),
-                row.samples,
-                name_of(row.edge_test)
-            ),
-        };
         let source = SOURCE_FPS.iter().find(|(m, _)| *m == mode);
         lines.push(vec![
-            name,
+            row.name.clone(),
             format!("{:.2} %", row.edge_fraction * 100.0),
             format!("{:.1}", row.gbuffer_ms),
             format!("{:.1}", row.shade_ms),
@@ -350,11 +371,13 @@ fn summary(report: &Report) -> String {
     }
     let about = report.rows.first().map_or(String::new(), |row| {
         format!(
-            "{} at {}x{}, {} point lights added, {}, medians of {} rounds\n",
+            "{} at {}x{}, {} point lights added, {}, {}, {}, medians of {} rounds\n",
             report.scene,
             row.width,
             row.height,
             report.point_lights,
+            name_of(report.lights),
+            name_of(report.lighting),
             report.adapter.name,
             report.rounds
         )

@@ -91,7 +91,7 @@ nav { display: flex; flex-wrap: wrap; gap: 8px; margin: 14px 0; }
 nav a { color: var(--text); text-decoration: none; border: 1px solid var(--line); border-radius: 99px; padding: 3px 12px;
   background: var(--card); } nav a.off { color: var(--faint); }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; min-width: 100%; }
-th, td { text-align: right; padding: 4px 10px; border-bottom: 1px solid var(--line); white-space: nowrap; }
+th, td { text-align: right; padding: 4px 8px; border-bottom: 1px solid var(--line); white-space: nowrap; }
 th:first-child, td:first-child { text-align: left; white-space: normal; min-width: 9em; } th { color: var(--faint); font-weight: 600; }
 code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: var(--back); border-radius: 4px; padding: 1px 5px; }
 .columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(400px, 100%), 1fr)); gap: 18px; }

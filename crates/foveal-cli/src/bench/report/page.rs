@@ -86,10 +86,13 @@ fn section(body: &mut String, f: &Figures<'_>, index: usize, bench: &Bench) {
         if bench.name == "baseline" {
             plot("The frame's timeline", Some(plots::timeline(f, &at)));
         } else {
-            plot("Cost, ms", Some(plots::cost(f, &at, bench)));
+            plot("Cost, ms", plots::cost(f, &at, bench));
         }
         plot("Cost against load", plots::load(f, &at, bench));
-        plot("Quality against speed", plots::quality(f, &at, bench));
+        for (part, svg) in plots::quality(f, &at, bench) {
+            let comma = if part.is_empty() { "" } else { ", " };
+            plot(&format!("Quality against speed{comma}{part}"), Some(svg));
+        }
     }
     body.push_str("</div>\n");
     table(body, f, &at, bench);

@@ -54,6 +54,22 @@ pub(super) struct Load {
     pub(super) only: Option<(&'static str, &'static str)>,
 }
 
+/// Quality against speed.
+pub(super) struct Quality {
+    /// What lies to the right, its decimals, and where on that axis better is.
+    pub(super) x: &'static str,
+    pub(super) digits: usize,
+    pub(super) axis: &'static str,
+    /// A FLIP error.
+    pub(super) error: &'static str,
+    /// What grows along a curve, and its title; none: each row stands alone.
+    pub(super) along: Option<(&'static str, &'static str)>,
+    /// What tells a curve from the others.
+    pub(super) series: &'static [&'static str],
+    /// A plot for each of this.
+    pub(super) apart: Option<&'static str>,
+}
+
 /// One bench.
 pub(super) struct Bench {
     pub(super) name: &'static str,
@@ -73,8 +89,7 @@ pub(super) struct Bench {
     pub(super) columns: &'static [Column],
     /// The cost in the bar plot.
     pub(super) cost: &'static str,
-    /// Cost and error in the plot of quality against speed.
-    pub(super) quality: Option<(&'static str, &'static str)>,
+    pub(super) quality: Option<Quality>,
     pub(super) load: Option<Load>,
     pub(super) pairs: &'static [Pair],
 }
@@ -320,7 +335,15 @@ pub(super) const BENCHES: &[Bench] = &[
             column("psnr", "PSNR dB", 1),
         ],
         cost: "coarse_ms",
-        quality: Some(("coarse_ms", "flip_mean")),
+        quality: Some(Quality {
+            x: "ratio",
+            digits: 1,
+            axis: "times as fast as every pixel: right is better",
+            error: "flip_mean",
+            along: Some(("lights", "more lights")),
+            series: &["composite", "backend"],
+            apart: None,
+        }),
         load: Some(Load {
             x: "lights",
             title: "lights",
@@ -345,7 +368,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "variable",
         title: "Variable-rate shading in software",
-        about: "Where the picture is flat, one evaluation serves a few pixels.",
+        about: "Where the picture is flat, one evaluation serves a few pixels. The mask comes from the last frame, reprojected in the same pass.",
         subcommand: &["bench", "variable"],
         quick: &[THE_SCENE, "--rounds", "3", "--point-lights", "32"],
         full: &[
@@ -364,7 +387,6 @@ pub(super) const BENCHES: &[Bench] = &[
         columns: &[
             percent("shaded_fraction", "shaded %"),
             column("mask_ms", "mask ms", 2),
-            column("reproject_ms", "reproject ms", 2),
             column("full_ms", "full ms", 1),
             column("variable_ms", "variable ms", 1),
             column("saved_ms", "saved ms", 1),
@@ -373,7 +395,15 @@ pub(super) const BENCHES: &[Bench] = &[
             column("flip_mean", "FLIP", 4),
         ],
         cost: "variable_ms",
-        quality: Some(("variable_ms", "flip_mean")),
+        quality: Some(Quality {
+            x: "ratio",
+            digits: 2,
+            axis: "times as fast as every pixel: right is better",
+            error: "flip_mean",
+            along: Some(("contrast_threshold", "a higher contrast threshold")),
+            series: &["stage", "lights"],
+            apart: Some("material_cost"),
+        }),
         load: Some(Load {
             x: "lights",
             title: "lights",
@@ -403,19 +433,27 @@ pub(super) const BENCHES: &[Bench] = &[
         sized: true,
         variants: &[],
         rows: own_rows,
-        label: &["mode", "pattern", "samples", "edge_test", "geometry"],
+        label: &["name"],
         columns: &[
             percent("edge_fraction", "edges %"),
-            column("shaded_samples", "shaded samples", 0),
             column("gbuffer_ms", "G-buffer ms", 1),
             column("shade_ms", "shade ms", 1),
             column("frame_ms", "frame ms", 1),
-            column("shade_ratio_to_none", "shade / none", 3),
-            column("ratio_to_none", "frame / none", 3),
+            column("shade_ratio_to_none", "shade / none", 2),
+            column("ratio_to_none", "frame / none", 2),
+            column("flip_to_ssaa", "FLIP to ssaa", 4),
             column("flip_to_reference", "FLIP to truth", 4),
         ],
         cost: "frame_ms",
-        quality: Some(("frame_ms", "flip_to_reference")),
+        quality: Some(Quality {
+            x: "frame_ms",
+            digits: 1,
+            axis: "ms a frame: left is better",
+            error: "flip_to_reference",
+            along: None,
+            series: &["name"],
+            apart: None,
+        }),
         load: Some(Load {
             x: "samples",
             title: "samples",

@@ -155,6 +155,41 @@ fn what_was_measured_under_load_is_plotted_against_it() {
 }
 
 #[test]
+fn quality_is_a_curve_where_something_grows_along_it() {
+    let mut report = report();
+    let variable = plan::BENCHES
+        .iter()
+        .position(|bench| bench.name == "variable");
+    let rows = &mut report["benches"][variable.unwrap()]["rows"];
+    for (i, row) in rows.as_array_mut().unwrap().iter_mut().enumerate() {
+        row["lights"] = 32.into();
+        row["contrast_threshold"] = (0.02 * (i + 1) as f64).into();
+    }
+    let page = page::of(&report);
+    let plot = |bench: &str| {
+        let after = |text: &str, mark: &str| text.split_once(mark).unwrap().1.to_owned();
+        let section = after(&page, &format!("<section id=\"{bench}\">"));
+        let plot = after(&section, "<h3>Quality against speed");
+        plot.split_once("</svg>").unwrap().0.to_owned()
+    };
+    let lines = |plot: &str| {
+        let paths = plot.split("<path d=\"").skip(1);
+        let drawn = paths.filter(|path| path.split('"').next().unwrap().contains('L'));
+        drawn.count()
+    };
+    // Two rows, one curve: from the small dot to the larger one.
+    let variable = plot("variable");
+    assert!(variable.starts_with(", plain</h3>"));
+    assert!(variable.contains("larger dots: a higher contrast threshold"));
+    assert!(variable.contains("r=\"3\"") && variable.contains("r=\"4.5\""));
+    assert_eq!(lines(&variable), 1);
+    // Ways of anti-aliasing stand alone, a dot each and one in the legend.
+    let antialiasing = plot("antialiasing");
+    assert_eq!(lines(&antialiasing), 0);
+    assert_eq!(antialiasing.matches("<circle").count(), 4);
+}
+
+#[test]
 fn passes_become_their_median_and_their_spread() {
     let report = report();
     let row = &report["benches"][0]["rows"][0];

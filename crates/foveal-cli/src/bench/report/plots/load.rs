@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::super::html::Figures;
 use super::super::plan::{Bench, Load};
-use super::{COLORS, WIDTH};
+use super::{WIDTH, mark};
 
 /// From this ratio of the largest load to the least, the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 12.0;
@@ -138,21 +138,21 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
         }
     }
     for (i, line) in all.iter().enumerate() {
-        let color = COLORS[i % COLORS.len()];
+        let (color, fill) = mark(i);
         let mut path = String::new();
         for (j, dot) in line.dots.iter().enumerate() {
             let (x, y) = (x(dot.load), y(dot.cost));
             let _ = write!(path, "{}{x:.1} {y:.1}", if j == 0 { 'M' } else { 'L' });
             let _ = write!(
                 svg,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{color}\"/>"
+                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{color}\"/>"
             );
         }
         let base = FLOOR + 56.0 + i as f64 * 18.0;
         let _ = write!(
             svg,
             "<path d=\"{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>\
-             <circle cx=\"{}\" cy=\"{:.1}\" r=\"5\" fill=\"{color}\"/><text x=\"{}\" y=\"{base:.1}\">{}</text>",
+             <circle cx=\"{}\" cy=\"{:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{color}\"/><text x=\"{}\" y=\"{base:.1}\">{}</text>",
             LEFT + 6.0,
             base - 4.0,
             LEFT + 18.0,
