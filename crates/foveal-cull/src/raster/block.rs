@@ -12,7 +12,7 @@ use super::polygon::{Edges, Polygon};
 use crate::depth::{
     BLOCK_SAMPLES, Band, EMPTY, STATE_DEPTH, STATE_EMPTY, STATE_LAYERS, STATE_PARTIAL,
 };
-use crate::simd::{Lanes, four};
+use crate::simd::{Lanes, four, larger, smaller};
 
 /// Depth of a polygon as an affine function of pixels, lowered to hold for whole pixels.
 #[derive(Clone, Copy, Debug)]
@@ -60,7 +60,7 @@ impl<L: Lanes> Borders<L> {
         let edges = polygon.borders;
         let slope = l.qround(edges.slope);
         let error = four!(i => (64.0 + 48.0 * slope[i].abs()) * ERROR);
-        let common = error[0].max(error[1]).max(error[2].max(error[3]));
+        let common = largest(error);
         let centers = l.load(&CENTER_ROWS);
         Self {
             edges,
@@ -77,10 +77,10 @@ impl<L: Lanes> Borders<L> {
     fn error_in_block(&self, at: &[f32; 4]) -> f32 {
         let error = four!(e => {
             let end = at[e] + self.slope[e] * 31.0;
-            let crosses = (at[e].min(end) < 33.0) & (at[e].max(end) > -1.0);
+            let crosses = (smaller(at[e], end) < 33.0) & (larger(at[e], end) > -1.0);
             if crosses { self.error[e] } else { 0.0 }
         });
-        error[0].max(error[1]).max(error[2].max(error[3]))
+        largest(error)
     }
 
     /// Positions at the first sample row of a row of blocks that begins at `top`, samples.
@@ -90,6 +90,11 @@ impl<L: Lanes> Borders<L> {
         let down = l.qsub(l.qsplat(f64::from(top + 0.5)), e.y);
         l.qadd(l.qmul(down, e.slope), e.x)
     }
+}
+
+#[inline(always)]
+fn largest([a, b, c, d]: [f32; 4]) -> f32 {
+    larger(larger(a, b), larger(c, d))
 }
 
 /// Coverage of a block: sixteen sample planes and the plane of centres.
@@ -271,12 +276,18 @@ pub(crate) fn cover_partial<L: Lanes>(
     // Only pixels where the polygon is nearer than what is proven already. Those that it covers alone need no
     // partner, and what they have so far stays apart from them.
     let nearer = l.dgt(d, old) & !erased;
+    let theirs = l.dload(&partial.depth);
+    let before = partial.any & begun;
+    let their_planes = l.pkeep(l.pload(&partial.planes), begun);
+    let their_center = partial.center & begun;
     let alone = l.pall(planes) & center & nearer;
+    // With those alone, so that one does not wait for the other.
+    let complete = l.pall(l.por(l.pkeep(planes, nearer), their_planes));
+    let full = complete & ((center & nearer) | their_center) & !alone;
     let joined = (l.pany(planes) | center) & nearer & !alone;
     let new = l.dselect(alone, d, old);
-    let (ours, our_center) = (l.pkeep(planes, joined), center & joined);
-    let theirs = l.dload(&partial.depth);
-    let apart = l.dapart(d, theirs, APART) & joined & partial.any & begun;
+    let (ours, our_center) = (l.pkeep(planes, nearer & !alone), center & joined);
+    let apart = l.dapart(d, theirs, APART) & joined & before;
     if (apart != 0) | (state == STATE_LAYERS) {
         let ours = Layer {
             planes: ours,
@@ -286,25 +297,21 @@ pub(crate) fn cover_partial<L: Lanes>(
         layers::join(l, band, i, &ours, joined, new);
         return WORK_OF_PARTIAL;
     }
-    let planes = l.por(ours, l.pkeep(l.pload(&partial.planes), begun));
-    let center = our_center | (partial.center & begun);
-    let depth = l.dmin(
-        l.dselect(joined, d, far),
-        l.dselect(partial.any & begun, theirs, far),
-    );
-    let full = l.pall(planes) & center;
+    let depth = l.dmin(l.dselect(joined, d, far), l.dselect(before, theirs, far));
     let new = l.dselect(full, l.dmax(new, depth), new);
-    // Forget what is complete, or hidden by now.
-    let kept = l.dgt(depth, new);
-    let planes = l.pkeep(planes, kept);
-    let center = center & kept;
+    // Forget what is complete, or hidden by now. What there was is nearer than the old depth, and so is what joins it.
+    let hidden = alone & !l.dgt(theirs, d);
+    let kept = (joined | before) & !(hidden | full);
     l.dstore(new, block);
     band.min[i] = l.dreduce_min(new);
-    l.pstore(planes, &mut partial.planes);
-    partial.center = center;
+    l.pstore(
+        l.pkeep(l.por(ours, their_planes), kept),
+        &mut partial.planes,
+    );
+    partial.center = (our_center | their_center) & kept;
     l.dstore(depth, &mut partial.depth);
-    partial.any = l.pany(planes) | center;
-    band.state[i] = if partial.any != 0 {
+    partial.any = kept;
+    band.state[i] = if kept != 0 {
         STATE_PARTIAL
     } else {
         STATE_DEPTH

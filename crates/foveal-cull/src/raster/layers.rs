@@ -106,8 +106,10 @@ pub(super) fn join<L: Lanes>(
 /// Drops partial coverage that can no longer bring anything nearer than the depth that is there.
 #[inline(always)]
 pub(super) fn forget_hidden<L: Lanes>(l: L, partial: &mut PartialBlock, d: L::D) {
-    let layer = Layer::load(l, partial);
-    layer.keep(l, l.dgt(layer.depth, d)).store(l, partial);
+    let kept = partial.any & l.dgt(l.dload(&partial.depth), d);
+    l.pstore(l.pkeep(l.pload(&partial.planes), kept), &mut partial.planes);
+    partial.center &= kept;
+    partial.any = kept;
 }
 
 /// The same where there are layers.

@@ -9,7 +9,7 @@
 
 use super::block::{self, Borders, Plane};
 use crate::depth::{BLOCK_SAMPLES, Band};
-use crate::simd::{Lanes, four};
+use crate::simd::{Lanes, four, larger, smaller};
 
 /// A front-facing convex polygon.
 #[derive(Clone, Copy)]
@@ -158,10 +158,12 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
             // The same borders at the last sample row.
             let down = l.qmul(polygon.borders.slope, l.qsplat(size - 1.0));
             l.qstore(l.qadd(exact, down), &mut end);
-            let outer_left = at[0].min(end[0]).max(at[1].min(end[1]));
-            inner_left = at[0].max(end[0]).max(at[1].max(end[1])) - MARGIN;
-            let outer_right = at[2].max(end[2]).min(at[3].max(end[3]));
-            inner_right = at[2].min(end[2]).min(at[3].min(end[3])) + MARGIN;
+            let low = four!(e => smaller(at[e], end[e]));
+            let high = four!(e => larger(at[e], end[e]));
+            let outer_left = larger(low[0], low[1]);
+            inner_left = larger(high[0], high[1]) - MARGIN;
+            let outer_right = smaller(high[2], high[3]);
+            inner_right = smaller(low[2], low[3]) + MARGIN;
             if let Some((y0, y1)) = polygon.rows
                 && (top < y0 || top + BLOCK_SAMPLES as f32 > y1)
             {

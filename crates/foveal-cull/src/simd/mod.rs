@@ -81,6 +81,18 @@ macro_rules! three {
 }
 pub(crate) use three;
 
+/// The smaller of two numbers: one instruction, where `f64::min` takes three to ask for NaN.
+#[inline(always)]
+pub(crate) fn smaller<T: PartialOrd>(a: T, b: T) -> T {
+    if a < b { a } else { b }
+}
+
+/// The larger of two numbers, in the same way.
+#[inline(always)]
+pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
+    if a > b { a } else { b }
+}
+
 /// `[e(0), e(1)]`, as [`four!`].
 macro_rules! two {
     ($k:ident => $e:expr) => {
