@@ -5,11 +5,6 @@
 // Premultiplied: of sub-samples, or averaged.
 @group(1) @binding(1) var blended: texture_2d<f32>;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 @fragment
 fn average(@builtin(position) position: vec4f) -> @location(0) vec4f {
     var sum = vec4f(0.0);

@@ -13,11 +13,6 @@ struct Classified {
     @builtin(frag_depth) depth: f32,
 }
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 @fragment
 fn classify(@builtin(position) position: vec4f) -> Classified {
     let pixel = vec2u(position.xy);

@@ -15,11 +15,6 @@ struct MergeOut {
     @builtin(frag_depth) depth: f32,
 }
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // As tatsy's shader has it, on our depth: reversed, 1 at the near plane.
 fn depths_differ(pixel: vec2u) -> bool {
     let first = load_depth(gbuffer_depth, sample_texel(pixel, 0u));

@@ -6,11 +6,6 @@ override COUNT: u32 = 4u;
 
 @group(1) @binding(0) var tally: texture_2d<u32>;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 @fragment
 fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let shades = textureLoad(tally, vec2u(position.xy), 0).x;

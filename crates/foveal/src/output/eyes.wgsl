@@ -18,11 +18,6 @@ struct Shown {
 @group(1) @binding(0) var pictures: texture_2d<f32>;
 @group(1) @binding(1) var<uniform> lens: Shown;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // A pixel of an eye's picture.
 fn seen_by(view: u32, pixel: vec2u) -> vec3f {
     // Both eyes show the same picture where there is one alone.

@@ -5,11 +5,6 @@ override CLIPPED: bool = false;
 
 @group(1) @binding(0) var radiance: texture_2d<f32>;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // Stephen Hill's fit of the ACES reference rendering and output transforms, sRGB to sRGB.
 fn aces(color: vec3f) -> vec3f {
     let into = mat3x3f(

@@ -10,11 +10,6 @@ override VIEW: u32 = 1u;
 // Of each instance; the third number is its material.
 @group(1) @binding(3) var<storage, read> places: array<vec4u>;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // Integer hash (Wang 2007), so that every device gives an instance the same colour.
 fn hash(value: u32) -> u32 {
     var h = (value ^ 61u) ^ (value >> 16u);

@@ -22,6 +22,7 @@ const MATERIAL: &str = concat!(
 const SAMPLE_IMPLICIT: &str = include_str!("../shared/sample_implicit.wgsl");
 const SAMPLE_GRADIENTS: &str = include_str!("../shared/sample_gradients.wgsl");
 const ATTRIBUTES: &str = include_str!("../shared/attributes.wgsl");
+const FULL_SCREEN: &str = include_str!("../shared/full_screen.wgsl");
 const LAYERS: &str = include_str!("../shared/layers.wgsl");
 const NORMAL_OF_SURFACE: &str = include_str!("../shared/normal_of_surface.wgsl");
 const NORMAL_OF_DEPTH: &str = include_str!("../shared/normal_of_depth.wgsl");
@@ -191,6 +192,7 @@ pub(crate) const SHADE_EVERY_PIXEL: Parts = &[
     LIGHTING,
     LAYERS,
     SHADING,
+    FULL_SCREEN,
     include_str!("../shading/every_pixel.wgsl"),
 ];
 pub(crate) const SHADE_LIST: Parts = &[
@@ -250,10 +252,16 @@ pub(crate) const TRIAL_CLIPPED: Parts = &[
 ];
 /// As [`TRIAL`], each eye to a layer; needs [`wgpu::Features::MULTIVIEW`].
 pub(crate) const TRIAL_LAYERED: Parts = &[TRIAL_EYES, include_str!("../stereo/trial_layered.wgsl")];
-pub(crate) const SHOW_EYES: Parts = &[FRAME, include_str!("../output/eyes.wgsl")];
-pub(crate) const TONE_MAP: Parts = &[FRAME, include_str!("../output/tone_map.wgsl")];
+pub(crate) const SHOW_EYES: Parts = &[FRAME, FULL_SCREEN, include_str!("../output/eyes.wgsl")];
+pub(crate) const TONE_MAP: Parts = &[FRAME, FULL_SCREEN, include_str!("../output/tone_map.wgsl")];
 pub(crate) const PRESENT: Parts = &[FRAME, include_str!("../output/present.wgsl")];
-pub(crate) const VIEW: Parts = &[FRAME, SURFACE, LAYERS, include_str!("../output/view.wgsl")];
+pub(crate) const VIEW: Parts = &[
+    FRAME,
+    SURFACE,
+    LAYERS,
+    FULL_SCREEN,
+    include_str!("../output/view.wgsl"),
+];
 const AA_SAMPLES: &str = include_str!("../antialias/samples.wgsl");
 const AA_SURFACES: &str = include_str!("../antialias/surfaces.wgsl");
 const AA_STORED: &str = include_str!("../antialias/stored.wgsl");
@@ -274,6 +282,7 @@ pub(crate) const AA_MERGE: Parts = &[
     AA_STORED,
     AA_QUEUE,
     AA_COUNTERS,
+    FULL_SCREEN,
     include_str!("../antialias/merge.wgsl"),
 ];
 pub(crate) const AA_SHADE: Parts = &[
@@ -323,6 +332,7 @@ pub(crate) const AA_CLASSIFY: Parts = &[
     AA_SAMPLES,
     AA_SURFACES,
     AA_IDS,
+    FULL_SCREEN,
     include_str!("../antialias/classify.wgsl"),
 ];
 pub(crate) const AA_SHADE_FURTHER: Parts = &[
@@ -346,8 +356,12 @@ pub(crate) const AA_COMBINE: Parts = &[
     include_str!("../antialias/combine.wgsl"),
 ];
 pub(crate) const AA_STORE: Parts = &[AA_QUEUE, include_str!("../antialias/store.wgsl")];
-pub(crate) const AA_BLENDED: Parts = &[AA_SAMPLES, include_str!("../antialias/blended.wgsl")];
-pub(crate) const AA_VIEW: Parts = &[include_str!("../antialias/view.wgsl")];
+pub(crate) const AA_BLENDED: Parts = &[
+    AA_SAMPLES,
+    FULL_SCREEN,
+    include_str!("../antialias/blended.wgsl"),
+];
+pub(crate) const AA_VIEW: Parts = &[FULL_SCREEN, include_str!("../antialias/view.wgsl")];
 
 const LEVEL: &str = include_str!("../shared/level.wgsl");
 const BLOCKS: &str = include_str!("../shared/blocks.wgsl");
@@ -378,8 +392,12 @@ pub(crate) const VARIABLE_SHADE: Parts = &[
     RATES,
     include_str!("../shading/variable/shade.wgsl"),
 ];
-pub(crate) const VARIABLE_VIEW: Parts =
-    &[FRAME, RATES, include_str!("../shading/variable/view.wgsl")];
+pub(crate) const VARIABLE_VIEW: Parts = &[
+    FRAME,
+    RATES,
+    FULL_SCREEN,
+    include_str!("../shading/variable/view.wgsl"),
+];
 
 /// By surfaces, and by depth.
 pub(crate) const RATE_WISH: [Parts; 2] = [
@@ -562,6 +580,7 @@ pub(crate) const REDUCED_SHADE: Parts = &[
     REDUCED_LIGHTING,
     include_str!("../reduced/input.wgsl"),
     include_str!("../shading/shading.wgsl"),
+    FULL_SCREEN,
     include_str!("../shading/every_pixel.wgsl"),
 ];
 /// As [`FORWARD`], likewise.

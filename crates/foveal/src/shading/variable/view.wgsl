@@ -6,11 +6,6 @@ override VIEW: u32 = 1u;
 @group(1) @binding(0) var finished: texture_2d<f32>;
 @group(1) @binding(1) var mask: texture_2d<u32>;
 
-@vertex
-fn full_screen(@builtin(vertex_index) index: u32) -> @builtin(position) vec4f {
-    return vec4f(f32(index & 1u) * 4.0 - 1.0, f32(index >> 1u) * 4.0 - 1.0, 0.0, 1.0);
-}
-
 // Monsho's: black 1x1, red 1x2, green 2x1, blue 2x2; white 4x4.
 fn color_of(rate: u32) -> vec3f {
     let quad = vec3f(f32(rate == RATE_TALL), f32(rate == RATE_WIDE), f32(rate == 3u));
