@@ -222,3 +222,47 @@ fn size_thresholds_and_statistics_add_up() {
         .unwrap();
     assert_eq!(culler.stats().occluder_models_rasterized, 0);
 }
+
+#[test]
+fn what_is_baked_around_clusters_matters_to_two_eyes_only() {
+    // A bowl towards the eyes: every inner edge is seen from both.
+    let n = 24u32;
+    let points: Vec<Vec3> = (0..=n)
+        .flat_map(|j| (0..=n).map(move |i| (i as f32 / n as f32, j as f32 / n as f32)))
+        .map(|(u, v)| {
+            let (x, y) = (u * 8.0 - 4.0, v * 8.0 - 4.0);
+            Vec3::new(x, y, -8.0 + 0.05 * (x * x + y * y))
+        })
+        .collect();
+    let indices: Vec<u32> = (0..n)
+        .flat_map(|j| (0..n).map(move |i| j * (n + 1) + i))
+        .flat_map(|a| [a, a + 1, a + n + 2, a, a + n + 2, a + n + 1])
+        .collect();
+    let eye = |x: f64| {
+        let at = DVec3::new(x, 0.0, 0.0);
+        let projection = Projection::perspective(1.0, 1.0, 0.1, f64::INFINITY);
+        Eye::look_at(at, at + DVec3::NEG_Z, DVec3::Y, projection)
+    };
+    let covered = |around_the_eye: bool, view: &View| {
+        let options = BakeOptions {
+            around_the_eye,
+            ..BakeOptions::default()
+        };
+        let mesh = OccluderMesh::bake(&points, &indices, options).unwrap();
+        let mut set = OccluderSet::new();
+        set.add(Arc::new(mesh), DAffine3::IDENTITY).unwrap();
+        let mut culler = Culler::new(128, 128).unwrap();
+        let options = FrameOptions::default();
+        culler
+            .rasterize(view, &set, &options, &SingleThread)
+            .unwrap();
+        let mut depth = vec![0.0; 128 * 128];
+        culler.read_depth(&mut depth).unwrap();
+        depth.iter().filter(|d| **d > 0.0).count()
+    };
+    let one = View::mono(eye(0.0));
+    assert_eq!(covered(true, &one), covered(false, &one));
+    let two = View::stereo(eye(-0.033), eye(0.033));
+    let (with, without) = (covered(true, &two), covered(false, &two));
+    assert!(without < with && with > 8_000, "{without} {with}");
+}

@@ -96,6 +96,7 @@ impl Occluders {
             .map(|shape| {
                 let options = BakeOptions {
                     two_sided: shape.two_sided,
+                    ..BakeOptions::default()
                 };
                 OccluderMesh::bake(&shape.positions, &shape.indices, options).map(Arc::new)
             })

@@ -22,7 +22,7 @@ struct Item {
 pub(crate) fn build(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
-    near: &Neighbours<'_>,
+    near: Option<&Neighbours<'_>>,
     quads: Vec<Quad>,
 ) {
     let mut items: Vec<Item> = quads
@@ -76,7 +76,12 @@ fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
     [n(p[0], p[1], p[2]), n(p[0], p[2], p[3])]
 }
 
-fn split(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: &mut [Item]) {
+fn split(
+    mesh: &mut OccluderMesh,
+    points: &[Vec3],
+    near: Option<&Neighbours<'_>>,
+    items: &mut [Item],
+) {
     if items.is_empty() {
         return;
     }
@@ -133,7 +138,12 @@ fn fill(quads: impl Iterator<Item = [Vec3; 4]>, size: Vec3) -> f32 {
 }
 
 /// Appends one cluster; false when its vertices do not fit a byte.
-fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: &[Item]) -> bool {
+fn emit(
+    mesh: &mut OccluderMesh,
+    points: &[Vec3],
+    near: Option<&Neighbours<'_>>,
+    items: &[Item],
+) -> bool {
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
     used.sort_unstable();
     used.dedup();
@@ -204,7 +214,9 @@ fn emit(mesh: &mut OccluderMesh, points: &[Vec3], near: &Neighbours<'_>, items: 
                 .chain(items.iter().flat_map(|i| i.quad)),
         ),
     });
-    ring::build(mesh, near, &used, items.iter().map(|i| i.quad));
+    if let Some(near) = near {
+        ring::build(mesh, near, &used, items.iter().map(|i| i.quad));
+    }
     true
 }
 

@@ -20,11 +20,25 @@ use crate::{Aabb, CullError};
 use glam::{DVec3, Vec3};
 
 /// How a mesh is baked.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct BakeOptions {
     /// Whether triangles occlude from behind as well (glTF `doubleSided`). Off, only counter-clockwise faces
     /// occlude, which is what a renderer with back-face culling draws.
     pub two_sided: bool,
+    /// Whether to bake what surrounds every cluster, for results that hold around the eye
+    /// ([`View::stereo`](crate::View::stereo), [`View::with_validity_radius`](crate::View::with_validity_radius)):
+    /// baking takes three to four times as long and three times the memory. Without, such views hide less (every polygon shrinks by itself);
+    /// others need none of it. Two-sided meshes never have it.
+    pub around_the_eye: bool,
+}
+
+impl Default for BakeOptions {
+    fn default() -> Self {
+        Self {
+            two_sided: false,
+            around_the_eye: true,
+        }
+    }
 }
 
 /// A mesh that can occlude, ready for the rasterizer. Immutable; share it by `Arc` between instances.
@@ -35,7 +49,7 @@ pub struct OccluderMesh {
     /// third.
     pub(crate) quads: Vec<[[u8; 8]; 4]>,
     pub(crate) clusters: Vec<Cluster>,
-    /// What surrounds each of them.
+    /// What surrounds each of them, if it was baked.
     pub(crate) rings: Rings,
     /// Their boxes, eight at a time (NaN after the last).
     pub(crate) bounds8: Vec<Boxes8>,
@@ -150,8 +164,9 @@ impl OccluderMesh {
             hash: 0,
             triangles: (welded.triangles.len()) as u32,
         };
-        let near = ring::Neighbours::new(&welded.points, &welded.triangles);
-        cluster::build(&mut mesh, &welded.points, &near, quads);
+        let near = (options.around_the_eye && !options.two_sided)
+            .then(|| ring::Neighbours::new(&welded.points, &welded.triangles));
+        cluster::build(&mut mesh, &welded.points, near.as_ref(), quads);
         Ok(mesh)
     }
 

@@ -127,9 +127,10 @@ pub(crate) fn draw_cluster<L: Lanes>(
     let n = usize::from(cluster.vertex_count).next_multiple_of(8);
     let own = (&mesh.vertices, cluster.first_vertex as usize, n);
     let clipped = transform(&mut scratch.points, 0, own, rows);
-    let sheet = facing.radius.filter(|_| !facing.two_sided);
-    if let Some(radius) = sheet {
-        let ring = &mesh.rings.rings[facing.cluster];
+    // Without a ring every polygon shrinks by itself.
+    let ring = mesh.rings.rings.get(facing.cluster);
+    let sheet = facing.radius.filter(|_| !facing.two_sided).zip(ring);
+    if let Some((radius, ring)) = sheet {
         let around = (
             &mesh.rings.vertices,
             ring.first_vertex as usize,

@@ -247,6 +247,7 @@ pub fn occluders(scene: &Scene, order: &[usize]) -> OccluderSet {
             &o.indices,
             BakeOptions {
                 two_sided: o.two_sided,
+                around_the_eye: i % 3 != 2,
             },
         )
         .unwrap();

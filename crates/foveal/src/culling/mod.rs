@@ -106,7 +106,11 @@ impl CullingScene {
                 let positions: Vec<Vec3> =
                     mesh.vertices.iter().map(|v| v.position.into()).collect();
                 // A mesh that cannot be baked only hides nothing.
-                OccluderMesh::bake(&positions, &mesh.indices, BakeOptions { two_sided })
+                let options = BakeOptions {
+                    two_sided,
+                    ..BakeOptions::default()
+                };
+                OccluderMesh::bake(&positions, &mesh.indices, options)
                     .ok()
                     .map(Arc::new)
             });
