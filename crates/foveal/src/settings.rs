@@ -32,6 +32,18 @@ pub enum Culling {
     Off,
 }
 
+/// Whom occlusion culling looks for where there are two eyes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CullingEyes {
+    /// For each eye by itself, exactly; drawn is what either sees.
+    #[default]
+    Each,
+    /// Once for both: what is hidden from everywhere around their middle as far as they are. Occluders are drawn once,
+    /// and hide less.
+    Shared,
+}
+
 /// What the written picture shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -184,6 +196,8 @@ settings! {
             /// Metres that the eye may move, without turning, before culling looks again: what was found holds as far as that.
             /// It then hides a little less; 0 looks again in every frame
             culling_radius: f32 = 0.0, "Valid for (m)", Kind::Number { least: 0.0, most: 1.0 };
+            /// Whether each of two eyes is looked for by itself, or both at once, which hides less; the picture is the same
+            culling_eyes: CullingEyes = CullingEyes::default(), "Two eyes", Kind::choice::<CullingEyes>();
             /// Milliseconds after which no further occluder is begun; the nearest come first, and what is left out only
             /// makes more objects drawn. 0: no limit. Without a clock there is none either
             culling_budget: f32 = 0.0, "Budget (ms)", Kind::Number { least: 0.0, most: 10.0 };

@@ -7,7 +7,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use foveal::{Culling, Frame, FrameStats, Gpu, Renderer, Settings};
+use foveal::{Culling, CullingEyes, Frame, FrameStats, Gpu, Output, Renderer, Settings, Stereo};
 use foveal_scene::generate::{self, DemoOptions};
 use foveal_scene::{Camera, LoadOptions, Projection, Scene};
 use glam::{Mat4, Vec3};
@@ -145,6 +145,66 @@ fn a_result_that_is_kept_while_the_eye_moves_a_little_leaves_the_picture_as_it_i
             hidden += stats.objects_occluded;
         }
         assert_eq!(hidden > 200, culling == Culling::Occlusion, "{hidden}");
+    }
+}
+
+/// Two eyes see the same by each way of culling; returns how many objects each eye by itself and one test for both hid.
+fn assert_same_to_two_eyes(
+    name: &str,
+    scene: &Scene,
+    cameras: &[Camera],
+    culling_radius: f32,
+) -> [u64; 2] {
+    let settings = |culling, culling_eyes| Settings {
+        width: 189,
+        height: 107,
+        culling,
+        culling_eyes,
+        culling_radius,
+        stereo: Stereo::Auto,
+        show: Output::SideBySide,
+        ..Settings::default()
+    };
+    let reference = draw(scene, cameras, &settings(Culling::Off, CullingEyes::Each));
+    [CullingEyes::Each, CullingEyes::Shared].map(|eyes| {
+        let culled = draw(scene, cameras, &settings(Culling::Occlusion, eyes));
+        for (i, ((expected, _), (picture, _))) in reference.iter().zip(&culled).enumerate() {
+            assert!(expected == picture, "{name}, {eyes:?}, camera {i}");
+        }
+        culled.iter().map(|(_, stats)| stats.objects_occluded).sum()
+    })
+}
+
+#[test]
+fn two_eyes_see_the_same_whether_culled_for_each_or_for_both_at_once() {
+    let options = DemoOptions {
+        instances: 1500,
+        ..DemoOptions::default()
+    };
+    let scene = generate::demo(&options).expect("options fit");
+    let mut cameras: Vec<Camera> = (0..4)
+        .map(|i| generate::demo_path(&options, i as f32 / 4.0))
+        .collect();
+    // A small step, over which a result may be kept.
+    let mut moved = cameras[3].clone();
+    moved.world_from_view = Mat4::from_translation(Vec3::splat(0.01)) * moved.world_from_view;
+    cameras.push(moved);
+    for (radius, least) in [(0.0, [200, 100]), (0.02, [50, 50])] {
+        let [each, shared] = assert_same_to_two_eyes("demo", &scene, &cameras, radius);
+        println!("demo, {radius} m: {each} objects hidden for each eye, {shared} for both at once");
+        assert!(each > least[0] && shared > least[1], "{each} {shared}");
+    }
+    if let Some(path) = shared("IntelCastle.glb") {
+        let options = LoadOptions {
+            max_texture_size: 64,
+            ..LoadOptions::default()
+        };
+        let mut scene = foveal_scene::load(&path, &options).expect("loads");
+        scene.light_by_default();
+        let cameras = around(&scene);
+        let [each, shared] = assert_same_to_two_eyes("IntelCastle", &scene, &cameras, 0.0);
+        println!("IntelCastle: {each} objects hidden for each eye, {shared} for both at once");
+        assert!(shared > 0 && shared <= each, "{each} {shared}");
     }
 }
 

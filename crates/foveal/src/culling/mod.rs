@@ -14,7 +14,7 @@ use foveal_cull::{
 use foveal_scene::{Camera, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
-use crate::{Clock, Culling, Error, Settings};
+use crate::{Clock, Culling, CullingEyes, Error, Settings};
 
 /// What the culler found in a frame, as Intel's occlusion culling sample shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -170,6 +170,7 @@ pub(crate) struct CullingStage {
     test_ms: f64,
     /// Metres that eyes may move while the result holds.
     radius_m: f64,
+    eyes: CullingEyes,
     /// 0: none.
     budget_ms: f64,
     /// What the result was found for.
@@ -266,6 +267,7 @@ impl CullingStage {
             rasterize_ms: 0.0,
             test_ms: 0.0,
             radius_m: settings.culling_radius.into(),
+            eyes: settings.culling_eyes,
             budget_ms: settings.culling_budget.into(),
             found_for: None,
             reused: false,
@@ -276,8 +278,9 @@ impl CullingStage {
     /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are two eyes: what is
     /// hidden is hidden from both. A view that makes no sense culls nothing.
     ///
-    /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then the left eye's. A result
-    /// that holds for some way around the eyes is kept until they leave it.
+    /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then the left eye's. Or both
+    /// are tested at once, from their middle. A result that holds for some way around the eyes is kept until they leave
+    /// it.
     pub(crate) fn cull(
         &mut self,
         scene: &CullingScene,
@@ -313,18 +316,27 @@ impl CullingStage {
         }
         self.results.clear();
         self.over_budget = 0;
-        // The figures that are shown are the first eye's.
-        for eye in wanted.eyes.into_iter().flatten().rev() {
-            self.cull_for(scene, eye, clock);
+        let both = match wanted.eyes {
+            [Some(left), Some(right)] if self.eyes == CullingEyes::Shared => {
+                Some(View::stereo(left, right))
+            }
+            _ => None,
+        };
+        // Eyes that look too far apart have no middle.
+        if !both.is_some_and(|view| self.cull_for(scene, view, clock)) {
+            // The figures that are shown are the first eye's.
+            for eye in wanted.eyes.into_iter().flatten().rev() {
+                self.cull_for(scene, View::mono(eye), clock);
+            }
         }
         self.found_for = Some(wanted);
         self.culler.count(&self.results, Some(&scene.triangles));
         self.counts()
     }
 
-    /// Adds what one eye sees to the results.
-    fn cull_for(&mut self, scene: &CullingScene, eye: Eye, clock: Option<Clock>) {
-        let view = View::mono(eye).with_validity_radius(self.radius_m);
+    /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is false then.
+    fn cull_for(&mut self, scene: &CullingScene, view: View, clock: Option<Clock>) -> bool {
+        let view = view.with_validity_radius(self.radius_m);
         let clock_ns = clock.map(|clock| move || (clock() * 1e6) as u64);
         let budget = clock_ns.as_ref().filter(|_| self.budget_ms > 0.0);
         let options = FrameOptions {
@@ -365,6 +377,7 @@ impl CullingStage {
                 *result = *of_eye;
             }
         }
+        rasterized.is_ok()
     }
 
     /// What the last frame found.
