@@ -14,7 +14,7 @@ use crate::gpu::{
 use crate::lights::LightAssigner;
 use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
-use crate::scene::{FrameBindings, SceneOnGpu, material_layout};
+use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{CoarseShading, ShadingPass, VariableStage};
 use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
@@ -133,7 +133,13 @@ impl Renderer {
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
         let upscale = Upscale::new(gpu, settings);
         trap.finish().await?;
-        let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout)?;
+        let scene = SceneOnGpu::new(
+            gpu,
+            &Scene::default(),
+            settings,
+            &material_layout,
+            ArrayLimits::of(gpu),
+        )?;
         Ok(Self {
             gpu: gpu.clone(),
             clock,
@@ -235,12 +241,23 @@ impl Renderer {
     /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::OutOfMemory`]; the renderer
     /// keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.set_scene_within(scene, ArrayLimits::of(&self.gpu))
+            .await
+    }
+
+    /// As [`Renderer::set_scene`], with arrays of textures no larger than `limits`.
+    pub(crate) async fn set_scene_within(
+        &mut self,
+        scene: &Scene,
+        limits: ArrayLimits,
+    ) -> Result<(), Error> {
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene");
         let uploaded = SceneOnGpu::new(
             &self.gpu,
             scene,
             &self.stages.settings,
             &self.material_layout,
+            limits,
         );
         trap.finish().await?;
         let uploaded = uploaded?;

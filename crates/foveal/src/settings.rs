@@ -89,6 +89,19 @@ impl View {
     }
 }
 
+/// How many materials of a visibility buffer one dispatch evaluates; the picture is the same to the bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MaterialDispatch {
+    /// What is the faster on this device: `Material` on lavapipe, else `Family`.
+    #[default]
+    Auto,
+    /// All that share a shader variant, arrays of textures and samplers.
+    Family,
+    /// One.
+    Material,
+}
+
 /// How edges are smoothed. See `docs/antialiasing.md`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -206,6 +219,9 @@ settings! {
             /// How the G-buffer is filled: by the rasterizer, or by a visibility buffer whose materials are evaluated once
             /// per pixel; the picture is the same but for rounding
             geometry: Geometry = Geometry::default(), "Path", Kind::choice::<Geometry>();
+            /// How many materials of a visibility buffer one dispatch evaluates: one, or a family of all that share shader,
+            /// arrays of textures and samplers; auto: one on lavapipe, a family elsewhere
+            material_dispatch: MaterialDispatch = MaterialDispatch::default(), "Material dispatch", Kind::choice::<MaterialDispatch>();
             /// Whether equal meshes with equal materials become instances of one draw
             merge_draws: bool = true, "Merge draws", Kind::Switch;
         }

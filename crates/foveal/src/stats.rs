@@ -22,6 +22,9 @@ pub struct SceneStats {
     pub meshes: u64,
     /// Materials.
     pub materials: u64,
+    /// Families of materials that share shader, arrays of textures and samplers: as many dispatches evaluate a visibility
+    /// buffer's materials at most, where they do so by families.
+    pub material_families: u64,
     /// Textures.
     pub textures: u64,
     /// Objects (nodes with a mesh, GPU instances counted singly).

@@ -197,4 +197,13 @@ impl DrawList {
         let draws = self.solid.iter();
         draws.map(|b| (b.material, b.key.class)).collect()
     }
+
+    /// Families of the solid draws' materials with their classes, each once.
+    pub(crate) fn solid_families(&self, scene: &SceneOnGpu) -> BTreeMap<u32, u32> {
+        let families = scene.materials.families();
+        let draws = self.solid.iter();
+        draws
+            .map(|b| (families.of(b.material), b.key.class))
+            .collect()
+    }
 }

@@ -6,7 +6,7 @@ use super::{
 };
 use crate::gpu::{self, Gpu};
 use crate::recorder::{Recorder, overwritten};
-use crate::scene::SceneOnGpu;
+use crate::scene::{MaterialDispatch, SceneOnGpu};
 use crate::stereo::{EyeLayout, Submission};
 use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, shader};
 
@@ -156,7 +156,7 @@ impl GeometryPass {
                 Means::Triangles(Box::new(VisibilityPass::new(
                     gpu,
                     frame_layout,
-                    material_layout,
+                    (MaterialDispatch::of(gpu, settings), material_layout),
                     FaceNormals::wanted_by(settings),
                     windows,
                     (further, Rates::wanted_by(settings)),

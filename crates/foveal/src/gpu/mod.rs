@@ -185,6 +185,11 @@ impl Gpu {
         adapter::describe(&self.device.adapter_info())
     }
 
+    /// Whether the device is Mesa's processor.
+    pub(crate) fn is_lavapipe(&self) -> bool {
+        self.adapter_stats().driver.starts_with("llvmpipe")
+    }
+
     /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.
     pub(crate) fn has_multiview(&self) -> bool {
         !self.is_reduced()

@@ -6,6 +6,7 @@ use crate::frame::FrameUniform;
 use crate::geometry::GeometryPass;
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::recorder::Recorder;
+use crate::scene::SceneOnGpu;
 use crate::shading::{CoarseShading, Samples};
 use crate::stereo::{EyeLayout, eyes};
 use crate::targets::Targets;
@@ -28,6 +29,10 @@ impl Renderer {
 
     pub(crate) fn geometry(&self) -> &GeometryPass {
         &self.stages.geometry
+    }
+
+    pub(crate) fn scene(&self) -> &SceneOnGpu {
+        &self.scene
     }
 
     pub(crate) fn targets(&self) -> &Targets {

@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Scene, Vertex};
 
-use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read};
+use crate::gpu::{Gpu, bind_group, storage_read};
 use crate::{Error, Geometry};
 
 const STRIDE: u64 = size_of::<Vertex>() as u64;
@@ -41,17 +41,25 @@ pub(crate) struct PlaceUniform {
     pub(crate) first_index: u32,
     pub(crate) base_vertex: u32,
     pub(crate) material: u32,
-    pub(crate) reserved: u32,
+    pub(crate) bin: u32,
 }
 
 /// The layout of [`SceneGeometry::group`]: bind group 2 of `shared/attributes.wgsl`.
 pub(crate) fn geometry_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    bind_group_layout(
-        &gpu.device,
-        "geometry",
-        wgpu::ShaderStages::VERTEX | wgpu::ShaderStages::COMPUTE,
-        &[storage_read(); 4],
-    )
+    let (vertex, compute) = (wgpu::ShaderStages::VERTEX, wgpu::ShaderStages::COMPUTE);
+    // Compute shaders leave the former pose alone: of their eight storage buffers none is to spare.
+    let stages = [vertex | compute, vertex, vertex | compute, vertex | compute];
+    let entries = std::array::from_fn::<_, 4, _>(|i| wgpu::BindGroupLayoutEntry {
+        binding: i as u32,
+        visibility: stages[i],
+        ty: storage_read(),
+        count: None,
+    });
+    gpu.device
+        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
+            label: Some("geometry"),
+            entries: &entries,
+        })
 }
 
 /// The scene's vertices and indices.
@@ -71,7 +79,8 @@ pub(crate) struct SceneGeometry {
 }
 
 impl SceneGeometry {
-    pub(crate) fn new(gpu: &Gpu, scene: &Scene) -> Result<Self, Error> {
+    /// `bins`: where the pixels of each material are sorted to.
+    pub(crate) fn new(gpu: &Gpu, scene: &Scene, bins: &[u32]) -> Result<Self, Error> {
         let vertex_count: usize = scene.meshes.iter().map(|m| m.vertices.len()).sum();
         let index_count: usize = scene.meshes.iter().map(|m| m.indices.len()).sum();
         let limit = gpu.device.limits().max_buffer_size;
@@ -157,7 +166,7 @@ impl SceneGeometry {
         };
         let largest_bytes = vertices.size().max(indices.size());
         let bindable = largest_bytes <= gpu.device.limits().max_storage_buffer_binding_size;
-        let places = upload_places(gpu, scene, &meshes);
+        let places = upload_places(gpu, scene, &meshes, bins);
         let group = bindable.then(|| {
             let buffers = [&vertices, &previous_vertices, &indices, &places];
             let resources = buffers.map(wgpu::Buffer::as_entire_binding);
@@ -239,14 +248,14 @@ impl SceneGeometry {
     }
 }
 
-fn upload_places(gpu: &Gpu, scene: &Scene, meshes: &[MeshRange]) -> wgpu::Buffer {
+fn upload_places(gpu: &Gpu, scene: &Scene, meshes: &[MeshRange], bins: &[u32]) -> wgpu::Buffer {
     let place = |instance: &foveal_scene::Instance| {
         let mesh = meshes[instance.mesh as usize];
         PlaceUniform {
             first_index: mesh.first_index,
             base_vertex: mesh.base_vertex as u32,
             material: instance.material,
-            reserved: 0,
+            bin: bins[instance.material as usize],
         }
     };
     let places: Vec<_> = scene.instances.iter().map(place).collect();

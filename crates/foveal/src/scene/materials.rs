@@ -2,8 +2,11 @@
 
 use bytemuck::{Pod, Zeroable};
 use foveal_scene::{AlphaMode, ColorSpace, Material, Sampler, Scene, Texture, TextureRef};
+use glam::Mat3;
 
-use super::textures::{Samplers, upload};
+use super::families::{Families, FamilyBindings, Slot};
+use super::samplers::Samplers;
+use super::textures::{ArrayLimits, Textures};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, uniform};
 use crate::{Error, Settings};
 
@@ -19,10 +22,13 @@ pub(crate) struct MaterialUniform {
     pub(crate) occlusion_strength: f32,
     pub(crate) alpha_cutoff: f32,
     pub(crate) uv: [[[f32; 4]; 2]; 5],
+    pub(crate) layers: [u32; 2],
     pub(crate) number: u32,
     pub(crate) procedural_seed: u32,
     pub(crate) procedural_frequency: f32,
     pub(crate) reserved_0: u32,
+    pub(crate) reserved_1: u32,
+    pub(crate) reserved_2: u32,
 }
 
 /// A material's texture slots in the order of the shader's bindings; their positions are the flags' bits.
@@ -38,8 +44,11 @@ fn slots(material: &Material) -> [Option<TextureRef>; 5] {
 
 const IS_UNLIT: u32 = 32;
 const IS_PROCEDURAL: u32 = 64;
+const HAS_UV_MAP: u32 = 128;
+const HAS_OWN_UV_MAPS: u32 = 256;
 
-/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for procedural.
+/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for procedural, one where a
+/// texture is read elsewhere than at the first UV set as it is, one where textures are read at different places.
 pub(crate) fn material_class(material: &Material) -> u32 {
     let slots = slots(material);
     let textures = slots
@@ -49,14 +58,30 @@ pub(crate) fn material_class(material: &Material) -> u32 {
     let flags = [
         (material.unlit, IS_UNLIT),
         (material.procedural.is_some(), IS_PROCEDURAL),
+        (slots.iter().flatten().any(has_uv_map), HAS_UV_MAP),
+        (shared_uv_map(&slots).is_none(), HAS_OWN_UV_MAPS),
     ];
     let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
     textures.sum::<u32>() | flags.sum::<u32>()
 }
 
+fn has_uv_map(slot: &TextureRef) -> bool {
+    slot.uv_set != 0 || slot.uv_transform != Mat3::IDENTITY
+}
+
+/// What all slots in use share, if they do.
+fn shared_uv_map(slots: &[Option<TextureRef>; 5]) -> Option<[[f32; 4]; 2]> {
+    let mut maps = slots.iter().flatten().map(|&slot| uv_rows(slot));
+    let first = maps.next().unwrap_or([[0.0; 4]; 2]);
+    maps.all(|map| map == first).then_some(first)
+}
+
 impl MaterialUniform {
-    pub(crate) fn new(material: &Material, number: u32) -> Self {
+    /// `layers`: where the slots' textures lie in their arrays, each below 256.
+    pub(crate) fn new(material: &Material, number: u32, layers: [u32; 5]) -> Self {
+        let [a, b, c, d, e] = layers.map(|layer| layer as u8);
         let slots = slots(material);
+        let own = slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows));
         Self {
             base_color: material.base_color.to_array(),
             emissive: material.emissive.to_array(),
@@ -68,11 +93,14 @@ impl MaterialUniform {
                 AlphaMode::Mask { cutoff } => cutoff,
                 AlphaMode::Opaque | AlphaMode::Blend => 0.0,
             },
-            uv: slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
+            uv: shared_uv_map(&slots).map_or(own, |map| [map; 5]),
+            layers: [u32::from_le_bytes([a, b, c, d]), u32::from(e)],
             number,
             procedural_seed: material.procedural.map_or(0, |p| p.seed),
             procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
             reserved_0: 0,
+            reserved_1: 0,
+            reserved_2: 0,
         }
     }
 }
@@ -106,6 +134,9 @@ pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 #[derive(Debug)]
 pub(crate) struct SceneMaterials {
     groups: Vec<wgpu::BindGroup>,
+    families: Families,
+    /// `None` on devices without storage buffers.
+    family_bindings: Option<FamilyBindings>,
 }
 
 impl SceneMaterials {
@@ -114,43 +145,56 @@ impl SceneMaterials {
         scene: &Scene,
         settings: &Settings,
         layout: &wgpu::BindGroupLayout,
+        limits: ArrayLimits,
     ) -> Result<Self, Error> {
-        let views = scene
-            .textures
-            .iter()
-            .map(|t| upload(gpu, t))
-            .collect::<Result<Vec<_>, _>>()?;
-        let white = upload(gpu, &white())?;
+        let white = white();
+        // Bound where a material has no texture.
+        let missing = scene.textures.len() as u32;
+        let textures: Vec<_> = scene.textures.iter().chain([&white]).collect();
+        let textures = Textures::new(gpu, &textures, limits)?;
         let mut samplers = Samplers::new(gpu, settings.anisotropy);
+        let slots_of = |material: &Material| {
+            slots(material).map(|slot| {
+                slot.map(|slot| Slot {
+                    place: textures.place(slot.texture),
+                    sampler: scene.textures[slot.texture as usize].sampler,
+                })
+            })
+        };
+        let uniforms: Vec<_> = (0..)
+            .zip(&scene.materials)
+            .map(|(number, material)| {
+                let layers = slots_of(material).map(|slot| slot.map_or(0, |s| s.place.layer));
+                MaterialUniform::new(material, number, layers)
+            })
+            .collect();
+        let families =
+            Families::new((scene.materials.iter()).map(|m| (material_class(m), slots_of(m))));
+        let family_bindings = (!gpu.is_reduced()).then(|| {
+            let white = textures.place(missing);
+            FamilyBindings::new(gpu, &families, &uniforms, &textures, white, &mut samplers)
+        });
         let stride = (size_of::<MaterialUniform>() as u64).next_multiple_of(u64::from(
             gpu.device.limits().min_uniform_buffer_offset_alignment,
         ));
-        let uniforms = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("materials"),
             size: stride * scene.materials.len().max(1) as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         let mut groups = Vec::with_capacity(scene.materials.len());
-        for (number, material) in (0..).zip(&scene.materials) {
-            let offset = u64::from(number) * stride;
-            gpu.queue.write_buffer(
-                &uniforms,
-                offset,
-                bytemuck::bytes_of(&MaterialUniform::new(material, number)),
-            );
-            let pairs = slots(material).map(|slot| match slot {
-                Some(slot) => {
-                    let texture = slot.texture as usize;
-                    (
-                        &views[texture],
-                        samplers.get(scene.textures[texture].sampler),
-                    )
-                }
-                None => (&white, samplers.get(Sampler::default())),
+        for ((number, material), uniform) in (0..).zip(&scene.materials).zip(&uniforms) {
+            let offset = number * stride;
+            (gpu.queue).write_buffer(&buffer, offset, bytemuck::bytes_of(uniform));
+            let pairs = slots(material).map(|slot| {
+                let texture = slot.map_or(missing, |slot| slot.texture);
+                let sampler = (scene.textures.get(texture as usize))
+                    .map_or_else(Sampler::default, |texture| texture.sampler);
+                (textures.alone(texture), samplers.get(sampler))
             });
             let mut resources = vec![wgpu::BindingResource::Buffer(wgpu::BufferBinding {
-                buffer: &uniforms,
+                buffer: &buffer,
                 offset,
                 size: wgpu::BufferSize::new(size_of::<MaterialUniform>() as u64),
             })];
@@ -160,11 +204,25 @@ impl SceneMaterials {
             }
             groups.push(bind_group(&gpu.device, &material.name, layout, &resources));
         }
-        Ok(Self { groups })
+        Ok(Self {
+            groups,
+            families,
+            family_bindings,
+        })
     }
 
     pub(crate) fn group(&self, material: u32) -> &wgpu::BindGroup {
         &self.groups[material as usize]
+    }
+
+    /// What materials share dispatches.
+    pub(crate) fn families(&self) -> &Families {
+        &self.families
+    }
+
+    /// `None` where the device could not evaluate materials so.
+    pub(crate) fn family_bindings(&self) -> Option<&FamilyBindings> {
+        self.family_bindings.as_ref()
     }
 }
 

@@ -1,20 +1,24 @@
 //! A scene on the device: geometry, textures, materials, instances, lights.
 
 mod bindings;
+mod families;
 mod geometry;
 mod instances;
 mod materials;
+mod samplers;
 mod textures;
 
 pub(crate) use bindings::FrameBindings;
 #[cfg(test)]
+pub(crate) use families::FamilyUniform;
+pub(crate) use families::{FAMILY_BYTES, MaterialDispatch, family_layout};
+#[cfg(test)]
 pub(crate) use geometry::PlaceUniform;
 pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS, geometry_layout};
 pub(crate) use instances::InstanceUniform;
-#[cfg(test)]
-pub(crate) use materials::MaterialUniform;
 use materials::material_class;
-pub(crate) use materials::{SceneMaterials, material_layout};
+pub(crate) use materials::{MaterialUniform, SceneMaterials, material_layout};
+pub(crate) use textures::ArrayLimits;
 
 use foveal_scene::{Aabb, AlphaMode, Environment, Scene};
 use glam::Mat4;
@@ -60,6 +64,7 @@ impl SceneOnGpu {
         scene: &Scene,
         settings: &Settings,
         material_layout: &wgpu::BindGroupLayout,
+        limits: ArrayLimits,
     ) -> Result<Self, Error> {
         if scene.lights.len() > MAX_LIGHTS {
             return Err(Error::Limit {
@@ -78,9 +83,11 @@ impl SceneOnGpu {
             mapped_at_creation: false,
         });
         write_lights(gpu, &light_buffer, &lights);
+        let materials = SceneMaterials::new(gpu, scene, settings, material_layout, limits)?;
+        let material_families = materials.families().count() as u64;
         Ok(Self {
-            geometry: SceneGeometry::new(gpu, scene)?,
-            materials: SceneMaterials::new(gpu, scene, settings, material_layout)?,
+            geometry: SceneGeometry::new(gpu, scene, materials.families().ranks())?,
+            materials,
             instances: drawn_instances(scene),
             lights,
             light_buffer,
@@ -89,6 +96,7 @@ impl SceneOnGpu {
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
                 materials: scene.materials.len() as u64,
+                material_families,
                 textures: scene.textures.len() as u64,
                 objects: scene.objects.len() as u64,
                 instances: scene.instances.len() as u64,

@@ -1,131 +1,281 @@
-//! Textures and samplers on the device.
+//! Textures on the device: those of one shape are layers of one array.
+//!
+//! Geometry passes bind single layers. What evaluates the materials of many triangles at once binds whole arrays
+//! (`families.rs`), because no device need offer an index into textures that differs from pixel to pixel.
 
 use std::collections::HashMap;
 
-use foveal_scene::{ColorSpace, Filter, Sampler, Texture, Wrap};
+use foveal_scene::{ColorSpace, Texture};
 
 use crate::Error;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, layer_of, layers_of};
 
-/// Uploads a texture; levels larger than the device's limit are left out.
-pub(crate) fn upload(gpu: &Gpu, texture: &Texture) -> Result<wgpu::TextureView, Error> {
-    let limit = gpu.device.limits().max_texture_dimension_2d;
-    let extent = |level: usize| {
-        (
-            (texture.width >> level).max(1),
-            (texture.height >> level).max(1),
-        )
-    };
-    let fitting = (0..texture.levels.len()).find(|&l| extent(l).0.max(extent(l).1) <= limit);
-    let Some(first) = fitting else {
-        return Err(Error::Limit {
-            what: format!("the larger side of the texture '{}'", texture.name),
-            value: u64::from(texture.width.max(texture.height)),
-            limit: u64::from(limit),
-            hint: String::new(),
-        });
-    };
-    let (width, height) = extent(first);
-    let on_gpu = gpu.device.create_texture(&wgpu::TextureDescriptor {
-        label: Some(&texture.name),
-        size: wgpu::Extent3d {
+/// How large arrays of textures may become.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct ArrayLimits {
+    /// Layers of one array, 1 to 256.
+    pub(crate) layers: u32,
+    /// Bytes of one array, but for textures that are larger by themselves.
+    pub(crate) bytes: u64,
+}
+
+impl ArrayLimits {
+    /// What `MaterialUniform::layers` has room for.
+    const MOST_LAYERS: u32 = 256;
+    /// Drivers refuse single textures of more: lavapipe from 1 GiB on.
+    const MOST_BYTES: u64 = 256 << 20;
+
+    /// What this device allows. WebGL has no view of one layer: there each texture is alone.
+    pub(crate) fn of(gpu: &Gpu) -> Self {
+        let layers = gpu.device.limits().max_texture_array_layers;
+        Self {
+            layers: if gpu.is_reduced() {
+                1
+            } else {
+                layers.min(Self::MOST_LAYERS)
+            },
+            bytes: Self::MOST_BYTES,
+        }
+    }
+}
+
+/// What the textures of one array have in common; sizes in texels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+struct Shape {
+    color_space: ColorSpace,
+    width: u32,
+    height: u32,
+    levels: u32,
+}
+
+impl Shape {
+    /// Of `texture` without the levels that are larger than the device's limit, and how many those are.
+    fn of(texture: &Texture, limit: u32) -> Result<(Self, usize), Error> {
+        let side = |level: usize| {
+            (
+                (texture.width >> level).max(1),
+                (texture.height >> level).max(1),
+            )
+        };
+        let fitting = (0..texture.levels.len()).find(|&l| side(l).0.max(side(l).1) <= limit);
+        let Some(first) = fitting else {
+            return Err(Error::Limit {
+                what: format!("the larger side of the texture '{}'", texture.name),
+                value: u64::from(texture.width.max(texture.height)),
+                limit: u64::from(limit),
+                hint: String::new(),
+            });
+        };
+        let (width, height) = side(first);
+        let shape = Self {
+            color_space: texture.color_space,
             width,
             height,
-            depth_or_array_layers: 1,
-        },
-        mip_level_count: (texture.levels.len() - first) as u32,
+            levels: (texture.levels.len() - first) as u32,
+        };
+        Ok((shape, first))
+    }
+
+    fn extent(self, level: u32, layers: u32) -> wgpu::Extent3d {
+        wgpu::Extent3d {
+            width: (self.width >> level).max(1),
+            height: (self.height >> level).max(1),
+            depth_or_array_layers: layers,
+        }
+    }
+
+    /// Of one layer.
+    fn bytes(self) -> u64 {
+        let levels = (0..self.levels).map(|level| self.extent(level, 1));
+        levels
+            .map(|e| u64::from(e.width) * u64::from(e.height) * 4)
+            .sum()
+    }
+}
+
+/// Where a texture lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Place {
+    pub(crate) array: u32,
+    pub(crate) layer: u32,
+}
+
+/// Each shape's place, and the arrays: their shape and number of layers. Equal shapes share an array while it has room.
+fn arrange(shapes: &[Shape], limits: ArrayLimits) -> (Vec<Place>, Vec<(Shape, u32)>) {
+    let mut arrays: Vec<(Shape, u32)> = Vec::new();
+    let mut open: HashMap<Shape, usize> = HashMap::new();
+    let place = |&shape: &Shape| {
+        let room = (limits.bytes / shape.bytes().max(1)).clamp(1, u64::from(limits.layers));
+        let array = match open.get(&shape) {
+            Some(&array) if u64::from(arrays[array].1) < room => array,
+            _ => {
+                arrays.push((shape, 0));
+                open.insert(shape, arrays.len() - 1);
+                arrays.len() - 1
+            }
+        };
+        let layer = arrays[array].1;
+        arrays[array].1 += 1;
+        Place {
+            array: array as u32,
+            layer,
+        }
+    };
+    let places = shapes.iter().map(place).collect();
+    (places, arrays)
+}
+
+/// A scene's textures.
+#[derive(Debug)]
+pub(crate) struct Textures {
+    places: Vec<Place>,
+    arrays: Vec<wgpu::TextureView>,
+    /// Of each texture alone.
+    alone: Vec<wgpu::TextureView>,
+}
+
+impl Textures {
+    /// Uploads `textures`; levels larger than the device's limit are left out.
+    ///
+    /// # Errors
+    /// [`Error::Limit`] for a texture whose smallest level is larger than that.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        textures: &[&Texture],
+        limits: ArrayLimits,
+    ) -> Result<Self, Error> {
+        let limit = gpu.device.limits().max_texture_dimension_2d;
+        let shapes = (textures.iter())
+            .map(|t| Shape::of(t, limit))
+            .collect::<Result<Vec<_>, _>>()?;
+        let (shapes, firsts): (Vec<_>, Vec<_>) = shapes.into_iter().unzip();
+        let (places, arrays) = arrange(&shapes, limits);
+        let arrays: Vec<_> = arrays.iter().map(|a| create(gpu, *a)).collect();
+        for ((texture, first), place) in textures.iter().zip(&firsts).zip(&places) {
+            let shape = arrays[place.array as usize].1;
+            for (mip, level) in (0..).zip(&texture.levels[*first..]) {
+                write(
+                    gpu,
+                    &arrays[place.array as usize].0,
+                    shape,
+                    mip,
+                    *place,
+                    level,
+                );
+            }
+        }
+        let arrays: Vec<_> = arrays.into_iter().map(|(view, _)| view).collect();
+        Ok(Self {
+            alone: (places.iter())
+                .map(|place| layer_of(&arrays[place.array as usize], place.layer))
+                .collect(),
+            arrays,
+            places,
+        })
+    }
+
+    /// Where a texture lies.
+    pub(crate) fn place(&self, texture: u32) -> Place {
+        self.places[texture as usize]
+    }
+
+    /// A view of all layers of an array.
+    pub(crate) fn array(&self, array: u32) -> wgpu::TextureView {
+        layers_of(&self.arrays[array as usize])
+    }
+
+    /// A view of one texture.
+    pub(crate) fn alone(&self, texture: u32) -> &wgpu::TextureView {
+        &self.alone[texture as usize]
+    }
+}
+
+fn create(gpu: &Gpu, (shape, layers): (Shape, u32)) -> (wgpu::TextureView, Shape) {
+    let texture = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some("textures"),
+        size: shape.extent(0, layers),
+        mip_level_count: shape.levels,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: match texture.color_space {
+        format: match shape.color_space {
             ColorSpace::Srgb => wgpu::TextureFormat::Rgba8UnormSrgb,
             ColorSpace::Linear => wgpu::TextureFormat::Rgba8Unorm,
         },
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
-    for (mip, level) in (first..texture.levels.len()).enumerate() {
-        let (width, height) = extent(level);
-        gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                mip_level: mip as u32,
-                ..on_gpu.as_image_copy()
-            },
-            &texture.levels[level],
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * 4),
-                rows_per_image: None,
-            },
-            wgpu::Extent3d {
-                width,
-                height,
-                depth_or_array_layers: 1,
-            },
-        );
-    }
-    Ok(on_gpu.create_view(&Default::default()))
+    (texture.create_view(&Default::default()), shape)
 }
 
-/// The samplers that a scene uses, each made once.
-pub(crate) struct Samplers<'a> {
-    gpu: &'a Gpu,
-    anisotropy: u16,
-    made: HashMap<Sampler, wgpu::Sampler>,
+fn write(gpu: &Gpu, array: &wgpu::TextureView, shape: Shape, level: u32, at: Place, texels: &[u8]) {
+    let extent = shape.extent(level, 1);
+    gpu.queue.write_texture(
+        wgpu::TexelCopyTextureInfo {
+            mip_level: level,
+            origin: wgpu::Origin3d {
+                x: 0,
+                y: 0,
+                z: at.layer,
+            },
+            ..array.texture().as_image_copy()
+        },
+        texels,
+        wgpu::TexelCopyBufferLayout {
+            offset: 0,
+            bytes_per_row: Some(extent.width * 4),
+            rows_per_image: None,
+        },
+        extent,
+    );
 }
 
-impl<'a> Samplers<'a> {
-    pub(crate) fn new(gpu: &'a Gpu, anisotropy: u16) -> Self {
-        // Lavapipe's anisotropic filter (Mesa 22.3) visits every texel of a footprint that has no bound, and
-        // finds it from neighbouring coordinates even where the shader gives gradients: a triangle seen edge-on
-        // keeps it busy for minutes. Without it its geometry pass takes a quarter of the time besides.
-        let broken = gpu.adapter_stats().driver.starts_with("llvmpipe");
-        let anisotropy = if broken { 1 } else { anisotropy };
-        Self {
-            gpu,
-            anisotropy,
-            made: HashMap::new(),
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn shape(width: u32, color_space: ColorSpace) -> Shape {
+        Shape {
+            color_space,
+            width,
+            height: 7,
+            levels: 3,
         }
     }
 
-    pub(crate) fn get(&mut self, sampler: Sampler) -> wgpu::Sampler {
-        let (gpu, anisotropy) = (self.gpu, self.anisotropy);
-        self.made
-            .entry(sampler)
-            .or_insert_with(|| gpu.device.create_sampler(&descriptor(sampler, anisotropy)))
-            .clone()
-    }
-}
-
-fn descriptor(sampler: Sampler, anisotropy: u16) -> wgpu::SamplerDescriptor<'static> {
-    let all_linear = sampler.mag == Filter::Linear
-        && sampler.min == Filter::Linear
-        && sampler.mip == Some(Filter::Linear);
-    wgpu::SamplerDescriptor {
-        address_mode_u: wrap(sampler.wrap_u),
-        address_mode_v: wrap(sampler.wrap_v),
-        mag_filter: filter(sampler.mag),
-        min_filter: filter(sampler.min),
-        mipmap_filter: match sampler.mip {
-            Some(Filter::Linear) => wgpu::MipmapFilterMode::Linear,
-            Some(Filter::Nearest) | None => wgpu::MipmapFilterMode::Nearest,
-        },
-        // The graphics API allows anisotropy for linear filters alone.
-        anisotropy_clamp: if all_linear { anisotropy } else { 1 },
-        ..Default::default()
-    }
-}
-
-fn wrap(wrap: Wrap) -> wgpu::AddressMode {
-    match wrap {
-        Wrap::Repeat => wgpu::AddressMode::Repeat,
-        Wrap::MirroredRepeat => wgpu::AddressMode::MirrorRepeat,
-        Wrap::ClampToEdge => wgpu::AddressMode::ClampToEdge,
-    }
-}
-
-fn filter(filter: Filter) -> wgpu::FilterMode {
-    match filter {
-        Filter::Nearest => wgpu::FilterMode::Nearest,
-        Filter::Linear => wgpu::FilterMode::Linear,
+    #[test]
+    fn textures_of_one_shape_share_arrays_that_hold_no_more_than_they_may() {
+        let (a, b) = (shape(5, ColorSpace::Srgb), shape(5, ColorSpace::Linear));
+        let c = shape(6, ColorSpace::Srgb);
+        let shapes = [a, b, a, c, a, a, b, a];
+        for (layers, bytes) in [
+            (1, 1 << 20),
+            (2, 1 << 20),
+            (256, 1 << 20),
+            (256, 400),
+            (9, 1),
+        ] {
+            let limits = ArrayLimits { layers, bytes };
+            let (places, arrays) = arrange(&shapes, limits);
+            let mut seen = std::collections::BTreeSet::new();
+            for (shape, place) in shapes.iter().zip(&places) {
+                let (of_array, layers) = arrays[place.array as usize];
+                assert_eq!(*shape, of_array);
+                assert!(place.layer < layers);
+                assert!(seen.insert((place.array, place.layer)), "a layer each");
+            }
+            for (shape, count) in &arrays {
+                assert!(*count <= layers);
+                assert!(*count == 1 || u64::from(*count) * shape.bytes() <= bytes);
+            }
+            let layers_used: u32 = arrays.iter().map(|(_, count)| count).sum();
+            assert_eq!(layers_used as usize, shapes.len());
+        }
+        // 5 x 7, 2 x 3 and 1 x 1 texels of 4 bytes.
+        assert_eq!(a.bytes(), 168);
+        let arrays_of = |layers, bytes| arrange(&shapes, ArrayLimits { layers, bytes }).1.len();
+        assert_eq!(arrays_of(256, 1 << 20), 3);
+        assert_eq!(arrays_of(2, 1 << 20), 5);
+        assert_eq!(arrays_of(256, 400), 5);
+        assert_eq!(arrays_of(1, 1 << 20), 8);
     }
 }

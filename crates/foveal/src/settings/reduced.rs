@@ -11,7 +11,7 @@ const MISSING_STAGES: [&str; 4] = [
     "Variable shading",
 ];
 /// Single settings that they lack.
-const MISSING_KEYS: [&str; 2] = ["view", "geometry"];
+const MISSING_KEYS: [&str; 3] = ["view", "geometry", "material-dispatch"];
 
 impl Setting {
     /// Whether it means anything on devices with [`Gpu::reduced_limits`](crate::Gpu::reduced_limits) alone.

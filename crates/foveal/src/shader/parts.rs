@@ -19,8 +19,12 @@ const MATERIAL: &str = concat!(
     include_str!("../shared/procedural.wgsl"),
     include_str!("../shared/material.wgsl")
 );
-const SAMPLE_IMPLICIT: &str = include_str!("../shared/sample_implicit.wgsl");
+const SAMPLE_IMPLICIT: &str = concat!(
+    include_str!("../shared/material_bindings.wgsl"),
+    include_str!("../shared/sample_implicit.wgsl")
+);
 const SAMPLE_GRADIENTS: &str = include_str!("../shared/sample_gradients.wgsl");
+const FAMILY: &str = include_str!("../geometry/visibility/family.wgsl");
 const ATTRIBUTES: &str = include_str!("../shared/attributes.wgsl");
 const FULL_SCREEN: &str = include_str!("../shared/full_screen.wgsl");
 const LAYERS: &str = include_str!("../shared/layers.wgsl");
@@ -87,10 +91,29 @@ pub(crate) const VISIBLE_PULLED: Parts = &[
     ATTRIBUTES,
     include_str!("../geometry/visibility/pulled.wgsl"),
 ];
+/// What evaluates triangles' materials: a family of them, one of them.
+macro_rules! resolve {
+    [$($rates:expr),+] => {[
+        &[
+            FRAME, SURFACE, VERTEX, ATTRIBUTES, SAMPLE_GRADIENTS,
+            include_str!("../geometry/visibility/by_family.wgsl"),
+            MATERIAL, $($rates,)+ FAMILY,
+            include_str!("../geometry/visibility/resolve.wgsl"),
+        ],
+        &[
+            FRAME, SURFACE, VERTEX, ATTRIBUTES, SAMPLE_GRADIENTS,
+            include_str!("../shared/material_bindings.wgsl"),
+            include_str!("../geometry/visibility/by_material.wgsl"),
+            MATERIAL, $($rates,)+ FAMILY,
+            include_str!("../geometry/visibility/resolve.wgsl"),
+        ],
+    ]};
+}
 pub(crate) const BINS: Parts = &[
     FRAME,
     LAYERS,
     EVERY,
+    FAMILY,
     include_str!("../geometry/visibility/bins.wgsl"),
 ];
 const RATED: &str = include_str!("../geometry/visibility/rated.wgsl");
@@ -98,70 +121,41 @@ const RATED: &str = include_str!("../geometry/visibility/rated.wgsl");
 pub(crate) const BINS_RATED: Parts = &[
     FRAME,
     RATES,
-    "@group(1) @binding(5) var mask: texture_2d<u32>;",
+    "@group(1) @binding(6) var mask: texture_2d<u32>;",
     RATED,
     LAYERS,
+    FAMILY,
     include_str!("../geometry/visibility/bins.wgsl"),
 ];
-pub(crate) const RESOLVE_RATED: Parts = &[
-    FRAME,
-    SURFACE,
-    VERTEX,
-    ATTRIBUTES,
-    SAMPLE_GRADIENTS,
-    MATERIAL,
+pub(crate) const RESOLVE_RATED: [Parts; 2] = resolve![
     RATES,
     "@group(3) @binding(6) var mask: texture_2d<u32>;",
     RATED,
-    LAYERS,
-    include_str!("../geometry/visibility/resolve.wgsl"),
+    LAYERS
 ];
 const TILED: &str = include_str!("../geometry/visibility/tiled.wgsl");
 /// As [`BINS`] and [`RESOLVE`], where tiles are sampled alone.
 pub(crate) const BINS_TILED: Parts = &[
     FRAME,
     BLOCKS,
-    "@group(1) @binding(5) var mask: texture_2d<u32>;",
+    "@group(1) @binding(6) var mask: texture_2d<u32>;",
     TILED,
     LAYERS,
+    FAMILY,
     include_str!("../geometry/visibility/bins.wgsl"),
 ];
-pub(crate) const RESOLVE_TILED: Parts = &[
-    FRAME,
-    SURFACE,
-    VERTEX,
-    ATTRIBUTES,
-    SAMPLE_GRADIENTS,
-    MATERIAL,
+pub(crate) const RESOLVE_TILED: [Parts; 2] = resolve![
     BLOCKS,
     "@group(3) @binding(6) var mask: texture_2d<u32>;",
     TILED,
-    LAYERS,
-    include_str!("../geometry/visibility/resolve.wgsl"),
+    LAYERS
 ];
-pub(crate) const RESOLVE: Parts = &[
-    FRAME,
-    SURFACE,
-    VERTEX,
-    ATTRIBUTES,
-    SAMPLE_GRADIENTS,
-    MATERIAL,
-    EVERY,
-    LAYERS,
-    include_str!("../geometry/visibility/resolve.wgsl"),
-];
+pub(crate) const RESOLVE: [Parts; 2] = resolve![EVERY, LAYERS];
 /// As [`RESOLVE`], for the further surfaces of pixels at edges.
-pub(crate) const RESOLVE_FURTHER: Parts = &[
-    FRAME,
-    SURFACE,
-    VERTEX,
-    ATTRIBUTES,
-    SAMPLE_GRADIENTS,
-    MATERIAL,
+pub(crate) const RESOLVE_FURTHER: [Parts; 2] = resolve![
     AA_QUARTERS,
     include_str!("../antialias/further.wgsl"),
-    LAYERS,
-    include_str!("../geometry/visibility/resolve.wgsl"),
+    LAYERS
 ];
 /// As [`GBUFFER`], with a clip plane between the eyes.
 pub(crate) const GBUFFER_CLIPPED: Parts = &[

@@ -7,11 +7,14 @@ const ALL: &[(&str, Parts)] = &[
     ("visible, indexed", VISIBLE_INDEXED),
     ("visible, pulled", VISIBLE_PULLED),
     ("bins", BINS),
-    ("resolve", RESOLVE),
+    ("resolve", RESOLVE[0]),
+    ("resolve, one by one", RESOLVE[1]),
     ("bins, rated", BINS_RATED),
-    ("resolve, rated", RESOLVE_RATED),
+    ("resolve, rated", RESOLVE_RATED[0]),
+    ("resolve, rated, one by one", RESOLVE_RATED[1]),
     ("bins, tiled", BINS_TILED),
-    ("resolve, tiled", RESOLVE_TILED),
+    ("resolve, tiled", RESOLVE_TILED[0]),
+    ("resolve, tiled, one by one", RESOLVE_TILED[1]),
     ("variable reproject", VARIABLE_REPROJECT),
     ("variable mask", VARIABLE_MASK),
     ("variable size", VARIABLE_SIZE),
@@ -40,7 +43,11 @@ const ALL: &[(&str, Parts)] = &[
     ("sorting", AA_SORT),
     ("classification", AA_CLASSIFY),
     ("further shading", AA_SHADE_FURTHER),
-    ("materials of further triangles", RESOLVE_FURTHER),
+    ("materials of further triangles", RESOLVE_FURTHER[0]),
+    (
+        "materials of further triangles, one by one",
+        RESOLVE_FURTHER[1],
+    ),
     ("combination", AA_COMBINE),
     ("combination, store", AA_STORE),
     ("tally", AA_VIEW),
@@ -414,12 +421,25 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             occlusion_strength,
             alpha_cutoff,
             uv,
+            layers,
             number,
             procedural_seed,
             procedural_frequency,
             reserved_0,
+            reserved_1,
+            reserved_2,
         ]
     );
+    for parts in [BINS, RESOLVE[0], RESOLVE[1]] {
+        assert_same_layout!(
+            parts,
+            "Family",
+            crate::scene::FamilyUniform,
+            [
+                groups_x, groups_y, groups_z, count, first, begin, end, reserved
+            ]
+        );
+    }
     for parts in [VARIABLE_REPROJECT, VARIABLE_MASK] {
         assert_same_layout!(
             parts,
@@ -438,15 +458,15 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         );
     }
     assert_same_layout!(
-        RESOLVE,
+        RESOLVE[0],
         "Windows",
         crate::geometry::WindowsUniform,
         [frames, parts]
     );
     assert_same_layout!(
-        RESOLVE,
+        RESOLVE[0],
         "Place",
         crate::scene::PlaceUniform,
-        [first_index, base_vertex, material, reserved]
+        [first_index, base_vertex, material, bin]
     );
 }

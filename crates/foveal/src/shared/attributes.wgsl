@@ -12,7 +12,8 @@ struct Place {
     // What its indices count from.
     base_vertex: u32,
     material: u32,
-    reserved: u32,
+    // Where the pixels that show it are sorted to.
+    bin: u32,
 }
 
 // A vertex in four words each of four: position, normal, tangent, both UV sets, colour.

@@ -1,5 +1,5 @@
-// The material at a point of a surface. Needs frame, surface and procedural.wgsl, and sample_implicit.wgsl or
-// sample_gradients.wgsl. Rust: `scene/materials.rs`.
+// The material at a point of a surface. Needs frame, surface and procedural.wgsl, and material_bindings.wgsl
+// with sample_implicit.wgsl or what takes their place. Rust: `scene/materials.rs`.
 
 // What the material has, known when the pipeline is made: bits as below.
 override MATERIAL_CLASS: u32 = 0u;
@@ -11,6 +11,10 @@ const HAS_OCCLUSION: u32 = 8u;
 const HAS_EMISSIVE: u32 = 16u;
 const IS_UNLIT: u32 = 32u;
 const IS_PROCEDURAL: u32 = 64u;
+// A texture is read elsewhere than at the first UV set as it is.
+const HAS_UV_MAP: u32 = 128u;
+// Its textures are read at different places.
+const HAS_OWN_UV_MAPS: u32 = 256u;
 
 struct UvMap {
     // u = dot(x.xyz, (u0, v0, 1)); x.w is the UV set.
@@ -27,30 +31,33 @@ struct Material {
     occlusion_strength: f32,
     // 0 where alpha is no mask.
     alpha_cutoff: f32,
-    // Base colour, metallic-roughness, normal, occlusion, emissive.
+    // Base colour, metallic-roughness, normal, occlusion, emissive; the first one's for all where they share it.
     uv: array<UvMap, 5>,
+    // Where the textures lie in their arrays, a byte each.
+    layers: vec2u,
     // Which of the scene's materials it is.
     number: u32,
     procedural_seed: u32,
     // Lumps per metre.
     procedural_frequency: f32,
     reserved_0: u32,
+    reserved_1: u32,
+    reserved_2: u32,
 }
 
-@group(1) @binding(0) var<uniform> material: Material;
-@group(1) @binding(1) var base_color_texture: texture_2d<f32>;
-@group(1) @binding(2) var base_color_sampler: sampler;
-@group(1) @binding(3) var metallic_roughness_texture: texture_2d<f32>;
-@group(1) @binding(4) var metallic_roughness_sampler: sampler;
-@group(1) @binding(5) var normal_texture: texture_2d<f32>;
-@group(1) @binding(6) var normal_sampler: sampler;
-@group(1) @binding(7) var occlusion_texture: texture_2d<f32>;
-@group(1) @binding(8) var occlusion_sampler: sampler;
-@group(1) @binding(9) var emissive_texture: texture_2d<f32>;
-@group(1) @binding(10) var emissive_sampler: sampler;
+// Slots that share one have it in common, which spares shaders that look it up pixel by pixel.
+fn uv_map(slot: u32) -> UvMap {
+    if (MATERIAL_CLASS & HAS_OWN_UV_MAPS) == 0u {
+        return material.uv[0];
+    }
+    return material.uv[slot];
+}
 
 fn uv_of(slot: u32, uv: vec4f) -> vec2f {
-    let map = material.uv[slot];
+    if (MATERIAL_CLASS & HAS_UV_MAP) == 0u {
+        return uv.xy;
+    }
+    let map = uv_map(slot);
     let p = vec3f(select(uv.xy, uv.zw, map.x.w > 0.5), 1.0);
     return vec2f(dot(map.x.xyz, p), dot(map.y.xyz, p));
 }

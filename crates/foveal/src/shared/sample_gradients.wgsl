@@ -5,13 +5,12 @@
 var<private> uv_right: vec4f;
 var<private> uv_down: vec4f;
 
-fn sample_material(image: texture_2d<f32>, how: sampler, slot: u32, uv: vec4f) -> vec4f {
-    return textureSampleGrad(image, how, uv_of(slot, uv), uv_step(slot, uv_right), uv_step(slot, uv_down));
-}
-
 // As `uv_of`, for differences.
 fn uv_step(slot: u32, uv: vec4f) -> vec2f {
-    let map = material.uv[slot];
+    if (MATERIAL_CLASS & HAS_UV_MAP) == 0u {
+        return uv.xy;
+    }
+    let map = uv_map(slot);
     let p = select(uv.xy, uv.zw, map.x.w > 0.5);
     return vec2f(dot(map.x.xy, p), dot(map.y.xy, p));
 }

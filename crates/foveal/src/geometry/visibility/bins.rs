@@ -7,11 +7,11 @@ use crate::gpu::{
     written_layers,
 };
 use crate::recorder::Recorder;
-use crate::scene::SceneOnGpu;
+use crate::scene::{MaterialDispatch, SceneOnGpu};
 use crate::shader;
 
-/// Bytes of `Bin` in `bins.wgsl`; it begins with the arguments of an indirect dispatch.
-pub(super) const BIN_BYTES: u64 = 32;
+/// Bytes of `Bin` in `bins.wgsl`.
+pub(super) const BIN_BYTES: u64 = 16;
 /// Pixels a side that one workgroup looks at.
 const TILE: u32 = 16;
 
@@ -25,7 +25,6 @@ impl Bins {
             label: Some("material bins"),
             size: u64::from(materials.max(1)) * BIN_BYTES,
             usage: wgpu::BufferUsages::STORAGE
-                | wgpu::BufferUsages::INDIRECT
                 | wgpu::BufferUsages::COPY_DST
                 | wgpu::BufferUsages::COPY_SRC,
             mapped_at_creation: false,
@@ -62,6 +61,7 @@ impl BinPass {
             storage_write(),
             storage_write(),
             written_layers(SURFACE_FORMAT),
+            storage_write(),
         ];
         if rates.is_some() {
             types.push(uint);
@@ -82,16 +82,19 @@ impl BinPass {
         }
     }
 
-    /// Encodes the passes: fills `bins` and the list of pixels, and empties the surfaces where nothing is seen.
+    /// Encodes the passes: fills `bins`, the families' dispatches and the list of pixels, and empties the surfaces where nothing is seen.
     pub(super) fn sort(
         &self,
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         target: &GBuffer,
         visibility: &VisibilityTargets,
-        bins: &Bins,
+        (bins, by): (&Bins, MaterialDispatch),
         at: &Evaluation<'_>,
     ) {
+        let Some(families) = scene.materials.family_bindings() else {
+            return;
+        };
         recorder.encoder.clear_buffer(&bins.0, 0, None);
         let group = bind_group(
             &recorder.gpu.device,
@@ -105,6 +108,7 @@ impl BinPass {
                     bins.0.as_entire_binding(),
                     visibility.pixels.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&target.surface_layers),
+                    families.dispatches(by).as_entire_binding(),
                 ],
             ),
         );

@@ -1,4 +1,5 @@
-// The seen pixels sorted by material: counted, summed up, scattered. After layers.wgsl. CPU twin: `twin.rs`.
+// The seen pixels sorted by material: counted, summed up, scattered. Materials of a family have bins side by side, so
+// that its pixels are one range of the list. After layers.wgsl and family.wgsl. CPU twin: `twin.rs`.
 //
 // A workgroup looks at 16 x 16 pixels, a thread at 2 x 2 of them. What it finds is gathered in a small hash table
 // first, so that the bins are touched once per workgroup and material.
@@ -10,20 +11,15 @@ struct Place {
     first_index: u32,
     base_vertex: u32,
     material: u32,
-    reserved: u32,
+    bin: u32,
 }
 
 struct Bin {
-    // Workgroups of 64 pixels, as an indirect dispatch wants them.
-    groups_x: u32,
-    groups_y: u32,
-    groups_z: u32,
     count: atomic<u32>,
     // Where in `pixels` the bin begins, and how many of its pixels are there already.
     first: u32,
     filled: atomic<u32>,
-    reserved_0: u32,
-    reserved_1: u32,
+    reserved: u32,
 }
 
 @group(1) @binding(0) var identity: texture_2d_array<u32>;
@@ -33,13 +29,14 @@ struct Bin {
 // x | y << 16.
 @group(1) @binding(3) var<storage, read_write> pixels: array<u32>;
 @group(1) @binding(4) var surface: texture_storage_2d_array<rgba32uint, write>;
+@group(1) @binding(5) var<storage, read_write> families: array<Family>;
 
-// The hash table: material + 1, pixels of it, where they go.
+// The hash table: bin + 1, pixels of it, where they go.
 var<workgroup> keys: array<atomic<u32>, 256>;
 var<workgroup> counts: array<atomic<u32>, 256>;
 var<workgroup> starts: array<u32, 256>;
 
-// What a thread finds at its 2 x 2 pixels: material + 1, or 0 where nothing is, or where the pixel is another's to stand
+// What a thread finds at its 2 x 2 pixels: bin + 1, or 0 where nothing is, or where the pixel is another's to stand
 // for.
 struct Quad {
     // Pixels to look at: all, or none. A loop of none costs nothing, a branch that none takes does.
@@ -57,7 +54,7 @@ fn keys_of(quad: vec2u) -> Quad {
     let rate = rate_at(quad);
     var found: Quad;
     found.count = select(0u, 4u, has_listed(quad, rate));
-    // Pixels side by side mostly show one instance, whose material is looked up once.
+    // Pixels side by side mostly show one instance, whose bin is looked up once.
     var instance = 0u;
     var key = 0u;
     for (var i = 0u; i < found.count; i++) {
@@ -72,7 +69,7 @@ fn keys_of(quad: vec2u) -> Quad {
             instance = seen;
             key = 0u;
             if seen != 0u {
-                key = places[seen - 1u].material + 1u;
+                key = places[seen - 1u].bin + 1u;
             }
         }
         found.keys[i] = select(0u, key, is_listed(texel, rate));
@@ -145,14 +142,23 @@ fn sum_bins(@builtin(local_invocation_index) local: u32) {
             workgroupBarrier();
         }
         if bin < length {
-            let groups = (count + 63u) / 64u;
-            bins[bin].groups_x = min(groups, MAX_ROW);
-            bins[bin].groups_y = (groups + MAX_ROW - 1u) / MAX_ROW;
-            bins[bin].groups_z = 1u;
             bins[bin].first = before + sums[local] - count;
         }
         before += sums[255];
         workgroupBarrier();
+    }
+    storageBarrier();
+    for (var family = local; family < arrayLength(&families); family += 256u) {
+        // A family has at least one bin.
+        let last = families[family].end - 1u;
+        let first = bins[families[family].begin].first;
+        let count = bins[last].first + atomicLoad(&bins[last].count) - first;
+        let groups = (count + 63u) / 64u;
+        families[family].groups_x = min(groups, MAX_ROW);
+        families[family].groups_y = (groups + MAX_ROW - 1u) / MAX_ROW;
+        families[family].groups_z = 1u;
+        families[family].count = count;
+        families[family].first = first;
     }
 }
 

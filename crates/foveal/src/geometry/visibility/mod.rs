@@ -4,10 +4,12 @@
 //! After Burns and Hunt 2013, 'The visibility buffer'. Passes: [`VisiblePass`] draws instance, motion, triangle and
 //! depth; [`BinPass`] sorts the seen pixels by material; [`ResolvePass`] evaluates each material at its pixels, with
 //! analytic barycentric coordinates and derivatives (`shared/attributes.wgsl`), and writes the surfaces of the
-//! ordinary G-buffer, so that every later stage sees an ordinary G-buffer. Materials are bound one by one, so there
-//! is one indirect dispatch per material, with the pipeline of its class.
+//! ordinary G-buffer, so that every later stage sees an ordinary G-buffer. There is one indirect dispatch for each
+//! family of materials (`scene/families.rs`), whose bins lie side by side.
 
 mod bins;
+#[cfg(test)]
+mod dispatches;
 mod raster;
 mod resolve;
 #[cfg(test)]
@@ -16,7 +18,7 @@ mod tests;
 use super::{DrawList, FaceNormals, GBuffer, Window};
 use crate::gpu::{Gpu, layered_target, layers_of};
 use crate::recorder::Recorder;
-use crate::scene::SceneOnGpu;
+use crate::scene::{MaterialDispatch, SceneOnGpu, family_layout};
 use crate::stereo::{EyeLayout, Submission};
 use crate::{CoarseSample, Settings, Shading, shader};
 use bins::{BinPass, Bins};
@@ -140,7 +142,7 @@ impl Rates {
         }
     }
 
-    fn resolve(self) -> shader::Parts {
+    fn resolve(self) -> [shader::Parts; 2] {
         match self {
             Self::Samples => shader::RESOLVE_RATED,
             Self::Tiles(_) => shader::RESOLVE_TILED,
@@ -176,6 +178,7 @@ pub(crate) struct VisibilityPass {
     /// For the further surfaces of pixels at edges.
     further: Option<ResolvePass>,
     bins: Bins,
+    by: MaterialDispatch,
 }
 
 impl VisibilityPass {
@@ -184,7 +187,7 @@ impl VisibilityPass {
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
-        material_layout: &wgpu::BindGroupLayout,
+        (by, material_layout): (MaterialDispatch, &wgpu::BindGroupLayout),
         face_normals: FaceNormals,
         windows: u32,
         (further, rates): (Option<f64>, Option<Rates>),
@@ -192,14 +195,19 @@ impl VisibilityPass {
     ) -> Self {
         let geometry_layout = crate::scene::geometry_layout(gpu);
         let raster = VisiblePass::new(gpu, frame_layout, material_layout, &geometry_layout, eyes);
-        let layouts = [frame_layout, material_layout, &geometry_layout];
+        let family_layout = family_layout(gpu);
+        let layout = match by {
+            MaterialDispatch::Family => &family_layout,
+            MaterialDispatch::Material => material_layout,
+        };
+        let layouts = [frame_layout, layout, &geometry_layout];
         let materials = |rates: Option<Rates>| {
             let parts = rates.map_or(shader::RESOLVE, Rates::resolve);
             Materials {
                 bin: BinPass::new(gpu, frame_layout, rates),
                 resolve: ResolvePass::new(
                     gpu,
-                    parts,
+                    (parts, by),
                     layouts,
                     face_normals,
                     windows,
@@ -215,9 +223,10 @@ impl VisibilityPass {
             rated: rates.map(|rates| materials(Some(rates))),
             further: further.map(|footprint| {
                 let parts = shader::RESOLVE_FURTHER;
-                ResolvePass::new(gpu, parts, layouts, none, 1, footprint, None)
+                ResolvePass::new(gpu, (parts, by), layouts, none, 1, footprint, None)
             }),
             bins: Bins::new(gpu, 1),
+            by,
         }
     }
 
@@ -338,9 +347,14 @@ impl VisibilityPass {
         let Some(visibility) = &target.visibility else {
             return;
         };
-        bin.sort(recorder, scene, target, visibility, &self.bins, at);
-        resolve.draw(
-            recorder, scene, list, target, visibility, &self.bins, windows, at,
+        bin.sort(
+            recorder,
+            scene,
+            target,
+            visibility,
+            (&self.bins, self.by),
+            at,
         );
+        resolve.draw(recorder, scene, list, target, visibility, windows, at);
     }
 }

@@ -69,9 +69,10 @@ impl VisiblePass {
     /// Of a material only what cuts holes matters here.
     fn key(key: PipelineKey) -> PipelineKey {
         const HAS_BASE_COLOR: u32 = 1;
+        const HAS_UV_MAP: u32 = 128;
         PipelineKey {
             class: if key.masked {
-                key.class & HAS_BASE_COLOR
+                key.class & (HAS_BASE_COLOR | HAS_UV_MAP)
             } else {
                 0
             },

@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::bins::{BIN_BYTES, Bins};
 use super::{Evaluation, Rates, VisibilityTargets, with_mask};
 use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
 use crate::gpu::{
@@ -12,7 +11,7 @@ use crate::gpu::{
     written_layers,
 };
 use crate::recorder::Recorder;
-use crate::scene::SceneOnGpu;
+use crate::scene::{FAMILY_BYTES, MaterialDispatch, SceneOnGpu};
 use crate::shader;
 
 /// Most windows that a frame is drawn into at once.
@@ -37,7 +36,7 @@ impl WindowsUniform {
     }
 }
 
-/// Evaluates materials, one dispatch each.
+/// Evaluates materials, one dispatch for each family or for each of them.
 #[derive(Debug)]
 pub(super) struct ResolvePass {
     module: wgpu::ShaderModule,
@@ -46,12 +45,13 @@ pub(super) struct ResolvePass {
     constants: Vec<(&'static str, f64)>,
     /// By material class.
     pipelines: BTreeMap<u32, wgpu::ComputePipeline>,
+    by: MaterialDispatch,
 }
 
 impl ResolvePass {
     pub(super) fn new(
         gpu: &Gpu,
-        parts: shader::Parts,
+        (parts, by): ([shader::Parts; 2], MaterialDispatch),
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
         windows: u32,
@@ -79,7 +79,7 @@ impl ResolvePass {
         );
         let written = u8::from(face_normals == FaceNormals::Written);
         Self {
-            module: shader::module(gpu, "materials of triangles", parts),
+            module: shader::module(gpu, "materials of triangles", parts[by as usize]),
             layout: shader::pipeline_layout(
                 gpu,
                 "materials of triangles",
@@ -95,6 +95,7 @@ impl ResolvePass {
             .chain(rates.and_then(Rates::constant))
             .collect(),
             pipelines: BTreeMap::new(),
+            by,
         }
     }
 
@@ -130,10 +131,13 @@ impl ResolvePass {
         list: &DrawList,
         target: &GBuffer,
         visibility: &VisibilityTargets,
-        bins: &Bins,
         windows: &[Window],
         at: &Evaluation<'_>,
     ) {
+        // A scene that this geometry could not draw has none.
+        let Some(families) = scene.materials.family_bindings() else {
+            return;
+        };
         let gpu = recorder.gpu;
         let uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("windows"),
@@ -153,7 +157,7 @@ impl ResolvePass {
                 &[
                     wgpu::BindingResource::TextureView(&target.identity_layers),
                     wgpu::BindingResource::TextureView(&visibility.triangle_layers),
-                    bins.0.as_entire_binding(),
+                    families.dispatches(self.by).as_entire_binding(),
                     visibility.pixels.as_entire_binding(),
                     uniform.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&target.surface_layers),
@@ -163,10 +167,19 @@ impl ResolvePass {
         let mut pass = recorder.compute_pass(at.material_label);
         pass.set_bind_group(2, scene.geometry.group(), &[]);
         pass.set_bind_group(3, &group, &[]);
-        for (material, class) in list.solid_materials() {
+        let evaluated = match self.by {
+            MaterialDispatch::Family => list.solid_families(scene),
+            MaterialDispatch::Material => list.solid_materials(),
+        };
+        for (number, class) in evaluated {
+            let group = match self.by {
+                MaterialDispatch::Family => families.group(number),
+                MaterialDispatch::Material => scene.materials.group(number),
+            };
             pass.set_pipeline(&self.pipelines[&class]);
-            pass.set_bind_group(1, scene.materials.group(material), &[]);
-            pass.dispatch_workgroups_indirect(&bins.0, u64::from(material) * BIN_BYTES);
+            pass.set_bind_group(1, group, &[]);
+            let offset = u64::from(number) * FAMILY_BYTES;
+            pass.dispatch_workgroups_indirect(families.dispatches(self.by), offset);
         }
     }
 }

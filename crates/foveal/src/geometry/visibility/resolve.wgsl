@@ -1,5 +1,6 @@
-// From triangles to the G-buffer's surfaces: one material's pixels. After frame, surface, vertex, attributes,
-// sample_gradients and material.wgsl, and every.wgsl or what takes its place.
+// From triangles to the G-buffer's surfaces: the pixels of one family of materials, or of one material. After frame, surface, vertex,
+// attributes, sample_gradients, by_family or by_material, material and family.wgsl, and every.wgsl or what takes
+// its place.
 
 // As in geometry/gbuffer.wgsl.
 override FACE_NORMAL: bool = false;
@@ -7,17 +8,6 @@ override FACE_NORMAL: bool = false;
 override FOOTPRINT: f32 = 1.0;
 // Windows in use, 1 to 8.
 override WINDOWS: u32 = 1u;
-
-struct Bin {
-    groups_x: u32,
-    groups_y: u32,
-    groups_z: u32,
-    count: u32,
-    first: u32,
-    filled: u32,
-    reserved_0: u32,
-    reserved_1: u32,
-}
 
 // Parts of the target, and where the frame (both eyes) lies relative to it: left, top, width, height in texels.
 struct Windows {
@@ -27,7 +17,7 @@ struct Windows {
 
 @group(3) @binding(0) var identity: texture_2d_array<u32>;
 @group(3) @binding(1) var triangles: texture_2d_array<u32>;
-@group(3) @binding(2) var<storage, read> bins: array<Bin>;
+@group(3) @binding(2) var<storage, read> families: array<Family>;
 @group(3) @binding(3) var<storage, read> pixels: array<u32>;
 @group(3) @binding(4) var<uniform> windows: Windows;
 @group(3) @binding(5) var surface: texture_storage_2d_array<rgba32uint, write>;
@@ -45,12 +35,12 @@ fn frame_around(texel: vec2u) -> vec4f {
 
 @compute @workgroup_size(64)
 fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let bin = bins[material.number];
-    let index = (group.y * bin.groups_x + group.x) * 64u + local;
-    if index >= bin.count {
+    let family = families[dispatch_number()];
+    let index = (group.y * family.groups_x + group.x) * 64u + local;
+    if index >= family.count {
         return;
     }
-    let packed = pixels[bin.first + index];
+    let packed = pixels[family.first + index];
     let texel = vec2u(packed & 0xffffu, packed >> 16u);
     let extent = extent_of(texel);
     let around = frame_around(texel);
@@ -62,6 +52,7 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let instance = load_words(identity, texel).x - 1u;
     let triangle = load_words(triangles, texel).x;
     let a = attributes_at(frame.views[view_at(pixel)].clip_from_world, instance, triangle, ndc, step);
+    take_material_of(instance);
     uv_right = a.uv_right;
     uv_down = a.uv_down;
     let m = material_at(a.position, a.normal, a.tangent, a.uv, a.color, a.front);
