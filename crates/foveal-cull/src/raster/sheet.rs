@@ -24,7 +24,7 @@
 use super::setup::{Facing, Points, Radius, area};
 use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
 use crate::occluder::{Cluster, OccluderMesh, RING, Ring};
-use crate::simd::{Lanes, four};
+use crate::simd::{Lanes, four, larger, smaller};
 
 /// A triangle surely faces the eye if it is higher than this over the sum of its quad's sides, samples: corners are
 /// rounded by 1/512 at most.
@@ -116,9 +116,10 @@ pub(super) fn prepare<L: Lanes>(
     }
     let mut at = [0.0; 8];
     l.store(nearest, &mut at);
-    let nearest = at.iter().fold(0.0f32, |m, &v| m.max(v)).min(1.0);
+    let nearest = smaller(greatest(at), 1.0);
     let [shift_x, shift_y] = radius.shifts;
-    let height = l.splat(AROUND_SAMPLE + nearest * shift_x.hypot(shift_y) * 1.001);
+    let height =
+        l.splat(AROUND_SAMPLE + nearest * (shift_x * shift_x + shift_y * shift_y).sqrt() * 1.001);
     for (g, group) in groups.iter().enumerate() {
         let order = if facing.mirrored {
             [0, 2, 1]
@@ -145,7 +146,7 @@ pub(super) fn prepare<L: Lanes>(
     }
     // Lanes after the last triangle have no area.
     l.store(steepest, &mut at);
-    let steepest = at.iter().fold(0.0f32, |m, &v| m.max(v));
+    let steepest = greatest(at);
     // Half a sample along each axis, and the rounding of gradients.
     sheet.slack = steepest * 0.6;
     let border = Border {
@@ -216,6 +217,24 @@ struct Border {
     blocks: [u32; 4],
 }
 
+#[inline(always)]
+fn least([a, b, c, d, e, f, g, h]: [f32; 8]) -> f32 {
+    let (low, high) = (
+        smaller(smaller(a, b), smaller(c, d)),
+        smaller(smaller(e, f), smaller(g, h)),
+    );
+    smaller(low, high)
+}
+
+#[inline(always)]
+fn greatest([a, b, c, d, e, f, g, h]: [f32; 8]) -> f32 {
+    let (low, high) = (
+        larger(larger(a, b), larger(c, d)),
+        larger(larger(e, f), larger(g, h)),
+    );
+    larger(low, high)
+}
+
 /// Erases the pixels to which an edge comes within its shift.
 #[inline(always)]
 fn erase<L: Lanes>(
@@ -227,10 +246,10 @@ fn erase<L: Lanes>(
     border: Border,
 ) {
     const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
-    let near = a[2].max(b[2]);
+    let near = larger(a[2], b[2]);
     let [reach_x, reach_y] = [0, 1].map(|k: usize| near * border.shifts[k] * 1.001 + MARGIN);
-    let (x_lo, x_hi) = (a[0].min(b[0]), a[0].max(b[0]));
-    let (y_lo, y_hi) = (a[1].min(b[1]), a[1].max(b[1]));
+    let (x_lo, x_hi) = (smaller(a[0], b[0]), larger(a[0], b[0]));
+    let (y_lo, y_hi) = (smaller(a[1], b[1]), larger(a[1], b[1]));
     let [first_x, first_y, last_x, last_y] = border.blocks;
     if x_hi + reach_x < (first_x * BLOCK_SAMPLES) as f32
         || y_hi + reach_y < (first_y * BLOCK_SAMPLES) as f32
@@ -252,9 +271,9 @@ fn erase<L: Lanes>(
         return;
     }
     // As deep as the sheet can be where the edge is within reach of it.
-    let around = border.steepness * (AROUND_SAMPLE + reach_x.max(reach_y)) + near * 1e-5;
+    let around = border.steepness * (AROUND_SAMPLE + larger(reach_x, reach_y)) + near * 1e-5;
     let depths = (
-        encode(a[2].min(b[2]) - around),
+        encode(smaller(a[2], b[2]) - around),
         encode(near + around).saturating_add(1),
     );
     let slope = (b[0] - a[0]) / (b[1] - a[1]);
@@ -284,8 +303,8 @@ fn erase<L: Lanes>(
         let (mut starts, mut stops) = ([0.0; 8], [0.0; 8]);
         l.store(from, &mut starts);
         l.store(to, &mut stops);
-        let start = starts.iter().fold(f32::INFINITY, |m, &v| m.min(v));
-        let stop = stops.iter().fold(f32::NEG_INFINITY, |m, &v| m.max(v));
+        let start = least(starts);
+        let stop = greatest(stops);
         if stop < (first_x * BLOCK_SAMPLES) as f32 || start >= ((last_x + 1) * BLOCK_SAMPLES) as f32
         {
             continue;
