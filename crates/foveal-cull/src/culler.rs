@@ -8,6 +8,7 @@ use crate::query::walk::Walk;
 use crate::raster::frame::{Draw, FrameScratch};
 use crate::raster::select::Choice;
 use crate::raster::setup::{Radius, Scratch};
+use crate::summary::Summarize;
 use crate::view::Camera;
 use crate::{Aabb, CullError, CullStats, InstructionSet, OccluderSet, Threads, View};
 use glam::DVec3;
@@ -191,7 +192,7 @@ impl Culler {
             },
         });
         self.draw(occluders, options.budget, radius, threads);
-        self.buffer.summarize();
+        self.instruction_set.run(Summarize(&mut self.buffer));
         Ok(())
     }
 

@@ -96,9 +96,7 @@ pub(crate) struct DepthBuffer {
     pub(crate) border: Vec<[i16; 2]>,
     /// How much was drawn into each row of blocks, in some unit: the next frame is split by it.
     pub(crate) work: Vec<u32>,
-    /// Once a frame is complete: farthest depths of blocks, then of 2x2, 4x4, ... blocks up to the whole, each
-    /// level as if it were as large as the first. All that four times over: of the place itself, with the one to
-    /// its right, with the one below, with both and the fourth. And one more value.
+    /// Once a frame is complete: what [`crate::summary`] says.
     pub(crate) coarse: Vec<i16>,
 }
 
@@ -106,7 +104,6 @@ impl DepthBuffer {
     pub(crate) fn new(width: u32, height: u32) -> Self {
         let (blocks_x, blocks_y) = (width.div_ceil(BLOCK), height.div_ceil(BLOCK));
         let n = (blocks_x * blocks_y) as usize;
-        let levels = 33 - (blocks_x.max(blocks_y) - 1).leading_zeros();
         Self {
             width,
             height,
@@ -120,44 +117,7 @@ impl DepthBuffer {
             erased: vec![0; n],
             border: vec![[0; 2]; n],
             work: vec![0; blocks_y as usize],
-            coarse: vec![EMPTY; 4 * n * levels as usize + 1],
-        }
-    }
-
-    /// Fits the coarse levels to the blocks.
-    pub(crate) fn summarize(&mut self) {
-        let (n, stride) = (self.min.len(), self.blocks_x as usize);
-        let (mut w, mut h) = (stride, self.blocks_y as usize);
-        let all = self.coarse.len() / 4;
-        let (mut single, others) = self.coarse.split_at_mut(all);
-        let (mut pairs, others) = others.split_at_mut(all);
-        let (mut stacked, mut fours) = others.split_at_mut(all);
-        single[..n].copy_from_slice(&self.min);
-        loop {
-            for y in 0..h {
-                let row = y * stride;
-                let below = (y + 1).min(h - 1) * stride;
-                farther(&mut stacked[row..], &single[row..row + w], &single[below..]);
-            }
-            for y in 0..h {
-                let row = y * stride;
-                beside(&mut pairs[row..][..w], &single[row..][..w]);
-                beside(&mut fours[row..][..w], &stacked[row..][..w]);
-            }
-            if w == 1 && h == 1 {
-                return;
-            }
-            let next = (w.div_ceil(2), h.div_ceil(2));
-            for y in 0..next.1 {
-                let wide = &fours[2 * y * stride..][..w];
-                let above = &mut single[n + y * stride..];
-                for (out, v) in above.iter_mut().zip(wide.iter().step_by(2)) {
-                    *out = *v;
-                }
-            }
-            (w, h) = next;
-            (single, pairs) = (&mut single[n..], &mut pairs[n..]);
-            (stacked, fours) = (&mut stacked[n..], &mut fours[n..]);
+            coarse: vec![EMPTY; crate::summary::len(blocks_x, blocks_y)],
         }
     }
 
@@ -215,20 +175,6 @@ impl DepthBuffer {
         } else {
             depth
         }
-    }
-}
-
-fn farther(out: &mut [i16], a: &[i16], b: &[i16]) {
-    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
-        *out = *a.min(b);
-    }
-}
-
-/// Each with its right neighbour.
-fn beside(out: &mut [i16], v: &[i16]) {
-    farther(out, v, &v[1..]);
-    if let (Some(out), Some(v)) = (out.last_mut(), v.last()) {
-        *out = *v;
     }
 }
 
@@ -368,43 +314,6 @@ mod tests {
                     first = end;
                 }
                 assert_eq!(first, buffer.blocks_y);
-            }
-        }
-    }
-
-    #[test]
-    fn the_summary_is_the_farthest_of_the_blocks_below() {
-        let mut buffer = DepthBuffer::new(72, 40);
-        for (i, min) in (0i16..).zip(&mut buffer.min) {
-            *min = (i * 37) % 101;
-        }
-        buffer.summarize();
-        let (w, h, n) = (9u32, 5u32, buffer.min.len());
-        for level in 0..5u32 {
-            for y in 0..h.div_ceil(1 << level) {
-                for x in 0..w.div_ceil(1 << level) {
-                    let below = (0..h)
-                        .flat_map(|v| (0..w).map(move |u| (u, v)))
-                        .filter(|&(u, v)| u >> level == x && v >> level == y)
-                        .map(|(u, v)| buffer.min[(v * w + u) as usize])
-                        .min();
-                    let at = level as usize * n + (y * w + x) as usize;
-                    assert_eq!(Some(buffer.coarse[at]), below, "{level} {x} {y}");
-                    let part = |right: u32, down: u32| {
-                        let last = ((w - 1) >> level, (h - 1) >> level);
-                        let (x, y) = ((x + right).min(last.0), (y + down).min(last.1));
-                        buffer.coarse[level as usize * n + (y * w + x) as usize]
-                    };
-                    for places in 0..4 {
-                        let (right, down) = (places & 1, places >> 1);
-                        let farthest = part(0, 0)
-                            .min(part(right, 0))
-                            .min(part(0, down))
-                            .min(part(right, down));
-                        let at = places as usize * buffer.coarse.len() / 4 + at;
-                        assert_eq!(buffer.coarse[at], farthest, "{level} {x} {y} {places}");
-                    }
-                }
             }
         }
     }

@@ -40,6 +40,7 @@ mod query;
 mod raster;
 mod simd;
 mod stats;
+mod summary;
 mod threads;
 #[cfg(any(test, feature = "truth"))]
 pub mod truth;

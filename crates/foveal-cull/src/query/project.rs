@@ -3,6 +3,7 @@
 use crate::Aabb;
 use crate::depth::{BLOCK, DepthBuffer, EMPTY, SAMPLES};
 use crate::simd::{Lanes, four};
+use crate::summary::{PLACES, part_len, rows};
 use glam::Vec3;
 
 /// Relative growth of boxes against rounding.
@@ -162,24 +163,27 @@ impl<'a> Coarse<'a> {
     }
 
     /// A bit per code that is farther than all that is known in its rectangle of pixels (left, top, right, bottom,
-    /// inclusive) or somewhat farther: of the at most four places that cover one on the finest level where four do.
+    /// inclusive) or somewhat farther, as [`crate::summary`] tells.
     #[inline(always)]
     fn hides<L: Lanes>(self, l: L, pixels: [L::I; 4], codes: &[i32; 8]) -> u32 {
         let block = l.isplat(BLOCK.trailing_zeros() as i32);
-        let one = l.isplat(1);
         let [x0, y0, x1, y1] = four!(i => l.ishr(pixels[i], block));
-        // The smallest `up` with `span <= 2^up`.
+        let buffer = self.buffer;
+        // The smallest `up` with `span <= 2 * 2^up`.
         let span = l.imax(l.isub(x1, x0), l.isub(y1, y0));
-        let up = l.ibits(l.imax(l.isub(span, one), l.isplat(0)));
+        let less = l.imax(l.isub(span, l.isplat(1)), l.isplat(0));
+        let third = l.ishr(less, l.isplat(1));
+        let up = l.ibits(third);
         let [x0, y0, x1, y1] = four!(i => l.ishr([x0, y0, x1, y1][i], up));
-        // One place, two beside each other, two above each other, or four.
-        let right = l.imin(l.isub(x1, x0), one);
-        let below = l.imin(l.isub(y1, y0), one);
-        let part = l.isplat((self.buffer.coarse.len() / 4) as i32);
-        let places = l.imul(l.iadd(right, l.iadd(below, below)), part);
-        let level = l.imul(up, l.isplat(self.buffer.min.len() as i32));
-        let row = l.imul(y0, l.isplat(self.buffer.blocks_x as i32));
-        let index = l.iadd(l.iadd(places, level), l.iadd(row, x0));
+        let most = l.isplat(PLACES as i32 - 1);
+        let right = l.imin(l.isub(x1, x0), most);
+        let below = l.imin(l.isub(y1, y0), most);
+        let part = l.isplat(part_len(buffer.blocks_x, buffer.blocks_y) as i32);
+        let places = l.imul(l.iadd(right, l.imul(below, l.isplat(PLACES as i32))), part);
+        let rows = l.isplat(rows(buffer.blocks_x, buffer.blocks_y) as i32);
+        let row = l.iadd(l.isub(rows, l.ishr(rows, up)), y0);
+        let row = l.imul(row, l.isplat(buffer.blocks_x as i32));
+        let index = l.iadd(places, l.iadd(row, x0));
         let mut at = [0; 8];
         l.istore(index, &mut at);
         let mut bits = 0;

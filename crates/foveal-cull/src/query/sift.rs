@@ -9,6 +9,7 @@ use crate::Aabb;
 use crate::depth::{BLOCK, BLOCK_SAMPLES};
 use crate::simd::wide::Wide;
 use crate::simd::{four, three};
+use crate::summary::{PLACES, part_len, rows};
 
 /// What boxes are sifted with.
 #[derive(Clone, Copy, Debug)]
@@ -218,18 +219,22 @@ impl Sieve<'_> {
     #[inline(always)]
     fn place<W: Wide>(&self, w: W, blocks: [W::I; 4]) -> W::I {
         let buffer = self.coarse.buffer;
-        let one = w.isplat(1);
         let [x0, y0, x1, y1] = blocks;
+        // The smallest `up` with `span <= 2 * 2^up`.
         let span = w.imax(w.isub(x1, x0), w.isub(y1, y0));
-        let up = w.ibits(w.imax(w.isub(span, one), w.isplat(0)));
+        let less = w.imax(w.isub(span, w.isplat(1)), w.isplat(0));
+        let third = w.ishr(less, w.isplat(1));
+        let up = w.ibits(third);
         let [x0, y0, x1, y1] = four!(i => w.ishr([x0, y0, x1, y1][i], up));
-        let right = w.imin(w.isub(x1, x0), one);
-        let below = w.imin(w.isub(y1, y0), one);
-        let part = w.isplat((buffer.coarse.len() / 4) as i32);
-        let places = w.imul(w.iadd(right, w.iadd(below, below)), part);
-        let level = w.imul(up, w.isplat(buffer.min.len() as i32));
-        let row = w.imul(y0, w.isplat(buffer.blocks_x as i32));
-        w.iadd(w.iadd(places, level), w.iadd(row, x0))
+        let most = w.isplat(PLACES as i32 - 1);
+        let right = w.imin(w.isub(x1, x0), most);
+        let below = w.imin(w.isub(y1, y0), most);
+        let part = w.isplat(part_len(buffer.blocks_x, buffer.blocks_y) as i32);
+        let places = w.imul(w.iadd(right, w.imul(below, w.isplat(PLACES as i32))), part);
+        let rows = w.isplat(rows(buffer.blocks_x, buffer.blocks_y) as i32);
+        let row = w.iadd(w.isub(rows, w.ishr(rows, up)), y0);
+        let row = w.imul(row, w.isplat(buffer.blocks_x as i32));
+        w.iadd(places, w.iadd(row, x0))
     }
 }
 

@@ -1,0 +1,138 @@
+//! The summary of a finished depth buffer: the farthest depth of any rectangle of blocks, or of one that is hardly larger,
+//! by one look-up.
+//!
+//! Level 0 has the blocks, level k squares of 2^k x 2^k blocks, whose farthest depths are its places. A level has them
+//! nine times over, in parts: in part `right + 3 below` each is joined with as many as that to its right and below it.
+//! So a rectangle is found on the finest level where it touches at most three places in a row.
+
+use crate::depth::DepthBuffer;
+use crate::simd::{Kernel, Lanes};
+
+/// Places in a row that are joined at most.
+pub(crate) const PLACES: usize = 3;
+const PARTS: usize = PLACES * PLACES;
+
+/// Rows of places in each part: level k begins at `rows - (rows >> k)`, and has half of what is left.
+pub(crate) fn rows(blocks_x: u32, blocks_y: u32) -> u32 {
+    2 * blocks_x.max(blocks_y).next_power_of_two()
+}
+
+/// Places in each part; with some to spare, since joining reads beyond the last.
+pub(crate) fn part_len(blocks_x: u32, blocks_y: u32) -> usize {
+    let spare = PLACES as u32;
+    ((rows(blocks_x, blocks_y) + spare) * blocks_x + spare) as usize
+}
+
+/// Places in all.
+pub(crate) fn len(blocks_x: u32, blocks_y: u32) -> usize {
+    PARTS * part_len(blocks_x, blocks_y)
+}
+
+/// Fits the summary to the blocks.
+pub(crate) struct Summarize<'a>(pub(crate) &'a mut DepthBuffer);
+
+impl Kernel for Summarize<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        let buffer = self.0;
+        let stride = buffer.blocks_x as usize;
+        let (rows, part) = (
+            rows(buffer.blocks_x, buffer.blocks_y) as usize,
+            part_len(buffer.blocks_x, buffer.blocks_y),
+        );
+        let (mut w, mut h) = (stride, buffer.blocks_y as usize);
+        let coarse = &mut buffer.coarse;
+        coarse[..buffer.min.len()].copy_from_slice(&buffer.min);
+        for level in 0.. {
+            let first = (rows - (rows >> level)) * stride;
+            // With one more to the right than before, then with one more below. At the borders that is something else, which
+            // nobody asks for.
+            let n = h * stride;
+            for right in 1..PLACES {
+                let (done, to) = coarse.split_at_mut(right * part);
+                let before = &done[(right - 1) * part + first..];
+                farther(&mut to[first..][..n], before, &done[first + right..]);
+            }
+            for p in PLACES..PARTS {
+                let (below, right) = (p / PLACES, p % PLACES);
+                let (done, to) = coarse.split_at_mut(p * part);
+                let before = &done[(p - PLACES) * part + first..];
+                let lower = &done[right * part + first + below * stride..];
+                farther(&mut to[first..][..n], before, lower);
+            }
+            if w == 1 && h == 1 {
+                return;
+            }
+            let next = (w.div_ceil(2), h.div_ceil(2));
+            let next_first = (rows - (rows >> (level + 1))) * stride;
+            for y in 0..next.1 {
+                // The last ones may have no neighbours.
+                let below = usize::from(2 * y + 1 < h) * PLACES;
+                let row = first + 2 * y * stride;
+                let last = (below + usize::from(w % 2 == 0)) * part + row + 2 * (next.0 - 1);
+                let last = coarse[last];
+                let (single, fours) = coarse.split_at_mut((below + 1) * part);
+                let above = &mut single[next_first + y * stride..][..next.0];
+                for (out, v) in above.iter_mut().zip(fours[row..].iter().step_by(2)) {
+                    *out = *v;
+                }
+                above[next.0 - 1] = last;
+            }
+            (w, h) = next;
+        }
+    }
+}
+
+#[inline(always)]
+fn farther(out: &mut [i16], a: &[i16], b: &[i16]) {
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+        *out = *a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InstructionSet;
+
+    #[test]
+    fn the_summary_is_the_farthest_of_the_blocks_below() {
+        for (width, height) in [(72, 40), (8, 8), (8, 130), (300, 16)] {
+            let mut buffer = DepthBuffer::new(width, height);
+            for (i, min) in (0i16..).zip(&mut buffer.min) {
+                *min = (i * 37) % 101;
+            }
+            InstructionSet::detect().run(Summarize(&mut buffer));
+            let (w, h) = (buffer.blocks_x, buffer.blocks_y);
+            let rows = rows(w, h);
+            for level in 0..=w.max(h).next_power_of_two().trailing_zeros() {
+                for y in 0..h.div_ceil(1 << level) {
+                    for x in 0..w.div_ceil(1 << level) {
+                        let inside = |p: &u32| {
+                            let (x, y) = (x + p % PLACES as u32, y + p / PLACES as u32);
+                            x << level < w && y << level < h
+                        };
+                        for p in (0..PARTS as u32).filter(inside) {
+                            let within = |v: u32, from: u32, more: u32| {
+                                (from..=from + more).contains(&(v >> level))
+                            };
+                            let below = (0..h)
+                                .flat_map(|v| (0..w).map(move |u| (u, v)))
+                                .filter(|&(u, v)| {
+                                    within(u, x, p % PLACES as u32)
+                                        && within(v, y, p / PLACES as u32)
+                                })
+                                .map(|(u, v)| buffer.min[(v * w + u) as usize])
+                                .min();
+                            let at = (rows - (rows >> level) + y) * w + x;
+                            let at = p as usize * part_len(w, h) + at as usize;
+                            assert_eq!(Some(buffer.coarse[at]), below, "{level} {x} {y} {p}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
