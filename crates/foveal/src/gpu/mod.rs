@@ -151,6 +151,7 @@ impl Gpu {
             | wgpu::Features::PRIMITIVE_INDEX
             | wgpu::Features::CLIP_DISTANCES
             | wgpu::Features::MULTIVIEW
+            | wgpu::Features::SUBGROUP
     }
 
     /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.

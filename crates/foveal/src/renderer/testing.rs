@@ -3,7 +3,7 @@
 use super::{Frame, Renderer};
 use crate::FrameStats;
 use crate::frame::FrameUniform;
-use crate::geometry::GeometryPass;
+use crate::geometry::{Evaluation, GeometryPass};
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
@@ -25,6 +25,33 @@ impl Renderer {
                 crate::shader::COARSE_AFFINE,
             );
         }
+    }
+
+    /// Sorts the last frame's pixels by material again, all of them or the samples of its mask.
+    pub(crate) fn sort_again(&mut self, rated: bool, subgroups: bool) {
+        let Self {
+            gpu,
+            timer,
+            frame_bindings,
+            stages,
+            scene,
+            ..
+        } = self;
+        let targets = &stages.targets;
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let recorder = &mut Recorder {
+            gpu,
+            encoder: &mut encoder,
+            timer,
+            frame: frame_bindings,
+        };
+        let mask = targets.variable.as_ref().filter(|_| rated);
+        let at = mask.map_or(Evaluation::FULL, |v| Evaluation::at_rates(&v.mask));
+        let pass = stages.geometry.triangles().expect("a visibility buffer");
+        pass.sort_again(recorder, scene, &targets.gbuffer, &at, subgroups);
+        timer.resolve(&mut encoder);
+        gpu.queue.submit([encoder.finish()]);
+        timer.end_frame();
     }
 
     pub(crate) fn geometry(&self) -> &GeometryPass {

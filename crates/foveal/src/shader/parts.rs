@@ -91,6 +91,21 @@ pub(crate) const VISIBLE_PULLED: Parts = &[
     ATTRIBUTES,
     include_str!("../geometry/visibility/pulled.wgsl"),
 ];
+/// What sorts pixels by material: without subgroups, and with them, which needs [`wgpu::Features::SUBGROUP`].
+macro_rules! bins {
+    [$($part:expr),+] => {[
+        &[
+            FRAME, $($part,)+ FAMILY,
+            include_str!("../geometry/visibility/bins.wgsl"),
+            include_str!("../geometry/visibility/bins_table.wgsl"),
+        ],
+        &[
+            FRAME, $($part,)+ FAMILY,
+            include_str!("../geometry/visibility/bins.wgsl"),
+            include_str!("../geometry/visibility/bins_subgroups.wgsl"),
+        ],
+    ]};
+}
 /// What evaluates triangles' materials: a family of them, one of them.
 macro_rules! resolve {
     [$($rates:expr),+] => {[
@@ -109,23 +124,14 @@ macro_rules! resolve {
         ],
     ]};
 }
-pub(crate) const BINS: Parts = &[
-    FRAME,
-    LAYERS,
-    EVERY,
-    FAMILY,
-    include_str!("../geometry/visibility/bins.wgsl"),
-];
+pub(crate) const BINS: [Parts; 2] = bins![LAYERS, EVERY];
 const RATED: &str = include_str!("../geometry/visibility/rated.wgsl");
 /// As [`BINS`] and [`RESOLVE`], with a sample's upper left pixel for all of its pixels.
-pub(crate) const BINS_RATED: Parts = &[
-    FRAME,
+pub(crate) const BINS_RATED: [Parts; 2] = bins![
     RATES,
     "@group(1) @binding(6) var mask: texture_2d<u32>;",
     RATED,
-    LAYERS,
-    FAMILY,
-    include_str!("../geometry/visibility/bins.wgsl"),
+    LAYERS
 ];
 pub(crate) const RESOLVE_RATED: [Parts; 2] = resolve![
     RATES,
@@ -135,14 +141,11 @@ pub(crate) const RESOLVE_RATED: [Parts; 2] = resolve![
 ];
 const TILED: &str = include_str!("../geometry/visibility/tiled.wgsl");
 /// As [`BINS`] and [`RESOLVE`], where tiles are sampled alone.
-pub(crate) const BINS_TILED: Parts = &[
-    FRAME,
+pub(crate) const BINS_TILED: [Parts; 2] = bins![
     BLOCKS,
     "@group(1) @binding(6) var mask: texture_2d<u32>;",
     TILED,
-    LAYERS,
-    FAMILY,
-    include_str!("../geometry/visibility/bins.wgsl"),
+    LAYERS
 ];
 pub(crate) const RESOLVE_TILED: [Parts; 2] = resolve![
     BLOCKS,

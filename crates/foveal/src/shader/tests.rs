@@ -6,13 +6,16 @@ const ALL: &[(&str, Parts)] = &[
     ("gbuffer", GBUFFER),
     ("visible, indexed", VISIBLE_INDEXED),
     ("visible, pulled", VISIBLE_PULLED),
-    ("bins", BINS),
+    ("bins", BINS[0]),
+    ("bins, subgroups", BINS[1]),
     ("resolve", RESOLVE[0]),
     ("resolve, one by one", RESOLVE[1]),
-    ("bins, rated", BINS_RATED),
+    ("bins, rated", BINS_RATED[0]),
+    ("bins, rated, subgroups", BINS_RATED[1]),
     ("resolve, rated", RESOLVE_RATED[0]),
     ("resolve, rated, one by one", RESOLVE_RATED[1]),
-    ("bins, tiled", BINS_TILED),
+    ("bins, tiled", BINS_TILED[0]),
+    ("bins, tiled, subgroups", BINS_TILED[1]),
     ("resolve, tiled", RESOLVE_TILED[0]),
     ("resolve, tiled, one by one", RESOLVE_TILED[1]),
     ("variable reproject", VARIABLE_REPROJECT),
@@ -92,6 +95,9 @@ fn every_shader_validates_without_optional_capabilities() {
         }
         if name.ends_with(", layered") {
             capabilities |= naga::valid::Capabilities::MULTIVIEW;
+        }
+        if name.ends_with(", subgroups") {
+            capabilities |= naga::valid::Capabilities::SUBGROUP;
         }
         naga::valid::Validator::new(naga::valid::ValidationFlags::all(), capabilities)
             .validate(&module)
@@ -430,7 +436,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             reserved_2,
         ]
     );
-    for parts in [BINS, RESOLVE[0], RESOLVE[1]] {
+    for parts in [BINS[0], RESOLVE[0], RESOLVE[1]] {
         assert_same_layout!(
             parts,
             "Family",

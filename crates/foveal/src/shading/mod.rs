@@ -9,6 +9,8 @@ mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
 mod variable;
+#[cfg(test)]
+pub(crate) use variable::twin::extent as sample_extent;
 
 #[cfg(test)]
 pub(crate) use coarse::sample_texel;

@@ -37,6 +37,11 @@ impl Bins {
     }
 }
 
+/// Whether subgroups do the counting: no browser offers them yet through the graphics library.
+fn asks_subgroups(gpu: &Gpu) -> bool {
+    gpu.device.features().contains(wgpu::Features::SUBGROUP)
+}
+
 /// Counts, sums up and scatters.
 #[derive(Debug)]
 pub(super) struct BinPass {
@@ -53,6 +58,16 @@ impl BinPass {
         frame_layout: &wgpu::BindGroupLayout,
         rates: Option<Rates>,
     ) -> Self {
+        Self::with(gpu, frame_layout, rates, asks_subgroups(gpu))
+    }
+
+    /// The same by `subgroups` or by a hash table.
+    pub(super) fn with(
+        gpu: &Gpu,
+        frame_layout: &wgpu::BindGroupLayout,
+        rates: Option<Rates>,
+        subgroups: bool,
+    ) -> Self {
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let mut types = vec![
@@ -68,7 +83,9 @@ impl BinPass {
         }
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = bind_group_layout(&gpu.device, "binning", compute, &types);
-        let module = shader::module(gpu, "binning", rates.map_or(shader::BINS, Rates::bins));
+        let parts = rates.map_or(shader::BINS, Rates::bins);
+        let parts = parts[usize::from(subgroups)];
+        let module = shader::module(gpu, "binning", parts);
         let constant = rates.and_then(Rates::constant);
         let pipeline = |entry, constants: &[_]| {
             let groups = [frame_layout, &layout];

@@ -9,6 +9,8 @@
 
 mod bins;
 #[cfg(test)]
+mod bins_twin;
+#[cfg(test)]
 mod dispatches;
 mod raster;
 mod resolve;
@@ -135,7 +137,7 @@ impl Rates {
         }
     }
 
-    fn bins(self) -> shader::Parts {
+    fn bins(self) -> [shader::Parts; 2] {
         match self {
             Self::Samples => shader::BINS_RATED,
             Self::Tiles(_) => shader::BINS_TILED,
@@ -310,6 +312,25 @@ impl VisibilityPass {
         };
         if let Some(Materials { bin, resolve }) = materials {
             self.evaluate_by((bin, resolve), recorder, scene, list, target, windows, at);
+        }
+    }
+
+    /// Sorts pixels again, by subgroups or by a hash table.
+    #[cfg(test)]
+    pub(crate) fn sort_again(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        target: &GBuffer,
+        at: &Evaluation<'_>,
+        subgroups: bool,
+    ) {
+        let rates = at.mask.map(|_| Rates::Samples);
+        let layout = recorder.frame.layout();
+        let pass = BinPass::with(recorder.gpu, layout, rates, subgroups);
+        if let Some(visibility) = &target.visibility {
+            let bins = (&self.bins, self.by);
+            pass.sort(recorder, scene, target, visibility, bins, at);
         }
     }
 

@@ -6,9 +6,8 @@ use foveal_scene::{
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
 
-use super::bins::BIN_BYTES;
 use crate::forward::twin::quads;
-use crate::gpu::{read_buffer, read_texture};
+use crate::gpu::read_texture;
 use crate::shading::twin::unpack_surface;
 use crate::testing::{gpu, picture, rendered, small, texels};
 use crate::{Antialiasing, EdgeTest, Frame, Geometry, Gpu, Renderer, SamplePattern, Settings};
@@ -291,43 +290,6 @@ fn pulled_vertices_give_the_same_gbuffer_as_numbered_triangles() {
             })
         });
         assert!(numbered == pulled, "{name}");
-    }
-}
-
-#[test]
-fn every_seen_pixel_is_in_its_materials_bin_once() {
-    let scene = generate::by_name("demo:1000").unwrap();
-    for (width, height) in [(157, 101), (16, 17), (1, 1), (3, 200)] {
-        let settings = by_triangles(&small(width, height));
-        let renderer = rendered(&scene, &scene.cameras[0], &settings);
-        let gbuffer = &renderer.targets().gbuffer;
-        let ids = texels::<[u32; 2]>(&gbuffer.identity_view);
-        let families = renderer.scene().materials.families();
-        let mut expected = vec![Vec::new(); scene.materials.len()];
-        for (i, id) in (0..).zip(&ids) {
-            if id[0] > 0 {
-                let material = scene.instances[id[0] as usize - 1].material;
-                let bin = families.ranks()[material as usize];
-                expected[bin as usize].push((i % width) | (i / width) << 16);
-            }
-        }
-        let pass = renderer.geometry().triangles().expect("asked for");
-        let words = |buffer| -> Vec<u32> {
-            let bytes = pollster::block_on(read_buffer(gpu(), buffer)).unwrap();
-            bytemuck::pod_collect_to_vec(&bytes)
-        };
-        let bins = words(&pass.bins.0);
-        let pixels = words(&gbuffer.visibility.as_ref().unwrap().pixels);
-        let mut next = 0;
-        for (bin, mut expected) in bins.chunks_exact(BIN_BYTES as usize / 4).zip(expected) {
-            let (count, first) = (bin[0], bin[1]);
-            assert_eq!(first, next, "bins follow one another");
-            next += count;
-            let mut listed = pixels[first as usize..(first + count) as usize].to_vec();
-            listed.sort_unstable();
-            expected.sort_unstable();
-            assert_eq!(listed, expected);
-        }
     }
 }
 

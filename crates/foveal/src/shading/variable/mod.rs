@@ -19,7 +19,7 @@ mod targets;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
-mod twin;
+pub(crate) mod twin;
 mod view;
 
 use balance::Balance;

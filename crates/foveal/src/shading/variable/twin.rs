@@ -266,7 +266,7 @@ pub(super) fn rates(
 }
 
 /// Pixels across and down of a sample.
-pub(super) fn extent(rate: u32) -> UVec2 {
+pub(crate) fn extent(rate: u32) -> UVec2 {
     match rate & 7 {
         7 => UVec2::splat(4),
         rate => UVec2::new(1 + (rate & 1), 1 + (rate >> 1 & 1)),
