@@ -97,7 +97,7 @@ impl Kernel for Walk<'_> {
             self.look(l, &sieve, count, &mut work);
             self.middles_of_objects(&mut work);
             self.exact::<L, true>(l, &mut work);
-            self.middles_of_groups(&mut work);
+            self.middles_of_groups(l, &mut work);
             self.exact::<L, false>(l, &mut work);
         }
     }
@@ -183,7 +183,7 @@ impl<'a> Walk<'a> {
 
     /// Groups that are seen in the middle are opened. Lists the others.
     #[inline(always)]
-    fn middles_of_groups(&mut self, work: &mut Work) {
+    fn middles_of_groups<L: Lanes>(&mut self, l: L, work: &mut Work) {
         work.open.count = 0;
         for n in 0..work.groups.count {
             let k = usize::from(work.groups.numbers()[n]);
@@ -192,7 +192,9 @@ impl<'a> Walk<'a> {
             let [x, y, code] = looked.middle.map(|v| v[k % 16]);
             let on = looked.on >> (k % 16) & 1 != 0;
             let seen = on & self.query.before(x, y, code);
-            work.push(node.child(k % 8), seen);
+            let child = node.child(k % 8);
+            l.prefetch(self.node(child));
+            work.push(child, seen);
             work.open.add(k, !seen);
         }
     }
@@ -272,7 +274,9 @@ impl<'a> Walk<'a> {
             if OBJECTS || answer != Visibility::Visible {
                 self.tell(node, n % 8, answer);
             } else {
-                work.push(node.child(n % 8), true);
+                let child = node.child(n % 8);
+                l.prefetch(self.node(child));
+                work.push(child, true);
             }
         }
     }
