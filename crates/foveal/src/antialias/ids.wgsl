@@ -46,9 +46,10 @@ fn corner_position(vertex: u32) -> vec3f {
 // Mean position of some sub-samples in pixels of the frame, and their mean depth: that at the position, on a plane.
 fn middle_of_members(pixel: vec2u, members: u32) -> vec3f {
     var sum = vec3f(0.0);
-    for (var left = members; left != 0u; left &= left - 1u) {
-        let index = firstTrailingBit(left);
-        sum += vec3f(sample_position(pixel, index), depth_at(pixel, index));
+    // All are looked at: a loop of one length for all lanes is unrolled, one over the members is not.
+    for (var i = 0u; i < COUNT; i++) {
+        let at = vec3f(sample_position(pixel, i), depth_at(pixel, i));
+        sum += select(vec3f(0.0), at, ((members >> i) & 1u) != 0u);
     }
     return sum / f32(countOneBits(members));
 }
