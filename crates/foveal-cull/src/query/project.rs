@@ -3,7 +3,7 @@
 use crate::Aabb;
 use crate::depth::{BLOCK, DepthBuffer, EMPTY, SAMPLES};
 use crate::simd::{Lanes, four};
-use crate::summary::{PLACES, part_len, rows};
+use crate::summary::place_of;
 use glam::Vec3;
 
 /// Relative growth of boxes against rounding.
@@ -167,23 +167,8 @@ impl<'a> Coarse<'a> {
     #[inline(always)]
     fn hides<L: Lanes>(self, l: L, pixels: [L::I; 4], codes: &[i32; 8]) -> u32 {
         let block = l.isplat(BLOCK.trailing_zeros() as i32);
-        let [x0, y0, x1, y1] = four!(i => l.ishr(pixels[i], block));
         let buffer = self.buffer;
-        // The smallest `up` with `span <= 2 * 2^up`.
-        let span = l.imax(l.isub(x1, x0), l.isub(y1, y0));
-        let less = l.imax(l.isub(span, l.isplat(1)), l.isplat(0));
-        let third = l.ishr(less, l.isplat(1));
-        let up = l.ibits(third);
-        let [x0, y0, x1, y1] = four!(i => l.ishr([x0, y0, x1, y1][i], up));
-        let most = l.isplat(PLACES as i32 - 1);
-        let right = l.imin(l.isub(x1, x0), most);
-        let below = l.imin(l.isub(y1, y0), most);
-        let part = l.isplat(part_len(buffer.blocks_x, buffer.blocks_y) as i32);
-        let places = l.imul(l.iadd(right, l.imul(below, l.isplat(PLACES as i32))), part);
-        let rows = l.isplat(rows(buffer.blocks_x, buffer.blocks_y) as i32);
-        let row = l.iadd(l.isub(rows, l.ishr(rows, up)), y0);
-        let row = l.imul(row, l.isplat(buffer.blocks_x as i32));
-        let index = l.iadd(places, l.iadd(row, x0));
+        let index = place_of!(l, buffer, four!(i => l.ishr(pixels[i], block)));
         let mut at = [0; 8];
         l.istore(index, &mut at);
         let mut bits = 0;

@@ -9,7 +9,7 @@ use crate::Aabb;
 use crate::depth::{BLOCK, BLOCK_SAMPLES};
 use crate::simd::wide::Wide;
 use crate::simd::{four, three};
-use crate::summary::{PLACES, part_len, rows};
+use crate::summary::place_of;
 
 /// What boxes are sifted with.
 #[derive(Clone, Copy, Debug)]
@@ -218,23 +218,7 @@ impl Sieve<'_> {
     /// Where the summary tells of rectangles of blocks (left, top, right, bottom, inclusive), as [`Coarse::hides`].
     #[inline(always)]
     fn place<W: Wide>(&self, w: W, blocks: [W::I; 4]) -> W::I {
-        let buffer = self.coarse.buffer;
-        let [x0, y0, x1, y1] = blocks;
-        // The smallest `up` with `span <= 2 * 2^up`.
-        let span = w.imax(w.isub(x1, x0), w.isub(y1, y0));
-        let less = w.imax(w.isub(span, w.isplat(1)), w.isplat(0));
-        let third = w.ishr(less, w.isplat(1));
-        let up = w.ibits(third);
-        let [x0, y0, x1, y1] = four!(i => w.ishr([x0, y0, x1, y1][i], up));
-        let most = w.isplat(PLACES as i32 - 1);
-        let right = w.imin(w.isub(x1, x0), most);
-        let below = w.imin(w.isub(y1, y0), most);
-        let part = w.isplat(part_len(buffer.blocks_x, buffer.blocks_y) as i32);
-        let places = w.imul(w.iadd(right, w.imul(below, w.isplat(PLACES as i32))), part);
-        let rows = w.isplat(rows(buffer.blocks_x, buffer.blocks_y) as i32);
-        let row = w.iadd(w.isub(rows, w.ishr(rows, up)), y0);
-        let row = w.imul(row, w.isplat(buffer.blocks_x as i32));
-        w.iadd(places, w.iadd(row, x0))
+        place_of!(w, self.coarse.buffer, blocks)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What tests ask of a renderer.
 
-use super::{Frame, Renderer};
+use super::{Frame, Renderer, Stages};
 use crate::FrameStats;
 use crate::frame::FrameUniform;
 use crate::geometry::{Evaluation, GeometryPass};
@@ -27,8 +27,8 @@ impl Renderer {
         }
     }
 
-    /// Sorts the last frame's pixels by material again, all of them or the samples of its mask.
-    pub(crate) fn sort_again(&mut self, rated: bool, subgroups: bool) {
+    /// Encodes and submits passes besides a frame's.
+    fn encode(&mut self, passes: impl FnOnce(&mut Recorder<'_>, &Stages, &SceneOnGpu)) {
         let Self {
             gpu,
             timer,
@@ -37,7 +37,6 @@ impl Renderer {
             scene,
             ..
         } = self;
-        let targets = &stages.targets;
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let recorder = &mut Recorder {
             gpu,
@@ -45,13 +44,21 @@ impl Renderer {
             timer,
             frame: frame_bindings,
         };
-        let mask = targets.variable.as_ref().filter(|_| rated);
-        let at = mask.map_or(Evaluation::FULL, |v| Evaluation::at_rates(&v.mask));
-        let pass = stages.geometry.triangles().expect("a visibility buffer");
-        pass.sort_again(recorder, scene, &targets.gbuffer, &at, subgroups);
+        passes(recorder, stages, scene);
         timer.resolve(&mut encoder);
         gpu.queue.submit([encoder.finish()]);
         timer.end_frame();
+    }
+
+    /// Sorts the last frame's pixels by material again, all of them or the samples of its mask.
+    pub(crate) fn sort_again(&mut self, rated: bool, subgroups: bool) {
+        self.encode(|recorder, stages, scene| {
+            let targets = &stages.targets;
+            let mask = targets.variable.as_ref().filter(|_| rated);
+            let at = mask.map_or(Evaluation::FULL, |v| Evaluation::at_rates(&v.mask));
+            let pass = stages.geometry.triangles().expect("a visibility buffer");
+            pass.sort_again(recorder, scene, &targets.gbuffer, &at, subgroups);
+        });
     }
 
     pub(crate) fn geometry(&self) -> &GeometryPass {
@@ -107,35 +114,13 @@ impl Renderer {
 
     /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.
     pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
-        let Self {
-            gpu,
-            timer,
-            frame_bindings,
-            stages,
-            scene,
-            ..
-        } = self;
-        let targets = &stages.targets;
-        let list = crate::shading::SampleList::from_texels(gpu, texels);
-        let input =
-            stages
-                .shading
-                .input(gpu, &targets.gbuffer, &scene.light_buffer, &stages.lights);
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let recorder = &mut Recorder {
-            gpu,
-            encoder: &mut encoder,
-            timer,
-            frame: frame_bindings,
-        };
-        stages.shading.shade(
-            recorder,
-            &input,
-            Samples::List(&list),
-            &targets.radiance_view,
-        );
-        timer.resolve(&mut encoder);
-        gpu.queue.submit([encoder.finish()]);
-        timer.end_frame();
+        self.encode(|recorder, stages, scene| {
+            let (shading, targets) = (&stages.shading, &stages.targets);
+            let list = crate::shading::SampleList::from_texels(recorder.gpu, texels);
+            let lights = &scene.light_buffer;
+            let input = shading.input(recorder.gpu, &targets.gbuffer, lights, &stages.lights);
+            let samples = Samples::List(&list);
+            shading.shade(recorder, &input, samples, &targets.radiance_view);
+        });
     }
 }
