@@ -22,7 +22,7 @@ pub(crate) struct ArrayLimits {
 impl ArrayLimits {
     /// What `MaterialUniform::layers` has room for.
     const MOST_LAYERS: u32 = 256;
-    /// Drivers refuse single textures of more: lavapipe from 1 GiB on.
+    /// A driver may refuse a single texture of much more, though there is room for many of this size.
     const MOST_BYTES: u64 = 256 << 20;
 
     /// What this device allows. WebGL has no view of one layer: there each texture is alone.
