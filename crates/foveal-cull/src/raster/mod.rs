@@ -2,12 +2,14 @@
 //!
 //! `setup` transforms a cluster and sets up eight quads at once; `polygon` walks the blocks of one convex
 //! polygon; `block` computes coverage and merges it; `clip` is the slow path for what crosses the near plane
-//! or leaves the guard band; `sheet` finds what a result around the eye must leave open; `select` chooses and orders clusters; `frame` draws them.
+//! or leaves the guard band; `open`, `sheet` and `border` find what a result around the eye must leave open; `select` chooses and orders clusters; `frame` draws them.
 
 pub(crate) mod block;
+mod border;
 pub(crate) mod clip;
 pub(crate) mod frame;
 mod layers;
+mod open;
 pub(crate) mod polygon;
 pub(crate) mod select;
 pub(crate) mod setup;

@@ -9,8 +9,9 @@
 
 use super::block::Plane;
 use super::clip;
+use super::open::Open;
 use super::polygon::{self, Edges, Polygon};
-use super::sheet::{self, Sheet};
+use super::sheet::{Prepare, Sheet};
 use crate::depth::{BLOCK_SAMPLES, Band, encode};
 use crate::occluder::{Cluster, OccluderMesh, Vertices};
 use crate::simd::{Lanes, four};
@@ -128,30 +129,30 @@ pub(crate) fn draw_cluster<L: Lanes>(
     let own = (&mesh.vertices, cluster.first_vertex as usize, n);
     let clipped = transform(&mut scratch.points, 0, own, rows);
     // Without a ring every polygon shrinks by itself.
-    let ring = mesh.rings.rings.get(facing.cluster);
-    let sheet = facing.radius.filter(|_| !facing.two_sided).zip(ring);
+    let sheet = facing
+        .radius
+        .filter(|_| !facing.two_sided)
+        .zip(mesh.rings.rings.get(facing.cluster));
+    let mut open = Open::all(facing.blocks);
     if let Some((radius, ring)) = sheet {
-        let around = (
-            &mesh.rings.vertices,
-            ring.first_vertex as usize,
-            usize::from(ring.vertex_count),
-        );
-        transform(&mut scratch.points, n, around, rows);
-        sheet::prepare(
-            l,
+        open = l.apart(Prepare {
             band,
-            &mut scratch.sheet,
-            &scratch.points,
+            scratch,
             mesh,
-            (cluster, ring),
-            (facing, radius),
-        );
+            cluster,
+            ring,
+            rows,
+            mirrored: facing.mirrored,
+            radius,
+        });
     }
     let groups = usize::from(cluster.quad_count).div_ceil(8);
     let first = cluster.first_group as usize;
-    for (group, kept) in mesh.quads[first..first + groups]
+    for ((group, kept), _) in mesh.quads[first..first + groups]
         .iter()
         .zip(&scratch.sheet.kept)
+        .zip(open.quads)
+        .filter(|(_, open)| *open != 0)
     {
         let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
@@ -167,7 +168,7 @@ pub(crate) fn draw_cluster<L: Lanes>(
 
 /// Fills `points` from `at` on; vertices for the clipper get NaN, which no test accepts. True if there are any.
 #[inline(always)]
-fn transform(
+pub(super) fn transform(
     points: &mut Points,
     at: usize,
     (v, first, n): (&Vertices, usize, usize),
@@ -241,16 +242,8 @@ pub(crate) fn draw_eight<L: Lanes>(
         return 0;
     }
     let (x_lo, x_hi, y_lo, y_hi) = (lowest(l, &x), highest(l, &x), lowest(l, &y), highest(l, &y));
-    // Half-sample steps strictly above the minimum and up to the maximum: every sample and pixel centre lies
-    // on one. Clamping to the band drops what is outside.
-    let size = BLOCK_SAMPLES as f32;
-    let right = band.blocks_x as f32 * size;
-    let (top, bottom) = (
-        band.first_row as f32 * size,
-        (band.first_row + band.rows) as f32 * size,
-    );
-    let (nx0, nx1) = (steps(l, x_lo, 0.0, right), steps(l, x_hi, 0.0, right));
-    let (ny0, ny1) = (steps(l, y_lo, top, bottom), steps(l, y_hi, top, bottom));
+    let steps = steps_of(l, band, [[x_lo, y_lo], [x_hi, y_hi]]);
+    let [nx0, ny0, nx1, ny1] = steps;
     // `a - b` is negative where a < b.
     let live = l.iand(front, l.iand(l.isub(nx0, nx1), l.isub(ny0, ny1)));
     let mut live = l.movemask(live);
@@ -335,15 +328,7 @@ pub(crate) fn draw_eight<L: Lanes>(
         out(l, z_lo),
         out(l, z_hi),
     );
-    // Blocks that hold a half-sample step.
-    let per_block = l.isplat((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
-    let ends = [band.blocks_x, band.first_row + band.rows];
-    let [bx0, by0, bx1, by1] = four!(k => {
-        let last = l.isplat(ends[k % 2] as i32 - 1);
-        let mut blocks = [0; 8];
-        l.istore(l.imin(l.ishr([nx0, ny0, nx1, ny1][k], per_block), last), &mut blocks);
-        blocks
-    });
+    let [bx0, by0, bx1, by1] = blocks_of(l, band, steps);
     let (front0, front1) = (l.movemask(front0), l.movemask(front1));
     let mut drawn = 0;
     while live != 0 {
@@ -444,13 +429,44 @@ fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
 }
 
 #[inline(always)]
-fn lowest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
+pub(super) fn lowest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
     l.min(l.min(v[0], v[1]), l.min(v[2], v[3]))
 }
 
 #[inline(always)]
-fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
+pub(super) fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
     l.max(l.max(v[0], v[1]), l.max(v[2], v[3]))
+}
+
+/// Half-sample steps strictly above the least x and y and up to the greatest: every sample and pixel centre lies
+/// on one. Clamping to the band drops what is outside.
+#[inline(always)]
+pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[L::F; 2]; 2]) -> [L::I; 4] {
+    let size = BLOCK_SAMPLES as f32;
+    let right = band.blocks_x as f32 * size;
+    let (top, bottom) = (
+        band.first_row as f32 * size,
+        (band.first_row + band.rows) as f32 * size,
+    );
+    [
+        steps(l, lo[0], 0.0, right),
+        steps(l, lo[1], top, bottom),
+        steps(l, hi[0], 0.0, right),
+        steps(l, hi[1], top, bottom),
+    ]
+}
+
+/// First and last block that hold these half-sample steps.
+#[inline(always)]
+pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [L::I; 4]) -> [[i32; 8]; 4] {
+    let per_block = l.isplat((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
+    let ends = [band.blocks_x, band.first_row + band.rows];
+    four!(k => {
+        let last = l.isplat(ends[k % 2] as i32 - 1);
+        let mut blocks = [0; 8];
+        l.istore(l.imin(l.ishr(steps[k], per_block), last), &mut blocks);
+        blocks
+    })
 }
 
 /// Half-sample steps up to `v`, clamped.
@@ -471,7 +487,7 @@ fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
 }
 
 #[inline(always)]
-fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
+pub(super) fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
     let mut a = [0.0; 8];
     l.store(v, &mut a);
     a

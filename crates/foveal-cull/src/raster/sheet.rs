@@ -15,16 +15,17 @@
 //! the cluster and 1 on the outer border changes by at most one per height, so that no way within the sheet
 //! from the one to the other is shorter.
 //!
-//! A border erases only what lies as deep as the sheet can be where that border is within reach of it; where the cluster folds,
-//! its farther part stays.
+//! How a border erases is in [`super::border`].
 //!
 //! Between samples the sheet may be another triangle than at the nearest of them, half a sample away in each axis;
 //! depths are lowered by what the steepest triangle of the sheet changes there.
 
-use super::setup::{Facing, Points, Radius, area};
-use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
+use super::border::{self, Reach};
+use super::open::Open;
+use super::setup::{Points, Radius, Scratch, area, transform};
+use crate::depth::Band;
 use crate::occluder::{Cluster, OccluderMesh, RING, Ring};
-use crate::simd::{Lanes, four, larger, smaller};
+use crate::simd::{Kernel, Lanes, four, larger, smaller};
 
 /// A triangle surely faces the eye if it is higher than this over the sum of its quad's sides, samples: corners are
 /// rounded by 1/512 at most.
@@ -33,10 +34,7 @@ const LEAST_HEIGHT: f32 = 0.125;
 /// plane is seen from its side.
 const STEEPEST: f32 = 32.0;
 /// From a sample to all points that are nearer to it than to others, and more than all rounding, samples.
-const AROUND_SAMPLE: f32 = 0.8;
-/// More than all rounding, samples.
-const MARGIN: f32 = 0.0625;
-
+pub(super) const AROUND_SAMPLE: f32 = 0.8;
 /// What belongs to the sheet of the cluster that is being drawn.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {
@@ -57,16 +55,67 @@ impl Sheet {
     }
 }
 
-/// Finds the sheet of a cluster and erases what is too near to its border.
+/// What has to be done before a cluster is drawn for a result that holds around the eye: finds its quads that may be
+/// seen, and if there are any, its sheet, and erases what is too near to the sheet's border within their blocks.
+pub(super) struct Prepare<'a, 'b, 'c> {
+    pub(super) band: &'a mut Band<'b>,
+    pub(super) scratch: &'a mut Scratch,
+    pub(super) mesh: &'c OccluderMesh,
+    pub(super) cluster: &'c Cluster,
+    pub(super) ring: &'c Ring,
+    /// Clip rows of the instance.
+    pub(super) rows: &'c [[f64; 4]; 4],
+    pub(super) mirrored: bool,
+    pub(super) radius: Radius,
+}
+
+impl Kernel for Prepare<'_, '_, '_> {
+    type Output = Open;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Open {
+        let Self {
+            band,
+            scratch,
+            mesh,
+            cluster,
+            ring,
+            rows,
+            mirrored,
+            radius,
+        } = self;
+        let open = Open::of(l, band, &scratch.points, mesh, cluster, mirrored);
+        if !open.is_empty() {
+            let own = usize::from(cluster.vertex_count).next_multiple_of(8);
+            let around = (
+                &mesh.rings.vertices,
+                ring.first_vertex as usize,
+                usize::from(ring.vertex_count),
+            );
+            transform(&mut scratch.points, own, around, rows);
+            prepare(
+                l,
+                band,
+                &mut scratch.sheet,
+                &scratch.points,
+                mesh,
+                (cluster, ring),
+                (mirrored, open.blocks, radius),
+            );
+        }
+        open
+    }
+}
+
 #[inline(always)]
-pub(super) fn prepare<L: Lanes>(
+fn prepare<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
     sheet: &mut Sheet,
     points: &Points,
     mesh: &OccluderMesh,
     (cluster, ring): (&Cluster, &Ring),
-    (facing, radius): (Facing, Radius),
+    (mirrored, blocks, radius): (bool, [u32; 4], Radius),
 ) {
     let quads = usize::from(cluster.quad_count);
     let own = &mesh.quads[cluster.first_group as usize..][..quads.div_ceil(8)];
@@ -77,7 +126,7 @@ pub(super) fn prepare<L: Lanes>(
     let mut nearest = zero;
     let mut members = [0u64; 8];
     for ((g, group), kept) in own.iter().enumerate().zip(&mut sheet.kept) {
-        let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
+        let (i1, i3) = if mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
         let x = four!(c => l.gather(&points.x, &group[order[c]]));
         let y = four!(c => l.gather(&points.y, &group[order[c]]));
@@ -105,7 +154,7 @@ pub(super) fn prepare<L: Lanes>(
             steepest = l.max(steepest, l.select(member, steepness, zero));
             l.store(l.select(member, one, zero), kept);
             // Numbers are those of triangles that are not mirrored.
-            let set = second ^ usize::from(facing.mirrored);
+            let set = second ^ usize::from(mirrored);
             members[set] |= u64::from(l.movemask(member)) << (8 * g);
         }
     }
@@ -121,11 +170,7 @@ pub(super) fn prepare<L: Lanes>(
     let height =
         l.splat(AROUND_SAMPLE + nearest * (shift_x * shift_x + shift_y * shift_y).sqrt() * 1.001);
     for (g, group) in groups.iter().enumerate() {
-        let order = if facing.mirrored {
-            [0, 2, 1]
-        } else {
-            [0, 1, 2]
-        };
+        let order = if mirrored { [0, 2, 1] } else { [0, 1, 2] };
         let a = corner(l, points, &group[order[0]]);
         let b = corner(l, points, &group[order[1]]);
         let c = corner(l, points, &group[order[2]]);
@@ -149,10 +194,10 @@ pub(super) fn prepare<L: Lanes>(
     let steepest = greatest(at);
     // Half a sample along each axis, and the rounding of gradients.
     sheet.slack = steepest * 0.6;
-    let border = Border {
+    let reach = Reach {
         shifts: radius.shifts,
         steepness: steepest * 1.2,
-        blocks: facing.blocks,
+        blocks,
     };
     let edges = &mesh.rings.edges[ring.first_edge as usize..][..usize::from(ring.edges)];
     // Few edges are borders, and which ones cannot be foreseen: found without a branch, and then taken.
@@ -171,7 +216,7 @@ pub(super) fn prepare<L: Lanes>(
             let (a, b) = (usize::from(a), usize::from(b));
             let a = [points.x[a], points.y[a], points.depth[a]];
             let b = [points.x[b], points.y[b], points.depth[b]];
-            erase(l, band, &mut sheet.erased, a, b, border);
+            border::erase(l, band, &mut sheet.erased, a, b, reach);
         }
     }
 }
@@ -206,26 +251,6 @@ fn judge<L: Lanes>(
     (l.div(change, f), l.iand(faces, flat))
 }
 
-/// How far borders reach.
-#[derive(Clone, Copy, Debug)]
-struct Border {
-    /// Of a point at depth 1, along x and y, samples.
-    shifts: [f32; 2],
-    /// Most change of depth per sample on the sheet, along x plus along y.
-    steepness: f32,
-    /// Where the cluster is: first and last block, inclusive.
-    blocks: [u32; 4],
-}
-
-#[inline(always)]
-fn least([a, b, c, d, e, f, g, h]: [f32; 8]) -> f32 {
-    let (low, high) = (
-        smaller(smaller(a, b), smaller(c, d)),
-        smaller(smaller(e, f), smaller(g, h)),
-    );
-    smaller(low, high)
-}
-
 #[inline(always)]
 fn greatest([a, b, c, d, e, f, g, h]: [f32; 8]) -> f32 {
     let (low, high) = (
@@ -233,101 +258,4 @@ fn greatest([a, b, c, d, e, f, g, h]: [f32; 8]) -> f32 {
         larger(larger(e, f), larger(g, h)),
     );
     larger(low, high)
-}
-
-/// Erases the pixels to which an edge comes within its shift.
-#[inline(always)]
-fn erase<L: Lanes>(
-    l: L,
-    band: &mut Band<'_>,
-    erased: &mut Vec<u32>,
-    a: [f32; 3],
-    b: [f32; 3],
-    border: Border,
-) {
-    const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
-    let near = larger(a[2], b[2]);
-    let [reach_x, reach_y] = [0, 1].map(|k: usize| near * border.shifts[k] * 1.001 + MARGIN);
-    let (x_lo, x_hi) = (smaller(a[0], b[0]), larger(a[0], b[0]));
-    let (y_lo, y_hi) = (smaller(a[1], b[1]), larger(a[1], b[1]));
-    let [first_x, first_y, last_x, last_y] = border.blocks;
-    if x_hi + reach_x < (first_x * BLOCK_SAMPLES) as f32
-        || y_hi + reach_y < (first_y * BLOCK_SAMPLES) as f32
-        || x_lo - reach_x >= ((last_x + 1) * BLOCK_SAMPLES) as f32
-        || y_lo - reach_y >= ((last_y + 1) * BLOCK_SAMPLES) as f32
-    {
-        return;
-    }
-    // Casts saturate.
-    let scale = 1.0 / BLOCK_SAMPLES as f32;
-    let column = |x: f32| ((x * scale) as u32).clamp(first_x, last_x);
-    let row = |y: f32| ((y * scale) as u32).clamp(first_y, last_y);
-    let (by0, by1) = (row(y_lo - reach_y), row(y_hi + reach_y));
-    let blocks = [column(x_lo - reach_x), by0, column(x_hi + reach_x), by1];
-    // What lies behind all that is known there is hidden whatever this edge does; what lies before it, the edge is
-    // behind.
-    let code = encode(near * 1.001).saturating_add(1);
-    if band.hides(blocks, code) {
-        return;
-    }
-    // As deep as the sheet can be where the edge is within reach of it.
-    let around = border.steepness * (AROUND_SAMPLE + larger(reach_x, reach_y)) + near * 1e-5;
-    let depths = (
-        encode(smaller(a[2], b[2]) - around),
-        encode(near + around).saturating_add(1),
-    );
-    let slope = (b[0] - a[0]) / (b[1] - a[1]);
-    // Of an edge that is all but level every row has the whole.
-    let level = slope.is_nan() || slope.abs() > 1e4;
-    let (lo, hi) = (l.splat(x_lo), l.splat(x_hi));
-    for by in by0..=by1 {
-        let top = (by * BLOCK_SAMPLES) as f32;
-        let rows = l.add(l.load(&PIXELS), l.splat(top));
-        let (above, below) = (
-            l.sub(rows, l.splat(reach_y)),
-            l.add(rows, l.splat(reach_y + SAMPLES as f32)),
-        );
-        let beside = l.ior(l.lt(l.splat(y_hi), above), l.lt(below, l.splat(y_lo)));
-        let (mut from, mut to) = (lo, hi);
-        if !level {
-            let (top, bottom) = (l.splat(y_lo), l.splat(y_hi));
-            let p = l.sub(l.min(l.max(above, top), bottom), l.splat(a[1]));
-            let q = l.sub(l.min(l.max(below, top), bottom), l.splat(a[1]));
-            let p = l.add(l.splat(a[0]), l.mul(p, l.splat(slope)));
-            let q = l.add(l.splat(a[0]), l.mul(q, l.splat(slope)));
-            from = l.min(l.max(l.min(p, q), lo), hi);
-            to = l.min(l.max(l.max(p, q), lo), hi);
-        }
-        let from = l.select(beside, l.splat(1e9), l.sub(from, l.splat(reach_x)));
-        let to = l.select(beside, l.splat(-1e9), l.add(to, l.splat(reach_x)));
-        let (mut starts, mut stops) = ([0.0; 8], [0.0; 8]);
-        l.store(from, &mut starts);
-        l.store(to, &mut stops);
-        let start = least(starts);
-        let stop = greatest(stops);
-        if stop < (first_x * BLOCK_SAMPLES) as f32 || start >= ((last_x + 1) * BLOCK_SAMPLES) as f32
-        {
-            continue;
-        }
-        for bx in column(start)..=column(stop) {
-            let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
-            if code <= band.min[i] {
-                continue;
-            }
-            let left = l.splat((bx * BLOCK_SAMPLES) as f32);
-            let pixel = l.splat(1.0 / SAMPLES as f32);
-            let first = l.mul(l.sub(from, left), pixel);
-            let last = l.mul(l.sub(to, left), pixel);
-            let bits = l.plane(first, l.add(last, l.splat(1.0)));
-            if bits != 0 {
-                let (pixels, border) = (&mut band.erased[i], &mut band.border[i]);
-                if *pixels == 0 {
-                    erased.push(i as u32);
-                    *border = [i16::MAX, i16::MIN];
-                }
-                *pixels |= bits;
-                *border = [border[0].min(depths.0), border[1].max(depths.1)];
-            }
-        }
-    }
 }

@@ -49,6 +49,16 @@ impl Lanes for Avx2 {
     type P = [__m256i; 4];
     type W = Twice<Self>;
 
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        #[inline(never)]
+        #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt")]
+        fn inner<K: Kernel>(lanes: Avx2, kernel: K) -> K::Output {
+            kernel.run(lanes)
+        }
+        // SAFETY: `self` proves that the CPU has these features.
+        unsafe { inner(self, kernel) }
+    }
+
     #[inline(always)]
     fn wide(self) -> Self::W {
         Twice(self)

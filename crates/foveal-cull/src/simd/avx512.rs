@@ -63,6 +63,16 @@ impl Lanes for Avx512 {
     type P = [__m512i; 2];
     type W = super::avx512x16::Wide512;
 
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        #[inline(never)]
+        #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
+        fn inner<K: Kernel>(lanes: Avx512, kernel: K) -> K::Output {
+            kernel.run(lanes)
+        }
+        // SAFETY: `self` proves that the CPU has these features.
+        unsafe { inner(self, kernel) }
+    }
+
     #[inline(always)]
     fn wide(self) -> Self::W {
         super::avx512x16::Wide512(self)

@@ -191,6 +191,12 @@ pub(crate) trait Lanes: Copy {
 
     fn wide(self) -> Self::W;
 
+    /// Runs a kernel as a function of its own, so that what is not for every cluster leaves the rest as it is.
+    #[inline(never)]
+    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+        kernel.run(self)
+    }
+
     /// Asks for memory that will be needed soon; changes nothing.
     #[inline(always)]
     fn prefetch<T>(self, _soon: &T) {}

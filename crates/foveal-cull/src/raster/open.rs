@@ -1,0 +1,197 @@
+//! Which quads of a cluster may still be seen, before anything is done for the cluster as a whole.
+//!
+//! A cluster is drawn where its box may be seen; in the castle, two of five have no quad then that faces the eye and
+//! is not behind what is drawn already. What a cluster needs as a whole (the sheet of a result that holds around the
+//! eye) is for those that have one, and only where these lie.
+
+use super::setup::{Points, area, blocks_of, highest, lowest, out, steps_of};
+use crate::depth::{Band, encode};
+use crate::occluder::{Cluster, OccluderMesh};
+use crate::simd::{Lanes, four};
+
+/// The quads of a cluster that may be seen.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Open {
+    /// By group of eight, a bit for each.
+    pub(super) quads: [u8; 8],
+    /// The first and last block of all of them, inclusive; the first behind the last where there are none.
+    pub(super) blocks: [u32; 4],
+}
+
+impl Open {
+    /// Every quad of a cluster within these blocks.
+    pub(super) fn all(blocks: [u32; 4]) -> Self {
+        Self {
+            quads: [u8::MAX; 8],
+            blocks,
+        }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.quads == [0; 8]
+    }
+
+    /// Looks at a one-sided cluster. What has a corner for the clipper is not among its quads.
+    #[inline(always)]
+    pub(super) fn of<L: Lanes>(
+        l: L,
+        band: &Band<'_>,
+        points: &Points,
+        mesh: &OccluderMesh,
+        cluster: &Cluster,
+        mirrored: bool,
+    ) -> Self {
+        let mut open = Self {
+            quads: [0; 8],
+            blocks: [u32::MAX, u32::MAX, 0, 0],
+        };
+        let groups = usize::from(cluster.quad_count).div_ceil(8);
+        let groups = &mesh.quads[cluster.first_group as usize..][..groups];
+        let order = if mirrored { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
+        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        for (group, quads) in groups.iter().zip(&mut open.quads) {
+            let x = four!(c => l.gather(&points.x, &group[order[c]]));
+            let y = four!(c => l.gather(&points.y, &group[order[c]]));
+            let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
+            let whole = l.lt(l.sub(sum, sum), one);
+            let f0 = area(l, &x, &y, 0, 1, 2);
+            let f1 = area(l, &x, &y, 0, 2, 3);
+            let front = l.iand(whole, l.ior(l.lt(zero, f0), l.lt(zero, f1)));
+            let ends = [
+                [lowest(l, &x), lowest(l, &y)],
+                [highest(l, &x), highest(l, &y)],
+            ];
+            let steps = steps_of(l, band, ends);
+            let [nx0, ny0, nx1, ny1] = steps;
+            let meets = l.iand(l.isub(nx0, nx1), l.isub(ny0, ny1));
+            let mut live = l.movemask(l.iand(front, meets));
+            if live == 0 {
+                continue;
+            }
+            let z = four!(c => l.gather(&points.depth, &group[order[c]]));
+            let nearest = out(l, highest(l, &z));
+            let [bx0, by0, bx1, by1] = blocks_of(l, band, steps);
+            while live != 0 {
+                let i = live.trailing_zeros() as usize;
+                live &= live - 1;
+                let blocks = [bx0[i] as u32, by0[i] as u32, bx1[i] as u32, by1[i] as u32];
+                if band.hides(blocks, encode(nearest[i])) {
+                    continue;
+                }
+                *quads |= 1 << i;
+                let [x0, y0, x1, y1] = open.blocks;
+                open.blocks = [
+                    x0.min(blocks[0]),
+                    y0.min(blocks[1]),
+                    x1.max(blocks[2]),
+                    y1.max(blocks[3]),
+                ];
+            }
+        }
+        open
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::depth::{BLOCK_SAMPLES, DepthBuffer};
+    use crate::simd::portable::Portable;
+    use crate::{BakeOptions, OccluderMesh};
+    use glam::Vec3;
+
+    /// A ball of quads around the middle of a buffer of 64 x 48 pixels, seen from far away.
+    fn ball() -> (OccluderMesh, Vec<[f32; 3]>) {
+        let (rings, around) = (5, 9);
+        let point = |i: u32, j: u32| {
+            let (a, b) = (
+                core::f32::consts::TAU * (j % around) as f32 / around as f32 + 0.1,
+                core::f32::consts::PI * i as f32 / rings as f32,
+            );
+            Vec3::new(a.cos() * b.sin(), b.cos(), a.sin() * b.sin())
+        };
+        let points: Vec<Vec3> = (0..=rings)
+            .flat_map(|i| (0..around).map(move |j| point(i, j)))
+            .collect();
+        let at = |i: u32, j: u32| i * around + j % around;
+        let indices: Vec<u32> = (0..rings)
+            .flat_map(|i| (0..around).map(move |j| (i, j)))
+            .flat_map(|(i, j)| {
+                let q = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+                [q[0], q[1], q[2], q[0], q[2], q[3]]
+            })
+            .collect();
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        assert_eq!(mesh.clusters.len(), 1);
+        let v = &mesh.vertices;
+        let screen = (0..v.x.len())
+            .map(|i| {
+                [
+                    128.0 + 90.0 * v.x[i],
+                    96.0 - 90.0 * v.y[i],
+                    0.5 + 0.1 * v.z[i],
+                ]
+            })
+            .collect();
+        (mesh, screen)
+    }
+
+    #[test]
+    fn quads_that_face_the_eye_and_are_not_hidden_are_open() {
+        let (mesh, screen) = ball();
+        let mut points = Points::default();
+        for (i, p) in screen.iter().enumerate() {
+            points.set(i, f64::from(p[0]), f64::from(p[1]), p[2]);
+        }
+        let cluster = &mesh.clusters[0];
+        let mut buffer = DepthBuffer::new(64, 48);
+        // Blocks to the left of the middle hide what is farther than 0.58.
+        for (i, min) in buffer.min.iter_mut().enumerate() {
+            *min = encode(if i % 8 < 4 { 0.58 } else { 0.0 });
+        }
+        for mirrored in [false, true] {
+            let band = buffer.band();
+            let open = Open::of(Portable, &band, &points, &mesh, cluster, mirrored);
+            let mut blocks = [u32::MAX, u32::MAX, 0, 0];
+            let (mut here, mut hidden) = (0, 0);
+            for q in 0..usize::from(cluster.quad_count) {
+                let corners: [[f32; 3]; 4] =
+                    core::array::from_fn(|c| screen[usize::from(mesh.quads[q / 8][c][q % 8])]);
+                let turn = |a: usize, b: usize, c: usize| {
+                    let [a, b, c] = [a, b, c].map(|i| corners[i].map(f64::from));
+                    (c[0] - a[0]) * (b[1] - a[1]) - (b[0] - a[0]) * (c[1] - a[1])
+                };
+                let sign = if mirrored { -1.0 } else { 1.0 };
+                let front = sign * turn(0, 1, 2) > 0.0 || sign * turn(0, 2, 3) > 0.0;
+                let end = |axis: usize, pick: fn(f32, f32) -> f32| {
+                    let v = corners.iter().map(|c| c[axis]).reduce(pick).unwrap();
+                    (v / BLOCK_SAMPLES as f32) as u32
+                };
+                let mine = [
+                    end(0, f32::min),
+                    end(1, f32::min),
+                    end(0, f32::max),
+                    end(1, f32::max),
+                ];
+                let nearest = corners.iter().map(|c| c[2]).fold(0.0, f32::max);
+                let seen = mine[2] >= 4 || encode(nearest) > encode(0.58);
+                let is_open = open.quads[q / 8] >> (q % 8) & 1 != 0;
+                assert_eq!(is_open, front && seen, "quad {q}, mirrored {mirrored}");
+                here += u32::from(is_open);
+                hidden += u32::from(front && !seen);
+                if is_open {
+                    blocks = [
+                        blocks[0].min(mine[0]),
+                        blocks[1].min(mine[1]),
+                        blocks[2].max(mine[2]),
+                        blocks[3].max(mine[3]),
+                    ];
+                }
+            }
+            assert!(here > 5 && hidden > 0, "{here} {hidden}");
+            assert_eq!(open.blocks, blocks);
+        }
+        buffer.min.fill(encode(0.7));
+        assert!(Open::of(Portable, &buffer.band(), &points, &mesh, cluster, false).is_empty());
+    }
+}
