@@ -123,8 +123,8 @@ impl Culler {
         })
     }
 
-    /// Forces an instruction set (all give equal results; for tests and measurements). One that the CPU
-    /// lacks falls back to the portable one.
+    /// Forces an instruction set (all give equal results; for tests and measurements). One that the machine
+    /// lacks falls back to the next smaller one.
     pub fn set_instruction_set(&mut self, instruction_set: InstructionSet) {
         self.instruction_set = instruction_set;
     }

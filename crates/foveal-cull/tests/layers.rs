@@ -50,7 +50,7 @@ fn near_parts_of_a_pixel_complete_each_other_whatever_lies_far_behind_and_comes_
         [2, 0, 1],
         [2, 1, 0],
     ] {
-        for set in [InstructionSet::Portable, InstructionSet::detect()] {
+        for set in InstructionSet::available() {
             let depth = depths(&order.map(|i| parts[i]), set);
             assert!(
                 depth.iter().all(|d| (0.099..=0.1001).contains(d)),

@@ -194,7 +194,7 @@ proptest! {
         for n in [1, 4] {
             prop_assert!(wrongly_culled(&scene, &view.eye, (w, h), n, &by_tree).is_empty());
         }
-        for set in [InstructionSet::Portable, InstructionSet::Sse2, InstructionSet::Avx2, InstructionSet::Avx512] {
+        for set in InstructionSet::available() {
             culler.set_instruction_set(set);
             prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
             prop_assert_eq!(&image, &depth(&culler));

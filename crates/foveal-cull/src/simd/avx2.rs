@@ -65,7 +65,7 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn prefetch<T>(self, soon: &T) {
-        super::sse2::prefetch(soon);
+        super::narrow::sse2::prefetch(soon);
     }
 
     #[inline(always)]

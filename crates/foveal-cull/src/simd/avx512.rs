@@ -79,7 +79,7 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn prefetch<T>(self, soon: &T) {
-        super::sse2::prefetch(soon);
+        super::narrow::sse2::prefetch(soon);
     }
 
     as_avx2! {

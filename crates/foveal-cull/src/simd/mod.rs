@@ -1,12 +1,14 @@
 //! Lanes: the one seam between the kernels and instruction sets.
 //!
 //! Kernels are written once, generic over [`Lanes`], and instantiated for the portable implementation
-//! (plain arrays, which the compiler turns into SSE2, NEON or wasm SIMD), for AVX2 and for AVX-512. There is no fused
+//! (plain arrays), for 128-bit registers (SSE2, NEON and wasm's simd128), for AVX2 and for AVX-512. There is no fused
 //! multiply-add and no approximate reciprocal anywhere, so that every instruction set gives the same bits.
 
 use crate::Aabb;
 
 pub(crate) mod portable;
+#[cfg(test)]
+mod twins;
 pub(crate) mod wide;
 
 #[cfg(target_arch = "x86_64")]
@@ -27,12 +29,20 @@ pub(crate) mod avx512;
     reason = "as for AVX2; held to the portable twin by the same tests"
 )]
 mod avx512x16;
-#[cfg(target_arch = "x86_64")]
+#[cfg(any(
+    target_arch = "x86_64",
+    all(
+        target_arch = "aarch64",
+        target_feature = "neon",
+        target_endian = "little"
+    ),
+    all(target_arch = "wasm32", target_feature = "simd128"),
+))]
 #[allow(
     unsafe_code,
-    reason = "loads and stores of whole arrays; held to the portable twin by the same tests"
+    reason = "as for AVX2; held to the portable twin by the same tests"
 )]
-pub(crate) mod sse2;
+mod narrow;
 
 /// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of closures: what
 /// is not inlined loses the instruction set.
@@ -117,7 +127,7 @@ pub(crate) trait Kernel {
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
-/// An instruction set that this machine has.
+/// A set of instructions to run with; all give the same results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InstructionSet {
@@ -125,6 +135,11 @@ pub enum InstructionSet {
     Portable,
     /// 128-bit SSE2, which every x86-64 CPU has.
     Sse2,
+    /// 128-bit NEON, which every 64-bit ARM CPU has (little-endian; other targets are [`Portable`](Self::Portable)).
+    Neon,
+    /// WebAssembly's 128-bit registers, in modules that are compiled with `-C target-feature=+simd128`. There is no way to
+    /// ask for them at run time, so modules without it are [`Portable`](Self::Portable).
+    Simd128,
     /// 256-bit AVX2.
     Avx2,
     /// AVX-512 (F, BW, DQ, VL): 512-bit registers for whole blocks.
@@ -132,24 +147,42 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// The fastest one that this CPU has.
-    #[must_use]
-    pub fn detect() -> Self {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if avx512::Avx512::detect().is_some() {
-                return Self::Avx512;
-            }
-            if avx2::Avx2::detect().is_some() {
-                return Self::Avx2;
-            }
-            Self::Sse2
-        }
-        #[cfg(not(target_arch = "x86_64"))]
-        Self::Portable
+    /// What there is besides the portable one and what a CPU may have, by the target alone.
+    const NARROW: Option<Self> = if cfg!(target_arch = "x86_64") {
+        Some(Self::Sse2)
+    } else if cfg!(all(
+        target_arch = "aarch64",
+        target_feature = "neon",
+        target_endian = "little"
+    )) {
+        Some(Self::Neon)
+    } else if cfg!(all(target_arch = "wasm32", target_feature = "simd128")) {
+        Some(Self::Simd128)
+    } else {
+        None
+    };
+
+    /// Those that this machine has, the fastest last.
+    pub fn available() -> impl Iterator<Item = Self> {
+        let detected = [
+            #[cfg(target_arch = "x86_64")]
+            avx2::Avx2::detect().map(|_| Self::Avx2),
+            #[cfg(target_arch = "x86_64")]
+            avx512::Avx512::detect().map(|_| Self::Avx512),
+        ];
+        [Some(Self::Portable), Self::NARROW]
+            .into_iter()
+            .chain(detected)
+            .flatten()
     }
 
-    /// Runs a kernel with this instruction set, or with the next smaller one that the CPU has.
+    /// The fastest one that this machine has.
+    #[must_use]
+    pub fn detect() -> Self {
+        Self::available().last().unwrap_or(Self::Portable)
+    }
+
+    /// Runs a kernel with this instruction set, or with the next smaller one that the machine has.
     #[inline]
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         #[cfg(target_arch = "x86_64")]
@@ -164,9 +197,18 @@ impl InstructionSet {
             {
                 return lanes.run(kernel);
             }
-            if self != Self::Portable {
-                return kernel.run(sse2::Sse2);
-            }
+        }
+        #[cfg(any(
+            target_arch = "x86_64",
+            all(
+                target_arch = "aarch64",
+                target_feature = "neon",
+                target_endian = "little"
+            ),
+            all(target_arch = "wasm32", target_feature = "simd128"),
+        ))]
+        if self != Self::Portable {
+            return kernel.run(narrow::Narrow::here());
         }
         kernel.run(portable::Portable)
     }

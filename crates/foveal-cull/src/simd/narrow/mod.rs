@@ -1,0 +1,401 @@
+//! Lanes in 128-bit registers, for x86-64 (SSE2), 64-bit ARM (NEON) and WebAssembly with simd128: written once, over
+//! [`Registers`].
+
+use super::portable::SAMPLE_ROWS;
+use super::wide::Twice;
+use super::{Lanes, four, two};
+use crate::Aabb;
+use crate::depth::CODE_OFFSET;
+use registers::Registers;
+
+mod registers;
+
+#[cfg(target_arch = "aarch64")]
+mod neon;
+#[cfg(target_arch = "wasm32")]
+mod simd128;
+#[cfg(target_arch = "x86_64")]
+pub(super) mod sse2;
+
+#[cfg(target_arch = "aarch64")]
+type Here = neon::Neon;
+#[cfg(target_arch = "wasm32")]
+type Here = simd128::Simd128;
+#[cfg(target_arch = "x86_64")]
+type Here = sse2::Sse2;
+
+/// Two or more registers in place of each wider one.
+#[derive(Clone, Copy)]
+pub(crate) struct Narrow<R>(R);
+
+impl Narrow<Here> {
+    /// With the registers of what this is compiled for.
+    pub(super) fn here() -> Self {
+        Self(Here::default())
+    }
+}
+
+/// `[e(0), ..., e(7)]`, as [`four!`].
+macro_rules! eight {
+    ($k:ident => $e:expr) => {{
+        let [a, b, c, d] = four!($k => $e);
+        let [e, f, g, h] = four!(j => { let $k = j + 4; $e });
+        [a, b, c, d, e, f, g, h]
+    }};
+}
+
+/// Methods that are done register by register, under a registers' name.
+macro_rules! by_registers {
+    ($all:ident: $($name:ident = $one:ident($($arg:ident: $type:ty),*) -> $out:ty;)*) => {
+        $(
+            #[inline(always)]
+            fn $name(self, $($arg: $type),*) -> $out {
+                $all!(k => self.0.$one($($arg[k]),*))
+            }
+        )*
+    };
+}
+
+impl<R: Registers> Lanes for Narrow<R> {
+    type F = [R::F; 2];
+    type I = [R::I; 2];
+    type Q = [R::Q; 2];
+    type D = [R::H; 8];
+    type R = [R::F; 8];
+    /// The two planes of a register are neighbours.
+    type P = [R::B; 8];
+    type W = Twice<Self>;
+
+    by_registers! { two:
+        add = add(a: Self::F, b: Self::F) -> Self::F;
+        sub = sub(a: Self::F, b: Self::F) -> Self::F;
+        mul = mul(a: Self::F, b: Self::F) -> Self::F;
+        div = div(a: Self::F, b: Self::F) -> Self::F;
+        min = min(a: Self::F, b: Self::F) -> Self::F;
+        max = max(a: Self::F, b: Self::F) -> Self::F;
+        abs = abs(a: Self::F) -> Self::F;
+        lt = lt(a: Self::F, b: Self::F) -> Self::I;
+        select = select(mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
+        trunc = trunc(a: Self::F) -> Self::I;
+        iadd = iadd(a: Self::I, b: Self::I) -> Self::I;
+        isub = isub(a: Self::I, b: Self::I) -> Self::I;
+        imul = imul(a: Self::I, b: Self::I) -> Self::I;
+        imin = imin(a: Self::I, b: Self::I) -> Self::I;
+        imax = imax(a: Self::I, b: Self::I) -> Self::I;
+        ishr = ishr(a: Self::I, by: Self::I) -> Self::I;
+        iand = iand(a: Self::I, b: Self::I) -> Self::I;
+        ior = ior(a: Self::I, b: Self::I) -> Self::I;
+        iandnot = iandnot(a: Self::I, b: Self::I) -> Self::I;
+        qadd = qadd(a: Self::Q, b: Self::Q) -> Self::Q;
+        qsub = qsub(a: Self::Q, b: Self::Q) -> Self::Q;
+        qmul = qmul(a: Self::Q, b: Self::Q) -> Self::Q;
+        qdiv = qdiv(a: Self::Q, b: Self::Q) -> Self::Q;
+        qabs = qabs(a: Self::Q) -> Self::Q;
+    }
+    by_registers! { eight:
+        dmin = hmin(a: Self::D, b: Self::D) -> Self::D;
+        dmax = hmax(a: Self::D, b: Self::D) -> Self::D;
+        radd = add(a: Self::R, b: Self::R) -> Self::R;
+        rmin = min(a: Self::R, b: Self::R) -> Self::R;
+        rmax = max(a: Self::R, b: Self::R) -> Self::R;
+        por = bor(a: Self::P, b: Self::P) -> Self::P;
+    }
+
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        self.0.prefetch(soon);
+    }
+
+    #[inline(always)]
+    fn splat(self, v: f32) -> Self::F {
+        [self.0.splat(v); 2]
+    }
+    #[inline(always)]
+    fn load(self, v: &[f32; 8]) -> Self::F {
+        let (v, _) = v.as_chunks();
+        two!(k => self.0.load(&v[k]))
+    }
+    #[inline(always)]
+    fn store(self, v: Self::F, to: &mut [f32; 8]) {
+        let (to, _) = to.as_chunks_mut();
+        two!(k => self.0.store(v[k], &mut to[k]));
+    }
+    #[inline(always)]
+    fn codes(self, a: Self::F) -> Self::I {
+        two!(k => self.code(a[k]))
+    }
+    #[inline(always)]
+    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F {
+        two!(k => self.0.load(&four!(i => table[usize::from(index[4 * k + i])])))
+    }
+    #[inline(always)]
+    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6] {
+        let (v, _) = v.as_chunks();
+        let [low, high] = two!(k => self.turn_four(&v[k]));
+        let [a, b, c, d, e, f] = low;
+        let [p, q, r, s, t, u] = high;
+        [[a, p], [b, q], [c, r], [d, s], [e, t], [f, u]]
+    }
+
+    #[inline(always)]
+    fn isplat(self, v: i32) -> Self::I {
+        [self.0.isplat(v); 2]
+    }
+    #[inline(always)]
+    fn iload(self, v: &[i32; 8]) -> Self::I {
+        let (v, _) = v.as_chunks();
+        two!(k => self.0.iload(&v[k]))
+    }
+    #[inline(always)]
+    fn istore(self, v: Self::I, to: &mut [i32; 8]) {
+        let (to, _) = to.as_chunks_mut();
+        two!(k => self.0.istore(v[k], &mut to[k]));
+    }
+    #[inline(always)]
+    fn ibits(self, a: Self::I) -> Self::I {
+        // The exponent of the number as a float, which is exact; 0 has none.
+        two!(k => {
+            let exponent = self.0.ishr_all::<23>(self.0.bits(self.0.floats(a[k])));
+            self.0.imax(self.0.isub(exponent, self.0.isplat(126)), self.0.isplat(0))
+        })
+    }
+    #[inline(always)]
+    fn movemask(self, a: Self::I) -> u32 {
+        self.0.signs(a)
+    }
+
+    #[inline(always)]
+    fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q {
+        self.qload(&four!(i => table[usize::from(index[i])]))
+    }
+    #[inline(always)]
+    fn qload(self, v: &[f64; 4]) -> Self::Q {
+        let (v, _) = v.as_chunks();
+        two!(k => self.0.qload(&v[k]))
+    }
+    #[inline(always)]
+    fn qstore(self, v: Self::Q, to: &mut [f64; 4]) {
+        let (to, _) = to.as_chunks_mut();
+        two!(k => self.0.qstore(v[k], &mut to[k]));
+    }
+    #[inline(always)]
+    fn qsplat(self, v: f64) -> Self::Q {
+        [self.0.qsplat(v); 2]
+    }
+    #[inline(always)]
+    fn qlt(self, a: Self::Q, b: Self::Q) -> u32 {
+        self.0.qlt(a, b)
+    }
+    #[inline(always)]
+    fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q {
+        let mut all = [0.0; 4];
+        self.qstore(v, &mut all);
+        self.qload(&four!(i => all[usize::from(from[i] & 3)]))
+    }
+    #[inline(always)]
+    fn qround(self, v: Self::Q) -> [f32; 4] {
+        let mut to = [0.0; 4];
+        self.0.store(self.0.qround(v), &mut to);
+        to
+    }
+
+    #[inline(always)]
+    fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D {
+        let (floor, cap) = (self.0.splat(floor), self.0.hsplat(cap));
+        eight!(row => {
+            let down = self.0.splat(row as f32 * down);
+            let codes = two!(k => self.code(self.0.max(self.0.add(columns[k], down), floor)));
+            self.0.hmin(self.0.hpack(codes), cap)
+        })
+    }
+    #[inline(always)]
+    fn dload(self, v: &[i16; 64]) -> Self::D {
+        let (v, _) = v.as_chunks();
+        eight!(k => self.0.hload(&v[k]))
+    }
+    #[inline(always)]
+    fn dstore(self, v: Self::D, to: &mut [i16; 64]) {
+        let (to, _) = to.as_chunks_mut();
+        eight!(k => self.0.hstore(v[k], &mut to[k]));
+    }
+    #[inline(always)]
+    fn dsplat(self, v: i16) -> Self::D {
+        [self.0.hsplat(v); 8]
+    }
+    #[inline(always)]
+    fn dgt(self, a: Self::D, b: Self::D) -> u64 {
+        self.0.hbits(eight!(k => self.0.hgt(a[k], b[k])))
+    }
+    #[inline(always)]
+    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64 {
+        let distance = eight!(k => self.0.hmax(self.0.hsub(a[k], b[k]), self.0.hsub(b[k], a[k])));
+        self.dgt(distance, self.dsplat(by))
+    }
+    #[inline(always)]
+    fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
+        eight!(k => self.0.hselect(self.0.hmask((bits >> (8 * k)) as u16), a[k], b[k]))
+    }
+    #[inline(always)]
+    fn dreduce_min(self, a: Self::D) -> i16 {
+        let m = four!(k => self.0.hmin(a[k], a[k + 4]));
+        let m = two!(k => self.0.hmin(m[k], m[k + 2]));
+        self.0.hleast(self.0.hmin(m[0], m[1]))
+    }
+
+    #[inline(always)]
+    fn rsplat(self, v: f32) -> Self::R {
+        [self.0.splat(v); 8]
+    }
+    #[inline(always)]
+    fn rows(self, slope: f32) -> Self::R {
+        let rows = self.rload(&SAMPLE_ROWS);
+        eight!(k => self.0.mul(rows[k], self.0.splat(slope)))
+    }
+    #[inline(always)]
+    fn rload(self, v: &[f32; 32]) -> Self::R {
+        let (v, _) = v.as_chunks();
+        eight!(k => self.0.load(&v[k]))
+    }
+    #[inline(always)]
+    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
+        let rows = self.rload(&SAMPLE_ROWS);
+        eight!(k => {
+            let y = self.0.add(self.0.splat(first), rows[k]);
+            let (above, below) = (self.0.lt(self.0.splat(after), y), self.0.le(y, self.0.splat(last)));
+            self.0.select(self.0.iand(above, below), v[k], self.0.splat(1e6))
+        })
+    }
+    #[inline(always)]
+    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
+        let least = eight!(k => self.nearer_whole(from[k], to[k], 32.5));
+        let least = four!(k => self.0.min(least[k], least[k + 4]));
+        let least = two!(k => self.0.min(least[k], least[k + 2]));
+        self.any_below(least, error)
+    }
+    #[inline(always)]
+    fn unsure(self, from: Self::F, to: Self::F, error: f32) -> bool {
+        let least = two!(k => self.nearer_whole(from[k], to[k], 8.5));
+        self.any_below(least, error)
+    }
+    #[inline(always)]
+    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
+        let [low, high] = two!(k => {
+            let [from, to] = [from, to].map(|v| {
+                let n = four!(i => self.0.whole(self.clamped(v[4 * k + i], 32.5)));
+                self.0.right_of(self.0.bpack(n))
+            });
+            four!(column => self.0.bandnot(to[column], from[column]))
+        });
+        eight!(k => [low, high][k % 2][k / 2])
+    }
+    #[inline(always)]
+    fn plane(self, from: Self::F, to: Self::F) -> u64 {
+        let n = four!(k => {
+            let n = self.0.whole(self.clamped([from, to][k / 2][k % 2], 8.5));
+            let two = self.0.iadd(n, n);
+            self.0.iadd(two, two)
+        });
+        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before is not.
+        let [.., pixels] = self.0.right_of(self.0.bpack(n));
+        let [from, to] = self.0.bhalves(pixels);
+        from & !to
+    }
+    #[inline(always)]
+    fn pload(self, v: &[u64; 16]) -> Self::P {
+        let (v, _) = v.as_chunks();
+        eight!(k => self.0.bload(&v[k]))
+    }
+    #[inline(always)]
+    fn pstore(self, v: Self::P, to: &mut [u64; 16]) {
+        let (to, _) = to.as_chunks_mut();
+        eight!(k => self.0.bstore(v[k], &mut to[k]));
+    }
+    #[inline(always)]
+    fn pkeep(self, v: Self::P, bits: u64) -> Self::P {
+        let bits = self.0.bsplat(bits);
+        eight!(k => self.0.band(v[k], bits))
+    }
+    #[inline(always)]
+    fn pall(self, v: Self::P) -> u64 {
+        let all = four!(k => self.0.band(v[k], v[k + 4]));
+        let all = two!(k => self.0.band(all[k], all[k + 2]));
+        let [low, high] = self.0.bhalves(self.0.band(all[0], all[1]));
+        low & high
+    }
+    #[inline(always)]
+    fn pany(self, v: Self::P) -> u64 {
+        let any = four!(k => self.0.bor(v[k], v[k + 4]));
+        let any = two!(k => self.0.bor(any[k], any[k + 2]));
+        let [low, high] = self.0.bhalves(self.0.bor(any[0], any[1]));
+        low | high
+    }
+}
+
+impl<R: Registers> Narrow<R> {
+    #[inline(always)]
+    fn code(self, v: R::F) -> R::I {
+        let bits = self.0.ishr_all::<12>(self.0.bits(v));
+        self.0.isub(bits, self.0.isplat(CODE_OFFSET))
+    }
+
+    /// [`Lanes::turn`] of four.
+    #[inline(always)]
+    fn turn_four(self, v: &[Aabb; 4]) -> [R::F; 6] {
+        // Six registers of four numbers in a row hold four boxes: two boxes are three of these.
+        let rows = four!(i => [v[i].min, v[i].max]);
+        let numbers: [[f32; 4]; 6] = core::array::from_fn(|k| {
+            core::array::from_fn(|i| {
+                let n = 4 * k + i;
+                rows[n / 6][n % 6 / 3][n % 3]
+            })
+        });
+        let pair = |k: usize| {
+            let [a, b, c] = [0, 1, 2].map(|i| self.0.load(&numbers[3 * k + i]));
+            // x and y of the smallest corners, z of these and x of the largest, y and z of the largest.
+            [
+                self.0.low_high(a, b),
+                self.0.high_low(a, c),
+                self.0.low_high(b, c),
+            ]
+        };
+        let ([xy, zx, yz], [xy_b, zx_b, yz_b]) = (pair(0), pair(1));
+        [
+            self.0.evens(xy, xy_b),
+            self.0.odds(xy, xy_b),
+            self.0.evens(zx, zx_b),
+            self.0.odds(zx, zx_b),
+            self.0.evens(yz, yz_b),
+            self.0.odds(yz, yz_b),
+        ]
+    }
+
+    /// From -0.5 to `most`: half a step beyond the numbers that count, where rounding is no question.
+    #[inline(always)]
+    fn clamped(self, v: R::F, most: f32) -> R::F {
+        self.0
+            .min(self.0.max(v, self.0.splat(-0.5)), self.0.splat(most))
+    }
+
+    /// Distance of the nearer of two to a whole number from 0 to half below `most`.
+    #[inline(always)]
+    fn nearer_whole(self, a: R::F, b: R::F, most: f32) -> R::F {
+        // 1.5 * 2^23: what is added to it loses its fraction.
+        let large = self.0.splat(12_582_912.0);
+        let [a, b] = [a, b].map(|v| {
+            let v = self.clamped(v, most);
+            let whole = self.0.sub(self.0.add(v, large), large);
+            self.0.abs(self.0.sub(v, whole))
+        });
+        self.0.min(a, b)
+    }
+
+    #[inline(always)]
+    fn any_below(self, v: [R::F; 2], limit: f32) -> bool {
+        let least = self.0.min(v[0], v[1]);
+        self.0.any(self.0.lt(least, self.0.splat(limit)))
+    }
+}

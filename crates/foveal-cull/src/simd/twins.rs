@@ -1,0 +1,370 @@
+//! Every method of every instruction set that this machine has, against the portable one, lane by lane.
+
+use super::wide::Wide;
+use super::{InstructionSet, Kernel, Lanes};
+use crate::Aabb;
+use glam::Vec3;
+
+/// Numbers at which instruction sets tend to differ.
+const ODD: [f32; 20] = [
+    0.0,
+    -0.0,
+    0.5,
+    -0.5,
+    1.0,
+    -1.0,
+    7.999_999_5,
+    8.5,
+    31.5,
+    32.0,
+    32.5,
+    1e-40,
+    1e6,
+    2_147_483_500.0,
+    2_147_483_648.0,
+    -2_147_483_648.0,
+    -3e9,
+    f32::INFINITY,
+    f32::NEG_INFINITY,
+    f32::NAN,
+];
+
+struct Random(u64);
+
+impl Random {
+    fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    fn below(&mut self, n: u64) -> u64 {
+        (self.bits() >> 33) % n
+    }
+
+    fn between(&mut self, low: f32, high: f32) -> f32 {
+        low + (high - low) * (self.bits() >> 40) as f32 / (1 << 24) as f32
+    }
+
+    /// One in eight is odd; of the others half lie where coverage is decided.
+    fn float(&mut self) -> f32 {
+        match self.below(8) {
+            0 => ODD[self.below(ODD.len() as u64) as usize],
+            1..4 => self.between(-1e5, 1e5),
+            _ => self.between(-2.0, 35.0),
+        }
+    }
+
+    /// All kinds of bits, and small numbers.
+    fn bits32(&mut self) -> i32 {
+        (self.bits() as i32) >> self.below(32)
+    }
+}
+
+struct Inputs {
+    floats: [[f32; 16]; 2],
+    plain: [[f32; 16]; 2],
+    whole: [[i32; 16]; 2],
+    by: [i32; 16],
+    counts: [i32; 16],
+    doubles: [[f64; 4]; 2],
+    pixels: [[i16; 64]; 2],
+    rows: [[f32; 32]; 2],
+    planes: [[u64; 16]; 2],
+    bits: u64,
+    error: f32,
+    boxes: [Aabb; 16],
+    places: [u8; 8],
+    table: [f32; 256],
+    doubles_table: [f64; 256],
+}
+
+fn array<T, const N: usize>(mut one: impl FnMut() -> T) -> [T; N] {
+    core::array::from_fn(|_| one())
+}
+
+impl Inputs {
+    fn new(seed: u64) -> Self {
+        let mut r = Random(seed);
+        let vec = |r: &mut Random| Vec3::from_array(array(|| r.between(-9.0, 9.0)));
+        // Whether pixels are alike decides what a comparison is worth.
+        let shift = r.below(15);
+        Self {
+            floats: array(|| array(|| r.float())),
+            plain: array(|| array(|| r.between(-100.0, 100.0))),
+            whole: array(|| array(|| r.bits32())),
+            by: array(|| r.below(32) as i32),
+            counts: array(|| (r.below(1 << 24) >> r.below(25)) as i32),
+            doubles: array(|| array(|| f64::from(r.float()) + f64::from(r.float()) * 1e-8)),
+            pixels: array(|| array(|| (r.bits() as i16) >> shift)),
+            rows: array(|| array(|| r.float())),
+            planes: array(|| array(|| r.bits() & r.bits())),
+            bits: r.bits(),
+            error: 10f32.powf(r.between(-6.0, -2.0)),
+            boxes: array(|| Aabb {
+                min: vec(&mut r),
+                max: vec(&mut r),
+            }),
+            places: array(|| r.bits() as u8),
+            table: array(|| r.float()),
+            doubles_table: array(|| f64::from(r.float())),
+        }
+    }
+}
+
+/// What came out, by the method's name.
+type Outputs = Vec<(&'static str, Vec<u64>)>;
+
+struct Eight<'a>(&'a Inputs);
+
+/// There is more than one NaN; which one comes out is left to the CPU.
+fn float(v: f32) -> u64 {
+    u64::from(if v.is_nan() { f32::NAN } else { v }.to_bits())
+}
+
+fn double(v: f64) -> u64 {
+    if v.is_nan() { f64::NAN } else { v }.to_bits()
+}
+
+fn f<L: Lanes>(l: L, v: L::F) -> Vec<u64> {
+    let mut to = [0.0; 8];
+    l.store(v, &mut to);
+    to.map(float).to_vec()
+}
+
+fn i<L: Lanes>(l: L, v: L::I) -> Vec<u64> {
+    let mut to = [0; 8];
+    l.istore(v, &mut to);
+    to.map(|v| v as u64).to_vec()
+}
+
+fn q<L: Lanes>(l: L, v: L::Q) -> Vec<u64> {
+    let mut to = [0.0; 4];
+    l.qstore(v, &mut to);
+    to.map(double).to_vec()
+}
+
+fn d<L: Lanes>(l: L, v: L::D) -> Vec<u64> {
+    let mut to = [0; 64];
+    l.dstore(v, &mut to);
+    to.map(|v| v as u64).to_vec()
+}
+
+fn p<L: Lanes>(l: L, v: L::P) -> Vec<u64> {
+    let mut to = [0; 16];
+    l.pstore(v, &mut to);
+    to.to_vec()
+}
+
+impl Kernel for Eight<'_> {
+    type Output = Outputs;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Outputs {
+        let n = self.0;
+        let [a, b] = n
+            .floats
+            .each_ref()
+            .map(|v| l.load(v.first_chunk().unwrap()));
+        let [x, y] = n
+            .whole
+            .each_ref()
+            .map(|v| l.iload(v.first_chunk().unwrap()));
+        let by = l.iload(n.by.first_chunk().unwrap());
+        let counts = l.iload(n.counts.first_chunk().unwrap());
+        let [s, t] = n.doubles.each_ref().map(|v| l.qload(v));
+        let [g, h] = n.pixels.each_ref().map(|v| l.dload(v));
+        let [u, v] = n.rows.each_ref().map(|v| l.rload(v));
+        let [j, k] = n.planes.each_ref().map(|v| l.pload(v));
+        let [one, two] = [n.floats[0][8], n.plain[0][0]];
+        // Rows are seen only by what is made of them.
+        let seen = |r: L::R| p(l, l.planes(r, l.rsplat(40.0)));
+        let cap = n.pixels[0][0];
+        let mut out: Outputs = vec![
+            ("load", f(l, a)),
+            ("splat", f(l, l.splat(one))),
+            ("add", f(l, l.add(a, b))),
+            ("sub", f(l, l.sub(a, b))),
+            ("mul", f(l, l.mul(a, b))),
+            ("mul, add", f(l, l.add(l.mul(a, b), a))),
+            ("div", f(l, l.div(a, b))),
+            ("min", f(l, l.min(a, b))),
+            ("max", f(l, l.max(a, b))),
+            ("abs", f(l, l.abs(a))),
+            ("lt", i(l, l.lt(a, b))),
+            ("select", f(l, l.select(l.lt(b, a), a, b))),
+            ("trunc", i(l, l.trunc(a))),
+            (
+                "codes",
+                i(l, l.codes(l.load(n.plain[0].first_chunk().unwrap()))),
+            ),
+            ("gather", f(l, l.gather(&n.table, &n.places))),
+            ("isplat", i(l, l.isplat(n.whole[0][8]))),
+            ("iadd", i(l, l.iadd(x, y))),
+            ("isub", i(l, l.isub(x, y))),
+            ("imul", i(l, l.imul(x, y))),
+            ("imin", i(l, l.imin(x, y))),
+            ("imax", i(l, l.imax(x, y))),
+            ("ishr", i(l, l.ishr(x, by))),
+            ("ibits", i(l, l.ibits(counts))),
+            ("iand", i(l, l.iand(x, y))),
+            ("ior", i(l, l.ior(x, y))),
+            ("iandnot", i(l, l.iandnot(x, y))),
+            ("movemask", vec![u64::from(l.movemask(x))]),
+            ("qload", q(l, s)),
+            ("qsplat", q(l, l.qsplat(n.doubles[0][0]))),
+            ("qadd", q(l, l.qadd(s, t))),
+            ("qsub", q(l, l.qsub(s, t))),
+            ("qmul", q(l, l.qmul(s, t))),
+            ("qdiv", q(l, l.qdiv(s, t))),
+            ("qabs", q(l, l.qabs(s))),
+            ("qlt", vec![u64::from(l.qlt(s, t))]),
+            ("qround", l.qround(s).map(float).to_vec()),
+            ("depths", d(l, l.depths(a, two, one, cap))),
+            (
+                "depths of depths",
+                d(l, l.depths(l.abs(b), two * 1e-3, 1e-6, i16::MAX)),
+            ),
+            ("dsplat", d(l, l.dsplat(cap))),
+            ("dmin", d(l, l.dmin(g, h))),
+            ("dmax", d(l, l.dmax(g, h))),
+            ("dgt", vec![l.dgt(g, h)]),
+            ("dapart", vec![l.dapart(g, h, cap)]),
+            ("dselect", d(l, l.dselect(n.bits, g, h))),
+            ("dreduce_min", vec![l.dreduce_min(g) as u64]),
+            ("rload", seen(u)),
+            ("rsplat", seen(l.rsplat(one))),
+            ("rows", seen(l.rows(two * 0.02))),
+            ("radd", seen(l.radd(u, l.rows(two * 0.01)))),
+            ("rmin", seen(l.rmin(u, v))),
+            ("rmax", seen(l.rmax(u, v))),
+            (
+                "rlimit",
+                seen(l.rlimit(u, two * 0.1, n.plain[0][1] * 0.1, n.plain[0][2])),
+            ),
+            ("planes", p(l, l.planes(u, v))),
+            ("runsure", vec![u64::from(l.runsure(u, v, n.error))]),
+            ("unsure", vec![u64::from(l.unsure(a, b, n.error))]),
+            ("plane", vec![l.plane(a, b)]),
+            ("pload", p(l, j)),
+            ("pkeep", p(l, l.pkeep(j, n.bits))),
+            ("por", p(l, l.por(j, k))),
+            ("pall", vec![l.pall(l.por(j, l.pload(&[n.bits; 16])))]),
+            ("pany", vec![l.pany(l.pkeep(j, n.bits & n.bits >> 7))]),
+        ];
+        let boxes = l.turn(n.boxes.first_chunk().unwrap());
+        out.extend(boxes.map(|v| ("turn", f(l, v))));
+        // What these choose has to come from numbers that are known only at run time.
+        let from = n.places.first_chunk::<4>().unwrap();
+        out.push(("qpick", q(l, l.qpick(s, *from))));
+        out.push(("qgather", q(l, l.qgather(&n.doubles_table, *from))));
+        out
+    }
+}
+
+struct Sixteen<'a>(&'a Inputs);
+
+fn halves(v: &[f32; 16]) -> [&[f32; 8]; 2] {
+    [v.first_chunk().unwrap(), v.last_chunk().unwrap()]
+}
+
+impl Kernel for Sixteen<'_> {
+    type Output = Outputs;
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) -> Outputs {
+        let (w, n) = (l.wide(), self.0);
+        let i = |v| {
+            let mut to = [0; 16];
+            w.istore(v, &mut to);
+            to.map(|v| v as u64).to_vec()
+        };
+        let lanes = |v: &[f32; 16]| {
+            let [low, high] = halves(v);
+            w.pair(low, high)
+        };
+        // There is no way to store floats, so they are compared with what they should be.
+        let f = |v, expected: [f32; 16]| {
+            let e = lanes(&expected);
+            let mut seen = i(w.codes(v));
+            seen.extend([w.lt(v, e), w.lt(e, v)].map(u64::from));
+            seen
+        };
+        let all =
+            |one: fn(f32, f32) -> f32| core::array::from_fn(|k| one(n.plain[0][k], n.plain[1][k]));
+        let [a, b] = n.plain.each_ref().map(lanes);
+        let [odd_a, odd_b] = n.floats.each_ref().map(lanes);
+        let [x, y] = n.whole.each_ref().map(|v| w.iload(v));
+        let mut out: Outputs = vec![
+            ("wide splat", f(w.splat(n.plain[0][0]), [n.plain[0][0]; 16])),
+            ("wide pair", f(a, n.plain[0])),
+            ("wide add", f(w.add(a, b), all(|a, b| a + b))),
+            ("wide sub", f(w.sub(a, b), all(|a, b| a - b))),
+            ("wide mul", f(w.mul(a, b), all(|a, b| a * b))),
+            (
+                "wide mul, add",
+                f(w.add(w.mul(a, b), a), all(|a, b| a * b + a)),
+            ),
+            ("wide div", f(w.div(a, b), all(|a, b| a / b))),
+            ("wide min", i(w.codes(w.min(odd_a, odd_b)))),
+            ("wide max", i(w.codes(w.max(odd_a, odd_b)))),
+            ("wide abs", f(w.abs(a), all(|a, _| a.abs()))),
+            ("wide lt", vec![u64::from(w.lt(odd_a, odd_b))]),
+            ("wide trunc", i(w.trunc(odd_a))),
+            ("wide isplat", i(w.isplat(n.whole[0][0]))),
+            ("wide iadd", i(w.iadd(x, y))),
+            ("wide isub", i(w.isub(x, y))),
+            ("wide imul", i(w.imul(x, y))),
+            ("wide imin", i(w.imin(x, y))),
+            ("wide imax", i(w.imax(x, y))),
+            ("wide ishr", i(w.ishr(x, w.iload(&n.by)))),
+            ("wide ibits", i(w.ibits(w.iload(&n.counts)))),
+            ("wide negative", vec![u64::from(w.negative(x))]),
+        ];
+        for (k, v) in w.turn(&n.boxes).into_iter().enumerate() {
+            let coordinate = |b: &Aabb| if k < 3 { b.min[k] } else { b.max[k - 3] };
+            out.push(("wide turn", f(v, n.boxes.each_ref().map(coordinate))));
+        }
+        out
+    }
+}
+
+#[test]
+fn every_instruction_set_gives_the_same_bits_as_the_portable_one() {
+    let mut sure = [0; 2];
+    for seed in 0..3000 {
+        let n = Inputs::new(seed);
+        let portable = InstructionSet::Portable;
+        let expected = [portable.run(Eight(&n)), portable.run(Sixteen(&n))].concat();
+        for (name, value) in &expected {
+            if *name == "runsure" {
+                sure[value[0] as usize] += 1;
+            }
+        }
+        for set in InstructionSet::available().skip(1) {
+            let found = [set.run(Eight(&n)), set.run(Sixteen(&n))].concat();
+            for ((name, found), (_, expected)) in found.iter().zip(&expected) {
+                assert_eq!(found, expected, "{set:?}, {name}, seed {seed}");
+            }
+        }
+    }
+    assert!(sure.iter().all(|n| *n > 100), "{sure:?}");
+}
+
+#[test]
+fn what_the_target_always_has_is_there() {
+    let sets: Vec<InstructionSet> = InstructionSet::available().collect();
+    assert_eq!(sets[0], InstructionSet::Portable);
+    assert_eq!(sets.last(), Some(&InstructionSet::detect()));
+    let of_target = if cfg!(target_arch = "x86_64") {
+        InstructionSet::Sse2
+    } else if cfg!(all(target_arch = "aarch64", target_endian = "little")) {
+        InstructionSet::Neon
+    } else if cfg!(target_feature = "simd128") {
+        InstructionSet::Simd128
+    } else {
+        InstructionSet::Portable
+    };
+    assert!(sets.contains(&of_target), "{sets:?}");
+}
