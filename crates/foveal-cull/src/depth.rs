@@ -16,6 +16,8 @@ pub(crate) const SAMPLES: u32 = 4;
 pub(crate) const BLOCK: u32 = 8;
 /// Samples per block side.
 pub(crate) const BLOCK_SAMPLES: u32 = BLOCK * SAMPLES;
+/// Pixels per block.
+pub(crate) const BLOCK_PIXELS: u32 = BLOCK * BLOCK;
 /// Nothing known: infinitely far.
 pub(crate) const EMPTY: i16 = i16::MIN;
 /// `to_bits(1.0) >> 12`, which becomes the largest code.
@@ -167,10 +169,17 @@ impl DepthBuffer {
 
     /// Code of one pixel.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> i16 {
-        let b = (y / BLOCK * self.blocks_x + x / BLOCK) as usize;
-        let i = (y % BLOCK * BLOCK + x % BLOCK) as usize;
-        let depth = self.depth[b].0[i];
-        if self.state[b] == STATE_EMPTY {
+        let block = y / BLOCK * self.blocks_x + x / BLOCK;
+        self.known((block * BLOCK_PIXELS + y % BLOCK * BLOCK + x % BLOCK) as usize)
+    }
+
+    /// The same by number: block by block, row by row.
+    #[inline(always)]
+    pub(crate) fn known(&self, at: usize) -> i16 {
+        let size = BLOCK_PIXELS as usize;
+        let (block, within) = (at / size, at % size);
+        let depth = self.depth[block].0[within];
+        if self.state[block] == STATE_EMPTY {
             EMPTY
         } else {
             depth

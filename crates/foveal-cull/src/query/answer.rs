@@ -1,7 +1,7 @@
 //! From a projected box to an answer: frustum, size, then the depth buffer; for one eye, two, or a radius.
 
-use super::faces::Planes;
 use super::near::{Clipped, clip_box};
+use super::planes::Planes;
 use super::project::{Boxes8, Coarse, Projected8, ROUNDING, Screen};
 use super::sift::Sieve;
 use super::test::{PixelRect, hidden};
@@ -139,12 +139,6 @@ impl<'a> Query<'a> {
         self.answer_rect(l, rect, code, place)
     }
 
-    /// Whether a code lies before all that is known in a pixel.
-    #[inline(always)]
-    pub(super) fn before(&self, x: i32, y: i32, code: i32) -> bool {
-        code > i32::from(self.buffer.pixel(x as u32, y as u32))
-    }
-
     /// What a first look is taken with, where frustum and summary alone tell what most boxes are.
     #[inline(always)]
     pub(super) fn sieve(&self) -> Option<Sieve<'a>> {
@@ -153,7 +147,7 @@ impl<'a> Query<'a> {
             .flatten()
     }
 
-    /// Answers for a box of which a look at its middle says nothing, in plain frames.
+    /// Answers for a box of which looks at its middle and its corners say nothing, in plain frames.
     #[inline(always)]
     pub(super) fn answer_open<L: Lanes>(
         &self,

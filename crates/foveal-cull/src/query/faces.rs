@@ -4,278 +4,186 @@
 //! at the first of the others. The depth of a plane is affine over the screen, so a bound for all rays through
 //! a pixel, or a whole block, takes a few multiplications; and where a front plane lies behind a back plane
 //! the ray misses the box.
+//!
+//! All this is done for the planes of one box at once, a lane each, so that nothing depends on which of them face the
+//! eye.
 
-use crate::depth::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, encode};
-use crate::query::project::Boxes8;
+use super::planes::{Affine, Planes, ROUNDING};
+use crate::depth::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
 use crate::simd::Lanes;
-use crate::view::Camera;
-use glam::{DMat3, DVec3, Vec3};
+use crate::simd::wide::Wide;
+use crate::simd::{four, smaller, three, two};
+use glam::Vec3;
 
-/// Relative error of a plane's depth, of the largest term; generous.
-const ROUNDING: f32 = 4e-6;
 /// Rays up to one sample beside a sample count as its own, as for rectangles; from the centre of a pixel and of
 /// a block to there, samples.
 const PIXEL_REACH: f32 = 2.5;
 const BLOCK_REACH: f32 = 16.5;
 
-/// A value that is affine over the screen, in samples, and more than its rounding.
-#[derive(Clone, Copy, Debug, Default)]
-struct Affine {
-    x: f32,
-    y: f32,
-    at_zero: f32,
-    error: f32,
-}
+/// Lanes of gaps: front minus back planes, above zero where a ray may meet the box. Number `4 a + 2 b + near` is from the
+/// front across axis `a` to a back across axis `a + 1 + b`: the farther of its two planes, or the nearer one (`near`),
+/// which is a back too where neither faces the eye.
+const GAPS: u32 = 0xfff;
+/// Gaps to nearer planes.
+const NEARER: u32 = 0xaaa;
+/// Lanes of the front planes themselves, by axis.
+const FRONTS: u32 = 7 << FIRST_FRONT;
+const FIRST_FRONT: usize = 12;
 
-impl Affine {
-    /// The largest value around a point.
-    #[inline(always)]
-    fn most(&self, x: f32, y: f32, reach: f32) -> f32 {
-        self.x * x + self.y * y + self.at_zero + (self.x.abs() + self.y.abs()) * reach + self.error
+/// The axis of a lane's front plane, and of its back plane; three for none.
+const AXES: [[usize; 16]; 2] = {
+    let mut axes = [[3; 16]; 2];
+    let mut lane = 0;
+    while lane < FIRST_FRONT {
+        axes[0][lane] = lane / 4;
+        axes[1][lane] = (lane / 4 + 1 + lane / 2 % 2) % 3;
+        lane += 1;
     }
-
-    /// Largest and smallest value around a point.
-    #[inline(always)]
-    fn range(&self, x: f32, y: f32, reach: f32) -> (f32, f32) {
-        let middle = self.x * x + self.y * y + self.at_zero;
-        let reach = (self.x.abs() + self.y.abs()) * reach + self.error;
-        (middle + reach, middle - reach)
+    while lane < FIRST_FRONT + 3 {
+        axes[0][lane] = lane - FIRST_FRONT;
+        lane += 1;
     }
+    axes
+};
 
-    #[inline(always)]
-    fn minus(&self, other: &Self) -> Self {
-        Self {
-            x: self.x - other.x,
-            y: self.y - other.y,
-            at_zero: self.at_zero - other.at_zero,
-            error: self.error + other.error,
+/// By front or back and axis: one in the lanes that have it.
+const OF_AXIS: [[[f32; 16]; 3]; 2] = {
+    let mut of = [[[0.0; 16]; 3]; 2];
+    let mut n = 0;
+    while n < 2 * 16 {
+        let axis = AXES[n / 16][n % 16];
+        if axis < 3 {
+            of[n / 16][axis][n % 16] = 1.0;
         }
+        n += 1;
     }
-}
+    of
+};
 
-/// How planes across the world's axes lie on the screen.
+/// What the planes of all boxes of a query have in common, by lane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Planes {
-    /// Per axis: depth of the plane at 1 m (perspective), or at 0 m from the eye.
-    axes: [Affine; 3],
-    /// Orthographic: change of depth per metre; perspective views divide by the metres.
-    per_metre: Option<[f32; 3]>,
-    /// From the eye to the boxes' origin, metres.
-    from_eye: Vec3,
+pub(crate) struct PlaneLanes {
+    /// Of front and back: change to the right and downwards, depth at zero, and error.
+    affine: [[[f32; 16]; 4]; 2],
+    parallel: Option<Parallel>,
 }
 
-impl Planes {
-    /// `None` for a view that cannot be turned round.
-    pub(crate) fn new(camera: &Camera, origin: DVec3, width: f32, height: f32) -> Option<Self> {
-        let [x, y, z, w] = camera.rows;
-        let last = if camera.orthographic {
-            camera.forward
-        } else {
-            w.truncate()
-        };
-        // Rows X, Y, and distance; the inverse takes (x, y, distance) to a point relative to the eye.
-        let inverse = DMat3::from_cols(x.truncate(), y.truncate(), last)
-            .transpose()
-            .inverse();
-        if !inverse.is_finite() {
-            return None;
-        }
-        let affine = |at: DVec3| {
-            let terms = at.x.abs() * f64::from(width) + at.y.abs() * f64::from(height) + at.z.abs();
-            Affine {
-                x: at.x as f32,
-                y: at.y as f32,
-                at_zero: at.z as f32,
-                error: ROUNDING * terms as f32,
-            }
-        };
-        let from_eye = (origin - camera.eye).as_vec3();
-        let rows = [0, 1, 2].map(|axis| inverse.row(axis));
-        if !camera.orthographic {
-            return Some(Self {
-                axes: rows.map(|r| affine(r * camera.near)),
-                per_metre: None,
-                from_eye,
-            });
-        }
-        // A point is at (x - X.w, y - Y.w) on the screen and at distance t: p = a (x - X.w) + b (y - Y.w) + f t.
-        // At p = k, t = (k - a (x - X.w) - b (y - Y.w)) / f, and the depth falls by `fall` per metre of t.
-        let fall = z.truncate().dot(camera.forward);
-        let per_metre = rows.map(|r| {
-            if r.z.abs() < 1e-5 {
-                f64::NAN
-            } else {
-                fall / r.z
-            }
-        });
-        let axes = [0, 1, 2].map(|axis| {
-            let (r, k) = (rows[axis], per_metre[axis]);
-            let shift = r.x * x.w + r.y * y.w;
-            affine(DVec3::new(-r.x * k, -r.y * k, shift * k + z.w))
-        });
-        Some(Self {
-            axes,
-            per_metre: Some(per_metre.map(|v| v as f32)),
-            from_eye,
-        })
-    }
+/// The same for orthographic views, where the way to the box does not say which of its planes face the eye.
+#[derive(Clone, Copy, Debug)]
+struct Parallel {
+    /// Change of depth per metre, of front and back.
+    per_metre: [[f32; 16]; 2],
+    /// Bit per lane: of the front's and of the back's axis, the upper plane faces the eye.
+    down: [u32; 2],
+    /// Bit per lane: its planes are known.
+    known: u32,
+}
 
-    /// Code of the depth where the ray through (x, y) enters a box; the lowest where it does not. Neither rounded up
-    /// nor down: enough to call a box visible, which is never wrong.
-    #[inline(always)]
-    pub(crate) fn entry(&self, x: f32, y: f32, center: Vec3, half: Vec3) -> i16 {
-        let center = center + self.from_eye;
-        // Distances along the ray in units that grow with distance, from the last front to the first back plane.
-        let (mut enter, mut leave) = (0.0f32, f32::INFINITY);
-        for axis in 0..3 {
-            let a = &self.axes[axis];
-            let depth = a.x * x + a.y * y + a.at_zero;
-            let (lo, hi) = (center[axis] - half[axis], center[axis] + half[axis]);
-            let (lo, hi) = match self.per_metre {
-                None => {
-                    let per_depth = 1.0 / depth;
-                    (lo * per_depth, hi * per_depth)
-                }
-                Some(k) if k[axis].is_nan() => continue,
-                Some(k) => (1.0 - (depth + k[axis] * lo), 1.0 - (depth + k[axis] * hi)),
+impl PlaneLanes {
+    pub(super) fn new(axes: &[Affine; 3], per_metre: Option<[f32; 3]>) -> Self {
+        let affine = AXES.map(|of| {
+            let of = of.map(|axis| axes.get(axis).copied().unwrap_or_default());
+            [
+                of.map(|a| a.x),
+                of.map(|a| a.y),
+                of.map(|a| a.at_zero),
+                of.map(|a| a.error),
+            ]
+        });
+        let parallel = per_metre.map(|per_metre| {
+            let per_metre =
+                AXES.map(|of| of.map(|axis| per_metre.get(axis).copied().unwrap_or(0.0)));
+            let bits = |of: &[f32; 16], is: fn(f32) -> bool| {
+                (0..16).fold(0, |bits, n| bits | u32::from(is(of[n])) << n)
             };
-            enter = enter.max(lo.min(hi));
-            leave = leave.min(lo.max(hi));
-        }
-        if enter >= leave {
-            return EMPTY;
-        }
-        encode(match self.per_metre {
-            None => 1.0 / enter,
-            Some(_) => 1.0 - enter,
-        })
-    }
-
-    /// The same for eight boxes in perspective views, each at its own pixel.
-    #[inline(always)]
-    pub(crate) fn entries<L: Lanes>(
-        &self,
-        l: L,
-        pixels: [&[i32; 8]; 2],
-        boxes: &Boxes8,
-    ) -> Option<[i32; 8]> {
-        if self.per_metre.is_some() {
-            return None;
-        }
-        let [x, y] = pixels.map(|v| l.load(&v.map(|v| (v as f32 + 0.5) * SAMPLES as f32)));
-        let (one, mut enter, mut leave) = (l.splat(1.0), l.splat(0.0), l.splat(f32::INFINITY));
-        for (axis, a) in self.axes.iter().enumerate() {
-            let depth = l.add(
-                l.add(l.mul(l.splat(a.x), x), l.mul(l.splat(a.y), y)),
-                l.splat(a.at_zero),
-            );
-            let per_depth = l.div(one, depth);
-            let center = l.add(l.load(&boxes.center[axis]), l.splat(self.from_eye[axis]));
-            let half = l.load(&boxes.half[axis]);
-            let (lo, hi) = (
-                l.mul(l.sub(center, half), per_depth),
-                l.mul(l.add(center, half), per_depth),
-            );
-            enter = l.max(enter, l.min(lo, hi));
-            leave = l.min(leave, l.max(lo, hi));
-        }
-        let depth = l.select(l.lt(enter, leave), l.div(one, enter), l.splat(0.0));
-        let mut codes = [0; 8];
-        l.istore(l.codes(depth), &mut codes);
-        Some(codes)
-    }
-
-    #[inline(always)]
-    fn plane(&self, axis: usize, k: f32) -> Affine {
-        let a = self.axes[axis];
-        match self.per_metre {
-            None => {
-                let u = 1.0 / k;
-                Affine {
-                    x: a.x * u,
-                    y: a.y * u,
-                    at_zero: a.at_zero * u,
-                    error: a.error * u.abs(),
-                }
+            Parallel {
+                // Depth falls with distance.
+                down: per_metre
+                    .each_ref()
+                    .map(|of| bits(of, f32::is_sign_positive)),
+                known: !per_metre
+                    .each_ref()
+                    .map(|of| bits(of, f32::is_nan))
+                    .into_iter()
+                    .fold(0, |a, b| a | b),
+                per_metre,
             }
-            Some(per_metre) => {
-                let v = per_metre[axis] * k;
-                Affine {
-                    at_zero: a.at_zero + v,
-                    error: a.error + ROUNDING * v.abs(),
-                    ..a
-                }
-            }
-        }
+        });
+        Self { affine, parallel }
     }
 }
 
 /// The planes of one box.
-pub(crate) struct Faces {
-    front: [Affine; 3],
-    fronts: usize,
-    /// Front minus back planes: above zero where a ray may meet the box.
-    gaps: [Affine; 9],
-    gap_count: usize,
+pub(crate) struct Faces<W: Wide> {
+    /// Change to the right and downwards, depth at zero, and more than its rounding.
+    x: W::F,
+    y: W::F,
+    at_zero: W::F,
+    error: W::F,
+    /// Change to the right and downwards together, without signs.
+    slope: W::F,
+    /// Bit per lane of a front plane.
+    fronts: u32,
 }
 
-impl Faces {
+impl<W: Wide> Faces<W> {
     /// `None` if the eye may be inside. `center` and `half` relative to the boxes' origin, grown for rounding.
     #[inline(always)]
-    pub(crate) fn new(planes: &Planes, center: Vec3, half: Vec3) -> Option<Self> {
+    pub(crate) fn new(w: W, planes: &Planes, center: Vec3, half: Vec3) -> Option<Self> {
         let center = center + planes.from_eye;
-        let (lo, hi) = (center - half, center + half);
-        let mut faces = Self {
-            front: [Affine::default(); 3],
-            fronts: 0,
-            gaps: [Affine::default(); 9],
-            gap_count: 0,
+        let ends = [center - half, center + half];
+        let [[lo, hi], [back_lo, back_hi]] = two!(n => two!(k => by_axis(w, ends[k], &OF_AXIS[n])));
+        let PlaneLanes { affine, parallel } = &planes.lanes;
+        let [front, back] = two!(n => four!(k => w.load(&affine[n][k])));
+        let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        let (down, facing, known) = match parallel {
+            None => {
+                let down = [w.lt(hi, zero), w.lt(back_hi, zero)];
+                let up = [w.lt(zero, lo), w.lt(zero, back_lo)];
+                (down, two!(k => down[k] | up[k]), !0)
+            }
+            Some(p) => (p.down, [!0; 2], p.known),
         };
-        let mut back = [(Affine::default(), 0); 6];
-        let mut front_axes = [0; 3];
-        let mut backs = 0;
-        for axis in 0..3 {
-            // Which of the two planes faces the eye: the lower one (1), the upper one (-1) or none.
-            let facing = match planes.per_metre {
-                None if lo[axis] > 0.0 => 1.0,
-                None if hi[axis] < 0.0 => -1.0,
-                None => 0.0,
-                // Depth falls with distance.
-                Some(per_metre) if per_metre[axis].is_nan() => continue,
-                Some(per_metre) => -per_metre[axis].signum(),
-            };
-            let ends = [lo[axis], hi[axis]].map(|k| planes.plane(axis, k));
-            let [near, far] = if facing < 0.0 {
-                [ends[1], ends[0]]
-            } else {
-                ends
-            };
-            if facing != 0.0 {
-                faces.front[faces.fronts] = near;
-                front_axes[faces.fronts] = axis;
-                faces.fronts += 1;
-            } else {
-                back[backs] = (near, axis);
-                backs += 1;
+        let fronts = facing[0] & known & FRONTS;
+        let gaps = facing[0] & !(facing[1] & NEARER) & known & GAPS;
+        let near = w.select(down[0], hi, lo);
+        let far = w.select(down[1] ^ NEARER, back_lo, back_hi);
+        let (at, errors) = match parallel {
+            None => {
+                let (u, v) = (w.div(one, near), w.select(GAPS, w.div(one, far), zero));
+                let at = three!(k => w.sub(w.mul(front[k], u), w.mul(back[k], v)));
+                (at, [w.mul(front[3], w.abs(u)), w.mul(back[3], w.abs(v))])
             }
-            back[backs] = (far, axis);
-            backs += 1;
-        }
-        for (front, front_axis) in faces.front[..faces.fronts].iter().zip(front_axes) {
-            for (plane, axis) in &back[..backs] {
-                let gap = front.minus(plane);
-                if *axis != front_axis && gap.at_zero.is_finite() && faces.gap_count < 9 {
-                    faces.gaps[faces.gap_count] = gap;
-                    faces.gap_count += 1;
-                }
+            Some(p) => {
+                let u = w.mul(w.load(&p.per_metre[0]), near);
+                let v = w.mul(w.load(&p.per_metre[1]), far);
+                let at_zero = w.sub(w.add(front[2], u), w.add(back[2], v));
+                let rounding = w.splat(ROUNDING);
+                (
+                    [w.sub(front[0], back[0]), w.sub(front[1], back[1]), at_zero],
+                    [
+                        w.add(front[3], w.mul(rounding, w.abs(u))),
+                        w.add(back[3], w.mul(rounding, w.abs(v))),
+                    ],
+                )
             }
-        }
-        (faces.fronts > 0).then_some(faces)
+        };
+        let endless = w.splat(f32::INFINITY);
+        let gaps = gaps & w.lt(w.abs(at[2]), endless);
+        (fronts != 0).then_some(Self {
+            x: at[0],
+            y: at[1],
+            // What is no plane of this box is never in the way.
+            at_zero: w.select(gaps | fronts, at[2], endless),
+            error: w.add(errors[0], errors[1]),
+            slope: w.add(w.abs(at[0]), w.abs(at[1])),
+            fronts,
+        })
     }
 
     /// Whether the box may be seen in any of the pixels `seen` of a block.
     #[inline(always)]
-    pub(crate) fn seen<L: Lanes>(
+    pub(crate) fn seen<L: Lanes<W = W>>(
         &self,
         l: L,
         bx: u32,
@@ -284,55 +192,166 @@ impl Faces {
         min: i16,
         depth: L::D,
     ) -> bool {
+        let w = l.wide();
         let half = BLOCK_SAMPLES as f32 * 0.5;
         let (x, y) = (
             (bx * BLOCK_SAMPLES) as f32 + half,
             (by * BLOCK_SAMPLES) as f32 + half,
         );
-        let (fronts, gaps) = (&self.front[..self.fronts], &self.gaps[..self.gap_count]);
-        let mut open = 0u32;
-        for (i, g) in gaps.iter().enumerate() {
-            let (most, least) = g.range(x, y, BLOCK_REACH);
-            if most < 0.0 {
-                return false;
-            }
-            open |= u32::from(least < 0.0) << i;
-        }
-        let mut nearest = f32::INFINITY;
-        for f in fronts {
-            nearest = nearest.min(f.range(x, y, BLOCK_REACH).0);
-        }
-        if encode(nearest) < min {
+        let middle = self.at(w, x, y);
+        let reach = w.add(w.mul(self.slope, w.splat(BLOCK_REACH)), self.error);
+        let (most, least) = (w.add(middle, reach), w.sub(middle, reach));
+        let zero = w.splat(0.0);
+        let missed = w.lt(most, zero) & GAPS;
+        let mut values = [0.0; 16];
+        w.store(most, &mut values);
+        // What is NaN says nothing.
+        let [a, b, c] = three!(k => values[FIRST_FRONT + k]);
+        let nearest = smaller(c, smaller(b, smaller(a, f32::INFINITY)));
+        if (missed != 0) | (encode(nearest) < min) {
             return false;
         }
         // Pixel by pixel, from the middle of the first one; only with planes that matter in this block.
+        let mut open = w.lt(least, zero) & GAPS;
+        let mut fronts =
+            self.fronts & !w.lt(w.splat(nearest), least) & w.lt(least, w.splat(f32::INFINITY));
         let pixel = SAMPLES as f32;
-        let (px, py) = (x - half + 0.5 * pixel, y - half + 0.5 * pixel);
+        let first = self.at(w, x - half + 0.5 * pixel, y - half + 0.5 * pixel);
+        let first = w.add(
+            w.add(first, w.mul(self.slope, w.splat(PIXEL_REACH))),
+            self.error,
+        );
+        w.store(first, &mut values);
+        let (mut right, mut down) = ([0.0; 16], [0.0; 16]);
+        w.store(w.mul(self.x, w.splat(pixel)), &mut right);
+        w.store(w.mul(self.y, w.splat(pixel)), &mut down);
         let mut seen = seen;
-        for f in fronts {
-            if f.range(x, y, BLOCK_REACH).1 <= nearest {
-                seen &= !l.dgt(depth, block_codes(l, f, px, py, 1.0));
-            }
+        while fronts != 0 {
+            let i = fronts.trailing_zeros() as usize % 16;
+            fronts &= fronts - 1;
+            seen &= !l.dgt(depth, block_codes(l, values[i], right[i], down[i], 1.0));
         }
         while open != 0 && seen != 0 {
-            let g = &gaps[open.trailing_zeros() as usize];
+            let i = open.trailing_zeros() as usize % 16;
             open &= open - 1;
             // Only the sign counts; scaled, so that nothing above zero becomes the lowest code.
-            seen &= l.dgt(block_codes(l, g, px, py, 1e6), l.dsplat(i16::MIN));
+            let codes = block_codes(l, values[i], right[i], down[i], 1e6);
+            seen &= l.dgt(codes, l.dsplat(i16::MIN));
         }
         seen != 0
     }
+
+    /// The values at a point, rounded.
+    #[inline(always)]
+    fn at(&self, w: W, x: f32, y: f32) -> W::F {
+        let slopes = w.add(w.mul(self.x, w.splat(x)), w.mul(self.y, w.splat(y)));
+        w.add(slopes, self.at_zero)
+    }
 }
 
-/// Codes of the largest value in each pixel, times `scale`; (x, y) is the middle of the first pixel.
+/// By lane, the component of the axis that it has.
 #[inline(always)]
-fn block_codes<L: Lanes>(l: L, a: &Affine, x: f32, y: f32, scale: f32) -> L::D {
+fn by_axis<W: Wide>(w: W, v: Vec3, of: &[[f32; 16]; 3]) -> W::F {
+    let [x, y, z] = three!(k => w.mul(w.splat(v[k]), w.load(&of[k])));
+    w.add(w.add(x, y), z)
+}
+
+/// Codes of the pixels of a block, from the largest value in the first one and its change from pixel to pixel, times
+/// `scale`.
+#[inline(always)]
+fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) -> L::D {
     const COLUMNS: [f32; BLOCK as usize] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let pixel = SAMPLES as f32;
-    let first = a.most(x, y, PIXEL_REACH) * scale;
     let columns = l.add(
-        l.splat(first),
-        l.mul(l.load(&COLUMNS), l.splat(a.x * pixel * scale)),
+        l.splat(first * scale),
+        l.mul(l.load(&COLUMNS), l.splat(right * scale)),
     );
-    l.depths(columns, a.y * pixel * scale, 0.0, i16::MAX)
+    l.depths(columns, down * scale, 0.0, i16::MAX)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InstructionSet;
+    use crate::depth::EMPTY;
+    use crate::simd::Kernel;
+    use crate::view::Camera;
+    use crate::{Eye, Projection, View};
+    use glam::DVec3;
+
+    /// One pixel, of a block of the same depth everywhere.
+    struct Seen<'a>(&'a Planes, (Vec3, Vec3), [u32; 2], i16);
+
+    impl Kernel for Seen<'_> {
+        type Output = Option<bool>;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Option<bool> {
+            let Self(planes, (center, half), [x, y], code) = self;
+            let faces = Faces::new(l.wide(), planes, center, half)?;
+            let bit = 1 << (y % BLOCK * BLOCK + x % BLOCK);
+            Some(faces.seen(l, x / BLOCK, y / BLOCK, bit, code, l.dsplat(code)))
+        }
+    }
+
+    #[test]
+    fn a_box_is_seen_where_rays_enter_it_and_hardly_elsewhere() {
+        let (width, height) = (160.0, 96.0);
+        let mut seed = 1u32;
+        let mut random = move |lo: f32, hi: f32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            lo + (hi - lo) * (seed >> 8) as f32 / (1 << 24) as f32
+        };
+        for projection in [
+            Projection::perspective(1.0, width / height, 0.1, f64::INFINITY),
+            Projection::orthographic(20.0, width / height, 0.1, 100.0),
+        ] {
+            let position = DVec3::new(3.0, 4.0, 12.0);
+            let eye = Eye::look_at(position, DVec3::new(0.4, 0.3, 0.0), DVec3::Y, projection);
+            let samples = f64::from(SAMPLES);
+            let camera = Camera::new(&View::mono(eye), width * samples, height * samples).unwrap();
+            let [w, h] = [width, height].map(|v| (v * samples) as f32);
+            let planes = Planes::new(&camera, DVec3::ZERO, w, h).unwrap();
+            let (mut entered, mut loose) = (0, 0);
+            for _ in 0..6000 {
+                let center = Vec3::from_array([0; 3].map(|_| random(-3.0, 3.0)));
+                let half = Vec3::from_array([0; 3].map(|_| random(0.3, 4.0)));
+                let pixel = [random(0.0, 160.0) as u32, random(0.0, 96.0) as u32];
+                let nearest = |reach: f32| {
+                    let steps = (-6..=6).map(|k| k as f32 / 6.0 * reach);
+                    let [x, y] = pixel.map(|v| (v as f32 + 0.5) * SAMPLES as f32);
+                    steps
+                        .clone()
+                        .flat_map(|dy| steps.clone().map(move |dx| (x + dx, y + dy)))
+                        .map(|(x, y)| planes.entry(x, y, center, half))
+                        .max()
+                };
+                let Some((inside, around)) =
+                    nearest(0.99 * PIXEL_REACH).zip(nearest(1.2 * PIXEL_REACH))
+                else {
+                    continue;
+                };
+                // Just hidden by it, were it not for the rays.
+                let code = if inside == EMPTY { EMPTY } else { inside - 1 };
+                let ask =
+                    |set: InstructionSet, code| set.run(Seen(&planes, (center, half), pixel, code));
+                let seen = ask(InstructionSet::detect(), code);
+                assert_eq!(seen, ask(InstructionSet::Portable, code));
+                assert_eq!(seen, ask(InstructionSet::Sse2, code));
+                assert_eq!(seen, ask(InstructionSet::Avx2, code));
+                assert!(seen.is_some(), "the eye is outside");
+                if inside > EMPTY {
+                    entered += 1;
+                    assert_eq!(seen, Some(true), "{center} {half} {pixel:?}");
+                }
+                // Nearer than all of it, or beside it.
+                let nearer = if around == EMPTY { EMPTY } else { around + 6 };
+                if ask(InstructionSet::detect(), nearer) == Some(true) {
+                    loose += 1;
+                }
+            }
+            assert!(entered > 200, "too few rays enter: {entered}");
+            // Each plane may be nearest in another corner of the pixel.
+            assert!(loose < 60, "too many pixels without a ray: {loose}");
+        }
+    }
 }

@@ -6,8 +6,9 @@
 
 use super::answer::Query;
 use super::list::List;
-use super::project::{Boxes8, Projected8, middles as middles_of, project};
-use super::sift::{Sieve, Sifted16};
+use super::points::Corners8;
+use super::project::{Boxes8, Projected8, outline, project};
+use super::sift::{Middles16, Sieve, Sifted16};
 use crate::simd::{Kernel, Lanes};
 use crate::{Aabb, Visibility};
 
@@ -40,11 +41,12 @@ struct Work {
     boxes: [Aabb; BOXES],
     results: [Visibility; BOXES],
     sifted: [Sifted16; BOXES / 16],
+    middles: [Middles16; BOXES / 16],
     left: List,
     open: List,
     copies: [[Aabb; 8]; GROUPS],
     eights: [Boxes8; GROUPS],
-    middles: [[[i32; 8]; 3]; GROUPS],
+    corners: [Corners8; GROUPS],
     projected: [Projected8; GROUPS],
 }
 
@@ -53,11 +55,12 @@ impl Work {
         boxes: [Aabb::EMPTY; BOXES],
         results: [Visibility::Visible; BOXES],
         sifted: [Sifted16::NONE; BOXES / 16],
+        middles: [Middles16::NONE; BOXES / 16],
         left: List::NONE,
         open: List::NONE,
         copies: [[Aabb::EMPTY; 8]; GROUPS],
         eights: [Boxes8::NONE; GROUPS],
-        middles: [[[0; 8]; 3]; GROUPS],
+        corners: [Corners8::NONE; GROUPS],
         projected: [Projected8::NONE; GROUPS],
     };
 }
@@ -86,7 +89,7 @@ impl Query<'_> {
         if let Some(sieve) = sieve {
             sift_all(l, sieve, count, work);
             work.left.end(count);
-            self.keep_open(l, work);
+            self.keep_open(work);
         } else {
             (0..count).for_each(|n| work.left.add(n, true));
         }
@@ -94,23 +97,23 @@ impl Query<'_> {
         let list = work.left.numbers();
         let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
         let projected = &mut work.projected[..groups];
-        for (p, eight) in projected.iter_mut().zip(&work.eights) {
-            *p = project(l, &self.screen, eight);
+        for ((p, eight), corners) in projected
+            .iter_mut()
+            .zip(&work.eights)
+            .zip(&mut work.corners)
+        {
+            *p = if sieve.is_some() {
+                outline(l, &self.screen, eight, Some(corners))
+            } else {
+                project(l, &self.screen, eight)
+            };
         }
         work.open.count = 0;
-        for (g, (p, eight)) in projected.iter().zip(&work.eights).enumerate() {
-            // Where the rays through their middles enter them.
-            let [x, y, _] = &p.middle;
-            let planes = self.planes.as_ref().filter(|_| sieve.is_some());
-            let entries = planes.and_then(|planes| planes.entries(l, [x, y], eight));
+        for (g, p) in projected.iter().enumerate() {
             let told = p.outside | p.hidden;
-            // A ray may enter what crosses the near plane before that.
-            let beyond = !p.crossing;
             for (i, n) in list[8 * g..].iter().take(8).enumerate() {
                 let outside = p.outside >> i & 1 != 0;
                 let told = told >> i & 1 != 0;
-                let seen = (beyond >> i & 1 != 0)
-                    & entries.is_some_and(|codes| self.before(x[i], y[i], codes[i]));
                 work.results[usize::from(*n)] = if outside {
                     Visibility::Outside
                 } else if told {
@@ -118,8 +121,11 @@ impl Query<'_> {
                 } else {
                     Visibility::Visible
                 };
-                work.open.add(8 * g + i, sieve.is_none() | !(told | seen));
+                work.open.add(8 * g + i, sieve.is_none() | !told);
             }
+        }
+        if sieve.is_some() {
+            self.keep_cornerless(&mut work.open, projected, &work.corners);
         }
         for &k in work.open.numbers() {
             let (g, i) = (usize::from(k) / 8, usize::from(k) % 8);
@@ -133,21 +139,34 @@ impl Query<'_> {
         }
     }
 
+    /// Of the boxes that are open then, most that can be seen are seen at a corner. Lists the others.
+    #[inline(always)]
+    pub(super) fn keep_cornerless(
+        &self,
+        open: &mut List,
+        projected: &[Projected8],
+        corners: &[Corners8],
+    ) {
+        for n in 0..core::mem::take(&mut open.count) {
+            // What is kept goes no further back than where it was read.
+            let k = usize::from(open.number(n));
+            let (g, i) = (k / 8, k % 8);
+            let beyond = projected[g].crossing >> i & 1 == 0;
+            let seen = beyond & self.corner_seen(&corners[g], i);
+            open.add(k, !seen);
+        }
+    }
+
     /// Of the boxes that are left most are simply seen, in the middle. Lists the others.
     #[inline(always)]
-    fn keep_open<L: Lanes>(&self, l: L, work: &mut Work) {
-        let list = work.left.numbers();
-        let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
-        let middles = &mut work.middles[..groups];
-        for (middle, eight) in middles.iter_mut().zip(&work.eights) {
-            *middle = middles_of(l, &self.screen, eight);
-        }
+    fn keep_open(&self, work: &mut Work) {
         work.open.count = 0;
-        for (k, n) in list.iter().enumerate() {
-            let ([x, y, code], i) = (&middles[k / 8], k % 8);
-            work.results[usize::from(*n)] = Visibility::Visible;
+        for &n in work.left.numbers() {
+            let n = usize::from(n);
+            let (middles, i) = (&work.middles[n / 16], n % 16);
+            work.results[n] = Visibility::Visible;
             work.open
-                .add(usize::from(*n), !self.before(x[i], y[i], code[i]));
+                .add(n, !self.before(middles.at[i], middles.code[i]));
         }
         core::mem::swap(&mut work.left, &mut work.open);
     }
@@ -180,8 +199,8 @@ fn sift_all<L: Lanes>(l: L, sieve: &Sieve<'_>, count: usize, work: &mut Work) {
     let (results, _) = work.results.as_chunks_mut::<8>();
     let (results, _) = results.as_chunks_mut::<2>();
     let sifted = &mut work.sifted[..count.div_ceil(16)];
-    for (sifted, boxes) in sifted.iter_mut().zip(boxes) {
-        *sifted = sieve.sift(w, boxes);
+    for ((sifted, middles), boxes) in sifted.iter_mut().zip(&mut work.middles).zip(boxes) {
+        (*sifted, *middles) = sieve.sift(w, boxes);
     }
     for sifted in &mut *sifted {
         sifted.look_up(sieve.coarse);

@@ -39,6 +39,12 @@ impl List {
         &self.numbers[..self.count]
     }
 
+    /// Number `n`, which may have been dropped since.
+    #[inline(always)]
+    pub(super) fn number(&self, n: usize) -> u8 {
+        self.numbers[n]
+    }
+
     /// Adds those of group `g` whose bit is set.
     #[inline(always)]
     pub(super) fn add_eight(&mut self, g: usize, wanted: usize) {

@@ -5,6 +5,8 @@ pub(crate) mod faces;
 pub(crate) mod flat;
 pub(crate) mod list;
 pub(crate) mod near;
+pub(crate) mod planes;
+pub(crate) mod points;
 pub(crate) mod project;
 pub(crate) mod sift;
 pub(crate) mod test;

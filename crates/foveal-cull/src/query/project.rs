@@ -1,5 +1,6 @@
 //! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
 
+use super::points::{Corners8, pixel_of};
 use crate::Aabb;
 use crate::depth::{BLOCK, DepthBuffer, EMPTY, SAMPLES};
 use crate::simd::{Lanes, four};
@@ -191,8 +192,24 @@ impl<'a> Coarse<'a> {
     }
 }
 
+/// With the middle.
 #[inline(always)]
 pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Projected8 {
+    let mut p = outline(l, s, boxes, None);
+    if s.coarse.is_some() {
+        p.middle = middles(l, s, boxes);
+    }
+    p
+}
+
+/// All but the middle; and where the screen knows its depths, corners if they are asked for.
+#[inline(always)]
+pub(super) fn outline<L: Lanes>(
+    l: L,
+    s: &Screen<'_>,
+    boxes: &Boxes8,
+    corners_of: Option<&mut Corners8>,
+) -> Projected8 {
     let c = [
         l.load(&boxes.center[0]),
         l.load(&boxes.center[1]),
@@ -220,16 +237,12 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Project
     let one = l.splat(1.0);
     let low = four!(k => l.div(one, l.sub(wq[k], wz)));
     let high = four!(k => l.div(one, l.add(wq[k], wz)));
-    let (x0, x1) = extent(
-        l,
-        four!(k => l.mul(l.sub(xq[k], xz), low[k])),
-        four!(k => l.mul(l.add(xq[k], xz), high[k])),
-    );
-    let (y0, y1) = extent(
-        l,
-        four!(k => l.mul(l.sub(yq[k], yz), low[k])),
-        four!(k => l.mul(l.add(yq[k], yz), high[k])),
-    );
+    let x_low = four!(k => l.mul(l.sub(xq[k], xz), low[k]));
+    let x_high = four!(k => l.mul(l.add(xq[k], xz), high[k]));
+    let y_low = four!(k => l.mul(l.sub(yq[k], yz), low[k]));
+    let y_high = four!(k => l.mul(l.add(yq[k], yz), high[k]));
+    let (x0, x1) = extent(l, x_low, x_high);
+    let (y0, y1) = extent(l, y_low, y_high);
     let dilate = l.splat(s.dilate);
     let (x0, y0) = (l.sub(x0, dilate), l.sub(y0, dilate));
     let (x1, y1) = (l.add(x1, dilate), l.add(y1, dilate));
@@ -264,13 +277,33 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Project
         return p;
     };
     p.hidden = coarse.hides(l, clamped, &p.code) & l.movemask(beyond) & !p.outside;
-    p.middle = middles(l, s, boxes);
+    if let Some(corners_of) = corners_of {
+        let (zq, zz) = corners(l, &c, &h, &s.rows[2]);
+        let z_low = four!(k => l.mul(l.sub(zq[k], zz), low[k]));
+        let z_high = four!(k => l.mul(l.add(zq[k], zz), high[k]));
+        let sides = [[x_low, y_low, z_low], [x_high, y_high, z_high]];
+        for (side, [x, y, z]) in sides.into_iter().enumerate() {
+            for k in 0..4 {
+                let (x, y) = (l.mul(x[k], pixel), l.mul(y[k], pixel));
+                let beside = l.ior(
+                    l.ior(l.lt(x, zero), l.lt(l.add(right, one), x)),
+                    l.ior(l.lt(y, zero), l.lt(l.add(bottom, one), y)),
+                );
+                let z = l.select(beside, zero, l.max(z[k], zero));
+                let x = l.trunc(l.min(l.max(x, zero), right));
+                let y = l.trunc(l.min(l.max(y, zero), bottom));
+                let at = pixel_of!(l, coarse.buffer, x, y);
+                l.istore(at, &mut corners_of.at[4 * side + k]);
+                l.istore(l.codes(z), &mut corners_of.code[4 * side + k]);
+            }
+        }
+    }
     p
 }
 
 /// The pixel that each box's middle lies in, and the code of its depth; a very low one where that is not on the screen.
 #[inline(always)]
-pub(super) fn middles<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
+fn middles<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
     let c = [
         l.load(&boxes.center[0]),
         l.load(&boxes.center[1]),

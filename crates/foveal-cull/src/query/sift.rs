@@ -4,11 +4,12 @@
 //! distances of its nearest and its farthest point: two divisions, and most boxes are told from that. What it hides,
 //! the exact rectangle would be hidden by too; the others are projected anew.
 
+use super::points::pixel_of;
 use super::project::{Boxes8, Coarse, ROUNDING, Screen};
 use crate::Aabb;
 use crate::depth::{BLOCK, BLOCK_SAMPLES};
 use crate::simd::wide::Wide;
-use crate::simd::{four, three};
+use crate::simd::{four, three, two};
 use crate::summary::place_of;
 
 /// What boxes are sifted with.
@@ -38,14 +39,31 @@ pub(crate) struct Sifted16 {
     beyond: u32,
 }
 
+/// The middles of sixteen boxes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub(crate) struct Middles16 {
+    /// The number of the pixel that a middle lies in.
+    pub(crate) at: [i32; 16],
+    /// The code of its depth; a very low one beside the screen.
+    pub(crate) code: [i32; 16],
+    /// Bit per box: its middle is on the screen.
+    pub(crate) on: u32,
+}
+
+impl Middles16 {
+    pub(crate) const NONE: Self = Self {
+        at: [0; 16],
+        code: [0; 16],
+        on: 0,
+    };
+}
+
 /// What is known of the children of two nodes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Looked16 {
     pub(crate) sifted: Sifted16,
-    /// The pixel that a box's middle lies in, and the code of its depth.
-    pub(crate) middle: [[i32; 16]; 3],
-    /// Bit per box: its middle is on the screen; else the pixel means nothing.
-    pub(crate) on: u32,
+    pub(crate) middle: Middles16,
     /// Bit per box: below the size threshold.
     pub(crate) small: u32,
 }
@@ -53,8 +71,7 @@ pub(crate) struct Looked16 {
 impl Looked16 {
     pub(crate) const NONE: Self = Self {
         sifted: Sifted16::NONE,
-        middle: [[0; 16]; 3],
-        on: 0,
+        middle: Middles16::NONE,
         small: 0,
     };
 }
@@ -106,7 +123,7 @@ impl<'a> Sieve<'a> {
     }
 
     #[inline(always)]
-    pub(crate) fn sift<W: Wide>(&self, w: W, boxes: &[Aabb; 16]) -> Sifted16 {
+    pub(crate) fn sift<W: Wide>(&self, w: W, boxes: &[Aabb; 16]) -> (Sifted16, Middles16) {
         let v = w.turn(boxes);
         // Centres and half extents, grown as for exact rectangles.
         let half = w.splat(0.5);
@@ -123,7 +140,28 @@ impl<'a> Sieve<'a> {
         for h in &mut h {
             *h = w.add(*h, grow);
         }
-        self.told(w, c, h, volume).0
+        let (sifted, center) = self.told(w, c, h, volume);
+        (sifted, self.middles(w, center))
+    }
+
+    /// The middles of boxes whose centres are there, by rows.
+    #[inline(always)]
+    fn middles<W: Wide>(&self, w: W, [x, y, z, distance]: [W::F; 4]) -> Middles16 {
+        let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        let per = w.div(one, distance);
+        let size = BLOCK as f32;
+        let x = w.mul(w.add(w.mul(x, per), w.splat(self.middle[0])), w.splat(size));
+        let y = w.mul(w.add(w.mul(y, per), w.splat(self.middle[1])), w.splat(size));
+        let [right, bottom] = self.middle.map(|m| 2.0 * m * size);
+        let (below_right, below_bottom) = (w.lt(x, w.splat(right)), w.lt(y, w.splat(bottom)));
+        let on = w.lt(z, distance) & !w.lt(x, zero) & !w.lt(y, zero) & below_right & below_bottom;
+        let [x, y] = two!(k => w.trunc(w.select(on, [x, y][k], zero)));
+        let depth = w.select(on, w.max(w.mul(z, per), zero), zero);
+        let mut middles = Middles16::NONE;
+        w.istore(pixel_of!(w, self.coarse.buffer, x, y), &mut middles.at);
+        w.istore(w.codes(depth), &mut middles.code);
+        middles.on = on;
+        middles
     }
 
     /// The same from centres and half extents, with a bit for each that is a volume; and where the centres are, by rows.
@@ -183,34 +221,16 @@ impl<'a> Sieve<'a> {
         let grow = w.add(w.mul(largest, w.splat(ROUNDING)), w.splat(self.grow));
         let h = three!(k => w.add(own[k], grow));
         // NaN where it is no volume, which is neither less nor more than anything.
-        let (sifted, [x, y, z, distance]) = self.told(w, c, h, !0);
-        let mut looked = Looked16 {
-            sifted,
-            ..Looked16::NONE
-        };
-        let (zero, one) = (w.splat(0.0), w.splat(1.0));
+        let (sifted, center) = self.told(w, c, h, !0);
+        let distance = center[3];
         let squares = three!(k => w.mul(own[k], own[k]));
         let squared = w.add(w.add(squares[0], squares[1]), squares[2]);
-        looked.small = w.lt(one, distance) & w.lt(squared, w.mul(distance, w.splat(small)));
-        let per = w.div(one, distance);
-        let size = BLOCK as f32;
-        let x = w.mul(w.add(w.mul(x, per), w.splat(self.middle[0])), w.splat(size));
-        let y = w.mul(w.add(w.mul(y, per), w.splat(self.middle[1])), w.splat(size));
-        let [right, bottom] = self.middle.map(|m| 2.0 * m * size);
-        let (below_right, below_bottom) = (w.lt(x, w.splat(right)), w.lt(y, w.splat(bottom)));
-        let on = w.lt(z, distance) & !w.lt(x, zero) & !w.lt(y, zero) & below_right & below_bottom;
-        looked.on = on;
-        let last = [right, bottom].map(|v| w.splat(v - 1.0));
-        w.istore(
-            w.trunc(w.min(w.max(x, zero), last[0])),
-            &mut looked.middle[0],
-        );
-        w.istore(
-            w.trunc(w.min(w.max(y, zero), last[1])),
-            &mut looked.middle[1],
-        );
-        w.istore(w.codes(w.max(w.mul(z, per), zero)), &mut looked.middle[2]);
-        looked
+        let far_enough = w.lt(w.splat(1.0), distance);
+        Looked16 {
+            sifted,
+            middle: self.middles(w, center),
+            small: far_enough & w.lt(squared, w.mul(distance, w.splat(small))),
+        }
     }
 }
 

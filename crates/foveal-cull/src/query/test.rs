@@ -1,7 +1,8 @@
 //! A rectangle with a depth against the buffer.
 
 use crate::depth::{BLOCK, DepthBuffer, SAMPLES, STATE_EMPTY};
-use crate::query::faces::{Faces, Planes};
+use crate::query::faces::Faces;
+use crate::query::planes::Planes;
 use crate::simd::Lanes;
 use glam::Vec3;
 
@@ -92,21 +93,7 @@ pub(crate) fn hidden<L: Lanes>(
                 return false;
             };
             if faces.is_none() {
-                // Most boxes are simply seen, where the ray through a pixel near their middle enters them. Nothing
-                // else than that is to be proved here, so pixels need no margin.
-                let nearest =
-                    |v: u32, block: u32| v.clamp(block * BLOCK, block * BLOCK + BLOCK - 1) % BLOCK;
-                let from = nearest(rect.y0.midpoint(rect.y1), by) * BLOCK
-                    + nearest(rect.x0.midpoint(rect.x1), bx);
-                let after = seen.rotate_right(from);
-                let i = (after.trailing_zeros() + from) % 64;
-                let (x, y) = (bx * BLOCK + i % BLOCK, by * BLOCK + i / BLOCK);
-                let middle = |v: u32| (v * SAMPLES) as f32 + 0.5 * SAMPLES as f32;
-                let entry = planes.entry(middle(x), middle(y), center, half);
-                if entry > buffer.pixel(x, y) {
-                    return false;
-                }
-                faces = Faces::new(planes, center, half);
+                faces = Faces::new(l.wide(), planes, center, half);
             }
             let Some(faces) = &faces else {
                 return false;

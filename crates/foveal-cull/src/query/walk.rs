@@ -6,7 +6,8 @@
 
 use super::answer::Query;
 use super::list::List;
-use super::project::{Boxes8, Projected8, project};
+use super::points::Corners8;
+use super::project::{Boxes8, Projected8, outline, project};
 use super::sift::{Looked16, Sieve};
 use super::tree::{Node, OccludeeTree};
 use crate::Visibility;
@@ -41,6 +42,7 @@ struct Work {
     rest: List,
     eights: [Boxes8; GROUPS],
     projected: [Projected8; GROUPS],
+    corners: [Corners8; GROUPS],
 }
 
 impl Work {
@@ -55,6 +57,7 @@ impl Work {
         rest: List::NONE,
         eights: [Boxes8::NONE; GROUPS],
         projected: [Projected8::NONE; GROUPS],
+        corners: [Corners8::NONE; GROUPS],
     };
 
     /// Takes nodes from the stack; gives how many.
@@ -165,9 +168,10 @@ impl<'a> Walk<'a> {
             let looked = &work.looked[g / 2];
             let i = usize::from(k) % 16;
             let small = looked.small >> i & 1 != 0;
-            let on = looked.on >> i & 1 != 0;
-            let [x, y, code] = looked.middle.map(|v| v[i]);
-            let seen = on & self.query.before(x, y, code);
+            let on = looked.middle.on >> i & 1 != 0;
+            let seen = self
+                .query
+                .before(looked.middle.at[i], looked.middle.code[i]);
             // What is small and beside the screen counts as outside.
             let told = if small { on } else { seen };
             let answer = if small {
@@ -188,10 +192,8 @@ impl<'a> Walk<'a> {
         for n in 0..work.groups.count {
             let k = usize::from(work.groups.numbers()[n]);
             let node = self.node(work.nodes[k / 8]);
-            let looked = &work.looked[k / 16];
-            let [x, y, code] = looked.middle.map(|v| v[k % 16]);
-            let on = looked.on >> (k % 16) & 1 != 0;
-            let seen = on & self.query.before(x, y, code);
+            let middle = &work.looked[k / 16].middle;
+            let seen = self.query.before(middle.at[k % 16], middle.code[k % 16]);
             let child = node.child(k % 8);
             l.prefetch(self.node(child));
             work.push(child, seen);
@@ -199,7 +201,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Answers for the list by exact rectangles, and for objects by their faces.
+    /// Answers for the list by exact rectangles, and for objects by their corners and faces.
     #[inline(always)]
     fn exact<L: Lanes, const OBJECTS: bool>(&mut self, l: L, work: &mut Work) {
         for first in (0..work.open.count).step_by(8 * GROUPS) {
@@ -224,15 +226,15 @@ impl<'a> Walk<'a> {
             work.eights[k / 8].copy(k % 8, boxes, n % 8);
         }
         let projected = &mut work.projected[..count.div_ceil(8)];
-        for (p, eight) in projected.iter_mut().zip(&work.eights) {
-            *p = project(l, &self.query.screen, eight);
+        for ((p, eight), corners) in projected
+            .iter_mut()
+            .zip(&work.eights)
+            .zip(&mut work.corners)
+        {
+            *p = outline(l, &self.query.screen, eight, OBJECTS.then_some(corners));
         }
         work.rest.count = 0;
-        for (g, (p, eight)) in projected.iter().zip(&work.eights).enumerate() {
-            // Where the rays through their middles enter them.
-            let [x, y, _] = &p.middle;
-            let planes = self.query.planes.as_ref().filter(|_| OBJECTS);
-            let entries = planes.and_then(|planes| planes.entries(l, [x, y], eight));
+        for (g, p) in projected.iter().enumerate() {
             for (i, &n) in list[8 * g..].iter().take(8).enumerate() {
                 let n = usize::from(n);
                 let node = self.node(work.nodes[n / 8]);
@@ -240,10 +242,6 @@ impl<'a> Walk<'a> {
                 let mut told = outside | (p.hidden >> i & 1 != 0);
                 if OBJECTS {
                     let small = work.looked[n / 16].small >> (n % 16) & 1 != 0;
-                    // A ray may enter what crosses the near plane before that.
-                    let beyond = p.crossing >> i & 1 == 0;
-                    let seen =
-                        beyond & entries.is_some_and(|c| self.query.before(x[i], y[i], c[i]));
                     let object = self.tree.order()[node.run(n % 8).start];
                     self.results[object as usize] = if outside {
                         Visibility::Outside
@@ -254,12 +252,16 @@ impl<'a> Walk<'a> {
                     } else {
                         Visibility::Visible
                     };
-                    told |= small | seen;
+                    told |= small;
                 } else if outside {
                     self.tell(node, n % 8, Visibility::Outside);
                 }
                 work.rest.add(8 * g + i, !told);
             }
+        }
+        if OBJECTS {
+            self.query
+                .keep_cornerless(&mut work.rest, projected, &work.corners);
         }
         for k in 0..work.rest.count {
             let k = usize::from(work.rest.numbers()[k]);

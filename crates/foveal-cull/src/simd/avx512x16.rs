@@ -28,6 +28,14 @@ impl Wide for Wide512 {
         avx512!(_mm512_set1_ps(v))
     }
     #[inline(always)]
+    fn load(self, v: &[f32; 16]) -> __m512 {
+        avx512!(_mm512_loadu_ps(v.as_ptr()))
+    }
+    #[inline(always)]
+    fn store(self, v: __m512, to: &mut [f32; 16]) {
+        avx512!(_mm512_storeu_ps(to.as_mut_ptr(), v))
+    }
+    #[inline(always)]
     fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> __m512 {
         avx512!({
             let low = _mm512_castps256_ps512(_mm256_loadu_ps(low.as_ptr()));
@@ -65,6 +73,10 @@ impl Wide for Wide512 {
     #[inline(always)]
     fn lt(self, a: __m512, b: __m512) -> u32 {
         avx512!(u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    }
+    #[inline(always)]
+    fn select(self, bits: u32, a: __m512, b: __m512) -> __m512 {
+        avx512!(_mm512_mask_blend_ps(bits as u16, b, a))
     }
     #[inline(always)]
     fn trunc(self, a: __m512) -> __m512i {

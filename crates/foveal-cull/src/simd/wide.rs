@@ -12,6 +12,8 @@ pub(crate) trait Wide: Copy {
     type I: Copy;
 
     fn splat(self, v: f32) -> Self::F;
+    fn load(self, v: &[f32; 16]) -> Self::F;
+    fn store(self, v: Self::F, to: &mut [f32; 16]);
     /// The first eight lanes, and the others.
     fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F;
     fn add(self, a: Self::F, b: Self::F) -> Self::F;
@@ -22,6 +24,8 @@ pub(crate) trait Wide: Copy {
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     fn abs(self, a: Self::F) -> Self::F;
     fn lt(self, a: Self::F, b: Self::F) -> u32;
+    /// `a` where the bit is set, else `b`.
+    fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F;
     fn trunc(self, a: Self::F) -> Self::I;
     fn codes(self, a: Self::F) -> Self::I;
     fn isplat(self, v: i32) -> Self::I;
@@ -38,6 +42,17 @@ pub(crate) trait Wide: Copy {
     fn negative(self, a: Self::I) -> u32;
     fn turn(self, v: &[Aabb; 16]) -> [Self::F; 6];
 }
+
+/// Eight lanes, all ones where a bit is set.
+const MASKS: [[i32; 8]; 256] = {
+    let mut masks = [[0; 8]; 256];
+    let mut n = 0;
+    while n < 256 * 8 {
+        masks[n / 8][n % 8] = -(((n / 8) >> (n % 8) & 1) as i32);
+        n += 1;
+    }
+    masks
+};
 
 /// Two registers of eight.
 #[derive(Clone, Copy)]
@@ -82,6 +97,16 @@ impl<L: Lanes> Wide for Twice<L> {
         [self.0.splat(v); 2]
     }
     #[inline(always)]
+    fn load(self, v: &[f32; 16]) -> Self::F {
+        let (halves, _) = v.as_chunks::<8>();
+        two!(k => self.0.load(&halves[k]))
+    }
+    #[inline(always)]
+    fn store(self, v: Self::F, to: &mut [f32; 16]) {
+        let (halves, _) = to.as_chunks_mut::<8>();
+        two!(k => self.0.store(v[k], &mut halves[k]));
+    }
+    #[inline(always)]
     fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F {
         [self.0.load(low), self.0.load(high)]
     }
@@ -93,6 +118,13 @@ impl<L: Lanes> Wide for Twice<L> {
     fn lt(self, a: Self::F, b: Self::F) -> u32 {
         let [low, high] = two!(k => self.0.movemask(self.0.lt(a[k], b[k])));
         low | high << 8
+    }
+    #[inline(always)]
+    fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F {
+        two!(k => {
+            let mask = self.0.iload(&MASKS[(bits >> (8 * k)) as usize % 256]);
+            self.0.select(mask, a[k], b[k])
+        })
     }
     #[inline(always)]
     fn negative(self, a: Self::I) -> u32 {

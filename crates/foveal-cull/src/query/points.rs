@@ -1,0 +1,162 @@
+//! Points of boxes that are seen: a box that lies before all that is known in a pixel, in a point of it, is seen.
+//!
+//! Most boxes that can be seen are seen in their middle, and of the others most at a corner. Pixels are looked up one
+//! by one, since gathers take longer, and by a number that is found for many boxes at once.
+
+use super::answer::Query;
+
+/// Numbers of pixels (right, down; on the screen) of a buffer, block by block, for as many lanes as `$l` has: as
+/// [`DepthBuffer::known`](crate::depth::DepthBuffer::known) takes them. A macro, as `place_of`.
+macro_rules! pixel_of {
+    ($l:ident, $buffer:expr, $x:expr, $y:expr) => {{
+        use crate::depth::{BLOCK, BLOCK_PIXELS};
+        let (x, y) = ($x, $y);
+        let bits = $l.isplat(BLOCK.trailing_zeros() as i32);
+        let (column, row) = ($l.ishr(x, bits), $l.ishr(y, bits));
+        // What a step to the next block is more than steps within a block.
+        let right = $l.isplat((BLOCK_PIXELS - BLOCK) as i32);
+        let down = $l.isplat(((($buffer).blocks_x - 1) * BLOCK_PIXELS) as i32);
+        let within = $l.iadd(x, $l.imul(y, $l.isplat(BLOCK as i32)));
+        let across = $l.iadd($l.imul(column, right), $l.imul(row, down));
+        $l.iadd(within, across)
+    }};
+}
+pub(super) use pixel_of;
+
+/// Corners of eight boxes.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(32))]
+pub(super) struct Corners8 {
+    /// By corner: the number of its pixel.
+    pub(super) at: [[i32; 8]; 8],
+    /// The code of its depth; a very low one beside the screen.
+    pub(super) code: [[i32; 8]; 8],
+}
+
+impl Corners8 {
+    pub(super) const NONE: Self = Self {
+        at: [[0; 8]; 8],
+        code: [[0; 8]; 8],
+    };
+}
+
+impl Query<'_> {
+    /// Whether a code lies before all that is known in a pixel.
+    #[inline(always)]
+    pub(super) fn before(&self, at: i32, code: i32) -> bool {
+        code > i32::from(self.buffer.known(at as usize))
+    }
+
+    /// Whether any corner of a box that is all beyond the near plane lies before all that is known in its pixel.
+    #[inline(always)]
+    pub(super) fn corner_seen(&self, corners: &Corners8, i: usize) -> bool {
+        let mut seen = false;
+        for (at, code) in corners.at.iter().zip(&corners.code) {
+            seen |= self.before(at[i], code[i]);
+        }
+        seen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::InstructionSet;
+    use crate::depth::DepthBuffer;
+    use crate::query::project::{Boxes8, Coarse, Screen, outline};
+    use crate::simd::{Kernel, Lanes};
+    use glam::Vec3;
+
+    struct Project<'a>(&'a Screen<'a>, &'a Boxes8);
+
+    impl Kernel for Project<'_> {
+        type Output = Corners8;
+
+        #[inline(always)]
+        fn run<L: Lanes>(self, l: L) -> Corners8 {
+            let mut corners = Corners8::NONE;
+            outline(l, self.0, self.1, Some(&mut corners));
+            corners
+        }
+    }
+
+    #[test]
+    fn corners_lie_in_their_pixels() {
+        let (width, height) = (72, 40);
+        let mut buffer = DepthBuffer::new(width, height);
+        // Every pixel of a number has the code that says which one it is.
+        buffer.state.fill(crate::depth::STATE_DEPTH);
+        for (b, block) in (0u32..).zip(&mut buffer.depth) {
+            for (i, code) in (0u32..).zip(&mut block.0) {
+                let (x, y) = (
+                    b % buffer.blocks_x * 8 + i % 8,
+                    b / buffer.blocks_x * 8 + i / 8,
+                );
+                *code = (y * width + x) as i16;
+            }
+        }
+        // The eye looks along -z, with 45 degrees to the right; samples.
+        let (w, h) = (4.0 * width as f32, 4.0 * height as f32);
+        let screen = Screen {
+            rows: [
+                [0.5 * w, 0.0, -0.5 * w, 0.0],
+                [0.0, -0.5 * w, -0.5 * h, 0.0],
+                [0.0, 0.0, 0.0, 0.1],
+                [0.0, 0.0, -1.0, 0.0],
+            ],
+            width: w,
+            height: h,
+            far_depth: 0.0,
+            dilate: 0.5,
+            grow: 0.0,
+            coarse: Coarse::new(&buffer),
+        };
+        let mut boxes = Boxes8::NONE;
+        let at = |i: usize| {
+            let v = i as f32;
+            (
+                Vec3::new(v - 3.5, 0.4 * v - 1.3, -3.0 - v),
+                Vec3::new(0.7, 0.2 + 0.1 * v, 0.5),
+            )
+        };
+        for i in 0..8 {
+            let (center, half) = at(i);
+            boxes.set(i, center, half);
+        }
+        let corners = InstructionSet::detect().run(Project(&screen, &boxes));
+        let portable = InstructionSet::Portable.run(Project(&screen, &boxes));
+        let (mut on, mut off) = (0, 0);
+        for i in 0..8 {
+            let (center, half) = at(i);
+            let mut expected: Vec<_> = (0..8)
+                .map(|k| {
+                    let side = |bit: usize| if k & bit == 0 { -1.0 } else { 1.0 };
+                    let p = center + half * Vec3::new(side(1), side(2), side(4));
+                    let x = (0.5 * w * (p.x / -p.z + 1.0) / 4.0).floor();
+                    let y = ((-0.5 * w * p.y / -p.z + 0.5 * h) / 4.0).floor();
+                    let inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+                    let code = crate::depth::encode(0.1 / -p.z);
+                    inside.then_some((y as i32 * width as i32 + x as i32, i32::from(code)))
+                })
+                .collect();
+            let mut found: Vec<_> = (0..8)
+                .map(|k| {
+                    let (at, code) = (corners.at[k][i], corners.code[k][i]);
+                    assert_eq!((at, code), (portable.at[k][i], portable.code[k][i]));
+                    (code > i32::from(crate::depth::EMPTY))
+                        .then(|| (i32::from(buffer.known(at as usize)), code))
+                })
+                .collect();
+            expected.sort_unstable();
+            found.sort_unstable();
+            for (e, f) in expected.iter().zip(&found) {
+                assert_eq!(e.map(|e| e.0), f.map(|f| f.0), "box {i}");
+                let apart = e.zip(*f).map_or(0, |(e, f)| e.1 - f.1);
+                assert!(apart.abs() <= 1, "box {i}");
+            }
+            on += expected.iter().flatten().count();
+            off += 8 - expected.iter().flatten().count();
+        }
+        assert!(on > 20 && off > 5, "{on} {off}");
+    }
+}
