@@ -11,7 +11,7 @@ mod ring;
 mod set;
 mod weld;
 
-pub(crate) use ring::{RING, Ring, Rings};
+pub(crate) use ring::{NUMBERS, RING, Ring, Rings, SECOND};
 pub(crate) use set::Instance;
 pub use set::{OccluderId, OccluderSet};
 

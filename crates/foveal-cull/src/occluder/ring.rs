@@ -14,7 +14,9 @@ pub(crate) const NONE: u16 = 383;
 const MAX_TRIANGLES: usize = 255;
 /// Where a ring's numbers begin; before it come the first triangles of the cluster's quads, then their second ones.
 pub(crate) const RING: usize = 128;
-const SECOND: u16 = 64;
+pub(crate) const SECOND: usize = 64;
+/// A power of two above all numbers.
+pub(crate) const NUMBERS: usize = 512;
 /// Vertices of a cluster and its ring, so that a number fits a byte.
 const MAX_VERTICES: usize = 256;
 
@@ -138,7 +140,7 @@ pub(super) fn build(
     for (n, [a, b, c, d]) in (0u16..).zip(quads) {
         twice |= numbers.insert(name([a, b, c]), n).is_some();
         if c != d {
-            twice |= numbers.insert(name([a, c, d]), n + SECOND).is_some();
+            twice |= numbers.insert(name([a, c, d]), n + SECOND as u16).is_some();
         }
     }
     let base = own.len().next_multiple_of(8);

@@ -3,9 +3,10 @@
 //! A border erases only what lies as deep as the sheet can be where that border is within reach of it; where the cluster folds,
 //! its farther part stays.
 
+use super::setup::Points;
 use super::sheet::AROUND_SAMPLE;
 use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
-use crate::simd::{Lanes, larger, smaller};
+use crate::simd::{Lanes, four, larger, smaller};
 
 /// More than all rounding, samples.
 const MARGIN: f32 = 0.0625;
@@ -21,62 +22,144 @@ pub(super) struct Reach {
     pub(super) blocks: [u32; 4],
 }
 
-/// Erases the pixels to which an edge comes within its shift.
+/// One border: where it may erase, and by what.
+#[derive(Clone, Copy)]
+struct Border {
+    /// An end of it, samples.
+    x: f32,
+    y: f32,
+    /// Change of x per y. Of a border that is all but level (NaN where both ends are the same) every row has the whole.
+    slope: f32,
+    /// Least x and y, and greatest.
+    ends: [f32; 4],
+    /// How far it reaches, along x and y, samples.
+    reach: [f32; 2],
+    /// First and last block that it comes near to.
+    blocks: [u32; 4],
+    /// What is not nearer is hidden whatever this border does.
+    code: i16,
+    /// As deep as the sheet can be where the border is within reach of it.
+    depths: [i16; 2],
+}
+
+/// Steeper is level.
+const LEVEL: f32 = 1e4;
+
+/// Erases the pixels to which any of the first `count` of eight edges (their two ends by vertex) comes within its shift.
 #[inline(always)]
-pub(super) fn erase<L: Lanes>(
+pub(super) fn erase_eight<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
     erased: &mut Vec<u32>,
-    a: [f32; 3],
-    b: [f32; 3],
-    reach: Reach,
+    points: &Points,
+    [from, to]: [&[u8; 8]; 2],
+    count: usize,
+    reach: &Reach,
 ) {
-    const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
-    let near = larger(a[2], b[2]);
-    let [reach_x, reach_y] = [0, 1].map(|k: usize| near * reach.shifts[k] * 1.001 + MARGIN);
-    let (x_lo, x_hi) = (smaller(a[0], b[0]), larger(a[0], b[0]));
-    let (y_lo, y_hi) = (smaller(a[1], b[1]), larger(a[1], b[1]));
-    let [first_x, first_y, last_x, last_y] = reach.blocks;
-    if x_hi + reach_x < (first_x * BLOCK_SAMPLES) as f32
-        || y_hi + reach_y < (first_y * BLOCK_SAMPLES) as f32
-        || x_lo - reach_x >= ((last_x + 1) * BLOCK_SAMPLES) as f32
-        || y_lo - reach_y >= ((last_y + 1) * BLOCK_SAMPLES) as f32
-    {
+    let (ax, bx) = (l.gather(&points.x, from), l.gather(&points.x, to));
+    let (ay, by) = (l.gather(&points.y, from), l.gather(&points.y, to));
+    let (az, bz) = (l.gather(&points.depth, from), l.gather(&points.depth, to));
+    let (near, far) = (l.max(az, bz), l.min(az, bz));
+    let margin = l.splat(MARGIN);
+    let [shift_x, shift_y] = reach.shifts;
+    let reach_x = l.add(l.mul(near, l.splat(shift_x * 1.001)), margin);
+    let reach_y = l.add(l.mul(near, l.splat(shift_y * 1.001)), margin);
+    let ends = [l.min(ax, bx), l.min(ay, by), l.max(ax, bx), l.max(ay, by)];
+    let grown = [
+        l.sub(ends[0], reach_x),
+        l.sub(ends[1], reach_y),
+        l.add(ends[2], reach_x),
+        l.add(ends[3], reach_y),
+    ];
+    // The blocks, where it is beside none of them.
+    let size = BLOCK_SAMPLES as f32;
+    let edge = four!(k => l.splat((reach.blocks[k] + k as u32 / 2) as f32 * size));
+    let meets = l.iand(
+        l.iandnot(l.lt(grown[2], edge[0]), l.lt(grown[0], edge[2])),
+        l.iandnot(l.lt(grown[3], edge[1]), l.lt(grown[1], edge[3])),
+    );
+    let mut live = l.movemask(meets) & ((1 << count) - 1);
+    if live == 0 {
         return;
     }
-    // Casts saturate.
-    let size = BLOCK_SAMPLES as f32;
-    let scale = 1.0 / size;
-    let column = |x: f32| ((x * scale) as u32).clamp(first_x, last_x);
-    let row = |y: f32| ((y * scale) as u32).clamp(first_y, last_y);
-    let (by0, by1) = (row(y_lo - reach_y), row(y_hi + reach_y));
-    let blocks = [column(x_lo - reach_x), by0, column(x_hi + reach_x), by1];
+    let blocks = four!(k => {
+        let (first, last) = (reach.blocks[k % 2] as i32, reach.blocks[k % 2 + 2] as i32);
+        let block = l.trunc(l.mul(grown[k], l.splat(1.0 / size)));
+        let mut out = [0; 8];
+        l.istore(l.imin(l.imax(block, l.isplat(first)), l.isplat(last)), &mut out);
+        out
+    });
+    let around = l.add(
+        l.mul(
+            l.splat(reach.steepness),
+            l.add(l.splat(AROUND_SAMPLE), l.max(reach_x, reach_y)),
+        ),
+        l.mul(near, l.splat(1e-5)),
+    );
+    let slope = l.div(l.sub(bx, ax), l.sub(by, ay));
+    let ends = four!(k => out(l, ends[k]));
+    let (x, y, slope) = (out(l, ax), out(l, ay), out(l, slope));
+    let (reach_x, reach_y) = (out(l, reach_x), out(l, reach_y));
+    let near_codes = out(l, l.mul(near, l.splat(1.001)));
+    let (far, near) = (out(l, l.sub(far, around)), out(l, l.add(near, around)));
+    while live != 0 {
+        let i = live.trailing_zeros() as usize;
+        live &= live - 1;
+        let border = Border {
+            x: x[i],
+            y: y[i],
+            slope: slope[i],
+            ends: four!(k => ends[k][i]),
+            reach: [reach_x[i], reach_y[i]],
+            blocks: four!(k => blocks[k][i] as u32),
+            code: encode(near_codes[i]).saturating_add(1),
+            depths: [encode(far[i]), encode(near[i]).saturating_add(1)],
+        };
+        erase(l, band, erased, &border);
+    }
+}
+
+#[inline(always)]
+fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
+    let mut a = [0.0; 8];
+    l.store(v, &mut a);
+    a
+}
+
+/// Erases the pixels that a border is within reach of.
+#[inline(always)]
+fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Border) {
+    const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
+    let Border {
+        x,
+        y,
+        slope,
+        ends: [x_lo, y_lo, x_hi, y_hi],
+        reach: [reach_x, reach_y],
+        blocks: [first, by0, last, by1],
+        code,
+        depths,
+    } = *border;
     // What lies behind all that is known there is hidden whatever this edge does; what lies before it, the edge is
     // behind.
-    let code = encode(near * 1.001).saturating_add(1);
-    if band.hides(blocks, code) {
+    if band.hides(border.blocks, code) {
         return;
     }
-    // As deep as the sheet can be where the edge is within reach of it.
-    let around = reach.steepness * (AROUND_SAMPLE + larger(reach_x, reach_y)) + near * 1e-5;
-    let depths = (
-        encode(smaller(a[2], b[2]) - around),
-        encode(near + around).saturating_add(1),
-    );
-    let slope = (b[0] - a[0]) / (b[1] - a[1]);
-    // Of an edge that is all but level every row has the whole.
-    let level = slope.is_nan() || slope.abs() > 1e4;
+    let size = BLOCK_SAMPLES as f32;
+    let level = slope.is_nan() || slope.abs() > LEVEL;
     let (lo, hi) = (l.splat(x_lo), l.splat(x_hi));
     for by in by0..=by1 {
         let top = (by * BLOCK_SAMPLES) as f32;
-        // Where the edge is within reach of the row of blocks: its ends there, since it is straight.
-        let (mut bx0, mut bx1) = (blocks[0], blocks[2]);
+        let (mut bx0, mut bx1) = (first, last);
         if bx0 != bx1 && !level {
-            let p = smaller(larger(top - reach_y, y_lo), y_hi) - a[1];
-            let q = smaller(larger(top + (size + reach_y), y_lo), y_hi) - a[1];
-            let (p, q) = (a[0] + p * slope, a[0] + q * slope);
-            bx0 = column(smaller(larger(smaller(p, q), x_lo), x_hi) - reach_x);
-            bx1 = column(smaller(larger(larger(p, q), x_lo), x_hi) + reach_x);
+            // It is straight: no farther to the sides than where it enters and leaves what is near to the row of blocks.
+            let at = |row: f32| x + (smaller(larger(row, y_lo), y_hi) - y) * slope;
+            let (p, q) = (at(top - reach_y), at(top + (size + reach_y)));
+            let (p, q) = (smaller(p, q), larger(p, q));
+            // Casts saturate.
+            let column = |x: f32| ((x * (1.0 / size)) as u32).clamp(first, last);
+            bx0 = column(smaller(larger(p, x_lo), x_hi) - reach_x);
+            bx1 = column(smaller(larger(q, x_lo), x_hi) + reach_x);
         }
         let rows = l.add(l.load(&PIXELS), l.splat(top));
         let (above, below) = (
@@ -87,10 +170,10 @@ pub(super) fn erase<L: Lanes>(
         let (mut from, mut to) = (lo, hi);
         if !level {
             let (top, bottom) = (l.splat(y_lo), l.splat(y_hi));
-            let p = l.sub(l.min(l.max(above, top), bottom), l.splat(a[1]));
-            let q = l.sub(l.min(l.max(below, top), bottom), l.splat(a[1]));
-            let p = l.add(l.splat(a[0]), l.mul(p, l.splat(slope)));
-            let q = l.add(l.splat(a[0]), l.mul(q, l.splat(slope)));
+            let p = l.sub(l.min(l.max(above, top), bottom), l.splat(y));
+            let q = l.sub(l.min(l.max(below, top), bottom), l.splat(y));
+            let p = l.add(l.splat(x), l.mul(p, l.splat(slope)));
+            let q = l.add(l.splat(x), l.mul(q, l.splat(slope)));
             from = l.min(l.max(l.min(p, q), lo), hi);
             to = l.min(l.max(l.max(p, q), lo), hi);
         }
@@ -113,8 +196,121 @@ pub(super) fn erase<L: Lanes>(
                     *border = [i16::MAX, i16::MIN];
                 }
                 *pixels |= bits;
-                *border = [border[0].min(depths.0), border[1].max(depths.1)];
+                *border = [border[0].min(depths[0]), border[1].max(depths[1])];
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::depth::{BLOCK, DepthBuffer};
+    use crate::simd::portable::Portable;
+
+    /// Whether a segment meets a rectangle (least x and y, greatest), by cutting it at each side.
+    fn meets(a: [f64; 2], b: [f64; 2], rect: [f64; 4]) -> bool {
+        let (mut from, mut to) = (0.0f64, 1.0f64);
+        for axis in 0..2 {
+            let (start, along) = (a[axis], b[axis] - a[axis]);
+            let (lo, hi) = (rect[axis] - start, rect[axis + 2] - start);
+            if along == 0.0 {
+                if lo > 0.0 || hi < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (p, q) = (lo / along, hi / along);
+            from = from.max(p.min(q));
+            to = to.min(p.max(q));
+        }
+        from <= to
+    }
+
+    #[test]
+    fn pixels_within_reach_of_a_border_are_erased_and_no_others() {
+        let (width, height) = (80, 56);
+        let mut seed = 1u32;
+        let mut random = move |most: f32| {
+            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (seed >> 8) as f32 / (1 << 24) as f32 * most
+        };
+        let mut counts = [0; 2];
+        for round in 0..300 {
+            let mut buffer = DepthBuffer::new(width, height);
+            let mut points = Points::default();
+            let mut ends = [[0u8; 8]; 2];
+            let size = SAMPLES as f32;
+            for v in 0..16u8 {
+                // Some level, some upright, some short, some partly outside.
+                let short = if round % 3 == 0 { 9.0 } else { 400.0 };
+                let (x, y) = match v {
+                    9 => (f64::from(points.x[8]), f64::from(random(short))),
+                    11 => (f64::from(random(short)), f64::from(points.y[10])),
+                    _ => (
+                        f64::from(random(short) - 20.0),
+                        f64::from(random(short) - 20.0),
+                    ),
+                };
+                points.set(usize::from(v), x, y, 0.25 + random(0.5));
+                ends[usize::from(v % 2)][usize::from(v / 2)] = v;
+            }
+            let reach = Reach {
+                shifts: [random(12.0), random(3.0)],
+                steepness: 0.01,
+                blocks: [1, 0, 8, 5],
+            };
+            let count = 1 + round % 8;
+            let mut erased = Vec::new();
+            let [from, to] = &ends;
+            let mut band = buffer.band();
+            erase_eight(
+                Portable,
+                &mut band,
+                &mut erased,
+                &points,
+                [from, to],
+                count,
+                &reach,
+            );
+            for by in 0..height / BLOCK {
+                for bx in 0..width / BLOCK {
+                    let i = by * (width / BLOCK) + bx;
+                    let pixels = band.erased[i as usize];
+                    assert_eq!(pixels != 0, erased.contains(&i));
+                    if bx < 1 || bx > 8 || by > 5 {
+                        assert_eq!(pixels, 0);
+                        continue;
+                    }
+                    for pixel in 0..BLOCK * BLOCK {
+                        let left = (bx * BLOCK + pixel % BLOCK) as f32 * size;
+                        let top = (by * BLOCK + pixel / BLOCK) as f32 * size;
+                        let near = |slack: f64| {
+                            (0..count).any(|e| {
+                                let [a, b] = [from[e], to[e]].map(usize::from);
+                                let depth = points.depth[a].max(points.depth[b]);
+                                let [rx, ry] = reach
+                                    .shifts
+                                    .map(|s| f64::from(depth * s * 1.001 + MARGIN) + slack);
+                                let rect = [
+                                    f64::from(left) - rx,
+                                    f64::from(top) - ry,
+                                    f64::from(left + size) + rx,
+                                    f64::from(top + size) + ry,
+                                ];
+                                let at =
+                                    |v: usize| [f64::from(points.x[v]), f64::from(points.y[v])];
+                                meets(at(a), at(b), rect)
+                            })
+                        };
+                        let is = pixels >> pixel & 1 != 0;
+                        assert!(is || !near(-1e-3), "round {round}: {left} {top}");
+                        assert!(!is || near(1e-3), "round {round}: {left} {top}");
+                        counts[usize::from(is)] += 1;
+                    }
+                }
+            }
+        }
+        assert!(counts.iter().all(|&n| n > 10_000), "{counts:?}");
     }
 }

@@ -9,6 +9,14 @@ use crate::depth::{Band, encode};
 use crate::occluder::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
 
+/// Eight quads on the screen, corner by corner: samples, and depths.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Corners {
+    pub(super) x: [[f32; 8]; 4],
+    pub(super) y: [[f32; 8]; 4],
+    pub(super) depth: [[f32; 8]; 4],
+}
+
 /// The quads of a cluster that may be seen.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Open {
@@ -31,7 +39,7 @@ impl Open {
         self.quads == [0; 8]
     }
 
-    /// Looks at a one-sided cluster. What has a corner for the clipper is not among its quads.
+    /// Looks at a one-sided cluster, and keeps the corners. What has one for the clipper is not among its quads.
     #[inline(always)]
     pub(super) fn of<L: Lanes>(
         l: L,
@@ -40,6 +48,7 @@ impl Open {
         mesh: &OccluderMesh,
         cluster: &Cluster,
         mirrored: bool,
+        corners: &mut [Corners; 8],
     ) -> Self {
         let mut open = Self {
             quads: [0; 8],
@@ -49,9 +58,15 @@ impl Open {
         let groups = &mesh.quads[cluster.first_group as usize..][..groups];
         let order = if mirrored { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
         let (zero, one) = (l.splat(0.0), l.splat(1.0));
-        for (group, quads) in groups.iter().zip(&mut open.quads) {
+        for ((group, quads), corners) in groups.iter().zip(&mut open.quads).zip(corners) {
             let x = four!(c => l.gather(&points.x, &group[order[c]]));
             let y = four!(c => l.gather(&points.y, &group[order[c]]));
+            let z = four!(c => l.gather(&points.depth, &group[order[c]]));
+            *corners = Corners {
+                x: four!(c => out(l, x[c])),
+                y: four!(c => out(l, y[c])),
+                depth: four!(c => out(l, z[c])),
+            };
             let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
             let whole = l.lt(l.sub(sum, sum), one);
             let f0 = area(l, &x, &y, 0, 1, 2);
@@ -68,7 +83,6 @@ impl Open {
             if live == 0 {
                 continue;
             }
-            let z = four!(c => l.gather(&points.depth, &group[order[c]]));
             let nearest = out(l, highest(l, &z));
             let [bx0, by0, bx1, by1] = blocks_of(l, band, steps);
             while live != 0 {
@@ -149,9 +163,18 @@ mod tests {
         for (i, min) in buffer.min.iter_mut().enumerate() {
             *min = encode(if i % 8 < 4 { 0.58 } else { 0.0 });
         }
+        let mut corners = [Corners::default(); 8];
         for mirrored in [false, true] {
             let band = buffer.band();
-            let open = Open::of(Portable, &band, &points, &mesh, cluster, mirrored);
+            let open = Open::of(
+                Portable,
+                &band,
+                &points,
+                &mesh,
+                cluster,
+                mirrored,
+                &mut corners,
+            );
             let mut blocks = [u32::MAX, u32::MAX, 0, 0];
             let (mut here, mut hidden) = (0, 0);
             for q in 0..usize::from(cluster.quad_count) {
@@ -192,6 +215,16 @@ mod tests {
             assert_eq!(open.blocks, blocks);
         }
         buffer.min.fill(encode(0.7));
-        assert!(Open::of(Portable, &buffer.band(), &points, &mesh, cluster, false).is_empty());
+        let band = buffer.band();
+        let open = Open::of(
+            Portable,
+            &band,
+            &points,
+            &mesh,
+            cluster,
+            false,
+            &mut corners,
+        );
+        assert!(open.is_empty());
     }
 }

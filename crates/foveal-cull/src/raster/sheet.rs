@@ -21,10 +21,10 @@
 //! depths are lowered by what the steepest triangle of the sheet changes there.
 
 use super::border::{self, Reach};
-use super::open::Open;
+use super::open::{Corners, Open};
 use super::setup::{Points, Radius, Scratch, area, transform};
 use crate::depth::Band;
-use crate::occluder::{Cluster, OccluderMesh, RING, Ring};
+use crate::occluder::{Cluster, NUMBERS, OccluderMesh, RING, Ring, SECOND};
 use crate::simd::{Kernel, Lanes, four, larger, smaller};
 
 /// A triangle surely faces the eye if it is higher than this over the sum of its quad's sides, samples: corners are
@@ -40,8 +40,12 @@ pub(super) const AROUND_SAMPLE: f32 = 0.8;
 pub(crate) struct Sheet {
     /// Above zero for triangles that belong to it: by group the first and the second of each quad.
     pub(crate) kept: [[[f32; 8]; 2]; 8],
+    /// Its corners, by group.
+    corners: [Corners; 8],
     /// By how much depths are lowered.
     pub(crate) slack: f32,
+    /// Edges that are its borders, by their vertices, and room for all.
+    borders: Vec<[u8; 2]>,
     /// Blocks with erased pixels.
     erased: Vec<u32>,
 }
@@ -84,7 +88,15 @@ impl Kernel for Prepare<'_, '_, '_> {
             mirrored,
             radius,
         } = self;
-        let open = Open::of(l, band, &scratch.points, mesh, cluster, mirrored);
+        let open = Open::of(
+            l,
+            band,
+            &scratch.points,
+            mesh,
+            cluster,
+            mirrored,
+            &mut scratch.sheet.corners,
+        );
         if !open.is_empty() {
             let own = usize::from(cluster.vertex_count).next_multiple_of(8);
             let around = (
@@ -118,19 +130,18 @@ fn prepare<L: Lanes>(
     (mirrored, blocks, radius): (bool, [u32; 4], Radius),
 ) {
     let quads = usize::from(cluster.quad_count);
-    let own = &mesh.quads[cluster.first_group as usize..][..quads.div_ceil(8)];
     let around = usize::from(ring.triangle_count);
     let groups = &mesh.rings.triangles[ring.first_group as usize..][..around.div_ceil(8)];
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
     let mut steepest = zero;
     let mut nearest = zero;
-    let mut members = [0u64; 8];
-    for ((g, group), kept) in own.iter().enumerate().zip(&mut sheet.kept) {
-        let (i1, i3) = if mirrored { (3, 1) } else { (1, 3) };
-        let order = [0, i1, 2, i3];
-        let x = four!(c => l.gather(&points.x, &group[order[c]]));
-        let y = four!(c => l.gather(&points.y, &group[order[c]]));
-        let z = four!(c => l.gather(&points.depth, &group[order[c]]));
+    // By number: all ones for triangles of the sheet. That of no triangle is none.
+    let mut members = [[0; 8]; NUMBERS / 8];
+    let own = sheet.corners.iter().zip(&mut sheet.kept);
+    for (g, (corners, kept)) in own.take(quads.div_ceil(8)).enumerate() {
+        let x = four!(c => l.load(&corners.x[c]));
+        let y = four!(c => l.load(&corners.y[c]));
+        let z = four!(c => l.load(&corners.depth[c]));
         let sides = l.add(
             l.sub(
                 l.max(l.max(x[0], x[1]), l.max(x[2], x[3])),
@@ -154,8 +165,8 @@ fn prepare<L: Lanes>(
             steepest = l.max(steepest, l.select(member, steepness, zero));
             l.store(l.select(member, one, zero), kept);
             // Numbers are those of triangles that are not mirrored.
-            let set = second ^ usize::from(mirrored);
-            members[set] |= u64::from(l.movemask(member)) << (8 * g);
+            let second = second ^ usize::from(mirrored);
+            l.istore(member, &mut members[g % 8 + second * (SECOND / 8)]);
         }
     }
     let base = usize::from(cluster.vertex_count).next_multiple_of(8);
@@ -186,8 +197,7 @@ fn prepare<L: Lanes>(
         let high = l.lt(l.mul(l.mul(height, height), base), l.mul(f, f));
         let member = l.iand(member, high);
         steepest = l.max(steepest, l.select(member, steepness, zero));
-        let bits = u64::from(l.movemask(member));
-        members[(RING + 8 * g) / 64] |= bits << (8 * g % 64);
+        l.istore(member, &mut members[(RING / 8 + g) % (NUMBERS / 8)]);
     }
     // Lanes after the last triangle have no area.
     l.store(steepest, &mut at);
@@ -200,24 +210,24 @@ fn prepare<L: Lanes>(
         blocks,
     };
     let edges = &mesh.rings.edges[ring.first_edge as usize..][..usize::from(ring.edges)];
-    // Few edges are borders, and which ones cannot be foreseen: found without a branch, and then taken.
-    for edges in edges.chunks(64) {
-        let mut borders = 0u64;
-        for (k, edge) in edges.iter().enumerate() {
-            let [a, b] = edge.triangles;
-            let a = members[usize::from(a / 64) % 8] >> (a % 64);
-            let b = members[usize::from(b / 64) % 8] >> (b % 64);
-            borders |= ((a ^ b) & 1) << k;
+    let most = edges.len().max(sheet.borders.len());
+    sheet.borders.resize(most, [0; 2]);
+    // Few edges are borders, and which ones cannot be foreseen: each is written, and the next one over it if it is none.
+    let members = members.as_flattened();
+    let mut count = 0;
+    for edge in edges {
+        sheet.borders[count] = edge.vertices;
+        let [a, b] = edge.triangles.map(|t| members[usize::from(t) % NUMBERS]);
+        count += usize::from(a != b);
+    }
+    for eight in sheet.borders[..count].chunks(8) {
+        let mut ends = [[0; 8]; 2];
+        for (i, [a, b]) in eight.iter().enumerate() {
+            (ends[0][i], ends[1][i]) = (*a, *b);
         }
-        while borders != 0 {
-            let edge = &edges[borders.trailing_zeros() as usize];
-            borders &= borders - 1;
-            let [a, b] = edge.vertices;
-            let (a, b) = (usize::from(a), usize::from(b));
-            let a = [points.x[a], points.y[a], points.depth[a]];
-            let b = [points.x[b], points.y[b], points.depth[b]];
-            border::erase(l, band, &mut sheet.erased, a, b, reach);
-        }
+        let [from, to] = &ends;
+        let erased = &mut sheet.erased;
+        border::erase_eight(l, band, erased, points, [from, to], eight.len(), &reach);
     }
 }
 
