@@ -278,7 +278,7 @@ mod tests {
                     let i = by * (width / BLOCK) + bx;
                     let pixels = band.erased[i as usize];
                     assert_eq!(pixels != 0, erased.contains(&i));
-                    if bx < 1 || bx > 8 || by > 5 {
+                    if !(1..=8).contains(&bx) || by > 5 {
                         assert_eq!(pixels, 0);
                         continue;
                     }
