@@ -69,7 +69,7 @@ impl PartialBlock {
     };
 }
 
-/// Block holds nothing; its memory is stale.
+/// Block holds nothing; its memory is stale until the frame is complete.
 pub(crate) const STATE_EMPTY: u8 = 0;
 /// Block has depth.
 pub(crate) const STATE_DEPTH: u8 = 1;
@@ -100,6 +100,8 @@ pub(crate) struct DepthBuffer {
     pub(crate) work: Vec<u32>,
     /// Once a frame is complete: what [`crate::summary`] says.
     pub(crate) coarse: Vec<i16>,
+    /// Whether the memory of a block holds anything, now or from an earlier frame: none or one.
+    pub(crate) used: Vec<u8>,
 }
 
 impl DepthBuffer {
@@ -120,6 +122,7 @@ impl DepthBuffer {
             border: vec![[0; 2]; n],
             work: vec![0; blocks_y as usize],
             coarse: vec![EMPTY; crate::summary::len(blocks_x, blocks_y)],
+            used: vec![0; n],
         }
     }
 
@@ -167,23 +170,42 @@ impl DepthBuffer {
         }
     }
 
+    /// Empties the memory of blocks that hold nothing, so that it says so by itself. Most have never held anything.
+    pub(crate) fn empty_stale(&mut self) {
+        let chunks = self.state.chunks(64).zip(self.used.chunks_mut(64));
+        for ((states, used), depths) in chunks.zip(self.depth.chunks_mut(64)) {
+            let stale = |state: u8, used: u8| u8::from(state == STATE_EMPTY) & used;
+            let any = states
+                .iter()
+                .zip(&*used)
+                .fold(0, |any, (s, u)| any | stale(*s, *u));
+            if any != 0 {
+                for ((s, u), depth) in states.iter().zip(&*used).zip(depths) {
+                    if stale(*s, *u) != 0 {
+                        depth.0.fill(EMPTY);
+                    }
+                }
+            }
+            for (s, u) in states.iter().zip(used) {
+                *u = u8::from(*s != STATE_EMPTY);
+            }
+        }
+    }
+
     /// Code of one pixel.
     pub(crate) fn pixel(&self, x: u32, y: u32) -> i16 {
         let block = y / BLOCK * self.blocks_x + x / BLOCK;
+        if self.state[block as usize] == STATE_EMPTY {
+            return EMPTY;
+        }
         self.known((block * BLOCK_PIXELS + y % BLOCK * BLOCK + x % BLOCK) as usize)
     }
 
-    /// The same by number: block by block, row by row.
+    /// The same by number, block by block, row by row, once a frame is complete.
     #[inline(always)]
     pub(crate) fn known(&self, at: usize) -> i16 {
         let size = BLOCK_PIXELS as usize;
-        let (block, within) = (at / size, at % size);
-        let depth = self.depth[block].0[within];
-        if self.state[block] == STATE_EMPTY {
-            EMPTY
-        } else {
-            depth
-        }
+        self.depth[at / size].0[at % size]
     }
 }
 
@@ -297,6 +319,26 @@ impl<'a> Band<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_an_earlier_frame_left_behind_is_emptied() {
+        let mut buffer = DepthBuffer::new(200, 80);
+        // Frame by frame, which blocks hold something.
+        let holds: [fn(usize) -> bool; 4] = [|b| b % 3 == 0, |b| b % 2 == 0, |_| false, |b| b > 90];
+        for (code, holds) in (1i16..).zip(holds) {
+            buffer.clear();
+            for b in (0..buffer.state.len()).filter(|&b| holds(b)) {
+                buffer.state[b] = STATE_DEPTH;
+                buffer.depth[b].0.fill(code);
+            }
+            buffer.empty_stale();
+            for b in 0..buffer.state.len() {
+                let expected = if holds(b) { code } else { EMPTY };
+                assert_eq!(buffer.depth[b].0, [expected; 64], "frame {code}, block {b}");
+                assert_eq!(buffer.known(64 * b + 63), expected);
+            }
+        }
+    }
 
     #[test]
     fn every_band_has_rows_and_about_its_share_of_the_work() {

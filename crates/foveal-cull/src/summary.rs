@@ -53,7 +53,7 @@ pub(crate) fn len(blocks_x: u32, blocks_y: u32) -> usize {
     PARTS * part_len(blocks_x, blocks_y)
 }
 
-/// Fits the summary to the blocks.
+/// Fits the summary to the blocks, and empties what is stale.
 pub(crate) struct Summarize<'a>(pub(crate) &'a mut DepthBuffer);
 
 impl Kernel for Summarize<'_> {
@@ -62,6 +62,7 @@ impl Kernel for Summarize<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) {
         let buffer = self.0;
+        buffer.empty_stale();
         let stride = buffer.blocks_x as usize;
         let (rows, part) = (
             rows(buffer.blocks_x, buffer.blocks_y) as usize,

@@ -9,10 +9,10 @@
 //! eye.
 
 use super::planes::{Affine, Planes, ROUNDING};
-use crate::depth::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
+use crate::depth::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, decode};
 use crate::simd::Lanes;
 use crate::simd::wide::Wide;
-use crate::simd::{four, smaller, three, two};
+use crate::simd::{four, three, two};
 use glam::Vec3;
 
 /// Rays up to one sample beside a sample count as its own, as for rectangles; from the centre of a pixel and of
@@ -169,16 +169,48 @@ impl<W: Wide> Faces<W> {
             }
         };
         let endless = w.splat(f32::INFINITY);
-        let gaps = gaps & w.lt(w.abs(at[2]), endless);
+        let slope = w.add(w.abs(at[0]), w.abs(at[1]));
+        // Of planes through the eye, or nearly so, nothing is known.
+        let finite = w.lt(w.add(w.abs(at[2]), slope), endless);
+        let (gaps, fronts) = (gaps & finite, fronts & finite);
         (fronts != 0).then_some(Self {
             x: at[0],
             y: at[1],
             // What is no plane of this box is never in the way.
             at_zero: w.select(gaps | fronts, at[2], endless),
             error: w.add(errors[0], errors[1]),
-            slope: w.add(w.abs(at[0]), w.abs(at[1])),
+            slope,
             fronts,
         })
+    }
+
+    /// Whether the box cannot be seen in a block, whose farthest depth is `min`, whatever its pixels are.
+    #[inline(always)]
+    pub(crate) fn miss(&self, w: W, bx: u32, by: u32, min: i16) -> bool {
+        let [most, _] = self.over_block(w, bx, by);
+        self.misses(w, most, min)
+    }
+
+    /// The same from the largest values in the block.
+    #[inline(always)]
+    fn misses(&self, w: W, most: W::F, min: i16) -> bool {
+        // Before a block that is open somewhere no depth is too far.
+        let nearer = if min == EMPTY {
+            f32::NEG_INFINITY
+        } else {
+            decode(min)
+        };
+        let least = w.select(GAPS, w.splat(0.0), w.splat(nearer));
+        w.lt(most, least) & (GAPS | FRONTS) != 0
+    }
+
+    /// Largest and smallest values in a block.
+    #[inline(always)]
+    fn over_block(&self, w: W, bx: u32, by: u32) -> [W::F; 2] {
+        let middle = |v: u32| (v * BLOCK_SAMPLES) as f32 + BLOCK_SAMPLES as f32 * 0.5;
+        let value = self.at(w, middle(bx), middle(by));
+        let reach = w.add(w.mul(self.slope, w.splat(BLOCK_REACH)), self.error);
+        [w.add(value, reach), w.sub(value, reach)]
     }
 
     /// Whether the box may be seen in any of the pixels `seen` of a block.
@@ -193,36 +225,20 @@ impl<W: Wide> Faces<W> {
         depth: L::D,
     ) -> bool {
         let w = l.wide();
-        let half = BLOCK_SAMPLES as f32 * 0.5;
-        let (x, y) = (
-            (bx * BLOCK_SAMPLES) as f32 + half,
-            (by * BLOCK_SAMPLES) as f32 + half,
-        );
-        let middle = self.at(w, x, y);
-        let reach = w.add(w.mul(self.slope, w.splat(BLOCK_REACH)), self.error);
-        let (most, least) = (w.add(middle, reach), w.sub(middle, reach));
-        let zero = w.splat(0.0);
-        let missed = w.lt(most, zero) & GAPS;
-        let mut values = [0.0; 16];
-        w.store(most, &mut values);
-        // What is NaN says nothing.
-        let [a, b, c] = three!(k => values[FIRST_FRONT + k]);
-        let nearest = smaller(c, smaller(b, smaller(a, f32::INFINITY)));
-        if (missed != 0) | (encode(nearest) < min) {
+        let [most, least] = self.over_block(w, bx, by);
+        if self.misses(w, most, min) {
             return false;
         }
-        // Pixel by pixel, from the middle of the first one; only with planes that matter in this block.
-        let mut open = w.lt(least, zero) & GAPS;
-        let mut fronts =
-            self.fronts & !w.lt(w.splat(nearest), least) & w.lt(least, w.splat(f32::INFINITY));
+        // Pixel by pixel, from the middle of the first one; only with gaps that may close in this block.
+        let mut open = w.lt(least, w.splat(0.0)) & GAPS;
+        let mut fronts = self.fronts;
         let pixel = SAMPLES as f32;
-        let first = self.at(w, x - half + 0.5 * pixel, y - half + 0.5 * pixel);
-        let first = w.add(
-            w.add(first, w.mul(self.slope, w.splat(PIXEL_REACH))),
-            self.error,
-        );
+        let first = |v: u32| (v * BLOCK_SAMPLES) as f32 + 0.5 * pixel;
+        let first = self.at(w, first(bx), first(by));
+        let reach = w.mul(self.slope, w.splat(PIXEL_REACH));
+        let first = w.add(w.add(first, reach), self.error);
+        let (mut values, mut right, mut down) = ([0.0; 16], [0.0; 16], [0.0; 16]);
         w.store(first, &mut values);
-        let (mut right, mut down) = ([0.0; 16], [0.0; 16]);
         w.store(w.mul(self.x, w.splat(pixel)), &mut right);
         w.store(w.mul(self.y, w.splat(pixel)), &mut down);
         let mut seen = seen;
@@ -272,7 +288,6 @@ fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) ->
 mod tests {
     use super::*;
     use crate::InstructionSet;
-    use crate::depth::EMPTY;
     use crate::simd::Kernel;
     use crate::view::Camera;
     use crate::{Eye, Projection, View};

@@ -38,7 +38,6 @@ const TOLD: [[Visibility; 8]; 256] = {
 
 /// Working memory for some boxes.
 struct Work {
-    boxes: [Aabb; BOXES],
     results: [Visibility; BOXES],
     sifted: [Sifted16; BOXES / 16],
     middles: [Middles16; BOXES / 16],
@@ -52,7 +51,6 @@ struct Work {
 
 impl Work {
     const NEW: Self = Self {
-        boxes: [Aabb::EMPTY; BOXES],
         results: [Visibility::Visible; BOXES],
         sifted: [Sifted16::NONE; BOXES / 16],
         middles: [Middles16::NONE; BOXES / 16],
@@ -73,10 +71,17 @@ impl Kernel for Flat<'_> {
         let query = self.query;
         let sieve = query.sieve().filter(|_| query.small <= 0.0);
         let mut work = Work::NEW;
-        for (boxes, results) in self.boxes.chunks(BOXES).zip(self.results.chunks_mut(BOXES)) {
-            work.boxes[..boxes.len()].copy_from_slice(boxes);
-            query.answer_all(l, sieve.as_ref(), boxes.len(), &mut work);
-            results.copy_from_slice(&work.results[..results.len()]);
+        let mut last = [Aabb::EMPTY; BOXES];
+        for (some, results) in self.boxes.chunks(BOXES).zip(self.results.chunks_mut(BOXES)) {
+            let count = some.len();
+            let boxes = if let Ok(boxes) = some.try_into() {
+                boxes
+            } else {
+                last[..count].copy_from_slice(some);
+                &last
+            };
+            query.answer_all(l, sieve.as_ref(), boxes, count, &mut work);
+            results.copy_from_slice(&work.results[..count]);
         }
     }
 }
@@ -84,10 +89,17 @@ impl Kernel for Flat<'_> {
 impl Query<'_> {
     /// Answers for the first `count` boxes.
     #[inline(always)]
-    fn answer_all<L: Lanes>(&self, l: L, sieve: Option<&Sieve<'_>>, count: usize, work: &mut Work) {
+    fn answer_all<L: Lanes>(
+        &self,
+        l: L,
+        sieve: Option<&Sieve<'_>>,
+        boxes: &[Aabb; BOXES],
+        count: usize,
+        work: &mut Work,
+    ) {
         work.left.count = 0;
         if let Some(sieve) = sieve {
-            sift_all(l, sieve, count, work);
+            sift_all(l, sieve, boxes, count, work);
             work.left.end(count);
             self.keep_open(work);
         } else {
@@ -95,7 +107,7 @@ impl Query<'_> {
         }
         // The others exactly.
         let list = work.left.numbers();
-        let groups = copy(l, &work.boxes, list, &mut work.copies, &mut work.eights);
+        let groups = copy(l, boxes, list, &mut work.copies, &mut work.eights);
         let projected = &mut work.projected[..groups];
         for ((p, eight), corners) in projected
             .iter_mut()
@@ -193,9 +205,15 @@ fn copy<L: Lanes>(
 
 /// Answers for what a first look at the first `count` boxes tells, and lists the others.
 #[inline(always)]
-fn sift_all<L: Lanes>(l: L, sieve: &Sieve<'_>, count: usize, work: &mut Work) {
+fn sift_all<L: Lanes>(
+    l: L,
+    sieve: &Sieve<'_>,
+    boxes: &[Aabb; BOXES],
+    count: usize,
+    work: &mut Work,
+) {
     let w = l.wide();
-    let (boxes, _) = work.boxes.as_chunks::<16>();
+    let (boxes, _) = boxes.as_chunks::<16>();
     let (results, _) = work.results.as_chunks_mut::<8>();
     let (results, _) = results.as_chunks_mut::<2>();
     let sifted = &mut work.sifted[..count.div_ceil(16)];

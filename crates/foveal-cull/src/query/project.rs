@@ -172,24 +172,23 @@ impl<'a> Coarse<'a> {
         let index = place_of!(l, buffer, four!(i => l.ishr(pixels[i], block)));
         let mut at = [0; 8];
         l.istore(index, &mut at);
-        let mut bits = 0;
+        let (table, mut bits) = (self.table(), 0);
         for i in 0..8 {
-            bits |= u32::from(codes[i] < self.known(at[i])) << i;
+            bits |= u32::from(codes[i] < known(table, at[i])) << i;
         }
         bits
     }
 
-    /// The farthest code at a place of the summary. One by one: a gather takes several times as long.
     #[inline(always)]
-    pub(super) fn known(self, at: i32) -> i32 {
-        i32::from(
-            self.buffer
-                .coarse
-                .get(at as usize)
-                .copied()
-                .unwrap_or(EMPTY),
-        )
+    pub(super) fn table(self) -> &'a [i16] {
+        &self.buffer.coarse
     }
+}
+
+/// The farthest code at a place of the summary. One by one: a gather takes several times as long.
+#[inline(always)]
+pub(super) fn known(table: &[i16], at: i32) -> i32 {
+    i32::from(table.get(at as usize).copied().unwrap_or(EMPTY))
 }
 
 /// With the middle.

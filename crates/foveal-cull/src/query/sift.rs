@@ -5,7 +5,7 @@
 //! the exact rectangle would be hidden by too; the others are projected anew.
 
 use super::points::pixel_of;
-use super::project::{Boxes8, Coarse, ROUNDING, Screen};
+use super::project::{Boxes8, Coarse, ROUNDING, Screen, known};
 use crate::Aabb;
 use crate::depth::{BLOCK, BLOCK_SAMPLES};
 use crate::simd::wide::Wide;
@@ -87,8 +87,9 @@ impl Sifted16 {
     /// Looks up what is known at the places.
     #[inline(always)]
     pub(crate) fn look_up(&mut self, coarse: Coarse<'_>) {
+        let table = coarse.table();
         for at in &mut self.at {
-            *at = coarse.known(*at);
+            *at = known(table, *at);
         }
     }
 

@@ -1,6 +1,6 @@
 //! A rectangle with a depth against the buffer.
 
-use crate::depth::{BLOCK, DepthBuffer, SAMPLES, STATE_EMPTY};
+use crate::depth::{BLOCK, DepthBuffer, SAMPLES};
 use crate::query::faces::Faces;
 use crate::query::planes::Planes;
 use crate::simd::Lanes;
@@ -69,7 +69,7 @@ pub(crate) fn hidden<L: Lanes>(
     code: i16,
     place: Option<(&Planes, (Vec3, Vec3))>,
 ) -> bool {
-    let mut faces = None;
+    let mut faces: Option<Faces<L::W>> = None;
     let [bx0, by0, bx1, by1] = rect.blocks();
     for by in by0..=by1 {
         let row = (by * buffer.blocks_x) as usize;
@@ -78,13 +78,14 @@ pub(crate) fn hidden<L: Lanes>(
             if code < *min {
                 continue;
             }
+            if let Some(faces) = &faces
+                && faces.miss(l.wide(), bx, by, *min)
+            {
+                continue;
+            }
             let b = row + bx as usize;
             let here = rect.bits(bx, by);
-            let depth = if buffer.state[b] == STATE_EMPTY {
-                l.dsplat(crate::depth::EMPTY)
-            } else {
-                l.dload(&buffer.depth[b].0)
-            };
+            let depth = l.dload(&buffer.depth[b].0);
             let seen = here & !l.dgt(depth, l.dsplat(code));
             if seen == 0 {
                 continue;
