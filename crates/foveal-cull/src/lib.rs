@@ -34,7 +34,7 @@
 //! There are kernels for AVX-512, AVX2 and SSE2 on x86-64, for NEON on 64-bit ARM, and for WebAssembly's simd128; all give
 //! the same bits as plain arrays, which serve everything else. On x86-64 the CPU is asked at run time. A WebAssembly module
 //! cannot ask: compile it with `RUSTFLAGS="-C target-feature=+simd128"`, which all current browsers run; without that it has
-//! plain arrays, at about nine times the time.
+//! plain arrays, at up to ten times the time.
 #![deny(unsafe_code)]
 
 mod bounds;

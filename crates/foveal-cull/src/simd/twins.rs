@@ -265,53 +265,44 @@ impl Kernel for Eight<'_> {
 
 struct Sixteen<'a>(&'a Inputs);
 
-fn halves(v: &[f32; 16]) -> [&[f32; 8]; 2] {
-    [v.first_chunk().unwrap(), v.last_chunk().unwrap()]
-}
-
 impl Kernel for Sixteen<'_> {
     type Output = Outputs;
 
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> Outputs {
         let (w, n) = (l.wide(), self.0);
+        let f = |v| {
+            let mut to = [0.0; 16];
+            w.store(v, &mut to);
+            to.map(float).to_vec()
+        };
         let i = |v| {
             let mut to = [0; 16];
             w.istore(v, &mut to);
             to.map(|v| v as u64).to_vec()
         };
-        let lanes = |v: &[f32; 16]| {
-            let [low, high] = halves(v);
-            w.pair(low, high)
-        };
-        // There is no way to store floats, so they are compared with what they should be.
-        let f = |v, expected: [f32; 16]| {
-            let e = lanes(&expected);
-            let mut seen = i(w.codes(v));
-            seen.extend([w.lt(v, e), w.lt(e, v)].map(u64::from));
-            seen
-        };
-        let all =
-            |one: fn(f32, f32) -> f32| core::array::from_fn(|k| one(n.plain[0][k], n.plain[1][k]));
-        let [a, b] = n.plain.each_ref().map(lanes);
-        let [odd_a, odd_b] = n.floats.each_ref().map(lanes);
+        let [a, b] = n.floats.each_ref().map(|v| w.load(v));
+        let pair = w.pair(
+            n.floats[0].last_chunk().unwrap(),
+            n.floats[1].first_chunk().unwrap(),
+        );
         let [x, y] = n.whole.each_ref().map(|v| w.iload(v));
         let mut out: Outputs = vec![
-            ("wide splat", f(w.splat(n.plain[0][0]), [n.plain[0][0]; 16])),
-            ("wide pair", f(a, n.plain[0])),
-            ("wide add", f(w.add(a, b), all(|a, b| a + b))),
-            ("wide sub", f(w.sub(a, b), all(|a, b| a - b))),
-            ("wide mul", f(w.mul(a, b), all(|a, b| a * b))),
-            (
-                "wide mul, add",
-                f(w.add(w.mul(a, b), a), all(|a, b| a * b + a)),
-            ),
-            ("wide div", f(w.div(a, b), all(|a, b| a / b))),
-            ("wide min", i(w.codes(w.min(odd_a, odd_b)))),
-            ("wide max", i(w.codes(w.max(odd_a, odd_b)))),
-            ("wide abs", f(w.abs(a), all(|a, _| a.abs()))),
-            ("wide lt", vec![u64::from(w.lt(odd_a, odd_b))]),
-            ("wide trunc", i(w.trunc(odd_a))),
+            ("wide load", f(a)),
+            ("wide splat", f(w.splat(n.floats[0][0]))),
+            ("wide pair", f(pair)),
+            ("wide add", f(w.add(a, b))),
+            ("wide sub", f(w.sub(a, b))),
+            ("wide mul", f(w.mul(a, b))),
+            ("wide mul, add", f(w.add(w.mul(a, b), a))),
+            ("wide div", f(w.div(a, b))),
+            ("wide min", f(w.min(a, b))),
+            ("wide max", f(w.max(a, b))),
+            ("wide abs", f(w.abs(a))),
+            ("wide lt", vec![u64::from(w.lt(a, b))]),
+            ("wide select", f(w.select(n.bits as u32 & 0xffff, a, b))),
+            ("wide trunc", i(w.trunc(a))),
+            ("wide codes", i(w.codes(w.load(&n.plain[0])))),
             ("wide isplat", i(w.isplat(n.whole[0][0]))),
             ("wide iadd", i(w.iadd(x, y))),
             ("wide isub", i(w.isub(x, y))),
@@ -322,10 +313,7 @@ impl Kernel for Sixteen<'_> {
             ("wide ibits", i(w.ibits(w.iload(&n.counts)))),
             ("wide negative", vec![u64::from(w.negative(x))]),
         ];
-        for (k, v) in w.turn(&n.boxes).into_iter().enumerate() {
-            let coordinate = |b: &Aabb| if k < 3 { b.min[k] } else { b.max[k - 3] };
-            out.push(("wide turn", f(v, n.boxes.each_ref().map(coordinate))));
-        }
+        out.extend(w.turn(&n.boxes).map(|v| ("wide turn", f(v))));
         out
     }
 }

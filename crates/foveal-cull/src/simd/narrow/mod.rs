@@ -237,7 +237,8 @@ impl<R: Registers> Lanes for Narrow<R> {
     }
     #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
-        eight!(k => self.0.hselect(self.0.hmask((bits >> (8 * k)) as u16), a[k], b[k]))
+        let masks = self.0.hmasks(bits);
+        eight!(k => self.0.hselect(masks[k], a[k], b[k]))
     }
     #[inline(always)]
     fn dreduce_min(self, a: Self::D) -> i16 {

@@ -3,6 +3,7 @@
 use super::Registers;
 use crate::simd::{four, two};
 use core::arch::aarch64::*;
+use core::arch::asm;
 
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Neon;
@@ -98,8 +99,6 @@ impl Registers for Neon {
         hgt(a: int16x8_t, b: int16x8_t) -> int16x8_t = vreinterpretq_s16_u16(vcgtq_s16(a, b));
         hselect(mask: int16x8_t, a: int16x8_t, b: int16x8_t) -> int16x8_t =
             vbslq_s16(vreinterpretq_u16_s16(mask), a, b);
-        hmask(bits: u16) -> int16x8_t =
-            vreinterpretq_s16_u16(vtstq_u16(vdupq_n_u16(bits), vld1q_u16(BIT16.as_ptr())));
         hpack(a: [int32x4_t; 2]) -> int16x8_t = vqmovn_high_s32(vqmovn_s32(a[0]), a[1]);
         hleast(a: int16x8_t) -> i16 = vminvq_s16(a);
 
@@ -112,6 +111,17 @@ impl Registers for Neon {
         bandnot(a: uint8x16_t, b: uint8x16_t) -> uint8x16_t = vbicq_u8(b, a);
     }
 
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        let start: *const u8 = core::ptr::from_ref(soon).cast();
+        for line in 0..size_of::<T>().div_ceil(64) {
+            let at = start.wrapping_add(64 * line);
+            // SAFETY: a hint, which reads nothing and changes nothing.
+            unsafe {
+                asm!("prfm pldl1keep, [{at}]", at = in(reg) at, options(readonly, nostack, preserves_flags));
+            }
+        }
+    }
     #[inline(always)]
     fn ishr_all<const BY: i32>(self, a: int32x4_t) -> int32x4_t {
         neon!(vshrq_n_s32::<BY>(a))
@@ -133,6 +143,24 @@ impl Registers for Neon {
                 vuzp1q_u32(low, high),
                 vld1q_u32([1, 2, 4, 8].as_ptr()),
             ))
+        })
+    }
+    #[inline(always)]
+    fn hmasks(self, bits: u64) -> [int16x8_t; 8] {
+        neon!({
+            let bytes = vcreate_u8(bits);
+            let bit = vld1q_u16(BIT16.as_ptr());
+            [
+                vdupq_lane_u8::<0>(bytes),
+                vdupq_lane_u8::<1>(bytes),
+                vdupq_lane_u8::<2>(bytes),
+                vdupq_lane_u8::<3>(bytes),
+                vdupq_lane_u8::<4>(bytes),
+                vdupq_lane_u8::<5>(bytes),
+                vdupq_lane_u8::<6>(bytes),
+                vdupq_lane_u8::<7>(bytes),
+            ]
+            .map(|v| vreinterpretq_s16_u16(vtstq_u16(vreinterpretq_u16_u8(v), bit)))
         })
     }
     #[inline(always)]

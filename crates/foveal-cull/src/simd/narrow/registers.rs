@@ -88,8 +88,8 @@ pub(crate) trait Registers: Copy {
     /// All ones where `a > b`.
     fn hgt(self, a: Self::H, b: Self::H) -> Self::H;
     fn hselect(self, mask: Self::H, a: Self::H, b: Self::H) -> Self::H;
-    /// All ones where the bit of the lane is set, lane 0 lowest; the upper eight bits are whatever they are.
-    fn hmask(self, bits: u16) -> Self::H;
+    /// All ones where the bit is set: eight per register, lane 0 of the first lowest.
+    fn hmasks(self, bits: u64) -> [Self::H; 8];
     /// Two times four numbers, each the nearest that an `i16` can hold.
     fn hpack(self, a: [Self::I; 2]) -> Self::H;
     fn hleast(self, a: Self::H) -> i16;

@@ -135,9 +135,19 @@ impl Registers for Simd128 {
         low | high << 2
     }
     #[inline(always)]
-    fn hmask(self, bits: u16) -> v128 {
+    fn hmasks(self, bits: u64) -> [v128; 8] {
         let bit = i16x8(1, 2, 4, 8, 16, 32, 64, 128);
-        i16x8_eq(v128_and(u16x8_splat(bits), bit), bit)
+        let mask = |k: usize| i16x8_eq(v128_and(u16x8_splat((bits >> (8 * k)) as u16), bit), bit);
+        [
+            mask(0),
+            mask(1),
+            mask(2),
+            mask(3),
+            mask(4),
+            mask(5),
+            mask(6),
+            mask(7),
+        ]
     }
     #[inline(always)]
     fn hleast(self, a: v128) -> i16 {

@@ -161,10 +161,27 @@ impl Registers for Sse2 {
         })
     }
     #[inline(always)]
-    fn hmask(self, bits: u16) -> __m128i {
+    fn hmasks(self, bits: u64) -> [__m128i; 8] {
         sse2!({
+            // Every byte four times, then each four all over a register.
+            let bytes = _mm_cvtsi64_si128(bits as i64);
+            let twice = _mm_unpacklo_epi8(bytes, bytes);
+            let (low, high) = (
+                _mm_unpacklo_epi16(twice, twice),
+                _mm_unpackhi_epi16(twice, twice),
+            );
             let bit = _mm_setr_epi16(1, 2, 4, 8, 16, 32, 64, 128);
-            _mm_cmpeq_epi16(_mm_and_si128(_mm_set1_epi16(bits as i16), bit), bit)
+            [
+                _mm_shuffle_epi32::<0b00_00_00_00>(low),
+                _mm_shuffle_epi32::<0b01_01_01_01>(low),
+                _mm_shuffle_epi32::<0b10_10_10_10>(low),
+                _mm_shuffle_epi32::<0b11_11_11_11>(low),
+                _mm_shuffle_epi32::<0b00_00_00_00>(high),
+                _mm_shuffle_epi32::<0b01_01_01_01>(high),
+                _mm_shuffle_epi32::<0b10_10_10_10>(high),
+                _mm_shuffle_epi32::<0b11_11_11_11>(high),
+            ]
+            .map(|v| _mm_cmpeq_epi16(_mm_and_si128(v, bit), bit))
         })
     }
     #[inline(always)]
