@@ -15,6 +15,8 @@ pub(super) struct Corners {
     pub(super) x: [[f32; 8]; 4],
     pub(super) y: [[f32; 8]; 4],
     pub(super) depth: [[f32; 8]; 4],
+    /// All ones for those that may be seen.
+    pub(super) open: [i32; 8],
 }
 
 /// The quads of a cluster that may be seen.
@@ -66,6 +68,7 @@ impl Open {
                 x: four!(c => out(l, x[c])),
                 y: four!(c => out(l, y[c])),
                 depth: four!(c => out(l, z[c])),
+                open: [0; 8],
             };
             let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
             let whole = l.lt(l.sub(sum, sum), one);
@@ -93,6 +96,7 @@ impl Open {
                     continue;
                 }
                 *quads |= 1 << i;
+                corners.open[i] = -1;
                 let [x0, y0, x1, y1] = open.blocks;
                 open.blocks = [
                     x0.min(blocks[0]),

@@ -38,7 +38,7 @@ pub(super) const AROUND_SAMPLE: f32 = 0.8;
 /// What belongs to the sheet of the cluster that is being drawn.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {
-    /// Above zero for triangles that belong to it: by group the first and the second of each quad.
+    /// Above zero for triangles that belong to it and may be seen: by group the first and the second of each quad.
     pub(crate) kept: [[[f32; 8]; 2]; 8],
     /// Its corners, by group.
     corners: [Corners; 8],
@@ -159,11 +159,12 @@ fn prepare<L: Lanes>(
         nearest = l.select(whole, l.max(nearest, z_hi), nearest);
         for (second, kept) in kept.iter_mut().enumerate() {
             let (b, c) = (1 + second, 2 + second);
-            let corners = [(x[0], y[0], z[0]), (x[b], y[b], z[b]), (x[c], y[c], z[c])];
-            let (steepness, member) = judge(l, corners, sides, z_hi);
+            let triangle = [(x[0], y[0], z[0]), (x[b], y[b], z[b]), (x[c], y[c], z[c])];
+            let (steepness, member) = judge(l, triangle, sides, z_hi);
             let member = l.iand(member, whole);
             steepest = l.max(steepest, l.select(member, steepness, zero));
-            l.store(l.select(member, one, zero), kept);
+            let open = l.iand(member, l.iload(&corners.open));
+            l.store(l.select(open, one, zero), kept);
             // Numbers are those of triangles that are not mirrored.
             let second = second ^ usize::from(mirrored);
             l.istore(member, &mut members[g % 8 + second * (SECOND / 8)]);
