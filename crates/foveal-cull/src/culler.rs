@@ -214,7 +214,11 @@ impl Culler {
             .resize_with(self.scratch.len().max(bands), Scratch::default);
         self.drawn
             .resize_with(self.drawn.len().max(bands), Vec::new);
-        type Job<'a> = Option<(crate::depth::Band<'a>, &'a mut Scratch, &'a mut Vec<u32>)>;
+        type Job<'a> = Option<(
+            crate::raster::band::Band<'a>,
+            &'a mut Scratch,
+            &'a mut Vec<u32>,
+        )>;
         let mut jobs: [Mutex<Job<'_>>; MAX_BANDS] = [const { Mutex::new(None) }; MAX_BANDS];
         let mut rest = self.buffer.band();
         let mut first = 0;

@@ -8,7 +8,8 @@
 //! Depth is `near / distance` (or linear, for orthographic views), stored as a shortened float with five
 //! bits of exponent and eleven of mantissa, always rounded away from the eye. Larger is nearer.
 
-use crate::simd::Lanes;
+use crate::raster::band::Band;
+use crate::raster::pool::Pool;
 
 /// Grid points per pixel and axis.
 pub(crate) const SAMPLES: u32 = 4;
@@ -60,8 +61,14 @@ pub(crate) struct PartialBlock {
     pub(crate) any: u64,
 }
 
+impl DepthBlock {
+    /// A block that holds nothing.
+    pub(crate) const EMPTY: Self = Self([EMPTY; 64]);
+}
+
 impl PartialBlock {
-    const NONE: Self = Self {
+    /// Nothing is covered in part.
+    pub(crate) const NONE: Self = Self {
         planes: [0; 16],
         depth: [i16::MAX; 64],
         center: 0,
@@ -70,13 +77,37 @@ impl PartialBlock {
 }
 
 /// Block holds nothing; its memory is stale until the frame is complete.
-pub(crate) const STATE_EMPTY: u8 = 0;
+pub(crate) const STATE_EMPTY: u32 = 0;
 /// Block has depth.
-pub(crate) const STATE_DEPTH: u8 = 1;
+pub(crate) const STATE_DEPTH: u32 = 1;
 /// Block has depth and partly covered pixels.
-pub(crate) const STATE_PARTIAL: u8 = 2;
+pub(crate) const STATE_PARTIAL: u32 = 2;
 /// And these in two layers.
-pub(crate) const STATE_LAYERS: u8 = 3;
+pub(crate) const STATE_LAYERS: u32 = 3;
+
+/// What a block holds: one of the states, and above its two bits the slot of its partly covered pixels, if it has any.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Held(u32);
+
+impl Held {
+    pub(crate) const NOTHING: Self = Self(STATE_EMPTY);
+    pub(crate) const DEPTH: Self = Self(STATE_DEPTH);
+
+    #[inline(always)]
+    pub(crate) fn partial(state: u32, slot: u32) -> Self {
+        Self(slot << 2 | state)
+    }
+
+    #[inline(always)]
+    pub(crate) fn state(self) -> u32 {
+        self.0 & 3
+    }
+
+    #[inline(always)]
+    pub(crate) fn slot(self) -> u32 {
+        self.0 >> 2
+    }
+}
 
 /// The buffer. See the module.
 #[derive(Clone, Debug)]
@@ -86,12 +117,13 @@ pub(crate) struct DepthBuffer {
     pub(crate) blocks_x: u32,
     pub(crate) blocks_y: u32,
     pub(crate) depth: Vec<DepthBlock>,
-    pub(crate) partial: Vec<PartialBlock>,
-    /// All parts together, where those in `partial` are only the near ones.
-    pub(crate) all: Vec<PartialBlock>,
     /// Farthest depth per block.
     pub(crate) min: Vec<i16>,
-    pub(crate) state: Vec<u8>,
+    pub(crate) held: Vec<Held>,
+    /// The slots of the [`Pool`].
+    partial: Vec<PartialBlock>,
+    all: Vec<PartialBlock>,
+    free: Vec<u32>,
     /// Pixels to which a border of the cluster being drawn comes too near; none between clusters.
     pub(crate) erased: Vec<u64>,
     /// Farthest and nearest depth of these borders.
@@ -113,11 +145,12 @@ impl DepthBuffer {
             height,
             blocks_x,
             blocks_y,
-            depth: vec![DepthBlock([EMPTY; 64]); n],
+            depth: vec![DepthBlock::EMPTY; n],
+            min: vec![EMPTY; n],
+            held: vec![Held::NOTHING; n],
             partial: vec![PartialBlock::NONE; n],
             all: vec![PartialBlock::NONE; n],
-            min: vec![EMPTY; n],
-            state: vec![STATE_EMPTY; n],
+            free: vec![0; 2 * n],
             erased: vec![0; n],
             border: vec![[0; 2]; n],
             work: vec![0; blocks_y as usize],
@@ -128,7 +161,7 @@ impl DepthBuffer {
 
     pub(crate) fn clear(&mut self) {
         self.min.fill(EMPTY);
-        self.state.fill(STATE_EMPTY);
+        self.held.fill(Held::NOTHING);
     }
 
     /// Where to cut the rows into `bands` of equal work, as far as the last frame tells: the ends of all bands.
@@ -160,10 +193,10 @@ impl DepthBuffer {
             first_row: 0,
             rows: self.blocks_y,
             depth: &mut self.depth,
-            partial: &mut self.partial,
-            all: &mut self.all,
             min: &mut self.min,
-            state: &mut self.state,
+            held: &mut self.held,
+            pool: Pool::new(&mut self.partial, &mut self.all, &mut self.free),
+            erases: false,
             erased: &mut self.erased,
             border: &mut self.border,
             work: &mut self.work,
@@ -172,30 +205,31 @@ impl DepthBuffer {
 
     /// Empties the memory of blocks that hold nothing, so that it says so by itself. Most have never held anything.
     pub(crate) fn empty_stale(&mut self) {
-        let chunks = self.state.chunks(64).zip(self.used.chunks_mut(64));
-        for ((states, used), depths) in chunks.zip(self.depth.chunks_mut(64)) {
-            let stale = |state: u8, used: u8| u8::from(state == STATE_EMPTY) & used;
-            let any = states
+        let chunks = self.held.chunks(64).zip(self.used.chunks_mut(64));
+        for ((held, used), depths) in chunks.zip(self.depth.chunks_mut(64)) {
+            let nothing = |held: &Held| u8::from(held.state() == STATE_EMPTY);
+            let any = held
                 .iter()
                 .zip(&*used)
-                .fold(0, |any, (s, u)| any | stale(*s, *u));
+                .fold(0, |any, (h, u)| any | (nothing(h) & u));
             if any != 0 {
-                for ((s, u), depth) in states.iter().zip(&*used).zip(depths) {
-                    if stale(*s, *u) != 0 {
+                for ((h, u), depth) in held.iter().zip(&*used).zip(depths) {
+                    if nothing(h) & u != 0 {
                         depth.0.fill(EMPTY);
                     }
                 }
             }
-            for (s, u) in states.iter().zip(used) {
-                *u = u8::from(*s != STATE_EMPTY);
+            for (h, u) in held.iter().zip(used) {
+                *u = 1 - nothing(h);
             }
         }
     }
 
     /// Code of one pixel.
+    #[inline(always)]
     pub(crate) fn pixel(&self, x: u32, y: u32) -> i16 {
         let block = y / BLOCK * self.blocks_x + x / BLOCK;
-        if self.state[block as usize] == STATE_EMPTY {
+        if self.held[block as usize].state() == STATE_EMPTY {
             return EMPTY;
         }
         self.known((block * BLOCK_PIXELS + y % BLOCK * BLOCK + x % BLOCK) as usize)
@@ -206,113 +240,6 @@ impl DepthBuffer {
     pub(crate) fn known(&self, at: usize) -> i16 {
         let size = BLOCK_PIXELS as usize;
         self.depth[at / size].0[at % size]
-    }
-}
-
-/// Some block rows of the buffer, exclusively.
-pub(crate) struct Band<'a> {
-    pub(crate) blocks_x: u32,
-    pub(crate) first_row: u32,
-    pub(crate) rows: u32,
-    pub(crate) depth: &'a mut [DepthBlock],
-    pub(crate) partial: &'a mut [PartialBlock],
-    pub(crate) all: &'a mut [PartialBlock],
-    pub(crate) min: &'a mut [i16],
-    pub(crate) state: &'a mut [u8],
-    pub(crate) erased: &'a mut [u64],
-    pub(crate) border: &'a mut [[i16; 2]],
-    pub(crate) work: &'a mut [u32],
-}
-
-impl<'a> Band<'a> {
-    /// Whether nothing of this depth or farther can change any of the blocks (first and last, inclusive).
-    #[inline(always)]
-    pub(crate) fn hides(&self, [x0, y0, x1, y1]: [u32; 4], code: i16) -> bool {
-        for y in y0..=y1 {
-            let row = (y - self.first_row) * self.blocks_x;
-            let row = &self.min[(row + x0) as usize..=(row + x1) as usize];
-            if row.iter().any(|&m| code > m) {
-                return false;
-            }
-        }
-        true
-    }
-
-    /// Counts work for some rows, the same for each.
-    pub(crate) fn share(&mut self, rows: core::ops::Range<u32>, work: u32) {
-        let each = work.div_ceil(rows.len() as u32);
-        for row in &mut self.work[rows.start as usize..rows.end as usize] {
-            *row += each;
-        }
-    }
-
-    /// Fetches what drawing something of this depth into the blocks (first and last, inclusive) will touch.
-    #[inline(always)]
-    pub(crate) fn prefetch<L: Lanes>(&self, l: L, [x0, y0, x1, y1]: [u32; 4], code: i16) {
-        for y in y0..=y1 {
-            let row = (y - self.first_row) * self.blocks_x;
-            for i in (row + x0) as usize..=(row + x1) as usize {
-                if code > self.min[i] {
-                    l.prefetch(&self.depth[i]);
-                    l.prefetch(&self.partial[i]);
-                }
-            }
-        }
-    }
-
-    /// The pixels of a block that something from `far` to `near` must leave alone.
-    #[inline(always)]
-    pub(crate) fn erased(&self, i: usize, far: i16, near: i16) -> u64 {
-        let pixels = self.erased[i];
-        if pixels != 0 {
-            let [border_far, border_near] = self.border[i];
-            if (near < border_far) | (far > border_near) {
-                return 0;
-            }
-        }
-        pixels
-    }
-
-    /// The first `rows` block rows, and the rest.
-    pub(crate) fn split(self, rows: u32) -> (Band<'a>, Band<'a>) {
-        let rows = rows.min(self.rows);
-        let at = (rows * self.blocks_x) as usize;
-        let (d0, d1) = self.depth.split_at_mut(at);
-        let (p0, p1) = self.partial.split_at_mut(at);
-        let (a0, a1) = self.all.split_at_mut(at);
-        let (m0, m1) = self.min.split_at_mut(at);
-        let (s0, s1) = self.state.split_at_mut(at);
-        let (e0, e1) = self.erased.split_at_mut(at);
-        let (r0, r1) = self.border.split_at_mut(at);
-        let (w0, w1) = self.work.split_at_mut(rows as usize);
-        (
-            Band {
-                blocks_x: self.blocks_x,
-                first_row: self.first_row,
-                rows,
-                depth: d0,
-                partial: p0,
-                all: a0,
-                min: m0,
-                state: s0,
-                erased: e0,
-                border: r0,
-                work: w0,
-            },
-            Band {
-                blocks_x: self.blocks_x,
-                first_row: self.first_row + rows,
-                rows: self.rows - rows,
-                depth: d1,
-                partial: p1,
-                all: a1,
-                min: m1,
-                state: s1,
-                erased: e1,
-                border: r1,
-                work: w1,
-            },
-        )
     }
 }
 
@@ -327,12 +254,12 @@ mod tests {
         let holds: [fn(usize) -> bool; 4] = [|b| b % 3 == 0, |b| b % 2 == 0, |_| false, |b| b > 90];
         for (code, holds) in (1i16..).zip(holds) {
             buffer.clear();
-            for b in (0..buffer.state.len()).filter(|&b| holds(b)) {
-                buffer.state[b] = STATE_DEPTH;
+            for b in (0..buffer.held.len()).filter(|&b| holds(b)) {
+                buffer.held[b] = Held::DEPTH;
                 buffer.depth[b].0.fill(code);
             }
             buffer.empty_stale();
-            for b in 0..buffer.state.len() {
+            for b in 0..buffer.held.len() {
                 let expected = if holds(b) { code } else { EMPTY };
                 assert_eq!(buffer.depth[b].0, [expected; 64], "frame {code}, block {b}");
                 assert_eq!(buffer.known(64 * b + 63), expected);

@@ -85,7 +85,7 @@ mod tests {
         let (width, height) = (72, 40);
         let mut buffer = DepthBuffer::new(width, height);
         // Every pixel of a number has the code that says which one it is.
-        buffer.state.fill(crate::depth::STATE_DEPTH);
+        buffer.held.fill(crate::depth::Held::DEPTH);
         for (b, block) in (0u32..).zip(&mut buffer.depth) {
             for (i, code) in (0u32..).zip(&mut block.0) {
                 let (x, y) = (

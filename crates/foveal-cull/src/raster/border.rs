@@ -3,9 +3,10 @@
 //! A border erases only what lies as deep as the sheet can be where that border is within reach of it; where the cluster folds,
 //! its farther part stays.
 
+use super::band::Band;
 use super::setup::Points;
 use super::sheet::AROUND_SAMPLE;
-use crate::depth::{BLOCK_SAMPLES, Band, SAMPLES, encode};
+use crate::depth::{BLOCK_SAMPLES, SAMPLES, encode};
 use crate::simd::{Lanes, four, larger, smaller};
 
 /// More than all rounding, samples.
@@ -190,6 +191,7 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
             let last = l.mul(l.sub(to, left), pixel);
             let bits = l.plane(first, l.add(last, l.splat(1.0)));
             if bits != 0 {
+                band.erases = true;
                 let (pixels, border) = (&mut band.erased[i], &mut band.border[i]);
                 if *pixels == 0 {
                     erased.push(i as u32);

@@ -3,8 +3,9 @@
 //! Sutherland-Hodgman in homogeneous coordinates and `f64`, then the ordinary set-up. What is nearer than
 //! the near plane is not drawn by a renderer and so occludes nothing.
 
+use super::band::Band;
 use super::setup::{Facing, GUARD, Scratch, draw_eight};
-use crate::depth::{BLOCK_SAMPLES, Band};
+use crate::depth::BLOCK_SAMPLES;
 use crate::occluder::{Cluster, OccluderMesh};
 use crate::simd::Lanes;
 use glam::DVec4;

@@ -3,10 +3,10 @@
 //! Just before a cluster is drawn, its rectangle is tested against the depth so far; one that is hidden there could
 //! not have changed anything.
 
+use super::band::Band;
 use super::select::Part;
 use super::setup::{Facing, Radius, Scratch, draw_cluster};
 use crate::Budget;
-use crate::depth::Band;
 use crate::occluder::OccluderSet;
 use crate::simd::{Kernel, Lanes};
 

@@ -5,7 +5,8 @@
 //! never complete them. So the near parts are kept apart, as in masked occlusion culling (Hasselgren, Andersson and
 //! Akenine-Moeller 2016, section 3.2), but exactly: nothing is thrown away before it is hidden.
 
-use crate::depth::{Band, PartialBlock, STATE_DEPTH, STATE_LAYERS, STATE_PARTIAL};
+use super::band::Here;
+use crate::depth::{Held, PartialBlock, STATE_LAYERS, STATE_PARTIAL};
 use crate::simd::Lanes;
 
 /// Codes further apart than this (half of them are a factor of two in distance) are kept apart.
@@ -70,19 +71,19 @@ impl<L: Lanes> Layer<L> {
     }
 }
 
-/// Adds a part `ours`, of the pixels `joined`, to a block whose depth is otherwise `new`.
+/// Adds a part `ours`, of the pixels `joined`, to a block (that has a slot) whose depth is otherwise `new`.
 #[inline(always)]
 pub(super) fn join<L: Lanes>(
     l: L,
-    band: &mut Band<'_>,
-    i: usize,
+    to: Here<'_, '_>,
+    slot: u32,
     ours: &Layer<L>,
     joined: u64,
     new: L::D,
 ) {
-    let front = Layer::load(l, &band.partial[i]);
-    let all = if band.state[i] == STATE_LAYERS {
-        Layer::load(l, &band.all[i])
+    let front = Layer::load(l, &to.pool.partial[slot as usize]);
+    let all = if to.held.state() == STATE_LAYERS {
+        Layer::load(l, &to.pool.all[slot as usize])
     } else {
         front
     };
@@ -98,15 +99,22 @@ pub(super) fn join<L: Lanes>(
     let new = l.dselect(full, l.dmax(new, front.depth), new);
     let full = all.full(l);
     let new = l.dselect(full, l.dmax(new, all.depth), new);
-    l.dstore(new, &mut band.depth[i].0);
-    band.min[i] = l.dreduce_min(new);
-    forget(l, band, i, front, all, new);
+    l.dstore(new, &mut to.depth.0);
+    *to.min = l.dreduce_min(new);
+    forget(l, to, slot, front, all, new);
 }
 
-/// Drops partial coverage that can no longer bring anything nearer than the depth that is there.
+/// Drops partial coverage that can no longer bring anything nearer than the depth `d` that is there.
 #[inline(always)]
-pub(super) fn forget_hidden<L: Lanes>(l: L, partial: &mut PartialBlock, d: L::D) {
+pub(super) fn forget_hidden<L: Lanes>(l: L, to: Here<'_, '_>, d: L::D) {
+    let slot = to.held.slot();
+    let partial = &mut to.pool.partial[slot as usize];
     let kept = partial.any & l.dgt(l.dload(&partial.depth), d);
+    if kept == 0 {
+        to.pool.give(slot, true);
+        *to.held = Held::DEPTH;
+        return;
+    }
     l.pstore(l.pkeep(l.pload(&partial.planes), kept), &mut partial.planes);
     partial.center &= kept;
     partial.any = kept;
@@ -114,17 +122,18 @@ pub(super) fn forget_hidden<L: Lanes>(l: L, partial: &mut PartialBlock, d: L::D)
 
 /// The same where there are layers.
 #[inline(always)]
-pub(super) fn forget_hidden_layers<L: Lanes>(l: L, band: &mut Band<'_>, i: usize, d: L::D) {
+pub(super) fn forget_hidden_layers<L: Lanes>(l: L, to: Here<'_, '_>, d: L::D) {
+    let slot = to.held.slot();
     let (front, all) = (
-        Layer::load(l, &band.partial[i]),
-        Layer::load(l, &band.all[i]),
+        Layer::load(l, &to.pool.partial[slot as usize]),
+        Layer::load(l, &to.pool.all[slot as usize]),
     );
-    forget(l, band, i, front, all, d);
+    forget(l, to, slot, front, all, d);
 }
 
 /// Stores what is not hidden behind `d`, in one layer where two would be the same.
 #[inline(always)]
-fn forget<L: Lanes>(l: L, band: &mut Band<'_>, i: usize, front: Layer<L>, all: Layer<L>, d: L::D) {
+fn forget<L: Lanes>(l: L, to: Here<'_, '_>, slot: u32, front: Layer<L>, all: Layer<L>, d: L::D) {
     let front = front.keep(l, l.dgt(front.depth, d));
     let kept = l.dgt(all.depth, d);
     // All that counts is in front where the rest is hidden.
@@ -134,13 +143,16 @@ fn forget<L: Lanes>(l: L, band: &mut Band<'_>, i: usize, front: Layer<L>, all: L
         depth: l.dselect(kept, all.depth, front.depth),
     };
     let two = l.dgt(front.depth, all.depth) & front.any(l);
-    front.store(l, &mut band.partial[i]);
-    band.state[i] = if two != 0 {
-        all.store(l, &mut band.all[i]);
-        STATE_LAYERS
-    } else if band.partial[i].any != 0 {
-        STATE_PARTIAL
+    let partial = &mut to.pool.partial[slot as usize];
+    front.store(l, partial);
+    let any = partial.any;
+    *to.held = if two != 0 {
+        all.store(l, &mut to.pool.all[slot as usize]);
+        Held::partial(STATE_LAYERS, slot)
+    } else if any != 0 {
+        Held::partial(STATE_PARTIAL, slot)
     } else {
-        STATE_DEPTH
+        to.pool.give(slot, true);
+        Held::DEPTH
     };
 }

@@ -4,8 +4,9 @@
 //! is not behind what is drawn already. What a cluster needs as a whole (the sheet of a result that holds around the
 //! eye) is for those that have one, and only where these lie.
 
+use super::band::Band;
 use super::setup::{Points, area, blocks_of, highest, lowest, out, steps_of};
-use crate::depth::{Band, encode};
+use crate::depth::encode;
 use crate::occluder::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
 

@@ -7,8 +7,9 @@
 //! so that no sample between them is lost or counted twice. Per row of blocks the borders give the span of
 //! touched and of fully covered blocks.
 
+use super::band::Band;
 use super::block::{self, Borders, Plane};
-use crate::depth::{BLOCK_SAMPLES, Band};
+use crate::depth::BLOCK_SAMPLES;
 use crate::simd::{Lanes, four, larger, smaller};
 
 /// A front-facing convex polygon.
@@ -137,6 +138,13 @@ impl<L: Lanes> Polygon<L> {
     }
 }
 
+/// Rounded up, where that is a block; casts saturate.
+#[inline(always)]
+fn up(v: f64) -> u32 {
+    let whole = v as u32;
+    whole.saturating_add(u32::from(f64::from(whole) < v))
+}
+
 /// What the set-up of a polygon takes, and a row of blocks of it, in the unit of [`block::WORK_OF_FULL`].
 const WORK_OF_POLYGON: u32 = 5;
 const WORK_OF_ROW: u32 = 1;
@@ -177,14 +185,22 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
             }
             last = last.min(end as u32);
         }
+        // Blocks from `inner` on, and before `after`, are covered wholly.
+        let end = last + 1;
+        let inner = first.max(up(inner_left * (1.0 / size)));
+        let after = inner.max(end.min((inner_right * (1.0 / size)) as u32));
         let mut work = WORK_OF_ROW;
-        for bx in first..=last {
-            let left = f64::from(bx * BLOCK_SAMPLES);
-            if left >= inner_left && left + size <= inner_right {
-                work += block::cover_full(l, band, bx, by, &polygon.plane);
-            } else {
-                work += block::cover_partial(l, band, bx, by, polygon, &borders, exact);
-            }
+        for bx in inner..after {
+            work += block::cover_full(l, band, bx, by, &polygon.plane);
+        }
+        let whole = after - inner;
+        let spans = borders.spans(l, exact, polygon.rows, top);
+        let mut bx = first;
+        while bx < end - whole {
+            // Those that are left, as if the others were not there.
+            let here = if bx < inner { bx } else { bx + whole };
+            work += block::cover_partial(l, band, here, by, &polygon.plane, &spans);
+            bx += 1;
         }
         band.work[(by - band.first_row) as usize] += work;
     }

@@ -7,12 +7,13 @@
 //! Corners are transformed in `f64`, and borders made of that: a sample is covered if the reference says so too.
 //! All else (bounds, facing, depth) is rounded to float and judged with slack.
 
+use super::band::Band;
 use super::block::Plane;
 use super::clip;
 use super::open::Open;
 use super::polygon::{self, Edges, Polygon};
 use super::sheet::{Prepare, Sheet};
-use crate::depth::{BLOCK_SAMPLES, Band, encode};
+use crate::depth::{BLOCK_SAMPLES, encode};
 use crate::occluder::{Cluster, OccluderMesh, Vertices};
 use crate::simd::{Lanes, four};
 

@@ -20,10 +20,10 @@
 //! Between samples the sheet may be another triangle than at the nearest of them, half a sample away in each axis;
 //! depths are lowered by what the steepest triangle of the sheet changes there.
 
+use super::band::Band;
 use super::border::{self, Reach};
 use super::open::{Corners, Open};
 use super::setup::{Points, Radius, Scratch, area, transform};
-use crate::depth::Band;
 use crate::occluder::{Cluster, NUMBERS, OccluderMesh, RING, Ring, SECOND};
 use crate::simd::{Kernel, Lanes, four, larger, smaller};
 
@@ -56,6 +56,7 @@ impl Sheet {
         for i in self.erased.drain(..) {
             band.erased[i as usize] = 0;
         }
+        band.erases = false;
     }
 }
 

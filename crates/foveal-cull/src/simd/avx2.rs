@@ -1,6 +1,6 @@
 //! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods sound.
 
-use super::portable::SAMPLE_ROWS;
+use super::portable::{FAR, ROWS};
 use super::wide::Twice;
 use super::{Kernel, Lanes, four, two};
 use crate::Aabb;
@@ -32,6 +32,14 @@ impl Avx2 {
     }
 }
 
+/// One side of the spans of a row of blocks.
+#[derive(Clone, Copy)]
+pub(crate) struct Side256 {
+    /// Words: four rows of pixels of the first and second, the other four; and the same of the third and fourth.
+    rows: [__m256i; 2],
+    centers: __m256i,
+}
+
 /// Wraps intrinsics.
 macro_rules! avx2 {
     ($e:expr) => {
@@ -45,7 +53,8 @@ impl Lanes for Avx2 {
     type I = __m256i;
     type Q = __m256d;
     type D = [__m256i; 4];
-    type R = [__m256; 4];
+    type S = [Side256; 2];
+    type B = [[__m256d; 10]; 4];
     type P = [__m256i; 4];
     type W = Twice<Self>;
 
@@ -287,12 +296,6 @@ impl Lanes for Avx2 {
             _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(v), both))
         })
     }
-    #[inline(always)]
-    fn qround(self, v: __m256d) -> [f32; 4] {
-        let mut to = [0.0; 4];
-        avx2!(_mm_storeu_ps(to.as_mut_ptr(), _mm256_cvtpd_ps(v)));
-        to
-    }
 
     #[inline(always)]
     fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
@@ -378,78 +381,82 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn rsplat(self, v: f32) -> Self::R {
-        avx2!([_mm256_set1_ps(v); 4])
+    fn borders(self, slope: __m256d) -> Self::B {
+        let mut borders = [[slope; 10]; 4];
+        for (e, border) in borders.iter_mut().enumerate() {
+            let slope = self.qpick(slope, [e as u8; 4]);
+            for (border, rows) in border.iter_mut().zip(ROWS.as_chunks().0) {
+                *border = self.qmul(self.qload(rows), slope);
+            }
+        }
+        borders
     }
     #[inline(always)]
-    fn rows(self, slope: f32) -> Self::R {
-        let rows = sample_rows();
-        avx2!(four!(k => _mm256_mul_ps(rows[k], _mm256_set1_ps(slope))))
-    }
-    #[inline(always)]
-    fn radd(self, a: Self::R, b: Self::R) -> Self::R {
-        avx2!(four!(k => _mm256_add_ps(a[k], b[k])))
-    }
-    #[inline(always)]
-    fn rmin(self, a: Self::R, b: Self::R) -> Self::R {
-        avx2!(four!(k => _mm256_min_ps(a[k], b[k])))
-    }
-    #[inline(always)]
-    fn rmax(self, a: Self::R, b: Self::R) -> Self::R {
-        avx2!(four!(k => _mm256_max_ps(a[k], b[k])))
-    }
-    #[inline(always)]
-    fn rload(self, v: &[f32; 32]) -> Self::R {
-        let p = v.as_ptr();
-        avx2!(four!(k => _mm256_loadu_ps(p.add(8 * k))))
-    }
-    #[inline(always)]
-    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
+    fn spans(self, at: __m256d, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+        let at = four!(e => self.qpick(at, [e as u8; 4]));
+        let [mut from, mut to] = [[at[0]; 10]; 2];
         avx2!({
-            let least = four!(k => _mm256_min_ps(
-                near_whole(self, clamped(self, from[k], 32.5)),
-                near_whole(self, clamped(self, to[k], 32.5)),
-            ));
-            let least = two!(k => _mm256_min_ps(least[k], least[k + 2]));
-            any_below(self, _mm256_min_ps(least[0], least[1]), error)
+            for k in 0..10 {
+                let [a, b, c, d] = four!(e => _mm256_add_pd(at[e], borders[e][k]));
+                (from[k], to[k]) = (_mm256_max_pd(a, b), _mm256_min_pd(c, d));
+            }
+            if let Some([after, last]) = limits {
+                for (from, rows) in from.iter_mut().zip(ROWS.as_chunks().0) {
+                    let rows = self.qload(rows);
+                    let inside = _mm256_and_pd(
+                        _mm256_cmp_pd::<_CMP_LT_OQ>(_mm256_set1_pd(after), rows),
+                        _mm256_cmp_pd::<_CMP_LE_OQ>(rows, _mm256_set1_pd(last)),
+                    );
+                    *from = _mm256_blendv_pd(_mm256_set1_pd(FAR), *from, inside);
+                }
+            }
+            let sides = [from, to];
+            two!(side => {
+                let rows = four!(k => whole(self, sides[side][2 * k], sides[side][2 * k + 1]));
+                // The centre of pixel n is at sample 4 n + 1.5 of the row.
+                let centers = two!(k => {
+                    let v = _mm256_add_pd(sides[side][8 + k], _mm256_set1_pd(1.5));
+                    _mm256_mul_pd(v, _mm256_set1_pd(0.25))
+                });
+                Side256 {
+                    rows: two!(k => _mm256_packs_epi32(rows[2 * k], rows[2 * k + 1])),
+                    centers: whole(self, centers[0], centers[1]),
+                }
+            })
         })
     }
     #[inline(always)]
-    fn unsure(self, from: __m256, to: __m256, error: f32) -> bool {
-        avx2!(any_below(
-            self,
-            _mm256_min_ps(
-                near_whole(self, clamped(self, from, 8.5)),
-                near_whole(self, clamped(self, to, 8.5)),
-            ),
-            error,
-        ))
-    }
-    #[inline(always)]
-    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
-        let rows = sample_rows();
-        avx2!(four!(k => {
-            let y = _mm256_add_ps(_mm256_set1_ps(first), rows[k]);
-            let inside = _mm256_and_ps(
-                _mm256_cmp_ps::<_CMP_LT_OQ>(_mm256_set1_ps(after), y),
-                _mm256_cmp_ps::<_CMP_LE_OQ>(y, _mm256_set1_ps(last)),
-            );
-            _mm256_blendv_ps(_mm256_set1_ps(1e6), v[k], inside)
-        }))
-    }
-    #[inline(always)]
-    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
-        let n = [bytes(self, from), bytes(self, to)];
+    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
         avx2!({
+            // A byte a row, from 0 to 32.
+            let first = _mm256_set1_epi16(left as i16);
+            let n = two!(side => {
+                let n = two!(k => _mm256_subs_epi16(spans[side].rows[k], first));
+                let n = _mm256_permutevar8x32_epi32(
+                    _mm256_packus_epi16(n[0], n[1]),
+                    _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7),
+                );
+                _mm256_min_epu8(n, _mm256_set1_epi8(32))
+            });
             let table = _mm256_broadcastsi128_si256(_mm_loadu_si128(FROM.as_ptr().cast()));
-            four!(column => {
+            let planes = four!(column => {
                 let sides = two!(side => {
                     let n = _mm256_add_epi8(n[side], _mm256_set1_epi8(3 - column as i8));
                     let pixel = _mm256_and_si256(_mm256_srli_epi16::<2>(n), _mm256_set1_epi8(0x3f));
                     _mm256_shuffle_epi8(table, pixel)
                 });
                 _mm256_andnot_si256(sides[1], sides[0])
-            })
+            });
+            let first = _mm256_set1_epi32(left as i32 / 4);
+            let sides = two!(side => {
+                let n = _mm256_sub_epi32(spans[side].centers, first);
+                let n = _mm256_max_epi32(n, _mm256_setzero_si256());
+                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
+            });
+            (
+                planes,
+                rows_of_bits(self, _mm256_andnot_si256(sides[1], sides[0])),
+            )
         })
     }
     #[inline(always)]
@@ -460,12 +467,7 @@ impl Lanes for Avx2 {
                 let n = _mm256_cvttps_epi32(clamped(self, v[side], 8.5));
                 _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
             });
-            let bits = _mm256_andnot_si256(sides[1], sides[0]);
-            let bits = _mm256_and_si256(bits, _mm256_set1_epi32(0xff));
-            let bytes = _mm256_packus_epi16(_mm256_packs_epi32(bits, bits), bits);
-            let low = _mm_cvtsi128_si32(_mm256_castsi256_si128(bytes)) as u32;
-            let high = _mm_cvtsi128_si32(_mm256_extracti128_si256::<1>(bytes)) as u32;
-            u64::from(low) | (u64::from(high) << 32)
+            rows_of_bits(self, _mm256_andnot_si256(sides[1], sides[0]))
         })
     }
     #[inline(always)]
@@ -510,7 +512,7 @@ impl Lanes for Avx2 {
 }
 
 /// Pixels at or right of the n-th.
-pub(super) const FROM: [u8; 16] = [
+const FROM: [u8; 16] = [
     0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
 ];
 
@@ -531,37 +533,27 @@ pub(super) fn clamped(_: Avx2, v: __m256, most: f32) -> __m256 {
     ))
 }
 
-/// Distance to the nearest whole number.
+/// The lowest eight bits of each of eight numbers, in a row.
 #[inline(always)]
-pub(super) fn near_whole(_: Avx2, v: __m256) -> __m256 {
+fn rows_of_bits(_: Avx2, bits: __m256i) -> u64 {
     avx2!({
-        let whole = _mm256_round_ps::<{ _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC }>(v);
-        _mm256_andnot_ps(_mm256_set1_ps(-0.0), _mm256_sub_ps(v, whole))
+        let bits = _mm256_and_si256(bits, _mm256_set1_epi32(0xff));
+        let bytes = _mm256_packus_epi16(_mm256_packs_epi32(bits, bits), bits);
+        let low = _mm_cvtsi128_si32(_mm256_castsi256_si128(bytes)) as u32;
+        let high = _mm_cvtsi128_si32(_mm256_extracti128_si256::<1>(bytes)) as u32;
+        u64::from(low) | (u64::from(high) << 32)
     })
 }
 
+/// Rounded towards zero; what is far off the screen, no farther than [`FAR`].
 #[inline(always)]
-fn any_below(_: Avx2, v: __m256, limit: f32) -> bool {
-    avx2!(_mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(v, _mm256_set1_ps(limit))) != 0)
-}
-
-#[inline(always)]
-fn sample_rows() -> [__m256; 4] {
-    let p = SAMPLE_ROWS.as_ptr();
-    // SAFETY: an `Avx2` is at hand wherever this is called, and there are 32 rows.
-    unsafe { four!(k => _mm256_loadu_ps(p.add(8 * k))) }
-}
-
-/// Sample numbers from 0 to 32, a byte each, in the order of the rows.
-#[inline(always)]
-fn bytes(l: Avx2, v: [__m256; 4]) -> __m256i {
+fn whole(_: Avx2, low: __m256d, high: __m256d) -> __m256i {
     avx2!({
-        let n = four!(k => _mm256_cvttps_epi32(clamped(l, v[k], 32.5)));
-        let b = _mm256_packs_epi16(
-            _mm256_packs_epi32(n[0], n[1]),
-            _mm256_packs_epi32(n[2], n[3]),
-        );
-        // Groups of four bytes now come as 0 2 4 6 | 1 3 5 7 (in units of four rows).
-        _mm256_permutevar8x32_epi32(b, _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7))
+        let v = [low, high];
+        let [low, high] = two!(k => _mm256_cvttpd_epi32(_mm256_min_pd(
+            _mm256_max_pd(v[k], _mm256_set1_pd(-FAR)),
+            _mm256_set1_pd(FAR),
+        )));
+        _mm256_set_m128i(high, low)
     })
 }

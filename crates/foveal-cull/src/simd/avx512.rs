@@ -1,12 +1,22 @@
 //! AVX-512 lanes: whole blocks in two registers, and masks of 64 pixels as they are. Eight-lane work is AVX2's.
 //! An [`Avx512`] exists only where the CPU has all that it needs, which is what makes its methods sound.
 
-use super::avx2::{self, Avx2, FROM};
-use super::portable::SAMPLE_ROWS;
+use super::avx2::{self, Avx2};
+use super::portable::{FAR, ROWS};
 use super::{Kernel, Lanes, four, two};
 use crate::Aabb;
 use crate::depth::CODE_OFFSET;
 use core::arch::x86_64::*;
+
+/// The rows of a part, in an order that brings pixels into theirs at last.
+const ORDERED: [f64; 40] = {
+    let (mut rows, mut i) = (ROWS, 0);
+    while i < 32 {
+        rows[i] = ROWS[i / 8 * 8 + [0, 4, 2, 6, 1, 5, 3, 7][i % 8]];
+        i += 1;
+    }
+    rows
+};
 
 /// Proof that the CPU has AVX-512 F, BW, DQ and VL, and AVX2.
 #[derive(Clone, Copy)]
@@ -31,6 +41,23 @@ impl Avx512 {
         // SAFETY: `self` proves that the CPU has these features.
         unsafe { inner(self, kernel) }
     }
+}
+
+/// One side of the spans of a row of blocks.
+#[derive(Clone, Copy)]
+pub(crate) struct Side512 {
+    /// The first and third rows of pixels, and the second and fourth, as [`ORDERED`].
+    rows: [__m512i; 2],
+    centers: __m256i,
+}
+
+/// `[e(0), ..., e(4)]`, as [`four!`].
+macro_rules! five {
+    ($k:ident => $e:expr) => {{
+        let [a, b, c, d] = four!($k => $e);
+        let $k = 4usize;
+        [a, b, c, d, $e]
+    }};
 }
 
 /// Wraps intrinsics.
@@ -59,7 +86,8 @@ impl Lanes for Avx512 {
     type I = __m256i;
     type Q = __m256d;
     type D = [__m512i; 2];
-    type R = [__m512; 2];
+    type S = [Side512; 2];
+    type B = [[__m512d; 5]; 4];
     type P = [__m512i; 2];
     type W = super::avx512x16::Wide512;
 
@@ -110,10 +138,8 @@ impl Lanes for Avx512 {
     qabs(a: __m256d) -> __m256d;
     qlt(a: __m256d, b: __m256d) -> u32;
     qpick(v: __m256d, from: [u8; 4]) -> __m256d;
-    qround(v: __m256d) -> [f32; 4];
     iload(v: &[i32; 8]) -> __m256i;
     istore(v: __m256i, to: &mut [i32; 8]);
-    unsure(from: __m256, to: __m256, error: f32) -> bool;
     turn(v: &[Aabb; 8]) -> [__m256; 6];
     iadd(a: __m256i, b: __m256i) -> __m256i;
     imin(a: __m256i, b: __m256i) -> __m256i;
@@ -204,67 +230,81 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn rsplat(self, v: f32) -> Self::R {
-        avx512!([_mm512_set1_ps(v); 2])
-    }
-    #[inline(always)]
-    fn rows(self, slope: f32) -> Self::R {
-        let rows = sample_rows(self);
-        avx512!(two!(k => _mm512_mul_ps(rows[k], _mm512_set1_ps(slope))))
-    }
-    #[inline(always)]
-    fn radd(self, a: Self::R, b: Self::R) -> Self::R {
-        avx512!([_mm512_add_ps(a[0], b[0]), _mm512_add_ps(a[1], b[1])])
-    }
-    #[inline(always)]
-    fn rmin(self, a: Self::R, b: Self::R) -> Self::R {
-        avx512!([_mm512_min_ps(a[0], b[0]), _mm512_min_ps(a[1], b[1])])
-    }
-    #[inline(always)]
-    fn rmax(self, a: Self::R, b: Self::R) -> Self::R {
-        avx512!([_mm512_max_ps(a[0], b[0]), _mm512_max_ps(a[1], b[1])])
-    }
-    #[inline(always)]
-    fn rload(self, v: &[f32; 32]) -> Self::R {
-        let p = v.as_ptr();
-        avx512!([_mm512_loadu_ps(p), _mm512_loadu_ps(p.add(16))])
-    }
-    #[inline(always)]
-    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
+    fn borders(self, slope: __m256d) -> Self::B {
+        let rows = ORDERED.as_ptr();
         avx512!({
-            let least = two!(k => _mm512_min_ps(
-                near_whole(self, clamped(self, from[k])),
-                near_whole(self, clamped(self, to[k])),
-            ));
-            let least = _mm512_min_ps(least[0], least[1]);
-            _mm512_cmp_ps_mask::<_CMP_LT_OQ>(least, _mm512_set1_ps(error)) != 0
+            four!(e => {
+                let slope = lane(self, slope, e);
+                five!(k => _mm512_mul_pd(_mm512_loadu_pd(rows.add(8 * k)), slope))
+            })
         })
     }
     #[inline(always)]
-    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
-        let rows = sample_rows(self);
-        avx512!(two!(k => {
-            let y = _mm512_add_ps(_mm512_set1_ps(first), rows[k]);
-            let inside = _mm512_cmp_ps_mask::<_CMP_LT_OQ>(_mm512_set1_ps(after), y)
-                & _mm512_cmp_ps_mask::<_CMP_LE_OQ>(y, _mm512_set1_ps(last));
-            _mm512_mask_blend_ps(inside, _mm512_set1_ps(1e6), v[k])
-        }))
+    fn spans(self, at: __m256d, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+        avx512!({
+            let at = four!(e => lane(self, at, e));
+            let mut from = five!(k => _mm512_max_pd(
+                _mm512_add_pd(at[0], borders[0][k]),
+                _mm512_add_pd(at[1], borders[1][k]),
+            ));
+            let to = five!(k => _mm512_min_pd(
+                _mm512_add_pd(at[2], borders[2][k]),
+                _mm512_add_pd(at[3], borders[3][k]),
+            ));
+            if let Some(limits) = limits {
+                from = five!(k => limited(self, from[k], limits, k));
+            }
+            let sides = [from, to];
+            two!(side => {
+                let v = sides[side];
+                // The centre of pixel n is at sample 4 n + 1.5 of the row.
+                let center = _mm512_add_pd(v[4], _mm512_set1_pd(1.5));
+                Side512 {
+                    rows: two!(k => {
+                        let n = _mm512_castsi256_si512(whole(self, v[k]));
+                        _mm512_inserti64x4::<1>(n, whole(self, v[k + 2]))
+                    }),
+                    centers: whole(self, _mm512_mul_pd(center, _mm512_set1_pd(0.25))),
+                }
+            })
+        })
     }
     #[inline(always)]
-    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
-        let n = [bytes(self, from), bytes(self, to)];
+    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
         avx512!({
-            let table = _mm512_broadcast_i32x4(_mm_loadu_si128(FROM.as_ptr().cast()));
-            two!(pair => {
-                // Two columns of samples in a register.
-                let add = _mm512_castsi256_si512(_mm256_set1_epi8(3 - 2 * pair as i8));
-                let add = _mm512_inserti64x4::<1>(add, _mm256_set1_epi8(2 - 2 * pair as i8));
-                let sides = two!(side => {
-                    let n = _mm512_srli_epi16::<2>(_mm512_add_epi8(n[side], add));
-                    _mm512_shuffle_epi8(table, _mm512_and_si512(n, _mm512_set1_epi8(0x3f)))
+            // A number a row, 32 samples: the first and third rows of pixels, and the second and fourth.
+            let first = _mm512_set1_epi32(left as i32);
+            let rows = two!(k => {
+                let [from, to] = two!(side => {
+                    let n = _mm512_sub_epi32(spans[side].rows[k], first);
+                    let n = _mm512_max_epi32(n, _mm512_setzero_si512());
+                    _mm512_sllv_epi32(_mm512_set1_epi32(-1), n)
                 });
-                _mm512_andnot_si512(sides[1], sides[0])
-            })
+                _mm512_andnot_si512(to, from)
+            });
+            // A word a row and pair of pixels: their samples in the first two rows, and in the others.
+            let (low, high) = (
+                _mm512_unpacklo_epi8(rows[0], rows[1]),
+                _mm512_unpackhi_epi8(rows[0], rows[1]),
+            );
+            let above = _mm512_inserti64x4::<1>(low, _mm512_castsi512_si256(high));
+            let below = _mm512_shuffle_i64x2::<0b11_10_11_10>(low, high);
+            // A word a pixel: those of even and odd columns, and then in a row.
+            let half = _mm512_set1_epi16(0x0f0f);
+            let even = select(self, half, above, _mm512_slli_epi16::<4>(below));
+            let odd = select(self, half, _mm512_srli_epi16::<4>(above), below);
+            let planes = [
+                _mm512_unpacklo_epi16(even, odd),
+                _mm512_unpackhi_epi16(even, odd),
+            ];
+            let first = _mm256_set1_epi32(left as i32 / 4);
+            let [from, to] = two!(side => {
+                let n = _mm256_sub_epi32(spans[side].centers, first);
+                let n = _mm256_max_epi32(n, _mm256_setzero_si256());
+                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
+            });
+            let centers = _mm256_cvtepi32_epi8(_mm256_andnot_si256(to, from));
+            (planes, _mm_cvtsi128_si64(centers) as u64)
         })
     }
     #[inline(always)]
@@ -290,10 +330,10 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn pkeep(self, v: Self::P, bits: u64) -> Self::P {
-        avx512!({
-            let bits = _mm512_set1_epi64(bits as i64);
-            [_mm512_and_si512(v[0], bits), _mm512_and_si512(v[1], bits)]
-        })
+        avx512!([
+            _mm512_maskz_mov_epi16(bits as u32, v[0]),
+            _mm512_maskz_mov_epi16((bits >> 32) as u32, v[1])
+        ])
     }
     #[inline(always)]
     fn por(self, a: Self::P, b: Self::P) -> Self::P {
@@ -301,21 +341,20 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn pall(self, v: Self::P) -> u64 {
-        avx512!({
-            let q = _mm512_and_si512(v[0], v[1]);
-            let q = _mm256_and_si256(_mm512_castsi512_si256(q), _mm512_extracti64x4_epi64::<1>(q));
-            let h = _mm_and_si128(_mm256_castsi256_si128(q), _mm256_extracti128_si256::<1>(q));
-            _mm_cvtsi128_si64(_mm_and_si128(h, _mm_unpackhi_epi64(h, h))) as u64
-        })
+        let all = self.dsplat(-1);
+        let [low, high] = avx512!([
+            _mm512_cmpeq_epi16_mask(v[0], all[0]),
+            _mm512_cmpeq_epi16_mask(v[1], all[1])
+        ]);
+        u64::from(low) | (u64::from(high) << 32)
     }
     #[inline(always)]
     fn pany(self, v: Self::P) -> u64 {
-        avx512!({
-            let q = _mm512_or_si512(v[0], v[1]);
-            let q = _mm256_or_si256(_mm512_castsi512_si256(q), _mm512_extracti64x4_epi64::<1>(q));
-            let h = _mm_or_si128(_mm256_castsi256_si128(q), _mm256_extracti128_si256::<1>(q));
-            _mm_cvtsi128_si64(_mm_or_si128(h, _mm_unpackhi_epi64(h, h))) as u64
-        })
+        let [low, high] = avx512!([
+            _mm512_test_epi16_mask(v[0], v[0]),
+            _mm512_test_epi16_mask(v[1], v[1])
+        ]);
+        u64::from(low) | (u64::from(high) << 32)
     }
 }
 
@@ -334,39 +373,38 @@ fn store(_: Avx512, v: [__m512i; 2], to: *mut __m512i) {
     });
 }
 
-/// From half a step before the first number that counts to half a step after the last.
+/// One of four numbers, eight times.
 #[inline(always)]
-fn clamped(_: Avx512, v: __m512) -> __m512 {
-    avx512!(_mm512_min_ps(
-        _mm512_max_ps(v, _mm512_set1_ps(-0.5)),
-        _mm512_set1_ps(32.5)
+fn lane(_: Avx512, v: __m256d, k: usize) -> __m512d {
+    avx512!(_mm512_permutexvar_pd(
+        _mm512_set1_epi64(k as i64),
+        _mm512_castpd256_pd512(v)
     ))
 }
 
-/// Distance to the nearest whole number.
+/// `v`, but far off for rows beyond the limits; the rows are those of part `k`.
 #[inline(always)]
-fn near_whole(_: Avx512, v: __m512) -> __m512 {
-    avx512!(_mm512_abs_ps(_mm512_reduce_ps::<
-        { _MM_FROUND_TO_NEAREST_INT | _MM_FROUND_NO_EXC },
-    >(v)))
-}
-
-#[inline(always)]
-fn sample_rows(_: Avx512) -> [__m512; 2] {
-    let p = SAMPLE_ROWS.as_ptr();
-    avx512!([_mm512_loadu_ps(p), _mm512_loadu_ps(p.add(16))])
-}
-
-/// Sample numbers from 0 to 32, a byte each, in the order of the rows; twice.
-#[inline(always)]
-fn bytes(l: Avx512, v: [__m512; 2]) -> __m512i {
+fn limited(_: Avx512, v: __m512d, [after, last]: [f64; 2], k: usize) -> __m512d {
+    let rows: &[f64; 8] = &ORDERED.as_chunks().0[k];
     avx512!({
-        let n = two!(k => {
-            _mm512_cvtepi32_epi8(_mm512_cvttps_epi32(clamped(l, v[k])))
-        });
-        _mm512_broadcast_i64x4(_mm256_inserti128_si256::<1>(
-            _mm256_castsi128_si256(n[0]),
-            n[1],
-        ))
+        let rows = _mm512_loadu_pd(rows.as_ptr());
+        let inside = _mm512_cmp_pd_mask::<_CMP_LT_OQ>(_mm512_set1_pd(after), rows)
+            & _mm512_cmp_pd_mask::<_CMP_LE_OQ>(rows, _mm512_set1_pd(last));
+        _mm512_mask_blend_pd(inside, _mm512_set1_pd(FAR), v)
     })
+}
+
+/// Rounded towards zero; what is far off the screen, no farther than [`FAR`].
+#[inline(always)]
+fn whole(_: Avx512, v: __m512d) -> __m256i {
+    avx512!(_mm512_cvttpd_epi32(_mm512_min_pd(
+        _mm512_max_pd(v, _mm512_set1_pd(-FAR)),
+        _mm512_set1_pd(FAR)
+    )))
+}
+
+/// `a` where a bit is set, else `b`.
+#[inline(always)]
+fn select(_: Avx512, bits: __m512i, a: __m512i, b: __m512i) -> __m512i {
+    avx512!(_mm512_ternarylogic_epi32::<0xca>(bits, a, b))
 }

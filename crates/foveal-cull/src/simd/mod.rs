@@ -224,8 +224,10 @@ pub(crate) trait Lanes: Copy {
     type Q: Copy;
     /// 64 x i16: a block's pixels, row by row.
     type D: Copy;
-    /// 32 x f32: a block's sample rows. Row 4 i + k is number 8 k + i.
-    type R: Copy;
+    /// 2 x 40 x i32: the first sample (or pixel, by its centre) of each of these rows that is covered, and the first after.
+    type S: Copy;
+    /// 4 x 40 x f64: the borders of a polygon in a block's 32 sample rows, and in 8 through pixel centres.
+    type B: Copy;
     /// 16 x u64: a block's samples, a plane per place in a pixel (4 times its column, plus its row).
     type P: Copy;
     /// Sixteen lanes.
@@ -300,8 +302,6 @@ pub(crate) trait Lanes: Copy {
     fn qlt(self, a: Self::Q, b: Self::Q) -> u32;
     /// Number `i` of the result is number `from[i]`, of which the two lowest bits count.
     fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q;
-    /// Rounded.
-    fn qround(self, v: Self::Q) -> [f32; 4];
 
     /// Pixels from a value for each column at the top, and its change per row: as depth codes (see
     /// [`crate::depth`]), no value below `floor` and no code above `cap`.
@@ -319,25 +319,15 @@ pub(crate) trait Lanes: Copy {
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D;
     fn dreduce_min(self, a: Self::D) -> i16;
 
-    fn rsplat(self, v: f32) -> Self::R;
-    /// The number of the row, times `slope`.
-    fn rows(self, slope: f32) -> Self::R;
-    fn radd(self, a: Self::R, b: Self::R) -> Self::R;
-    /// As [`Lanes::min`].
-    fn rmin(self, a: Self::R, b: Self::R) -> Self::R;
-    /// As [`Lanes::max`].
-    fn rmax(self, a: Self::R, b: Self::R) -> Self::R;
-    /// Rows in their order (see [`Lanes::R`]).
-    fn rload(self, v: &[f32; 32]) -> Self::R;
-    /// Whether any number that [`Lanes::planes`] rounds is nearer than `error` to where it would be rounded otherwise.
-    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool;
-    /// The same for [`Lanes::plane`].
-    fn unsure(self, from: Self::F, to: Self::F, error: f32) -> bool;
-    /// `v`, but 1e6 for rows outside `after < first + row <= last`.
-    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R;
-    /// Samples whose number in their row is at least `from`, and less than `to`, both rounded towards zero.
-    fn planes(self, from: Self::R, to: Self::R) -> Self::P;
-    /// The same for one sample per pixel: rows of eight.
+    /// How far four borders move from the first row of samples to every other, and to the rows through pixel centres.
+    fn borders(self, slope: Self::Q) -> Self::B;
+    /// What lies right of the first two borders and left of the last two, in `f64`, row by row as
+    /// [`Portable`](portable::Portable) has it. `at`: where they cross the first row; sample n is right of what is less than
+    /// n + 1. `limits`: only rows after the first one and not after the second count.
+    fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
+    /// Of these the samples and the pixel centres of the block that begins at sample `left`.
+    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64);
+    /// Rows of eight pixels from one number to another, both rounded towards zero.
     fn plane(self, from: Self::F, to: Self::F) -> u64;
     fn pload(self, v: &[u64; 16]) -> Self::P;
     fn pstore(self, v: Self::P, to: &mut [u64; 16]);

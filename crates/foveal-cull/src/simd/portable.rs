@@ -1,17 +1,22 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
-use super::Lanes;
 use super::wide::Twice;
+use super::{Lanes, larger, smaller};
 use crate::Aabb;
 use crate::depth::CODE_OFFSET;
 use core::array::from_fn;
 
-/// Sample rows in the order of [`Lanes::R`].
-pub(super) const SAMPLE_ROWS: [f32; 32] = {
-    let mut rows = [0.0; 32];
+/// Rows of samples, those that are first, second and so on in their pixel together; then the rows through pixel centres.
+pub(super) const ROWS: [f64; 40] = {
+    let mut rows = [0.0; 40];
     let mut i = 0;
-    while i < 32 {
-        rows[i] = (4 * (i % 8) + i / 8) as f32;
+    while i < 8 {
+        let mut k = 0;
+        while k < 4 {
+            rows[8 * k + i] = (4 * i + k) as f64;
+            k += 1;
+        }
+        rows[32 + i] = 4.0 * i as f64 + 1.5;
         i += 1;
     }
     rows
@@ -37,13 +42,22 @@ pub(super) const FROM: [u32; 64] = {
     from
 };
 
-/// Distance to a whole number from 0 to `most`; a half, or more, far off.
+/// Beyond all that is on the screen, either way.
+pub(super) const FAR: f64 = (1 << 28) as f64;
+
+/// The first sample, or pixel by its centre, of row `i` that is right of a border.
 #[inline(always)]
-fn near_whole(v: f32, most: f32) -> f32 {
-    let v = v.clamp(-0.5, most + 0.5);
-    // 1.5 * 2^23: what is added to it loses its fraction.
-    const WHOLE: f32 = 12_582_912.0;
-    (v - ((v + WHOLE) - WHOLE)).abs()
+fn number(v: f64, i: usize) -> i32 {
+    // The centre of pixel n is at sample 4 n + 1.5 of the row.
+    let v = if i < 32 { v } else { (v + 1.5) * 0.25 };
+    smaller(larger(v, -FAR), FAR) as i32
+}
+
+/// The pixel centres of a block.
+#[inline(always)]
+pub(super) fn centers(from: &[i32; 40], to: &[i32; 40], left: i32) -> u64 {
+    let pixels = |n: i32| (0xff_u32 << (n - left / 4).clamp(0, 8)) as u8;
+    u64::from_le_bytes(from_fn(|i| pixels(from[32 + i]) & !pixels(to[32 + i])))
 }
 
 impl Lanes for Portable {
@@ -51,7 +65,8 @@ impl Lanes for Portable {
     type I = [i32; 8];
     type Q = [f64; 4];
     type D = [i16; 64];
-    type R = [f32; 32];
+    type S = [[i32; 40]; 2];
+    type B = [[f64; 40]; 4];
     type P = [u64; 16];
     type W = Twice<Self>;
 
@@ -232,10 +247,6 @@ impl Lanes for Portable {
     fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q {
         from.map(|i| v[usize::from(i & 3)])
     }
-    #[inline(always)]
-    fn qround(self, v: Self::Q) -> [f32; 4] {
-        v.map(|v| v as f32)
-    }
 
     #[inline(always)]
     fn depths(self, columns: [f32; 8], down: f32, floor: f32, cap: i16) -> Self::D {
@@ -303,51 +314,27 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn rsplat(self, v: f32) -> Self::R {
-        [v; 32]
+    fn borders(self, slope: [f64; 4]) -> Self::B {
+        slope.map(|slope| ROWS.map(|row| row * slope))
     }
     #[inline(always)]
-    fn rows(self, slope: f32) -> Self::R {
-        from_fn(|i| SAMPLE_ROWS[i] * slope)
+    fn spans(self, at: [f64; 4], borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+        let border = |e: usize, i: usize| at[e] + borders[e][i];
+        let mut spans = [[0; 40]; 2];
+        for i in 0..40 {
+            let inside = limits.is_none_or(|[after, last]| after < ROWS[i] && ROWS[i] <= last);
+            let from = larger(border(0, i), border(1, i));
+            spans[0][i] = number(if inside { from } else { FAR }, i);
+            spans[1][i] = number(smaller(border(2, i), border(3, i)), i);
+        }
+        spans
     }
     #[inline(always)]
-    fn radd(self, a: Self::R, b: Self::R) -> Self::R {
-        from_fn(|i| a[i] + b[i])
-    }
-    #[inline(always)]
-    fn rmin(self, a: Self::R, b: Self::R) -> Self::R {
-        from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
-    }
-    #[inline(always)]
-    fn rmax(self, a: Self::R, b: Self::R) -> Self::R {
-        from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
-    }
-    #[inline(always)]
-    fn rload(self, v: &[f32; 32]) -> Self::R {
-        *v
-    }
-    #[inline(always)]
-    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
-        let near = |v: f32| near_whole(v, 32.0) < error;
-        (0..32).fold(false, |any, i| any | near(from[i]) | near(to[i]))
-    }
-    #[inline(always)]
-    fn unsure(self, from: Self::F, to: Self::F, error: f32) -> bool {
-        let near = |v: f32| near_whole(v, 8.0) < error;
-        (0..8).fold(false, |any, i| any | near(from[i]) | near(to[i]))
-    }
-    #[inline(always)]
-    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
-        from_fn(|i| {
-            let y = first + SAMPLE_ROWS[i];
-            if after < y && y <= last { v[i] } else { 1e6 }
-        })
-    }
-    #[inline(always)]
-    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
-        let number = |v: f32| v.clamp(0.0, 32.0) as usize;
+    fn within(self, [from, to]: &Self::S, left: u32) -> (Self::P, u64) {
+        let left = left as i32;
+        let sample = |n: i32| (n - left).clamp(0, 32) as usize;
         // A byte per column of samples.
-        let rows: [u32; 32] = from_fn(|i| FROM[number(from[i]) & 63] & !FROM[number(to[i]) & 63]);
+        let rows: [u32; 32] = from_fn(|i| FROM[sample(from[i]) & 63] & !FROM[sample(to[i]) & 63]);
         let mut planes = [0; 16];
         for k in 0..4 {
             let rows: &[u32; 8] = &from_fn(|i| rows[8 * k + i]);
@@ -356,7 +343,7 @@ impl Lanes for Portable {
                     u64::from_le_bytes(from_fn(|i| (rows[i] >> (8 * column)) as u8));
             }
         }
-        planes
+        (planes, centers(from, to, left))
     }
     #[inline(always)]
     fn plane(self, from: Self::F, to: Self::F) -> u64 {

@@ -1,11 +1,11 @@
 //! Lanes in 128-bit registers, for x86-64 (SSE2), 64-bit ARM (NEON) and WebAssembly with simd128: written once, over
 //! [`Registers`].
 
-use super::portable::SAMPLE_ROWS;
+use super::portable::{FAR, ROWS};
 use super::wide::Twice;
 use super::{Lanes, four, two};
 use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use crate::depth::{BLOCK, BLOCK_SAMPLES, CODE_OFFSET};
 use registers::Registers;
 
 mod registers;
@@ -35,6 +35,14 @@ impl Narrow<Here> {
     }
 }
 
+/// One side of the spans of a row of blocks.
+#[derive(Clone, Copy)]
+pub(crate) struct Side<R: Registers> {
+    /// The rows that are first, second and so on in their pixel.
+    rows: [R::H; 4],
+    centers: R::H,
+}
+
 /// `[e(0), ..., e(7)]`, as [`four!`].
 macro_rules! eight {
     ($k:ident => $e:expr) => {{
@@ -61,7 +69,8 @@ impl<R: Registers> Lanes for Narrow<R> {
     type I = [R::I; 2];
     type Q = [R::Q; 2];
     type D = [R::H; 8];
-    type R = [R::F; 8];
+    type S = [Side<R>; 2];
+    type B = [[R::Q; 20]; 4];
     /// The two planes of a register are neighbours.
     type P = [R::B; 8];
     type W = Twice<Self>;
@@ -95,9 +104,6 @@ impl<R: Registers> Lanes for Narrow<R> {
     by_registers! { eight:
         dmin = hmin(a: Self::D, b: Self::D) -> Self::D;
         dmax = hmax(a: Self::D, b: Self::D) -> Self::D;
-        radd = add(a: Self::R, b: Self::R) -> Self::R;
-        rmin = min(a: Self::R, b: Self::R) -> Self::R;
-        rmax = max(a: Self::R, b: Self::R) -> Self::R;
         por = bor(a: Self::P, b: Self::P) -> Self::P;
     }
 
@@ -196,12 +202,6 @@ impl<R: Registers> Lanes for Narrow<R> {
         self.qstore(v, &mut all);
         self.qload(&four!(i => all[usize::from(from[i] & 3)]))
     }
-    #[inline(always)]
-    fn qround(self, v: Self::Q) -> [f32; 4] {
-        let mut to = [0.0; 4];
-        self.0.store(self.0.qround(v), &mut to);
-        to
-    }
 
     #[inline(always)]
     fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D {
@@ -248,50 +248,74 @@ impl<R: Registers> Lanes for Narrow<R> {
     }
 
     #[inline(always)]
-    fn rsplat(self, v: f32) -> Self::R {
-        [self.0.splat(v); 8]
+    fn borders(self, slope: Self::Q) -> Self::B {
+        let slope = self.apart(slope);
+        let (rows, _) = ROWS.as_chunks();
+        let mut borders = [[slope[0]; 20]; 4];
+        for (border, slope) in borders.iter_mut().zip(slope) {
+            for (border, rows) in border.iter_mut().zip(rows) {
+                *border = self.0.qmul(self.0.qload(rows), slope);
+            }
+        }
+        borders
     }
     #[inline(always)]
-    fn rows(self, slope: f32) -> Self::R {
-        let rows = self.rload(&SAMPLE_ROWS);
-        eight!(k => self.0.mul(rows[k], self.0.splat(slope)))
-    }
-    #[inline(always)]
-    fn rload(self, v: &[f32; 32]) -> Self::R {
-        let (v, _) = v.as_chunks();
-        eight!(k => self.0.load(&v[k]))
-    }
-    #[inline(always)]
-    fn rlimit(self, v: Self::R, first: f32, after: f32, last: f32) -> Self::R {
-        let rows = self.rload(&SAMPLE_ROWS);
-        eight!(k => {
-            let y = self.0.add(self.0.splat(first), rows[k]);
-            let (above, below) = (self.0.lt(self.0.splat(after), y), self.0.le(y, self.0.splat(last)));
-            self.0.select(self.0.iand(above, below), v[k], self.0.splat(1e6))
+    fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+        let at = self.apart(at);
+        let [mut from, mut to] = [[at[0]; 20]; 2];
+        for k in 0..20 {
+            let [a, b, c, d] = four!(e => self.0.qadd(at[e], borders[e][k]));
+            (from[k], to[k]) = (self.0.qmax(a, b), self.0.qmin(c, d));
+        }
+        if let Some(limits) = limits {
+            self.limit(&mut from, limits);
+        }
+        [from, to].map(|v| {
+            let eight = |v: &[R::Q]| {
+                let v = four!(k => {
+                    let far = [-FAR, FAR].map(|v| self.0.qsplat(v));
+                    self.0.qmin(self.0.qmax(v[k], far[0]), far[1])
+                });
+                let n = two!(k => self.0.qwhole([v[2 * k], v[2 * k + 1]]));
+                self.0.hpack(n)
+            };
+            // The centre of pixel n is at sample 4 n + 1.5 of the row.
+            let centers = four!(k => {
+                let v = self.0.qadd(v[16 + k], self.0.qsplat(1.5));
+                self.0.qmul(v, self.0.qsplat(0.25))
+            });
+            Side {
+                rows: four!(k => eight(&v[4 * k..4 * k + 4])),
+                centers: eight(&centers),
+            }
         })
     }
     #[inline(always)]
-    fn runsure(self, from: Self::R, to: Self::R, error: f32) -> bool {
-        let least = eight!(k => self.nearer_whole(from[k], to[k], 32.5));
-        let least = four!(k => self.0.min(least[k], least[k + 4]));
-        let least = two!(k => self.0.min(least[k], least[k + 2]));
-        self.any_below(least, error)
-    }
-    #[inline(always)]
-    fn unsure(self, from: Self::F, to: Self::F, error: f32) -> bool {
-        let least = two!(k => self.nearer_whole(from[k], to[k], 8.5));
-        self.any_below(least, error)
-    }
-    #[inline(always)]
-    fn planes(self, from: Self::R, to: Self::R) -> Self::P {
+    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
+        let first = self.0.hsplat(left as i16);
+        let most = self.0.hsplat(BLOCK_SAMPLES as i16);
         let [low, high] = two!(k => {
-            let [from, to] = [from, to].map(|v| {
-                let n = four!(i => self.0.whole(self.clamped(v[4 * k + i], 32.5)));
-                self.0.right_of(self.0.bpack(n))
+            let [from, to] = two!(side => {
+                let n = two!(i => {
+                    let n = self.0.hsub(spans[side].rows[2 * k + i], first);
+                    self.0.hmin(n, most)
+                });
+                self.0.right_of(self.0.hbytes(n))
             });
             four!(column => self.0.bandnot(to[column], from[column]))
         });
-        eight!(k => [low, high][k % 2][k / 2])
+        let first = self.0.hsplat((left / 4) as i16);
+        let most = self.0.hsplat(BLOCK as i16);
+        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before is not.
+        let n = two!(side => {
+            let n = self.0.hmin(self.0.hsub(spans[side].centers, first), most);
+            let less = self.0.hsub(self.0.hsplat(0), n);
+            let two = self.0.hsub(n, less);
+            self.0.hsub(two, self.0.hsub(less, n))
+        });
+        let [.., pixels] = self.0.right_of(self.0.hbytes(n));
+        let [from, to] = self.0.bhalves(pixels);
+        (eight!(k => [low, high][k % 2][k / 2]), from & !to)
     }
     #[inline(always)]
     fn plane(self, from: Self::F, to: Self::F) -> u64 {
@@ -381,22 +405,26 @@ impl<R: Registers> Narrow<R> {
             .min(self.0.max(v, self.0.splat(-0.5)), self.0.splat(most))
     }
 
-    /// Distance of the nearer of two to a whole number from 0 to half below `most`.
+    /// Each of four numbers by itself, in all lanes.
     #[inline(always)]
-    fn nearer_whole(self, a: R::F, b: R::F, most: f32) -> R::F {
-        // 1.5 * 2^23: what is added to it loses its fraction.
-        let large = self.0.splat(12_582_912.0);
-        let [a, b] = [a, b].map(|v| {
-            let v = self.clamped(v, most);
-            let whole = self.0.sub(self.0.add(v, large), large);
-            self.0.abs(self.0.sub(v, whole))
-        });
-        self.0.min(a, b)
+    fn apart(self, v: [R::Q; 2]) -> [R::Q; 4] {
+        let mut all = [0.0; 4];
+        self.qstore(v, &mut all);
+        four!(k => self.0.qsplat(all[k]))
     }
 
-    #[inline(always)]
-    fn any_below(self, v: [R::F; 2], limit: f32) -> bool {
-        let least = self.0.min(v[0], v[1]);
-        self.0.any(self.0.lt(least, self.0.splat(limit)))
+    /// Moves the left border far off in rows beyond the limits.
+    #[cold]
+    fn limit(self, from: &mut [R::Q; 20], [after, last]: [f64; 2]) {
+        for (from, rows) in from.iter_mut().zip(ROWS.as_chunks::<2>().0) {
+            let mut v = [0.0; 2];
+            self.0.qstore(*from, &mut v);
+            for (v, row) in v.iter_mut().zip(rows) {
+                if *row <= after || last < *row {
+                    *v = FAR;
+                }
+            }
+            *from = self.0.qload(&v);
+        }
     }
 }

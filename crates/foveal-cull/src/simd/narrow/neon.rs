@@ -49,7 +49,6 @@ impl Registers for Neon {
         max(a: float32x4_t, b: float32x4_t) -> float32x4_t = vbslq_f32(vcgtq_f32(a, b), a, b);
         abs(a: float32x4_t) -> float32x4_t = vabsq_f32(a);
         lt(a: float32x4_t, b: float32x4_t) -> int32x4_t = vreinterpretq_s32_u32(vcltq_f32(a, b));
-        le(a: float32x4_t, b: float32x4_t) -> int32x4_t = vreinterpretq_s32_u32(vcleq_f32(a, b));
         select(mask: int32x4_t, a: float32x4_t, b: float32x4_t) -> float32x4_t =
             vbslq_f32(vreinterpretq_u32_s32(mask), a, b);
         // Its own conversion ends at the largest and the smallest number, and makes 0 of NaN.
@@ -78,7 +77,6 @@ impl Registers for Neon {
         ior(a: int32x4_t, b: int32x4_t) -> int32x4_t = vorrq_s32(a, b);
         iandnot(a: int32x4_t, b: int32x4_t) -> int32x4_t = vbicq_s32(b, a);
         floats(a: int32x4_t) -> float32x4_t = vcvtq_f32_s32(a);
-        any(mask: int32x4_t) -> bool = vmaxvq_u32(vreinterpretq_u32_s32(mask)) != 0;
 
         qload(v: &[f64; 2]) -> float64x2_t = vld1q_f64(v.as_ptr());
         qstore(v: float64x2_t, to: &mut [f64; 2]) -> () = vst1q_f64(to.as_mut_ptr(), v);
@@ -88,7 +86,10 @@ impl Registers for Neon {
         qmul(a: float64x2_t, b: float64x2_t) -> float64x2_t = vmulq_f64(a, b);
         qdiv(a: float64x2_t, b: float64x2_t) -> float64x2_t = vdivq_f64(a, b);
         qabs(a: float64x2_t) -> float64x2_t = vabsq_f64(a);
-        qround(v: [float64x2_t; 2]) -> float32x4_t = vcvt_high_f32_f64(vcvt_f32_f64(v[0]), v[1]);
+        qmin(a: float64x2_t, b: float64x2_t) -> float64x2_t = vbslq_f64(vcltq_f64(a, b), a, b);
+        qmax(a: float64x2_t, b: float64x2_t) -> float64x2_t = vbslq_f64(vcgtq_f64(a, b), a, b);
+        qwhole(v: [float64x2_t; 2]) -> int32x4_t =
+            vmovn_high_s64(vmovn_s64(vcvtq_s64_f64(v[0])), vcvtq_s64_f64(v[1]));
 
         hload(v: &[i16; 8]) -> int16x8_t = vld1q_s16(v.as_ptr());
         hstore(v: int16x8_t, to: &mut [i16; 8]) -> () = vst1q_s16(to.as_mut_ptr(), v);
@@ -99,6 +100,7 @@ impl Registers for Neon {
         hgt(a: int16x8_t, b: int16x8_t) -> int16x8_t = vreinterpretq_s16_u16(vcgtq_s16(a, b));
         hselect(mask: int16x8_t, a: int16x8_t, b: int16x8_t) -> int16x8_t =
             vbslq_s16(vreinterpretq_u16_s16(mask), a, b);
+        hbytes(a: [int16x8_t; 2]) -> uint8x16_t = vqmovun_high_s16(vqmovun_s16(a[0]), a[1]);
         hpack(a: [int32x4_t; 2]) -> int16x8_t = vqmovn_high_s32(vqmovn_s32(a[0]), a[1]);
         hleast(a: int16x8_t) -> i16 = vminvq_s16(a);
 

@@ -29,8 +29,6 @@ pub(crate) trait Registers: Copy {
     fn max(self, a: Self::F, b: Self::F) -> Self::F;
     fn abs(self, a: Self::F) -> Self::F;
     fn lt(self, a: Self::F, b: Self::F) -> Self::I;
-    /// All ones where `a <= b`.
-    fn le(self, a: Self::F, b: Self::F) -> Self::I;
     fn select(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
     fn trunc(self, a: Self::F) -> Self::I;
     /// Towards zero, of numbers that an `i32` can hold.
@@ -64,8 +62,6 @@ pub(crate) trait Registers: Copy {
     fn floats(self, a: Self::I) -> Self::F;
     /// Sign bits, lane 0 of the first lowest.
     fn signs(self, a: [Self::I; 2]) -> u32;
-    /// Whether any lane of a mask is set.
-    fn any(self, mask: Self::I) -> bool;
 
     fn qload(self, v: &[f64; 2]) -> Self::Q;
     fn qstore(self, v: Self::Q, to: &mut [f64; 2]);
@@ -76,7 +72,12 @@ pub(crate) trait Registers: Copy {
     fn qdiv(self, a: Self::Q, b: Self::Q) -> Self::Q;
     fn qabs(self, a: Self::Q) -> Self::Q;
     fn qlt(self, a: [Self::Q; 2], b: [Self::Q; 2]) -> u32;
-    fn qround(self, v: [Self::Q; 2]) -> Self::F;
+    /// As [`Registers::min`].
+    fn qmin(self, a: Self::Q, b: Self::Q) -> Self::Q;
+    /// As [`Registers::max`].
+    fn qmax(self, a: Self::Q, b: Self::Q) -> Self::Q;
+    /// Towards zero, of numbers that an `i32` can hold.
+    fn qwhole(self, v: [Self::Q; 2]) -> Self::I;
 
     fn hload(self, v: &[i16; 8]) -> Self::H;
     fn hstore(self, v: Self::H, to: &mut [i16; 8]);
@@ -93,6 +94,8 @@ pub(crate) trait Registers: Copy {
     /// Two times four numbers, each the nearest that an `i16` can hold.
     fn hpack(self, a: [Self::I; 2]) -> Self::H;
     fn hleast(self, a: Self::H) -> i16;
+    /// Each the nearest number that a byte can hold, from 0 to 255.
+    fn hbytes(self, a: [Self::H; 2]) -> Self::B;
 
     fn bload(self, v: &[u64; 2]) -> Self::B;
     fn bstore(self, v: Self::B, to: &mut [u64; 2]);

@@ -62,7 +62,6 @@ impl Registers for Simd128 {
         max(a: v128, b: v128) -> v128 = f32x4_pmax(b, a);
         abs(a: v128) -> v128 = f32x4_abs(a);
         lt(a: v128, b: v128) -> v128 = f32x4_lt(a, b);
-        le(a: v128, b: v128) -> v128 = f32x4_le(a, b);
         select(mask: v128, a: v128, b: v128) -> v128 = v128_bitselect(a, b, mask);
         // Its own conversion ends at the largest and the smallest number, and makes 0 of NaN.
         trunc(a: v128) -> v128 = v128_bitselect(
@@ -88,7 +87,6 @@ impl Registers for Simd128 {
         iandnot(a: v128, b: v128) -> v128 = v128_andnot(b, a);
         floats(a: v128) -> v128 = f32x4_convert_i32x4(a);
         signs(a: [v128; 2]) -> u32 = u32::from(i16x8_bitmask(i16x8_narrow_i32x4(a[0], a[1])));
-        any(mask: v128) -> bool = v128_any_true(mask);
 
         qsplat(v: f64) -> v128 = f64x2_splat(v);
         qadd(a: v128, b: v128) -> v128 = f64x2_add(a, b);
@@ -96,8 +94,10 @@ impl Registers for Simd128 {
         qmul(a: v128, b: v128) -> v128 = f64x2_mul(a, b);
         qdiv(a: v128, b: v128) -> v128 = f64x2_div(a, b);
         qabs(a: v128) -> v128 = f64x2_abs(a);
-        qround(v: [v128; 2]) -> v128 = i32x4_shuffle::<0, 1, 4, 5>(
-            f32x4_demote_f64x2_zero(v[0]), f32x4_demote_f64x2_zero(v[1])
+        qmin(a: v128, b: v128) -> v128 = f64x2_pmin(b, a);
+        qmax(a: v128, b: v128) -> v128 = f64x2_pmax(b, a);
+        qwhole(v: [v128; 2]) -> v128 = i64x2_shuffle::<0, 2>(
+            i32x4_trunc_sat_f64x2_zero(v[0]), i32x4_trunc_sat_f64x2_zero(v[1])
         );
 
         hsplat(v: i16) -> v128 = i16x8_splat(v);
@@ -106,6 +106,7 @@ impl Registers for Simd128 {
         hsub(a: v128, b: v128) -> v128 = i16x8_sub_sat(a, b);
         hgt(a: v128, b: v128) -> v128 = i16x8_gt(a, b);
         hselect(mask: v128, a: v128, b: v128) -> v128 = v128_bitselect(a, b, mask);
+        hbytes(a: [v128; 2]) -> v128 = u8x16_narrow_i16x8(a[0], a[1]);
         hpack(a: [v128; 2]) -> v128 = i16x8_narrow_i32x4(a[0], a[1]);
 
         bsplat(v: u64) -> v128 = u64x2_splat(v);

@@ -56,7 +56,6 @@ impl Registers for Sse2 {
         max(a: __m128, b: __m128) -> __m128 = _mm_max_ps(a, b);
         abs(a: __m128) -> __m128 = _mm_andnot_ps(_mm_set1_ps(-0.0), a);
         lt(a: __m128, b: __m128) -> __m128i = _mm_castps_si128(_mm_cmplt_ps(a, b));
-        le(a: __m128, b: __m128) -> __m128i = _mm_castps_si128(_mm_cmple_ps(a, b));
         trunc(a: __m128) -> __m128i = _mm_cvttps_epi32(a);
         whole(a: __m128) -> __m128i = _mm_cvttps_epi32(a);
         bits(a: __m128) -> __m128i = _mm_castps_si128(a);
@@ -76,7 +75,6 @@ impl Registers for Sse2 {
         imin(a: __m128i, b: __m128i) -> __m128i = either(_mm_cmplt_epi32(a, b), a, b);
         imax(a: __m128i, b: __m128i) -> __m128i = either(_mm_cmpgt_epi32(a, b), a, b);
         floats(a: __m128i) -> __m128 = _mm_cvtepi32_ps(a);
-        any(mask: __m128i) -> bool = _mm_movemask_epi8(mask) != 0;
 
         qload(v: &[f64; 2]) -> __m128d = _mm_loadu_pd(v.as_ptr());
         qstore(v: __m128d, to: &mut [f64; 2]) -> () = _mm_storeu_pd(to.as_mut_ptr(), v);
@@ -86,7 +84,11 @@ impl Registers for Sse2 {
         qmul(a: __m128d, b: __m128d) -> __m128d = _mm_mul_pd(a, b);
         qdiv(a: __m128d, b: __m128d) -> __m128d = _mm_div_pd(a, b);
         qabs(a: __m128d) -> __m128d = _mm_andnot_pd(_mm_set1_pd(-0.0), a);
-        qround(v: [__m128d; 2]) -> __m128 = _mm_movelh_ps(_mm_cvtpd_ps(v[0]), _mm_cvtpd_ps(v[1]));
+        qmin(a: __m128d, b: __m128d) -> __m128d = _mm_min_pd(a, b);
+        qmax(a: __m128d, b: __m128d) -> __m128d = _mm_max_pd(a, b);
+        qwhole(v: [__m128d; 2]) -> __m128i = _mm_unpacklo_epi64(
+            _mm_cvttpd_epi32(v[0]), _mm_cvttpd_epi32(v[1])
+        );
 
         hload(v: &[i16; 8]) -> __m128i = _mm_loadu_si128(v.as_ptr().cast());
         hstore(v: __m128i, to: &mut [i16; 8]) -> () = _mm_storeu_si128(to.as_mut_ptr().cast(), v);
@@ -95,6 +97,7 @@ impl Registers for Sse2 {
         hmax(a: __m128i, b: __m128i) -> __m128i = _mm_max_epi16(a, b);
         hsub(a: __m128i, b: __m128i) -> __m128i = _mm_subs_epi16(a, b);
         hgt(a: __m128i, b: __m128i) -> __m128i = _mm_cmpgt_epi16(a, b);
+        hbytes(a: [__m128i; 2]) -> __m128i = _mm_packus_epi16(a[0], a[1]);
         hpack(a: [__m128i; 2]) -> __m128i = _mm_packs_epi32(a[0], a[1]);
 
         bload(v: &[u64; 2]) -> __m128i = _mm_loadu_si128(v.as_ptr().cast());

@@ -1,0 +1,90 @@
+//! Where partly covered pixels keep what they have so far: slots that blocks take and give back.
+//!
+//! Most blocks are covered in part for a short while, until the neighbours of the first polygon come. So a few slots
+//! go round, which stay in the nearest caches, where a place for every block would be most of the buffer's memory.
+//! Whoever takes a slot gets the one that was given back longest ago: its number has been known for long, and does not
+//! wait for the block before.
+
+use crate::depth::PartialBlock;
+
+/// Slots that are begun at once when none is left.
+const BEGUN_AT_ONCE: u32 = 64;
+
+/// The slots of a band. Not more than its blocks are ever taken.
+pub(crate) struct Pool<'a> {
+    pub(crate) partial: &'a mut [PartialBlock],
+    /// All parts together, where those in `partial` are only the near ones.
+    pub(crate) all: &'a mut [PartialBlock],
+    /// Slots that are free, from `taken` to `given`, which go round in a power of two.
+    free: &'a mut [u32],
+    around: u32,
+    taken: u32,
+    given: u32,
+    begun: u32,
+}
+
+impl<'a> Pool<'a> {
+    /// `free` is twice as long as the others.
+    pub(crate) fn new(
+        partial: &'a mut [PartialBlock],
+        all: &'a mut [PartialBlock],
+        free: &'a mut [u32],
+    ) -> Self {
+        let around = partial.len().next_power_of_two() as u32 - 1;
+        Self {
+            partial,
+            all,
+            free,
+            around,
+            taken: 0,
+            given: 0,
+            begun: 0,
+        }
+    }
+
+    /// A pool for the first `blocks`, and one for the rest.
+    pub(crate) fn split(self, blocks: usize) -> (Self, Self) {
+        let (p0, p1) = self.partial.split_at_mut(blocks);
+        let (a0, a1) = self.all.split_at_mut(blocks);
+        let (f0, f1) = self.free.split_at_mut(2 * blocks);
+        (Self::new(p0, a0, f0), Self::new(p1, a1, f1))
+    }
+
+    /// The free slot that is next.
+    #[inline(always)]
+    pub(crate) fn next(&mut self) -> u32 {
+        if self.taken == self.given {
+            self.begin();
+        }
+        self.free[self.place(self.taken)]
+    }
+
+    /// Takes that slot, if `wanted`.
+    #[inline(always)]
+    pub(crate) fn take(&mut self, wanted: bool) {
+        self.taken = self.taken.wrapping_add(u32::from(wanted));
+    }
+
+    /// Gives a taken slot back, if `unwanted`.
+    #[inline(always)]
+    pub(crate) fn give(&mut self, slot: u32, unwanted: bool) {
+        // It is taken, so there is room for one more.
+        let place = self.place(self.given);
+        self.free[place] = slot;
+        self.given = self.given.wrapping_add(u32::from(unwanted));
+    }
+
+    #[inline(always)]
+    fn place(&self, n: u32) -> usize {
+        (n & self.around) as usize
+    }
+
+    #[cold]
+    fn begin(&mut self) {
+        let end = (self.begun + BEGUN_AT_ONCE).min(self.partial.len() as u32);
+        for slot in self.begun..end {
+            self.give(slot, true);
+        }
+        self.begun = end;
+    }
+}
