@@ -81,15 +81,17 @@ struct Parallel {
 
 impl PlaneLanes {
     pub(super) fn new(axes: &[Affine; 3], per_metre: Option<[f32; 3]>) -> Self {
-        let affine = AXES.map(|of| {
-            let of = of.map(|axis| axes.get(axis).copied().unwrap_or_default());
-            [
-                of.map(|a| a.x),
-                of.map(|a| a.y),
-                of.map(|a| a.at_zero),
-                of.map(|a| a.error),
-            ]
-        });
+        let mut affine = [[[0.0; 16]; 4]; 2];
+        for (affine, of) in affine.iter_mut().zip(&AXES) {
+            for (lane, &axis) in of.iter().enumerate() {
+                if let Some(a) = axes.get(axis) {
+                    affine[0][lane] = a.x;
+                    affine[1][lane] = a.y;
+                    affine[2][lane] = a.at_zero;
+                    affine[3][lane] = a.error;
+                }
+            }
+        }
         let parallel = per_metre.map(|per_metre| {
             let per_metre =
                 AXES.map(|of| of.map(|axis| per_metre.get(axis).copied().unwrap_or(0.0)));

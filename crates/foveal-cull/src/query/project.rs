@@ -132,22 +132,30 @@ impl Screen<'_> {
     #[inline(always)]
     pub(super) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
         let [x, y, _, w] = self.rows;
-        let ends = |row: [f32; 4], size: f32| {
-            // By rows that are above zero within the border.
-            let low = core::array::from_fn(|k| row[k] + self.dilate * w[k]);
-            let high = core::array::from_fn(|k| (size + self.dilate) * w[k] - row[k]);
-            [low, high]
-        };
-        let beyond = |[a, b, c, d]: [f32; 4]| {
-            let n = Vec3::new(a, b, c);
-            let most = n.dot(center) + n.abs().dot(half) + d;
-            let terms = n.abs().dot(center.abs() + half) + d.abs();
-            most < -ROUNDING * terms
-        };
-        ends(x, self.width)
-            .into_iter()
-            .chain(ends(y, self.height))
-            .any(beyond)
+        // Sums over the axes, for the borders left, right, above and below; by rows that are above zero within.
+        let (mut most, mut terms) = ([0.0; 4], [0.0; 4]);
+        for k in 0..4 {
+            let rows = [
+                x[k] + self.dilate * w[k],
+                (self.width + self.dilate) * w[k] - x[k],
+                y[k] + self.dilate * w[k],
+                (self.height + self.dilate) * w[k] - y[k],
+            ];
+            let (c, h) = if k < 3 {
+                (center[k], half[k])
+            } else {
+                (1.0, 0.0)
+            };
+            for (border, row) in rows.into_iter().enumerate() {
+                most[border] += row * c + row.abs() * h;
+                terms[border] += row.abs() * (c.abs() + h);
+            }
+        }
+        let mut beside = false;
+        for (most, terms) in most.into_iter().zip(terms) {
+            beside |= most < -ROUNDING * terms;
+        }
+        beside
     }
 }
 
