@@ -141,7 +141,8 @@ impl Culler {
         (self.buffer.width, self.buffer.height)
     }
 
-    /// Begins a frame: clears the buffer, draws the occluders that `view` can see, resets the statistics.
+    /// Begins a frame: clears the buffer, draws the occluders that `view` can see, resets the statistics. With threads that
+    /// sleep from frame to frame, call [`Threads::wake`] some ten microseconds before.
     ///
     /// # Errors
     /// [`CullError::NotFinite`] or [`CullError::BadProjection`] for a bad view; the culler then answers
@@ -155,6 +156,9 @@ impl Culler {
     ) -> Result<(), CullError> {
         self.view = None;
         self.stats = CullStats::default();
+        if options.occlusion {
+            threads.wake();
+        }
         self.buffer.clear();
         let (width, height) = (
             (self.buffer.width * SAMPLES) as f32,

@@ -297,6 +297,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`].
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
+        self.stages.culling.iter().for_each(CullingStage::wake);
         let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
@@ -330,6 +331,7 @@ impl Renderer {
         frame: &Frame<'_>,
         target: Target<'_>,
     ) -> Result<Option<FrameStats>, Error> {
+        self.stages.culling.iter().for_each(CullingStage::wake);
         let finished = self.finished()?;
         let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");

@@ -12,6 +12,8 @@ pub trait Threads: Sync {
     /// Calls `task(i)` once for every `i` below `tasks`, in any order, on any threads, and returns when all
     /// are done.
     fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync));
+    /// Says that there will be work soon, for pools whose threads sleep. Returns at once; nothing need be done.
+    fn wake(&self) {}
 }
 
 /// Everything on the calling thread.

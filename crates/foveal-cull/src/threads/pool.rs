@@ -1,7 +1,7 @@
 //! A small pool: the calling thread and helpers that wait for work.
 //!
-//! Sleeping and waking take longer than half a frame's culling, so whoever waits first looks again and again for
-//! some ten microseconds; nobody is woken who does not sleep.
+//! Sleeping and waking take as long as a part of a frame's culling, so whoever waits first looks again and again for
+//! some ten microseconds; nobody is woken who does not sleep. Who knows that there will be work can wake all beforehand.
 //!
 //! A task lives on the caller's stack, so helpers reach it through a pointer; the caller does not return
 //! before the last helper has let go of it.
@@ -116,7 +116,7 @@ impl Shared {
                 return;
             }
             seen = state.round;
-            // None where all was done before this thread came.
+            // None where all was done before this thread came, or where it was only woken.
             let (Some(task), tasks) = (state.task, state.tasks) else {
                 continue;
             };
@@ -208,6 +208,16 @@ impl Threads for Pool {
         drop(posted);
         let panicked = self.shared.lock().panicked;
         assert!(!panicked, "a task panicked");
+    }
+
+    /// Wakes the threads; they look for work for some ten microseconds before they sleep again.
+    fn wake(&self) {
+        let mut state = self.shared.lock();
+        if state.sleepers > 0 && state.task.is_none() {
+            state.round += 1;
+            self.shared.round.store(state.round, Ordering::Release);
+            self.shared.announce(state);
+        }
     }
 }
 

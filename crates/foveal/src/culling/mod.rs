@@ -275,6 +275,13 @@ impl CullingStage {
         }))
     }
 
+    /// Wakes the threads that will soon have to rasterize.
+    pub(crate) fn wake(&self) {
+        if self.occlusion {
+            self.threads.threads().wake();
+        }
+    }
+
     /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are two eyes: what is
     /// hidden is hidden from both. A view that makes no sense culls nothing.
     ///
