@@ -6,7 +6,7 @@
 use super::band::Band;
 use super::setup::Points;
 use super::sheet::AROUND_SAMPLE;
-use crate::depth::{BLOCK_SAMPLES, SAMPLES, encode};
+use crate::depth::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
 use crate::simd::{Lanes, four, larger, smaller};
 
 /// More than all rounding, samples.
@@ -180,16 +180,17 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
         }
         let from = l.select(beside, l.splat(1e9), l.sub(from, l.splat(reach_x)));
         let to = l.select(beside, l.splat(-1e9), l.add(to, l.splat(reach_x)));
+        // The first pixel of each row that is within reach, and the first after.
+        let pixel = l.splat(1.0 / SAMPLES as f32);
+        let from = l.trunc(l.mul(from, pixel));
+        let to = l.trunc(l.add(l.mul(to, pixel), l.splat(1.0)));
         for bx in bx0..=bx1 {
             let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
             if code <= band.min[i] {
                 continue;
             }
-            let left = l.splat((bx * BLOCK_SAMPLES) as f32);
-            let pixel = l.splat(1.0 / SAMPLES as f32);
-            let first = l.mul(l.sub(from, left), pixel);
-            let last = l.mul(l.sub(to, left), pixel);
-            let bits = l.plane(first, l.add(last, l.splat(1.0)));
+            let left = l.isplat((bx * BLOCK) as i32);
+            let bits = l.plane(l.isub(from, left), l.isub(to, left));
             if bits != 0 {
                 band.erases = true;
                 let (pixels, border) = (&mut band.erased[i], &mut band.border[i]);
@@ -207,7 +208,7 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::depth::{BLOCK, DepthBuffer};
+    use crate::depth::DepthBuffer;
     use crate::simd::portable::Portable;
 
     /// Whether a segment meets a rectangle (least x and y, greatest), by cutting it at each side.

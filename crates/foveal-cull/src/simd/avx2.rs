@@ -448,26 +448,24 @@ impl Lanes for Avx2 {
                 _mm256_andnot_si256(sides[1], sides[0])
             });
             let first = _mm256_set1_epi32(left as i32 / 4);
-            let sides = two!(side => {
-                let n = _mm256_sub_epi32(spans[side].centers, first);
-                let n = _mm256_max_epi32(n, _mm256_setzero_si256());
-                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
-            });
-            (
-                planes,
-                rows_of_bits(self, _mm256_andnot_si256(sides[1], sides[0])),
-            )
+            let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
+            (planes, self.plane(from, to))
         })
     }
     #[inline(always)]
-    fn plane(self, from: __m256, to: __m256) -> u64 {
+    fn plane(self, from: __m256i, to: __m256i) -> u64 {
         avx2!({
-            let v = [from, to];
+            let n = [from, to];
             let sides = two!(side => {
-                let n = _mm256_cvttps_epi32(clamped(self, v[side], 8.5));
+                let n = _mm256_max_epi32(n[side], _mm256_setzero_si256());
                 _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
             });
-            rows_of_bits(self, _mm256_andnot_si256(sides[1], sides[0]))
+            let bits = _mm256_andnot_si256(sides[1], sides[0]);
+            let bits = _mm256_and_si256(bits, _mm256_set1_epi32(0xff));
+            let bytes = _mm256_packus_epi16(_mm256_packs_epi32(bits, bits), bits);
+            let low = _mm_cvtsi128_si32(_mm256_castsi256_si128(bytes)) as u32;
+            let high = _mm_cvtsi128_si32(_mm256_extracti128_si256::<1>(bytes)) as u32;
+            u64::from(low) | (u64::from(high) << 32)
         })
     }
     #[inline(always)]
@@ -522,27 +520,6 @@ fn half_rows(_: Avx2, table: *const f32, at: usize) -> __m256 {
     debug_assert!(at + 28 <= 48);
     // SAFETY: the caller holds an `Avx2` and a table of 48, of which this reads no further than `at + 28`.
     unsafe { _mm256_loadu2_m128(table.add(at + 24), table.add(at)) }
-}
-
-/// From -0.5 to `most`: half a step beyond the numbers that count, where rounding is no question.
-#[inline(always)]
-pub(super) fn clamped(_: Avx2, v: __m256, most: f32) -> __m256 {
-    avx2!(_mm256_min_ps(
-        _mm256_max_ps(v, _mm256_set1_ps(-0.5)),
-        _mm256_set1_ps(most)
-    ))
-}
-
-/// The lowest eight bits of each of eight numbers, in a row.
-#[inline(always)]
-fn rows_of_bits(_: Avx2, bits: __m256i) -> u64 {
-    avx2!({
-        let bits = _mm256_and_si256(bits, _mm256_set1_epi32(0xff));
-        let bytes = _mm256_packus_epi16(_mm256_packs_epi32(bits, bits), bits);
-        let low = _mm_cvtsi128_si32(_mm256_castsi256_si128(bytes)) as u32;
-        let high = _mm_cvtsi128_si32(_mm256_extracti128_si256::<1>(bytes)) as u32;
-        u64::from(low) | (u64::from(high) << 32)
-    })
 }
 
 /// Rounded towards zero; what is far off the screen, no farther than [`FAR`].

@@ -1,7 +1,7 @@
 //! AVX-512 lanes: whole blocks in two registers, and masks of 64 pixels as they are. Eight-lane work is AVX2's.
 //! An [`Avx512`] exists only where the CPU has all that it needs, which is what makes its methods sound.
 
-use super::avx2::{self, Avx2};
+use super::avx2::Avx2;
 use super::portable::{FAR, ROWS};
 use super::{Kernel, Lanes, four, two};
 use crate::Aabb;
@@ -298,26 +298,19 @@ impl Lanes for Avx512 {
                 _mm512_unpackhi_epi16(even, odd),
             ];
             let first = _mm256_set1_epi32(left as i32 / 4);
-            let [from, to] = two!(side => {
-                let n = _mm256_sub_epi32(spans[side].centers, first);
-                let n = _mm256_max_epi32(n, _mm256_setzero_si256());
-                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
-            });
-            let centers = _mm256_cvtepi32_epi8(_mm256_andnot_si256(to, from));
-            (planes, _mm_cvtsi128_si64(centers) as u64)
+            let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
+            (planes, self.plane(from, to))
         })
     }
     #[inline(always)]
-    fn plane(self, from: __m256, to: __m256) -> u64 {
+    fn plane(self, from: __m256i, to: __m256i) -> u64 {
         avx512!({
-            let v = [from, to];
-            let sides = two!(side => {
-                let n = _mm256_cvttps_epi32(avx2::clamped(self.0, v[side], 8.5));
+            let n = [from, to];
+            let [from, to] = two!(side => {
+                let n = _mm256_max_epi32(n[side], _mm256_setzero_si256());
                 _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
             });
-            _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(_mm256_andnot_si256(
-                sides[1], sides[0],
-            ))) as u64
+            _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(_mm256_andnot_si256(to, from))) as u64
         })
     }
     #[inline(always)]

@@ -327,8 +327,8 @@ pub(crate) trait Lanes: Copy {
     fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
     /// Of these the samples and the pixel centres of the block that begins at sample `left`.
     fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64);
-    /// Rows of eight pixels from one number to another, both rounded towards zero.
-    fn plane(self, from: Self::F, to: Self::F) -> u64;
+    /// A row of eight pixels each: those from one number to before another.
+    fn plane(self, from: Self::I, to: Self::I) -> u64;
     fn pload(self, v: &[u64; 16]) -> Self::P;
     fn pstore(self, v: Self::P, to: &mut [u64; 16]);
     /// Only the pixels whose bit is set.

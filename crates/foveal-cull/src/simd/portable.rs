@@ -53,13 +53,6 @@ fn number(v: f64, i: usize) -> i32 {
     smaller(larger(v, -FAR), FAR) as i32
 }
 
-/// The pixel centres of a block.
-#[inline(always)]
-pub(super) fn centers(from: &[i32; 40], to: &[i32; 40], left: i32) -> u64 {
-    let pixels = |n: i32| (0xff_u32 << (n - left / 4).clamp(0, 8)) as u8;
-    u64::from_le_bytes(from_fn(|i| pixels(from[32 + i]) & !pixels(to[32 + i])))
-}
-
 impl Lanes for Portable {
     type F = [f32; 8];
     type I = [i32; 8];
@@ -343,11 +336,12 @@ impl Lanes for Portable {
                     u64::from_le_bytes(from_fn(|i| (rows[i] >> (8 * column)) as u8));
             }
         }
-        (planes, centers(from, to, left))
+        let pixel = |side: &[i32; 40]| from_fn(|i| side[32 + i] - left / 4);
+        (planes, self.plane(pixel(from), pixel(to)))
     }
     #[inline(always)]
-    fn plane(self, from: Self::F, to: Self::F) -> u64 {
-        let pixels = |v: f32| (0xffu16 << (v.clamp(0.0, 8.0) as u8)) as u8;
+    fn plane(self, from: [i32; 8], to: [i32; 8]) -> u64 {
+        let pixels = |n: i32| (0xff_u32 << n.clamp(0, 8)) as u8;
         u64::from_le_bytes(from_fn(|i| pixels(from[i]) & !pixels(to[i])))
     }
     #[inline(always)]

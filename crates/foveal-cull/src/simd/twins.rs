@@ -250,7 +250,7 @@ impl Kernel for Eight<'_> {
             ("dreduce_min", vec![l.dreduce_min(g) as u64]),
             ("within", p(l, j.0)),
             ("within, centers", vec![j.1, k.1]),
-            ("plane", vec![l.plane(a, b)]),
+            ("plane", vec![l.plane(l.ishr(x, by), l.ishr(y, by))]),
             ("pkeep", p(l, l.pkeep(j.0, n.bits))),
             ("por", p(l, l.por(j.0, k.0))),
             (

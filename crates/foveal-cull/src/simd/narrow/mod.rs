@@ -305,29 +305,12 @@ impl<R: Registers> Lanes for Narrow<R> {
             four!(column => self.0.bandnot(to[column], from[column]))
         });
         let first = self.0.hsplat((left / 4) as i16);
-        let most = self.0.hsplat(BLOCK as i16);
-        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before is not.
-        let n = two!(side => {
-            let n = self.0.hmin(self.0.hsub(spans[side].centers, first), most);
-            let less = self.0.hsub(self.0.hsplat(0), n);
-            let two = self.0.hsub(n, less);
-            self.0.hsub(two, self.0.hsub(less, n))
-        });
-        let [.., pixels] = self.0.right_of(self.0.hbytes(n));
-        let [from, to] = self.0.bhalves(pixels);
-        (eight!(k => [low, high][k % 2][k / 2]), from & !to)
+        let n = two!(side => self.0.hsub(spans[side].centers, first));
+        (eight!(k => [low, high][k % 2][k / 2]), self.pixels(n))
     }
     #[inline(always)]
-    fn plane(self, from: Self::F, to: Self::F) -> u64 {
-        let n = four!(k => {
-            let n = self.0.whole(self.clamped([from, to][k / 2][k % 2], 8.5));
-            let two = self.0.iadd(n, n);
-            self.0.iadd(two, two)
-        });
-        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before is not.
-        let [.., pixels] = self.0.right_of(self.0.bpack(n));
-        let [from, to] = self.0.bhalves(pixels);
-        from & !to
+    fn plane(self, from: Self::I, to: Self::I) -> u64 {
+        self.pixels([self.0.hpack(from), self.0.hpack(to)])
     }
     #[inline(always)]
     fn pload(self, v: &[u64; 16]) -> Self::P {
@@ -398,11 +381,18 @@ impl<R: Registers> Narrow<R> {
         ]
     }
 
-    /// From -0.5 to `most`: half a step beyond the numbers that count, where rounding is no question.
+    /// Rows of eight pixels, from numbers to before others.
     #[inline(always)]
-    fn clamped(self, v: R::F, most: f32) -> R::F {
-        self.0
-            .min(self.0.max(v, self.0.splat(-0.5)), self.0.splat(most))
+    fn pixels(self, n: [R::H; 2]) -> u64 {
+        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before is not.
+        let n = two!(side => {
+            let n = self.0.hmin(n[side], self.0.hsplat(BLOCK as i16));
+            let less = self.0.hsub(self.0.hsplat(0), n);
+            self.0.hsub(self.0.hsub(n, less), self.0.hsub(less, n))
+        });
+        let [.., pixels] = self.0.right_of(self.0.hbytes(n));
+        let [from, to] = self.0.bhalves(pixels);
+        from & !to
     }
 
     /// Each of four numbers by itself, in all lanes.

@@ -55,7 +55,6 @@ impl Registers for Neon {
         trunc(a: float32x4_t) -> int32x4_t = vbslq_s32(
             vcaltq_f32(a, vdupq_n_f32(2_147_483_648.0)), vcvtq_s32_f32(a), vdupq_n_s32(i32::MIN)
         );
-        whole(a: float32x4_t) -> int32x4_t = vcvtq_s32_f32(a);
         bits(a: float32x4_t) -> int32x4_t = vreinterpretq_s32_f32(a);
         low_high(a: float32x4_t, b: float32x4_t) -> float32x4_t =
             vcombine_f32(vget_low_f32(a), vget_high_f32(b));
@@ -170,14 +169,6 @@ impl Registers for Neon {
         neon!({
             let a = vreinterpretq_u64_u8(a);
             [vgetq_lane_u64::<0>(a), vgetq_lane_u64::<1>(a)]
-        })
-    }
-    #[inline(always)]
-    fn bpack(self, a: [int32x4_t; 4]) -> uint8x16_t {
-        neon!({
-            let [a, b, c, d] = four!(k => vreinterpretq_u16_s32(a[k]));
-            let [low, high] = [vuzp1q_u16(a, b), vuzp1q_u16(c, d)];
-            vuzp1q_u8(vreinterpretq_u8_u16(low), vreinterpretq_u8_u16(high))
         })
     }
     #[inline(always)]

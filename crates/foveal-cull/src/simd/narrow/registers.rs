@@ -31,8 +31,6 @@ pub(crate) trait Registers: Copy {
     fn lt(self, a: Self::F, b: Self::F) -> Self::I;
     fn select(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
     fn trunc(self, a: Self::F) -> Self::I;
-    /// Towards zero, of numbers that an `i32` can hold.
-    fn whole(self, a: Self::F) -> Self::I;
     /// The bits of floats as numbers.
     fn bits(self, a: Self::F) -> Self::I;
     /// `[a0, a1, b2, b3]`.
@@ -105,8 +103,6 @@ pub(crate) trait Registers: Copy {
     /// `!a & b`.
     fn bandnot(self, a: Self::B, b: Self::B) -> Self::B;
     fn bhalves(self, a: Self::B) -> [u64; 2];
-    /// Four times four numbers from -128 to 127.
-    fn bpack(self, a: [Self::I; 4]) -> Self::B;
     /// A bit per lane of masks, lane 0 of the first lowest.
     fn hbits(self, masks: [Self::H; 8]) -> u64;
     /// From numbers 0 to 32, one per row of eight pixels with four samples each: for every column of samples, the pixels

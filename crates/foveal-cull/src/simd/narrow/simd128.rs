@@ -69,7 +69,6 @@ impl Registers for Simd128 {
             i32x4_splat(i32::MIN),
             f32x4_lt(f32x4_abs(a), f32x4_splat(2_147_483_648.0))
         );
-        whole(a: v128) -> v128 = i32x4_trunc_sat_f32x4(a);
         bits(a: v128) -> v128 = a;
         low_high(a: v128, b: v128) -> v128 = i32x4_shuffle::<0, 1, 6, 7>(a, b);
         high_low(a: v128, b: v128) -> v128 = i32x4_shuffle::<2, 3, 4, 5>(a, b);
@@ -155,13 +154,6 @@ impl Registers for Simd128 {
         let m = i16x8_min(a, i64x2_shuffle::<1, 1>(a, a));
         let m = i16x8_min(m, i32x4_shuffle::<1, 1, 1, 1>(m, m));
         i16x8_extract_lane::<0>(i16x8_min(m, i16x8_shuffle::<1, 1, 1, 1, 1, 1, 1, 1>(m, m)))
-    }
-    #[inline(always)]
-    fn bpack(self, a: [v128; 4]) -> v128 {
-        i8x16_narrow_i16x8(
-            i16x8_narrow_i32x4(a[0], a[1]),
-            i16x8_narrow_i32x4(a[2], a[3]),
-        )
     }
     #[inline(always)]
     fn hbits(self, masks: [v128; 8]) -> u64 {

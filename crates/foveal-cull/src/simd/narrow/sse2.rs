@@ -57,7 +57,6 @@ impl Registers for Sse2 {
         abs(a: __m128) -> __m128 = _mm_andnot_ps(_mm_set1_ps(-0.0), a);
         lt(a: __m128, b: __m128) -> __m128i = _mm_castps_si128(_mm_cmplt_ps(a, b));
         trunc(a: __m128) -> __m128i = _mm_cvttps_epi32(a);
-        whole(a: __m128) -> __m128i = _mm_cvttps_epi32(a);
         bits(a: __m128) -> __m128i = _mm_castps_si128(a);
         low_high(a: __m128, b: __m128) -> __m128 = _mm_shuffle_ps::<0b11_10_01_00>(a, b);
         high_low(a: __m128, b: __m128) -> __m128 = _mm_shuffle_ps::<0b01_00_11_10>(a, b);
@@ -202,13 +201,6 @@ impl Registers for Sse2 {
     #[inline(always)]
     fn bhalves(self, a: __m128i) -> [u64; 2] {
         sse2!([a, _mm_unpackhi_epi64(a, a)].map(|v| _mm_cvtsi128_si64(v) as u64))
-    }
-    #[inline(always)]
-    fn bpack(self, a: [__m128i; 4]) -> __m128i {
-        sse2!(_mm_packs_epi16(
-            _mm_packs_epi32(a[0], a[1]),
-            _mm_packs_epi32(a[2], a[3])
-        ))
     }
     #[inline(always)]
     fn hbits(self, masks: [__m128i; 8]) -> u64 {
