@@ -137,6 +137,30 @@ fn fill(quads: impl Iterator<Item = [Vec3; 4]>, size: Vec3) -> f32 {
     if fill.is_finite() { fill.min(1.0) } else { 1.0 }
 }
 
+/// Of all the edges of a cluster's quads, the part by length where the mesh ends or bends; all, where nothing is known of
+/// what lies around.
+fn creased(
+    points: &[Vec3],
+    near: Option<&Neighbours<'_>>,
+    quads: impl Iterator<Item = Quad>,
+) -> f32 {
+    let Some(near) = near else {
+        return 1.0;
+    };
+    let (mut all, mut creased) = (0.0, 0.0);
+    for [a, b, c, d] in quads {
+        for (from, to) in [(a, b), (b, c), (c, d), (d, a)] {
+            let length = points[from as usize].distance(points[to as usize]);
+            all += length;
+            if length > 0.0 && !near.is_smooth(from, to) {
+                creased += length;
+            }
+        }
+    }
+    let part = creased / all;
+    if part.is_finite() { part } else { 1.0 }
+}
+
 /// Appends one cluster; false when its vertices do not fit a byte.
 fn emit(
     mesh: &mut OccluderMesh,
@@ -207,6 +231,7 @@ fn emit(
         quad_count: items.len() as u8,
         triangle_count: triangles,
         fill,
+        creased: creased(points, near, items.iter().map(|i| i.quad)),
         hash: hash_words(
             items.len() as u32,
             used.iter()

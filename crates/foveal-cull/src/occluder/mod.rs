@@ -88,6 +88,8 @@ pub(crate) struct Cluster {
     pub(crate) triangle_count: u8,
     /// How much of its box's outline its triangles can fill, 0 to 1, in the mean over all directions.
     pub(crate) fill: f32,
+    /// The part of its quads' edges, by length, that may be borders of a sheet from many sides, 0 to 1.
+    pub(crate) creased: f32,
     /// Content hash: breaks ties in the drawing order, so that it never depends on submission order.
     pub(crate) hash: u32,
 }

@@ -20,6 +20,9 @@ pub(crate) const NUMBERS: usize = 512;
 /// Vertices of a cluster and its ring, so that a number fits a byte.
 const MAX_VERTICES: usize = 256;
 
+/// The cosine of 20 degrees: edges that bend less are seldom a silhouette.
+const SMOOTH: f64 = 0.94;
+
 /// What surrounds one cluster.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ring {
@@ -108,6 +111,17 @@ impl<'a> Neighbours<'a> {
         let here = self.edges.get(&(a, b)).copied().flatten();
         here?;
         self.edges.get(&(b, a)).copied().flatten()
+    }
+
+    /// Whether the mesh goes on beyond an edge and hardly bends there.
+    pub(super) fn is_smooth(&self, a: u32, b: u32) -> bool {
+        let normal = |triangle: Option<u32>| {
+            let t = self.triangles[triangle? as usize];
+            let [a, b, c] = t.map(|v| self.points[v as usize].as_dvec3());
+            (b - a).cross(c - a).try_normalize()
+        };
+        let sides = [self.beyond(b, a), self.beyond(a, b)].map(normal);
+        matches!(sides, [Some(m), Some(n)] if m.dot(n) > SMOOTH)
     }
 }
 

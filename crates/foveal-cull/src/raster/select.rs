@@ -29,8 +29,10 @@ const MAX_PARTS: usize = 64;
 const PARTS_PER_THREAD: usize = 4;
 /// Fewer groups of eight clusters than this are not worth a part.
 const LEAST_GROUPS: usize = 32;
-/// Clusters of quads with less than this times the square of their shift hide next to nothing.
-const LOSSES: f32 = 16.0;
+/// Clusters whose quads are shorter than so many of their shifts in the mean hide next to nothing around the eye: where
+/// the surface goes on at every edge, and that much more where it ends or bends at all of them.
+const SHIFTS: f32 = 4.0;
+const SHIFTS_OF_CREASES: f32 = 8.0;
 
 /// What is chosen by.
 #[derive(Clone, Copy, Debug)]
@@ -228,8 +230,9 @@ impl Kernel for Select<'_> {
                     };
                     let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]) * cluster.fill;
                     // Around the eye, quads must be larger than what they lose on all sides.
-                    let lost = shift * p.depth[i];
-                    let least = samples_per_quad.max(LOSSES * lost * lost);
+                    let shifts = SHIFTS + SHIFTS_OF_CREASES * cluster.creased;
+                    let lost = shifts * shift * p.depth[i];
+                    let least = samples_per_quad.max(lost * lost);
                     if !c.crossing && area < least * f32::from(cluster.quad_count) {
                         continue;
                     }
