@@ -279,4 +279,34 @@ mod tests {
         assert!(wide[0] > 0.6, "{wide:?}");
         assert!((0.05..0.1).contains(&thin[0]), "{thin:?}");
     }
+
+    #[test]
+    fn creases_are_edges_that_end_or_bend() {
+        let creased = |mesh: &OccluderMesh| mesh.clusters[0].creased;
+        let solid = OccluderMesh::from_box(Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0)));
+        assert_eq!(creased(&solid.unwrap()), 1.0);
+        assert_eq!(creased(&strips(0.1)), 1.0);
+        // A bent sheet of 6 x 6 quads of 1 m: of 144 edges, each counted from its quads, 24 are its border.
+        let sheet = |bend: f32, around_the_eye: bool| {
+            let point = |i: usize| {
+                let (x, y) = ((i % 7) as f32, (i / 7) as f32);
+                Vec3::new(x, y, bend * (x - 3.0) * (x - 3.0))
+            };
+            let points: Vec<Vec3> = (0..49).map(point).collect();
+            let quads = (0..36).map(|q| q / 6 * 7 + q % 6);
+            let indices: Vec<u32> = quads
+                .flat_map(|a| [a, a + 1, a + 8, a, a + 8, a + 7])
+                .collect();
+            let options = BakeOptions {
+                around_the_eye,
+                ..BakeOptions::default()
+            };
+            creased(&OccluderMesh::bake(&points, &indices, options).unwrap())
+        };
+        assert!((sheet(0.0, true) - 24.0 / 144.0).abs() < 1e-6);
+        assert!((0.15..0.2).contains(&sheet(0.02, true)));
+        // Three of the five lines across bend by more than 20 degrees: 67.5 of 189 m.
+        assert!((0.35..0.36).contains(&sheet(0.4, true)));
+        assert_eq!(sheet(0.0, false), 1.0);
+    }
 }

@@ -88,3 +88,43 @@ impl<'a> Pool<'a> {
         self.begun = end;
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::depth::PartialBlock;
+
+    #[test]
+    fn no_slot_is_held_twice_and_few_go_round() {
+        for (blocks, held_at_most) in [(1, 1), (3, 3), (100, 100), (3000, 40), (3000, 3000)] {
+            let mut partial = vec![PartialBlock::NONE; blocks];
+            let mut all = partial.clone();
+            let mut free = vec![0; 2 * blocks];
+            let mut pool = Pool::new(&mut partial, &mut all, &mut free);
+            let mut slots: Vec<Option<u32>> = vec![None; blocks];
+            let (mut used, mut held) = (vec![false; blocks], 0);
+            let mut seed = 1u32;
+            for _ in 0..20_000 {
+                seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                let block = (seed >> 8) as usize % blocks;
+                let begins = slots[block].is_none();
+                if begins && held == held_at_most {
+                    continue;
+                }
+                // As a block does: takes a slot if it has none, and gives it back if it is done.
+                let next = pool.next();
+                pool.take(begins);
+                let slot = slots[block].unwrap_or(next);
+                assert!(!begins || !slots.contains(&Some(slot)), "{blocks}: {slot}");
+                used[slot as usize] = true;
+                let done = seed >> 30 == 0;
+                pool.give(slot, done);
+                held += usize::from(begins);
+                held -= usize::from(done);
+                slots[block] = (!done).then_some(slot);
+            }
+            let used = used.iter().filter(|u| **u).count();
+            assert!(used < held_at_most + 2 * BEGUN_AT_ONCE as usize, "{used}");
+        }
+    }
+}
