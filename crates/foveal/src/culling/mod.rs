@@ -4,17 +4,20 @@
 //! widened to whole buffer pixels: the 4x4 coverage samples in each of its pixels then lie on the picture's
 //! own pixel centres, so that what is culled could not have changed a single pixel.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+mod found_for;
+mod scene;
+mod workers;
 
-use foveal_cull::{
-    BakeOptions, Budget, CullStats, Culler, Eye, FrameOptions, OccludeeTree, OccluderId,
-    OccluderMesh, OccluderSet, Pool, Projection, SingleThread, Threads, View, Visibility,
-};
-use foveal_scene::{Camera, Scene};
-use glam::{DAffine3, DVec3, Mat4, Vec3};
+pub(crate) use scene::CullingScene;
+
+use foveal_cull::{Budget, CullStats, Culler, Eye, FrameOptions, Projection, View, Visibility};
+use foveal_scene::Camera;
+use glam::Mat4;
 
 use crate::{Clock, Culling, CullingEyes, Error, Settings};
+use found_for::FoundFor;
+use scene::affine;
+use workers::Workers;
 
 /// What the culler found in a frame, as Intel's occlusion culling sample shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,113 +50,6 @@ pub(crate) struct CullingCounts {
     pub(crate) reused: bool,
 }
 
-/// A scene's occluders and boxes.
-#[derive(Debug, Default)]
-pub(crate) struct CullingScene {
-    occluders: OccluderSet,
-    /// Which instance each occluder is.
-    placed: Vec<(OccluderId, u32)>,
-    boxes: Vec<foveal_cull::Aabb>,
-    /// Per object.
-    triangles: Vec<u32>,
-    /// Over the boxes.
-    objects: OccludeeTree,
-    /// No other scene, and no other pose, has this number.
-    pose: u64,
-}
-
-fn new_pose() -> u64 {
-    static POSES: AtomicU64 = AtomicU64::new(1);
-    POSES.fetch_add(1, Ordering::Relaxed)
-}
-
-impl CullingScene {
-    /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the objects that are
-    /// marked as occluders, or of all objects where none is marked.
-    pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
-        let mut this = Self {
-            pose: new_pose(),
-            ..Self::default()
-        };
-        if mode == Culling::Occlusion {
-            this.bake(scene);
-        }
-        this.take_boxes(scene);
-        this.triangles = vec![0; scene.objects.len()];
-        for instance in &scene.instances {
-            let triangles = scene.meshes[instance.mesh as usize].triangle_count() as u32;
-            if let Some(sum) = this.triangles.get_mut(instance.object as usize) {
-                *sum = sum.saturating_add(triangles);
-            }
-        }
-        this.objects = OccludeeTree::build(&this.boxes, DVec3::ZERO);
-        this
-    }
-
-    fn bake(&mut self, scene: &Scene) {
-        let marked = scene.marks_occluders();
-        let mut baked: std::collections::HashMap<(u32, bool), Option<Arc<OccluderMesh>>> =
-            Default::default();
-        for (index, instance) in (0..).zip(&scene.instances) {
-            let material = &scene.materials[instance.material as usize];
-            let mesh = &scene.meshes[instance.mesh as usize];
-            let wanted = !marked || scene.objects[instance.object as usize].occluder == Some(true);
-            if !wanted || !scene.can_occlude(instance) {
-                continue;
-            }
-            let two_sided = material.double_sided;
-            let occluder = baked.entry((instance.mesh, two_sided)).or_insert_with(|| {
-                let positions: Vec<Vec3> =
-                    mesh.vertices.iter().map(|v| v.position.into()).collect();
-                // A mesh that cannot be baked only hides nothing.
-                let options = BakeOptions {
-                    two_sided,
-                    ..BakeOptions::default()
-                };
-                OccluderMesh::bake(&positions, &mesh.indices, options)
-                    .ok()
-                    .map(Arc::new)
-            });
-            if let Some(occluder) = occluder
-                && let Ok(id) = self
-                    .occluders
-                    .add(Arc::clone(occluder), affine(instance.world_from_object))
-            {
-                self.placed.push((id, index));
-            }
-        }
-    }
-
-    /// Takes over a new pose of the same scene.
-    pub(crate) fn update_pose(&mut self, scene: &Scene) {
-        self.pose = new_pose();
-        for &(id, instance) in &self.placed {
-            let place = affine(scene.instances[instance as usize].world_from_object);
-            if self.occluders.set_transform(id, place).is_err() {
-                // A transform that is no transform: better no occluder than a wrong one.
-                let _ = self.occluders.set_enabled(id, false);
-            }
-        }
-        self.take_boxes(scene);
-        if self.objects.refit(&self.boxes).is_err() {
-            self.objects = OccludeeTree::build(&self.boxes, DVec3::ZERO);
-        }
-    }
-
-    fn take_boxes(&mut self, scene: &Scene) {
-        self.boxes.clear();
-        let boxes = scene
-            .objects
-            .iter()
-            .map(|o| foveal_cull::Aabb::new(o.bounds.min, o.bounds.max));
-        self.boxes.extend(boxes);
-    }
-}
-
-fn affine(m: Mat4) -> DAffine3 {
-    DAffine3::from_mat4(m.as_dmat4())
-}
-
 /// Decides what is seen.
 #[derive(Debug)]
 pub(crate) struct CullingStage {
@@ -177,61 +73,6 @@ pub(crate) struct CullingStage {
     found_for: Option<FoundFor>,
     reused: bool,
     over_budget: u64,
-}
-
-/// What a result holds for: a pose of the scene, and eyes.
-#[derive(Clone, Copy, Debug)]
-struct FoundFor {
-    pose: u64,
-    eyes: [Option<Eye>; 2],
-}
-
-impl FoundFor {
-    /// Whether a result that holds within `radius_m` of this one's eyes answers for the other's.
-    fn holds_for(&self, other: &Self, radius_m: f64) -> bool {
-        let near = |(a, b): (&Option<Eye>, &Option<Eye>)| match (a, b) {
-            (Some(a), Some(b)) => {
-                let (p, q) = (a.world_from_eye, b.world_from_eye);
-                a.projection == b.projection
-                    && p.matrix3 == q.matrix3
-                    && (p.translation - q.translation).length() < 0.999 * radius_m
-            }
-            (None, None) => true,
-            _ => false,
-        };
-        self.pose == other.pose && self.eyes.iter().zip(&other.eyes).all(near)
-    }
-}
-
-/// Who rasterizes.
-#[derive(Debug)]
-enum Workers {
-    #[cfg(not(target_arch = "wasm32"))]
-    All,
-    One,
-    Some(Pool),
-}
-
-impl Workers {
-    fn new(threads: u8) -> Self {
-        match threads {
-            #[cfg(not(target_arch = "wasm32"))]
-            0 => Self::All,
-            #[cfg(target_arch = "wasm32")]
-            0 => Self::One,
-            1 => Self::One,
-            n => Self::Some(Pool::new(n.into())),
-        }
-    }
-
-    fn threads(&self) -> &dyn Threads {
-        match self {
-            #[cfg(not(target_arch = "wasm32"))]
-            Self::All => &foveal_cull::Rayon,
-            Self::One => &SingleThread,
-            Self::Some(pool) => pool,
-        }
-    }
 }
 
 impl CullingStage {

@@ -1,0 +1,27 @@
+//! Whether an earlier frame's result still holds.
+
+use foveal_cull::Eye;
+
+/// What a result holds for: a pose of the scene, and eyes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FoundFor {
+    pub(super) pose: u64,
+    pub(super) eyes: [Option<Eye>; 2],
+}
+
+impl FoundFor {
+    /// Whether a result that holds within `radius_m` of this one's eyes answers for the other's.
+    pub(super) fn holds_for(&self, other: &Self, radius_m: f64) -> bool {
+        let near = |(a, b): (&Option<Eye>, &Option<Eye>)| match (a, b) {
+            (Some(a), Some(b)) => {
+                let (p, q) = (a.world_from_eye, b.world_from_eye);
+                a.projection == b.projection
+                    && p.matrix3 == q.matrix3
+                    && (p.translation - q.translation).length() < 0.999 * radius_m
+            }
+            (None, None) => true,
+            _ => false,
+        };
+        self.pose == other.pose && self.eyes.iter().zip(&other.eyes).all(near)
+    }
+}

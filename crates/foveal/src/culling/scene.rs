@@ -1,0 +1,117 @@
+//! What is culled and what hides it: a scene's boxes and its occluders.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use foveal_cull::{BakeOptions, OccludeeTree, OccluderId, OccluderMesh, OccluderSet};
+use foveal_scene::Scene;
+use glam::{DAffine3, DVec3, Mat4, Vec3};
+
+use crate::Culling;
+
+/// A scene's occluders and boxes.
+#[derive(Debug, Default)]
+pub(crate) struct CullingScene {
+    pub(super) occluders: OccluderSet,
+    /// Which instance each occluder is.
+    placed: Vec<(OccluderId, u32)>,
+    pub(super) boxes: Vec<foveal_cull::Aabb>,
+    /// Per object.
+    pub(super) triangles: Vec<u32>,
+    /// Over the boxes.
+    pub(super) objects: OccludeeTree,
+    /// No other scene, and no other pose, has this number.
+    pub(super) pose: u64,
+}
+
+fn new_pose() -> u64 {
+    static POSES: AtomicU64 = AtomicU64::new(1);
+    POSES.fetch_add(1, Ordering::Relaxed)
+}
+
+impl CullingScene {
+    /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the objects that are
+    /// marked as occluders, or of all objects where none is marked.
+    pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
+        let mut this = Self {
+            pose: new_pose(),
+            ..Self::default()
+        };
+        if mode == Culling::Occlusion {
+            this.bake(scene);
+        }
+        this.take_boxes(scene);
+        this.triangles = vec![0; scene.objects.len()];
+        for instance in &scene.instances {
+            let triangles = scene.meshes[instance.mesh as usize].triangle_count() as u32;
+            if let Some(sum) = this.triangles.get_mut(instance.object as usize) {
+                *sum = sum.saturating_add(triangles);
+            }
+        }
+        this.objects = OccludeeTree::build(&this.boxes, DVec3::ZERO);
+        this
+    }
+
+    fn bake(&mut self, scene: &Scene) {
+        let marked = scene.marks_occluders();
+        let mut baked: std::collections::HashMap<(u32, bool), Option<Arc<OccluderMesh>>> =
+            Default::default();
+        for (index, instance) in (0..).zip(&scene.instances) {
+            let material = &scene.materials[instance.material as usize];
+            let mesh = &scene.meshes[instance.mesh as usize];
+            let wanted = !marked || scene.objects[instance.object as usize].occluder == Some(true);
+            if !wanted || !scene.can_occlude(instance) {
+                continue;
+            }
+            let two_sided = material.double_sided;
+            let occluder = baked.entry((instance.mesh, two_sided)).or_insert_with(|| {
+                let positions: Vec<Vec3> =
+                    mesh.vertices.iter().map(|v| v.position.into()).collect();
+                // A mesh that cannot be baked only hides nothing.
+                let options = BakeOptions {
+                    two_sided,
+                    ..BakeOptions::default()
+                };
+                OccluderMesh::bake(&positions, &mesh.indices, options)
+                    .ok()
+                    .map(Arc::new)
+            });
+            if let Some(occluder) = occluder
+                && let Ok(id) = self
+                    .occluders
+                    .add(Arc::clone(occluder), affine(instance.world_from_object))
+            {
+                self.placed.push((id, index));
+            }
+        }
+    }
+
+    /// Takes over a new pose of the same scene.
+    pub(crate) fn update_pose(&mut self, scene: &Scene) {
+        self.pose = new_pose();
+        for &(id, instance) in &self.placed {
+            let place = affine(scene.instances[instance as usize].world_from_object);
+            if self.occluders.set_transform(id, place).is_err() {
+                // A transform that is no transform: better no occluder than a wrong one.
+                let _ = self.occluders.set_enabled(id, false);
+            }
+        }
+        self.take_boxes(scene);
+        if self.objects.refit(&self.boxes).is_err() {
+            self.objects = OccludeeTree::build(&self.boxes, DVec3::ZERO);
+        }
+    }
+
+    fn take_boxes(&mut self, scene: &Scene) {
+        self.boxes.clear();
+        let boxes = scene
+            .objects
+            .iter()
+            .map(|o| foveal_cull::Aabb::new(o.bounds.min, o.bounds.max));
+        self.boxes.extend(boxes);
+    }
+}
+
+pub(super) fn affine(m: Mat4) -> DAffine3 {
+    DAffine3::from_mat4(m.as_dmat4())
+}
