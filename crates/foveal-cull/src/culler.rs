@@ -62,7 +62,8 @@ pub struct FrameOptions<'a> {
     pub occluder_size_threshold: f32,
     /// Clusters (up to 64 quads) that cannot cover more pixels than this per quad, by their rectangle on the screen and
     /// how much of it their triangles fill in the mean, are left out: fine detail costs much and hides little that what
-    /// lies behind it does not. 0 takes all.
+    /// lies behind it does not. 0 takes all, but for two eyes or a validity radius: there clusters that would lose most of
+    /// themselves at their borders are left out in any case.
     pub occluder_pixels_per_quad: f32,
     /// The same as the first for occludees ([`Visibility::Small`]; 0.01 in the sample). 0 culls none by size.
     pub occludee_size_threshold: f32,
@@ -142,7 +143,8 @@ impl Culler {
     }
 
     /// Begins a frame: clears the buffer, draws the occluders that `view` can see, resets the statistics. With threads that
-    /// sleep from frame to frame, call [`Threads::wake`] some ten microseconds before.
+    /// sleep from frame to frame, call [`Threads::wake`] 20 to 60 microseconds before. Where something panics on the way (a
+    /// task, the clock), everything is visible until the next good frame.
     ///
     /// # Errors
     /// [`CullError::NotFinite`] or [`CullError::BadProjection`] for a bad view; the culler then answers
@@ -160,24 +162,35 @@ impl Culler {
             threads.wake();
         }
         self.buffer.clear();
-        let (width, height) = (
-            (self.buffer.width * SAMPLES) as f32,
-            (self.buffer.height * SAMPLES) as f32,
-        );
+        let (width, height) = (self.buffer.width * SAMPLES, self.buffer.height * SAMPLES);
         let camera = Camera::new(view, f64::from(width), f64::from(height))?;
-        let occlusion = options.occlusion;
+        if options.occlusion {
+            self.occlude(&camera, occluders, options, threads);
+        }
         self.view = Some(Frame {
             camera,
             view: *view,
             occludee_size_threshold: options.occludee_size_threshold,
-            occlusion,
+            occlusion: options.occlusion,
         });
-        if !occlusion {
-            return Ok(());
-        }
+        Ok(())
+    }
+
+    /// Fills the buffer.
+    fn occlude(
+        &mut self,
+        camera: &Camera,
+        occluders: &OccluderSet,
+        options: &FrameOptions<'_>,
+        threads: &dyn Threads,
+    ) {
+        let (width, height) = (
+            (self.buffer.width * SAMPLES) as f32,
+            (self.buffer.height * SAMPLES) as f32,
+        );
         let shift = (camera.radius * camera.shift_per_metre) as f32;
         let choice = Choice {
-            camera: &camera,
+            camera,
             set: occluders,
             width,
             height,
@@ -197,7 +210,6 @@ impl Culler {
         });
         self.draw(occluders, options.budget, radius, threads);
         self.instruction_set.run(Summarize(&mut self.buffer));
-        Ok(())
     }
 
     fn draw(

@@ -47,15 +47,15 @@ pub(crate) fn decode(code: i16) -> f32 {
 #[repr(C, align(64))]
 pub(crate) struct DepthBlock(pub(crate) [i16; 64]);
 
-/// What partly covered pixels of a block have so far. Bit `8 * row + column` of a plane is a pixel.
+/// What partly covered pixels of a block have so far. Bit `8 * row + column` of a number is a pixel.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct PartialBlock {
-    /// Planes by sample column, then sample row.
+    /// All samples, in an order that only the instruction set knows which wrote them.
     pub(crate) planes: [u64; 16],
     /// Farthest depth so far, of pixels that have anything.
     pub(crate) depth: [i16; 64],
-    /// The plane of pixel centres.
+    /// Pixel centres.
     pub(crate) center: u64,
     /// Pixels that have anything.
     pub(crate) any: u64,

@@ -20,11 +20,22 @@ fn culls_nothing_visible(
     orthographic: bool,
     origin: DVec3,
 ) -> Result<usize, TestCaseError> {
+    culls_nothing_visible_in(None, seed, orthographic, origin)
+}
+
+/// In a buffer of this size, or of any.
+fn culls_nothing_visible_in(
+    buffer: Option<(u32, u32)>,
+    seed: u64,
+    orthographic: bool,
+    origin: DVec3,
+) -> Result<usize, TestCaseError> {
     let mut r = Random::new(seed);
     let objects = 1 + r.below(7);
     let scene = scene(&mut r, objects, 150, origin);
     let eye = eye(&mut r, origin, orthographic);
-    let (w, h) = size(&mut r);
+    let of_any = size(&mut r);
+    let (w, h) = buffer.unwrap_or(of_any);
     let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
     let mut culler = Culler::new(w, h).unwrap();
     let all = FrameOptions {
@@ -295,6 +306,22 @@ fn soak() {
         culls_nothing_visible(seed, i % 4 == 0, DVec3::new(1e6, -2e5, 3e6)).unwrap();
         culls_nothing_visible_around(seed).unwrap();
         culls_nothing_that_either_eye_sees(seed).unwrap();
+    }
+}
+
+#[test]
+fn the_smallest_and_the_largest_buffers_cull_nothing_visible() {
+    let sizes = [
+        (1, 1),
+        (3, 7),
+        (9, 1),
+        (4096, 5),
+        (4081, 12),
+        (6, 4096),
+        (11, 4077),
+    ];
+    for (seed, size) in (0..70).zip(sizes.into_iter().cycle()) {
+        culls_nothing_visible_in(Some(size), seed, seed % 3 == 0, DVec3::ZERO).unwrap();
     }
 }
 

@@ -105,7 +105,6 @@ impl Kernel for Draw<'_, '_> {
                 mirrored: instance.mirrored,
                 two_sided: mesh.two_sided,
                 cluster: c.cluster as usize,
-                blocks,
                 radius,
             };
             draw_cluster(

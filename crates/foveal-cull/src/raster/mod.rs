@@ -1,7 +1,7 @@
 //! The rasterizer: clusters in, proven depth out.
 //!
 //! `setup` transforms a cluster and sets up eight quads at once; `polygon` walks the blocks of one convex
-//! polygon; `block` computes coverage and merges it; `clip` is the slow path for what crosses the near plane
+//! polygon; `block` computes coverage and merges it, `layers` where parts lie far apart; `clip` is the slow path for what crosses the near plane
 //! or leaves the guard band; `open`, `sheet` and `border` find what a result around the eye must leave open; `band` is what
 //! a thread draws into, and `pool` where its partly covered pixels wait for the rest; `select` chooses and orders
 //! clusters; `frame` draws them.

@@ -30,11 +30,11 @@ pub(super) struct Open {
 }
 
 impl Open {
-    /// Every quad of a cluster within these blocks.
-    pub(super) fn all(blocks: [u32; 4]) -> Self {
+    /// Every quad of a cluster, wherever it lies.
+    pub(super) fn all() -> Self {
         Self {
             quads: [u8::MAX; 8],
-            blocks,
+            ..Self::default()
         }
     }
 

@@ -1,7 +1,8 @@
 //! Where partly covered pixels keep what they have so far: slots that blocks take and give back.
 //!
 //! Most blocks are covered in part for a short while, until the neighbours of the first polygon come. So a few slots
-//! go round, which stay in the nearest caches, where a place for every block would be most of the buffer's memory.
+//! go round and stay in the nearest caches, where a place for every block would be most of what a frame touches. (There is
+//! room for all, since all may be held at once.)
 //! Whoever takes a slot gets the one that was given back longest ago: its number has been known for long, and does not
 //! wait for the block before.
 

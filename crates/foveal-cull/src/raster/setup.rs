@@ -98,8 +98,6 @@ pub(crate) struct Facing {
     pub(crate) two_sided: bool,
     /// Number of the cluster in its mesh.
     pub(crate) cluster: usize,
-    /// Its first and last block in the band, inclusive.
-    pub(crate) blocks: [u32; 4],
     /// For a result that holds around the eye.
     pub(crate) radius: Option<Radius>,
 }
@@ -134,7 +132,7 @@ pub(crate) fn draw_cluster<L: Lanes>(
         .radius
         .filter(|_| !facing.two_sided)
         .zip(mesh.rings.rings.get(facing.cluster));
-    let mut open = Open::all(facing.blocks);
+    let mut open = Open::all();
     if let Some((radius, ring)) = sheet {
         open = l.apart(Prepare {
             band,

@@ -35,6 +35,7 @@ const LEAST_HEIGHT: f32 = 0.125;
 const STEEPEST: f32 = 32.0;
 /// From a sample to all points that are nearer to it than to others, and more than all rounding, samples.
 pub(super) const AROUND_SAMPLE: f32 = 0.8;
+
 /// What belongs to the sheet of the cluster that is being drawn.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {

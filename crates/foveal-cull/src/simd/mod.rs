@@ -224,11 +224,12 @@ pub(crate) trait Lanes: Copy {
     type Q: Copy;
     /// 64 x i16: a block's pixels, row by row.
     type D: Copy;
-    /// 2 x 40 x i32: the first sample (or pixel, by its centre) of each of these rows that is covered, and the first after.
+    /// 2 x 40 whole numbers: the first sample (or pixel, by its centre) of each of a block's 32 sample rows and 8 rows through
+    /// pixel centres that is covered, and the first after. No fewer than 16 bits.
     type S: Copy;
     /// 4 x 40 x f64: the borders of a polygon in a block's 32 sample rows, and in 8 through pixel centres.
     type B: Copy;
-    /// 16 x u64: a block's samples, a plane per place in a pixel (4 times its column, plus its row).
+    /// 64 x 16 bits: a block's samples, in any order.
     type P: Copy;
     /// Sixteen lanes.
     type W: wide::Wide;

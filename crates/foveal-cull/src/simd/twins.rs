@@ -91,6 +91,8 @@ impl Inputs {
         let vec = |r: &mut Random| Vec3::from_array(array(|| r.between(-9.0, 9.0)));
         // Whether pixels are alike decides what a comparison is worth.
         let shift = r.below(15);
+        // Here, or at the right border of the widest buffer.
+        let right = 32 * [0, 507][r.below(2) as usize];
         Self {
             floats: array(|| array(|| r.float())),
             plain: array(|| array(|| r.between(-100.0, 100.0))),
@@ -102,7 +104,9 @@ impl Inputs {
             // Left borders to the left of right ones in most rows; some far off, and some right at a sample.
             at: array(|| {
                 core::array::from_fn(|e| {
-                    let at = f64::from(r.between(120.0, 155.0)) + if e < 2 { -10.0 } else { 12.0 };
+                    let at = f64::from(right)
+                        + f64::from(r.between(120.0, 155.0))
+                        + [-10.0, 12.0][e / 2];
                     match r.below(8) {
                         0 => f64::from(r.between(-1e9, 1e9)) * 1e3,
                         1 => at.floor(),
@@ -112,7 +116,7 @@ impl Inputs {
             }),
             slopes: array(|| array(|| f64::from(r.between(-2.0, 2.0)).powi(3))),
             limits: [r.between(-2.0, 9.0), r.between(20.0, 33.0)].map(|v| f64::from(v.floor())),
-            left: 96 + 32 * r.below(3) as u32,
+            left: right + 96 + 32 * r.below(3) as u32,
             bits: r.bits(),
             boxes: array(|| Aabb {
                 min: vec(&mut r),

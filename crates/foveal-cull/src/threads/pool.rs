@@ -1,7 +1,7 @@
 //! A small pool: the calling thread and helpers that wait for work.
 //!
 //! Sleeping and waking take as long as a part of a frame's culling, so whoever waits first looks again and again for
-//! some ten microseconds; nobody is woken who does not sleep. Who knows that there will be work can wake all beforehand.
+//! about 40 microseconds; nobody is woken who does not sleep. Who knows that there will be work can wake all beforehand.
 //!
 //! A task lives on the caller's stack, so helpers reach it through a pointer; the caller does not return
 //! before the last helper has let go of it.
@@ -210,7 +210,7 @@ impl Threads for Pool {
         assert!(!panicked, "a task panicked");
     }
 
-    /// Wakes the threads; they look for work for some ten microseconds before they sleep again.
+    /// Wakes the threads; they look for work for about 40 microseconds before they sleep again.
     fn wake(&self) {
         let mut state = self.shared.lock();
         if state.sleepers > 0 && state.task.is_none() {
