@@ -4,7 +4,7 @@
 //! its farther part stays.
 
 use super::band::Band;
-use super::setup::Points;
+use super::setup::{Points, out};
 use super::sheet::AROUND_SAMPLE;
 use crate::depth::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
 use crate::simd::{Lanes, four, larger, smaller};
@@ -118,13 +118,6 @@ pub(super) fn erase_eight<L: Lanes>(
         };
         erase(l, band, erased, &border);
     }
-}
-
-#[inline(always)]
-fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
-    let mut a = [0.0; 8];
-    l.store(v, &mut a);
-    a
 }
 
 /// Erases the pixels that a border is within reach of.

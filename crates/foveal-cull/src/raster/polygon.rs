@@ -194,13 +194,14 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
             work += block::cover_full(l, band, bx, by, &polygon.plane);
         }
         let whole = after - inner;
-        let spans = borders.spans(l, exact, polygon.rows, top);
-        let mut bx = first;
-        while bx < end - whole {
-            // Those that are left, as if the others were not there.
-            let here = if bx < inner { bx } else { bx + whole };
-            work += block::cover_partial(l, band, here, by, &polygon.plane, &spans);
-            bx += 1;
+        // Those that are left, as if the others were not there; across a whole screen, none.
+        let left = first..end - whole;
+        if !left.is_empty() {
+            let spans = borders.spans(l, exact, polygon.rows, top);
+            for bx in left {
+                let bx = if bx < inner { bx } else { bx + whole };
+                work += block::cover_partial(l, band, bx, by, &polygon.plane, &spans);
+            }
         }
         band.work[(by - band.first_row) as usize] += work;
     }

@@ -23,7 +23,7 @@
 use super::band::Band;
 use super::border::{self, Reach};
 use super::open::{Corners, Open};
-use super::setup::{Points, Radius, Scratch, area, transform};
+use super::setup::{Points, Radius, Scratch, area, highest, lowest, transform};
 use crate::occluder::{Cluster, NUMBERS, OccluderMesh, RING, Ring, SECOND};
 use crate::simd::{Kernel, Lanes, four, larger, smaller};
 
@@ -144,17 +144,9 @@ fn prepare<L: Lanes>(
         let x = four!(c => l.load(&corners.x[c]));
         let y = four!(c => l.load(&corners.y[c]));
         let z = four!(c => l.load(&corners.depth[c]));
-        let sides = l.add(
-            l.sub(
-                l.max(l.max(x[0], x[1]), l.max(x[2], x[3])),
-                l.min(l.min(x[0], x[1]), l.min(x[2], x[3])),
-            ),
-            l.sub(
-                l.max(l.max(y[0], y[1]), l.max(y[2], y[3])),
-                l.min(l.min(y[0], y[1]), l.min(y[2], y[3])),
-            ),
-        );
-        let z_hi = l.max(l.max(z[0], z[1]), l.max(z[2], z[3]));
+        let w = l.sub(highest(l, &x), lowest(l, &x));
+        let h = l.sub(highest(l, &y), lowest(l, &y));
+        let (sides, z_hi) = (l.add(w, h), highest(l, &z));
         let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
         // Without corners for the clipper.
         let whole = l.lt(l.sub(sum, sum), one);

@@ -1,6 +1,6 @@
 //! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods sound.
 
-use super::portable::{FAR, ROWS};
+use super::portable::{FAR, PIXELS_FROM, ROWS};
 use super::wide::Twice;
 use super::{Kernel, Lanes, four, two};
 use crate::Aabb;
@@ -438,7 +438,7 @@ impl Lanes for Avx2 {
                 );
                 _mm256_min_epu8(n, _mm256_set1_epi8(32))
             });
-            let table = _mm256_broadcastsi128_si256(_mm_loadu_si128(FROM.as_ptr().cast()));
+            let table = _mm256_broadcastsi128_si256(_mm_loadu_si128(PIXELS_FROM.as_ptr().cast()));
             let planes = four!(column => {
                 let sides = two!(side => {
                     let n = _mm256_add_epi8(n[side], _mm256_set1_epi8(3 - column as i8));
@@ -508,11 +508,6 @@ impl Lanes for Avx2 {
         })
     }
 }
-
-/// Pixels at or right of the n-th.
-const FROM: [u8; 16] = [
-    0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
-];
 
 /// Four numbers of a table of 48 at `at`, and four at `at + 24`.
 #[inline(always)]

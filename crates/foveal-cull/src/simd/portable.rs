@@ -26,6 +26,11 @@ pub(super) const ROWS: [f64; 40] = {
 #[derive(Clone, Copy)]
 pub(crate) struct Portable;
 
+/// Pixels at or right of the n-th of their row.
+pub(super) const PIXELS_FROM: [u8; 16] = [
+    0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
+];
+
 /// Pixels whose sample is at or right of the n-th of their row: a byte per sample column.
 pub(super) const FROM: [u32; 64] = {
     let mut from = [0; 64];
@@ -33,8 +38,7 @@ pub(super) const FROM: [u32; 64] = {
     while n <= 32 {
         let mut column = 0;
         while column < 4 {
-            let pixels = (0xff << ((n + 3 - column) >> 2)) & 0xff;
-            from[n] |= pixels << (8 * column);
+            from[n] |= (PIXELS_FROM[(n + 3 - column) >> 2] as u32) << (8 * column);
             column += 1;
         }
         n += 1;

@@ -249,7 +249,7 @@ impl<R: Registers> Lanes for Narrow<R> {
 
     #[inline(always)]
     fn borders(self, slope: Self::Q) -> Self::B {
-        let slope = self.apart(slope);
+        let slope = self.each(slope);
         let (rows, _) = ROWS.as_chunks();
         let mut borders = [[slope[0]; 20]; 4];
         for (border, slope) in borders.iter_mut().zip(slope) {
@@ -261,7 +261,7 @@ impl<R: Registers> Lanes for Narrow<R> {
     }
     #[inline(always)]
     fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
-        let at = self.apart(at);
+        let at = self.each(at);
         let [mut from, mut to] = [[at[0]; 20]; 2];
         for k in 0..20 {
             let [a, b, c, d] = four!(e => self.0.qadd(at[e], borders[e][k]));
@@ -397,7 +397,7 @@ impl<R: Registers> Narrow<R> {
 
     /// Each of four numbers by itself, in all lanes.
     #[inline(always)]
-    fn apart(self, v: [R::Q; 2]) -> [R::Q; 4] {
+    fn each(self, v: [R::Q; 2]) -> [R::Q; 4] {
         let mut all = [0.0; 4];
         self.qstore(v, &mut all);
         four!(k => self.0.qsplat(all[k]))

@@ -1,6 +1,7 @@
 //! NEON, which every 64-bit ARM CPU for applications has.
 
 use super::Registers;
+use crate::simd::portable::PIXELS_FROM;
 use crate::simd::{four, two};
 use core::arch::aarch64::*;
 use core::arch::asm;
@@ -188,7 +189,7 @@ impl Registers for Neon {
     #[inline(always)]
     fn right_of(self, n: uint8x16_t) -> [uint8x16_t; 4] {
         neon!({
-            let table = vld1q_u8(FROM.as_ptr());
+            let table = vld1q_u8(PIXELS_FROM.as_ptr());
             four!(column => {
                 let n = vaddq_u8(n, vdupq_n_u8(3 - column as u8));
                 vqtbl1q_u8(table, vshrq_n_u8::<2>(n))
@@ -199,8 +200,3 @@ impl Registers for Neon {
 
 const BIT: [u8; 16] = [1, 2, 4, 8, 16, 32, 64, 128, 1, 2, 4, 8, 16, 32, 64, 128];
 const BIT16: [u16; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
-
-/// Pixels at or right of the n-th.
-const FROM: [u8; 16] = [
-    0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
-];

@@ -1,6 +1,7 @@
 //! WebAssembly's 128-bit registers, where the module is compiled with `-C target-feature=+simd128`.
 
 use super::Registers;
+use crate::simd::portable::PIXELS_FROM;
 use crate::simd::{four, two};
 use core::arch::wasm32::*;
 
@@ -164,10 +165,8 @@ impl Registers for Simd128 {
     }
     #[inline(always)]
     fn right_of(self, n: v128) -> [v128; 4] {
-        // Pixels at or right of the n-th.
-        let table = u8x16(
-            0xff, 0xfe, 0xfc, 0xf8, 0xf0, 0xe0, 0xc0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0,
-        );
+        // SAFETY: sixteen bytes.
+        let table = unsafe { v128_load(PIXELS_FROM.as_ptr().cast()) };
         four!(column => {
             i8x16_swizzle(table, u8x16_shr(u8x16_add(n, u8x16_splat(3 - column as u8)), 2))
         })
