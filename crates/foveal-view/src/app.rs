@@ -352,6 +352,7 @@ impl App {
     pub(crate) fn is_in_use(&self, stage: &str) -> bool {
         match stage {
             "Shading at a rate" => self.settings.shading != Shading::Full,
+            "Eye" => self.settings.shading != Shading::Full,
             "Coarse shading" => self.settings.shading == Shading::Coarse,
             "Variable shading" => self.settings.shading == Shading::Variable,
             _ => true,

@@ -4,7 +4,7 @@ use egui::{
     Align2, CentralPanel, Color32, CornerRadius, CursorIcon, PointerButton, Pos2, Rect, RichText,
     Sense, Stroke, StrokeKind, Vec2,
 };
-use foveal::View;
+use foveal::{RateSource, View};
 
 use crate::app::App;
 use crate::navigator::Hands;
@@ -166,9 +166,12 @@ fn split(app: &mut App, ui: &egui::Ui, rect: Rect) -> bool {
 fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
     let [x, y] = app.settings.gaze;
     let at = rect.min + rect.size() * Vec2::new(x, y);
-    let radius = app.settings.fovea_inner * rect.height();
+    let radius = match app.settings.rate {
+        RateSource::Radii => app.settings.fovea_inner * rect.height(),
+        _ => 0.0,
+    };
     let painter = ui.painter_at(rect);
-    painter.circle_stroke(at, radius.max(2.0), Stroke::new(1.0, look::ACCENT));
+    painter.circle_stroke(at, radius.max(4.0), Stroke::new(1.0, look::ACCENT));
 }
 
 /// What the colours mean, at the lower left.

@@ -40,7 +40,7 @@ pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer, Target};
 pub use settings::{
     Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Contrast, Culling, CullingEyes,
-    EdgeTest, EyeClipping, Geometry, Kind, LensProfile, LightAssignment, LightingModel,
+    Display, EdgeTest, EyeClipping, Geometry, Kind, LensProfile, LightAssignment, LightingModel,
     MaterialDispatch, Output, RateCombine, RateSource, RateStage, RefineEdges, SamplePattern,
     Setting, Settings, Shading, Stereo, ToneMap, View, variant_names,
 };

@@ -311,6 +311,9 @@ impl Renderer {
         if let Some(tiles) = counters.tiles {
             counts.tiles = Some(read_buffer(&self.gpu, tiles).await?);
         }
+        if let Some(unlit) = counters.unlit {
+            counts.unlit = Some(read_buffer(&self.gpu, unlit).await?);
+        }
         if let Some(edges) = counters.edges {
             counts.edges = Some(read_buffer(&self.gpu, edges).await?);
         }

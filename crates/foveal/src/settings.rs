@@ -7,6 +7,7 @@ use crate::Error;
 
 mod coarse;
 mod define;
+mod eye;
 mod reduced;
 mod stereo;
 mod variable;
@@ -16,6 +17,7 @@ pub use coarse::{
 };
 use define::settings;
 pub use define::{Kind, Setting, variant_names};
+pub use eye::Display;
 pub use stereo::{EyeClipping, LensProfile, Output, Stereo};
 pub use variable::{Contrast, Geometry, RateStage};
 
@@ -249,13 +251,23 @@ settings! {
             /// One lighting evaluation per pixel, per tile of a rate map, or as the content allows
             shading: Shading = Shading::default(), "Shading", Kind::choice::<Shading>();
         }
+        "Eye" {
+            /// Display that the picture is seen on, from which rates follow: camera (it fills the camera's own field of view),
+            /// fhd-24, uhd-27, quest-3, vision-pro, phone, degrees across, or WIDTHxDISTANCE in metres
+            display: String = "camera".to_owned(), "Display", Kind::Text;
+            /// Quality aimed at, in JOD: 10 is no visible difference from full shading, 9 one that 75 % of observers would see
+            quality: f32 = 9.5, "Quality", Kind::Number { least: 5.0, most: 10.0 };
+            /// Where the eye looks, as fractions of the picture from its top left corner
+            gaze: [f32; 2] = [0.5, 0.5], "Gaze", Kind::Place;
+        }
         "Coarse shading" {
             /// By what means tiles are visited; auto measures both
             backend: Backend = Backend::default(), "Backend", Kind::choice::<Backend>();
             /// Coarsest level, 0 to 8: tiles of at most 2^N pixels a side
             coarsest_level: u8 = COARSEST_LEVEL, "Coarsest level", Kind::Integer { least: 0, most: 8 };
-            /// Where wished levels come from: the distance to the gaze, a constant, an image (black: every pixel, white:
-            /// level 8), the lens of the headset output, or with variable shading the content of the frame before
+            /// Where wished levels come from: what the eye resolves (foveated), radii around the gaze, a constant, an image
+            /// (black: every pixel, white: level 8), the lens of the headset output, or with variable shading the content of
+            /// the frame before
             rate: RateSource = RateSource::default(), "Rate from", Kind::choice::<RateSource>();
             /// A second source of wishes
             rate_other: RateSource = RateSource::Constant, "Second source", Kind::choice::<RateSource>();
@@ -265,13 +277,11 @@ settings! {
             rate_level: u8 = 0, "Constant level", Kind::Integer { least: 0, most: 8 };
             /// The image source's file. The library opens no files: its caller hands the pixels to the renderer
             rate_image: String = String::new(), "Image", Kind::File;
-            /// Where the eye looks, as fractions of the picture from its top left corner
-            gaze: [f32; 2] = [0.5, 0.5], "Gaze", Kind::Place;
-            /// Radius around the gaze where every pixel is shaded, by the picture's height
+            /// With rates by radii: radius around the gaze where every pixel is shaded, by the picture's height
             fovea_inner: f32 = 0.125, "Fovea", Kind::Number { least: 0.0, most: 1.0 };
-            /// Radius from which on the coarsest level is wished, by the picture's height
+            /// With rates by radii: radius from which on the coarsest level is wished, by the picture's height
             fovea_outer: f32 = 0.9, "Periphery", Kind::Number { least: 0.0, most: 2.0 };
-            /// How levels follow between the radii: 1 in even steps, above 1 in steps that widen outwards
+            /// With rates by radii: how levels follow between them: 1 in even steps, above 1 in steps that widen outwards
             fovea_curve: f32 = 1.5, "Curve", Kind::Number { least: 0.1, most: 10.0 };
             /// Whether neighbouring tiles differ by one level at most
             rate_balance: bool = true, "Balance", Kind::Switch;
@@ -280,7 +290,8 @@ settings! {
             refine_edges: RefineEdges = RefineEdges::default(), "Refine edges", Kind::choice::<RefineEdges>();
             /// Which of its pixels a tile's sample looks at: the centre, or the most typical of five
             coarse_sample: CoarseSample = CoarseSample::default(), "Sample", Kind::choice::<CoarseSample>();
-            /// How samples become pixels: by continuous patches, by the source's four taps, or as they are
+            /// How samples become pixels: each pixel's own surface in the samples' light (light), or the samples' colours by
+            /// continuous patches (smooth), by the source's four taps (paper), or as they are (nearest)
             composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
         }
         "Shading at a rate" {
@@ -423,6 +434,7 @@ impl Settings {
             reduced::validate(self)?;
         }
         coarse::validate(self)?;
+        eye::validate(self)?;
         variable::validate(self)?;
         stereo::validate(self, limits)?;
         if self.shading == Shading::Coarse && self.composite == Composite::Smooth {

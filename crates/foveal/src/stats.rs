@@ -51,7 +51,9 @@ pub struct Timing {
 pub struct CoarseStats {
     /// Samples of each level, finest first.
     pub samples_per_level: Vec<u64>,
-    /// All samples by all pixels.
+    /// Pixels that no tile's sample speaks for, which were shaded one by one; with the composite of light.
+    pub unlit_pixels: u64,
+    /// All samples and those pixels by all pixels.
     pub shaded_fraction: f64,
     /// The backend that shaded this frame: `stencil` or `compute`.
     pub backend: String,
@@ -60,10 +62,10 @@ pub struct CoarseStats {
 }
 
 impl CoarseStats {
-    /// Samples of all levels.
+    /// Samples of all levels, and pixels that were shaded one by one.
     #[must_use]
     pub fn shaded_samples(&self) -> u64 {
-        self.samples_per_level.iter().sum()
+        self.samples_per_level.iter().sum::<u64>() + self.unlit_pixels
     }
 }
 

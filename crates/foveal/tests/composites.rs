@@ -4,14 +4,14 @@
 mod common;
 
 use common::{drawn, mean_flip};
-use foveal::{Composite, Gpu, Settings, Shading};
+use foveal::{Composite, Gpu, RateSource, Settings, Shading};
 use foveal_scene::generate;
 
 const WIDTH: u32 = 320;
 const HEIGHT: u32 = 180;
 
 #[test]
-fn smooth_is_nearer_to_full_shading_than_paper_in_every_generated_scene() {
+fn light_is_nearer_to_full_shading_than_smooth_and_that_than_paper_in_every_generated_scene() {
     let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
     for name in [
         "demo:1000",
@@ -28,15 +28,18 @@ fn smooth_is_nearer_to_full_shading_than_paper_in_every_generated_scene() {
             ..Settings::default()
         };
         let reference = drawn(&gpu, &scene, &full, 1);
-        let [paper, smooth] = [Composite::Paper, Composite::Smooth].map(|composite| {
+        let composites = [Composite::Paper, Composite::Smooth, Composite::Light];
+        let [paper, smooth, light] = composites.map(|composite| {
             let settings = Settings {
                 shading: Shading::Coarse,
+                rate: RateSource::Radii,
                 composite,
                 ..full.clone()
             };
             mean_flip(&reference, &drawn(&gpu, &scene, &settings, 1))
         });
-        println!("{name}: paper {paper:.4}, smooth {smooth:.4}");
+        println!("{name}: paper {paper:.4}, smooth {smooth:.4}, light {light:.4}");
         assert!(smooth < paper, "{name}: smooth {smooth}, paper {paper}");
+        assert!(light < smooth, "{name}: light {light}, smooth {smooth}");
     }
 }

@@ -7,8 +7,8 @@
 mod side;
 
 use foveal::{
-    AdapterStats, Backend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateStage,
-    RefineEdges, Settings, Shading,
+    AdapterStats, Backend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateSource,
+    RateStage, RefineEdges, Settings, Shading,
 };
 use foveal_scene::{Camera, Scene};
 use serde::Serialize;
@@ -224,6 +224,8 @@ fn measure(
         lights: LightAssignment::Brute,
         lighting: args.lighting.unwrap_or_default(),
         refine_edges: args.refine_edges.unwrap_or_default(),
+        // The map of the technique's source.
+        rate: RateSource::Radii,
         fovea_inner: case.fovea_inner,
         geometry: args.geometry.unwrap_or_default(),
         ..Settings::default()

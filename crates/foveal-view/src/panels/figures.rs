@@ -56,6 +56,9 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             for (level, samples) in coarse.samples_per_level.iter().enumerate() {
                 figure(ui, &format!("Level {level}"), grouped(*samples));
             }
+            if coarse.unlit_pixels > 0 {
+                figure(ui, "Pixels by themselves", grouped(coarse.unlit_pixels));
+            }
         }
     });
     ui.add_space(6.0);

@@ -358,7 +358,7 @@ fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
         };
         let coarse = Settings {
             shading: Shading::Coarse,
-            rate: RateSource::Foveated,
+            rate: RateSource::Radii,
             refine_edges: RefineEdges::Off,
             ..fine.clone()
         };

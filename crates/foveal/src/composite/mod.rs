@@ -1,20 +1,26 @@
 //! Composite: the samples of a tiling become one radiance per pixel.
 //!
-//! All three take level-0 tiles, which are pixels, as they are. `nearest` repeats a tile's sample; `paper` is the
+//! All take level-0 tiles, which are pixels, as they are. `light` puts each pixel's own surface into the samples' light;
+//! the others join the samples' radiance: `nearest` repeats a tile's sample; `paper` is the
 //! interpolation of the technique's source; `smooth` is continuous, exact where radiance is an affine function
 //! of the position, and reads the G-buffer so as not to mix surfaces.
 
+mod light;
 mod patches;
 mod smooth;
 mod taps;
 
+pub(crate) use light::{LIGHT_FORMAT, LightTargets};
 pub(crate) use patches::{PatchTargets, check_limits};
 
+#[cfg(test)]
+mod light_twin;
 #[cfg(test)]
 mod tests;
 #[cfg(test)]
 mod twin;
 
+use light::LightComposite;
 use smooth::SmoothComposite;
 use taps::TapComposite;
 
@@ -27,6 +33,7 @@ use crate::{Composite, Settings, shader};
 /// The composite that the settings ask for.
 #[derive(Debug)]
 pub(crate) enum CompositePass {
+    Light(LightComposite),
     Taps(TapComposite),
     Smooth(SmoothComposite),
 }
@@ -43,6 +50,7 @@ impl CompositePass {
             Composite::Smooth if settings.coarsest_level > 0 => {
                 Self::Smooth(SmoothComposite::new(gpu, settings, frame_layout))
             }
+            Composite::Light => Self::Light(LightComposite::new(gpu, settings, frame_layout)),
             Composite::Paper => taps(shader::COMPOSITE_PAPER, "paper"),
             Composite::Nearest | Composite::Smooth => taps(shader::COMPOSITE_NEAREST, "nearest"),
         }
@@ -55,11 +63,16 @@ impl CompositePass {
         targets: &Targets,
         from: &CoarseTargets,
     ) {
-        match (self, &from.patches) {
-            (Self::Taps(taps), _) => taps.join(recorder, from, &targets.radiance_view),
-            (Self::Smooth(smooth), Some(patches)) => smooth.join(recorder, targets, from, patches),
+        match (self, &from.patches, &from.light) {
+            (Self::Taps(taps), ..) => taps.join(recorder, from, &targets.radiance_view),
+            (Self::Smooth(smooth), Some(patches), _) => {
+                smooth.join(recorder, targets, from, patches);
+            }
+            (Self::Light(composite), _, Some(light)) => {
+                composite.join(recorder, targets, from, light);
+            }
             // Targets and passes are made for the same settings.
-            (Self::Smooth(_), None) => {}
+            (Self::Smooth(_), None, _) | (Self::Light(_), _, None) => {}
         }
     }
 }

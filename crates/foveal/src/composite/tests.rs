@@ -124,6 +124,7 @@ fn patches_too_large_for_the_device_are_an_error_that_says_so() {
     let limits = wgpu::Limits::default();
     let large = Settings {
         shading: Shading::Coarse,
+        composite: Composite::Smooth,
         width: 7680,
         height: 4320,
         ..Settings::default()

@@ -7,7 +7,9 @@ use crate::gpu::read_level;
 use crate::shading::sample_texel;
 use crate::shading::twin::{normal_of_depth, position_at, unit_from_octahedral};
 use crate::testing::{f32_of_half, gpu, rendered, small, texels};
-use crate::{CoarseSample, Composite, Frame, Geometry, RefineEdges, Renderer, Settings, Shading};
+use crate::{
+    CoarseSample, Composite, Frame, Geometry, RateSource, RefineEdges, Renderer, Settings, Shading,
+};
 
 /// Bits of a rate map's cell.
 const CELL_LEVEL: u8 = 15;
@@ -412,6 +414,7 @@ fn smooth_equals_its_twin() {
         let settings = Settings {
             shading: Shading::Coarse,
             composite: Composite::Smooth,
+            rate: RateSource::Radii,
             fovea_inner: 0.05,
             fovea_outer: 0.4,
             gaze: [0.3, 0.6],

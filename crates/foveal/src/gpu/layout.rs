@@ -83,6 +83,15 @@ pub(crate) const fn written_layers(format: wgpu::TextureFormat) -> BindingType {
     }
 }
 
+/// A texture that a shader writes.
+pub(crate) const fn written(format: wgpu::TextureFormat) -> BindingType {
+    BindingType::StorageTexture {
+        access: wgpu::StorageTextureAccess::WriteOnly,
+        format,
+        view_dimension: wgpu::TextureViewDimension::D2,
+    }
+}
+
 pub(crate) const fn sampled(sample_type: TextureSampleType) -> BindingType {
     BindingType::Texture {
         sample_type,

@@ -11,7 +11,7 @@ mod trap;
 
 pub(crate) use layout::{
     bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write, uniform,
-    written_layers,
+    written, written_layers,
 };
 pub(crate) use mips::MipChain;
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::{RateImage, WishUniform};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
 use crate::recorder::{Recorder, overwritten};
-use crate::stereo::{EyeLayout, LensFit};
+use crate::stereo::{Eye, EyeLayout, LensFit};
 use crate::{Settings, shader};
 
 /// A level, and whether a geometric edge lies in the block.
@@ -127,12 +127,12 @@ impl RateMapPass {
         &self,
         recorder: &mut Recorder<'_>,
         settings: &Settings,
-        lenses: Option<&[LensFit; 2]>,
+        (eyes, lenses): (&[Eye; 2], Option<&[LensFit; 2]>),
         gbuffer: &GBuffer,
         target: &RateTargets,
     ) {
         let gpu = recorder.gpu;
-        let uniform = WishUniform::new(settings, lenses);
+        let uniform = WishUniform::new(settings, eyes, lenses);
         gpu.queue
             .write_buffer(&self.wish_uniform, 0, bytemuck::bytes_of(&uniform));
         let wish_group = bind_group(

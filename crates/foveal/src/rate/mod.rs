@@ -8,6 +8,7 @@
 //! Passes: wish (`wish.wgsl`), pyramid (`pyramid.wgsl`), owner (`owner.wgsl`); [`MinPyramid`] is their twin on
 //! the CPU. On the device the pyramid begins with the wishes of 2 x 2 pixels: finer is only the pixel itself.
 
+mod acuity;
 mod image;
 mod map;
 mod pyramid;

@@ -4,7 +4,8 @@ use bytemuck::{Pod, Zeroable};
 
 #[cfg(test)]
 use super::RateImage;
-use crate::stereo::{EyeLayout, LensFit};
+use super::acuity;
+use crate::stereo::{Eye, EyeLayout, LensFit};
 use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
 
 /// Mirrors `Wish` in `rate/wish.wgsl`, where the fields are explained.
@@ -20,19 +21,24 @@ pub(crate) struct WishUniform {
     pub(crate) refine_up_to: u32,
     pub(crate) edges_up_to: u32,
     pub(crate) refine_by: u32,
-    pub(crate) reserved_1: u32,
-    pub(crate) reserved_2: u32,
+    pub(crate) block_at_gaze: f32,
+    pub(crate) block_growth: f32,
+    pub(crate) display_from_ndc: [[f32; 4]; 2],
+    pub(crate) gaze_direction: [[f32; 4]; 2],
 }
 
-/// Levels by which [`RefineEdges::Graded`] refines.
+/// Levels by which [`RefineEdges::Graded`] refines where samples hold colours. Where they hold light one does: what a pixel shows beyond
+/// an edge is its own surface all the same.
 const GRADED_BY: u8 = 2;
 
 impl WishUniform {
-    /// The uniform for these settings; `lenses` are both eyes' where the output has them.
-    pub(crate) fn new(s: &Settings, lenses: Option<&[LensFit; 2]>) -> Self {
+    /// The uniform for these settings and eyes; `lenses` are both eyes' where the output has them.
+    pub(crate) fn new(s: &Settings, eyes: &[Eye; 2], lenses: Option<&[LensFit; 2]>) -> Self {
         let (width, height) = (s.width as f32, s.height as f32);
         let layout = EyeLayout::of(s);
         let right = [0, 1].map(|axis| s.gaze[axis] + s.gaze_shift[axis]);
+        let blocks = acuity::Blocks::of_quality(s.quality);
+        let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
             let first = (eye * layout.stride) as f32;
             [first + x * width, y * height, 0.0, 0.0]
@@ -54,22 +60,37 @@ impl WishUniform {
             refine_up_to: u32::from(refine_up_to),
             edges_up_to: u32::from(match s.composite {
                 Composite::Smooth => s.coarsest_level,
-                Composite::Nearest | Composite::Paper => refine_up_to,
+                Composite::Light | Composite::Nearest | Composite::Paper => refine_up_to,
             }),
             refine_by: u32::from(match s.refine_edges {
-                RefineEdges::Graded => GRADED_BY,
+                RefineEdges::Graded => match s.composite {
+                    Composite::Light => 1,
+                    _ => GRADED_BY,
+                },
                 _ => crate::COARSEST_LEVEL,
             }),
-            reserved_1: 0,
-            reserved_2: 0,
+            block_at_gaze: blocks.at_gaze,
+            block_growth: blocks.growth,
+            display_from_ndc: displays,
+            gaze_direction: [
+                acuity::direction(displays[0], s.gaze),
+                acuity::direction(displays[1], right),
+            ],
         }
+    }
+
+    /// The level that the eye allows at a position in pixels of the left or only eye's picture.
+    #[cfg(test)]
+    pub(crate) fn foveated(&self, s: &Settings, pixel: [f32; 2]) -> u32 {
+        acuity::level(self, s, pixel)
     }
 
     /// The level that the pixel at (x, y) of a picture without a lens wishes, edges aside.
     #[cfg(test)]
     pub(crate) fn level(&self, s: &Settings, x: u32, y: u32, image: Option<&RateImage>) -> u8 {
         let from = |source| match source {
-            RateSource::Foveated => {
+            RateSource::Foveated => self.foveated(s, [x as f32 + 0.5, y as f32 + 0.5]),
+            RateSource::Radii => {
                 let eye = usize::from(x as f32 + 0.5 >= self.eye_width);
                 let dx = x as f32 + 0.5 - self.gaze[eye][0];
                 let dy = y as f32 + 0.5 - self.gaze[eye][1];
@@ -103,6 +124,7 @@ pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
         // Content is refused by the settings' check.
         RateSource::Image | RateSource::Content => 2.0,
         RateSource::Lens => 3.0,
+        RateSource::Radii => 4.0,
     };
     let combine = match s.rate_combine {
         RateCombine::First => 0.0,
@@ -137,11 +159,67 @@ fn halves([a, b, c, d, e, f, g, h]: [f32; 8]) -> [[f32; 4]; 2] {
 
 #[cfg(test)]
 mod tests {
+    use foveal_scene::Camera;
+    use glam::Vec3;
+
     use super::*;
 
+    fn eyes_of(s: &Settings) -> [Eye; 2] {
+        let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
+        crate::stereo::eyes(s, &camera).unwrap()
+    }
+
     #[test]
-    fn foveated_levels_grow_from_the_inner_to_the_outer_radius() {
+    fn foveated_blocks_are_as_large_as_the_smallest_angle_that_the_eye_resolves() {
+        // 60 degrees across: 1108.5 pixels before the plane of 1280 pixels.
         let s = Settings {
+            width: 1280,
+            height: 720,
+            display: "60".to_owned(),
+            ..Settings::default()
+        };
+        let uniform = WishUniform::new(&s, &eyes_of(&s), None);
+        let factor = uniform.block_growth / 0.0275;
+        let plane = 640.0 / 30f32.to_radians().tan();
+        for x in [640, 700, 800, 900, 1000, 1100, 1279] {
+            let angle = ((x as f32 + 0.5 - 640.0) / plane).atan();
+            let degrees = factor * (1.0 / 48.0 + 0.0275 * angle.to_degrees());
+            let pixel = (1.0 / plane * angle.cos()).to_degrees();
+            let block = degrees / pixel;
+            let level = uniform.level(&s, x, 360, None);
+            let side = f32::from(1u16 << level);
+            // Near the gaze a block is never smaller than a pixel; the angle's series is good to half a per cent.
+            assert!(side <= (block * 1.01).max(1.0), "{x}: {side} {block}");
+            assert!(block < side * 2.02, "{x}: {side} {block}");
+        }
+    }
+
+    #[test]
+    fn better_quality_and_closer_displays_ask_for_smaller_blocks() {
+        let level = |quality, display: &str, x| {
+            let s = Settings {
+                width: 1280,
+                height: 720,
+                display: display.to_owned(),
+                quality,
+                ..Settings::default()
+            };
+            WishUniform::new(&s, &eyes_of(&s), None).level(&s, x, 360, None)
+        };
+        for x in [640, 760, 900, 1270] {
+            let levels =
+                [10.0, 9.8, 9.6, 9.4, 9.2, 9.0, 8.0].map(|quality| level(quality, "60", x));
+            assert!(levels.is_sorted(), "{x}: {levels:?}");
+        }
+        assert!(level(10.0, "60", 1270) < level(9.0, "60", 1270));
+        // The same picture farther away: more pixels to a degree.
+        assert!(level(9.3, "10", 700) > level(9.3, "60", 700));
+    }
+
+    #[test]
+    fn levels_grow_from_the_inner_to_the_outer_radius() {
+        let s = Settings {
+            rate: RateSource::Radii,
             width: 1000,
             height: 1000,
             gaze: [0.0, 0.0],
@@ -149,7 +227,7 @@ mod tests {
             fovea_outer: 0.8,
             ..Settings::default()
         };
-        let uniform = WishUniform::new(&s, None);
+        let uniform = WishUniform::new(&s, &eyes_of(&s), None);
         let along: Vec<u8> = (0..1000).map(|x| uniform.level(&s, x, 0, None)).collect();
         assert!(along[..100].iter().all(|&l| l == 0));
         assert!(along[101..].iter().all(|&l| l > 0));
@@ -171,7 +249,7 @@ mod tests {
                 height: 1,
                 ..Settings::default()
             };
-            [0, 9].map(|x| WishUniform::new(&s, None).level(&s, x, 0, image.as_ref()))
+            [0, 9].map(|x| WishUniform::new(&s, &eyes_of(&s), None).level(&s, x, 0, image.as_ref()))
         };
         assert_eq!(level(RateCombine::First), [3, 3]);
         assert_eq!(level(RateCombine::Coarser), [3, 8]);

@@ -1,7 +1,7 @@
 // The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level 1 of the
 // min-pyramid. After frame, surface, level, blocks and fovea.wgsl. Rust: `rate/wish.rs`.
 
-// 0 foveated, 1 constant, 2 image, 3 lens.
+// 0 foveated, 1 constant, 2 image, 3 lens, 4 radii.
 override SOURCE: u32 = 0u;
 override OTHER: u32 = 1u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
@@ -29,6 +29,7 @@ fn level_from(source: u32, texel: vec2u) -> u32 {
         case 0u: { return foveated_level(vec2f(texel) + 0.5); }
         case 1u: { return wish.constant_level; }
         case 3u: { return lens_level(vec2f(texel) + 0.5); }
+        case 4u: { return radii_level(vec2f(texel) + 0.5); }
         default: { return textureLoad(rate_image, image_texel(texel), 0).x; }
     }
 }

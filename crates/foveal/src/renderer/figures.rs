@@ -14,6 +14,8 @@ use crate::{CoarseStats, Error, FrameStats, Timing};
 pub(super) struct Counts<T> {
     /// Tiles per level of coarse shading.
     pub(super) tiles: Option<T>,
+    /// Pixels of coarse shading that no tile's sample speaks for.
+    pub(super) unlit: Option<T>,
     /// Edge pixels and lighting evaluations of anti-aliasing.
     pub(super) edges: Option<T>,
     /// Samples of variable shading.
@@ -48,12 +50,13 @@ impl InFlight {
         };
         let counts = Counts {
             tiles: record(counters.tiles),
+            unlit: record(counters.unlit),
             edges: record(counters.edges),
             rates: record(counters.rates),
         };
         gpu.queue.submit([encoder.finish()]);
-        let all = counts.tiles.iter().chain(&counts.edges);
-        for arriving in all.chain(&counts.rates) {
+        let all = counts.tiles.iter().chain(&counts.unlit);
+        for arriving in all.chain(&counts.edges).chain(&counts.rates) {
             arriving.submitted();
         }
         let done = work_done(gpu, move || cpu.since_start_ms());
@@ -70,12 +73,13 @@ impl Renderer {
     pub(super) fn counters(&self) -> Counts<&wgpu::Buffer> {
         let stages = &self.stages;
         let tiles = match (&stages.coarse, &stages.targets.coarse, &stages.view) {
-            (Some(_), Some(tiles), None) => Some(&tiles.counts),
+            (Some(_), Some(tiles), None) => Some(tiles),
             _ => None,
         };
         let samples = stages.targets.samples.as_ref();
         Counts {
-            tiles,
+            tiles: tiles.map(|tiles| &tiles.counts),
+            unlit: tiles.and_then(|tiles| Some(&tiles.light.as_ref()?.unlit_count)),
             edges: samples
                 .filter(|_| stages.antialias.is_some())
                 .map(|samples| &samples.queue),
@@ -133,6 +137,7 @@ impl Renderer {
             |arriving: &Option<Arriving>| arriving.as_ref().is_none_or(Arriving::is_there);
         if !(in_flight.done.is_given()
             && arrived(&in_flight.counts.tiles)
+            && arrived(&in_flight.counts.unlit)
             && arrived(&in_flight.counts.edges)
             && arrived(&in_flight.counts.rates))
         {
@@ -157,6 +162,7 @@ impl Renderer {
         }
         let counts = Counts {
             tiles: counts.tiles.and_then(|arriving| arriving.take()),
+            unlit: counts.unlit.and_then(|arriving| arriving.take()),
             edges: counts.edges.and_then(|arriving| arriving.take()),
             rates: counts.rates.and_then(|arriving| arriving.take()),
         };
@@ -228,8 +234,12 @@ impl Renderer {
         let bytes = counts.tiles.as_ref()?;
         let settings = &self.stages.settings;
         let tiles = CountPass::tiles(bytes, settings.coarsest_level);
+        let unlit = counts
+            .unlit
+            .as_ref()
+            .map_or(0, |bytes| CountPass::tiles(bytes, 0)[0]);
         let pixels = EyeLayout::of(settings).pixels();
         let coarse = self.stages.coarse.as_mut()?;
-        Some(coarse.shading.stats(tiles, pixels, gpu_ms))
+        Some(coarse.shading.stats(tiles, unlit, pixels, gpu_ms))
     }
 }

@@ -168,17 +168,18 @@ impl Stages {
             geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at)
         };
         if let Some((coarse, tiles)) = coarse {
-            let lenses = seen.lenses.as_ref();
+            let eyes = (&seen.eyes, seen.lenses.as_ref());
             coarse
                 .rate_map
-                .draw(recorder, settings, lenses, &targets.gbuffer, &tiles.rate);
+                .draw(recorder, settings, eyes, &targets.gbuffer, &tiles.rate);
             if material {
                 evaluate(recorder, Evaluation::at_rates(&tiles.rate.owner.whole));
             }
         }
         if let (Some(variable), true) = (variable.as_mut(), plan.active) {
             let before = frame.previous_camera.unwrap_or(frame.camera);
-            variable.find_rates(recorder, settings, targets, frame.camera, before);
+            let cameras = (frame.camera, before);
+            variable.find_rates(recorder, settings, targets, &seen.eyes, cameras);
             if let (Some(t), true) = (&targets.variable, material) {
                 if plan.compares {
                     evaluate(recorder, Evaluation::COMPARED);
@@ -224,6 +225,10 @@ impl Stages {
         if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
             coarse.shading.shade(recorder, &input, tiles);
             coarse.composite.join(recorder, targets, tiles);
+            if let Some(light) = &tiles.light {
+                let unlit = Samples::List(&light.unlit);
+                shading.shade(recorder, &input, unlit, &targets.radiance_view);
+            }
         } else if let (Some(variable), true) = (
             variable.as_ref(),
             plan.active && settings.stage().has_lighting(),

@@ -36,9 +36,12 @@ pub enum Backend {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateSource {
-    /// The distance to the gaze point.
+    /// What the eye resolves: the angle to the gaze on [`Settings::display`], for [`Settings::quality`].
     #[default]
     Foveated,
+    /// The distance to the gaze in pixels, between [`Settings::fovea_inner`] and [`Settings::fovea_outer`]: the map of coarse
+    /// shading's source.
+    Radii,
     /// [`Settings::rate_level`] everywhere.
     Constant,
     /// A picture stretched over the frame: black asks for every pixel, white for the coarsest level.
@@ -92,8 +95,11 @@ pub enum CoarseSample {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Composite {
-    /// Continuous patches through the samples, guided by geometry; exact where radiance is linear.
+    /// Samples hold light, freed of the surface's own colour; each pixel's own surface is put into the light of the samples
+    /// around it. Pixels that no sample speaks for are shaded.
     #[default]
+    Light,
+    /// Samples hold colours, joined by continuous patches through them, guided by geometry; exact where radiance is linear.
     Smooth,
     /// Four taps, as in the technique's source.
     Paper,

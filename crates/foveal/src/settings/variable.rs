@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Antialiasing, RateCombine, RateSource, Settings, Shading, View};
+use super::{Antialiasing, Composite, RateCombine, RateSource, Settings, Shading, View};
 use crate::Error;
 
 /// How the G-buffer is filled.
@@ -21,7 +21,8 @@ pub enum Geometry {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateStage {
-    /// [`RateStage::Both`] where it can be: with [`Geometry::Visibility`] and without anti-aliasing; else lighting.
+    /// [`RateStage::Both`] where it can be: with [`Geometry::Visibility`], without anti-aliasing, and with another composite
+    /// than [`Composite::Light`], which needs each pixel's surface; else lighting.
     #[default]
     Auto,
     /// Lighting.
@@ -47,7 +48,9 @@ impl RateStage {
 impl Settings {
     /// What is done once per sample, the choice having been made.
     pub(crate) fn stage(&self) -> RateStage {
-        let material = self.geometry == Geometry::Visibility && self.aa == Antialiasing::None;
+        let light = self.shading == Shading::Coarse && self.composite == Composite::Light;
+        let material =
+            self.geometry == Geometry::Visibility && self.aa == Antialiasing::None && !light;
         match (self.shading, self.rate_stage) {
             (Shading::Full, _) => RateStage::Lighting,
             (_, RateStage::Auto) if material => RateStage::Both,
@@ -122,6 +125,13 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             "rate-stage",
             name(&s.rate_stage),
             "another one unless shading is variable",
+        );
+    }
+    if s.sees_by_depth() && s.composite == Composite::Light {
+        return wrong(
+            "rate-stage",
+            name(&s.rate_stage),
+            "lighting where the composite is light",
         );
     }
     if s.stage().has_material() {

@@ -5,8 +5,10 @@ use super::Parts;
 const FRAME: &str = include_str!("../shared/frame.wgsl");
 const SURFACE: &str = include_str!("../shared/surface.wgsl");
 const LIGHT: &str = include_str!("../shared/light.wgsl");
+const SURROUNDINGS: &str = include_str!("../shared/surroundings.wgsl");
 const LIGHTING: &str = concat!(
     include_str!("../shared/light_list.wgsl"),
+    include_str!("../shared/surroundings.wgsl"),
     include_str!("../shared/lighting.wgsl")
 );
 const VERTEX: &str = concat!(
@@ -452,9 +454,41 @@ pub(crate) const COARSE_SHADE_LIST: Parts = &[
     SHADING,
     BLOCKS,
     include_str!("../shading/coarse/block.wgsl"),
+    LISTED,
     include_str!("../shading/coarse/shade_list.wgsl"),
 ];
-/// As the two above, radiance being an affine function of the position.
+const LISTED: &str = include_str!("../shading/coarse/listed.wgsl");
+const SAMPLE_LIGHT: &str = include_str!("../shading/coarse/light.wgsl");
+/// As the two above, with the samples' light.
+pub(crate) const COARSE_LIGHT_DRAW: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    LAYERS,
+    SHADING,
+    LEVEL,
+    BLOCKS,
+    include_str!("../shading/coarse/block.wgsl"),
+    SAMPLE_LIGHT,
+    include_str!("../shading/coarse/block_light.wgsl"),
+    include_str!("../shading/coarse/light_draw.wgsl"),
+];
+pub(crate) const COARSE_LIGHT_LIST: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    LAYERS,
+    SHADING,
+    BLOCKS,
+    include_str!("../shading/coarse/block.wgsl"),
+    SAMPLE_LIGHT,
+    include_str!("../shading/coarse/block_light.wgsl"),
+    LISTED,
+    include_str!("../shading/coarse/light_list.wgsl"),
+];
+/// As [`COARSE_SHADE_DRAW`] and [`COARSE_SHADE_LIST`], radiance being an affine function of the position.
 #[cfg(test)]
 pub(crate) const COARSE_AFFINE: [Parts; 2] = [
     &[
@@ -474,6 +508,7 @@ pub(crate) const COARSE_AFFINE: [Parts; 2] = [
         include_str!("../shading/coarse/affine.wgsl"),
         BLOCKS,
         include_str!("../shading/coarse/block.wgsl"),
+        LISTED,
         include_str!("../shading/coarse/shade_list.wgsl"),
     ],
 ];
@@ -494,6 +529,16 @@ pub(crate) const COMPOSITE_PAPER: Parts = &[
     BLOCKS,
     TILING,
     include_str!("../composite/paper.wgsl"),
+];
+pub(crate) const COMPOSITE_LIGHT: Parts = &[
+    FRAME,
+    SURFACE,
+    SURROUNDINGS,
+    BLOCKS,
+    TILING,
+    LAYERS,
+    SAMPLE_LIGHT,
+    include_str!("../composite/light.wgsl"),
 ];
 pub(crate) const COMPOSITE_FIT: Parts = &[
     FRAME,
@@ -549,6 +594,7 @@ const MISSING: &str = include_str!("../reduced/missing.wgsl");
 const TABLE: &str = include_str!("../reduced/table.wgsl");
 const REDUCED_LIGHTING: &str = concat!(
     include_str!("../reduced/lights.wgsl"),
+    include_str!("../shared/surroundings.wgsl"),
     include_str!("../shared/lighting.wgsl")
 );
 const REDUCED_VERTEX: &str = concat!(

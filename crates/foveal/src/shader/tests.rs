@@ -54,6 +54,9 @@ const ALL: &[(&str, Parts)] = &[
     ("combination", AA_COMBINE),
     ("combination, store", AA_STORE),
     ("tally", AA_VIEW),
+    ("coarse light, draw", COARSE_LIGHT_DRAW),
+    ("coarse light, list", COARSE_LIGHT_LIST),
+    ("composite of light", COMPOSITE_LIGHT),
     ("rate wish", RATE_WISH[0]),
     ("rate wish, by depth", RATE_WISH[1]),
     ("rate pyramid", RATE_PYRAMID),
@@ -379,8 +382,10 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             refine_up_to,
             edges_up_to,
             refine_by,
-            reserved_1,
-            reserved_2
+            block_at_gaze,
+            block_growth,
+            display_from_ndc,
+            gaze_direction
         ]
     );
     assert_same_layout!(

@@ -15,7 +15,7 @@ pub(crate) use variable::twin::extent as sample_extent;
 #[cfg(test)]
 pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
-    CoarseShading, CoarseTargets, CountPass, LevelNumbers, STENCIL_FORMAT, stencil_state,
+    CoarseShading, CoarseTargets, CountPass, LEVELS, LevelNumbers, STENCIL_FORMAT, stencil_state,
 };
 pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};

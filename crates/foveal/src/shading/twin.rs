@@ -23,7 +23,11 @@ fn unpack_unorm4(word: u32) -> Vec4 {
 
 pub(crate) fn unit_from_octahedral(word: u32) -> Vec3 {
     let snorm = |bits: u32| (f32::from(bits as u16 as i16) / 32767.0).max(-1.0);
-    let e = Vec2::new(snorm(word), snorm(word >> 16));
+    unit_from_square(Vec2::new(snorm(word), snorm(word >> 16)))
+}
+
+/// From the octahedral map's square, -1 to 1.
+pub(crate) fn unit_from_square(e: Vec2) -> Vec3 {
     let z = 1.0 - e.x.abs() - e.y.abs();
     let sign = |v: f32| if v >= 0.0 { 1.0 } else { -1.0 };
     let xy = if z >= 0.0 {
@@ -34,7 +38,7 @@ pub(crate) fn unit_from_octahedral(word: u32) -> Vec3 {
     xy.extend(z).normalize()
 }
 
-fn unpack_shared_exponent(word: u32) -> Vec3 {
+pub(crate) fn unpack_shared_exponent(word: u32) -> Vec3 {
     let scale = 2f32.powi((word >> 27) as i32 - 24);
     Vec3::new(
         (word & 511) as f32,
@@ -119,36 +123,61 @@ fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
     }
 }
 
-fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) -> Vec3 {
+/// What is left for diffuse reflection, and the mirrored part.
+fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) -> [Vec3; 2] {
     use std::f32::consts::PI;
     let h = (v + l).normalize();
     let n_dot_h = s.normal.dot(h);
     let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
     match model {
         LightingModel::Ggx => {
-            let n_dot_v = s.normal.dot(v).max(1e-4);
-            let n_dot_h = n_dot_h.clamp(0.0, 1.0);
             let v_dot_h = v.dot(h).clamp(0.0, 1.0);
-            let a2 = (s.roughness * s.roughness).max(0.002).powi(2);
-            let d = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
-            let distribution = a2 / (PI * d * d);
-            let visibility = 0.5
-                / (n_dot_l * (n_dot_v * n_dot_v * (1.0 - a2) + a2).sqrt()
-                    + n_dot_v * (n_dot_l * n_dot_l * (1.0 - a2) + a2).sqrt());
             let fresnel = f0 + (1.0 - f0) * (1.0 - v_dot_h).powi(5);
-            (1.0 - fresnel) * (1.0 - s.metallic) * s.base_color / PI
-                + fresnel * distribution * visibility
+            let lobe = ggx_lobe(s.normal, v, l, n_dot_l, squared_alpha(s));
+            [1.0 - fresnel, fresnel * lobe]
         }
         LightingModel::BlinnPhong => {
             let alpha = (s.roughness * s.roughness).max(0.03);
             let exponent = 2.0 / (alpha * alpha) - 2.0;
             let highlight = (exponent + 8.0) / (8.0 * PI) * n_dot_h.max(1e-6).powf(exponent);
-            s.base_color * (1.0 - s.metallic) / PI + f0 * highlight
+            [Vec3::ONE, f0 * highlight]
         }
     }
 }
 
-fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) -> Vec3 {
+/// `squared_alpha` in `shared/surroundings.wgsl`.
+pub(crate) fn squared_alpha(s: &Surface) -> f32 {
+    (s.roughness * s.roughness).max(0.002).powi(2)
+}
+
+/// `ggx_lobe` in `shared/surroundings.wgsl`.
+pub(crate) fn ggx_lobe(n: Vec3, v: Vec3, l: Vec3, n_dot_l: f32, a2: f32) -> f32 {
+    let n_dot_v = n.dot(v).max(1e-4);
+    let n_dot_h = n.dot((v + l).normalize()).clamp(0.0, 1.0);
+    let d = n_dot_h * n_dot_h * (a2 - 1.0) + 1.0;
+    let distribution = a2 / (std::f32::consts::PI * d * d);
+    let visibility = 0.5
+        / (n_dot_l * (n_dot_v * n_dot_v * (1.0 - a2) + a2).sqrt()
+            + n_dot_v * (n_dot_l * n_dot_l * (1.0 - a2) + a2).sqrt());
+    distribution * visibility
+}
+
+/// A surface's radiance, and what the lamps alone send to it: `Lit` in `shared/lighting.wgsl`.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Lit {
+    pub(crate) radiance: Vec3,
+    pub(crate) diffuse: Vec3,
+    pub(crate) mirrored: Vec3,
+    pub(crate) direction: Vec3,
+    pub(crate) mirrored_direction: Vec3,
+}
+
+pub(crate) fn luminance(color: Vec3) -> f32 {
+    color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
+}
+
+/// A lamp's part.
+fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) -> Lit {
     let radiant = Vec3::from(light.radiant);
     let (direction, irradiance) = if light.kind == 0 {
         (-Vec3::from(light.direction), radiant)
@@ -167,18 +196,62 @@ fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) 
     };
     let n_dot_l = s.normal.dot(direction);
     if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
-        return Vec3::ZERO;
+        return Lit::default();
     }
-    reflect(model, s, v, direction, n_dot_l) * irradiance * n_dot_l
+    let [left, mirrored] = reflect(model, s, v, direction, n_dot_l);
+    let arriving = irradiance * n_dot_l;
+    let diffuse = left * (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
+    Lit {
+        radiance: (diffuse + mirrored) * arriving,
+        diffuse: left * arriving,
+        mirrored: mirrored * arriving,
+        direction: direction * luminance(irradiance),
+        mirrored_direction: direction * luminance(mirrored * arriving),
+    }
 }
 
-fn ambient(scene: &Scene, s: &Surface, v: Vec3) -> Vec3 {
+/// What all lamps send to a surface; the radiance holds what it emits and reflects of its surroundings too.
+pub(crate) fn light_surface(
+    scene: &Scene,
+    lights: &[LightUniform],
+    model: LightingModel,
+    s: &Surface,
+    v: Vec3,
+) -> Lit {
+    let mut sum = Lit {
+        radiance: s.emissive + ambient(scene, s, v),
+        ..Lit::default()
+    };
+    for light in lights {
+        let part = from_light(model, s, v, light);
+        sum.radiance += part.radiance;
+        sum.diffuse += part.diffuse;
+        sum.mirrored += part.mirrored;
+        sum.direction += part.direction;
+        sum.mirrored_direction += part.mirrored_direction;
+    }
+    sum
+}
+
+/// Unit vector from a position to the camera.
+pub(crate) fn to_eye(camera: &Camera, position: Vec3) -> Vec3 {
+    match camera.projection {
+        Projection::Orthographic { .. } => camera.world_from_view.z_axis.truncate(),
+        Projection::Perspective { .. } => (camera.eye() - position).normalize(),
+    }
+}
+
+/// `environment_reflectance` in `shared/surroundings.wgsl`.
+pub(crate) fn environment_reflectance(s: &Surface, v: Vec3) -> Vec3 {
     let n_dot_v = s.normal.dot(v).clamp(0.0, 1.0);
     let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
     let r =
         s.roughness * Vec4::new(-1.0, -0.0275, -0.572, 0.022) + Vec4::new(1.0, 0.0425, 1.04, -0.04);
     let a004 = (r.x * r.x).min((-9.28 * n_dot_v).exp2()) * r.x + r.y;
-    let (scale, bias) = (-1.04 * a004 + r.z, 1.04 * a004 + r.w);
+    f0 * (-1.04 * a004 + r.z) + (1.04 * a004 + r.w)
+}
+
+pub(crate) fn ambient(scene: &Scene, s: &Surface, v: Vec3) -> Vec3 {
     let mirror = (2.0 * s.normal.dot(v) * s.normal - v).lerp(s.normal, s.roughness * s.roughness);
     let e = &scene.environment;
     let irradiance = e
@@ -186,7 +259,7 @@ fn ambient(scene: &Scene, s: &Surface, v: Vec3) -> Vec3 {
         .lerp(e.zenith, 0.5 + 0.5 * s.normal.y)
         .lerp(e.horizon, 0.4);
     let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
-    (diffuse + (f0 * scale + bias) * environment(scene, mirror.normalize())) * s.occlusion
+    (diffuse + environment_reflectance(s, v) * environment(scene, mirror.normalize())) * s.occlusion
 }
 
 /// Radiance at a G-buffer texel, by every light.
@@ -204,14 +277,6 @@ pub(crate) fn shade(
     words: [u32; 4],
     depth: f32,
 ) -> Vec3 {
-    let orthographic = matches!(camera.projection, Projection::Orthographic { .. });
-    let to_eye = |position: Vec3| {
-        if orthographic {
-            camera.world_from_view.z_axis.truncate()
-        } else {
-            (camera.eye() - position).normalize()
-        }
-    };
     if depth == 0.0 {
         let near = match camera.projection {
             Projection::Perspective { near_m, .. } | Projection::Orthographic { near_m, .. } => {
@@ -220,17 +285,12 @@ pub(crate) fn shade(
         };
         return environment(
             scene,
-            -to_eye(position_at(camera, size, pixel, near.min(1.0))),
+            -to_eye(camera, position_at(camera, size, pixel, near.min(1.0))),
         );
     }
     let s = unpack_surface(words, position_at(camera, size, pixel, depth));
-    let v = to_eye(s.position);
-    lights
-        .iter()
-        .map(|l| from_light(model, &s, v, l))
-        .sum::<Vec3>()
-        + s.emissive
-        + ambient(scene, &s, v)
+    let v = to_eye(camera, s.position);
+    light_surface(scene, lights, model, &s, v).radiance
 }
 
 const WIDTH: u32 = 65;

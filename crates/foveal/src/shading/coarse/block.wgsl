@@ -28,12 +28,16 @@ fn typical_candidate(block: vec2u, level: u32) -> u32 {
     return best;
 }
 
+fn candidate_of(block: vec2u, level: u32) -> u32 {
+    if TYPICAL && level > 0u {
+        return typical_candidate(block, level);
+    }
+    return 0u;
+}
+
 // Alpha is 1 + the number of the candidate that was shaded.
 fn shade_block(block: vec2u, level: u32) -> vec4f {
-    var candidate = 0u;
-    if TYPICAL && level > 0u {
-        candidate = typical_candidate(block, level);
-    }
+    let candidate = candidate_of(block, level);
     let radiance = shade(sample_texel(block, level, candidate));
     return vec4f(radiance.rgb, f32(1u + candidate));
 }

@@ -1,10 +1,11 @@
 //! The compute backend: an indirect dispatch per level over its list of tiles.
 
 use super::{CoarseTargets, LevelNumbers, shading_constants};
-use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, uniform};
+use crate::composite::LIGHT_FORMAT;
+use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, uniform, written};
 use crate::recorder::Recorder;
 use crate::shading::RADIANCE_FORMAT;
-use crate::{Settings, shader};
+use crate::{Composite, Settings, shader};
 
 /// Shades tiles by dispatches over lists.
 #[derive(Debug)]
@@ -22,20 +23,19 @@ impl ComputeBackend {
         input_layout: &wgpu::BindGroupLayout,
         parts: shader::Parts,
     ) -> Self {
+        let has_light = settings.composite == Composite::Light;
+        let types = [
+            uniform(),
+            storage_read(),
+            storage_read(),
+            written(RADIANCE_FORMAT),
+            written(LIGHT_FORMAT),
+        ];
         let shade_layout = bind_group_layout(
             &gpu.device,
             "tile shading",
             wgpu::ShaderStages::COMPUTE,
-            &[
-                uniform(),
-                storage_read(),
-                storage_read(),
-                wgpu::BindingType::StorageTexture {
-                    access: wgpu::StorageTextureAccess::WriteOnly,
-                    format: RADIANCE_FORMAT,
-                    view_dimension: wgpu::TextureViewDimension::D2,
-                },
-            ],
+            if has_light { &types } else { &types[..4] },
         );
         Self {
             shade: shader::compute(
@@ -62,17 +62,17 @@ impl ComputeBackend {
         let levels = || target.samples.range().zip(&target.lists);
         let shading: Vec<_> = levels()
             .map(|(level, list)| {
-                bind_group(
-                    &gpu.device,
-                    "tile shading",
-                    &self.shade_layout,
-                    &[
-                        self.level_numbers.binding(level),
-                        target.dispatches.as_entire_binding(),
-                        list.as_entire_binding(),
-                        wgpu::BindingResource::TextureView(target.samples.level(level)),
-                    ],
-                )
+                let mut resources = vec![
+                    self.level_numbers.binding(level),
+                    target.dispatches.as_entire_binding(),
+                    list.as_entire_binding(),
+                    wgpu::BindingResource::TextureView(target.samples.level(level)),
+                ];
+                if let Some(light) = &target.light {
+                    let view = light.samples.level(level);
+                    resources.push(wgpu::BindingResource::TextureView(view));
+                }
+                bind_group(&gpu.device, "tile shading", &self.shade_layout, &resources)
             })
             .collect();
         let mut pass = recorder.compute_pass("shading");

@@ -24,6 +24,7 @@ fn settings(rate_stage: RateStage) -> Settings {
         geometry: Geometry::Visibility,
         shading: Shading::Coarse,
         composite: Composite::Nearest,
+        rate: RateSource::Radii,
         fovea_inner: 0.2,
         fovea_outer: 0.6,
         gaze: [0.3, 0.6],

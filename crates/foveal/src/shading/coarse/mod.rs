@@ -63,7 +63,11 @@ impl CoarseShading {
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let shaders = [shader::COARSE_SHADE_DRAW, shader::COARSE_SHADE_LIST];
+        let shaders = if settings.composite == Composite::Light {
+            [shader::COARSE_LIGHT_DRAW, shader::COARSE_LIGHT_LIST]
+        } else {
+            [shader::COARSE_SHADE_DRAW, shader::COARSE_SHADE_LIST]
+        };
         Self::with_shaders(gpu, settings, frame_layout, input_layout, shaders)
     }
 
@@ -113,17 +117,24 @@ impl CoarseShading {
         }
     }
 
-    /// The last frame's figures, for the `tiles` of each level; lets the choice of the backend know how long the
+    /// The last frame's figures, for the `tiles` of each level and the pixels that none speaks for; lets the choice of the backend know how long the
     /// passes took.
-    pub(crate) fn stats(&mut self, tiles: Vec<u64>, pixels: u64, gpu_ms: &[Timing]) -> CoarseStats {
+    pub(crate) fn stats(
+        &mut self,
+        tiles: Vec<u64>,
+        unlit: u64,
+        pixels: u64,
+        gpu_ms: &[Timing],
+    ) -> CoarseStats {
         let shading_ms = gpu_ms
             .iter()
             .filter(|t| matches!(t.name.as_str(), "shading" | "tile listing"))
             .map(|t| t.ms)
             .sum();
         let stats = CoarseStats {
-            shaded_fraction: tiles.iter().sum::<u64>() as f64 / pixels as f64,
+            shaded_fraction: (tiles.iter().sum::<u64>() + unlit) as f64 / pixels as f64,
             samples_per_level: tiles,
+            unlit_pixels: unlit,
             backend: self.choice.now().name().to_owned(),
             backend_reason: self.choice.reason(),
         };

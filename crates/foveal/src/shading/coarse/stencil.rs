@@ -5,10 +5,11 @@
 //! shader runs wherever the test fails.
 
 use super::{CoarseTargets, shading_constants, targets::STENCIL_FORMAT};
+use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
 use crate::shading::RADIANCE_FORMAT;
-use crate::{Settings, shader};
+use crate::{Composite, Settings, shader};
 
 /// Shades tiles by draws behind a stencil test.
 #[derive(Debug)]
@@ -61,18 +62,29 @@ impl StencilBackend {
             wgpu::ShaderStages::FRAGMENT,
             &[sampled(wgpu::TextureSampleType::Uint)],
         );
+        let formats: &[_] = if settings.composite == Composite::Light {
+            &[RADIANCE_FORMAT, LIGHT_FORMAT]
+        } else {
+            &[RADIANCE_FORMAT]
+        };
+        let targets = |write_mask| -> Vec<_> {
+            let target = |&format| {
+                Some(wgpu::ColorTargetState {
+                    format,
+                    blend: None,
+                    write_mask,
+                })
+            };
+            formats.iter().map(target).collect()
+        };
         let mark = shader::level_screen(
             gpu,
             "tile marks",
             &shader::module(gpu, "tile marks", shader::COARSE_MARK),
             "mark",
             &[frame_layout, &cells_layout],
-            // The pass has a colour target; the marking leaves it alone.
-            &[Some(wgpu::ColorTargetState {
-                format: RADIANCE_FORMAT,
-                blend: None,
-                write_mask: wgpu::ColorWrites::empty(),
-            })],
+            // The pass has colour targets; the marking leaves them alone.
+            &targets(wgpu::ColorWrites::empty()),
             Some(stencil_state(
                 wgpu::CompareFunction::Always,
                 wgpu::StencilOperation::Replace,
@@ -86,7 +98,7 @@ impl StencilBackend {
             &shader::module(gpu, "coarse shading, draw", parts),
             "shade_blocks",
             &[frame_layout, input_layout],
-            &[Some(RADIANCE_FORMAT.into())],
+            &targets(wgpu::ColorWrites::ALL),
             Some(stencil_state(
                 wgpu::CompareFunction::Equal,
                 wgpu::StencilOperation::Keep,
@@ -120,7 +132,11 @@ impl StencilBackend {
             )],
         );
         for level in target.samples.range() {
-            let color = overwritten(target.samples.level(level));
+            let light = target.light.as_ref();
+            let colors: Vec<_> = std::iter::once(&target.samples)
+                .chain(light.map(|light| &light.samples))
+                .map(|chain| overwritten(chain.level(level)))
+                .collect();
             let marks = wgpu::RenderPassDepthStencilAttachment {
                 view: stencil.level(level),
                 depth_ops: None,
@@ -129,7 +145,7 @@ impl StencilBackend {
                     store: wgpu::StoreOp::Discard,
                 }),
             };
-            let mut pass = recorder.render_pass("shading", &[color], Some(marks));
+            let mut pass = recorder.render_pass("shading", &colors, Some(marks));
             pass.set_stencil_reference(1);
             pass.set_pipeline(&self.mark);
             pass.set_bind_group(1, &cells, &[]);

@@ -1,7 +1,7 @@
 //! What coarse shading works on, for one frame size.
 
 use super::LEVELS;
-use crate::composite::PatchTargets;
+use crate::composite::{LightTargets, PatchTargets};
 use crate::gpu::{Gpu, MipChain};
 use crate::rate::RateTargets;
 use crate::shading::RADIANCE_FORMAT;
@@ -19,6 +19,8 @@ pub(crate) struct CoarseTargets {
     pub(crate) samples: MipChain,
     /// For the smooth composite.
     pub(crate) patches: Option<PatchTargets>,
+    /// For the composite that puts surfaces into the samples' light.
+    pub(crate) light: Option<LightTargets>,
     /// Nonzero where a level has a tile; for the stencil backend.
     pub(super) stencil: Option<MipChain>,
     /// Tiles of each level as x | y << 16; for the compute backend and the smooth composite.
@@ -36,6 +38,7 @@ impl CoarseTargets {
         self.rate.bytes()
             + self.samples.bytes()
             + self.patches.as_ref().map_or(0, PatchTargets::bytes)
+            + self.light.as_ref().map_or(0, LightTargets::bytes)
             + self.stencil.as_ref().map_or(0, MipChain::bytes)
             + buffers.map(wgpu::Buffer::size).sum::<u64>()
     }
@@ -70,8 +73,10 @@ impl CoarseTargets {
             ),
             patches: match settings.composite {
                 Composite::Smooth => PatchTargets::new(gpu, settings),
-                Composite::Nearest | Composite::Paper => None,
+                Composite::Light | Composite::Nearest | Composite::Paper => None,
             },
+            light: (settings.composite == Composite::Light)
+                .then(|| LightTargets::new(gpu, settings)),
             stencil: (settings.backend != Backend::Compute).then(|| {
                 MipChain::new(
                     gpu,

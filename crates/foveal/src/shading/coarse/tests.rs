@@ -13,6 +13,13 @@ use crate::{
 /// Odd sizes, one smaller than a block of the coarsest level.
 const SIZES: [(u32, u32); 3] = [(301, 187), (130, 300), (1, 1)];
 
+const ALL_COMPOSITES: [Composite; 4] = [
+    Composite::Light,
+    Composite::Smooth,
+    Composite::Paper,
+    Composite::Nearest,
+];
+
 fn scene() -> Scene {
     let mut scene = generate::cornell();
     generate::add_point_lights(&mut scene, 20, 5);
@@ -23,6 +30,7 @@ fn nearest(size: (u32, u32)) -> Settings {
     Settings {
         shading: Shading::Coarse,
         composite: Composite::Nearest,
+        rate: RateSource::Radii,
         fovea_inner: 0.2,
         fovea_outer: 0.6,
         gaze: [0.3, 0.6],
@@ -115,7 +123,7 @@ fn the_rate_map_equals_its_twin_byte_for_byte() {
 
 #[test]
 fn wishes_equal_their_twin() {
-    for rate in [RateSource::Foveated, RateSource::Image] {
+    for rate in [RateSource::Foveated, RateSource::Radii, RateSource::Image] {
         let settings = Settings {
             rate,
             refine_edges: RefineEdges::Off,
@@ -124,7 +132,8 @@ fn wishes_equal_their_twin() {
         let image = noise_image(5, 9);
         let renderer = draw_with_image(&settings, image.clone());
         let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
-        let uniform = crate::rate::WishUniform::new(&settings, None);
+        let eyes = crate::stereo::eyes(&settings, &scene().cameras[0]).unwrap();
+        let uniform = crate::rate::WishUniform::new(&settings, &eyes, None);
         let quads = cells(&rate.pyramid, 1);
         let level = |x: u32, y: u32| {
             let (x, y) = (x.min(SIZES[0].0 - 1), y.min(SIZES[0].1 - 1));
@@ -150,11 +159,17 @@ fn wishes_equal_their_twin() {
 #[test]
 fn both_backends_give_the_same_bytes() {
     for size in SIZES {
-        for coarse_sample in [CoarseSample::Center, CoarseSample::Typical] {
+        for (coarse_sample, composite) in [
+            (CoarseSample::Center, Composite::Nearest),
+            (CoarseSample::Typical, Composite::Nearest),
+            (CoarseSample::Center, Composite::Light),
+            (CoarseSample::Typical, Composite::Light),
+        ] {
             let [stencil, compute] = [Backend::Stencil, Backend::Compute].map(|backend| {
                 draw(&Settings {
                     backend,
                     coarse_sample,
+                    composite,
                     ..nearest(size)
                 })
             });
@@ -167,7 +182,7 @@ fn both_backends_give_the_same_bytes() {
 #[test]
 fn level_zero_everywhere_is_full_shading() {
     for size in SIZES {
-        for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+        for composite in ALL_COMPOSITES {
             let full = draw(&small(size.0, size.1));
             for backend in [Backend::Stencil, Backend::Compute] {
                 let coarse = draw(&Settings {
@@ -205,7 +220,7 @@ fn each_pixel_shows_its_tiles_sample_and_level_zero_is_full_shading() {
 fn the_fovea_of_every_composite_is_full_shading() {
     let size = SIZES[0];
     let full = radiance(&draw(&small(size.0, size.1)));
-    for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+    for composite in ALL_COMPOSITES {
         let coarse = draw(&Settings {
             composite,
             ..nearest(size)

@@ -1,7 +1,7 @@
 // At which rate each quad is shaded, and the list of the samples that follows. After frame, layers, rates, fovea, passes
 // and reproject.wgsl. CPU twin: `twin.rs`.
 
-// 0 foveated, 1 constant, 3 content.
+// 0 foveated, 1 constant, 3 content, 4 radii.
 override SOURCE: u32 = 3u;
 override OTHER: u32 = 0u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
@@ -105,6 +105,7 @@ fn rate_from(source: u32, quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     switch source {
         case 0u: { return rate_of_level(foveated_level(vec2f(quad * 2u) + 1.0)); }
         case 1u: { return rate_of_level(wish.constant_level); }
+        case 4u: { return rate_of_level(radii_level(vec2f(quad * 2u) + 1.0)); }
         default: { return content_rate(quad, lumas, motion); }
     }
 }

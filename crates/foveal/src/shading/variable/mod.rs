@@ -34,7 +34,7 @@ use foveal_scene::Camera;
 
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
-use crate::stereo::EyeLayout;
+use crate::stereo::{Eye, EyeLayout};
 use crate::targets::Targets;
 use crate::{Settings, Timing, VariableStats};
 
@@ -107,8 +107,8 @@ impl VariableStage {
         recorder: &mut Recorder<'_>,
         settings: &Settings,
         targets: &Targets,
-        camera: &Camera,
-        previous: &Camera,
+        eyes: &[Eye; 2],
+        (camera, previous): (&Camera, &Camera),
     ) {
         let Some(t) = &targets.variable else { return };
         let known = self.last.as_ref();
@@ -122,7 +122,7 @@ impl VariableStage {
         let probe = self.probes.next();
         let even = self.frame.is_multiple_of(2);
         self.passes
-            .find_rates(recorder, settings, targets, t, even, reset, probe);
+            .find_rates(recorder, settings, targets, (t, eyes), even, reset, probe);
         self.last = Some(camera.clone());
         self.frame = self.frame.wrapping_add(1);
     }

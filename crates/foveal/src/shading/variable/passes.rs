@@ -12,6 +12,7 @@ use crate::gpu::{
 use crate::rate::WishUniform;
 use crate::recorder::Recorder;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::stereo::Eye;
 use crate::targets::Targets;
 use crate::{Contrast, RateCombine, RateSource, Settings, shader};
 
@@ -155,7 +156,7 @@ impl RatePasses {
         recorder: &mut Recorder<'_>,
         settings: &Settings,
         targets: &Targets,
-        t: &VariableTargets,
+        (t, eyes): (&VariableTargets, &[Eye; 2]),
         even: bool,
         reset: bool,
         probe: Probe,
@@ -173,7 +174,7 @@ impl RatePasses {
         };
         gpu.queue
             .write_buffer(&self.rates, 0, bytemuck::bytes_of(&rates));
-        let wish = WishUniform::new(settings, None);
+        let wish = WishUniform::new(settings, eyes, None);
         gpu.queue
             .write_buffer(&self.wish, 0, bytemuck::bytes_of(&wish));
         let [now, before] = [usize::from(!even), usize::from(even)].map(|i| &t.known[i]);
@@ -255,6 +256,7 @@ fn find_constants(s: &Settings) -> [(&'static str, f64); 6] {
         RateSource::Constant => 1.0,
         // Image and lens are refused by the settings' check.
         RateSource::Image | RateSource::Lens | RateSource::Content => 3.0,
+        RateSource::Radii => 4.0,
     };
     let combine = match s.rate_combine {
         RateCombine::First => 0.0,

@@ -185,7 +185,7 @@ fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
     let camera = &scene.cameras[0];
     for rate_combine in [RateCombine::Coarser, RateCombine::Finer] {
         let settings = Settings {
-            rate_other: RateSource::Foveated,
+            rate_other: RateSource::Radii,
             rate_combine,
             rate_4x4: true,
             fovea_inner: 0.2,

@@ -197,7 +197,8 @@ pub(super) fn rates(
     probe: Probe,
 ) -> Vec<u32> {
     let quads = seen.quads();
-    let wish = WishUniform::new(settings, None);
+    let eyes = crate::stereo::eyes(settings, camera).unwrap();
+    let wish = WishUniform::new(settings, &eyes, None);
     let each = || (0..quads.y).flat_map(|y| (0..quads.x).map(move |x| UVec2::new(x, y)));
     let of_level = |level: u32| [0, 3, 7][level.min(2) as usize];
     let single: Vec<(u32, u32)> = each()
@@ -212,6 +213,10 @@ pub(super) fn rates(
             }
             let from = |source| match source {
                 RateSource::Foveated => {
+                    let centre = (quad * 2).as_vec2() + 1.0;
+                    of_level(wish.foveated(settings, centre.into()))
+                }
+                RateSource::Radii => {
                     let centre =
                         (quad * 2).as_vec2() + 1.0 - Vec2::new(wish.gaze[0][0], wish.gaze[0][1]);
                     let radii = wish.squared_radii.as_flattened().iter();

@@ -43,6 +43,7 @@ fn pipelines(base: &Settings) -> Vec<(&'static str, Settings)> {
     };
     vec![
         ("full", base.clone()),
+        ("light", coarse(Composite::Light, Backend::Compute)),
         ("smooth", coarse(Composite::Smooth, Backend::Compute)),
         ("paper", coarse(Composite::Paper, Backend::Stencil)),
         ("nearest", coarse(Composite::Nearest, Backend::Compute)),

@@ -68,6 +68,7 @@ fn pipelines(base: &Settings) -> Vec<Settings> {
     let visibility = Geometry::Visibility;
     let mut all = vec![
         base.clone(),
+        coarse(Composite::Light, Backend::Stencil),
         coarse(Composite::Smooth, Backend::Compute),
         coarse(Composite::Paper, Backend::Stencil),
         variable.clone(),

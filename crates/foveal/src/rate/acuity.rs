@@ -1,0 +1,98 @@
+//! How coarsely the eye resolves: the largest block that it does not tell from its pixels.
+//!
+//! The smallest angle that the eye resolves grows in proportion to the angle to the gaze (Guenter, Finch, Drucker, Tan and Snyder
+//! 2012, 'Foveated 3D graphics', eq. 1): `ACUITY + SLOPE * eccentricity`, in degrees a cycle. A block's side is that times a
+//! factor, which [`Settings::quality`] names by the difference that is left.
+
+use crate::stereo::Eye;
+use crate::{Display, Settings};
+
+#[cfg(test)]
+use super::WishUniform;
+
+/// Smallest resolvable angle at the gaze, in radians a cycle: 1/48 degree.
+const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
+/// Its growth per angle of eccentricity: the slope with which Guenter et al. found no visible difference.
+const SLOPE: f32 = 0.0275;
+
+/// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each.
+const QUALITIES: [(f32, f32); 6] = [
+    (10.0, 0.05),
+    (9.61, 0.3),
+    (9.5, 0.42),
+    (9.3, 0.8),
+    (9.1, 1.3),
+    (8.9, 2.0),
+];
+
+/// What is assumed where a camera's rays are parallel, so that its picture tells no angle: 60 degrees across.
+const PARALLEL_ACROSS: f32 = std::f32::consts::FRAC_PI_3;
+
+/// Sides of blocks: at the gaze in radians, and growth per radian of eccentricity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Blocks {
+    pub(super) at_gaze: f32,
+    pub(super) growth: f32,
+}
+
+impl Blocks {
+    /// The largest blocks that keep a quality.
+    pub(super) fn of_quality(quality: f32) -> Self {
+        let after = QUALITIES.partition_point(|&(q, _)| q > quality);
+        let [(q0, f0), (q1, f1)] = match after {
+            0 => [QUALITIES[0]; 2],
+            n if n == QUALITIES.len() => [QUALITIES[n - 1]; 2],
+            n => [QUALITIES[n - 1], QUALITIES[n]],
+        };
+        let along = if q0 == q1 {
+            0.0
+        } else {
+            (quality - q0) / (q1 - q0)
+        };
+        let factor = f0 * (f1 / f0).powf(along);
+        Self {
+            at_gaze: factor * ACUITY,
+            growth: factor * SLOPE,
+        }
+    }
+}
+
+/// Tangents on the display of a point of an eye's picture, from normalized device coordinates: scale in xy, offset in zw.
+pub(super) fn display_from_ndc(s: &Settings, eye: &Eye) -> [f32; 4] {
+    let across = match s.seen_on() {
+        Ok(Display::Across(across)) => across,
+        _ if eye.orthographic => PARALLEL_ACROSS,
+        // Settings are checked before they come here.
+        _ => return eye.view_from_ndc(),
+    };
+    let half = (0.5 * across).tan();
+    [half, half * s.height as f32 / s.width as f32, 0.0, 0.0]
+}
+
+/// Unit vector to a place of the picture, given as fractions of it.
+pub(super) fn direction(display_from_ndc: [f32; 4], place: [f32; 2]) -> [f32; 4] {
+    let [x, y] = tangents(display_from_ndc, place);
+    let length = (x * x + y * y + 1.0).sqrt();
+    [x / length, y / length, 1.0 / length, 0.0]
+}
+
+fn tangents([sx, sy, ox, oy]: [f32; 4], [x, y]: [f32; 2]) -> [f32; 2] {
+    [(2.0 * x - 1.0) * sx + ox, (1.0 - 2.0 * y) * sy + oy]
+}
+
+/// The level that the left or only eye's picture wishes at a position in pixels: twin of `foveated_level` in `rate/fovea.wgsl`.
+#[cfg(test)]
+pub(super) fn level(wish: &WishUniform, s: &Settings, pixel: [f32; 2]) -> u32 {
+    let to_display = wish.display_from_ndc[0];
+    let place = [pixel[0] / s.width as f32, pixel[1] / s.height as f32];
+    let to_pixel = direction(to_display, place);
+    let chord: f32 = (0..3)
+        .map(|i| (to_pixel[i] - wish.gaze_direction[0][i]).powi(2))
+        .sum();
+    let half = (0.5 * chord.sqrt()).min(0.75);
+    let squared = half * half;
+    let series = 1.0 + squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * (15.0 / 336.0)));
+    let pixel_side = 2.0 * to_display[0] / s.width as f32 * to_pixel[2];
+    let side = (wish.block_at_gaze + wish.block_growth * 2.0 * half * series) / pixel_side;
+    (side.log2().floor().max(0.0) as u32).min(wish.coarsest)
+}

@@ -1,0 +1,103 @@
+//! Choices about the eye that looks: on which display, and how small a difference it may see.
+
+use super::Settings;
+use crate::Error;
+
+/// Where the picture is seen: how wide a field of view it fills.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Display {
+    /// As wide as the camera's own: the picture is seen in its true perspective, as in a headset.
+    Camera,
+    /// So many radians across, on a plane before the eye.
+    Across(f32),
+}
+
+/// Displays with a name: width over distance, both in the same unit.
+const NAMED: [(&str, f32, f32); 5] = [
+    // 24 inches at 0.6 m: 48 degrees, 38 pixels a degree at 1920.
+    ("fhd-24", 0.531, 0.6),
+    // 27 inches at 0.6 m: 53 degrees, 67 pixels a degree at 3840.
+    ("uhd-27", 0.598, 0.6),
+    // 110 degrees across an eye.
+    ("quest-3", 2.856, 1.0),
+    // 100 degrees across an eye.
+    ("vision-pro", 2.384, 1.0),
+    // 6.1 inches on its side at 0.3 m: 26 degrees.
+    ("phone", 0.141, 0.3),
+];
+
+const EXPECTED: &str = "camera, fhd-24, uhd-27, quest-3, vision-pro, phone, degrees across between 1 and 170, or \
+                        WIDTHxDISTANCE in metres";
+
+impl Display {
+    /// A display by its name (`camera`, `fhd-24`, `uhd-27`, `quest-3`, `vision-pro`, `phone`), its field of view in degrees across, or
+    /// `WIDTHxDISTANCE` in metres.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        if text == "camera" {
+            return Some(Self::Camera);
+        }
+        let (width, distance) = match NAMED.iter().find(|(name, ..)| *name == text) {
+            Some(&(_, width, distance)) => (width, distance),
+            None => match text.split_once('x') {
+                Some((width, distance)) => (width.parse().ok()?, distance.parse().ok()?),
+                None => {
+                    let degrees: f32 = text.parse().ok()?;
+                    (2.0 * (0.5 * degrees.to_radians()).tan(), 1.0)
+                }
+            },
+        };
+        let across = 2.0 * (0.5 * width / distance).atan();
+        let possible = width > 0.0 && distance > 0.0 && across.to_degrees() >= 0.99;
+        (possible && across.to_degrees() <= 170.01).then_some(Self::Across(across))
+    }
+}
+
+impl Settings {
+    /// The display that the picture is made for.
+    pub(crate) fn seen_on(&self) -> Result<Display, Error> {
+        Display::parse(&self.display).ok_or_else(|| Error::Setting {
+            name: "display",
+            value: self.display.clone(),
+            expected: EXPECTED,
+        })
+    }
+}
+
+/// Checks the settings of the eye.
+pub(super) fn validate(s: &Settings) -> Result<(), Error> {
+    s.seen_on()?;
+    if !(5.0..=10.0).contains(&s.quality) {
+        return Err(Error::Setting {
+            name: "quality",
+            value: s.quality.to_string(),
+            expected: "between 5 and 10",
+        });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn displays_are_told_by_name_by_degrees_and_by_width_and_distance() {
+        let degrees = |text: &str| match Display::parse(text) {
+            Some(Display::Across(radians)) => radians.to_degrees(),
+            other => panic!("{text}: {other:?}"),
+        };
+        assert_eq!(Display::parse("camera"), Some(Display::Camera));
+        assert!((degrees("fhd-24") - 47.8).abs() < 0.2);
+        assert!((degrees("uhd-27") - 53.0).abs() < 0.3);
+        assert!((degrees("quest-3") - 110.0).abs() < 0.1);
+        assert!((degrees("vision-pro") - 100.0).abs() < 0.1);
+        assert!((degrees("60") - 60.0).abs() < 1e-3);
+        assert!((degrees("2x1") - 90.0).abs() < 1e-3);
+        for wrong in [
+            "", "tv", "0", "-60", "171", "nan", "inf", "0x1", "1x0", "1x", "x1", "1x2x3", "-1x-1",
+        ] {
+            assert_eq!(Display::parse(wrong), None, "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,82 @@
+// Radiance of a block's sample, and its light. After block.wgsl and light.wgsl.
+
+// By how much lamps in all directions widen a highlight. Found by measurement: 0.5, which follows from half-way directions' turning by
+// half as much as the lamps, makes rough stones too bright.
+const SPREAD: f32 = 0.1;
+
+struct LitBlock {
+    // As `shade_block` gives it.
+    radiance: vec4f,
+    // As `pack_light` has it.
+    light: vec4u,
+}
+
+// A block's surface: its sample's, with the mean normal and roughness of five texels that lie about as far away.
+struct BlockSurface {
+    // Its highlight is wider, as normals differ within the block (Toksvig 2005, 'Mipmapping normal maps').
+    surface: Surface,
+    // The mean, without that.
+    roughness: f32,
+}
+
+fn filter_over_block(sample_surface: Surface, block: vec2u, level: u32, distance: f32) -> BlockSurface {
+    var s = sample_surface;
+    var normal = s.normal;
+    var a2 = squared_alpha(s);
+    var count = 1.0;
+    for (var candidate = 1u; candidate < 5u; candidate++) {
+        let texel = sample_texel(block, level, candidate);
+        let away = abs(view_distance(max(gbuffer_depth_at(texel), 1e-20)) - distance);
+        let other = unpack_surface(gbuffer_words_at(texel), vec3f(0.0));
+        let counts = f32(away < 0.1 * distance && dot(other.normal, s.normal) > 0.3);
+        normal += counts * other.normal;
+        a2 += counts * squared_alpha(other);
+        count += counts;
+    }
+    a2 /= count;
+    let wider = min(a2 + 1.0 - length(normal) / count, 1.0);
+    s.normal = normalize(normal);
+    s.roughness = sqrt(sqrt(wider));
+    return BlockSurface(s, sqrt(sqrt(a2)));
+}
+
+fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
+    let size = length(direction);
+    return select(other, direction / max(size, 1e-30), size > 1e-30);
+}
+
+fn light_block(block: vec2u, level: u32) -> LitBlock {
+    let candidate = candidate_of(block, level);
+    let alpha = f32(1u + candidate);
+    let texel = sample_texel(block, level, candidate);
+    let pixel = vec2f(texel) + 0.5;
+    let depth = gbuffer_depth_at(texel);
+    if depth == 0.0 {
+        return LitBlock(vec4f(radiance_at(pixel, depth, vec4u(0u)).rgb, alpha), vec4u(0u));
+    }
+    let distance = view_distance(depth);
+    var s = unpack_surface(gbuffer_words_at(texel), world_position(pixel, distance));
+    var roughness = s.roughness;
+    if level > 0u {
+        let filtered = filter_over_block(s, block, level, distance);
+        s = filtered.surface;
+        roughness = filtered.roughness;
+    }
+    let lit = light_surface(s, pixel, distance);
+    let v = direction_to_eye(view_at(pixel), s.position);
+    let direction = unit_or(lit.direction, s.normal);
+    let mirrored_direction = unit_or(lit.mirrored_direction, s.normal);
+    let together = saturate(length(lit.mirrored_direction) / max(luminance(lit.mirrored), 1e-30));
+    let spread = SPREAD * (1.0 - together);
+    let lobe = highlight(s.normal, v, mirrored_direction, squared_alpha(s) + spread);
+    s.roughness = roughness;
+    let light = SampleLight(
+        lit.diffuse / max(dot(s.normal, direction), LEAST_COSINE),
+        lit.mirrored / (max(environment_reflectance(s, v), vec3f(1e-3)) * max(lobe, 1e-6)),
+        direction,
+        mirrored_direction,
+        spread,
+        s.normal,
+    );
+    return LitBlock(vec4f(min(lit.radiance, vec3f(65504.0)), alpha), pack_light(light));
+}

@@ -1,0 +1,66 @@
+// What a sample of coarse shading holds beside its radiance: the lamps' light, freed of the surface's own colour, so that other
+// surfaces can be put into it (composite/light.wgsl). After surroundings.wgsl. Rust: `composite/light_twin.rs`.
+//
+// Diffuse light is that of one lamp in the direction that light comes from on the whole, mirrored light that of one in the
+// direction that it mostly comes from, spread out as the lamps are: so that each pixel's own normal and roughness shape both.
+
+// Least cosine between a normal and a direction of light: light that grazes a surface tells little of light on another.
+const LEAST_COSINE: f32 = 0.1;
+
+struct SampleLight {
+    // Irradiance on a surface that faces `direction`.
+    diffuse: vec3f,
+    // Radiance per `environment_reflectance` and `highlight`.
+    mirrored: vec3f,
+    // Unit directions, world space.
+    direction: vec3f,
+    mirrored_direction: vec3f,
+    // Added to a surface's squared alpha.
+    spread: f32,
+    // The sample's mean normal, world space.
+    normal: vec3f,
+}
+
+// How much of a lamp's light a surface mirrors, for a normal and a squared alpha.
+fn highlight(n: vec3f, v: vec3f, l: vec3f, a2: f32) -> f32 {
+    let n_dot_l = max(dot(n, l), LEAST_COSINE);
+    return n_dot_l * ggx_lobe(n, v, l, normalize(v + l), n_dot_l, min(a2, 1.0));
+}
+
+fn snorm_bits(v: vec2f, most: f32) -> vec2u {
+    return vec2u(clamp(v, vec2f(-1.0), vec2f(1.0)) * most + (most + 0.5));
+}
+
+fn direction_bits(direction: vec3f) -> u32 {
+    let bits = snorm_bits(octahedral_from_unit(direction), 511.0);
+    return bits.x | (bits.y << 10u);
+}
+
+fn direction_from_bits(bits: u32) -> vec3f {
+    return unit_from_octahedral(vec2f(vec2u(bits, bits >> 10u) & vec2u(0x3ffu)) / 511.0 - 1.0);
+}
+
+// x: diffuse, y: mirrored, as shared exponents; z and w: directions as 2 x 10 bits; above them in z the square root of the spread
+// in 8 bits; above them in w the normal as 2 x 6 bits.
+fn pack_light(l: SampleLight) -> vec4u {
+    let normal = snorm_bits(octahedral_from_unit(l.normal), 31.0);
+    return vec4u(
+        pack_shared_exponent(l.diffuse),
+        pack_shared_exponent(l.mirrored),
+        direction_bits(l.direction) | (u32(sqrt(saturate(l.spread)) * 255.0 + 0.5) << 20u),
+        direction_bits(l.mirrored_direction) | (normal.x << 20u) | (normal.y << 26u),
+    );
+}
+
+fn unpack_light(words: vec4u) -> SampleLight {
+    let normal = vec2f(vec2u(words.w >> 20u, words.w >> 26u) & vec2u(0x3fu)) / 31.0 - 1.0;
+    let root = f32((words.z >> 20u) & 0xffu) / 255.0;
+    return SampleLight(
+        unpack_shared_exponent(words.x),
+        unpack_shared_exponent(words.y),
+        direction_from_bits(words.z),
+        direction_from_bits(words.w),
+        root * root,
+        unit_from_octahedral(normal),
+    );
+}
