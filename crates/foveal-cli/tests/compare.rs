@@ -176,3 +176,145 @@ fn what_cannot_be_compared_is_named() {
     );
     assert_eq!(names(here), before);
 }
+
+#[test]
+fn a_display_adds_the_quality_at_the_gaze() {
+    let folder = folder();
+    pictures(folder.path());
+    let at = |test: &str, more: &[&str]| {
+        let words = ["compare", "a.png", test, "--json"];
+        json(folder.path(), &[&words, more].concat())
+    };
+    assert!(at("b.png", &[]).get("jod").is_none());
+    let equal = at("a.png", &["--display", "h60"]);
+    assert_eq!(
+        (&equal["jod"], &equal["gaze"]),
+        (&10.0.into(), &serde_json::json!([0.5, 0.5]))
+    );
+    let value = |result: Value, name: &str| result[name].as_f64().unwrap();
+    let near = value(
+        at("b.png", &["--display", "fhd", "--gaze", "0.17,0.27"]),
+        "jod",
+    );
+    let far = value(
+        at("b.png", &["--display", "fhd", "--gaze", "0.95,0.9"]),
+        "jod",
+    );
+    assert!(near < far && far < 10.0, "{near} {far}");
+    let wide = value(at("b.png", &["--display", "1.2x0.5"]), "pixels_per_degree");
+    let narrow = value(at("b.png", &["--display", "20"]), "pixels_per_degree");
+    assert!(wide < narrow);
+    let dark = value(at("c.png", &["--peak", "1", "--display", "h60"]), "jod");
+    let bright = value(
+        at("c.png", &["--ambient", "50000", "--display", "h60"]),
+        "jod",
+    );
+    assert!(dark < 10.0 && bright < 10.0 && dark != bright);
+}
+
+#[test]
+fn the_heat_map_shows_where_an_eye_sees_the_difference() {
+    let folder = folder();
+    pictures(folder.path());
+    let text = stdout(&succeed(
+        folder.path(),
+        &["compare", "a.png", "b.png", "--heat-map", "h.png"],
+    ));
+    assert!(text.contains("JOD "), "{text}");
+    let map = image::open(folder.path().join("h.png"))
+        .unwrap()
+        .into_rgb8();
+    assert_eq!(map.dimensions(), (32, 24));
+    let light = |x, y| {
+        map.get_pixel(x, y)
+            .0
+            .iter()
+            .map(|&c| u32::from(c))
+            .sum::<u32>()
+    };
+    assert!(light(5, 6) > light(28, 20) + 50);
+    let output = foveal_in(
+        folder.path(),
+        &["compare", "a.png", "c.png", "--min-jod", "9.5", "--json"],
+    );
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("--min-jod 9.5"),
+        "{}",
+        stderr(&output)
+    );
+}
+
+/// A folder of frames in which `colour` depends on the frame's number.
+fn frames(folder: &Path, name: &str, count: u32, colour: impl Fn(u32, u32, u32) -> [u8; 3]) {
+    let frames = folder.join(name);
+    std::fs::create_dir(&frames).unwrap();
+    for frame in 0..count {
+        png(&frames, &format!("{frame:02}.png"), 32, 24, |x, y| {
+            colour(frame, x, y)
+        });
+    }
+}
+
+#[test]
+fn folders_are_compared_as_videos() {
+    let folder = folder();
+    let moving = |frame: u32, x: u32, y: u32| pattern(x + frame, y);
+    frames(folder.path(), "a", 6, moving);
+    frames(folder.path(), "b", 6, |frame, x, y| {
+        moving(frame, x, y).map(|c| c.saturating_add(if frame % 2 == 0 { 40 } else { 0 }))
+    });
+    let result = json(
+        folder.path(),
+        &["compare", "a", "b", "--fps", "60", "--json"],
+    );
+    assert_eq!(
+        (&result["frames"], &result["fps"]),
+        (&6.into(), &60.0.into())
+    );
+    let value = |name: &str| result[name].as_f64().unwrap();
+    assert!(value("jod") < 9.5 && value("flicker") > 2.0 && value("flip") > 0.0);
+
+    let words = [
+        "compare",
+        "a",
+        "a",
+        "--json",
+        "--min-jod",
+        "10",
+        "--max-flip",
+        "0",
+    ];
+    let equal = json(folder.path(), &words);
+    assert_eq!(
+        (&equal["jod"], &equal["flicker"]),
+        (&10.0.into(), &1.0.into())
+    );
+    assert_eq!(equal["passed"], true);
+
+    let output = foveal_in(folder.path(), &["compare", "a", "b", "--min-jod", "9.9"]);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(stdout(&output).contains("flicker"), "{}", stdout(&output));
+}
+
+#[test]
+fn folders_need_the_same_frames() {
+    let folder = folder();
+    frames(folder.path(), "a", 3, |_, x, y| pattern(x, y));
+    frames(folder.path(), "b", 2, |_, x, y| pattern(x, y));
+    std::fs::create_dir(folder.path().join("empty")).unwrap();
+    fail(
+        folder.path(),
+        &["compare", "a", "b"],
+        &["02.png", "one of them alone"],
+    );
+    fail(
+        folder.path(),
+        &["compare", "empty", "empty"],
+        &["no PNG files"],
+    );
+    png(&folder.path().join("b"), "02.png", 8, 8, pattern);
+    fail(folder.path(), &["compare", "a", "b"], &["02.png", "8x8"]);
+    let output = foveal_in(folder.path(), &["compare", "a", "a", "--diff", "d.png"]);
+    assert_eq!(output.status.code(), Some(2));
+}

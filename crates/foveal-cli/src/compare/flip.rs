@@ -32,3 +32,15 @@ impl ErrorMap {
         self.0.apply_color_lut(&nv_flip::magma_lut()).to_vec()
     }
 }
+
+/// Shares of 0 to 1 in the magma colours, RGB8.
+pub(super) fn magma(shares: impl Iterator<Item = f32>) -> Vec<u8> {
+    let colours = nv_flip::magma_lut().to_vec();
+    let last = colours.len() / 3 - 1;
+    shares
+        .flat_map(|share| {
+            let colour = (share.clamp(0.0, 1.0) * last as f32).round() as usize;
+            [0, 1, 2].map(|channel| colours[3 * colour + channel])
+        })
+        .collect()
+}

@@ -1,7 +1,9 @@
-//! `foveal compare`: how far two pictures are apart, as eyes and as numbers see it.
+//! `foveal compare`: how far two pictures or videos are apart, as eyes and as numbers see it.
 
+mod eye;
 pub(crate) mod flip;
 mod numeric;
+mod sequence;
 mod ssim;
 
 pub(crate) use flip::ErrorMap;
@@ -18,11 +20,14 @@ use crate::{atomic_file, console, picture, values};
 /// Arguments of `foveal compare`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The reference, a PNG file
+    /// The reference: a PNG file, or a folder of PNG files, the frames of a video in the order of their names
     a: PathBuf,
 
-    /// The picture under test, a PNG file of the same size
+    /// The picture under test, a PNG file of the same size, or a folder with files of the same names
     b: PathBuf,
+
+    #[command(flatten)]
+    eye: eye::Args,
 
     /// Write FLIP's error map: black where no eye sees a difference, through magenta to yellow
     #[arg(long, value_name = "FILE.png")]
@@ -35,6 +40,10 @@ pub(crate) struct Args {
     /// Exit with code 1 where the PSNR is below X decibels
     #[arg(long, value_name = "X", value_parser = values::threshold)]
     min_psnr: Option<f64>,
+
+    /// Exit with code 1 where the quality is below X JOD (10: no visible difference)
+    #[arg(long, value_name = "X", value_parser = values::threshold)]
+    min_jod: Option<f64>,
 
     /// Print JSON instead of text
     #[arg(long)]
@@ -54,14 +63,20 @@ struct Comparison {
     ssim: Option<f64>,
     max_difference: u8,
     differing_pixels: u64,
-    /// Both thresholds are met, or none were given.
+    /// What an eye sees at a display; `None` where no display is named.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    eye: Option<eye::Verdict>,
+    /// All thresholds are met, or none were given.
     passed: bool,
 }
 
 /// Compares, prints, and fails where a threshold is not met.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    if let Some(diff) = &args.diff {
-        atomic_file::check_writable(diff)?;
+    for file in args.diff.iter().chain(args.eye.heat_map()) {
+        atomic_file::check_writable(file)?;
+    }
+    if args.a.is_dir() && args.b.is_dir() {
+        return sequence::run(args);
     }
     let (a, b) = (Picture::read(&args.a)?, Picture::read(&args.b)?);
     if (a.width, a.height) != (b.width, b.height) {
@@ -76,6 +91,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         );
     }
     let (map, mut comparison) = compare(&a, &b);
+    comparison.eye = match args.eye.display(args.min_jod.is_some()) {
+        Some(display) => Some(args.eye.compare(&display, &a, &b)?),
+        None => None,
+    };
     let failures = args.failures(&comparison);
     comparison.passed = failures.is_empty();
 
@@ -109,6 +128,7 @@ fn compare(a: &Picture, b: &Picture) -> (ErrorMap, Comparison) {
         ssim: ssim::mean_ssim(a, b),
         max_difference: numeric::max_difference(&a.pixels, &b.pixels),
         differing_pixels: numeric::differing_pixels(&a.pixels, &b.pixels),
+        eye: None,
         passed: true,
     };
     (map, comparison)
@@ -127,7 +147,15 @@ impl Args {
         {
             failures.push(format!("PSNR is {psnr_db:.3} dB, --min-psnr {least}"));
         }
+        if let Some(eye) = &comparison.eye {
+            failures.extend(self.jod_failure(eye.jod));
+        }
         failures
+    }
+
+    fn jod_failure(&self, jod: f32) -> Option<String> {
+        let least = self.min_jod.filter(|&least| f64::from(jod) < least)?;
+        Some(format!("the quality is {jod:.3} JOD, --min-jod {least}"))
     }
 }
 
@@ -155,6 +183,9 @@ impl Comparison {
             "differing   {} of {pixels} pixels ({share:.3} %)",
             self.differing_pixels
         );
+        if let Some(eye) = &self.eye {
+            text += &eye.text();
+        }
         text
     }
 }

@@ -1,0 +1,144 @@
+//! Two videos, as folders of PNG files with the same names.
+
+use std::collections::BTreeSet;
+use std::fmt::Write;
+use std::path::Path;
+
+use anyhow::{Context, bail};
+use serde::Serialize;
+
+use super::{Args, ErrorMap, eye};
+use crate::console;
+use crate::failure::usage;
+use crate::picture::Picture;
+
+/// The JSON's fields; docs/program.md describes them.
+#[derive(Debug, PartialEq, Serialize)]
+struct Comparison {
+    width: u32,
+    height: u32,
+    frames: usize,
+    fps: f32,
+    #[serde(flatten)]
+    eye: eye::Verdict,
+    /// Change in the periphery by the reference's; `None` where there is none to compare.
+    flicker: Option<f32>,
+    /// Mean of all frames' FLIP.
+    flip: f64,
+    /// All thresholds are met, or none were given.
+    passed: bool,
+}
+
+/// Compares, prints, and fails where a threshold is not met.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    if args.diff.is_some() || args.min_psnr.is_some() {
+        return usage("--diff and --min-psnr are for pictures, not for folders".to_owned());
+    }
+    let mut comparison = compare(args)?;
+    let mut failures = Vec::new();
+    if let Some(most) = args.max_flip
+        && comparison.flip > most
+    {
+        failures.push(format!("FLIP is {:.6}, --max-flip {most}", comparison.flip));
+    }
+    failures.extend(args.jod_failure(comparison.eye.jod));
+    comparison.passed = failures.is_empty();
+    let text = if args.json {
+        serde_json::to_string_pretty(&comparison)? + "\n"
+    } else {
+        comparison.text()
+    };
+    console::print_result(&text)?;
+    if !failures.is_empty() {
+        bail!(
+            "'{}' differs too much from '{}': {}",
+            args.b.display(),
+            args.a.display(),
+            failures.join(", ")
+        );
+    }
+    Ok(())
+}
+
+fn compare(args: &Args) -> anyhow::Result<Comparison> {
+    let names = frames(&args.a)?;
+    if let Some(name) = names.symmetric_difference(&frames(&args.b)?).next() {
+        bail!(
+            "'{}' and '{}' hold different frames: '{name}' is in one of them alone",
+            args.a.display(),
+            args.b.display()
+        );
+    }
+    let Some(first) = names.first() else {
+        bail!("'{}' holds no PNG files", args.a.display());
+    };
+    let size = Picture::read(&args.a.join(first))?;
+    let display = args.eye.display(true).context("videos have a display")?;
+    let metric = args.eye.metric(&display, &size)?;
+    let mut video = metric.video(args.eye.fps)?;
+    let mut flip = 0.0;
+    for name in &names {
+        let read = |folder: &Path| {
+            let picture = Picture::read(&folder.join(name))?;
+            if (picture.width, picture.height) != (size.width, size.height) {
+                bail!(
+                    "frames of different sizes cannot be compared: '{}' is {}x{}, the first one {}x{}",
+                    folder.join(name).display(),
+                    picture.width,
+                    picture.height,
+                    size.width,
+                    size.height
+                );
+            }
+            Ok(picture)
+        };
+        let (a, b) = (read(&args.a)?, read(&args.b)?);
+        video.push(eye::pixels(&a), eye::pixels(&b))?;
+        flip += ErrorMap::between(&a, &b).mean();
+    }
+    let result = video.finish()?;
+    args.eye.write_heat_map(&result.heat_map)?;
+    Ok(Comparison {
+        width: size.width,
+        height: size.height,
+        frames: result.frames,
+        fps: args.eye.fps,
+        eye: args.eye.verdict(&metric, result.jod),
+        flicker: result.flicker,
+        flip: flip / result.frames as f64,
+        passed: true,
+    })
+}
+
+/// Names of a folder's PNG files.
+fn frames(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
+    let cannot_read = || format!("cannot read the folder '{}'", folder.display());
+    let mut names = BTreeSet::new();
+    for entry in folder.read_dir().with_context(cannot_read)? {
+        let name = entry.with_context(cannot_read)?.file_name();
+        if let Some(name) = name.to_str()
+            && Path::new(name)
+                .extension()
+                .is_some_and(|e| e.eq_ignore_ascii_case("png"))
+        {
+            names.insert(name.to_owned());
+        }
+    }
+    Ok(names)
+}
+
+impl Comparison {
+    fn text(&self) -> String {
+        let mut text = format!(
+            "{} frames of {}x{}, {} per second\n",
+            self.frames, self.width, self.height, self.fps
+        );
+        text += &self.eye.text();
+        let _ = match self.flicker {
+            Some(flicker) => writeln!(text, "flicker     {flicker:.3} of the reference's"),
+            None => writeln!(text, "flicker     none: one frame, or no periphery"),
+        };
+        let _ = writeln!(text, "FLIP        {:.6} (mean)", self.flip);
+        text
+    }
+}
