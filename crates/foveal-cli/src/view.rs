@@ -3,8 +3,9 @@
 use foveal_scene::generate;
 use foveal_view::{Host, Loaded};
 
+use crate::import_args::ImportArgs;
 use crate::render::{CameraArgs, SettingsArgs, Viewpoint, flags, rate_image, read_settings};
-use crate::{scene_source, values};
+use crate::{gpu, scene_source, values};
 
 /// Arguments of `foveal view`.
 #[derive(Debug, clap::Args)]
@@ -17,7 +18,7 @@ pub(crate) struct Args {
     camera: CameraArgs,
 
     /// Add N coloured point lights to the scene
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     point_lights: u32,
 
     /// The graphics adapter: part of its name, or its number in `foveal adapters`
@@ -29,16 +30,21 @@ pub(crate) struct Args {
     window: (u32, u32),
 
     #[command(flatten)]
+    import: ImportArgs,
+
+    #[command(flatten)]
     settings: SettingsArgs,
 }
 
 /// Opens the window and stays until it is closed.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let settings = args.settings.resolve()?;
+    gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());
     let point_lights = args.point_lights;
+    let options = args.import.options();
     let load = move |name: &str| {
-        let mut scene = scene_source::load(name)?;
+        let mut scene = scene_source::load_with(name, &options)?;
         if point_lights > 0 {
             scene_source::add_point_lights(&mut scene, point_lights, 0);
         }

@@ -17,6 +17,14 @@ pub(crate) struct Instancing {
     pub(crate) other: Option<u32>,
 }
 
+impl Instancing {
+    /// All that there are.
+    pub(crate) fn accessors(self) -> impl Iterator<Item = u32> {
+        let all = [self.translation, self.rotation, self.scale, self.other];
+        all.into_iter().flatten()
+    }
+}
+
 /// A node as the file has it.
 pub(crate) struct NodeDef {
     pub(crate) name: Option<String>,
