@@ -6,7 +6,7 @@ use std::time::Instant;
 use anyhow::bail;
 use foveal::Timing;
 use foveal_scene::generate::{self, DemoOptions, GenerateError};
-use foveal_scene::{Camera, LoadOptions, LoadTimings, Scene};
+use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene};
 
 use crate::import_args;
 
@@ -26,6 +26,9 @@ pub(crate) fn load_timed(
 ) -> anyhow::Result<Scene> {
     let start = Instant::now();
     match generate::by_name(name) {
+        Ok(_) if options.variant.is_some() || matches!(options.clip, Clip::Named(_)) => {
+            bail!("the generated scene '{name}' has neither clips nor variants")
+        }
         Ok(scene) => {
             load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
             Ok(scene)
@@ -125,6 +128,16 @@ mod tests {
             error.contains("'castle.glb'") && error.contains("cornell"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_generated_scene_has_no_clips_to_name() {
+        let options = LoadOptions {
+            clip: Clip::Named("Run".to_owned()),
+            ..LoadOptions::default()
+        };
+        let error = load_with("cornell", &options).unwrap_err().to_string();
+        assert!(error.contains("'cornell'"), "{error}");
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! `foveal view`: the window, with the program's scenes, files and flags behind it.
 
-use foveal_scene::generate;
+use foveal_scene::{Clip, generate};
 use foveal_view::{Host, Loaded};
 
 use crate::import_args::ImportArgs;
@@ -44,12 +44,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let point_lights = args.point_lights;
     let options = args.import.options();
     let load = move |name: &str| {
+        // What was asked for by name holds for the first scene; limits hold for all.
+        let mut options = options.clone();
+        if name != first {
+            options.clip = Clip::default();
+            options.variant = None;
+        }
         let mut scene = scene_source::load_with(name, &options)?;
         if point_lights > 0 {
             scene_source::add_point_lights(&mut scene, point_lights, 0);
         }
         scene.light_by_default();
-        // What was asked for of the camera holds for the first scene.
         let camera = if name == first {
             camera.clone()
         } else {

@@ -229,6 +229,46 @@ fn small_files_that_ask_for_much_are_refused_before_anything_is_allocated() {
     bomb.refused(Some(Limit::Expansion));
     assert_small("morph targets");
 
+    // Long names times instances.
+    let mut bomb = Bomb::new();
+    let zeros = json!({ "componentType": 5126, "count": 60_000, "type": "VEC3" });
+    bomb.json["accessors"].as_array_mut().unwrap().push(zeros);
+    bomb.json["nodes"] = json!([{ "mesh": 0, "name": "n".repeat(100_000), "extensions": {
+        "EXT_mesh_gpu_instancing": { "attributes": { "TRANSLATION": 1 } }
+    } }]);
+    let scene = bomb.load().unwrap();
+    assert!(scene.objects[7].name.len() == 1024);
+    drop(scene);
+    assert_small("long names");
+
+    // Skins that read the same matrices.
+    let mut bomb = Bomb::new();
+    let view = bomb.view(&vec![0; 640_000]);
+    let matrices =
+        json!({ "bufferView": view, "componentType": 5126, "count": 10_000, "type": "MAT4" });
+    bomb.json["accessors"]
+        .as_array_mut()
+        .unwrap()
+        .push(matrices);
+    bomb.json["skins"] = json!(vec![
+        json!({ "joints": [0], "inverseBindMatrices": 1 });
+        1000
+    ]);
+    bomb.refused(Some(Limit::Expansion));
+    assert_small("skins");
+
+    // A compressed view of nothing but zeros.
+    let mut bomb = Bomb::new();
+    let view = bomb.view(&[0xA1; 64]);
+    let coded = json!({ "buffer": 0, "byteOffset": 36, "byteLength": 64, "byteStride": 256,
+        "count": 1_000_000_000, "mode": "ATTRIBUTES" });
+    bomb.json["bufferViews"][view]["extensions"] = json!({ "KHR_meshopt_compression": coded });
+    let text = bomb.refused(Some(Limit::Expansion));
+    assert!(
+        text.contains("wants 256 GB for decompressed data"),
+        "{text}"
+    );
+
     // Vertices that nothing stores.
     let mut bomb = Bomb::new();
     bomb.json["accessors"][0] =

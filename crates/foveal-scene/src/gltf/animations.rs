@@ -57,7 +57,7 @@ impl AnimationDef {
             })
         })?;
         Ok(Self {
-            name: o.string("name")?.map(str::to_owned),
+            name: o.name("name")?,
             samplers,
             channels,
         })

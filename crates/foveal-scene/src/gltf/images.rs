@@ -32,7 +32,7 @@ impl ImageDef {
         };
         let file_name = uri.filter(|u| !u.starts_with("data:"));
         Ok(Self {
-            name: o.string("name")?.or(file_name).map(str::to_owned),
+            name: o.name("name")?.or_else(|| file_name.map(str::to_owned)),
             source,
         })
     }

@@ -84,7 +84,7 @@ impl MeshDef {
             parse_primitive(p, counts)
         })?;
         Ok(Self {
-            name: o.string("name")?.map(str::to_owned),
+            name: o.name("name")?,
             primitives,
             materials,
             variants,

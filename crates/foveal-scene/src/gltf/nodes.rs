@@ -48,7 +48,7 @@ impl NodeDef {
         counts: &Counts,
         warn: &mut Vec<String>,
     ) -> Parsed<Self> {
-        let name = o.string("name")?.map(str::to_owned);
+        let name = o.name("name")?;
         let trs = ["translation", "rotation", "scale"]
             .iter()
             .any(|k| o.has(k));
@@ -95,9 +95,7 @@ impl NodeDef {
             instancing,
             visible,
             occluder: extras.and_then(|e| e.boolean("occluder").ok().flatten()),
-            set: extras
-                .and_then(|e| e.string("set").ok().flatten())
-                .map(str::to_owned),
+            set: extras.and_then(|e| e.name("set").ok().flatten()),
             name,
         })
     }

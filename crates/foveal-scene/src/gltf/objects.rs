@@ -43,9 +43,14 @@ fn element_count(instancing: Option<Instancing>, reader: Reader<'_>) -> Option<u
 /// Counts the memory of all elements before any is read.
 pub(crate) fn check_elements(shown: &[Shown], reader: Reader<'_>) -> Parsed<()> {
     let bytes = shown.iter().map(|one| {
-        let instancing = reader.document.nodes[one.node as usize].instancing;
-        let elements = element_count(instancing, reader).unwrap_or(0) as u64;
-        elements.saturating_mul(one.parts.len() as u64 * INSTANCE_BYTES)
+        let node = &reader.document.nodes[one.node as usize];
+        let elements = element_count(node.instancing, reader).unwrap_or(0) as u64;
+        let mesh = node
+            .mesh
+            .and_then(|m| reader.document.meshes[m as usize].name.as_ref());
+        let names = [node.name.as_ref(), mesh, node.set.as_ref()];
+        let names: usize = names.into_iter().flatten().map(String::len).sum();
+        elements.saturating_mul(one.parts.len() as u64 * INSTANCE_BYTES + names as u64)
     });
     let bytes = bytes.fold(0, u64::saturating_add);
     let budget = &reader.buffers.budget;

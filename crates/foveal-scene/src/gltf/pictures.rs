@@ -100,7 +100,7 @@ fn netted<T>(f: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
         .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))
 }
 
-/// Most texels that a byte of a file can stand for: one-bit PNG at deflate's best ratio.
+/// Most texels that a byte of a PNG file can stand for: one bit each at deflate's best ratio.
 const MAX_TEXELS_PER_BYTE: u64 = 8 * 1032;
 
 /// What a decoder may allocate to read a header.
@@ -142,7 +142,9 @@ pub(crate) fn promise(bytes: &[u8]) -> Result<Promise, String> {
             height,
             bytes_per_texel: decoder.color_type().bytes_per_pixel(),
         };
-        if promise.texels() > bytes.len() as u64 * MAX_TEXELS_PER_BYTE {
+        // Other formats say a plain picture in fewer bytes; what they take is counted like all else.
+        let is_png = format_of(bytes) == Ok(ImageFormat::Png);
+        if is_png && promise.texels() > bytes.len() as u64 * MAX_TEXELS_PER_BYTE {
             return Err(format!(
                 "promises {width} x {height} texels in {} bytes",
                 bytes.len()
