@@ -2,10 +2,10 @@
 
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
-import { extname, join, normalize } from 'node:path';
+import { extname, join, resolve, sep } from 'node:path';
 import { fileURLToPath, pathToFileURL } from 'node:url';
 
-const DIST = fileURLToPath(new URL('../dist', import.meta.url));
+const DIST = resolve(fileURLToPath(new URL('../dist', import.meta.url)));
 const TYPES = {
   '.html': 'text/html; charset=utf-8',
   '.js': 'text/javascript',
@@ -14,19 +14,42 @@ const TYPES = {
   '.jpg': 'image/jpeg',
 };
 
-/** Serves dist/ on `port` (0: any free one); resolves to the server. */
-export function serve(port) {
-  const server = createServer(async (request, response) => {
-    const path = normalize(decodeURIComponent(new URL(request.url, 'http://localhost').pathname));
-    const file = join(DIST, path.endsWith('/') ? `${path}index.html` : path);
-    try {
-      const body = await readFile(file);
-      response.writeHead(200, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' });
-      response.end(body);
-    } catch {
-      response.writeHead(404);
-      response.end('not found');
-    }
+/** The file that a URL names; null for one that is malformed or leads out of `folder`. */
+function fileOf(folder, url) {
+  let path;
+  try {
+    path = decodeURIComponent(new URL(url, 'http://localhost').pathname);
+  } catch {
+    return null;
+  }
+  if (path.includes('\0')) return null;
+  const file = join(folder, path.endsWith('/') ? `${path}index.html` : path);
+  return file.startsWith(folder + sep) ? file : null;
+}
+
+async function answer(folder, request, response) {
+  const end = (status, text, headers = {}) => {
+    response.writeHead(status, { 'content-type': 'text/plain', ...headers });
+    response.end(text);
+  };
+  if (request.method !== 'GET' && request.method !== 'HEAD') {
+    return end(405, 'only GET and HEAD', { allow: 'GET, HEAD' });
+  }
+  const file = fileOf(folder, request.url);
+  if (file === null) return end(400, 'malformed URL');
+  let body;
+  try {
+    body = await readFile(file);
+  } catch {
+    return end(404, 'not found');
+  }
+  return end(200, body, { 'content-type': TYPES[extname(file)] ?? 'application/octet-stream' });
+}
+
+/** Serves `folder` on `port` (0: any free one); resolves to the server. No request ends it. */
+export function serve(port, folder = DIST) {
+  const server = createServer((request, response) => {
+    answer(folder, request, response).catch(() => response.destroy());
   });
   return new Promise((done, failed) => {
     server.once('error', failed);

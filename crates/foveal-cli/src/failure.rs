@@ -34,6 +34,7 @@ pub(crate) fn report(name: &str, command: impl FnOnce() -> anyhow::Result<()>) -
         Ok(Ok(())) => ExitCode::SUCCESS,
         Ok(Err(error)) => match error.downcast_ref::<Usage>() {
             Some(usage) => {
+                let usage = one_line(&usage.to_string());
                 eprintln!("error: {usage}\n\nFor more information, try 'foveal {name} --help'.");
                 ExitCode::from(2)
             }
@@ -58,9 +59,9 @@ fn paragraph(error: &anyhow::Error) -> String {
     one_line(&format!("{error:#}"))
 }
 
-/// All white space, line breaks included, as single blanks.
+/// All white space, line breaks included, as single blanks; control characters escaped.
 pub(crate) fn one_line(text: &str) -> String {
-    text.split_whitespace().collect::<Vec<_>>().join(" ")
+    crate::console::escaped_line(&text.split_whitespace().collect::<Vec<_>>().join(" "))
 }
 
 fn remember(info: &PanicHookInfo<'_>) {

@@ -13,7 +13,11 @@ mod console;
 mod cull;
 mod failure;
 mod gpu;
+mod import_args;
 mod median;
+#[cfg(test)]
+#[path = "../../foveal-scene/src/gltf/tests/mutate.rs"]
+mod mutate;
 mod picture;
 mod render;
 mod scene_info;

@@ -6,6 +6,7 @@ use foveal_scene::{Camera, Projection, Scene};
 use glam::Vec3;
 use serde::Serialize;
 
+use crate::import_args::ImportArgs;
 use crate::render::grouped;
 use crate::{console, scene_source};
 
@@ -16,6 +17,9 @@ pub(crate) struct Args {
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
 
+    #[command(flatten)]
+    import: ImportArgs,
+
     /// Print JSON instead of text
     #[arg(long)]
     json: bool,
@@ -23,7 +27,7 @@ pub(crate) struct Args {
 
 /// Prints what the scene holds.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    let scene = scene_source::load(&args.scene)?;
+    let scene = scene_source::load_with(&args.scene, &args.import.options())?;
     let info = SceneInfo::of(&scene);
     let text = if args.json {
         serde_json::to_string_pretty(&info)? + "\n"
@@ -47,10 +51,20 @@ struct SceneInfo {
     vertices: u64,
     lights: usize,
     animated: bool,
+    clips: Vec<ClipInfo>,
+    /// Names of variants of materials.
+    variants: Vec<String>,
     /// Metres in world space; `None` without geometry.
     bounds: Option<Bounds>,
     cameras: Vec<CameraInfo>,
     warnings: Vec<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct ClipInfo {
+    number: usize,
+    name: String,
+    duration_s: f32,
 }
 
 #[derive(Debug, Serialize)]
@@ -92,6 +106,16 @@ impl SceneInfo {
             vertices: scene.meshes.iter().map(|m| m.vertices.len() as u64).sum(),
             lights: scene.lights.len(),
             animated: scene.is_animated(),
+            clips: scene
+                .clips()
+                .enumerate()
+                .map(|(number, (name, duration_s))| ClipInfo {
+                    number,
+                    name: name.to_owned(),
+                    duration_s,
+                })
+                .collect(),
+            variants: scene.variants.clone(),
             bounds: (!bounds.is_empty()).then(|| Bounds {
                 min: bounds.min.into(),
                 max: bounds.max.into(),
@@ -109,7 +133,7 @@ impl SceneInfo {
     fn text(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
-            let _ = writeln!(text, "{name:10} {value}");
+            let _ = writeln!(text, "{name:10} {}", console::escaped_line(&value));
         };
         let count = |n: usize| grouped(n as u64);
         line("scene", self.name.clone());
@@ -144,6 +168,19 @@ impl SceneInfo {
             "animated",
             if self.animated { "yes" } else { "no" }.to_owned(),
         );
+        for ClipInfo {
+            number,
+            name,
+            duration_s,
+        } in &self.clips
+        {
+            let title = if *number == 0 { "clips" } else { "" };
+            line(title, format!("{number}: '{name}', {duration_s:.3} s"));
+        }
+        for (number, name) in self.variants.iter().enumerate() {
+            let title = if number == 0 { "variants" } else { "" };
+            line(title, format!("{number}: '{name}'"));
+        }
         match &self.bounds {
             Some(Bounds { min, max }) => {
                 line("bounds", format!("{} to {} m", point(*min), point(*max)))

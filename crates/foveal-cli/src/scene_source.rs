@@ -6,7 +6,9 @@ use std::time::Instant;
 use anyhow::bail;
 use foveal::Timing;
 use foveal_scene::generate::{self, DemoOptions, GenerateError};
-use foveal_scene::{Camera, LoadOptions, LoadTimings, Scene};
+use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene};
+
+use crate::import_args;
 
 /// What is drawn without SCENE.
 pub(crate) const DEFAULT_SCENE: &str = "demo";
@@ -17,24 +19,40 @@ pub(crate) type TimedCamera = Box<dyn Fn(f32) -> Camera>;
 /// Loads or generates the scene called `name`, posed at time 0, and adds the time of each stage to `load_ms`.
 ///
 /// A generated scene's name wins over a file of the same name; `./demo` means the file.
-pub(crate) fn load_timed(name: &str, load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
+pub(crate) fn load_timed(
+    name: &str,
+    options: &LoadOptions,
+    load_ms: &mut Vec<Timing>,
+) -> anyhow::Result<Scene> {
     let start = Instant::now();
     match generate::by_name(name) {
+        Ok(_) if options.variant.is_some() || matches!(options.clip, Clip::Named(_)) => {
+            bail!("the generated scene '{name}' has neither clips nor variants")
+        }
         Ok(scene) => {
             load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
             Ok(scene)
         }
-        Err(GenerateError::UnknownScene { .. }) => from_file(name, load_ms),
+        Err(GenerateError::UnknownScene { .. }) => from_file(name, options, load_ms),
         Err(error) => Err(error.into()),
     }
 }
 
 /// As [`load_timed`], for commands to which the time is all one.
-pub(crate) fn load(name: &str) -> anyhow::Result<Scene> {
-    load_timed(name, &mut Vec::new())
+pub(crate) fn load_with(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
+    load_timed(name, options, &mut Vec::new())
 }
 
-fn from_file(name: &str, load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
+/// As [`load_with`] by the importer's default options.
+pub(crate) fn load(name: &str) -> anyhow::Result<Scene> {
+    load_with(name, &LoadOptions::default())
+}
+
+fn from_file(
+    name: &str,
+    options: &LoadOptions,
+    load_ms: &mut Vec<Timing>,
+) -> anyhow::Result<Scene> {
     let path = Path::new(name);
     if !path.exists() {
         bail!(
@@ -42,7 +60,7 @@ fn from_file(name: &str, load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
             generate::NAMES.join(", ")
         );
     }
-    let scene = foveal_scene::load(path, &LoadOptions::default())?;
+    let scene = foveal_scene::load(path, options).map_err(import_args::with_flag)?;
     let LoadTimings {
         read_ms,
         parse_ms,
@@ -110,6 +128,16 @@ mod tests {
             error.contains("'castle.glb'") && error.contains("cornell"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_generated_scene_has_no_clips_to_name() {
+        let options = LoadOptions {
+            clip: Clip::Named("Run".to_owned()),
+            ..LoadOptions::default()
+        };
+        let error = load_with("cornell", &options).unwrap_err().to_string();
+        assert!(error.contains("'cornell'"), "{error}");
     }
 
     #[test]

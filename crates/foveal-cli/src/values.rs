@@ -88,6 +88,47 @@ pub(crate) fn threshold(text: &str) -> Result<f64, String> {
     }
 }
 
+/// An amount of memory: `512MB`, `1.5 GB`, `2GiB`, or a number of bytes.
+pub(crate) fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, f64); 9] = [
+        ("KIB", 1024.0),
+        ("MIB", 1_048_576.0),
+        ("GIB", 1_073_741_824.0),
+        ("TIB", 1_099_511_627_776.0),
+        ("KB", 1e3),
+        ("MB", 1e6),
+        ("GB", 1e9),
+        ("TB", 1e12),
+        ("B", 1.0),
+    ];
+    let upper = text.trim().to_ascii_uppercase();
+    let unit = UNITS.iter().find(|(unit, _)| upper.ends_with(unit));
+    let (number, factor) = match unit {
+        Some((unit, factor)) => (&upper[..upper.len() - unit.len()], *factor),
+        None => (upper.as_str(), 1.0),
+    };
+    match number.trim().parse::<f64>() {
+        Ok(value) if value.is_finite() && value >= 0.0 && value * factor < 1e19 => {
+            Ok((value * factor) as u64)
+        }
+        _ => Err("an amount of memory looks like 512MB or 1.5GB".to_owned()),
+    }
+}
+
+/// Most frames of one sequence: each has a file's name and figures in memory.
+const MOST_FRAMES: u32 = 1_000_000;
+
+/// Most point lights that a renderer takes.
+const MOST_LIGHTS: u32 = 16_384;
+
+/// A number of point lights.
+pub(crate) fn point_lights(text: &str) -> Result<u32, String> {
+    match text.trim().parse::<u32>() {
+        Ok(count) if count <= MOST_LIGHTS => Ok(count),
+        _ => Err(format!("a number from 0 to {MOST_LIGHTS} is needed")),
+    }
+}
+
 /// Frame numbers `A..B`, without B, or `N` for `0..N`. Never empty.
 pub(crate) fn frames(text: &str) -> Result<std::ops::Range<u32>, String> {
     let number = |text: &str| {
@@ -102,6 +143,12 @@ pub(crate) fn frames(text: &str) -> Result<std::ops::Range<u32>, String> {
     if range.is_empty() {
         return Err("the range holds no frame; its end is not part of it".to_owned());
     }
+    let count = range.end - range.start;
+    if count > MOST_FRAMES {
+        return Err(format!(
+            "the range holds {count} frames, the limit is {MOST_FRAMES}; draw it in several runs"
+        ));
+    }
     Ok(range)
 }
 
@@ -115,6 +162,20 @@ mod tests {
         assert_eq!(vec3("-1, 2.5,3e1"), Ok(Vec3::new(-1.0, 2.5, 30.0)));
         assert_eq!(frames("7"), Ok(0..7));
         assert_eq!(frames("5..7"), Ok(5..7));
+        assert_eq!(
+            frames("4294000000..4294967295"),
+            Ok(4_294_000_000..u32::MAX)
+        );
+        assert_eq!(point_lights("16384"), Ok(16_384));
+        for (text, size) in [
+            ("7", 7),
+            ("512MB", 512_000_000),
+            ("1.5 gb", 1_500_000_000),
+            ("2GiB", 2 << 30),
+            ("0B", 0),
+        ] {
+            assert_eq!(bytes(text), Ok(size), "{text}");
+        }
         assert_eq!(threshold("inf"), Ok(f64::INFINITY));
         assert_eq!(fov_deg("60"), Ok(60.0));
     }
@@ -135,6 +196,11 @@ mod tests {
         for text in ["", "0", "5..5", "7..5", "..", "1..", "-1..3", "1..=3"] {
             assert!(frames(text).is_err(), "{text}");
         }
+        for text in ["", "GB", "-1GB", "1.5.2MB", "inf", "1e30", "2 PB"] {
+            assert!(bytes(text).is_err(), "{text}");
+        }
+        assert!(frames("0..4294967295").is_err_and(|e| e.contains("the limit is 1000000")));
+        assert!(point_lights("4294967295").is_err_and(|e| e.contains("16384")));
         assert!(threshold("-1").is_err() && threshold("nan").is_err());
         assert!(positive("0").is_err() && time_s("-1").is_err());
     }

@@ -1,10 +1,11 @@
 //! `foveal view`: the window, with the program's scenes, files and flags behind it.
 
-use foveal_scene::generate;
+use foveal_scene::{Clip, generate};
 use foveal_view::{Host, Loaded};
 
+use crate::import_args::ImportArgs;
 use crate::render::{CameraArgs, SettingsArgs, Viewpoint, flags, rate_image, read_settings};
-use crate::{scene_source, values};
+use crate::{gpu, scene_source, values};
 
 /// Arguments of `foveal view`.
 #[derive(Debug, clap::Args)]
@@ -17,7 +18,7 @@ pub(crate) struct Args {
     camera: CameraArgs,
 
     /// Add N coloured point lights to the scene
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     point_lights: u32,
 
     /// The graphics adapter: part of its name, or its number in `foveal adapters`
@@ -29,21 +30,31 @@ pub(crate) struct Args {
     window: (u32, u32),
 
     #[command(flatten)]
+    import: ImportArgs,
+
+    #[command(flatten)]
     settings: SettingsArgs,
 }
 
 /// Opens the window and stays until it is closed.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let settings = args.settings.resolve()?;
+    gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());
     let point_lights = args.point_lights;
+    let options = args.import.options();
     let load = move |name: &str| {
-        let mut scene = scene_source::load(name)?;
+        // What was asked for by name holds for the first scene; limits hold for all.
+        let mut options = options.clone();
+        if name != first {
+            options.clip = Clip::default();
+            options.variant = None;
+        }
+        let mut scene = scene_source::load_with(name, &options)?;
         if point_lights > 0 {
             scene_source::add_point_lights(&mut scene, point_lights, 0);
         }
         scene.light_by_default();
-        // What was asked for of the camera holds for the first scene.
         let camera = if name == first {
             camera.clone()
         } else {

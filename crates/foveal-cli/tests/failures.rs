@@ -159,3 +159,107 @@ fn a_wrong_camera_path_is_named_with_its_place() {
         &["p.json", "keyframe 0", "same point"],
     );
 }
+
+#[test]
+fn without_a_vulkan_driver_the_message_says_so() {
+    let folder = folder();
+    let mut command = common::command(folder.path(), &["render", "cornell", "-o", "a.png"]);
+    let nowhere = folder.path().join("none.json");
+    let output = command
+        .env("VK_DRIVER_FILES", &nowhere)
+        .env("VK_ICD_FILENAMES", &nowhere)
+        .env_remove("WGPU_BACKEND")
+        .output()
+        .unwrap();
+    let said = common::stderr(&output);
+    // Where the system has drivers that these variables do not hide there is nothing to see.
+    if output.status.code() == Some(0) {
+        return;
+    }
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("install a Vulkan driver"), "{said}");
+}
+
+#[test]
+fn control_characters_of_a_file_never_reach_the_terminal() {
+    let folder = folder();
+    moving_triangle(folder.path());
+    let path = folder.path().join("triangle.gltf");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let hostile = text
+        .replace("\"front\"", r#""a\u001b[2J\u009b1m\u202eb\nc""#)
+        .replace("\"mode\"", "\"x\"")
+        .replace(
+            "\"asset\"",
+            "\"extensionsUsed\": [\"\\u001bACME\"], \"asset\"",
+        );
+    std::fs::write(&path, hostile).unwrap();
+    for words in [
+        &["scene", "info", "triangle.gltf"][..],
+        &["scene", "info", "triangle.gltf", "--json"],
+        &["cull", "triangle.gltf", "--frames", "1"],
+        &["render", "triangle.gltf", "-o", "a.png", "--camera", "none"],
+    ] {
+        let output = common::foveal_in(folder.path(), words);
+        let said = common::stdout(&output) + &common::stderr(&output);
+        let bad = |c: char| (c.is_control() && c != '\n') || c == '\u{202e}';
+        assert!(!said.contains(bad), "{words:?}: {said:?}");
+        assert!(said.contains("\\u001b"), "{words:?}: {said:?}");
+    }
+}
+
+#[test]
+fn small_files_that_ask_for_much_end_with_the_flag_that_allows_it() {
+    let folder = folder();
+    moving_triangle(folder.path());
+    let path = folder.path().join("triangle.gltf");
+    let mut json: serde_json::Value =
+        serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+    json["accessors"][0]["count"] = 2_000_000.into();
+    json["accessors"][0]
+        .as_object_mut()
+        .unwrap()
+        .remove("bufferView");
+    std::fs::write(&path, json.to_string()).unwrap();
+    fail(
+        folder.path(),
+        &["scene", "info", "triangle.gltf"],
+        &["wants", "the limit", ": --max-expansion"],
+    );
+    let lights = ["render", "-o", "a.png", "--point-lights", "4294967295"];
+    let output = common::foveal_in(folder.path(), &lights);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(common::stderr(&output).contains("16384"));
+}
+
+/// A recording in which every query follows a draw of its own.
+#[test]
+fn a_long_recording_is_replayed_as_few_cameras() {
+    let folder = folder();
+    let mut bytes = 0xA701_B600_u32.to_le_bytes().to_vec();
+    let floats = |bytes: &mut Vec<u8>, values: &[f32]| {
+        bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+    };
+    let words = |bytes: &mut Vec<u8>, values: &[u32]| {
+        bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+    };
+    floats(&mut bytes, &[0.1]);
+    words(&mut bytes, &[64, 64]);
+    for i in 0..3000 {
+        let x = i as f32 * 1e-4 - 0.5;
+        bytes.push(0);
+        words(&mut bytes, &[0, 3, 12]);
+        floats(&mut bytes, &[x, 0.0, 1.0, x + 0.1, 0.0, 1.0, x, 0.1, 1.0]);
+        words(&mut bytes, &[1, 0, 1, 2]);
+        bytes.push(0);
+        words(&mut bytes, &[0, 0, 12, 4, 8]);
+        bytes.push(1);
+        words(&mut bytes, &[0]);
+        floats(&mut bytes, &[-0.5, -0.5, 0.5, 0.5, 2.0]);
+    }
+    bytes.push(0x7F);
+    std::fs::write(folder.path().join("long.mocrec"), bytes).unwrap();
+    let words = ["cull", "long.mocrec", "--frames", "1"];
+    let said = common::stdout(&common::succeed(folder.path(), &words));
+    assert_eq!(said.matches("camera 'recorded").count(), 16, "{said}");
+}

@@ -3,6 +3,24 @@
 //! Every message is one sentence that names the file, the place in its JSON where there is one
 //! (`meshes[3].primitives[0].attributes.POSITION`) and the cause.
 
+/// The field of [`LoadOptions`](crate::LoadOptions) that a file goes beyond.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Limit {
+    /// [`max_file_bytes`](crate::LoadOptions::max_file_bytes).
+    FileBytes,
+    /// [`max_texture_bytes`](crate::LoadOptions::max_texture_bytes).
+    TextureBytes,
+    /// [`max_vertices`](crate::LoadOptions::max_vertices).
+    Vertices,
+    /// [`max_instances`](crate::LoadOptions::max_instances).
+    Instances,
+    /// [`max_triangles`](crate::LoadOptions::max_triangles).
+    Triangles,
+    /// [`max_expansion`](crate::LoadOptions::max_expansion).
+    Expansion,
+}
+
 /// Why a scene could not be loaded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -33,15 +51,15 @@ pub enum SceneError {
         /// What is wrong with it.
         cause: String,
     },
-    /// The file requires an extension that is not supported.
-    #[error("{file} cannot be shown: {place} names {extension}, which is not supported")]
+    /// The file requires extensions that are not supported.
+    #[error("{file} cannot be shown: {place} names {extensions}")]
     Extension {
         /// The file as it was asked for.
         file: String,
         /// JSON path of the requirement.
         place: String,
-        /// The extension's name.
-        extension: String,
+        /// The names of all of them, and how the file can be converted where that is known.
+        extensions: String,
     },
     /// The file is beyond a limit of [`LoadOptions`](crate::LoadOptions).
     #[error("{file} is too large at {place}: {cause}")]
@@ -50,8 +68,18 @@ pub enum SceneError {
         file: String,
         /// JSON path of the part, or `file`.
         place: String,
-        /// The limit and by how much it is exceeded.
+        /// What the file asks for, and the limit.
         cause: String,
+        /// The option that allows more; `None` for limits of the importer itself.
+        limit: Option<Limit>,
+    },
+    /// The options ask for something that the file does not have.
+    #[error("{file} has no {absent}")]
+    Absent {
+        /// The file as it was asked for.
+        file: String,
+        /// What was asked for, and what there is.
+        absent: String,
     },
     /// A fault of the importer itself; please report it with the file.
     #[error("{file} cannot be loaded: the importer failed with \"{cause}\"")]
@@ -63,12 +91,24 @@ pub enum SceneError {
     },
 }
 
+impl SceneError {
+    /// The option that would let the file load, where it is only too large.
+    #[must_use]
+    pub fn limit(&self) -> Option<Limit> {
+        match self {
+            Self::TooLarge { limit, .. } => *limit,
+            _ => None,
+        }
+    }
+}
+
 /// What kind of fault a [`Flaw`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum FlawKind {
     Invalid,
-    TooLarge,
+    TooLarge(Option<Limit>),
     Extension,
+    Absent,
 }
 
 /// A fault within a document, before it is known which file it belongs to.
@@ -91,10 +131,18 @@ impl Flaw {
         }
     }
 
-    /// A limit that is exceeded.
+    /// A limit of the importer itself that is exceeded.
     pub(crate) fn too_large(cause: impl Into<String>) -> Self {
         Self {
-            kind: FlawKind::TooLarge,
+            kind: FlawKind::TooLarge(None),
+            ..Self::new(cause)
+        }
+    }
+
+    /// A limit of the options that is exceeded.
+    pub(crate) fn beyond(limit: Limit, cause: impl Into<String>) -> Self {
+        Self {
+            kind: FlawKind::TooLarge(Some(limit)),
             ..Self::new(cause)
         }
     }
@@ -120,11 +168,20 @@ impl Flaw {
         let cause = self.cause;
         match self.kind {
             FlawKind::Invalid => SceneError::Invalid { file, place, cause },
-            FlawKind::TooLarge => SceneError::TooLarge { file, place, cause },
+            FlawKind::TooLarge(limit) => SceneError::TooLarge {
+                file,
+                place,
+                cause,
+                limit,
+            },
+            FlawKind::Absent => SceneError::Absent {
+                file,
+                absent: cause,
+            },
             FlawKind::Extension => SceneError::Extension {
                 file,
                 place,
-                extension: cause,
+                extensions: cause,
             },
         }
     }
@@ -139,12 +196,44 @@ impl Flaw {
     }
 }
 
+/// A number of bytes as people write it: `512 bytes`, `1.5 MB`, `10.5 GB` (powers of 1000).
+pub(crate) fn amount(bytes: u64) -> String {
+    let units = [
+        (1_000_000_000_000, "TB"),
+        (1_000_000_000, "GB"),
+        (1_000_000, "MB"),
+        (1_000, "KB"),
+    ];
+    match units.into_iter().find(|(size, _)| bytes >= *size) {
+        Some((size, unit)) => {
+            let value = format!("{:.1}", bytes as f64 / size as f64);
+            format!("{} {unit}", value.strip_suffix(".0").unwrap_or(&value))
+        }
+        None => format!("{bytes} bytes"),
+    }
+}
+
 /// Result of the importer's inner parts.
 pub(crate) type Parsed<T> = Result<T, Flaw>;
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn amounts_are_rounded_to_what_matters() {
+        for (bytes, text) in [
+            (0, "0 bytes"),
+            (999, "999 bytes"),
+            (1_000, "1 KB"),
+            (73_540, "73.5 KB"),
+            (1_000_000_000, "1 GB"),
+            (10_512_345_678, "10.5 GB"),
+            (u64::MAX, "18446744.1 TB"),
+        ] {
+            assert_eq!(amount(bytes), text);
+        }
+    }
 
     #[test]
     fn places_are_joined_as_json_paths() {

@@ -37,12 +37,12 @@ mod timings;
 
 pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
-pub use error::SceneError;
+pub use error::{Limit, SceneError};
 pub use light::{Environment, Light, LightKind};
 pub use load::{LoadOptions, MissingNormals, load, load_bytes};
 pub use material::{AlphaMode, Material, ProceduralLayers, TextureRef};
 pub use mesh::{Mesh, Vertex};
-pub use pose::Rig;
+pub use pose::{Clip, Rig};
 pub use scene::{Instance, Object, Scene, Warning};
 pub use texture::{ColorSpace, Filter, Sampler, Texture, Wrap};
 pub use timings::LoadTimings;

@@ -3,9 +3,13 @@
 //! File access happens in [`load`] alone; [`load_bytes`] asks a resolver for what lies outside
 //! the bytes, so that a browser can load a `.glb` that it has fetched.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::{Component, Path};
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use crate::{Scene, SceneError, gltf};
+use crate::error::{Limit, amount};
+use crate::{Clip, Scene, SceneError, gltf};
 
 /// What to do with a primitive that brings no normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -22,33 +26,45 @@ pub enum MissingNormals {
 pub struct LoadOptions {
     /// Time in seconds at which an animated scene is posed after loading.
     pub time_s: f32,
+    /// Which animation plays; see [`Scene::play`].
+    pub clip: Clip,
+    /// Which of the file's variants of materials is shown (KHR_materials_variants), by name or by number from 0; `None`:
+    /// the materials as they are without.
+    pub variant: Option<String>,
     /// Use the threads of the current rayon pool; without, everything happens on the caller's thread.
     pub parallel: bool,
     /// How normals are made where the file gives none.
     pub missing_normals: MissingNormals,
-    /// Allow external files outside the scene's own folder (`../textures/wood.png`).
+    /// Allow external files outside the scene's own folder, by path (`../textures/wood.png`) or by a symbolic
+    /// link that leads there.
     pub outside_files: bool,
-    /// Largest size in bytes of the file and of each file that it names.
+    /// Most bytes of the file and all files that it names, together.
     pub max_file_bytes: u64,
     /// Largest width and height of a texture in texels; larger pictures are halved until they fit.
     pub max_texture_size: u32,
-    /// Most bytes of all decoded pictures together, without their mip levels; beyond it the largest
-    /// pictures are halved until all fit.
+    /// Most bytes that textures may take while they are loaded: decoded pictures, their mip levels, and what the
+    /// decoders that run at one time need beside them. The largest pictures are halved until all fit; a
+    /// picture that cannot even be decoded within it is an error.
     pub max_texture_bytes: u64,
-    /// Most vertices of all meshes together.
+    /// Most vertices of all meshes together, morph targets included.
     pub max_vertices: u64,
     /// Most [`Instance`](crate::Instance)s: primitives times nodes times instancing elements.
     pub max_instances: u64,
     /// Most triangles, each counted once per instance.
     pub max_triangles: u64,
+    /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB that any file may have. Scenes
+    /// stay far below the default; a file that goes beyond it was made to fill the memory.
+    pub max_expansion: u64,
 }
 
 impl Default for LoadOptions {
-    /// At time 0, parallel, flat normals, own folder only; 4 GiB files, 8192-texel textures, 4 GiB of
-    /// them, 64 Mi vertices, 4 Mi instances, 4 Gi triangles.
+    /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only; 4 GiB of files, 8192-texel textures, 4 GiB of
+    /// them, 64 Mi vertices, 4 Mi instances, 4 Gi triangles, 256 bytes per byte.
     fn default() -> Self {
         Self {
             time_s: 0.0,
+            clip: Clip::default(),
+            variant: None,
             parallel: true,
             missing_normals: MissingNormals::Flat,
             outside_files: false,
@@ -58,6 +74,7 @@ impl Default for LoadOptions {
             max_vertices: 64 << 20,
             max_instances: 4 << 20,
             max_triangles: 4 << 30,
+            max_expansion: 256,
         }
     }
 }
@@ -74,13 +91,14 @@ impl Default for LoadOptions {
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     let watch = crate::timings::Stopwatch::start();
     let file = path.display().to_string();
-    let bytes = read_limited(path, options.max_file_bytes).map_err(|cause| SceneError::Read {
+    let allowance = AtomicU64::new(options.max_file_bytes);
+    let bytes = read_limited(path, &allowance).map_err(|cause| SceneError::Read {
         file: file.clone(),
         cause,
     })?;
     let read_ms = watch.elapsed_ms();
     let folder = path.parent().unwrap_or(Path::new(""));
-    let resolver = |uri: &str| resolve_beside(folder, uri, options);
+    let resolver = |uri: &str| resolve_beside(folder, uri, options.outside_files, &allowance);
     let mut scene = gltf::import(&bytes, &file, options, &resolver)?;
     scene.name = path
         .file_name()
@@ -107,36 +125,61 @@ pub fn load_bytes(
             file: name.to_owned(),
             place: "file".to_owned(),
             cause: format!(
-                "{} bytes, the limit is {}",
-                bytes.len(),
-                options.max_file_bytes
+                "has {}, the limit is {}",
+                amount(bytes.len() as u64),
+                amount(options.max_file_bytes)
             ),
+            limit: Some(Limit::FileBytes),
         });
     }
     gltf::import(bytes, name, options, resolver)
 }
 
-/// Reads a regular file of bounded size.
-fn read_limited(path: &Path, max_bytes: u64) -> Result<Vec<u8>, String> {
+/// Reads a regular file, as long as `allowance` bytes suffice, and takes its size from them.
+fn read_limited(path: &Path, allowance: &AtomicU64) -> Result<Vec<u8>, String> {
+    let file = open_regular(path)?;
+    let size = file.metadata().map_err(|e| e.to_string())?.len();
+    let rest = |left: u64| left.checked_sub(size);
+    allowance
+        .fetch_update(Ordering::Relaxed, Ordering::Relaxed, rest)
+        .map_err(|left| {
+            format!(
+                "it has {}, more than the {} that the limit on files leaves",
+                amount(size),
+                amount(left)
+            )
+        })?;
+    let mut bytes = Vec::new();
+    bytes
+        .try_reserve_exact(size as usize)
+        .map_err(|_| format!("there is no memory for its {}", amount(size)))?;
+    // A file that grows meanwhile gives no more than was counted.
+    file.take(size)
+        .read_to_end(&mut bytes)
+        .map_err(|e| e.to_string())?;
+    Ok(bytes)
+}
+
+/// Pipes and devices could keep us waiting, or give without end.
+fn open_regular(path: &Path) -> Result<File, String> {
     let found = std::fs::metadata(path).map_err(|e| e.to_string())?;
     if found.is_dir() {
         return Err("it is a directory".to_owned());
     }
-    // Pipes and devices could keep us waiting, or give without end.
     if !found.is_file() {
         return Err("it is not a regular file".to_owned());
     }
-    if found.len() > max_bytes {
-        return Err(format!(
-            "it has {} bytes, the limit is {max_bytes}",
-            found.len()
-        ));
-    }
-    std::fs::read(path).map_err(|e| e.to_string())
+    File::open(path).map_err(|e| e.to_string())
 }
 
-/// Reads a file that a scene names, which must lie in or under the scene's folder unless the options allow more.
-fn resolve_beside(folder: &Path, uri: &str, options: &LoadOptions) -> Result<Vec<u8>, String> {
+/// Reads a file that a scene names. Without `outside_files` it must lie in or under the scene's folder, by its path and
+/// after all symbolic links.
+fn resolve_beside(
+    folder: &Path,
+    uri: &str,
+    outside_files: bool,
+    allowance: &AtomicU64,
+) -> Result<Vec<u8>, String> {
     let relative = Path::new(uri);
     let mut depth = 0i32;
     for part in relative.components() {
@@ -148,12 +191,26 @@ fn resolve_beside(folder: &Path, uri: &str, options: &LoadOptions) -> Result<Vec
                 return Err(format!("\"{uri}\" is not a relative path"));
             }
         }
-        if depth < 0 && !options.outside_files {
+        if depth < 0 && !outside_files {
             return Err(format!("\"{uri}\" leads out of the scene's folder"));
         }
     }
-    read_limited(&folder.join(relative), options.max_file_bytes)
-        .map_err(|e| format!("\"{uri}\" cannot be read: {e}"))
+    let unreadable = |e: String| format!("\"{uri}\" cannot be read: {e}");
+    let path = folder.join(relative);
+    if !outside_files {
+        let resolved = |path: &Path| path.canonicalize().map_err(|e| unreadable(e.to_string()));
+        let own = if folder.as_os_str().is_empty() {
+            Path::new(".")
+        } else {
+            folder
+        };
+        if !resolved(&path)?.starts_with(resolved(own)?) {
+            return Err(format!(
+                "\"{uri}\" is a link that leads out of the scene's folder"
+            ));
+        }
+    }
+    read_limited(&path, allowance).map_err(unreadable)
 }
 
 #[cfg(test)]
@@ -170,11 +227,50 @@ mod tests {
 
     #[test]
     fn external_files_stay_in_the_scenes_folder() {
-        let options = LoadOptions::default();
-        let ask = |uri: &str| resolve_beside(Path::new("a/b"), uri, &options);
+        let ask = |uri: &str| resolve_beside(Path::new("a/b"), uri, false, &AtomicU64::new(9));
         assert!(ask("../secret.bin").is_err_and(|e| e.contains("leads out")));
         assert!(ask("x/../../secret.bin").is_err_and(|e| e.contains("leads out")));
         assert!(ask("x/../own.bin").is_err_and(|e| e.contains("cannot be read")));
         assert!(ask("/etc/hosts").is_err_and(|e| e.contains("not a relative path")));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn links_out_of_the_scenes_folder_are_followed_only_when_allowed() {
+        let folder = tempfile::tempdir().unwrap();
+        let scene = folder.path().join("scene");
+        std::fs::create_dir(&scene).unwrap();
+        std::fs::write(folder.path().join("secret"), b"12345").unwrap();
+        std::fs::write(scene.join("own"), b"1234").unwrap();
+        std::os::unix::fs::symlink("../secret", scene.join("out")).unwrap();
+        std::os::unix::fs::symlink("own", scene.join("in")).unwrap();
+        std::os::unix::fs::symlink("..", scene.join("up")).unwrap();
+        let ask = |uri: &str, outside| {
+            resolve_beside(&scene, uri, outside, &AtomicU64::new(100)).map(|b| b.len())
+        };
+        for uri in ["out", "up/secret"] {
+            let text = ask(uri, false).unwrap_err();
+            assert!(
+                text.contains("link that leads out of the scene's folder"),
+                "{text}"
+            );
+            assert_eq!(ask(uri, true), Ok(5));
+        }
+        assert_eq!(ask("in", false), Ok(4));
+        assert_eq!(ask("up/scene/own", false), Ok(4));
+    }
+
+    #[test]
+    fn all_files_together_stay_below_the_limit() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a"), b"1234").unwrap();
+        let left = AtomicU64::new(10);
+        let ask = || resolve_beside(folder.path(), "a", false, &left);
+        assert!(ask().is_ok() && ask().is_ok());
+        let text = ask().unwrap_err();
+        assert!(
+            text.contains("4 bytes") && text.contains("2 bytes"),
+            "{text}"
+        );
     }
 }

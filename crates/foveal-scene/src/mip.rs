@@ -4,6 +4,8 @@
 //! weights that follow the texel borders). Colours are averaged as light, not as sRGB code values;
 //! intermediate levels keep 16 bits so that rounding does not add up.
 
+use std::ops::Range;
+
 /// What the channels mean for filtering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Content {
@@ -35,15 +37,28 @@ pub(crate) fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) 
     if count == 1 {
         return levels;
     }
-    let mut wide = widen(&levels[0], content);
     let threshold = match content {
         Content::Cutout {
             threshold: Some(threshold),
-        } => Some((threshold, coverage(&wide, threshold))),
+        } => Some((threshold, coverage(&levels[0], threshold))),
         _ => None,
     };
-    for _ in 1..count {
-        wide = halve(&wide, w, h);
+    let mut wide = Wide::new();
+    for level in 1..count {
+        wide = if level == 1 {
+            // Row by row: the whole picture with 16 bits a channel would take twice its memory.
+            halve(w, h, |rows, out| {
+                widen(
+                    &levels[0][rows.start * w * 4..rows.end * w * 4],
+                    content,
+                    out,
+                );
+            })
+        } else {
+            halve(w, h, |rows, out| {
+                out.extend_from_slice(&wide[rows.start * w..rows.end * w]);
+            })
+        };
         (w, h) = ((w / 2).max(1), (h / 2).max(1));
         let scale = threshold.map_or(1.0, |(threshold, wanted)| {
             alpha_scale(&wide, threshold, wanted)
@@ -56,34 +71,33 @@ pub(crate) fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) 
 /// Texels as 16-bit numbers in the space where they may be averaged. Normals are offset by one half.
 type Wide = Vec<[u16; 4]>;
 
-fn widen(pixels: &[u8], content: Content) -> Wide {
+/// Appends texels as they may be averaged.
+fn widen(pixels: &[u8], content: Content, out: &mut Wide) {
     let texels = pixels.as_chunks::<4>().0.iter();
     match content {
         Content::Color => {
             let linear = crate::srgb::to_linear16();
-            texels
-                .map(|&[r, g, b, a]| {
-                    [
-                        linear[r as usize],
-                        linear[g as usize],
-                        linear[b as usize],
-                        u16::from(a) * 257,
-                    ]
-                })
-                .collect()
+            out.extend(texels.map(|&[r, g, b, a]| {
+                [
+                    linear[r as usize],
+                    linear[g as usize],
+                    linear[b as usize],
+                    u16::from(a) * 257,
+                ]
+            }));
         }
         Content::Cutout { .. } => {
             let linear = crate::srgb::to_linear16();
-            texels
-                .map(|&[r, g, b, a]| {
-                    let alpha = u32::from(a) * 257;
-                    let weigh =
-                        |c: u8| ((u32::from(linear[c as usize]) * alpha + 32767) / 65535) as u16;
-                    [weigh(r), weigh(g), weigh(b), alpha as u16]
-                })
-                .collect()
+            out.extend(texels.map(|&[r, g, b, a]| {
+                let alpha = u32::from(a) * 257;
+                let weigh =
+                    |c: u8| ((u32::from(linear[c as usize]) * alpha + 32767) / 65535) as u16;
+                [weigh(r), weigh(g), weigh(b), alpha as u16]
+            }));
         }
-        Content::Data | Content::Normal => texels.map(|t| t.map(|c| u16::from(c) * 257)).collect(),
+        Content::Data | Content::Normal => {
+            out.extend(texels.map(|t| t.map(|c| u16::from(c) * 257)));
+        }
     }
 }
 
@@ -137,50 +151,53 @@ fn narrow(wide: &[[u16; 4]], content: Content, alpha_scale: f32) -> Vec<u8> {
     out
 }
 
-/// Half the size, rounded down, at least one texel each way.
-fn halve(wide: &[[u16; 4]], width: usize, height: usize) -> Wide {
+/// Half the size, rounded down, at least one texel each way. `read` appends the texels of a range of rows.
+fn halve(width: usize, height: usize, read: impl Fn(Range<usize>, &mut Wide)) -> Wide {
     let (w, h) = ((width / 2).max(1), (height / 2).max(1));
-    if width.is_multiple_of(2) && height.is_multiple_of(2) {
-        return halve_even(wide, width);
-    }
-    let columns: Vec<Taps> = (0..w).map(|i| Taps::of(i, width)).collect();
     let mut out = Vec::with_capacity(w * h);
+    let mut rows = Wide::new();
+    let columns: Vec<Taps> = (0..w).map(|i| Taps::of(i, width)).collect();
     for y in 0..h {
-        let rows = Taps::of(y, height);
-        for taps in &columns {
-            let mut sum = [0f64; 4];
-            for (row, weight_y) in rows.iter() {
-                for (column, weight_x) in taps.iter() {
-                    let texel = wide[row * width + column];
-                    for (s, c) in sum.iter_mut().zip(texel) {
-                        *s += weight_y * weight_x * f64::from(c);
-                    }
-                }
-            }
-            out.push(sum.map(|s| (s + 0.5) as u16));
+        let taps = Taps::of(y, height);
+        rows.clear();
+        read(taps.first..taps.first + taps.count, &mut rows);
+        if width.is_multiple_of(2) && height.is_multiple_of(2) {
+            halve_even(&rows, &mut out);
+        } else {
+            halve_odd(&rows, width, &columns, &taps, &mut out);
         }
     }
     out
 }
 
-/// The common case: four texels of equal weight.
-fn halve_even(wide: &[[u16; 4]], width: usize) -> Wide {
-    let mut out = Vec::with_capacity(wide.len() / 4);
-    for rows in wide.chunks_exact(width * 2) {
-        let (upper, lower) = rows.split_at(width);
-        let pairs = upper
-            .as_chunks::<2>()
-            .0
-            .iter()
-            .zip(lower.as_chunks::<2>().0);
-        out.extend(pairs.map(|([a, b], [c, d])| {
-            std::array::from_fn(|k| {
-                ((u32::from(a[k]) + u32::from(b[k]) + u32::from(c[k]) + u32::from(d[k]) + 2) / 4)
-                    as u16
-            })
-        }));
+/// One row out of one to three, by the share that each texel has.
+fn halve_odd(rows: &[[u16; 4]], width: usize, columns: &[Taps], taps_y: &Taps, out: &mut Wide) {
+    for taps_x in columns {
+        let mut sum = [0f64; 4];
+        for (row, (_, weight_y)) in rows.chunks_exact(width).zip(taps_y.iter()) {
+            for (column, weight_x) in taps_x.iter() {
+                for (s, c) in sum.iter_mut().zip(row[column]) {
+                    *s += weight_y * weight_x * f64::from(c);
+                }
+            }
+        }
+        out.push(sum.map(|s| (s + 0.5) as u16));
     }
-    out
+}
+
+/// The common case: four texels of equal weight, from two rows.
+fn halve_even(rows: &[[u16; 4]], out: &mut Wide) {
+    let (upper, lower) = rows.split_at(rows.len() / 2);
+    let pairs = upper
+        .as_chunks::<2>()
+        .0
+        .iter()
+        .zip(lower.as_chunks::<2>().0);
+    out.extend(pairs.map(|([a, b], [c, d])| {
+        std::array::from_fn(|k| {
+            ((u32::from(a[k]) + u32::from(b[k]) + u32::from(c[k]) + u32::from(d[k]) + 2) / 4) as u16
+        })
+    }));
 }
 
 /// The texels under one texel of the next level, along one axis, and the share of each.
@@ -221,10 +238,11 @@ fn least_passing(threshold: f32) -> f32 {
 }
 
 /// Share of texels that pass the threshold.
-fn coverage(wide: &[[u16; 4]], threshold: f32) -> f32 {
+fn coverage(pixels: &[u8], threshold: f32) -> f32 {
     let least = least_passing(threshold);
-    let passed = wide.iter().filter(|t| f32::from(t[3]) >= least).count();
-    passed as f32 / wide.len() as f32
+    let texels = pixels.as_chunks::<4>().0;
+    let passes = |t: &&[u8; 4]| f32::from(u16::from(t[3]) * 257) >= least;
+    texels.iter().filter(passes).count() as f32 / texels.len() as f32
 }
 
 /// The factor on alpha that brings the coverage as near to `wanted` as it can come.

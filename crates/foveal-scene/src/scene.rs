@@ -76,6 +76,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Backdrop and ambient light.
     pub environment: Environment,
+    /// Names of the file's variants of materials; [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
+    pub variants: Vec<String>,
     /// What the importer could not honour.
     pub warnings: Vec<Warning>,
     /// How it moves; opaque, still by default. See [`Scene::pose`].

@@ -39,7 +39,7 @@ pub(crate) struct Args {
     camera: CameraArgs,
 
     /// Add N coloured point lights to the scene
-    #[arg(long, value_name = "N", default_value_t = 200)]
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = values::point_lights)]
     point_lights: u32,
 
     /// Which lights a sample looks at; the technique's source has no clusters: brute [default: clustered]

@@ -41,7 +41,7 @@ pub(crate) struct Args {
     camera: CameraArgs,
 
     /// Coloured point lights that are added to the scene; may be given several times
-    #[arg(long, value_name = "N", default_values_t = [32, 128])]
+    #[arg(long, value_name = "N", default_values_t = [32, 128], value_parser = values::point_lights)]
     point_lights: Vec<u32>,
 
     /// Contrast thresholds; may be given several times

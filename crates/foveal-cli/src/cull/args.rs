@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::occluders::Choice;
 use crate::failure::usage;
+use crate::import_args::ImportArgs;
 use crate::values;
 
 /// Arguments of `foveal cull`.
@@ -20,6 +21,9 @@ pub(crate) struct Args {
 
     #[command(flatten)]
     pub(super) culling: CullingArgs,
+
+    #[command(flatten)]
+    pub(super) import: ImportArgs,
 
     /// The depth buffer's size in pixels; coverage is sampled 4x4 times in each. Intel's sample has 320x192,
     /// 640x360, 1280x720 and 1920x1080

@@ -40,7 +40,7 @@ pub(crate) fn read(path: &Path, defaults: Defaults) -> anyhow::Result<Vec<NamedE
     parse(&text, defaults).with_context(|| format!("the camera file '{}' is wrong", path.display()))
 }
 
-fn parse(text: &str, defaults: Defaults) -> anyhow::Result<Vec<NamedEye>> {
+pub(super) fn parse(text: &str, defaults: Defaults) -> anyhow::Result<Vec<NamedEye>> {
     let json: Value = serde_json::from_str(text)?;
     let Value::Array(entries) = json else {
         bail!("it must be a list of cameras: [{{…}}, …]");

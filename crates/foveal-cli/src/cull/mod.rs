@@ -7,6 +7,8 @@ mod args;
 pub(crate) mod around;
 pub(crate) mod camera_file;
 mod frustum;
+#[cfg(test)]
+mod fuzz;
 pub(crate) mod measure;
 mod mocrec;
 pub(crate) mod occluders;
@@ -129,7 +131,7 @@ fn subjects(args: &Args) -> anyhow::Result<(String, Vec<Subject>, Vec<String>)> 
         }
         return Ok((args.scene.clone(), subjects, Vec::new()));
     }
-    let scene = scene_source::load(&args.scene)?;
+    let scene = scene_source::load_with(&args.scene, &args.import.options())?;
     let (width, height) = args.size;
     let aspect = f64::from(width) / f64::from(height);
     let eyes = args.views.choose(&scene, aspect)?;

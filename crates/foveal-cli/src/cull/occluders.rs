@@ -50,9 +50,9 @@ pub(crate) struct Shape {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Occluders {
     pub(crate) set: OccluderSet,
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Arc<[Shape]>,
     /// Baked shapes, one for one.
-    pub(crate) meshes: Vec<Arc<OccluderMesh>>,
+    pub(crate) meshes: Arc<[Arc<OccluderMesh>]>,
     /// Number of the shape, and where it is.
     pub(crate) placed: Vec<(usize, DAffine3)>,
 }
@@ -91,7 +91,7 @@ impl Occluders {
 
     /// Bakes each shape once, on all cores, and places it as often as it stands somewhere.
     pub(crate) fn bake(shapes: Vec<Shape>, placed: Vec<(usize, DAffine3)>) -> anyhow::Result<Self> {
-        let meshes: Vec<Arc<OccluderMesh>> = shapes
+        let meshes: Arc<[Arc<OccluderMesh>]> = shapes
             .par_iter()
             .map(|shape| {
                 let options = BakeOptions {
@@ -101,14 +101,24 @@ impl Occluders {
                 OccluderMesh::bake(&shape.positions, &shape.indices, options).map(Arc::new)
             })
             .collect::<Result<_, _>>()?;
+        let baked = Self {
+            shapes: shapes.into(),
+            meshes,
+            ..Self::default()
+        };
+        baked.placed(placed)
+    }
+
+    /// The same shapes, baked already, at other places.
+    pub(crate) fn placed(&self, placed: Vec<(usize, DAffine3)>) -> anyhow::Result<Self> {
         let mut set = OccluderSet::new();
         for &(shape, world_from_mesh) in &placed {
-            set.add(meshes[shape].clone(), world_from_mesh)?;
+            set.add(self.meshes[shape].clone(), world_from_mesh)?;
         }
         Ok(Self {
             set,
-            shapes,
-            meshes,
+            shapes: Arc::clone(&self.shapes),
+            meshes: Arc::clone(&self.meshes),
             placed,
         })
     }

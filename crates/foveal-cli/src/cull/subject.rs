@@ -33,6 +33,15 @@ pub(crate) struct Subject {
 }
 
 impl Occludees {
+    /// Takes over the things of `other`, after its own.
+    pub(crate) fn append(&mut self, other: Self) {
+        self.boxes.extend(other.boxes);
+        self.triangles.extend(other.triangles);
+        self.draws.extend(other.draws);
+        self.ids.extend(other.ids);
+        self.recorded.extend(other.recorded);
+    }
+
     /// The objects of a scene as it is posed.
     pub(crate) fn of_scene(scene: &Scene) -> Self {
         let mut occludees = Self::default();

@@ -5,6 +5,7 @@ use std::fmt::Write;
 use super::mocrec::Agreement;
 use super::report::{CameraReport, Report};
 use super::truth::Check;
+use crate::console;
 use crate::render::grouped;
 
 /// All cameras, one after the other.
@@ -31,7 +32,7 @@ pub(super) fn text(report: &Report) -> String {
 }
 
 fn push_camera(text: &mut String, camera: &CameraReport) {
-    let _ = writeln!(text, "\ncamera '{}'", camera.name);
+    let _ = writeln!(text, "\ncamera '{}'", console::escaped_line(&camera.name));
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:31} {value:>14}");
     };

@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use super::settings_args::SettingsArgs;
 use crate::failure::usage;
+use crate::import_args::ImportArgs;
 use crate::values;
 
 /// Arguments of `foveal render`.
@@ -32,8 +33,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) frames: FrameArgs,
 
+    #[command(flatten)]
+    pub(super) import: ImportArgs,
+
     /// Add N coloured point lights to the scene
-    #[arg(long, value_name = "N", default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     pub(super) point_lights: u32,
 
     /// Another number scatters the added point lights differently

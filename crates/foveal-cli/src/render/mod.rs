@@ -8,6 +8,8 @@ mod camera_path;
 pub(crate) mod clock;
 mod drawing;
 mod frame_files;
+#[cfg(test)]
+mod fuzz;
 mod inside;
 mod rate_image;
 mod settings;
@@ -105,7 +107,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         )?;
     }
     if !args.quiet {
-        eprint!("{}", summary::text(&run));
+        console::note(&summary::text(&run));
     }
     Ok(())
 }
@@ -132,14 +134,14 @@ fn prepare(
     settings: &Settings,
     load_ms: &mut Vec<Timing>,
 ) -> anyhow::Result<(Drawing, AdapterStats)> {
-    let name = args.scene.clone();
+    let (name, options) = (args.scene.clone(), args.import.options());
     let loading = thread::Builder::new()
         .name("load".to_owned())
         // Debug builds decode deep files with large frames.
         .stack_size(16 << 20)
         .spawn(move || {
             let mut load_ms = Vec::new();
-            scene_source::load_timed(&name, &mut load_ms).map(|scene| (scene, load_ms))
+            scene_source::load_timed(&name, &options, &mut load_ms).map(|scene| (scene, load_ms))
         })
         .context("cannot start a thread")?;
 
@@ -176,6 +178,8 @@ fn prepare(
     let viewpoint = Viewpoint::choose(&args.camera, &scene, &args.scene)?;
     timed(load_ms, "upload", || block_on(renderer.set_scene(&scene)))
         .with_context(|| format!("cannot draw the scene '{}'", scene.name))?;
+    // They are on the device now, and nothing here reads them again.
+    scene.textures = Vec::new();
     Ok((
         Drawing::new(renderer, scene, viewpoint),
         gpu.adapter_stats(),

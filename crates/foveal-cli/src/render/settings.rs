@@ -32,7 +32,7 @@ fn with(settings: &Settings, given: &Table) -> anyhow::Result<Settings> {
 }
 
 /// What is wrong on every device; each device's own limits are the renderer's to check.
-fn check(settings: &Settings) -> anyhow::Result<()> {
+pub(super) fn check(settings: &Settings) -> anyhow::Result<()> {
     let boundless = wgpu::Limits {
         max_texture_dimension_2d: u32::MAX,
         max_buffer_size: u64::MAX,
@@ -62,12 +62,12 @@ pub(crate) fn read(path: &Path) -> anyhow::Result<Settings> {
     })
 }
 
-fn parse(text: &str) -> Result<Settings, toml::de::Error> {
+pub(super) fn parse(text: &str) -> Result<Settings, toml::de::Error> {
     toml::from_str(text)
 }
 
 /// «in line 3, key 'exposure'» for a byte offset.
-fn place(text: &str, offset: usize) -> String {
+pub(super) fn place(text: &str, offset: usize) -> String {
     let before = &text[..text.floor_char_boundary(offset)];
     let number = before.matches('\n').count() + 1;
     let line = text.lines().nth(number - 1).unwrap_or_default();

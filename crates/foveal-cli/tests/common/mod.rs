@@ -20,7 +20,8 @@ pub(crate) fn spawn_in(folder: &Path, words: &[&str]) -> Child {
     command(folder, words).spawn().unwrap()
 }
 
-fn command(folder: &Path, words: &[&str]) -> Command {
+/// `foveal` with these words in `folder`, not started yet.
+pub(crate) fn command(folder: &Path, words: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_foveal"));
     // Graphics drivers complain on stderr without a runtime folder.
     command

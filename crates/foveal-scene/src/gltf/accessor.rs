@@ -1,12 +1,14 @@
 //! Definitions of accessors (glTF 2.0 specification, section 3.6.2); [`reader`](super::reader) gives
 //! their elements.
 
+use std::collections::HashMap;
+
 use super::document::Counts;
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
 
 /// Type of one component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Component {
     I8,
     U8,
@@ -43,7 +45,21 @@ impl Component {
     }
 }
 
+/// For each accessor the first one that reads the same: meshes that differ by nothing else are built once.
+pub(crate) fn first_of_equal(accessors: &[Accessor]) -> Vec<u32> {
+    let mut first = HashMap::new();
+    let number = |(i, accessor): (usize, &'_ Accessor)| {
+        // What nothing stores may come from elsewhere.
+        if accessor.view.is_none() {
+            return i as u32;
+        }
+        *first.entry(accessor.clone()).or_insert(i as u32)
+    };
+    accessors.iter().enumerate().map(number).collect()
+}
+
 /// Replacement of single elements.
+#[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Sparse {
     pub(crate) count: usize,
     pub(crate) indices_view: u32,
@@ -54,6 +70,7 @@ pub(crate) struct Sparse {
 }
 
 /// An accessor whose own properties are in order; its extent is checked when it is read.
+#[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct Accessor {
     pub(crate) view: Option<u32>,
     pub(crate) offset: u64,
@@ -63,6 +80,8 @@ pub(crate) struct Accessor {
     pub(crate) width: usize,
     pub(crate) normalized: bool,
     pub(crate) sparse: Option<Sparse>,
+    /// Its elements come out of a Draco stream.
+    pub(crate) draco: bool,
 }
 
 impl Accessor {
@@ -95,12 +114,13 @@ impl Accessor {
             width,
             normalized: o.boolean("normalized")?.unwrap_or(false),
             sparse,
+            draco: false,
         })
     }
 
     /// Elements that take memory here without taking any in the file.
     pub(crate) fn unbacked(&self) -> u64 {
-        if self.view.is_none() {
+        if self.view.is_none() && !self.draco {
             self.count as u64
         } else {
             0

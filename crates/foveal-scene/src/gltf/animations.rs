@@ -22,6 +22,7 @@ struct ChannelDef {
 
 /// An animation as the file has it.
 pub(crate) struct AnimationDef {
+    name: Option<String>,
     samplers: Vec<SamplerDef>,
     channels: Vec<ChannelDef>,
 }
@@ -55,7 +56,11 @@ impl AnimationDef {
                     .to_owned(),
             })
         })?;
-        Ok(Self { samplers, channels })
+        Ok(Self {
+            name: o.name("name")?,
+            samplers,
+            channels,
+        })
     }
 
     /// The key frames. `weights_of` gives the number of morph targets of a node's mesh.
@@ -84,7 +89,7 @@ impl AnimationDef {
                 )),
             }
         }
-        Animation::new(channels)
+        Animation::new(self.name.clone().unwrap_or_default(), channels)
     }
 
     fn read_channel(
@@ -116,6 +121,10 @@ impl AnimationDef {
         };
         let place = |e: Flaw, part: &str| e.under(format_args!("sampler {} {part}", def.sampler));
         let sampler = &self.samplers[def.sampler as usize];
+        let numbers = |a: u32| reader.accessor(a).count as u64 * reader.accessor(a).width as u64;
+        let keys = numbers(sampler.input).saturating_add(numbers(sampler.output));
+        let budget = &reader.buffers.budget;
+        budget.take(keys.saturating_mul(4), "key frames")?;
         let times: Vec<f32> = reader
             .floats::<1>(sampler.input)
             .map_err(|e| place(e, "input"))?

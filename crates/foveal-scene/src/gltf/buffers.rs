@@ -1,15 +1,22 @@
-//! The bytes behind the buffers, and the budgets that keep short files from becoming long vectors.
+//! The bytes behind the buffers, decompressed where they are compressed, and the budgets that keep short files from becoming long vectors.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::Resolver;
+use super::budget::Budget;
 use super::document::{BufferDef, Document};
+use super::draco::DracoDef;
+use super::meshopt::Coded;
 use super::uri::{self, Uri};
 use crate::error::{Flaw, Parsed};
+use crate::{LoadOptions, threads};
 
-/// Numbers that all accessors together may yield: overlapping accessors can make many out of few bytes.
-const MAX_NUMBERS: u64 = 1 << 30;
+/// Numbers that all accessors together may yield, and how many more for each byte of the files: overlapping accessors
+/// can make many out of few bytes.
+const FREE_NUMBERS: u64 = 64 << 20;
+const NUMBERS_PER_BYTE: u64 = 64;
 
 /// Elements without stored values that all accessors together may have.
 pub(crate) const MAX_UNBACKED: u64 = 2 << 20;
@@ -27,19 +34,30 @@ pub(crate) struct Buffers<'a> {
     bin: &'a [u8],
     stored: Vec<Vec<u8>>,
     sources: Vec<Result<Source, Flaw>>,
-    unbacked: Budget,
-    numbers: Budget,
+    /// Buffers that may be missing.
+    fallback: Vec<bool>,
+    unbacked: Count,
+    numbers: Count,
+    /// Memory that the scene may still ask for.
+    pub(crate) budget: Budget,
+    /// Compressed views as they would be without compression, by view.
+    plain: HashMap<u32, Parsed<Vec<u8>>>,
+    /// Elements out of Draco streams, by accessor.
+    dense: HashMap<u32, Parsed<Vec<u8>>>,
 }
 
 impl<'a> Buffers<'a> {
-    /// Fetches every buffer.
+    /// Fetches every buffer. `json` is the number of bytes of the document itself.
     pub(crate) fn fetch(
         defs: &[BufferDef],
+        json: usize,
         bin: Option<&'a [u8]>,
+        options: &LoadOptions,
         resolver: &Resolver<'_>,
     ) -> Self {
         let mut store = Store {
             stored: Vec::new(),
+            read: Vec::new(),
             by_uri: HashMap::new(),
             resolver,
         };
@@ -52,32 +70,129 @@ impl<'a> Buffers<'a> {
                     .map_err(|cause| Flaw::new(cause).under(format_args!("buffers[{i}]")))
             })
             .collect();
+        let files = bin
+            .iter()
+            .map(|b| b.len())
+            .chain(store.read.iter().copied());
+        let input = files.chain([json]).map(|len| len as u64).sum();
         Self {
             bin: bin.unwrap_or_default(),
             stored: store.stored,
             sources,
-            unbacked: Budget::new(MAX_UNBACKED),
-            numbers: Budget::new(MAX_NUMBERS),
+            fallback: defs.iter().map(|def| def.fallback).collect(),
+            unbacked: Count::new(MAX_UNBACKED),
+            numbers: Count::new(FREE_NUMBERS.saturating_add(NUMBERS_PER_BYTE * input)),
+            budget: Budget::new(input, options),
+            plain: HashMap::new(),
+            dense: HashMap::new(),
+        }
+    }
+
+    /// Decodes what is compressed. What is broken fails only when something reads it; what is too large is an error.
+    pub(crate) fn decompress(&mut self, document: &Document, parallel: bool) -> Parsed<()> {
+        let views = 0..document.views.len() as u32;
+        let coded: Vec<(u32, &Coded)> = views
+            .filter_map(|i| Some((i, document.views[i as usize].coded.as_ref()?)))
+            .collect();
+        for (i, coded) in &coded {
+            self.budget
+                .take(coded.decoded_len(), "decompressed data")
+                .map_err(|e| e.under(format_args!("bufferViews[{i}]")))?;
+        }
+        let plain = threads::map(parallel, &coded, |(_, coded)| {
+            let bytes = self.bytes(coded.buffer)?;
+            let end = coded.offset.saturating_add(coded.len);
+            let place = usize::try_from(coded.offset)
+                .ok()
+                .zip(usize::try_from(end).ok());
+            let slice = place.and_then(|(start, end)| bytes.get(start..end));
+            slice
+                .ok_or_else(|| "its compressed data end beyond their buffer".to_owned())
+                .and_then(|bytes| coded.decode(bytes))
+                .map_err(Flaw::new)
+        });
+        self.plain = coded.iter().map(|(i, _)| *i).zip(plain).collect();
+
+        let primitives = document.meshes.iter().flat_map(|m| &m.primitives);
+        let mut seen = HashSet::new();
+        let streams: Vec<&DracoDef> = primitives
+            .filter_map(|p| p.draco.as_ref())
+            .filter(|def| {
+                def.accessors()
+                    .any(|a| document.accessors[a as usize].draco)
+            })
+            .filter(|def| seen.insert(*def))
+            .collect();
+        for def in &streams {
+            let bytes = def.decoding_bytes(&document.accessors);
+            self.budget
+                .take(bytes, "Draco meshes")
+                .map_err(|e| e.under(format_args!("bufferViews[{}]", def.view)))?;
+        }
+        let decoded = threads::map(parallel, &streams, |def| {
+            let bytes = self.view(document, def.view)?;
+            // The decoder promises not to panic; should it, this mesh is broken and nothing else.
+            catch_unwind(AssertUnwindSafe(|| def.decode(bytes, &document.accessors)))
+                .unwrap_or_else(|_| Err(Flaw::new("is broken: the decoder failed")))
+                .map_err(|e| e.under(format_args!("its Draco data in bufferViews[{}]", def.view)))
+        });
+        for (def, decoded) in streams.iter().zip(decoded) {
+            match decoded {
+                Ok(all) => {
+                    let all = all.into_iter().map(|d| (d.accessor, Ok(d.bytes)));
+                    self.dense.extend(all);
+                }
+                Err(flaw) => {
+                    let flaw = Flaw::new(flaw.sentence());
+                    let all = def.accessors().map(|a| (a, Err(flaw.clone())));
+                    self.dense.extend(all);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The elements of an accessor that nothing but a Draco stream stores.
+    pub(crate) fn dense(&self, accessor: u32) -> Parsed<&[u8]> {
+        match self.dense.get(&accessor) {
+            Some(Ok(bytes)) => Ok(bytes),
+            Some(Err(flaw)) => Err(flaw.clone()),
+            None => Err(Flaw::new("has no Draco data")),
         }
     }
 
     /// The faults of all buffers that could not be had.
     pub(crate) fn faults(&self) -> impl Iterator<Item = &Flaw> {
-        self.sources.iter().filter_map(|b| b.as_ref().err())
+        let missing = self.sources.iter().zip(&self.fallback);
+        let missing = missing.filter(|(_, fallback)| !**fallback);
+        missing.filter_map(|(b, _)| b.as_ref().err())
     }
 
     /// The bytes of a buffer view.
     pub(crate) fn view(&self, document: &Document, view: u32) -> Parsed<&[u8]> {
         let def = &document.views[view as usize];
-        let bytes = match &self.sources[def.buffer as usize] {
-            Ok(Source::Bin) => self.bin,
-            Ok(Source::Stored(i)) => self.stored[*i].as_slice(),
-            Err(flaw) => return Err(Flaw::new(flaw.sentence())),
-        };
+        if let Some(plain) = self.plain.get(&view) {
+            return match plain {
+                Ok(bytes) => bytes
+                    .get(..def.len as usize)
+                    .ok_or_else(|| Flaw::new(format!("bufferViews[{view}] ends beyond its data"))),
+                Err(flaw) => Err(Flaw::new(format!("bufferViews[{view}]: {}", flaw.cause))),
+            };
+        }
+        let bytes = self.bytes(def.buffer)?;
         let (start, end) = (def.offset as usize, (def.offset + def.len) as usize);
         bytes
             .get(start..end)
             .ok_or_else(|| Flaw::new(format!("bufferViews[{view}] ends beyond its buffer")))
+    }
+
+    /// All bytes of a buffer.
+    fn bytes(&self, buffer: u32) -> Parsed<&[u8]> {
+        match &self.sources[buffer as usize] {
+            Ok(Source::Bin) => Ok(self.bin),
+            Ok(Source::Stored(i)) => Ok(self.stored[*i].as_slice()),
+            Err(flaw) => Err(Flaw::new(flaw.sentence())),
+        }
     }
 
     /// Counts elements that exist only by declaration: a short file must not fill the memory with zeros.
@@ -93,12 +208,12 @@ impl<'a> Buffers<'a> {
 }
 
 /// Something that runs out.
-struct Budget {
+struct Count {
     limit: u64,
     left: AtomicU64,
 }
 
-impl Budget {
+impl Count {
     fn new(limit: u64) -> Self {
         Self {
             limit,
@@ -123,6 +238,8 @@ impl Budget {
 /// Files by URI, each fetched once.
 struct Store<'r> {
     stored: Vec<Vec<u8>>,
+    /// Sizes of external files; data URIs are part of the document.
+    read: Vec<usize>,
     by_uri: HashMap<String, usize>,
     resolver: &'r Resolver<'r>,
 }
@@ -149,7 +266,11 @@ impl Store<'_> {
         }
         let bytes = match uri::parse(text).map_err(|e| format!("its URI {e}"))? {
             Uri::Data(bytes) => bytes,
-            Uri::File(path) => (self.resolver)(&path)?,
+            Uri::File(path) => {
+                let bytes = (self.resolver)(&path)?;
+                self.read.push(bytes.len());
+                bytes
+            }
         };
         self.stored.push(bytes);
         let number = self.stored.len() - 1;

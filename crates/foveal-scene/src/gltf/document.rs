@@ -8,11 +8,13 @@ use serde_json::Value;
 use super::accessor::Accessor;
 use super::animations::AnimationDef;
 use super::cameras::CameraDef;
+use super::draco::DracoDef;
 use super::images::{ImageDef, TextureDef};
 use super::json::Obj;
 use super::lights::LightDef;
 use super::materials::MaterialDef;
 use super::meshes::MeshDef;
+use super::meshopt::Coded;
 use super::nodes::NodeDef;
 use super::skins::SkinDef;
 use crate::Sampler;
@@ -32,12 +34,15 @@ pub(crate) struct Counts {
     pub(crate) nodes: usize,
     pub(crate) scenes: usize,
     pub(crate) lights: usize,
+    pub(crate) variants: usize,
 }
 
 /// A buffer before its bytes are fetched.
 pub(crate) struct BufferDef {
     pub(crate) uri: Option<String>,
     pub(crate) len: u64,
+    /// Only for readers that know nothing of compression; it may have no bytes.
+    pub(crate) fallback: bool,
 }
 
 /// A slice of a buffer, known to lie within the buffer's declared length.
@@ -46,6 +51,8 @@ pub(crate) struct View {
     pub(crate) offset: u64,
     pub(crate) len: u64,
     pub(crate) stride: Option<u64>,
+    /// How its bytes are compressed, where they are.
+    pub(crate) coded: Option<Coded>,
 }
 
 /// All parts of a glTF file, in the file's order.
@@ -63,6 +70,8 @@ pub(crate) struct Document {
     pub(crate) lights: Vec<LightDef>,
     pub(crate) nodes: Vec<NodeDef>,
     pub(crate) animations: Vec<AnimationDef>,
+    /// Names of variants of materials.
+    pub(crate) variants: Vec<String>,
     /// Root nodes of the scene to show.
     pub(crate) roots: Vec<u32>,
 }
@@ -74,6 +83,7 @@ impl Document {
         check_version(root)?;
         super::extensions::check(root, warn)?;
         let lights = root.extension("KHR_lights_punctual")?;
+        let variants = parse_variants(root)?;
         let counts = Counts {
             views: root.len_of("bufferViews"),
             accessors: root.len_of("accessors"),
@@ -87,6 +97,7 @@ impl Document {
             nodes: root.len_of("nodes"),
             scenes: root.len_of("scenes"),
             lights: lights.map_or(0, |l| l.len_of("lights")),
+            variants: variants.len(),
         };
         let buffers = root.objects("buffers", parse_buffer)?;
         let views = root.objects("bufferViews", |o| parse_view(o, &buffers))?;
@@ -105,27 +116,68 @@ impl Document {
         };
         let images = root.objects("images", |o| ImageDef::parse(o, &counts))?;
         let mut textures = root.objects("textures", |o| TextureDef::parse(o, &counts))?;
-        let first = super::images::first_of_equal(&images);
+        let first = super::images::first_of_equal(&images, &views);
         for texture in &mut textures {
             texture.image = texture.image.map(|i| first[i as usize]);
         }
+        let mut accessors = root.objects("accessors", |o| Accessor::parse(o, &counts))?;
+        let mut meshes = root.objects("meshes", |o| MeshDef::parse(o, &counts))?;
+        let first = super::accessor::first_of_equal(&accessors);
+        for mesh in &mut meshes {
+            mesh.renumber_accessors(&first);
+        }
+        for def in meshes.iter().flat_map(|m| &m.primitives) {
+            for accessor in def.draco.iter().flat_map(DracoDef::accessors) {
+                let accessor = &mut accessors[accessor as usize];
+                accessor.draco = accessor.view.is_none();
+            }
+        }
         Ok(Self {
-            accessors: root.objects("accessors", |o| Accessor::parse(o, &counts))?,
+            accessors,
             images,
             samplers: root.objects("samplers", super::images::parse_sampler)?,
             textures,
             materials: root.objects("materials", |o| MaterialDef::parse(o, &counts))?,
-            meshes: root.objects("meshes", |o| MeshDef::parse(o, &counts))?,
+            meshes,
             skins: root.objects("skins", |o| SkinDef::parse(o, &counts))?,
             cameras: root.objects("cameras", CameraDef::parse)?,
             animations: root.objects("animations", |o| AnimationDef::parse(o, &counts))?,
             lights: light_defs,
+            variants,
             roots: parse_roots(root, &counts, warn)?,
             buffers,
             views,
             nodes,
         })
     }
+}
+
+impl Document {
+    /// Gives each primitive the material that it has in a variant, by name or by number.
+    pub(crate) fn choose_variant(&mut self, wanted: &str) -> Parsed<()> {
+        let named = self.variants.iter().position(|name| name == wanted);
+        let numbered = || wanted.parse().ok().filter(|n| *n < self.variants.len());
+        let Some(number) = named.or_else(numbered) else {
+            let names = self.variants.iter().enumerate();
+            let names = names.map(|(i, name)| format!("{i} '{name}'"));
+            return Err(super::no_such("variant", wanted, names.collect()));
+        };
+        for mesh in &mut self.meshes {
+            mesh.choose_variant(number as u32);
+        }
+        Ok(())
+    }
+}
+
+fn parse_variants(root: Obj<'_>) -> Parsed<Vec<String>> {
+    let Some(extension) = root.extension("KHR_materials_variants")? else {
+        return Ok(Vec::new());
+    };
+    extension
+        .objects("variants", |o| {
+            Ok(o.string("name")?.unwrap_or_default().to_owned())
+        })
+        .map_err(|e| e.under("extensions.KHR_materials_variants"))
 }
 
 /// Only glTF 2 is understood; a minor version above ours may be, unless the file says otherwise.
@@ -163,7 +215,21 @@ fn parse_buffer(o: Obj<'_>) -> Parsed<BufferDef> {
     Ok(BufferDef {
         uri: o.string("uri")?.map(str::to_owned),
         len,
+        fallback: match meshopt_extension(o)? {
+            Some((e, _)) => e.boolean("fallback")?.unwrap_or(false),
+            None => false,
+        },
     })
+}
+
+/// The object of either name that meshopt's compression goes by.
+fn meshopt_extension(o: Obj<'_>) -> Parsed<Option<(Obj<'_>, &'static str)>> {
+    for name in ["KHR_meshopt_compression", "EXT_meshopt_compression"] {
+        if let Some(found) = o.extension(name)? {
+            return Ok(Some((found, name)));
+        }
+    }
+    Ok(None)
 }
 
 fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
@@ -182,11 +248,19 @@ fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
     {
         return Err(Flaw::new(format!("is {stride}, outside 4 to 252")).under("byteStride"));
     }
+    let coded = match meshopt_extension(o)? {
+        Some((e, name)) => Some(
+            Coded::parse(e, buffers.len())
+                .map_err(|e| e.under(format_args!("extensions.{name}")))?,
+        ),
+        None => None,
+    };
     Ok(View {
         buffer,
         offset,
         len,
         stride,
+        coded,
     })
 }
 

@@ -6,10 +6,15 @@ use crate::error::{Flaw, FlawKind, Parsed};
 /// Honoured in full as far as a picture can tell.
 const HONOURED: &[&str] = &[
     "EXT_mesh_gpu_instancing",
+    "EXT_meshopt_compression",
+    "EXT_texture_webp",
+    "KHR_draco_mesh_compression",
     "KHR_lights_punctual",
     "KHR_materials_emissive_strength",
     "KHR_materials_unlit",
+    "KHR_materials_variants",
     "KHR_mesh_quantization",
+    "KHR_meshopt_compression",
     "KHR_node_visibility",
     "KHR_texture_transform",
 ];
@@ -20,26 +25,53 @@ const APPROXIMATED: &[(&str, &str)] = &[(
     "its diffuse colour is shown as that of a dielectric, its specular colour is not",
 )];
 
-/// Without effect on a picture: metadata and interaction.
+/// Without effect on a picture: metadata, interaction, sound, physics.
 const INVISIBLE: &[&str] = &[
+    "AGI_articulations",
+    "AGI_stk_metadata",
+    "EXT_instance_features",
+    "EXT_mesh_features",
+    "EXT_structural_metadata",
+    "KHR_audio_emitter",
+    "KHR_interactivity",
     "KHR_node_hoverability",
     "KHR_node_selectability",
+    "KHR_physics_rigid_bodies",
     "KHR_xmp",
     "KHR_xmp_json_ld",
+    "MSFT_lod",
+    "OMI_physics_body",
+    "OMI_physics_shape",
 ];
 
-/// Fails on an unsupported required extension, warns of an unsupported used one.
+/// Formats of textures that are not read. Where such a texture has another picture, that one is shown and there is
+/// nothing to say; where it has none, the texture's own warning says so.
+const TEXTURE_FORMATS: &[&str] = &["EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"];
+
+/// How a file that requires an extension becomes one that does not.
+const CONVERSIONS: &[(&str, &str)] = &[
+    (
+        "KHR_texture_basisu",
+        "`gltf-transform ktxdecompress IN OUT` turns KTX textures into PNG",
+    ),
+    (
+        "EXT_texture_avif",
+        "`gltf-transform png IN OUT` turns AVIF textures into PNG",
+    ),
+];
+
+/// Fails on unsupported required extensions, warns of unsupported used ones.
 pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {
     let approximated = |name: &str| APPROXIMATED.iter().find(|(known, _)| *known == name);
     let honoured = |name: &str| {
         HONOURED.contains(&name) || INVISIBLE.contains(&name) || approximated(name).is_some()
     };
-    for (i, name) in root.strings("extensionsRequired")?.into_iter().enumerate() {
-        if !honoured(name) {
-            let mut flaw = Flaw::new(name).under(format_args!("extensionsRequired[{i}]"));
-            flaw.kind = FlawKind::Extension;
-            return Err(flaw);
-        }
+    let mut missing = root.strings("extensionsRequired")?;
+    missing.retain(|name| !honoured(name));
+    missing.sort_unstable();
+    missing.dedup();
+    if !missing.is_empty() {
+        return Err(missing_extensions(&missing).under("extensionsRequired"));
     }
     let mut used = root.strings("extensionsUsed")?;
     used.sort_unstable();
@@ -47,11 +79,27 @@ pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {
     for name in used {
         if let Some((_, how)) = approximated(name) {
             warn.push(format!("extensionsUsed: {name} is approximated: {how}"));
-        } else if !honoured(name) {
+        } else if !honoured(name) && !TEXTURE_FORMATS.contains(&name) {
             warn.push(format!(
                 "extensionsUsed: {name} is not supported; the file is shown without it"
             ));
         }
     }
     Ok(())
+}
+
+/// All of them in one message, and what helps.
+fn missing_extensions(missing: &[&str]) -> Flaw {
+    let names = missing.join(", ");
+    let helps = CONVERSIONS
+        .iter()
+        .filter(|(name, _)| missing.contains(name));
+    let helps: Vec<&str> = helps.map(|(_, how)| *how).collect();
+    let mut flaw = Flaw::new(if helps.is_empty() {
+        format!("{names}, not supported here")
+    } else {
+        format!("{names}, not supported here; {}", helps.join("; "))
+    });
+    flaw.kind = FlawKind::Extension;
+    flaw
 }

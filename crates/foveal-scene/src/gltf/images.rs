@@ -1,6 +1,8 @@
 //! Definitions of images, samplers and textures.
 
-use super::document::Counts;
+use std::collections::HashMap;
+
+use super::document::{Counts, View};
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
 use crate::{Filter, Sampler, Wrap};
@@ -30,7 +32,7 @@ impl ImageDef {
         };
         let file_name = uri.filter(|u| !u.starts_with("data:"));
         Ok(Self {
-            name: o.string("name")?.or(file_name).map(str::to_owned),
+            name: o.name("name")?.or_else(|| file_name.map(str::to_owned)),
             source,
         })
     }
@@ -44,12 +46,21 @@ impl ImageDef {
     }
 }
 
-/// For each image the first one with the same source: what is named twice is decoded once.
-pub(crate) fn first_of_equal(images: &[ImageDef]) -> Vec<u32> {
-    let mut first = std::collections::HashMap::new();
-    let number = |(i, image): (usize, &ImageDef)| match image.source {
-        ImageSource::Nowhere => i as u32,
-        _ => *first.entry(image.source.clone()).or_insert(i as u32),
+/// For each image the first one with the same source: what is named twice is decoded once. Views that begin at the same
+/// byte hold the same picture.
+pub(crate) fn first_of_equal(images: &[ImageDef], views: &[View]) -> Vec<u32> {
+    let mut by_uri = HashMap::new();
+    let mut by_place = HashMap::new();
+    let number = |(i, image): (usize, &ImageDef)| {
+        let i = i as u32;
+        match &image.source {
+            ImageSource::Nowhere => i,
+            ImageSource::Uri(uri) => *by_uri.entry(uri.clone()).or_insert(i),
+            ImageSource::View(view) => {
+                let view = &views[*view as usize];
+                *by_place.entry((view.buffer, view.offset)).or_insert(i)
+            }
+        }
     };
     images.iter().enumerate().map(number).collect()
 }
@@ -62,8 +73,14 @@ pub(crate) struct TextureDef {
 
 impl TextureDef {
     pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
+        let webp = match o.extension("EXT_texture_webp")? {
+            Some(e) => e
+                .index("source", counts.images)
+                .map_err(|e| e.under("extensions.EXT_texture_webp"))?,
+            None => None,
+        };
         Ok(Self {
-            image: o.index("source", counts.images)?,
+            image: webp.or(o.index("source", counts.images)?),
             sampler: o.index("sampler", counts.samplers)?,
         })
     }

@@ -1,6 +1,7 @@
 //! Definitions of meshes and their primitives.
 
 use super::document::Counts;
+use super::draco::DracoDef;
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
 
@@ -29,6 +30,28 @@ pub(crate) struct Attributes {
     pub(crate) more_joints: bool,
 }
 
+impl Attributes {
+    /// Whether one of them is this accessor.
+    pub(crate) fn read(&self, accessor: u64) -> bool {
+        self.clone().accessors().any(|a| u64::from(*a) == accessor)
+    }
+
+    fn accessors(&mut self) -> impl Iterator<Item = &mut u32> {
+        let single = [
+            &mut self.position,
+            &mut self.normal,
+            &mut self.tangent,
+            &mut self.color,
+        ];
+        single
+            .into_iter()
+            .chain(&mut self.joints)
+            .chain(&mut self.weights)
+            .flatten()
+            .chain(self.uv.iter_mut().map(|(_, accessor)| accessor))
+    }
+}
+
 /// One primitive.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(crate) struct PrimitiveDef {
@@ -36,6 +59,8 @@ pub(crate) struct PrimitiveDef {
     pub(crate) indices: Option<u32>,
     pub(crate) mode: Mode,
     pub(crate) targets: Vec<Attributes>,
+    /// Where attributes and indices without stored values come from.
+    pub(crate) draco: Option<DracoDef>,
 }
 
 /// A mesh as the file has it.
@@ -44,22 +69,47 @@ pub(crate) struct MeshDef {
     pub(crate) primitives: Vec<PrimitiveDef>,
     /// Per primitive.
     pub(crate) materials: Vec<Option<u32>>,
+    /// Per primitive, (variant, material).
+    variants: Vec<Vec<(u32, u32)>>,
     pub(crate) weights: Vec<f32>,
 }
 
 impl MeshDef {
     pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
         let mut materials = Vec::new();
+        let mut variants = Vec::new();
         let primitives = o.objects("primitives", |p| {
             materials.push(p.index("material", counts.materials)?);
+            variants.push(parse_variants(p, counts)?);
             parse_primitive(p, counts)
         })?;
         Ok(Self {
-            name: o.string("name")?.map(str::to_owned),
+            name: o.name("name")?,
             primitives,
             materials,
+            variants,
             weights: o.float_list("weights")?,
         })
+    }
+
+    /// Gives each primitive the material of a variant, where it has one.
+    pub(crate) fn choose_variant(&mut self, variant: u32) {
+        for (material, variants) in self.materials.iter_mut().zip(&self.variants) {
+            let found = variants.iter().find(|(number, _)| *number == variant);
+            *material = found.map(|(_, material)| *material).or(*material);
+        }
+    }
+
+    /// Replaces each accessor by the one that `first` names for it.
+    pub(crate) fn renumber_accessors(&mut self, first: &[u32]) {
+        let renumber = |accessor: &mut u32| *accessor = first[*accessor as usize];
+        for primitive in &mut self.primitives {
+            primitive.indices.iter_mut().for_each(renumber);
+            let own = std::iter::once(&mut primitive.attributes);
+            for attributes in own.chain(&mut primitive.targets) {
+                attributes.accessors().for_each(renumber);
+            }
+        }
     }
 
     /// The name of a primitive's mesh.
@@ -77,11 +127,35 @@ impl MeshDef {
     }
 }
 
+/// KHR_materials_variants: the material of each variant that has its own.
+fn parse_variants(o: Obj<'_>, counts: &Counts) -> Parsed<Vec<(u32, u32)>> {
+    let Some(extension) = o.extension("KHR_materials_variants")? else {
+        return Ok(Vec::new());
+    };
+    let pairs = extension.objects("mappings", |m| {
+        let material = m.need("material", m.index("material", counts.materials)?)?;
+        let variants = m.indices("variants", counts.variants)?;
+        Ok(variants.into_iter().map(move |variant| (variant, material)))
+    });
+    let pairs = pairs.map_err(|e| e.under("extensions.KHR_materials_variants"))?;
+    Ok(pairs.into_iter().flatten().collect())
+}
+
 fn parse_primitive(o: Obj<'_>, counts: &Counts) -> Parsed<PrimitiveDef> {
-    let attributes = o.need("attributes", o.object("attributes")?)?;
+    let names = o.need("attributes", o.object("attributes")?)?;
+    let attributes = parse_attributes(names, counts).map_err(|e| e.under("attributes"))?;
+    let indices = o.index("indices", counts.accessors)?;
+    let draco = match o.extension("KHR_draco_mesh_compression")? {
+        Some(e) => {
+            let def = DracoDef::parse(e, counts.views, names, &attributes, indices);
+            Some(def.map_err(|e| e.under("extensions.KHR_draco_mesh_compression"))?)
+        }
+        None => None,
+    };
     Ok(PrimitiveDef {
-        attributes: parse_attributes(attributes, counts).map_err(|e| e.under("attributes"))?,
-        indices: o.index("indices", counts.accessors)?,
+        attributes,
+        indices,
+        draco,
         mode: match o.uint("mode")? {
             Some(0..=3) => Mode::NoTriangles,
             None | Some(4) => Mode::Triangles,

@@ -6,10 +6,12 @@
 
 mod accessor;
 mod animations;
+mod budget;
 mod buffers;
 mod cameras;
 mod container;
 mod document;
+mod draco;
 mod extensions;
 mod geometry;
 mod images;
@@ -17,6 +19,7 @@ mod json;
 mod lights;
 mod materials;
 mod meshes;
+mod meshopt;
 mod morphs;
 mod nodes;
 mod normals;
@@ -50,9 +53,9 @@ use parts::Geometry;
 use reader::Reader;
 use textures::Wanted;
 
-use crate::error::{Flaw, Parsed};
+use crate::error::{Flaw, FlawKind, Parsed};
 use crate::timings::Stopwatch;
-use crate::{LoadOptions, Scene, SceneError, Warning};
+use crate::{Clip, LoadOptions, Scene, SceneError, Warning};
 
 /// Gives the bytes of an external file by its relative path, or the reason why not.
 pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
@@ -98,13 +101,28 @@ fn import_checked(
     let root = serde_json::from_slice(container.json)
         .map_err(|e| not_gltf(format!("its JSON is broken: {e}")))?;
     let mut warn = container.notes;
-    let document = Document::parse(&root, &mut warn).map_err(|e| e.in_file(file))?;
+    let mut document = Document::parse(&root, &mut warn).map_err(|e| e.in_file(file))?;
+    if let Some(variant) = &options.variant {
+        document
+            .choose_variant(variant)
+            .map_err(|e| e.in_file(file))?;
+    }
     // Freeing a large JSON tree takes as long as using it: give it back before the vertices come.
     drop(root);
     let parse_ms = watch.lap_ms();
-    let buffers = Buffers::fetch(&document.buffers, container.bin, resolver);
+    let mut buffers = Buffers::fetch(
+        &document.buffers,
+        container.json.len(),
+        container.bin,
+        options,
+        resolver,
+    );
     warn.extend(buffers.faults().map(Flaw::sentence));
     let read_ms = watch.lap_ms();
+    buffers
+        .decompress(&document, options.parallel)
+        .map_err(|e| e.in_file(file))?;
+    let decompress_ms = watch.lap_ms();
     let reader = Reader {
         document: &document,
         buffers: &buffers,
@@ -113,6 +131,8 @@ fn import_checked(
     file.clone_into(&mut scene.name);
     scene.timings.parse_ms += parse_ms;
     scene.timings.read_ms += read_ms;
+    scene.timings.geometry_ms += decompress_ms;
+    scene.variants.clone_from(&document.variants);
     scene.warnings = limited(warn);
     Ok(scene)
 }
@@ -156,27 +176,24 @@ fn build(
     scene.timings.parse_ms = watch.lap_ms();
 
     let mut geometry = Geometry::default();
-    let mut shown = geometry.request(document, &hierarchy, options, &mut scene)?;
+    let mut shown = geometry.request(reader, &hierarchy, options, &mut scene)?;
     let shapes = geometry.build(reader, options, &mut scene, warn)?;
+    objects::check_elements(&shown, reader)?;
     let mut elements_left = options.max_instances;
     for one in &mut shown {
-        let place = |e: Flaw| {
-            e.under("extensions.EXT_mesh_gpu_instancing.attributes")
-                .under(format_args!("nodes[{}]", one.node))
-        };
         let instancing = document.nodes[one.node as usize].instancing;
-        one.elements =
-            objects::elements(instancing, reader, &mut elements_left, options).map_err(place)?;
+        one.elements = objects::elements(instancing, reader, &mut elements_left, options)
+            .map_err(|e| objects::in_instancing(e, one.node))?;
     }
     let shapes = parts::drop_empty_meshes(&mut shown, shapes, &mut scene);
     if shown.is_empty() {
         warn.push("the scene shows no triangles".to_owned());
     }
     let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;
-    rig.give_own_meshes(&mut shown, &shapes, &mut scene, document, options, warn)?;
+    rig.give_own_meshes(&mut shown, &shapes, &mut scene, reader, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
 
-    scene.textures = textures::decode(&wanted, reader, resolver, options, warn);
+    scene.textures = textures::decode(&wanted, reader, resolver, options, warn)?;
     scene.timings.decode_ms = watch.lap_ms();
 
     let world = rig.world_at_rest();
@@ -193,9 +210,34 @@ fn build(
     name_objects(&mut scene, document);
     let cameras = place_cameras_and_lights(&mut scene, document, &hierarchy, &world, warn);
     rig.finish(&mut scene, &shown, &placed.clouds, &cameras);
+    choose_clip(&mut scene, &options.clip)?;
     scene.pose(options.time_s);
     scene.timings.bounds_ms = watch.lap_ms();
     Ok(scene)
+}
+
+/// Plays what the options ask for.
+fn choose_clip(scene: &mut Scene, clip: &Clip) -> Parsed<()> {
+    if scene.play(clip) {
+        return Ok(());
+    }
+    let names = scene
+        .clips()
+        .enumerate()
+        .map(|(i, (name, _))| format!("{i} '{name}'"));
+    Err(no_such("clip", clip, names.collect()).under("animations"))
+}
+
+/// The fault of asking for what a file does not have.
+fn no_such(what: &str, wanted: impl std::fmt::Display, known: Vec<String>) -> Flaw {
+    let known = if known.is_empty() {
+        "none".to_owned()
+    } else {
+        known.join(", ")
+    };
+    let mut flaw = Flaw::new(format!("{what} '{wanted}'; there are: {known}"));
+    flaw.kind = FlawKind::Absent;
+    flaw
 }
 
 fn warn_of_uv_sets(document: &Document, warn: &mut Vec<String>) {

@@ -17,6 +17,14 @@ pub(crate) struct Instancing {
     pub(crate) other: Option<u32>,
 }
 
+impl Instancing {
+    /// All that there are.
+    pub(crate) fn accessors(self) -> impl Iterator<Item = u32> {
+        let all = [self.translation, self.rotation, self.scale, self.other];
+        all.into_iter().flatten()
+    }
+}
+
 /// A node as the file has it.
 pub(crate) struct NodeDef {
     pub(crate) name: Option<String>,
@@ -40,7 +48,7 @@ impl NodeDef {
         counts: &Counts,
         warn: &mut Vec<String>,
     ) -> Parsed<Self> {
-        let name = o.string("name")?.map(str::to_owned);
+        let name = o.name("name")?;
         let trs = ["translation", "rotation", "scale"]
             .iter()
             .any(|k| o.has(k));
@@ -87,9 +95,7 @@ impl NodeDef {
             instancing,
             visible,
             occluder: extras.and_then(|e| e.boolean("occluder").ok().flatten()),
-            set: extras
-                .and_then(|e| e.string("set").ok().flatten())
-                .map(str::to_owned),
+            set: extras.and_then(|e| e.name("set").ok().flatten()),
             name,
         })
     }

@@ -7,11 +7,14 @@ use glam::{Mat4, Quat, Vec3};
 use super::nodes::{Hierarchy, Instancing, NodeDef, rotation};
 use super::reader::Reader;
 use crate::cloud::Cloud;
-use crate::error::{Flaw, Parsed};
+use crate::error::{Flaw, Limit, Parsed};
 use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};
 
 /// An object takes hundreds of bytes: a file that stores none of them does not get many.
 const MAX_UNBACKED_INSTANCES: usize = 1 << 16;
+
+/// Memory that an instance takes: its object, itself, and what renderer and culler keep of it.
+pub(crate) const INSTANCE_BYTES: u64 = 600;
 
 /// A mesh with a material, as one primitive of a glTF mesh gives it.
 #[derive(Clone, Copy)]
@@ -30,6 +33,38 @@ pub(crate) struct Shown {
     pub(crate) skinned: bool,
 }
 
+/// How many elements there are; `None` without instancing.
+fn element_count(instancing: Option<Instancing>, reader: Reader<'_>) -> Option<usize> {
+    let accessors = instancing?.accessors();
+    let counts = accessors.map(|a| reader.accessor(a).count);
+    counts.min()
+}
+
+/// Counts the memory of all elements before any is read.
+pub(crate) fn check_elements(shown: &[Shown], reader: Reader<'_>) -> Parsed<()> {
+    let bytes = shown.iter().map(|one| {
+        let node = &reader.document.nodes[one.node as usize];
+        let elements = element_count(node.instancing, reader).unwrap_or(0) as u64;
+        let mesh = node
+            .mesh
+            .and_then(|m| reader.document.meshes[m as usize].name.as_ref());
+        let names = [node.name.as_ref(), mesh, node.set.as_ref()];
+        let names: usize = names.into_iter().flatten().map(String::len).sum();
+        elements.saturating_mul(one.parts.len() as u64 * INSTANCE_BYTES + names as u64)
+    });
+    let bytes = bytes.fold(0, u64::saturating_add);
+    let budget = &reader.buffers.budget;
+    budget
+        .take(bytes, "instances")
+        .map_err(|e| e.under("nodes"))
+}
+
+/// The place of a fault in a node's instancing.
+pub(crate) fn in_instancing(flaw: Flaw, node: u32) -> Flaw {
+    flaw.under("extensions.EXT_mesh_gpu_instancing.attributes")
+        .under(format_args!("nodes[{node}]"))
+}
+
 /// Elements of EXT_mesh_gpu_instancing; one identity without.
 pub(crate) fn elements(
     instancing: Option<Instancing>,
@@ -40,16 +75,11 @@ pub(crate) fn elements(
     let Some(found) = instancing else {
         return Ok(vec![Mat4::IDENTITY]);
     };
-    let accessors = [found.translation, found.rotation, found.scale, found.other];
-    let counts = accessors
-        .iter()
-        .flatten()
-        .map(|&a| reader.accessor(a).count);
-    let Some(count) = counts.min() else {
+    let Some(count) = element_count(instancing, reader) else {
         return Ok(vec![Mat4::IDENTITY]);
     };
-    let mut used = accessors.iter().flatten();
-    if count > MAX_UNBACKED_INSTANCES && used.all(|&a| reader.accessor(a).unbacked() > 0) {
+    let mut used = found.accessors();
+    if count > MAX_UNBACKED_INSTANCES && used.all(|a| reader.accessor(a).unbacked() > 0) {
         return Err(Flaw::too_large(format!(
             "{count} instances without stored values, the limit is {MAX_UNBACKED_INSTANCES}"
         )));
@@ -82,10 +112,13 @@ pub(crate) fn elements(
 }
 
 pub(crate) fn too_many(count: u64, options: &LoadOptions) -> Flaw {
-    Flaw::too_large(format!(
-        "{count} instances are more than the limit of {} in all leaves",
-        options.max_instances
-    ))
+    Flaw::beyond(
+        Limit::Instances,
+        format!(
+            "wants {count} instances, more than the limit of {} in all leaves",
+            options.max_instances
+        ),
+    )
 }
 
 /// Objects with their instances, and the clouds of all meshes that they show.
@@ -187,10 +220,13 @@ fn count_uses(shown: &[Shown], meshes: &[Mesh], options: &LoadOptions) -> Parsed
         return Err(too_many(instances, options).under("nodes"));
     }
     if triangles > options.max_triangles {
-        return Err(Flaw::too_large(format!(
-            "{triangles} triangles in all instances, the limit is {}",
-            options.max_triangles
-        ))
+        return Err(Flaw::beyond(
+            Limit::Triangles,
+            format!(
+                "wants {triangles} triangles in all instances; the limit is {}",
+                options.max_triangles
+            ),
+        )
         .under("nodes"));
     }
     Ok(uses)

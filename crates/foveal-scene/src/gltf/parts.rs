@@ -8,13 +8,13 @@ use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
 use super::materials::{DEFAULT_UV_SETS, UvSets};
-use super::meshes::{Mode, PrimitiveDef};
+use super::meshes::{Attributes, Mode, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
 use super::reader::Reader;
-use crate::error::{Flaw, Parsed};
+use crate::error::{Flaw, Limit, Parsed};
 use crate::pose::Shape;
-use crate::{LoadOptions, Material, MissingNormals, Scene, threads};
+use crate::{LoadOptions, Material, MissingNormals, Scene, Vertex, threads};
 
 /// The meshes to build, each once however many primitives ask for it.
 #[derive(Default)]
@@ -28,11 +28,12 @@ impl Geometry {
     /// Collects what the shown nodes need. Adds a default material when a primitive has none.
     pub(crate) fn request(
         &mut self,
-        document: &Document,
+        reader: Reader<'_>,
         hierarchy: &Hierarchy,
         options: &LoadOptions,
         scene: &mut Scene,
     ) -> Parsed<Vec<Shown>> {
+        let document = reader.document;
         let mut default_material = None;
         let mut parts_of: HashMap<u32, Vec<Part>> = HashMap::new();
         let mut shown = Vec::new();
@@ -64,6 +65,11 @@ impl Geometry {
                 skinned: false,
             });
         }
+        let bytes = instances.saturating_mul(objects::INSTANCE_BYTES);
+        let budget = &reader.buffers.budget;
+        budget
+            .take(bytes, "the meshes of its nodes")
+            .map_err(|e| e.under("nodes"))?;
         Ok(shown)
     }
 
@@ -117,6 +123,7 @@ impl Geometry {
     /// Adds up the vertices and corners that will come of it before anything is allocated.
     fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
         let (mut vertices, mut corners, mut unbacked) = (0u64, 0u64, 0u64);
+        let mut bytes = 0u64;
         for (request, place) in &self.requests {
             let def = &request.primitive;
             let count = |a: u32| reader.accessor(a).count as u64;
@@ -137,6 +144,9 @@ impl Geometry {
             let morphs = 1 + def.targets.len() as u64;
             vertices = vertices.saturating_add(made.saturating_mul(morphs));
             corners = corners.saturating_add(of_triangles);
+            bytes = bytes
+                .saturating_add(made.saturating_mul(vertex_bytes(def)))
+                .saturating_add(of_triangles.saturating_mul(INDEX_BYTES));
             if positions_are_unbacked(reader, def) {
                 unbacked = unbacked.saturating_add(made);
             }
@@ -148,15 +158,39 @@ impl Geometry {
             }
             let (limit, most) = (options.max_vertices, vertices.max(corners / 6));
             if most > limit {
-                return Err(Flaw::too_large(format!(
-                    "{vertices} vertices with morph differences and {corners} indices up to here; \
-                     the limit is {limit} vertices and six times as many indices"
-                ))
+                return Err(Flaw::beyond(
+                    Limit::Vertices,
+                    format!(
+                        "wants {vertices} vertices with morph targets and {corners} indices up to here; \
+                         the limit is {limit} vertices and six times as many indices"
+                    ),
+                )
                 .under(place));
             }
         }
-        Ok(())
+        let budget = &reader.buffers.budget;
+        budget
+            .take(bytes, "vertices and indices")
+            .map_err(|e| e.under("meshes"))
     }
+}
+
+/// Memory per corner of a triangle while a mesh is built: as read, and as kept.
+const INDEX_BYTES: u64 = 8;
+
+/// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what deforms it.
+fn vertex_bytes(def: &PrimitiveDef) -> u64 {
+    let vertex = size_of::<Vertex>() as u64;
+    let joints = def.attributes.joints.iter().flatten().count() as u64;
+    let deltas = |t: &Attributes| [t.position, t.normal, t.tangent].iter().flatten().count();
+    let targets = def.targets.iter().map(|t| 12 * deltas(t) as u64);
+    let deforms = if def.targets.is_empty() && joints == 0 {
+        0
+    } else {
+        // At rest and as posed.
+        2 * vertex
+    };
+    vertex + 28 + deforms + 48 * joints + targets.sum::<u64>()
 }
 
 fn positions_are_unbacked(reader: Reader<'_>, def: &PrimitiveDef) -> bool {

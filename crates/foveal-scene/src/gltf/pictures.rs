@@ -7,6 +7,8 @@ use std::borrow::Cow;
 use std::io::Cursor;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use image::{DynamicImage, ImageDecoder, ImageFormat};
+
 use super::Resolver;
 use super::images::ImageSource;
 use super::reader::Reader;
@@ -27,7 +29,7 @@ pub(crate) fn fetch<'a>(
     resolver: &Resolver<'_>,
 ) -> Parsed<Cow<'a, [u8]>> {
     let Some(image) = image else {
-        return Err(Flaw::new("a texture names no PNG or JPEG picture"));
+        return Err(Flaw::new("a texture names no PNG, JPEG or WebP picture"));
     };
     match &reader.document.images[image as usize].source {
         ImageSource::View(view) => reader
@@ -44,66 +46,131 @@ pub(crate) fn fetch<'a>(
     }
 }
 
-fn open(bytes: &[u8]) -> Result<image::ImageReader<Cursor<&[u8]>>, String> {
-    let mut reader = image::ImageReader::new(Cursor::new(bytes));
-    // By content: declared MIME types are often wrong.
-    let format = match bytes {
-        [0x89, b'P', b'N', b'G', ..] => image::ImageFormat::Png,
-        [0xFF, 0xD8, ..] => image::ImageFormat::Jpeg,
-        _ => return Err("is neither PNG nor JPEG".to_owned()),
-    };
-    reader.set_format(format);
-    let mut limits = image::Limits::default();
-    limits.max_image_width = Some(1 << 15);
-    limits.max_image_height = Some(1 << 15);
-    limits.max_alloc = Some(2 << 30);
-    reader.limits(limits);
-    Ok(reader)
+/// Which decoder a file needs, by its content: declared MIME types are often wrong.
+fn format_of(bytes: &[u8]) -> Result<ImageFormat, String> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => Ok(ImageFormat::Png),
+        [0xFF, 0xD8, ..] => Ok(ImageFormat::Jpeg),
+        [
+            b'R',
+            b'I',
+            b'F',
+            b'F',
+            _,
+            _,
+            _,
+            _,
+            b'W',
+            b'E',
+            b'B',
+            b'P',
+            ..,
+        ] => Ok(ImageFormat::WebP),
+        [0xAB, b'K', b'T', b'X', ..] => Err(
+            "is a KTX texture, which is not read; `gltf-transform ktxdecompress` turns it into PNG"
+                .to_owned(),
+        ),
+        [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => Err(
+            "is an AVIF picture, which is not read; `gltf-transform png` turns it into PNG"
+                .to_owned(),
+        ),
+        _ => Err("is neither PNG nor JPEG nor WebP".to_owned()),
+    }
 }
 
-/// Most texels that a byte of a file can stand for: one-bit PNG at deflate's best ratio.
+/// A decoder that has read the header, and may take `max_alloc` bytes beside its output.
+fn open(bytes: &[u8], max_alloc: u64) -> Result<impl ImageDecoder + '_, String> {
+    let mut reader = image::ImageReader::new(Cursor::new(bytes));
+    reader.set_format(format_of(bytes)?);
+    let mut limits = image::Limits::default();
+    limits.max_image_width = Some(1 << 16);
+    limits.max_image_height = Some(1 << 16);
+    limits.max_alloc = Some(max_alloc);
+    reader.limits(limits);
+    reader.into_decoder().map_err(|e| undecodable(&e))
+}
+
+fn undecodable(cause: &image::ImageError) -> String {
+    format!("cannot be decoded: {cause}")
+}
+
+/// A decoder's panic on a broken picture must not take the scene with it.
+fn netted<T>(f: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(f))
+        .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))
+}
+
+/// Most texels that a byte of a PNG file can stand for: one bit each at deflate's best ratio.
 const MAX_TEXELS_PER_BYTE: u64 = 8 * 1032;
 
-/// The size that a picture's header promises, if its file is long enough to keep the promise.
-pub(crate) fn promised_size(bytes: &[u8]) -> Result<(u32, u32), String> {
-    let read = || {
-        open(bytes)?
-            .into_dimensions()
-            .map_err(|e| format!("cannot be decoded: {e}"))
-    };
-    let (width, height) = catch_unwind(AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))?;
-    if u64::from(width) * u64::from(height) > bytes.len() as u64 * MAX_TEXELS_PER_BYTE {
-        return Err(format!(
-            "promises {width} x {height} texels in {} bytes",
-            bytes.len()
-        ));
-    }
-    Ok((width, height))
+/// What a decoder may allocate to read a header.
+const HEADER_BYTES: u64 = 16 << 20;
+
+/// What a picture's header says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Promise {
+    pub(crate) width: u32,
+    pub(crate) height: u32,
+    /// Of the decoder's own output, per texel.
+    bytes_per_texel: u8,
 }
 
-/// Decodes a PNG or JPEG file.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Picture, String> {
-    promised_size(bytes)?;
-    let decode = || -> Result<Picture, String> {
-        let decoded = open(bytes)?
-            .decode()
-            .map_err(|e| format!("cannot be decoded: {e}"))?;
+impl Promise {
+    pub(crate) fn texels(self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+
+    /// Memory at the peak of decoding and of making mip levels, beside the picture as RGBA8.
+    pub(crate) fn decoding_bytes(self) -> u64 {
+        // The decoder's own output; later two levels with 16 bits a channel.
+        self.texels() * u64::from(self.bytes_per_texel.max(3))
+    }
+
+    /// Memory of the whole picture as RGBA8.
+    pub(crate) fn rgba_bytes(self) -> u64 {
+        self.texels() * 4
+    }
+}
+
+/// Reads a picture's header. An error if the file is too short to keep its promise.
+pub(crate) fn promise(bytes: &[u8]) -> Result<Promise, String> {
+    netted(|| {
+        let decoder = open(bytes, HEADER_BYTES)?;
+        let (width, height) = decoder.dimensions();
+        let promise = Promise {
+            width,
+            height,
+            bytes_per_texel: decoder.color_type().bytes_per_pixel(),
+        };
+        // Other formats say a plain picture in fewer bytes; what they take is counted like all else.
+        let is_png = format_of(bytes) == Ok(ImageFormat::Png);
+        if is_png && promise.texels() > bytes.len() as u64 * MAX_TEXELS_PER_BYTE {
+            return Err(format!(
+                "promises {width} x {height} texels in {} bytes",
+                bytes.len()
+            ));
+        }
+        if promise.texels() == 0 {
+            return Err("has no texels".to_owned());
+        }
+        Ok(promise)
+    })
+}
+
+/// Decodes a file whose header is known.
+pub(crate) fn decode(bytes: &[u8], promise: Promise) -> Result<Picture, String> {
+    netted(|| {
+        let room = promise.decoding_bytes() + promise.rgba_bytes() + HEADER_BYTES;
+        let decoded =
+            DynamicImage::from_decoder(open(bytes, room)?).map_err(|e| undecodable(&e))?;
         let rgba = decoded.into_rgba8();
+        if rgba.dimensions() != (promise.width, promise.height) {
+            return Err("has another size than its header says".to_owned());
+        }
         Ok(Picture {
             width: rgba.width(),
             height: rgba.height(),
             pixels: rgba.into_raw(),
         })
-    };
-    // A last net: a decoder's panic on a broken picture must not take the scene with it.
-    catch_unwind(AssertUnwindSafe(decode))
-        .unwrap_or_else(|_| Err("cannot be decoded: the decoder failed".to_owned()))
-        .and_then(|p| {
-            if p.width > 0 && p.height > 0 {
-                Ok(p)
-            } else {
-                Err("has no texels".to_owned())
-            }
-        })
+    })
 }

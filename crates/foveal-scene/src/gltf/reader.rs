@@ -63,7 +63,7 @@ impl<'a> Reader<'a> {
         let read = |source: Strided<'_>, count| {
             decode::<N>(&source, accessor.component, accessor.normalized, count)
         };
-        self.dense(accessor, read, [0.0; N])
+        self.dense(index, read, [0.0; N])
             .map_err(|e| within_accessor(e, index))
     }
 
@@ -81,17 +81,18 @@ impl<'a> Reader<'a> {
         }
         let read =
             |source: Strided<'_>, count| decode_uints::<N>(&source, accessor.component, count);
-        self.dense(accessor, read, [0; N])
+        self.dense(index, read, [0; N])
             .map_err(|e| within_accessor(e, index))
     }
 
     /// The base elements with sparse substitution applied.
     fn dense<T: Copy>(
         &self,
-        accessor: &Accessor,
+        index: u32,
         read: impl Fn(Strided<'a>, usize) -> Vec<T>,
         zero: T,
     ) -> Parsed<Vec<T>> {
+        let accessor = self.accessor(index);
         let size = accessor.component.size() * accessor.width;
         self.buffers
             .take_numbers(accessor.count as u64 * accessor.width as u64)?;
@@ -99,6 +100,19 @@ impl<'a> Reader<'a> {
             Some(view) => {
                 let source = self.strided(view, accessor.offset, accessor.count, size)?;
                 read(source, accessor.count)
+            }
+            None if accessor.draco => {
+                let bytes = self.buffers.dense(index)?;
+                if bytes.len() < accessor.count * size {
+                    return Err(Flaw::new("has too few Draco data"));
+                }
+                read(
+                    Strided {
+                        bytes,
+                        stride: size,
+                    },
+                    accessor.count,
+                )
             }
             None => {
                 self.buffers.take_unbacked(accessor.unbacked_cost())?;

@@ -48,9 +48,7 @@ impl Rigging {
             let targets = |node: u32| target_count(document, node);
             let animation = def.read(reader, targets, &mut notes);
             warn.extend(notes.into_iter().map(|n| format!("animations[{i}].{n}")));
-            if !animation.channels.is_empty() {
-                animations.push(animation);
-            }
+            animations.push(animation);
         }
         let mut data = RigData {
             nodes,
@@ -75,10 +73,16 @@ impl Rigging {
         shown: &mut [Shown],
         shapes: &[Option<Shape>],
         scene: &mut Scene,
-        document: &Document,
+        reader: Reader<'_>,
         options: &LoadOptions,
         warn: &mut Vec<String>,
     ) -> Parsed<()> {
+        let document = reader.document;
+        let weights = shown.iter().map(|s| target_count(document, s.node) as u64);
+        let budget = &reader.buffers.budget;
+        budget
+            .take(4 * weights.sum::<u64>(), "morph weights")
+            .map_err(|e| e.under("nodes"))?;
         let shapes: Vec<Option<Arc<Shape>>> =
             shapes.iter().map(|s| s.clone().map(Arc::new)).collect();
         // A mesh that a rigid node shows too stays as it is for that one.
@@ -117,6 +121,13 @@ impl Rigging {
                 one.skinned |= skin.is_some();
                 let first = !std::mem::replace(&mut taken[part.mesh as usize], true);
                 if !first {
+                    let mesh = &scene.meshes[part.mesh as usize];
+                    let bytes = size_of_val(mesh.vertices.as_slice()) * 2
+                        + size_of_val(mesh.indices.as_slice());
+                    let budget = &reader.buffers.budget;
+                    budget
+                        .take(bytes as u64, "a deforming mesh of its own")
+                        .map_err(|e| e.under(format_args!("nodes[{node}]")))?;
                     let copy = scene.meshes[part.mesh as usize].clone();
                     scene.meshes.push(copy);
                     part.mesh = scene.meshes.len() as u32 - 1;
@@ -161,7 +172,7 @@ impl Rigging {
         clouds: &[Option<Arc<Cloud>>],
         camera_nodes: &[u32],
     ) {
-        if self.data.deformers.is_empty() && self.data.animations.is_empty() {
+        if self.data.deformers.is_empty() && !self.data.plays() {
             return;
         }
         let deforming: std::collections::HashSet<u32> =
@@ -199,7 +210,10 @@ impl Rigging {
                 self.data.lights.push((i as u32, node));
             }
         }
-        scene.rig = Rig(Some(Arc::new(self.data)));
+        scene.rig = Rig {
+            data: Some(Arc::new(self.data)),
+            played: 0..0,
+        };
     }
 }
 

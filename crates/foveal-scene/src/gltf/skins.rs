@@ -28,6 +28,9 @@ impl SkinDef {
         if self.joints.is_empty() {
             return Err(Flaw::new("is empty").under("joints"));
         }
+        let count = self.inverse_bind.map_or(0, |a| reader.accessor(a).count);
+        let bytes = 128 * count.max(self.joints.len()) as u64;
+        reader.buffers.budget.take(bytes, "joints")?;
         let inverse_bind = match self.inverse_bind {
             Some(accessor) => {
                 if reader.accessor(accessor).component != Component::F32 {

@@ -7,11 +7,12 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use super::Resolver;
+use super::budget::Budget;
 use super::document::Document;
 use super::materials::{MaterialDef, SlotDef};
-use super::pictures::{self, Picture};
+use super::pictures::{self, Picture, Promise};
 use super::reader::Reader;
-use crate::error::Parsed;
+use crate::error::{Flaw, Limit, Parsed, amount};
 use crate::mip::{self, Content};
 use crate::{AlphaMode, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, threads};
 
@@ -121,87 +122,172 @@ impl Wanted {
     }
 }
 
-/// A picture's file, or why there is none, and the textures made from it.
-type Encoded<'a> = (Parsed<Cow<'a, [u8]>>, &'a [usize]);
+/// All uses of one picture.
+struct Source<'a> {
+    image: Option<u32>,
+    /// Its file, and what the header promises; or why it cannot be had.
+    encoded: Result<(Cow<'a, [u8]>, Promise), String>,
+    /// Numbers of the textures made from it.
+    uses: Vec<usize>,
+}
 
-/// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder.
+/// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder; one that is beyond a limit
+/// is an error before anything is decoded.
 pub(crate) fn decode(
     wanted: &Wanted,
     reader: Reader<'_>,
     resolver: &Resolver<'_>,
     options: &LoadOptions,
     warn: &mut Vec<String>,
-) -> Vec<Texture> {
+) -> Parsed<Vec<Texture>> {
     let document = reader.document;
-    // All uses of a picture together, so that it is decoded once.
-    let mut uses: Vec<(Option<u32>, Vec<usize>)> = Vec::new();
-    let mut group: HashMap<Option<u32>, usize> = HashMap::new();
-    for (i, key) in wanted.keys.iter().enumerate() {
-        let at = *group.entry(key.image).or_insert_with(|| {
-            uses.push((key.image, Vec::new()));
-            uses.len() - 1
-        });
-        uses[at].1.push(i);
-    }
-    // Files are read here, one after the other: a resolver need not be quick or parallel.
-    let encoded: Vec<Encoded<'_>> = uses
-        .iter()
-        .map(|(image, uses)| (pictures::fetch(*image, reader, resolver), uses.as_slice()))
-        .collect();
-    let largest = largest_size(&encoded, options, warn);
-    let decoded = threads::map(options.parallel, &encoded, |(bytes, uses)| {
-        let picture = match bytes {
-            Ok(bytes) => pictures::decode(bytes),
-            Err(flaw) => Err(flaw.cause.clone()),
+    let sources = sources(wanted, reader, resolver);
+    let plan = plan(&sources, document, options, &reader.buffers.budget, warn)?;
+    let decoded = threads::map_few(options.parallel, plan.at_once, &sources, |source| {
+        let picture = match &source.encoded {
+            Ok((bytes, promise)) => pictures::decode(bytes, *promise),
+            Err(cause) => Err(cause.clone()),
         };
-        finish(picture, uses, wanted, document, largest)
+        finish(picture, &source.uses, wanted, document, plan.largest)
     });
     let mut textures: Vec<(usize, Texture)> = Vec::new();
-    for (one, (image, _)) in decoded.into_iter().zip(&uses) {
-        let place = match image {
-            Some(image) => {
-                let label = document.images[*image as usize].label(*image as usize);
-                format!("images[{image}] ({label})")
-            }
-            None => "textures".to_owned(),
-        };
+    for (one, source) in decoded.into_iter().zip(&sources) {
+        let place = source.place(document);
         warn.extend(one.notes.into_iter().map(|note| format!("{place}: {note}")));
         textures.extend(one.textures);
     }
     textures.sort_unstable_by_key(|(i, _)| *i);
-    textures.into_iter().map(|(_, t)| t).collect()
+    Ok(textures.into_iter().map(|(_, t)| t).collect())
 }
 
-/// The largest texture size with which all pictures fit into the options' budget, by what their
-/// headers promise, before anything is decoded.
-fn largest_size(encoded: &[Encoded<'_>], options: &LoadOptions, warn: &mut Vec<String>) -> u32 {
-    let sizes: Vec<(u32, u32, u64)> = encoded
-        .iter()
-        .filter_map(|(bytes, uses)| {
-            let (width, height) = pictures::promised_size(bytes.as_ref().ok()?).ok()?;
-            Some((width, height, uses.len() as u64))
-        })
-        .collect();
-    let wished = options.max_texture_size.max(1);
-    let total = |largest: u32| -> u64 {
-        let texels = sizes.iter().map(|&(width, height, uses)| {
-            let drop = levels_to_drop(width, height, largest);
-            u64::from((width >> drop).max(1)) * u64::from((height >> drop).max(1)) * uses
+/// The wanted pictures, each once. Files are read here, one after the other: a resolver need not be quick or parallel.
+fn sources<'a>(wanted: &Wanted, reader: Reader<'a>, resolver: &Resolver<'_>) -> Vec<Source<'a>> {
+    let mut sources: Vec<Source<'a>> = Vec::new();
+    let mut number: HashMap<Option<u32>, usize> = HashMap::new();
+    for (i, key) in wanted.keys.iter().enumerate() {
+        let at = *number.entry(key.image).or_insert_with(|| {
+            let encoded = pictures::fetch(key.image, reader, resolver)
+                .map_err(|flaw| flaw.cause)
+                .and_then(|bytes| {
+                    let promise = pictures::promise(&bytes)?;
+                    Ok((bytes, promise))
+                });
+            sources.push(Source {
+                image: key.image,
+                encoded,
+                uses: Vec::new(),
+            });
+            sources.len() - 1
         });
-        texels.sum::<u64>().saturating_mul(4)
+        sources[at].uses.push(i);
+    }
+    sources
+}
+
+impl Source<'_> {
+    fn place(&self, document: &Document) -> String {
+        match self.image {
+            Some(image) => {
+                let label = document.images[image as usize].label(image as usize);
+                format!("images[{image}] ({label})")
+            }
+            None => "textures".to_owned(),
+        }
+    }
+
+    fn promise(&self) -> Option<Promise> {
+        self.encoded.as_ref().ok().map(|(_, promise)| *promise)
+    }
+
+    /// Memory of the textures made from it, with their mip levels, where none is larger than `largest`.
+    fn kept_bytes(&self, largest: u32) -> u64 {
+        self.promise().map_or(0, |promise| {
+            let drop = levels_to_drop(promise.width, promise.height, largest);
+            let side = |size: u32| u64::from((size >> drop).max(1));
+            let texels = side(promise.width) * side(promise.height);
+            (texels * 16 / 3 + 4) * self.uses.len() as u64
+        })
+    }
+
+    /// Memory while it is decoded, beside what is kept. What is reduced is not kept as it was decoded, and of several uses
+    /// one after the other has a copy.
+    fn decoding_bytes(&self, largest: u32) -> u64 {
+        self.promise().map_or(0, |promise| {
+            let reduced = levels_to_drop(promise.width, promise.height, largest) > 0;
+            let copies = u64::from(reduced) + u64::from(self.uses.len() > 1);
+            promise.decoding_bytes() + copies * promise.rgba_bytes()
+        })
+    }
+}
+
+/// How to decode within the limits.
+struct Plan {
+    /// The largest side of a texture in texels.
+    largest: u32,
+    /// How many pictures may be decoded at a time.
+    at_once: usize,
+}
+
+/// Adds up what all pictures take by what their headers promise, before anything is decoded.
+fn plan(
+    sources: &[Source<'_>],
+    document: &Document,
+    options: &LoadOptions,
+    budget: &Budget,
+    warn: &mut Vec<String>,
+) -> Parsed<Plan> {
+    let limit = options.max_texture_bytes;
+    let wished = options.max_texture_size.max(1);
+    for source in sources {
+        let bytes = source
+            .decoding_bytes(1)
+            .saturating_add(source.kept_bytes(1));
+        if bytes > limit {
+            let (width, height) = source.promise().map_or((0, 0), |p| (p.width, p.height));
+            let cause = format!(
+                "wants {} to decode {width} x {height} texels; the limit for textures is {}",
+                amount(bytes),
+                amount(limit)
+            );
+            return Err(Flaw::beyond(Limit::TextureBytes, cause).under(source.place(document)));
+        }
+    }
+    let kept = |largest: u32| -> u64 { sources.iter().map(|s| s.kept_bytes(largest)).sum() };
+    let decoding = |largest: u32| {
+        let mut each: Vec<u64> = sources.iter().map(|s| s.decoding_bytes(largest)).collect();
+        each.sort_unstable_by(|a, b| b.cmp(a));
+        each
     };
+    let most = |largest: u32| decoding(largest).first().copied().unwrap_or(0);
+    let total = |largest: u32| kept(largest).saturating_add(most(largest));
     let mut largest = wished;
-    while largest > 1 && total(largest) > options.max_texture_bytes {
+    while largest > 1 && total(largest) > limit {
         largest /= 2;
     }
     if largest < wished {
         warn.push(format!(
-            "images: take {} bytes, more than the limit of {}; they are reduced to {largest} texels",
-            total(wished),
-            options.max_texture_bytes
+            "images: want {} for textures; the limit is {}, and they are reduced to {largest} texels",
+            amount(total(wished)),
+            amount(limit)
         ));
     }
-    largest
+    let (total, decoding) = (total(largest), decoding(largest));
+    let kept = kept(largest);
+    // What decoding needs is given back at once.
+    let needed = if total > budget.left() { total } else { kept };
+    budget
+        .take(needed, "textures")
+        .map_err(|e| e.under("images"))?;
+    let room = limit.saturating_sub(kept).min(budget.left());
+    let mut sum = 0u64;
+    let fitting = decoding.iter().take_while(|&&bytes| {
+        sum = sum.saturating_add(bytes);
+        sum <= room
+    });
+    Ok(Plan {
+        largest,
+        at_once: fitting.count().max(1),
+    })
 }
 
 /// How often a picture is halved to fit.

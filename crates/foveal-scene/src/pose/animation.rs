@@ -33,21 +33,24 @@ pub(crate) struct Channel {
     pub(crate) values: Vec<f32>,
 }
 
-/// Channels with a common period.
+/// Channels with a common period: one clip.
 #[derive(Clone, Debug)]
 pub(crate) struct Animation {
+    /// The file's name for it; empty without.
+    pub(crate) name: String,
     pub(crate) channels: Vec<Channel>,
     /// Time of the last key of all channels.
     pub(crate) duration_s: f32,
 }
 
 impl Animation {
-    pub(crate) fn new(channels: Vec<Channel>) -> Self {
+    pub(crate) fn new(name: String, channels: Vec<Channel>) -> Self {
         let duration_s = channels
             .iter()
             .filter_map(|c| c.times.last().copied())
             .fold(0.0, f32::max);
         Self {
+            name,
             channels,
             duration_s,
         }
@@ -199,12 +202,10 @@ mod tests {
 
     #[test]
     fn time_loops_over_the_duration_and_tolerates_nonsense() {
-        let animation = Animation::new(vec![channel(
-            Interpolation::Step,
-            Target::Weights,
-            1,
-            &[0.0; 3],
-        )]);
+        let animation = Animation::new(
+            String::new(),
+            vec![channel(Interpolation::Step, Target::Weights, 1, &[0.0; 3])],
+        );
         assert_eq!(animation.looped(5.0), 1.0);
         assert_eq!(animation.looped(4.0), 4.0);
         assert_eq!(animation.looped(-1.0), 3.0);

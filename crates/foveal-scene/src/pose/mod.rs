@@ -1,10 +1,12 @@
 //! What moves: the node hierarchy, animations, skins and morph targets behind [`Scene::pose`](crate::Scene::pose).
 
 mod animation;
+mod clip;
 mod deform;
 mod rig;
 
 pub(crate) use animation::{Animation, Channel, Interpolation, Target};
+pub use clip::Clip;
 pub(crate) use deform::{Deformer, Influences, MorphTarget, Shape, Skin};
 pub use rig::Rig;
 pub(crate) use rig::{Binding, Node, RigData, world_from_nodes};

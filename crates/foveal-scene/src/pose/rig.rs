@@ -1,17 +1,22 @@
 //! The rig of a scene and how it poses it.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use glam::Mat4;
 
-use super::{Animation, Deformer, Local, Skin, Target};
+use super::{Animation, Clip, Deformer, Local, Skin, Target};
 use crate::cloud::Cloud;
 use crate::{Aabb, Scene, Vertex, gltf, threads};
 
 /// How a scene moves: node hierarchy, animations, skins, morph targets. Opaque; the default does not move.
 #[derive(Clone, Debug, Default)]
-pub struct Rig(pub(crate) Option<Arc<RigData>>);
+pub struct Rig {
+    pub(crate) data: Option<Arc<RigData>>,
+    /// Which of its animations play.
+    pub(crate) played: Range<usize>,
+}
 
 /// A node at rest.
 #[derive(Clone, Debug)]
@@ -71,11 +76,16 @@ pub(crate) fn world_from_nodes(
 }
 
 impl RigData {
-    /// Local transforms and morph weights at a time.
-    fn sample(&self, time_s: f32) -> (Vec<Local>, HashMap<u32, Vec<f32>>) {
+    /// Whether any animation moves anything.
+    pub(crate) fn plays(&self) -> bool {
+        self.animations.iter().any(|a| !a.channels.is_empty())
+    }
+
+    /// Local transforms and morph weights at a time of the animations that play.
+    fn sample(&self, played: Range<usize>, time_s: f32) -> (Vec<Local>, HashMap<u32, Vec<f32>>) {
         let mut locals: Vec<Local> = self.nodes.iter().map(|n| n.local).collect();
         let mut weights: HashMap<u32, Vec<f32>> = HashMap::new();
-        for animation in &self.animations {
+        for animation in self.animations.get(played).unwrap_or_default() {
             let time = animation.looped(time_s);
             for channel in &animation.channels {
                 let mut value = [0.0; 4];
@@ -109,7 +119,7 @@ impl RigData {
     }
 
     fn pose(&self, scene: &mut Scene, time_s: f32) {
-        let (locals, weights) = self.sample(time_s);
+        let (locals, weights) = self.sample(scene.rig.played.clone(), time_s);
         let world = world_from_nodes(|i| self.nodes[i].parent, &self.order, &locals);
         self.deform(scene, &world, &weights);
         self.place_objects(scene, &world);
@@ -212,18 +222,47 @@ impl Scene {
         self.animation_duration_s() > 0.0
     }
 
-    /// Length in seconds of the longest animation; 0 without any. Each one loops over its own length.
+    /// Length in seconds of the clip that plays, or of the longest one where several do; 0 without any. Each one loops
+    /// over its own length.
     #[must_use]
     pub fn animation_duration_s(&self) -> f32 {
-        let animations = self.rig.0.iter().flat_map(|rig| &rig.animations);
-        animations.map(|a| a.duration_s).fold(0.0, f32::max)
+        let played = self.animations().get(self.rig.played.clone());
+        let lengths = played.unwrap_or_default().iter().map(|a| a.duration_s);
+        lengths.fold(0.0, f32::max)
+    }
+
+    fn animations(&self) -> &[Animation] {
+        self.rig.data.as_ref().map_or(&[], |rig| &rig.animations)
+    }
+
+    /// The name and length in seconds of each clip, in the file's order. Names may be empty or equal.
+    pub fn clips(&self) -> impl ExactSizeIterator<Item = (&str, f32)> {
+        let animations = self.animations().iter();
+        animations.map(|a| (a.name.as_str(), a.duration_s))
+    }
+
+    /// Chooses what [`Scene::pose`] plays from now on; false, and nothing changes, if there is no such clip. A scene
+    /// without clips has its first.
+    pub fn play(&mut self, clip: &Clip) -> bool {
+        let clips = self.animations();
+        let played = match clip {
+            Clip::All => Some(0..clips.len()),
+            Clip::Number(0) if clips.is_empty() => Some(0..0),
+            Clip::Number(number) => Some(*number as usize)
+                .filter(|n| *n < clips.len())
+                .map(|n| n..n + 1),
+            Clip::Named(name) => clips.iter().position(|c| c.name == *name).map(|n| n..n + 1),
+        };
+        let found = played.is_some();
+        self.rig.played = played.unwrap_or_else(|| self.rig.played.clone());
+        found
     }
 
     /// Moves everything that moves to where it is at `time_s` seconds: instance matrices, boxes of
-    /// instances and objects, vertices of deforming meshes, lights and cameras. All animations of the
-    /// file play together. Does nothing for a scene that does not move.
+    /// instances and objects, vertices of deforming meshes, lights and cameras. The clip that
+    /// [`Scene::play`] chose plays, the first without. Does nothing for a scene that does not move.
     pub fn pose(&mut self, time_s: f32) {
-        if let Some(rig) = self.rig.0.clone() {
+        if let Some(rig) = self.rig.data.clone() {
             rig.pose(self, time_s);
         }
     }

@@ -55,7 +55,7 @@ impl CameraPath {
             .with_context(|| format!("the camera path '{}' is wrong", path.display()))
     }
 
-    fn parse(text: &str, fov_y_deg: f32) -> anyhow::Result<Self> {
+    pub(super) fn parse(text: &str, fov_y_deg: f32) -> anyhow::Result<Self> {
         let json: Vec<JsonKey> = serde_json::from_str(text)?;
         if json.is_empty() {
             bail!("it has no keyframes");

@@ -258,16 +258,26 @@ fn large_pictures_are_halved_until_they_fit() {
     assert_eq!(t.levels[0], [10, 20, 30, 255].repeat(10));
     assert!(warnings(&scene).contains("is 20 x 9 texels large and reduced to 5 x 2"));
 
-    // 720 bytes do not fit, 10 x 4 texels do.
+    // 964 bytes with all levels do not fit beside the 720 of the decoder; 217 do beside its 1,440.
     let options = LoadOptions {
-        max_texture_bytes: 200,
+        max_texture_bytes: 1_660,
         ..LoadOptions::default()
     };
     let scene = file.load_with(&options).unwrap();
     assert_eq!((scene.textures[0].width, scene.textures[0].height), (10, 4));
     assert!(
-        warnings(&scene).contains("images: take 720 bytes"),
+        warnings(&scene).contains("images: want 1.7 KB for textures; the limit is 1.7 KB"),
         "{}",
         warnings(&scene)
+    );
+
+    let options = LoadOptions {
+        max_texture_bytes: 1_400,
+        ..LoadOptions::default()
+    };
+    let text = file.load_with(&options).unwrap_err().to_string();
+    assert!(
+        text.contains("images[0]") && text.contains("wants 1.4 KB to decode 20 x 9 texels"),
+        "{text}"
     );
 }

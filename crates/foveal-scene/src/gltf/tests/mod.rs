@@ -1,9 +1,13 @@
 //! Tests of the importer on small files made on the spot.
 
+mod clips;
+mod compressed;
+mod fuzz;
 mod geometry;
 mod hostile;
 mod materials;
 mod motion;
+mod mutate;
 mod nodes;
 
 use serde_json::{Value, json};
@@ -14,6 +18,8 @@ use crate::{LoadOptions, Scene, SceneError, load_bytes};
 pub(super) struct File {
     pub(super) json: Value,
     bin: Vec<u8>,
+    /// After the binary chunk's own.
+    more_buffers: Vec<Value>,
 }
 
 impl File {
@@ -30,6 +36,7 @@ impl File {
                 "bufferViews": [],
             }),
             bin: Vec::new(),
+            more_buffers: Vec::new(),
         }
     }
 
@@ -120,7 +127,10 @@ impl File {
 
     pub(super) fn glb(&self) -> Vec<u8> {
         let mut json = self.json.clone();
-        json["buffers"] = json!([{ "byteLength": self.bin.len() }]);
+        let own = json!({ "byteLength": self.bin.len() });
+        json["buffers"] = std::iter::once(own)
+            .chain(self.more_buffers.iter().cloned())
+            .collect();
         let mut text = serde_json::to_vec(&json).unwrap();
         text.resize(text.len().next_multiple_of(4), b' ');
         let mut bin = self.bin.clone();

@@ -21,7 +21,7 @@ fn animate(file: &mut File, target: Value, mode: &str, times: &[f32], values: &[
 #[test]
 fn a_still_scene_has_no_rig() {
     let mut scene = File::with_triangle().load();
-    assert!(!scene.is_animated() && scene.rig.0.is_none());
+    assert!(!scene.is_animated() && scene.rig.data.is_none());
     let before = scene.instances.clone();
     scene.pose(1.0);
     assert_eq!(scene.instances, before);
@@ -96,7 +96,11 @@ fn rotations_and_scales_are_played_and_pointers_are_not() {
     );
     let pointer = json!({ "path": "pointer" });
     animate(&mut file, pointer, "STEP", &[0.], &[1., 1., 1.], "VEC3");
-    let mut scene = file.load();
+    let options = crate::LoadOptions {
+        clip: crate::Clip::All,
+        ..Default::default()
+    };
+    let mut scene = file.load_with(&options).unwrap();
     scene.pose(0.5);
     let matrix = scene.instances[0].world_from_object;
     let expected = Mat4::from_quat(Quat::from_xyzw(0., 0., half, half));
