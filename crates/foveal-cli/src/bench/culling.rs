@@ -5,6 +5,7 @@
 
 mod boxes;
 mod cameras;
+mod inside;
 mod plot;
 mod rows;
 mod scaling;
@@ -19,6 +20,7 @@ use crate::cull::occluders::Occluders;
 use crate::cull::progress_bar;
 use crate::cull::workers::Workers;
 use crate::{atomic_file, console, scene_source, values};
+use cameras::Cameras;
 use rows::{Case, Row};
 
 /// Arguments of `foveal bench culling`.
@@ -31,9 +33,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     culling: CullingArgs,
 
-    /// Cameras from a JSON list, as for `foveal cull`, instead of the scene's own and eight around it
-    #[arg(long, value_name = "FILE.json")]
-    cameras: Option<PathBuf>,
+    /// `inside`: up to 48 cameras at eye height over floors with free space around, found by themselves, besides the
+    /// scene's own and eight around it. Or cameras from a JSON list, as for `foveal cull`, instead of these
+    #[arg(long, value_name = "inside|FILE.json")]
+    cameras: Option<cameras::Choice>,
 
     /// Sizes of the depth buffer in pixels
     #[arg(long, value_name = "WxH,…", value_parser = values::size, value_delimiter = ',')]
@@ -128,10 +131,11 @@ fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
         let scene = scene_source::load(name)?;
         let occluders = Occluders::of_scene(&scene, &args.culling.occluders)?;
         let boxes = boxes::random(scene.bounds(), args.boxes);
+        let cameras = Cameras::new(&scene, &occluders, args.cameras.as_ref())?;
         let mut cases = Vec::new();
         for &(width, height) in &args.sizes {
             let aspect = f64::from(width) / f64::from(height);
-            for eye in cameras::choose(&scene, args.cameras.as_deref(), aspect)? {
+            for eye in cameras.eyes(aspect)? {
                 cases.push(((width, height), eye));
             }
         }
@@ -208,6 +212,21 @@ mod tests {
             assert!(json.get(key).is_some(), "{key}");
         }
         assert!(json["missed"].is_null());
+    }
+
+    #[test]
+    fn cameras_inside_come_besides_the_others_or_are_refused() {
+        let words = ["--cameras", "inside", "--sizes", "64x32", "--threads", "1"];
+        let with = |scene: &str, words: &[&str]| measure(&args(&[&[scene], words].concat()));
+        let all = with("demo:1000", &words).unwrap();
+        let others = with("demo:1000", &words[2..]).unwrap();
+        let inside = all.len() - others.len();
+        assert!(inside > 0 && inside.is_multiple_of(4), "{inside}");
+        let scene = scene_source::load("cornell").unwrap();
+        let choice = Some(&cameras::Choice::Inside);
+        let refused = Cameras::new(&scene, &Occluders::default(), choice);
+        let refused = refused.err().unwrap().to_string();
+        assert!(refused.contains("no floor"), "{refused}");
     }
 
     #[test]

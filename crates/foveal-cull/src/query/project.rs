@@ -130,7 +130,7 @@ pub(crate) struct Screen<'a> {
 impl Screen<'_> {
     /// Whether all of a box, grown for rounding, lies beyond one border of the screen, wherever the near plane is.
     #[inline(always)]
-    pub(super) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
+    pub(crate) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
         let [x, y, _, w] = self.rows;
         // Sums over the axes, for the borders left, right, above and below; by rows that are above zero within.
         let (mut most, mut terms) = ([0.0; 4], [0.0; 4]);

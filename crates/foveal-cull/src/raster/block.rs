@@ -6,13 +6,14 @@
 //!
 //! Depth: the polygon's plane at its farthest point within each pixel, no farther than its farthest vertex.
 
-use super::band::Band;
+use super::band::{Band, Here};
 use super::layers::{self, APART, Layer};
 use super::polygon::{Edges, Polygon};
 use crate::depth::{
-    BLOCK_SAMPLES, DepthBlock, EMPTY, Held, PartialBlock, STATE_EMPTY, STATE_LAYERS, STATE_PARTIAL,
+    BLOCK, BLOCK_SAMPLES, EMPTY, Held, PartialBlock, STATE_DEPTH, STATE_EMPTY, STATE_LAYERS,
+    STATE_PARTIAL, encode,
 };
-use crate::simd::Lanes;
+use crate::simd::{Lanes, larger, smaller};
 
 /// Depth of a polygon as an affine function of pixels, lowered to hold for whole pixels.
 #[derive(Clone, Copy, Debug)]
@@ -64,18 +65,46 @@ impl<L: Lanes> Borders<L> {
     }
 }
 
-/// Depth codes of the block's 64 pixels.
-#[inline(always)]
-fn depths<L: Lanes>(l: L, plane: &Plane, bx: u32, by: u32) -> L::D {
-    const COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    // Centre of the first pixel.
-    let x = (bx * BLOCK_SAMPLES) as f32 + 2.0 - plane.x;
-    let y = (by * BLOCK_SAMPLES) as f32 + 2.0 - plane.y;
-    let first = plane.depth + plane.dx * x + plane.dy * y;
-    let columns = l.mul(l.load(&COLUMNS), l.splat(plane.dx * 4.0));
-    let columns = l.add(l.splat(first), columns);
-    // Never nearer than the nearest vertex, so that what is skipped as hidden would have changed nothing.
-    l.depths(columns, plane.dy * 4.0, plane.min, plane.max_code)
+/// Depths of a block's pixels, as an affine function of their columns and rows.
+struct Slope {
+    /// At the first pixel.
+    first: f32,
+    /// Change per pixel.
+    across: f32,
+    down: f32,
+}
+
+impl Slope {
+    #[inline(always)]
+    fn new(plane: &Plane, bx: u32, by: u32) -> Self {
+        // Centre of the first pixel.
+        let x = (bx * BLOCK_SAMPLES) as f32 + 2.0 - plane.x;
+        let y = (by * BLOCK_SAMPLES) as f32 + 2.0 - plane.y;
+        Self {
+            first: plane.depth + plane.dx * x + plane.dy * y,
+            across: plane.dx * 4.0,
+            down: plane.dy * 4.0,
+        }
+    }
+
+    /// Codes of all 64 pixels.
+    #[inline(always)]
+    fn codes<L: Lanes>(&self, l: L, plane: &Plane) -> L::D {
+        const COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
+        let columns = l.mul(l.load(&COLUMNS), l.splat(self.across));
+        let columns = l.add(l.splat(self.first), columns);
+        // Never nearer than the nearest vertex, so that what is skipped as hidden would have changed nothing.
+        l.depths(columns, self.down, plane.min, plane.max_code)
+    }
+
+    /// The least of these codes: sums round alike everywhere, so it is that of a corner.
+    #[inline(always)]
+    fn least_code(&self, plane: &Plane) -> i16 {
+        let last = (BLOCK - 1) as f32;
+        let left = smaller(self.first, self.first + last * self.across);
+        let least = left + smaller(0.0, last * self.down);
+        smaller(encode(larger(least, plane.min)), plane.max_code)
+    }
 }
 
 /// What a block takes that is covered wholly or in part, some ten nanoseconds each: threads share by it.
@@ -97,8 +126,15 @@ pub(crate) fn cover_full<L: Lanes>(
     if plane.max_code <= *to.min {
         return 0;
     }
+    let slope = Slope::new(plane, bx, by);
     let state = to.held.state();
-    let mut d = depths(l, plane, bx, by);
+    let mut d = slope.codes(l, plane);
+    if (state == STATE_EMPTY) & (erased == 0) {
+        l.dstore(d, &mut to.depth.0);
+        *to.min = slope.least_code(plane);
+        *to.held = Held::DEPTH;
+        return WORK_OF_FULL;
+    }
     if erased != 0 {
         d = l.dselect(erased, l.dsplat(EMPTY), d);
     }
@@ -132,60 +168,126 @@ pub(crate) fn cover_partial<L: Lanes>(
     if near <= *to.min {
         return 0;
     }
-    let d = depths(l, plane, bx, by);
-    let (planes, center) = l.within(spans, bx * BLOCK_SAMPLES);
-    // From here on all but without a branch: hardly any of the questions has an answer that could be foreseen.
+    let ours = Part {
+        depth: Slope::new(plane, bx, by).codes(l, plane),
+        covered: Covered::new(l, spans, bx),
+    };
+    if to.held.state() == STATE_EMPTY {
+        begin(l, to, &ours, !erased);
+    } else {
+        merge(l, to, &ours, !erased);
+    }
+    WORK_OF_PARTIAL
+}
+
+/// What a polygon covers of a block.
+struct Covered<L: Lanes> {
+    planes: L::P,
+    /// Pixels by their centre.
+    center: u64,
+    /// Pixels of which all samples are covered. These lie within convex borders, and so does the centre.
+    whole: u64,
+    /// Pixels of which any sample or the centre is covered.
+    touched: u64,
+}
+
+impl<L: Lanes> Covered<L> {
+    #[inline(always)]
+    fn new(l: L, spans: &L::S, bx: u32) -> Self {
+        let (planes, center) = l.within(spans, bx * BLOCK_SAMPLES);
+        Self {
+            planes,
+            center,
+            whole: l.pall(planes),
+            touched: l.pany(planes) | center,
+        }
+    }
+}
+
+/// What a polygon brings to a block that it covers in part.
+struct Part<L: Lanes> {
+    covered: Covered<L>,
+    depth: L::D,
+}
+
+/// The first polygon in a block that holds nothing, in the pixels `open` to it.
+#[inline(always)]
+fn begin<L: Lanes>(l: L, to: Here<'_, '_>, ours: &Part<L>, open: u64) {
+    let Part { covered, depth } = ours;
+    let alone = covered.whole & open;
+    let joined = covered.touched & open & !alone;
+    let new = l.dselect(alone, *depth, l.dsplat(EMPTY));
+    l.dstore(new, &mut to.depth.0);
+    if alone == u64::MAX {
+        *to.min = l.dreduce_min(new);
+    }
+    if joined == 0 {
+        *to.held = Held::DEPTH;
+        return;
+    }
+    let slot = to.pool.next();
+    to.pool.take(true);
+    let partial = &mut to.pool.partial[slot as usize];
+    l.pstore(l.pkeep(covered.planes, joined), &mut partial.planes);
+    l.dstore(*depth, &mut partial.depth);
+    partial.center = covered.center & joined;
+    partial.any = joined;
+    *to.held = Held::partial(STATE_PARTIAL, slot);
+}
+
+/// One more polygon in a block, in the pixels `open` to it.
+#[inline(always)]
+fn merge<L: Lanes>(l: L, to: Here<'_, '_>, ours: &Part<L>, open: u64) {
+    let Part { covered, depth: d } = ours;
     let state = to.held.state();
-    let begins = state < STATE_PARTIAL;
-    let free = to.pool.next();
-    to.pool.take(begins);
-    let fresh = u32::from(begins).wrapping_neg();
-    let slot = (free & fresh) | (to.held.slot() & !fresh);
+    let slot = if state == STATE_DEPTH {
+        let slot = to.pool.next();
+        to.pool.take(true);
+        slot
+    } else {
+        to.held.slot()
+    };
     let partial = &mut to.pool.partial[slot as usize];
     // What is stale is not even fetched.
-    let known = if state == STATE_EMPTY {
-        &DepthBlock::EMPTY
-    } else {
-        &*to.depth
-    };
-    let begun = if begins {
+    let begun = if state == STATE_DEPTH {
         &PartialBlock::NONE
     } else {
         &*partial
     };
-    let old = l.dload(&known.0);
+    let old = l.dload(&to.depth.0);
     let (theirs, before) = (l.dload(&begun.depth), begun.any);
     let (their_planes, their_center) = (l.pload(&begun.planes), begun.center);
+    // Which pixels all parts together complete does not wait for depths: no pixel that they had completed before
+    // is among theirs.
+    let complete = l.pall(l.por(covered.planes, their_planes)) & (covered.center | their_center);
     // Only pixels where the polygon is nearer than what is proven already. Those that it covers alone need no
     // partner, and what they have so far stays apart from them.
-    let nearer = l.dgt(d, old) & !erased;
-    // All samples of a pixel within convex borders: so is its centre.
-    let alone = l.pall(planes) & nearer;
-    // With those alone, so that one does not wait for the other.
-    let complete = l.pall(l.por(l.pkeep(planes, nearer), their_planes));
-    let full = complete & ((center & nearer) | their_center) & !alone;
-    let joined = (l.pany(planes) | center) & nearer & !alone;
-    let new = l.dselect(alone, d, old);
-    let (ours, our_center) = (l.pkeep(planes, nearer & !alone), center & joined);
-    let apart = l.dapart(d, theirs, APART) & joined & before;
+    let nearer = l.dgt(*d, old) & open;
+    let alone = covered.whole & nearer;
+    let joined = covered.touched & nearer & !covered.whole;
+    let full = complete & joined;
+    let new = l.dselect(alone, *d, old);
+    let our_planes = l.pkeep(covered.planes, joined);
+    let our_center = covered.center & joined;
+    let apart = l.dapart(*d, theirs, APART) & joined & before;
     if (apart != 0) | (state == STATE_LAYERS) {
         let ours = Layer {
-            planes: ours,
+            planes: our_planes,
             center: our_center,
-            depth: d,
+            depth: *d,
         };
         layers::join(l, to, slot, &ours, joined, new);
-        return WORK_OF_PARTIAL;
+        return;
     }
     let far = l.dsplat(i16::MAX);
-    let depth = l.dmin(l.dselect(joined, d, far), l.dselect(before, theirs, far));
+    let depth = l.dmin(l.dselect(joined, *d, far), l.dselect(before, theirs, far));
     let new = l.dselect(full, l.dmax(new, depth), new);
-    // Forget what is complete, or hidden by now. What there was is nearer than the old depth, and so is what joins it.
-    let hidden = alone & !l.dgt(theirs, d);
-    let kept = (joined | before) & !(hidden | full);
     l.dstore(new, &mut to.depth.0);
     *to.min = l.dreduce_min(new);
-    let planes = l.pkeep(l.por(ours, their_planes), kept);
+    // Forget what is complete, or hidden by now. What there was is nearer than the old depth, and so is what joins it.
+    let hidden = alone & !l.dgt(theirs, *d);
+    let kept = (joined | before) & !(hidden | full);
+    let planes = l.pkeep(l.por(our_planes, their_planes), kept);
     l.pstore(planes, &mut partial.planes);
     partial.center = (our_center | their_center) & kept;
     l.dstore(depth, &mut partial.depth);
@@ -196,5 +298,4 @@ pub(crate) fn cover_partial<L: Lanes>(
     } else {
         Held::DEPTH
     };
-    WORK_OF_PARTIAL
 }

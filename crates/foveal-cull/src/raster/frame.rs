@@ -27,7 +27,7 @@ pub(crate) struct Candidate {
     /// First and last block, inclusive.
     pub(super) blocks: [u16; 4],
     pub(super) code: i16,
-    /// Not beyond the near plane everywhere: no depth test.
+    /// Its box crosses the near plane.
     pub(super) crossing: bool,
 }
 
@@ -83,7 +83,7 @@ impl Kernel for Draw<'_, '_> {
             }
             let [x0, y0, x1, y1] = c.blocks;
             let blocks = [x0, y0.max(row0), x1, y1.min(row1)].map(u32::from);
-            if blocks[1] > blocks[3] || (!c.crossing && band.hides(blocks, c.code)) {
+            if blocks[1] > blocks[3] || band.hides(blocks, c.code) {
                 continue;
             }
             let instance = &set.instances[c.instance as usize];

@@ -7,8 +7,9 @@
 
 use super::frame::{Candidate, FrameScratch};
 use crate::depth::{BLOCK_SAMPLES, SAMPLES, encode};
-use crate::occluder::{Instance, OccluderSet};
-use crate::query::project::{Projected8, Screen, project};
+use crate::occluder::{Cluster, Instance, OccluderSet};
+use crate::query::near::{Clipped, clip_box};
+use crate::query::project::{Screen, project};
 use crate::simd::{Kernel, Lanes};
 use crate::view::Camera;
 use crate::{CullStats, InstructionSet, Threads};
@@ -225,7 +226,18 @@ impl Kernel for Select<'_> {
                     if !mesh.two_sided && cluster.faces_away(eye, forward, camera.orthographic) {
                         continue;
                     }
-                    let Some(c) = candidate(&p, i, width, height) else {
+                    let place = if p.crossing >> i & 1 == 0 {
+                        Place {
+                            rect: [p.x0[i], p.y0[i], p.x1[i], p.y1[i]],
+                            depth: p.depth[i],
+                            crossing: false,
+                        }
+                    } else if let Some(place) = crossing(&screen, cluster) {
+                        place
+                    } else {
+                        continue;
+                    };
+                    let Some(c) = candidate(&place, width, height) else {
                         continue;
                     };
                     let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]) * cluster.fill;
@@ -237,11 +249,7 @@ impl Kernel for Select<'_> {
                         continue;
                     }
                     // Perspective: nearest distance; orthographic W is 1, so that the depth decides.
-                    let near = if c.crossing {
-                        0.0
-                    } else {
-                        (1.0 / p.depth[i]).max(0.0)
-                    };
+                    let near = (1.0 / place.depth).max(0.0);
                     let number = part.candidates.len() as u64;
                     part.order.push((u64::from(near.to_bits()) << 32) | number);
                     part.candidates.push(Candidate {
@@ -256,42 +264,66 @@ impl Kernel for Select<'_> {
     }
 }
 
-#[inline(always)]
-fn candidate(p: &Projected8, i: usize, width: f32, height: f32) -> Option<Candidate> {
-    let size = BLOCK_SAMPLES as f32;
-    let crossing = p.crossing >> i & 1 != 0;
-    let (bx, by) = (
-        ((width - 1.0) / size) as u16,
-        ((height - 1.0) / size) as u16,
-    );
-    let blocks = if crossing {
-        [0, 0, bx, by]
-    } else {
-        // Nothing between two half-sample steps: no sample can be covered.
-        if ((p.x0[i] * 2.0).floor() == (p.x1[i] * 2.0).floor())
-            | ((p.y0[i] * 2.0).floor() == (p.y1[i] * 2.0).floor())
-        {
-            return None;
-        }
-        [
-            ((p.x0[i] / size) as u16).min(bx),
-            ((p.y0[i] / size) as u16).min(by),
-            ((p.x1[i] / size) as u16).min(bx),
-            ((p.y1[i] / size) as u16).min(by),
-        ]
+/// Where a cluster lies on the screen.
+struct Place {
+    /// Left, top, right, bottom, samples.
+    rect: [f32; 4],
+    /// Nearest.
+    depth: f32,
+    /// Its box crosses the near plane: this is the place of what is beyond.
+    crossing: bool,
+}
+
+/// Rectangles of what is left of a box grow by so many samples, against rounding.
+const GROWN: f32 = 1.0;
+
+/// The place of a cluster whose box crosses the near plane: of the part of the box that lies within the frustum.
+/// None where nothing does.
+#[inline(never)]
+fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
+    let screen = Screen {
+        dilate: GROWN,
+        ..*screen
     };
-    let code = if crossing {
-        i16::MAX
-    } else {
-        encode(p.depth[i])
+    if screen.is_beside(cluster.center, cluster.half) {
+        return None;
+    }
+    let (rect, depth) = match clip_box(&screen, cluster.center, cluster.half) {
+        Clipped::Outside => return None,
+        Clipped::Visible => ([0.0, 0.0, screen.width, screen.height], f32::INFINITY),
+        Clipped::Rect(rect, depth) => (rect, depth),
+    };
+    Some(Place {
+        rect,
+        depth,
+        crossing: true,
+    })
+}
+
+/// None where it covers no sample.
+#[inline(always)]
+fn candidate(place: &Place, width: f32, height: f32) -> Option<Candidate> {
+    let [x0, y0, x1, y1] = place.rect;
+    // Nothing between two half-sample steps: no sample can be covered.
+    if ((x0 * 2.0).floor() == (x1 * 2.0).floor()) | ((y0 * 2.0).floor() == (y1 * 2.0).floor()) {
+        return None;
+    }
+    let block = |v: f32, size: f32| {
+        let last = ((size - 1.0) / BLOCK_SAMPLES as f32) as u16;
+        ((v / BLOCK_SAMPLES as f32) as u16).min(last)
     };
     Some(Candidate {
         hash: 0,
         instance: 0,
         cluster: 0,
-        blocks,
-        code,
-        crossing,
+        blocks: [
+            block(x0, width),
+            block(y0, height),
+            block(x1, width),
+            block(y1, height),
+        ],
+        code: encode(place.depth),
+        crossing: place.crossing,
     })
 }
 

@@ -302,14 +302,19 @@ impl Lanes for Avx2 {
         avx2!({
             let (floor, cap) = (_mm256_set1_ps(floor), _mm256_set1_epi16(cap));
             let offset = _mm256_set1_epi32(CODE_OFFSET);
+            // Half a register is half a row, so that packing two of them gives whole rows in their order.
+            let sides = [
+                _mm256_permute2f128_ps::<0x00>(columns, columns),
+                _mm256_permute2f128_ps::<0x11>(columns, columns),
+            ];
             four!(i => {
-                let rows = two!(k => {
-                    let down = _mm256_set1_ps((2 * i + k) as f32 * down);
-                    let bits = _mm256_castps_si256(_mm256_max_ps(_mm256_add_ps(columns, down), floor));
-                    _mm256_sub_epi32(_mm256_srai_epi32::<12>(bits), offset)
+                let (upper, lower) = ((2 * i) as f32 * down, (2 * i + 1) as f32 * down);
+                let below = _mm256_set_m128(_mm_set1_ps(lower), _mm_set1_ps(upper));
+                let codes = two!(side => {
+                    let v = _mm256_max_ps(_mm256_add_ps(sides[side], below), floor);
+                    _mm256_sub_epi32(_mm256_srai_epi32::<12>(_mm256_castps_si256(v)), offset)
                 });
-                let codes = _mm256_packs_epi32(rows[0], rows[1]);
-                _mm256_min_epi16(_mm256_permute4x64_epi64::<0b11_01_10_00>(codes), cap)
+                _mm256_min_epi16(_mm256_packs_epi32(codes[0], codes[1]), cap)
             })
         })
     }

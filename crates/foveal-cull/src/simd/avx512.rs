@@ -18,6 +18,16 @@ const ORDERED: [f64; 40] = {
     rows
 };
 
+/// Numbers of rows of pixels, four times each: of the upper half of a block and of the lower.
+const HALF_ROWS: [[f32; 16]; 2] = {
+    let (mut rows, mut i) = ([[0.0; 16]; 2], 0);
+    while i < 32 {
+        rows[i / 16][i % 16] = (i / 4) as f32;
+        i += 1;
+    }
+    rows
+};
+
 /// Proof that the CPU has AVX-512 F, BW, DQ and VL, and AVX2.
 #[derive(Clone, Copy)]
 pub(crate) struct Avx512(Avx2);
@@ -157,20 +167,21 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
         avx512!({
-            let columns = _mm512_broadcast_f32x8(columns);
+            // A quarter of a register is half a row, so that packing two of them gives whole rows in their order.
+            let sides = [
+                _mm512_broadcast_f32x4(_mm256_castps256_ps128(columns)),
+                _mm512_broadcast_f32x4(_mm256_extractf128_ps::<1>(columns)),
+            ];
             let (down, floor) = (_mm512_set1_ps(down), _mm512_set1_ps(floor));
             let offset = _mm512_set1_epi32(CODE_OFFSET);
-            let first = _mm512_zextps256_ps512(_mm256_setzero_ps());
-            let first = _mm512_insertf32x8::<1>(first, _mm256_set1_ps(1.0));
-            let rows = four!(i => {
-                let rows = _mm512_add_ps(first, _mm512_set1_ps((2 * i) as f32));
-                let v = _mm512_add_ps(columns, _mm512_mul_ps(rows, down));
-                let bits = _mm512_castps_si512(_mm512_max_ps(v, floor));
-                _mm512_cvtsepi32_epi16(_mm512_sub_epi32(_mm512_srai_epi32::<12>(bits), offset))
-            });
-            two!(i => {
-                let codes = _mm512_castsi256_si512(rows[2 * i]);
-                let codes = _mm512_inserti64x4::<1>(codes, rows[2 * i + 1]);
+            two!(half => {
+                let rows = _mm512_loadu_ps(HALF_ROWS[half].as_ptr());
+                let below = _mm512_mul_ps(rows, down);
+                let codes = two!(side => {
+                    let v = _mm512_max_ps(_mm512_add_ps(sides[side], below), floor);
+                    _mm512_sub_epi32(_mm512_srai_epi32::<12>(_mm512_castps_si512(v)), offset)
+                });
+                let codes = _mm512_packs_epi32(codes[0], codes[1]);
                 _mm512_min_epi16(codes, _mm512_set1_epi16(cap))
             })
         })

@@ -12,9 +12,10 @@ use foveal_cull::FrameOptions;
 use foveal_scene::Scene;
 use glam::{DAffine3, DVec3};
 
+use super::boxes;
+use super::cameras::Cameras;
 use super::plot::{self, Panel};
 use super::rows::{Case, Row};
-use super::{boxes, cameras};
 use crate::cull::CullingArgs;
 use crate::cull::occluders::{Choice, Occluders};
 use crate::cull::progress_bar;
@@ -114,7 +115,7 @@ impl Town {
 
     fn measure(&self, point: &Point, repetitions: u32) -> anyhow::Result<Row> {
         let aspect = f64::from(point.size.0) / f64::from(point.size.1);
-        let eyes = cameras::choose(&self.scene, None, aspect)?;
+        let eyes = Cameras::new(&self.scene, &self.all, None)?.eyes(aspect)?;
         let occluders = self.occluders(point.triangles)?;
         let boxes = boxes::random(self.scene.bounds(), point.boxes);
         let case = Case {
