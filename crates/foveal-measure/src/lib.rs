@@ -1,4 +1,4 @@
-//! How two ways of drawing are compared: the one method of the window, the page, the report and the benches.
+//! How two ways of drawing are compared: the one method of the window, the report and the benches.
 //!
 //! Both sides draw the same frames, warm, one after the other. [`turn`] says in which order: it is drawn by lot for
 //! each frame, so that with equal sides each of the two is as likely to meet a slow moment as the other, whatever the
