@@ -113,11 +113,10 @@ fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
         .button("Copy command")
         .on_hover_text("Copies the command that draws this picture to a file, byte by byte")
         .clicked()
+        && let Some(line) = app.command_line()
     {
-        if let Some(line) = app.command_line() {
-            ui.ctx().copy_text(line);
-            app.say(ui.ctx(), "The command is in the clipboard");
-        }
+        ui.ctx().copy_text(line);
+        app.say(ui.ctx(), "The command is in the clipboard");
     }
     if ui
         .button("Load")
