@@ -37,7 +37,7 @@ pub(crate) enum Command {
     Cull(Box<cull::Args>),
     /// Measure what a technique costs and gains
     #[command(subcommand)]
-    Bench(BenchCommand),
+    Bench(Box<BenchCommand>),
     /// Print what completes these commands in a shell
     Completions(completions::Args),
     /// Write the manual's pages, one per command

@@ -37,11 +37,11 @@ fn head(body: &mut String, f: &Figures<'_>) {
         f.figure("/height", 1.0, 0),
         f.figure("/minutes", 1.0, 1),
     );
-    let _ = write!(
+    let _ = writeln!(
         body,
         "<p class=\"faint\">{}, {} threads, {}; {} ({}, {}). Foveal {}. In the sections after \
          the verdict figures are medians of {} passes; small figures are the passes' range. The sources' \
-         figures come from other machines: compare ratios, not times.</p>\n",
+         figures come from other machines: compare ratios, not times.</p>",
         f.text("/machine/processor"),
         f.figure("/machine/threads", 1.0, 0),
         f.text("/machine/system"),
