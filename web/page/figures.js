@@ -2,14 +2,16 @@
 
 const COLOURS = ['#59c2ff', '#ffb454', '#7fd962', '#d2a6ff', '#f07178', '#95e6cb', '#e6b450', '#6c9cff', '#ff8f40', '#aad94c', '#c594c5', '#5fb3b3'];
 
+// A name, what it is of a side, how it is written, and whether the sides are compared: a count is exact; the time of one frame
+// is not, and says nothing by itself.
 const rows = [
-  ['Frame', (s) => s.frame_ms, ms, true],
-  ['Passes in all', (s) => (s.gpu_ms.length ? total(s.gpu_ms) : undefined), ms, true],
-  ['Processor', (s) => total(s.cpu_ms), ms, true],
-  ['Objects drawn', (s) => s.objects_visible, count, true],
-  ['Draws', (s) => s.draws, count, true],
-  ['Triangles', (s) => s.triangles, count, true],
-  ['Samples lit', (s) => s.shaded_samples, count, true],
+  ['Frame', (s) => s.frame_ms, ms, 'time'],
+  ['Passes in all', (s) => (s.gpu_ms.length ? total(s.gpu_ms) : undefined), ms, 'time'],
+  ['Processor', (s) => total(s.cpu_ms), ms, 'time'],
+  ['Objects drawn', (s) => s.objects_visible, count, 'count'],
+  ['Draws', (s) => s.draws, count, 'count'],
+  ['Triangles', (s) => s.triangles, count, 'count'],
+  ['Samples lit', (s) => s.shaded_samples, count, 'count'],
   ['… by pixels', (s) => s.shaded_samples / (s.width * s.height), (v) => `${(100 * v).toFixed(1)} %`],
   ['Targets', (s) => s.target_bytes / 2 ** 20, (v) => `${v.toFixed(0)} MiB`],
 ];
@@ -26,10 +28,23 @@ function total(timings) {
   return timings.reduce((sum, timing) => sum + timing.ms, 0);
 }
 
-function cell(name, text, better) {
+function cell(name, text, kind) {
   const made = document.createElement(name);
   made.textContent = text;
-  if (better) made.className = 'better';
+  if (kind) made.className = kind;
+  return made;
+}
+
+/** Reference / chosen: above 1 the chosen side takes less. Of times it is that of one frame, and grey. */
+function ratioCell(compare, left, right) {
+  const ratio = compare && left > 0 && right > 0 ? left / right : undefined;
+  const made = cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`);
+  if (compare === 'time') {
+    made.className = 'grey';
+    made.title = 'Of one frame: it varies from frame to frame. foveal bench verdict compares many.';
+  } else if (ratio > 1) {
+    made.className = 'better';
+  }
   return made;
 }
 
@@ -43,8 +58,7 @@ export function showFigures(table, passes, notices, { reference, chosen }) {
     const row = body.insertRow();
     row.append(cell('th', name));
     for (const value of [left, right]) row.append(cell('td', value === undefined ? '–' : write(value)));
-    const ratio = compare && left > 0 && right > 0 ? right / left : undefined;
-    row.append(cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`, ratio < 0.98));
+    row.append(ratioCell(compare, left, right));
   }
   showPasses(passes, reference, chosen);
   notices.textContent = noticesOf(chosen).join(' ');

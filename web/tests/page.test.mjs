@@ -31,6 +31,10 @@ test('the page draws, names what it draws with and says nothing in the console',
   assert.ok(chosen.shaded_samples < 0.6 * reference.shaded_samples, 'coarse shading lights fewer samples');
   assert.equal(await page.locator('#wait').isVisible(), false);
   assert.ok((await page.locator('#figures tbody tr').count()) >= 7);
+  // Reference / chosen: fewer samples are above 1; the time of one frame has no colour.
+  const told = await page.locator('#figures tbody tr').evaluateAll((all) => Object.fromEntries(all.map((row) => [row.cells[0].textContent, [parseFloat(row.cells[3].textContent), row.cells[3].className]])));
+  assert.ok(told['Samples lit'][0] > 1.6 && told['Samples lit'][1] === 'better', JSON.stringify(told));
+  assert.equal(told.Frame[1], 'grey');
   assert.match(await page.locator('#adapter').textContent(), /WebGPU/);
   assert.equal(await page.locator('#reduced').isVisible(), false);
   console.log(await footing(page));

@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::bench::BenchCommand;
-use crate::{adapters, compare, cull, render, scene_info, view};
+use crate::{adapters, compare, completions, cull, render, scene_info, view};
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
 #[derive(Debug, Parser)]
@@ -37,7 +37,11 @@ pub(crate) enum Command {
     Cull(Box<cull::Args>),
     /// Measure what a technique costs and gains
     #[command(subcommand)]
-    Bench(BenchCommand),
+    Bench(Box<BenchCommand>),
+    /// Print what completes these commands in a shell
+    Completions(completions::Args),
+    /// Write the manual's pages, one per command
+    Man(completions::ManArgs),
 }
 
 /// What to do with a scene.
@@ -58,6 +62,8 @@ impl Command {
             Self::Scene(SceneCommand::Info(_)) => "scene info",
             Self::Cull(_) => "cull",
             Self::Bench(command) => command.name(),
+            Self::Completions(_) => "completions",
+            Self::Man(_) => "man",
         }
     }
 }

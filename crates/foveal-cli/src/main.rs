@@ -9,16 +9,17 @@ mod atomic_file;
 mod bench;
 mod cli;
 mod compare;
+mod completions;
 mod console;
 mod cull;
 mod failure;
 mod gpu;
 mod import_args;
-mod median;
 #[cfg(test)]
 #[path = "../../foveal-scene/src/gltf/tests/mutate.rs"]
 mod mutate;
 mod picture;
+mod quiet;
 mod render;
 mod scene_info;
 mod scene_source;
@@ -31,6 +32,7 @@ use clap::Parser;
 use cli::{Cli, Command, SceneCommand};
 
 fn main() -> ExitCode {
+    quiet::hush();
     let cli = Cli::parse();
     let name = cli.command.name();
     failure::report(name, || match cli.command {
@@ -41,5 +43,7 @@ fn main() -> ExitCode {
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
         Command::Cull(args) => cull::run(&args),
         Command::Bench(command) => command.run(),
+        Command::Completions(args) => completions::print(&args),
+        Command::Man(args) => completions::write_pages(&args),
     })
 }

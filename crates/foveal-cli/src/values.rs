@@ -5,7 +5,8 @@ mod variants;
 
 pub(crate) use variants::VariantParser;
 
-use glam::Vec3;
+use foveal_scene::{Camera, Projection};
+use glam::{Mat4, Vec3};
 
 /// Width and height in pixels: `1920x1080`.
 pub(crate) fn size(text: &str) -> Result<(u32, u32), String> {
@@ -35,6 +36,49 @@ pub(crate) fn vec3(text: &str) -> Result<Vec3, String> {
         [x, y, z] => Ok(Vec3::new(x, y, z)),
         _ => Err("three numbers are needed: x,y,z".to_owned()),
     }
+}
+
+/// A camera in full: how it projects, then twelve numbers of its place.
+pub(crate) fn exact_camera(text: &str) -> Result<Camera, String> {
+    let (kind, numbers) = text.split_once(',').unwrap_or((text, ""));
+    let numbers = (numbers.split(',').map(finite)).collect::<Result<Vec<_>, _>>();
+    let (projection, place) = match (kind, numbers.as_deref()) {
+        ("perspective", Ok([fov_y_rad, near_m, place @ ..]))
+            if *fov_y_rad > 0.0 && *fov_y_rad < std::f32::consts::PI && *near_m > 0.0 =>
+        {
+            let projection = Projection::Perspective {
+                fov_y_rad: *fov_y_rad,
+                near_m: *near_m,
+            };
+            (projection, place)
+        }
+        ("orthographic", Ok([height_m, near_m, far_m, place @ ..]))
+            if *height_m > 0.0 && far_m > near_m =>
+        {
+            let projection = Projection::Orthographic {
+                height_m: *height_m,
+                near_m: *near_m,
+                far_m: *far_m,
+            };
+            (projection, place)
+        }
+        _ => {
+            return Err("it begins with perspective,FOV_RAD,NEAR_M or orthographic,HEIGHT_M,NEAR_M,FAR_M, all possible".to_owned());
+        }
+    };
+    let &[rx, ry, rz, ux, uy, uz, bx, by, bz, ex, ey, ez] = place else {
+        return Err("twelve numbers follow: right, up, back and eye".to_owned());
+    };
+    Ok(Camera {
+        name: "exact".to_owned(),
+        world_from_view: Mat4::from_cols_array_2d(&[
+            [rx, ry, rz, 0.0],
+            [ux, uy, uz, 0.0],
+            [bx, by, bz, 0.0],
+            [ex, ey, ez, 1.0],
+        ]),
+        projection,
+    })
 }
 
 /// A place in the picture: `x,y`.

@@ -9,6 +9,7 @@ use crate::{gpu, scene_source, values};
 
 /// Arguments of `foveal view`.
 #[derive(Debug, clap::Args)]
+#[command(after_help = foveal_view::keys_help())]
 pub(crate) struct Args {
     /// A glTF 2.0 file or a generated scene
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
@@ -38,11 +39,22 @@ pub(crate) struct Args {
 
 /// Opens the window and stays until it is closed.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    foveal_view::run(host(args)?)
+}
+
+fn host(args: &Args) -> anyhow::Result<Host> {
     let settings = args.settings.resolve()?;
     gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());
     let point_lights = args.point_lights;
     let options = args.import.options();
+    let mut scene_flags = Vec::new();
+    if point_lights > 0 {
+        scene_flags.extend(["--point-lights".to_owned(), point_lights.to_string()]);
+    }
+    if let Some(adapter) = &args.adapter {
+        scene_flags.extend(["--adapter".to_owned(), adapter.clone()]);
+    }
     let load = move |name: &str| {
         // What was asked for by name holds for the first scene; limits hold for all.
         let mut options = options.clone();
@@ -63,7 +75,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         let camera = Viewpoint::choose(&camera, &scene, name)?.at(&scene, 0.0);
         Ok(Loaded { scene, camera })
     };
-    foveal_view::run(Host {
+    Ok(Host {
         scene: args.scene.clone(),
         generated: generate::NAMES.map(str::to_owned).to_vec(),
         fit: !args.settings.gives_size(),
@@ -74,5 +86,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         read_settings,
         rate_image,
         flags,
+        scene_flags,
     })
 }
+
+#[cfg(test)]
+mod tests;

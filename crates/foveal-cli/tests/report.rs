@@ -32,7 +32,7 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
         "--size",
         "96x64",
         "--only",
-        "baseline,antialiasing",
+        "verdict,baseline,antialiasing",
         "--report",
         "r",
     ];
@@ -47,6 +47,13 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
         // The command is one that the program takes.
         let command = bench["command"].as_str().unwrap();
         assert!(command.starts_with("foveal "), "{command}");
+    }
+    // The first page decides about each candidate, and says why.
+    for row in bench(&report, "verdict")["rows"].as_array().unwrap() {
+        let decision = row["decision"].as_str().unwrap();
+        assert!(["adopt", "look", "skip", "pay", "impossible"].contains(&decision));
+        assert!(!row["why"].as_str().unwrap().is_empty(), "{row}");
+        assert_eq!(row["pairs"], 40, "{row}");
     }
     let modes = bench(&report, "antialiasing")["rows"].as_array().unwrap();
     let label = |row: &Value| row["label"].as_str().unwrap().to_owned();
@@ -68,7 +75,7 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
     assert!(said.contains("0 slower, 0 faster"), "{said}");
     // A report in which all takes twice as long.
     let mut slower = report.clone();
-    for row in slower["benches"][0]["rows"].as_array_mut().unwrap() {
+    for row in slower["benches"][1]["rows"].as_array_mut().unwrap() {
         let ms = row["ms"].as_f64().unwrap();
         row["ms"] = (3.0 * ms).into();
         row["spread"] = serde_json::json!({ "ms": [3.0 * ms, 3.0 * ms] });

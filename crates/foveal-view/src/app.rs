@@ -42,6 +42,8 @@ pub(crate) struct Display {
     /// Where the reference ends, as a fraction of the picture's width.
     pub(crate) split: f32,
     pub(crate) panels: bool,
+    /// Whether the list of keys is shown.
+    pub(crate) keys: bool,
     /// Whether the interface waits for the screen.
     pub(crate) vsync: bool,
     pub(crate) playing: bool,
@@ -103,6 +105,7 @@ impl App {
                 compare: false,
                 split: 0.5,
                 panels: true,
+                keys: false,
                 vsync: true,
                 playing: false,
                 time_s: 0.0,
@@ -208,11 +211,8 @@ impl App {
                 }
                 News::Picture(shown) => self.take_picture(context, shown),
                 News::Failed(cause) => {
+                    // What was typed stays, to be mended.
                     self.loading = false;
-                    // What is shown stays, and so does its name.
-                    if let Some(scene) = &self.scene {
-                        self.scene_name = scene.name.clone();
-                    }
                     self.complain(cause);
                 }
             }

@@ -8,15 +8,21 @@
 mod app;
 mod boxes;
 mod clock;
+mod command;
 mod graphics;
 mod history;
+mod keys;
 mod legend;
 mod look;
 mod navigator;
 mod panels;
+mod settled;
 mod viewport;
 mod window;
 mod worker;
+
+pub use keys::help as keys_help;
+pub use settled::{Settled, Settler, Sight};
 
 use std::path::Path;
 
@@ -57,6 +63,8 @@ pub struct Host {
     pub rate_image: fn(&Settings) -> anyhow::Result<Option<RateImage>>,
     /// The flags that make these settings out of the defaults.
     pub flags: fn(&Settings) -> Vec<String>,
+    /// The flags of `foveal render` that stand for what `load` adds to a scene, and for the adapter.
+    pub scene_flags: Vec<String>,
 }
 
 impl std::fmt::Debug for Host {

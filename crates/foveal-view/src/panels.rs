@@ -1,6 +1,7 @@
 //! Everything around the picture: the bar on top, settings on the left, figures on the right, keys below.
 
 mod bar;
+mod compare;
 mod culling;
 mod figures;
 mod settings;

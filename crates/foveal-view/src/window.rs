@@ -126,7 +126,7 @@ impl Open {
         let attributes = Window::default_attributes()
             .with_title("Foveal")
             .with_inner_size(PhysicalSize::new(width, height))
-            .with_min_inner_size(PhysicalSize::new(960, 600));
+            .with_min_inner_size(PhysicalSize::new(960, 540));
         let window = Arc::new(
             event_loop
                 .create_window(attributes)

@@ -2,10 +2,12 @@
 //!
 //! It has its own device: whatever happens to it, the window stays, says what happened, and a new device is opened.
 //! Only the newest request counts; a request that is settled is drawn a few times, until what adapts from frame to
-//! frame has adapted.
+//! frame has adapted. With a reference both sides are drawn in turn until they can be told apart, or have been drawn
+//! often enough to say that they cannot.
 
 mod drawing;
 mod inbox;
+mod measuring;
 #[cfg(test)]
 mod tests;
 
@@ -18,9 +20,10 @@ use foveal_scene::{Aabb, Camera};
 use crate::Host;
 use drawing::Drawing;
 use inbox::{Inbox, Order};
+pub(crate) use measuring::Compared;
 
 /// How often a settled request is drawn.
-const SETTLING_FRAMES: u32 = 8;
+pub(crate) const SETTLING_FRAMES: u32 = 9;
 
 /// What shall be drawn.
 #[derive(Clone, Debug, PartialEq)]
@@ -64,6 +67,8 @@ pub(crate) struct Shown {
     pub(crate) stats: FrameStats,
     pub(crate) camera: Camera,
     pub(crate) reference: Option<(Rgba, FrameStats)>,
+    /// What both sides took, drawn in turn.
+    pub(crate) compared: Option<Compared>,
     /// Mean FLIP error against the reference, once the view stands still.
     pub(crate) flip: Option<f32>,
     pub(crate) culling: Option<CullingFigures>,
@@ -75,6 +80,8 @@ pub(crate) struct Shown {
 #[derive(Clone, Debug)]
 pub(crate) struct LoadedScene {
     pub(crate) name: String,
+    /// The path or name that it was opened by.
+    pub(crate) source: String,
     pub(crate) counts: SceneStats,
     pub(crate) start: Camera,
     pub(crate) cameras: Vec<Camera>,
@@ -173,9 +180,9 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, tell: &Teller<W>) {
     let mut is_second_try = false;
     let mut wanted: Option<Request> = None;
     loop {
-        let idle = wanted
-            .as_ref()
-            .is_none_or(|request| settled >= SETTLING_FRAMES && !request.always);
+        let idle = wanted.as_ref().is_none_or(|request| {
+            settled >= SETTLING_FRAMES && !request.always && drawing.is_measured()
+        });
         match inbox.next(idle) {
             Order::Quit => return,
             Order::Load(name) => {

@@ -4,6 +4,7 @@ use foveal::{
     AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment,
     LightingModel, Renderer, SamplePattern, Settings,
 };
+use foveal_measure::{Comparison, Finding, median, turn};
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
@@ -11,14 +12,13 @@ use serde::Serialize;
 use super::figures::FigureArgs;
 use super::table::text;
 use crate::compare::ErrorMap;
-use crate::median::median;
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
 use crate::values::VariantParser;
 use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// Frames per second that the source reports on a GTX 960, Sponza, about 1000 x 1500: none, MSAA, SSAA.
 const SOURCE_FPS: [(&str, &str); 3] =
@@ -50,8 +50,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
     lighting: Option<LightingModel>,
 
-    /// Frames of each mode after one that warms up; figures are medians over them
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..))]
+    /// Frames of each mode after one that warms up; figures are medians over them. Below 10 there is no interval
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
 
     /// Sub-samples of the SSAA picture that is taken for the truth; 0: leave it out
@@ -98,9 +98,12 @@ struct Row {
     /// Shading, shading of edges, combination.
     shade_ms: f64,
     frame_ms: f64,
-    /// Medians of the ratios within each round.
-    shade_ratio_to_none: f64,
-    ratio_to_none: f64,
+    /// None / this: above 1 this takes less time; with the interval of the whole frame's, where there are rounds enough.
+    frame_ratio: f64,
+    frame_ratio_low: Option<f64>,
+    frame_ratio_high: Option<f64>,
+    finding: Finding,
+    shade_ratio: f64,
     /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
     flip_to_ssaa: f64,
     flip_to_reference: Option<f64>,
@@ -214,9 +217,12 @@ fn rows(
         .iter()
         .map(|settings| Mode::new(gpu, scene, settings))
         .collect::<anyhow::Result<Vec<_>>>()?;
-    for round in 0..=args.rounds {
-        for mode in &mut modes {
-            mode.draw(camera, round > 0)?;
+    for mode in &mut modes {
+        mode.draw(camera, false)?;
+    }
+    for round in 0..u64::from(args.rounds) {
+        for number in turn(round, modes.len()) {
+            modes[number].draw(camera, true)?;
         }
     }
     let reference = if args.reference > 0 {
@@ -232,15 +238,19 @@ fn rows(
         None
     };
     let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
-    Ok((modes.iter().zip(&pictures))
-        .map(|(mode, picture)| {
+    Ok((modes.iter().zip(&pictures).enumerate())
+        .map(|(number, (mode, picture))| {
             let flip = |truth: &Picture| ErrorMap::between(truth, picture).mean();
             let reference = reference.as_ref().map(flip);
             // Each is compared with none by the same geometry.
             let geometry = mode.renderer.settings().geometry;
-            let same = |m: &&Mode| m.renderer.settings().geometry == geometry;
-            let none = modes.iter().find(same).unwrap_or(mode);
-            mode.row(&scene.name, none, flip(&pictures[1]), reference)
+            let same = |m: &Mode| m.renderer.settings().geometry == geometry;
+            let none = modes.iter().position(same).unwrap_or(number);
+            let compared = |figure: fn(&Times) -> f64| {
+                let (none_ms, ms) = (modes[none].times(figure), mode.times(figure));
+                Comparison::of_rounds(modes.len(), (none, &none_ms), (number, &ms))
+            };
+            mode.row(&scene.name, &compared, flip(&pictures[1]), reference)
         })
         .collect())
 }
@@ -275,18 +285,22 @@ impl Mode {
         Ok(())
     }
 
-    fn row(&self, scene: &str, none: &Self, to_ssaa: f64, to_reference: Option<f64>) -> Row {
+    fn times(&self, figure: fn(&Times) -> f64) -> Vec<f64> {
+        self.rounds.iter().map(figure).collect()
+    }
+
+    /// The mode's row; `compared` compares one of its times with that of none.
+    fn row(
+        &self,
+        scene: &str,
+        compared: &dyn Fn(fn(&Times) -> f64) -> Option<Comparison>,
+        to_ssaa: f64,
+        to_reference: Option<f64>,
+    ) -> Row {
         let settings = self.renderer.settings();
-        let middle =
-            |figure: fn(&Times) -> f64| median(&self.rounds.iter().map(figure).collect::<Vec<_>>());
-        let ratio = |figure: fn(&Times) -> f64| {
-            let pairs = self.rounds.iter().zip(&none.rounds);
-            median(
-                &pairs
-                    .map(|(ours, none)| figure(ours) / figure(none))
-                    .collect::<Vec<_>>(),
-            )
-        };
+        let middle = |figure: fn(&Times) -> f64| median(&self.times(figure));
+        let frame = compared(|t| t.frame_ms);
+        let interval = frame.as_ref().and_then(|frame| frame.interval);
         Row {
             name: called(settings),
             scene: scene.to_owned(),
@@ -306,8 +320,11 @@ impl Mode {
             gbuffer_ms: middle(|t| t.gbuffer_ms),
             shade_ms: middle(|t| t.shade_ms),
             frame_ms: middle(|t| t.frame_ms),
-            shade_ratio_to_none: ratio(|t| t.shade_ms),
-            ratio_to_none: ratio(|t| t.frame_ms),
+            frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
+            frame_ratio_low: interval.map(|ends| ends[0]),
+            frame_ratio_high: interval.map(|ends| ends[1]),
+            finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
+            shade_ratio: compared(|t| t.shade_ms).map_or(1.0, |shade| shade.ratio),
             flip_to_ssaa: to_ssaa,
             flip_to_reference: to_reference,
         }
@@ -343,8 +360,8 @@ fn summary(report: &Report) -> String {
         "G-buffer ms",
         "shade ms",
         "frame ms",
-        "shade/none",
-        "frame/none",
+        "none/frame",
+        "none/shade",
         "FLIP to ssaa",
         "FLIP to truth",
         "MB",
@@ -360,8 +377,11 @@ fn summary(report: &Report) -> String {
             format!("{:.1}", row.gbuffer_ms),
             format!("{:.1}", row.shade_ms),
             format!("{:.1}", row.frame_ms),
-            format!("{:.3}", row.shade_ratio_to_none),
-            format!("{:.3}", row.ratio_to_none),
+            match row.finding {
+                Finding::NoDifference => format!("~ {:.3}", row.frame_ratio),
+                _ => format!("{:.3}", row.frame_ratio),
+            },
+            format!("{:.3}", row.shade_ratio),
             format!("{:.4}", row.flip_to_ssaa),
             row.flip_to_reference
                 .map_or("-".to_owned(), |f| format!("{f:.4}")),

@@ -10,6 +10,7 @@ use foveal::{
     AdapterStats, Backend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateSource,
     RateStage, RefineEdges, Settings, Shading,
 };
+use foveal_measure::{Comparison, Finding, median, turn};
 use foveal_scene::{Camera, Scene};
 use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
@@ -17,13 +18,12 @@ use side::{Side, fovea_differing, psnr};
 use super::figures::FigureArgs;
 use super::table::text;
 use crate::compare::flip::ErrorMap;
-use crate::median::median;
 use crate::render::{CameraArgs, Viewpoint};
 use crate::values::VariantParser;
 use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// Frames per second that the source reports (Radeon RX 560, 200 point lights, nine levels): each pixel, the
 /// interpolating composite, the nearest one.
@@ -80,7 +80,7 @@ pub(crate) struct Args {
     #[arg(long)]
     sweep: bool,
 
-    /// Rounds that are measured, after one that warms up
+    /// Rounds that are measured, after one that warms up; below 10 the ratio has no interval
     #[arg(long, value_name = "N", default_value_t = 3)]
     pairs: u32,
 
@@ -116,8 +116,14 @@ struct Row {
     composite: Composite,
     levels: u32,
     shaded_fraction: f64,
+    /// Full / coarse, whole frames: above 1 coarse is faster; with its interval where there are pairs enough.
+    frame_ratio: f64,
+    frame_ratio_low: Option<f64>,
+    frame_ratio_high: Option<f64>,
+    finding: Finding,
     full_ms: f64,
     coarse_ms: f64,
+    /// Full / coarse, lighting alone.
     ratio: f64,
     /// Binning and evaluation of materials after the rasterizer; 0 where it does that itself.
     full_material_ms: f64,
@@ -250,18 +256,24 @@ fn measure(
             }
         }
     }
-    for _ in 0..args.pairs.max(1) {
-        full.draw()?;
-        for side in &mut sides {
-            side.draw()?;
+    let count = sides.len() + 1;
+    for round in 0..u64::from(args.pairs.max(1)) {
+        for number in turn(round, count) {
+            match number.checked_sub(1) {
+                None => full.draw()?,
+                Some(number) => sides[number].draw()?,
+            }
         }
     }
     let reference = full.picture()?;
-    sides
-        .iter()
-        .map(|coarse| {
+    (1..)
+        .zip(&sides)
+        .map(|(number, coarse)| {
             let picture = coarse.picture()?;
             let settings = coarse.renderer.settings();
+            let of_full = (0, full.frame_ms.as_slice());
+            let frame = Comparison::of_rounds(count, of_full, (number, &coarse.frame_ms));
+            let interval = frame.as_ref().and_then(|frame| frame.interval);
             let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
             Ok(Row {
                 scene: args.scene.clone(),
@@ -278,6 +290,10 @@ fn measure(
                 composite: settings.composite,
                 levels: u32::from(settings.coarsest_level) + 1,
                 shaded_fraction: coarse.shaded_fraction,
+                frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
+                frame_ratio_low: interval.map(|ends| ends[0]),
+                frame_ratio_high: interval.map(|ends| ends[1]),
+                finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
                 full_ms,
                 coarse_ms,
                 ratio: full_ms / coarse_ms,
@@ -295,7 +311,7 @@ fn measure(
 
 fn print(row: &Row) {
     eprintln!(
-        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, frame {:.1} -> {:.1} ms, FLIP {:.4}, fovea {:.4}",
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, fovea {:.4}",
         row.scene,
         row.width,
         row.height,
@@ -304,13 +320,14 @@ fn print(row: &Row) {
         row.backend,
         row.composite,
         row.shaded_fraction * 100.0,
+        row.full_frame_ms,
+        row.coarse_frame_ms,
+        row.frame_ratio,
         row.full_ms,
         row.coarse_ms,
         row.ratio,
         row.full_material_ms,
         row.coarse_material_ms,
-        row.full_frame_ms,
-        row.coarse_frame_ms,
         row.flip_mean,
         row.fovea_differing,
     );

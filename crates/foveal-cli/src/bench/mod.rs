@@ -11,12 +11,15 @@ mod report;
 mod stereo;
 mod table;
 mod variable;
+mod verdict;
 
 use clap::Subcommand;
 
 /// What to measure.
 #[derive(Debug, Subcommand)]
 pub(crate) enum BenchCommand {
+    /// Which settings make this scene faster on this machine, and at what error
+    Verdict(Box<verdict::Args>),
     /// Rasterizing occluders and testing boxes on the CPU
     Culling(Box<culling::Args>),
     /// Coarse shading against shading every pixel
@@ -27,7 +30,7 @@ pub(crate) enum BenchCommand {
     Variable(variable::Args),
     /// Two eyes by each way of submission, against one eye and against two passes
     Stereo(stereo::Args),
-    /// Culling, coarse shading and anti-aliasing as one report: a page with pictures and plots, JSON, CSV
+    /// The verdict and all benches as one report: a page with pictures and plots, JSON, CSV
     All(report::Args),
     /// What became slower between two reports
     Diff(report::diff::Args),
@@ -37,6 +40,7 @@ impl BenchCommand {
     /// The words after `foveal` that lead to this command's help.
     pub(crate) fn name(&self) -> &'static str {
         match self {
+            Self::Verdict(_) => "bench verdict",
             Self::Culling(_) => "bench culling",
             Self::Coarse(_) => "bench coarse",
             Self::Antialiasing(_) => "bench antialiasing",
@@ -50,6 +54,7 @@ impl BenchCommand {
     /// Measures, and prints or writes the figures.
     pub(crate) fn run(&self) -> anyhow::Result<()> {
         match self {
+            Self::Verdict(args) => verdict::run(args),
             Self::Culling(args) => culling::run(args),
             Self::Coarse(args) => coarse::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),

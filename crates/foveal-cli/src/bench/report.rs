@@ -1,4 +1,5 @@
-//! `foveal bench all`: every bench in turn, and one page that puts each technique beside its source.
+//! `foveal bench all`: every bench in turn, and one page: what to adopt for this scene, then each technique beside its
+//! source.
 //!
 //! Each bench runs in a process of its own, several passes over, so that one that fails takes nothing else down
 //! and the passes tell how steady the figures are. All figures go into one JSON value; page and CSV are made from it
@@ -15,6 +16,7 @@ mod plots;
 mod published;
 #[cfg(test)]
 mod tests;
+mod verdict;
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -22,6 +24,7 @@ use std::time::Instant;
 
 use anyhow::{Context, bail};
 use clap::CommandFactory;
+use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
@@ -42,7 +45,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     report: PathBuf,
 
-    /// Small pictures and few repetitions: three minutes on a machine without a graphics card
+    /// Small pictures and few repetitions: about four minutes on a machine without a graphics card
     #[arg(long)]
     quick: bool,
 
@@ -50,8 +53,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
 
-    /// Only these benches, by name; the others are listed as skipped
+    /// Only these benches; the others are listed as skipped
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(value_parser = PossibleValuesParser::new(plan::BENCHES.iter().map(|bench| bench.name)))]
     only: Vec<String>,
 
     /// The graphics adapter: part of its name, or its number in `foveal adapters`
@@ -70,26 +74,18 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     for name in ["report.html", "report.json", "report.csv"] {
         atomic_file::check_writable(&args.report.join(name))?;
     }
-    for name in &args.only {
-        if !plan::BENCHES.iter().any(|bench| bench.name == name) {
-            let names: Vec<_> = plan::BENCHES.iter().map(|bench| bench.name).collect();
-            return crate::failure::usage(format!(
-                "there is no bench '{name}'; there are {}",
-                names.join(", ")
-            ));
-        }
-    }
     let size = args
         .size
         .unwrap_or(if args.quick { (480, 270) } else { (1280, 720) });
     let start = Instant::now();
     let passes = if args.quick { 2 } else { 3 };
-    let progress = progress(args.quiet, (plan::BENCHES.len() * (passes + 1)) as u64);
+    let steps: usize = plan::BENCHES.iter().map(|b| b.passes(passes) + 1).sum();
+    let progress = progress(args.quiet, steps as u64);
     let mut benches = Vec::new();
     let mut failures = Vec::new();
     for bench in plan::BENCHES {
         progress.set_message(bench.title);
-        let measured = measure(args, bench, size, passes, &progress);
+        let measured = measure(args, bench, size, bench.passes(passes), &progress);
         if let (Some("failed"), Some(cause)) =
             (measured["status"].as_str(), measured["cause"].as_str())
         {

@@ -7,18 +7,18 @@ use foveal::{
     AdapterStats, Culling, EyeClipping, Frame, FrameStats, Gpu, Renderer, Settings, Stereo, Timing,
     View,
 };
+use foveal_measure::{Comparison, median, turn};
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
 use super::figures::FigureArgs;
 use super::table::text;
-use crate::median::median;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
 use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// The source's scenes: each object is a draw of its own there, and nothing is culled.
 const SOURCE_SCENES: [&str; 2] = ["materials", "materials2"];
@@ -26,9 +26,11 @@ const SOURCE_SCENES: [&str; 2] = ["materials", "materials2"];
 /// What is measured without more: those, and one that is culled.
 const SCENES: [&str; 3] = ["materials", "materials2", "demo"];
 
-/// Instanced against two passes in the source: scene, CPU, GPU.
-const SOURCE_RATIOS: [(&str, f64, f64); 2] =
-    [("materials", 1.114, 1.107), ("materials2", 0.805, 1.146)];
+/// Two passes against instanced in the source: scene, CPU, GPU.
+const SOURCE_RATIOS: [(&str, f64, f64); 2] = [
+    ("materials", 1.0 / 1.114, 1.0 / 1.107),
+    ("materials2", 1.0 / 0.805, 1.0 / 1.146),
+];
 
 /// A way, by its name in the table.
 type Named = (&'static str, Stereo, EyeClipping);
@@ -46,6 +48,9 @@ const WAYS: [Named; 5] = [
     ("multiview", Stereo::Multiview, EyeClipping::Auto),
 ];
 const REFERENCE: usize = 1;
+
+/// Frames of each way that do not count.
+const WARM_UP: u32 = 2;
 
 /// Arguments of `foveal bench stereo`.
 #[derive(Debug, clap::Args)]
@@ -90,7 +95,8 @@ struct Skipped {
     cause: String,
 }
 
-/// One way's figures; times are medians in milliseconds, ratios medians of the ratios within each round.
+/// One way's figures; times are medians in milliseconds, ratios the reference's time by this way's: above 1 this is
+/// faster.
 #[derive(Debug, Serialize)]
 struct Row {
     scene: String,
@@ -104,10 +110,14 @@ struct Row {
     /// The geometry pass, or all passes.
     gpu_ms: f64,
     frame_ms: f64,
-    /// Encode and submit, against two passes.
+    /// Two passes / this, the whole frame; with its interval where there are rounds enough.
+    ratio_frame: f64,
+    ratio_frame_low: Option<f64>,
+    ratio_frame_high: Option<f64>,
+    /// Two passes / this: encode and submit, then the GPU.
     ratio_cpu: f64,
     ratio_gpu: f64,
-    /// Frame, against one eye's.
+    /// One eye's frame / this.
     ratio_mono: f64,
     /// The source's figures for instancing.
     source_ratio_cpu: Option<f64>,
@@ -242,50 +252,57 @@ fn measure(
         camera,
         previous_camera: None,
     };
-    for round in 0..args.rounds + 2 {
-        for way in &mut ways {
-            way.last = block_on(way.renderer.render(&frame))?;
-            if round >= 2 {
-                let times = Times::of(&way.last, view == View::BaseColor);
-                way.rounds.push(times);
-            }
+    for way in &mut ways {
+        for _ in 0..WARM_UP {
+            block_on(way.renderer.render(&frame))?;
         }
     }
-    let rows = ways.iter().map(|way| way.row(name, stages, &ways));
+    for round in 0..u64::from(args.rounds) {
+        for number in turn(round, ways.len()) {
+            let way = &mut ways[number];
+            way.last = block_on(way.renderer.render(&frame))?;
+            let times = Times::of(&way.last, view == View::BaseColor);
+            way.rounds.push(times);
+        }
+    }
+    let rows = (0..ways.len()).map(|number| row(name, stages, &ways, number));
     Ok(rows.collect())
 }
 
-impl Way {
-    fn row(&self, scene: &str, stages: &'static str, ways: &[Self]) -> Row {
-        let middle =
-            |figure: fn(&Times) -> f64| median(&self.rounds.iter().map(figure).collect::<Vec<_>>());
-        let ratio = |to: usize, figure: fn(&Times) -> f64| {
-            let pairs = self.rounds.iter().zip(&ways[to].rounds);
-            median(
-                &pairs
-                    .map(|(a, b)| figure(a) / figure(b))
-                    .collect::<Vec<_>>(),
-            )
-        };
-        let source = SOURCE_RATIOS
-            .iter()
-            .find(|s| s.0 == scene && self.name.starts_with("instanced"));
-        Row {
-            scene: scene.to_owned(),
-            stages,
-            mode: self.name,
-            draws: self.last.draws,
-            triangles: self.last.triangles,
-            encode_ms: middle(|t| t.encode_ms),
-            submit_ms: middle(|t| t.submit_ms),
-            gpu_ms: middle(|t| t.gpu_ms),
-            frame_ms: middle(|t| t.frame_ms),
-            ratio_cpu: ratio(REFERENCE, Times::cpu_ms),
-            ratio_gpu: ratio(REFERENCE, |t| t.gpu_ms),
-            ratio_mono: ratio(0, |t| t.frame_ms),
-            source_ratio_cpu: source.map(|s| s.1),
-            source_ratio_gpu: source.map(|s| s.2),
-        }
+fn row(scene: &str, stages: &'static str, ways: &[Way], number: usize) -> Row {
+    let way = &ways[number];
+    let times = |number: usize, figure: fn(&Times) -> f64| -> Vec<f64> {
+        ways[number].rounds.iter().map(figure).collect()
+    };
+    let middle = |figure: fn(&Times) -> f64| median(&times(number, figure));
+    let compared = |to: usize, figure: fn(&Times) -> f64| {
+        let (reference, ms) = (times(to, figure), times(number, figure));
+        Comparison::of_rounds(ways.len(), (to, &reference), (number, &ms))
+    };
+    let ratio = |to, figure| compared(to, figure).map_or(1.0, |found| found.ratio);
+    let frame = compared(REFERENCE, |t| t.frame_ms);
+    let interval = frame.as_ref().and_then(|frame| frame.interval);
+    let source = SOURCE_RATIOS
+        .iter()
+        .find(|s| s.0 == scene && way.name.starts_with("instanced"));
+    Row {
+        scene: scene.to_owned(),
+        stages,
+        mode: way.name,
+        draws: way.last.draws,
+        triangles: way.last.triangles,
+        encode_ms: middle(|t| t.encode_ms),
+        submit_ms: middle(|t| t.submit_ms),
+        gpu_ms: middle(|t| t.gpu_ms),
+        frame_ms: middle(|t| t.frame_ms),
+        ratio_frame: frame.as_ref().map_or(1.0, |frame| frame.ratio),
+        ratio_frame_low: interval.map(|ends| ends[0]),
+        ratio_frame_high: interval.map(|ends| ends[1]),
+        ratio_cpu: ratio(REFERENCE, Times::cpu_ms),
+        ratio_gpu: ratio(REFERENCE, |t| t.gpu_ms),
+        ratio_mono: ratio(0, |t| t.frame_ms),
+        source_ratio_cpu: source.map(|s| s.1),
+        source_ratio_gpu: source.map(|s| s.2),
     }
 }
 
@@ -299,11 +316,12 @@ fn summary(report: &Report) -> String {
         "submit ms",
         "GPU ms",
         "frame ms",
-        "CPU/two-pass",
+        "two-pass/frame",
+        "two-pass/CPU",
         "(source)",
-        "GPU/two-pass",
+        "two-pass/GPU",
         "(source)",
-        "frame/mono",
+        "mono/frame",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     let optional = |ratio: Option<f64>| ratio.map_or(String::new(), |r| format!("{r:.3}"));
@@ -317,6 +335,7 @@ fn summary(report: &Report) -> String {
             format!("{:.3}", row.submit_ms),
             format!("{:.1}", row.gpu_ms),
             format!("{:.1}", row.frame_ms),
+            format!("{:.3}", row.ratio_frame),
             format!("{:.3}", row.ratio_cpu),
             optional(row.source_ratio_cpu),
             format!("{:.3}", row.ratio_gpu),

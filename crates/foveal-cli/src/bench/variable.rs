@@ -5,6 +5,7 @@ use foveal::{
     AdapterStats, Frame, FrameStats, Geometry, Gpu, RateSource, RateStage, Renderer, Settings,
     Shading,
 };
+use foveal_measure::{Comparison, Finding, median, turn};
 use foveal_scene::{Camera, ProceduralLayers, Scene};
 use pollster::block_on;
 use serde::Serialize;
@@ -12,13 +13,12 @@ use serde::Serialize;
 use super::figures::FigureArgs;
 use super::table::text;
 use crate::compare::ErrorMap;
-use crate::median::median;
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
 use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// What the source reports, in milliseconds: mask, reprojection, saved, net.
 const SOURCE_MS: [&str; 4] = ["0.08", "0.02", "0.06", "-0.04"];
@@ -83,6 +83,13 @@ struct Row {
     mask_ms: f64,
     reproject_ms: f64,
     binning_ms: f64,
+    full_frame_ms: f64,
+    variable_frame_ms: f64,
+    /// Full / variable, whole frames: above 1 variable is faster; with its interval where there are rounds enough.
+    frame_ratio: f64,
+    frame_ratio_low: Option<f64>,
+    frame_ratio_high: Option<f64>,
+    finding: Finding,
     full_ms: f64,
     variable_ms: f64,
     saved_ms: f64,
@@ -233,13 +240,22 @@ fn measure(
     let mut full = Film::new(gpu, scene, &full_settings)?;
     let mut variable = Film::new(gpu, scene, &variable_settings)?;
     let (mut frames, mut fraction) = (Vec::new(), 1.0);
+    let (mut full_frame_ms, mut variable_frame_ms) = (Vec::new(), Vec::new());
     let side = camera.world_from_view.x_axis.truncate();
     for round in 0..WARM_UP + args.rounds {
         let mut camera = camera.clone();
         let moved = side * (args.step * round as f32);
         camera.world_from_view.w_axis += moved.extend(0.0);
-        let (a, b) = (full.draw(&camera)?, variable.draw(&camera)?);
+        let full_first = round < WARM_UP || turn(u64::from(round - WARM_UP), 2)[0] == 0;
+        let (a, b) = if full_first {
+            (full.draw(&camera)?, variable.draw(&camera)?)
+        } else {
+            let b = variable.draw(&camera)?;
+            (full.draw(&camera)?, b)
+        };
         if round >= WARM_UP {
+            full_frame_ms.push(a.frame_ms);
+            variable_frame_ms.push(b.frame_ms);
             let of = |stats, names| ms(stats, names);
             let (full, at_rate) = (of(&a, passes(stage)), of(&b, passes(stage)));
             let (mask, reproject) = (of(&b, &["rate mask"]), of(&b, &["reprojection"]));
@@ -250,7 +266,15 @@ fn measure(
     }
     let middle =
         |figure: &dyn Fn(&[f64; 5]) -> f64| median(&frames.iter().map(figure).collect::<Vec<_>>());
+    let frame = Comparison::of_rounds(2, (0, &full_frame_ms), (1, &variable_frame_ms));
+    let interval = frame.as_ref().and_then(|frame| frame.interval);
     Ok(Row {
+        full_frame_ms: median(&full_frame_ms),
+        variable_frame_ms: median(&variable_frame_ms),
+        frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
+        frame_ratio_low: interval.map(|ends| ends[0]),
+        frame_ratio_high: interval.map(|ends| ends[1]),
+        finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
         scene: scene.name.clone(),
         width: args.size.0,
         height: args.size.1,
@@ -288,6 +312,7 @@ fn line(row: &Row) -> Vec<String> {
         time(row.reproject_ms),
         time(row.saved_ms),
         time(row.net_ms),
+        format!("{:.2}", row.frame_ratio),
         format!("{:.2}", row.ratio),
         format!("{:.3}", row.shaded_fraction),
         format!("{:.4}", row.flip_mean),
@@ -304,6 +329,7 @@ fn summary(report: &Report) -> String {
         "reproject ms",
         "saved ms",
         "net ms",
+        "frame ratio",
         "ratio",
         "shaded",
         "FLIP",

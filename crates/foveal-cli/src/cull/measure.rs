@@ -11,7 +11,7 @@ use super::args::CullingArgs;
 use super::around::Clock;
 use super::subject::{Occludees, Subject};
 use super::workers::Workers;
-use crate::median::median;
+use foveal_measure::median;
 
 /// The figures of one eye, those that Intel's occlusion culling sample shows. Times are medians.
 #[derive(Debug, Clone, PartialEq, Serialize)]

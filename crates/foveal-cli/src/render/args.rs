@@ -4,6 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use foveal::Settings;
+use foveal_scene::Camera;
 use glam::Vec3;
 
 use super::settings_args::SettingsArgs;
@@ -88,6 +89,12 @@ pub(crate) struct CameraArgs {
     #[arg(long, value_name = "DEG", value_parser = values::fov_deg)]
     pub(super) fov: Option<f32>,
 
+    /// A camera to the last bit, as the window copies it: perspective,FOV_RAD,NEAR_M or
+    /// orthographic,HEIGHT_M,NEAR_M,FAR_M, then twelve numbers: right, up, back, eye
+    #[arg(long, value_name = "NUMBERS", value_parser = values::exact_camera, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["camera", "eye", "target", "path", "fov"])]
+    pub(super) exact_camera: Option<Camera>,
+
     /// Move along the keyframes in a JSON file (see docs/program.md), or along the demo scene's own path: demo
     #[arg(long, value_name = "FILE.json|demo")]
     pub(super) path: Option<String>,
@@ -100,6 +107,10 @@ pub(crate) struct FrameArgs {
     /// The moment of a single picture, in seconds
     #[arg(long, value_name = "S", value_parser = values::time_s, conflicts_with = "frames")]
     pub(super) time: Option<f32>,
+
+    /// Show the moment at rest: the frame before, from which motion is taken, is the same
+    #[arg(long, conflicts_with = "frames")]
+    pub(super) still: bool,
 
     /// Draw the frames A up to but not including B, or 0 up to N; frame n is at n / fps seconds
     #[arg(long, value_name = "A..B|N", value_parser = values::frames)]

@@ -15,6 +15,8 @@ pub(super) struct Drawing {
     pub(super) viewpoint: Viewpoint,
     /// Time of the renderer's current pose; `None` where it is not known, or does not matter.
     posed_s: Option<f32>,
+    /// Whether the pose before was the same: nothing moves.
+    is_at_rest: bool,
 }
 
 impl Drawing {
@@ -25,6 +27,7 @@ impl Drawing {
             scene,
             viewpoint,
             posed_s: Some(0.0),
+            is_at_rest: false,
         }
     }
 
@@ -35,7 +38,10 @@ impl Drawing {
             self.pose(job.previous_time_s)?;
         }
         let previous_camera = self.viewpoint.at(&self.scene, job.previous_time_s);
-        self.pose(job.time_s)?;
+        // What is at rest is left there: another pose, though the same, would be taken for a movement.
+        if !(self.is_at_rest && self.posed_s == Some(job.time_s)) {
+            self.pose(job.time_s)?;
+        }
         let camera = self.viewpoint.at(&self.scene, job.time_s);
         let frame = Frame {
             camera: &camera,
@@ -52,9 +58,10 @@ impl Drawing {
 
     fn pose(&mut self, time_s: f32) -> anyhow::Result<()> {
         if self.scene.is_animated() {
-            self.posed_s = None;
+            let before_s = self.posed_s.take();
             self.scene.pose(time_s);
             block_on(self.renderer.update_pose(&self.scene))?;
+            self.is_at_rest = before_s == Some(time_s);
             self.posed_s = Some(time_s);
         }
         Ok(())

@@ -120,11 +120,13 @@ fn jobs(args: &Args) -> anyhow::Result<Vec<FrameJob>> {
             let pattern = FramePattern::parse(args.output())?;
             Ok(frame_files::sequence(range.clone(), fps, &pattern))
         }
-        None => Ok(vec![frame_files::still(
-            args.frames.time.unwrap_or(0.0),
-            fps,
-            args.output(),
-        )]),
+        None => {
+            let mut job = frame_files::still(args.frames.time.unwrap_or(0.0), fps, args.output());
+            if args.frames.still {
+                job.previous_time_s = job.time_s;
+            }
+            Ok(vec![job])
+        }
     }
 }
 

@@ -4,7 +4,7 @@
 use foveal::{AdapterStats, FrameStats, SceneStats, Settings, Timing};
 use serde::Serialize;
 
-use crate::median::median;
+use foveal_measure::median;
 
 /// Version of the JSON's shape.
 pub(super) const SCHEMA_VERSION: u32 = 1;

@@ -38,7 +38,9 @@ impl Viewpoint {
     ) -> anyhow::Result<Self> {
         let fov_y_deg = args.fov.unwrap_or(DEFAULT_FOV_DEG);
         let fov_y_rad = args.fov.map(f32::to_radians);
-        let kind = if let (Some(eye), Some(target)) = (args.eye, args.target) {
+        let kind = if let Some(camera) = &args.exact_camera {
+            Kind::Still(camera.clone())
+        } else if let (Some(eye), Some(target)) = (args.eye, args.target) {
             let up = args.up.unwrap_or(Vec3::Y);
             let camera = Camera::look_at(eye, target, up, fov_y_deg.to_radians());
             Kind::Still(with_near_plane(camera, near_m(scene)))
@@ -163,6 +165,7 @@ mod tests {
         CameraArgs {
             camera: None,
             eye: None,
+            exact_camera: None,
             target: None,
             up: None,
             fov: None,

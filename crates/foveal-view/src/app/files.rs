@@ -2,9 +2,8 @@
 
 use std::path::PathBuf;
 
-use glam::Vec3;
-
 use super::App;
+use crate::command;
 use crate::worker::Rgba;
 
 impl App {
@@ -50,54 +49,17 @@ impl App {
         }
     }
 
-    /// The command that draws this picture to a file.
-    pub(crate) fn command_line(&self) -> String {
-        let mut words = vec!["foveal".to_owned(), "render".to_owned()];
-        words.push(quoted(&self.scene_name));
-        words.extend(["--output".to_owned(), "picture.png".to_owned()]);
-        if let Some(navigator) = &self.navigator {
-            let camera = navigator.camera();
-            let forward = -camera.world_from_view.z_axis.truncate();
-            let eye = camera.eye();
-            let list = |v: Vec3| format!("{},{},{}", v.x, v.y, v.z);
-            if let foveal_scene::Projection::Perspective { fov_y_rad, .. } = camera.projection {
-                words.extend([
-                    "--eye".to_owned(),
-                    list(eye),
-                    "--target".to_owned(),
-                    list(eye + forward),
-                    "--fov".to_owned(),
-                    fov_y_rad.to_degrees().to_string(),
-                ]);
-            } else {
-                words.extend(["--camera".to_owned(), quoted(&camera.name)]);
-            }
-        }
-        let flags = (self.host.flags)(&self.settings);
-        words.extend(flags.iter().map(|flag| quoted(flag)));
-        words.join(" ")
-    }
-}
-
-/// A word as a shell takes it.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=@%#".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::quoted;
-
-    #[test]
-    fn words_with_spaces_and_quotes_survive_a_shell() {
-        assert_eq!(quoted("demo:2000"), "demo:2000");
-        assert_eq!(quoted("my scene.glb"), "'my scene.glb'");
-        assert_eq!(quoted("it's"), r"'it'\''s'");
-        assert_eq!(quoted(""), "''");
+    /// The command that draws this picture to a file, byte by byte; `None` without a scene.
+    pub(crate) fn command_line(&self) -> Option<String> {
+        let (scene, navigator) = (self.scene.as_ref()?, self.navigator.as_ref()?);
+        let words = command::words(
+            &self.host,
+            scene,
+            &self.settings,
+            navigator.camera(),
+            self.display.time_s,
+        );
+        let quoted: Vec<String> = words.iter().map(|word| command::quoted(word)).collect();
+        Some(quoted.join(" "))
     }
 }

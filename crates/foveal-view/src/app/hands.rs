@@ -21,6 +21,7 @@ impl App {
             (Key::X, &mut display.compare),
             (Key::G, &mut display.gaze_follows),
             (Key::H, &mut display.panels),
+            (Key::F1, &mut display.keys),
             (Key::Space, &mut display.playing),
         ] {
             if pressed(key) {

@@ -3,8 +3,8 @@
 use egui::{Align, Layout, RichText};
 
 use crate::app::App;
-use crate::look;
 use crate::navigator::Mode;
+use crate::{keys, look};
 
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
@@ -89,8 +89,19 @@ fn camera(app: &mut App, ui: &mut egui::Ui) {
     });
 }
 
+/// In windows narrower than this the files' buttons are a menu.
+const WIDE: f32 = 1150.0;
+
 /// From right to left.
 fn files(app: &mut App, ui: &mut egui::Ui) {
+    if ui.ctx().content_rect().width() >= WIDE {
+        file_buttons(app, ui);
+    } else {
+        ui.menu_button("Files", |ui| file_buttons(app, ui));
+    }
+}
+
+fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
     if ui
         .button("Screenshot")
         .on_hover_text("Writes the picture as foveal-001.png and so on (P)")
@@ -100,10 +111,10 @@ fn files(app: &mut App, ui: &mut egui::Ui) {
     }
     if ui
         .button("Copy command")
-        .on_hover_text("Copies the command that draws this picture to a file")
+        .on_hover_text("Copies the command that draws this picture to a file, byte by byte")
         .clicked()
+        && let Some(line) = app.command_line()
     {
-        let line = app.command_line();
         ui.ctx().copy_text(line);
         app.say(ui.ctx(), "The command is in the clipboard");
     }
@@ -125,29 +136,9 @@ fn files(app: &mut App, ui: &mut egui::Ui) {
     ui.add(file).on_hover_text("The settings file, TOML");
 }
 
-/// What the keys do, and where one is.
-pub(super) fn keys(app: &App, ui: &mut egui::Ui) {
+/// What the keys do, as many as fit, and where one is.
+pub(super) fn keys(app: &mut App, ui: &mut egui::Ui) {
     ui.horizontal(|ui| {
-        let keys = [
-            ("WASD QE", "move"),
-            ("Drag", "look"),
-            ("F", "fly/orbit"),
-            ("Home", "start"),
-            ("1-9", "bookmark, Ctrl sets"),
-            ("X", "compare"),
-            ("G", "gaze"),
-            ("B", "boxes"),
-            ("Z", "depth"),
-            ("C", "freeze"),
-            ("H", "panels"),
-            ("P", "screenshot"),
-        ];
-        ui.spacing_mut().item_spacing.x = 4.0;
-        for (key, does) in keys {
-            ui.label(RichText::new(key).small().strong().color(look::TEXT));
-            ui.label(RichText::new(does).small().color(look::FAINT));
-            ui.add_space(5.0);
-        }
         ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
             if let Some(navigator) = &app.navigator {
                 let eye = navigator.camera().eye();
@@ -155,8 +146,36 @@ pub(super) fn keys(app: &App, ui: &mut egui::Ui) {
                     "{:.2} {:.2} {:.2}   {:.2} m/s",
                     eye.x, eye.y, eye.z, navigator.speed_m_s
                 );
-                ui.add(egui::Label::new(RichText::new(text).small().color(look::FAINT)).truncate());
+                ui.label(RichText::new(text).small().color(look::FAINT));
             }
+            ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                ui.spacing_mut().item_spacing.x = 4.0;
+                for (key, _, word) in keys::ALL.iter().filter(|(.., word)| !word.is_empty()) {
+                    let width = 7.0 * (key.len() + word.len()) as f32;
+                    if ui.available_width() < width {
+                        break;
+                    }
+                    ui.label(RichText::new(*key).small().strong().color(look::TEXT));
+                    ui.label(RichText::new(*word).small().color(look::FAINT));
+                    ui.add_space(5.0);
+                }
+            });
         });
     });
+    let mut is_open = app.display.keys;
+    egui::Window::new("Keys")
+        .open(&mut is_open)
+        .collapsible(false)
+        .resizable(false)
+        .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
+        .show(ui.ctx(), |ui| {
+            egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
+                for (key, does, _) in keys::ALL {
+                    ui.label(RichText::new(key).strong().color(look::TEXT));
+                    ui.label(RichText::new(does).color(look::FAINT));
+                    ui.end_row();
+                }
+            });
+        });
+    app.display.keys = is_open;
 }

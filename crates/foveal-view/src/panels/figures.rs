@@ -1,14 +1,13 @@
 //! What the last frame cost.
 
 use egui::RichText;
-use foveal::Settings;
 
-use super::{card, figure, timeline};
+use super::{card, compare, figure, timeline};
 use crate::app::App;
 use crate::look::{self, grouped};
 
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
-    compare(app, ui);
+    compare::show(app, ui);
     let Some(shown) = &app.shown else {
         ui.label(RichText::new("No frame yet").color(look::FAINT));
         return;
@@ -73,52 +72,6 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
             figure(ui, "Objects", grouped(scene.counts.objects));
             figure(ui, "Triangles", grouped(scene.counts.triangles));
             figure(ui, "Lights", grouped(scene.counts.lights));
-        }
-    });
-    ui.add_space(6.0);
-}
-
-/// The split slider's switch, and what it says.
-fn compare(app: &mut App, ui: &mut egui::Ui) {
-    card(ui, "Compare", |ui| {
-        ui.checkbox(&mut app.display.compare, "Reference on the left (X)");
-        if !app.display.compare {
-            return;
-        }
-        ui.horizontal(|ui| {
-            let plain = Settings::default();
-            let against_plain = app.reference == plain;
-            if ui
-                .selectable_label(against_plain, "Defaults")
-                .on_hover_text("Every pixel shaded once, no anti-aliasing")
-                .clicked()
-            {
-                app.reference = plain;
-            }
-            if ui
-                .selectable_label(!against_plain, "As now")
-                .on_hover_text("Takes the present settings for the reference; then change them")
-                .clicked()
-            {
-                app.reference = app.settings.clone();
-            }
-        });
-        let Some(shown) = &app.shown else { return };
-        let flip = shown
-            .flip
-            .map_or("...".to_owned(), |flip| format!("{flip:.4}"));
-        figure(ui, "FLIP", flip);
-        if let Some((_, reference)) = &shown.reference {
-            figure(ui, "Reference", look::ms(reference.frame_ms));
-            figure(ui, "Chosen", look::ms(shown.stats.frame_ms));
-            let ratio = reference.frame_ms / shown.stats.frame_ms.max(1e-6);
-            let color = if ratio >= 1.0 { look::GOOD } else { look::BAD };
-            ui.horizontal(|ui| {
-                ui.label(RichText::new("Ratio").color(look::FAINT));
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.label(RichText::new(format!("{ratio:.2} x")).color(color));
-                });
-            });
         }
     });
     ui.add_space(6.0);

@@ -4,7 +4,8 @@ use foveal::{AdapterStats, Culling, FrameStats, Gpu, RateSource, Renderer, Setti
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 
-use super::{LoadedScene, OccluderDepth, Request, Rgba, Shown};
+use super::measuring::Measuring;
+use super::{LoadedScene, OccluderDepth, Request, Rgba, SETTLING_FRAMES, Shown};
 use crate::{Host, Loaded, clock};
 
 #[derive(Default)]
@@ -14,7 +15,17 @@ pub(super) struct Drawing {
     chosen: Option<Side>,
     reference: Option<Side>,
     /// The reference's last frame, with what it was drawn for.
-    reference_drawn: Option<(Settings, Camera, f32, Rgba, FrameStats)>,
+    reference_drawn: Option<ReferenceFrame>,
+    measuring: Option<Measuring>,
+}
+
+/// A frame of the reference, with what it was drawn for.
+struct ReferenceFrame {
+    settings: Settings,
+    camera: Camera,
+    time_s: f32,
+    picture: Rgba,
+    stats: FrameStats,
 }
 
 /// A renderer with the scene.
@@ -22,7 +33,10 @@ struct Side {
     renderer: Renderer,
     /// Where the last frame was seen from.
     before: Option<Camera>,
-    posed_s: f32,
+    /// The moment of its pose; `None` until it has one.
+    posed_s: Option<f32>,
+    /// Whether the pose before was the same: nothing moves.
+    is_at_rest: bool,
 }
 
 impl Drawing {
@@ -49,6 +63,7 @@ impl Drawing {
         self.chosen = None;
         self.reference = None;
         self.reference_drawn = None;
+        self.measuring = None;
         self.gpu = None;
     }
 
@@ -57,6 +72,7 @@ impl Drawing {
         let Loaded { scene, camera } = (host.load)(name)?;
         let loaded = LoadedScene {
             name: scene.name.clone(),
+            source: name.to_owned(),
             counts: foveal::SceneStats {
                 objects: scene.objects.len() as u64,
                 instances: scene.instances.len() as u64,
@@ -74,6 +90,7 @@ impl Drawing {
         self.chosen = None;
         self.reference = None;
         self.reference_drawn = None;
+        self.measuring = None;
         Ok(loaded)
     }
 
@@ -88,21 +105,93 @@ impl Drawing {
         let (Some(gpu), Some(scene)) = (&self.gpu, &mut self.scene) else {
             return Ok(None);
         };
+        // A view that stands still is drawn as if nothing had been before: its picture does not depend on the way to it.
+        let is_afresh = repeat == 1;
+        let Some(settings) = &request.reference else {
+            self.reference = None;
+            self.reference_drawn = None;
+            self.measuring = None;
+            let side = Side::with(&mut self.chosen, gpu, scene, host, &request.settings)?;
+            side.renderer.freeze_culling(request.frozen);
+            let drawn = side.draw(scene, request, is_afresh)?;
+            return Ok(Some(side.shown(scene, request, drawn)));
+        };
+        let Request { camera, time_s, .. } = request;
+        let is_same = |m: &Measuring| m.is_of(settings, &request.settings, camera);
+        if !self.measuring.as_ref().is_some_and(is_same) {
+            self.measuring = None;
+        }
+        let measuring = self
+            .measuring
+            .get_or_insert_with(|| Measuring::new(settings, &request.settings, camera));
+        // While settings change all the time, the picture of a reference that stays is good enough.
+        let known = self.reference_drawn.as_ref().is_some_and(|drawn| {
+            drawn.settings == *settings && drawn.camera == *camera && drawn.time_s == *time_s
+        });
+        let draws_both = !known || repeat > 0 || request.always;
+        let reference_first = draws_both && measuring.reference_first();
+        let reference = &mut self.reference;
+        let mut draw_reference = |scene: &mut Scene| -> anyhow::Result<ReferenceFrame> {
+            let (picture, stats) = Side::with(reference, gpu, scene, host, settings)?
+                .draw(scene, request, is_afresh)?;
+            Ok(ReferenceFrame {
+                settings: settings.clone(),
+                camera: camera.clone(),
+                time_s: *time_s,
+                picture,
+                stats,
+            })
+        };
+        if reference_first {
+            self.reference_drawn = Some(draw_reference(scene)?);
+        }
         let side = Side::with(&mut self.chosen, gpu, scene, host, &request.settings)?;
         side.renderer.freeze_culling(request.frozen);
-        let (picture, stats) = side.draw(scene, &request.camera, request.time_s)?;
-        let culling = side.renderer.culling();
+        let drawn = side.draw(scene, request, is_afresh)?;
+        if draws_both && !reference_first {
+            self.reference_drawn = Some(draw_reference(scene)?);
+        }
+        let mut shown = side.shown(scene, request, drawn);
+        if let Some(reference) = &self.reference_drawn {
+            if draws_both {
+                measuring.add(&reference.stats, &shown.stats);
+            }
+            // It takes longer than some frames: only now and then, for a view that stands still.
+            if repeat == 1 || repeat == SETTLING_FRAMES - 1 || request.always && repeat % 8 == 1 {
+                shown.flip = mean_flip(&reference.picture, &shown.picture);
+            }
+            shown.reference = Some((reference.picture.clone(), reference.stats.clone()));
+            shown.compared = Some(measuring.compared());
+        }
+        Ok(Some(shown))
+    }
+
+    /// Whether drawing the same again can tell nothing more about two sides.
+    pub(super) fn is_measured(&self) -> bool {
+        self.measuring.as_ref().is_none_or(Measuring::is_done)
+    }
+}
+
+impl Side {
+    /// What is told of a frame that this side drew, and of what it culled.
+    fn shown(
+        &self,
+        scene: &Scene,
+        request: &Request,
+        (picture, stats): (Rgba, FrameStats),
+    ) -> Shown {
+        let culling = self.renderer.culling();
         let boxes = match &culling {
             Some(_) if request.boxes => scene
                 .objects
                 .iter()
                 .map(|object| object.bounds)
-                .zip(side.renderer.visibility().iter().copied())
+                .zip(self.renderer.visibility().iter().copied())
                 .collect(),
             _ => Vec::new(),
         };
         let depth = if request.depth {
-            side.renderer
+            self.renderer
                 .occluder_depth()
                 .map(|(width, height, near_over_distance)| OccluderDepth {
                     width,
@@ -113,51 +202,19 @@ impl Drawing {
             None
         };
 
-        let mut flip = None;
-        let reference = match &request.reference {
-            None => {
-                self.reference = None;
-                self.reference_drawn = None;
-                None
-            }
-            Some(settings) => {
-                let known = self.reference_drawn.as_ref().is_some_and(|(s, c, t, ..)| {
-                    s == settings && *c == request.camera && *t == request.time_s
-                });
-                if !known || request.always {
-                    let side = Side::with(&mut self.reference, gpu, scene, host, settings)?;
-                    let (picture, stats) = side.draw(scene, &request.camera, request.time_s)?;
-                    self.reference_drawn = Some((
-                        settings.clone(),
-                        request.camera.clone(),
-                        request.time_s,
-                        picture,
-                        stats,
-                    ));
-                }
-                self.reference_drawn
-                    .as_ref()
-                    .map(|(.., picture, stats)| (picture.clone(), stats.clone()))
-            }
-        };
-        // It takes longer than some frames: only now and then, for a view that stands still.
-        if let (Some((reference, _)), 1) = (&reference, repeat % 8) {
-            flip = mean_flip(reference, &picture);
-        }
-        Ok(Some(Shown {
+        Shown {
             picture,
             stats,
             camera: request.camera.clone(),
-            reference,
-            flip,
+            reference: None,
+            compared: None,
+            flip: None,
             culling,
             boxes,
             depth,
-        }))
+        }
     }
-}
 
-impl Side {
     /// The side in `slot` with these settings, made or changed where needed.
     fn with<'s>(
         slot: &'s mut Option<Self>,
@@ -188,7 +245,8 @@ impl Side {
                 slot.insert(Self {
                     renderer,
                     before: None,
-                    posed_s: 0.0,
+                    posed_s: None,
+                    is_at_rest: false,
                 })
             }
         };
@@ -201,22 +259,36 @@ impl Side {
         };
         if before.as_ref().is_none_or(rebaked) {
             block_on(side.renderer.set_scene(scene))?;
+            side.posed_s = None;
         }
         Ok(side)
     }
 
+    /// Draws the request's view; `scene` is posed for its moment. `is_afresh`: what was learnt from the frames before is
+    /// forgotten.
     fn draw(
         &mut self,
         scene: &mut Scene,
-        camera: &Camera,
-        time_s: f32,
+        request: &Request,
+        is_afresh: bool,
     ) -> anyhow::Result<(Rgba, FrameStats)> {
-        if scene.is_animated() && self.posed_s != time_s {
-            scene.pose(time_s);
+        let Request { camera, time_s, .. } = request;
+        let is_posed = self.posed_s == Some(*time_s);
+        if scene.is_animated() && !(is_posed && self.is_at_rest) {
+            // Once more for the same moment: what does not move any more has no motion.
+            scene.pose(*time_s);
             block_on(self.renderer.update_pose(scene))?;
-            self.posed_s = time_s;
+            self.posed_s = Some(*time_s);
+            self.is_at_rest = is_posed;
         }
-        let before = self.before.replace(camera.clone());
+        let mut before = self.before.replace(camera.clone());
+        if is_afresh {
+            // The same view by another name: not the one that was drawn last, and nothing moves.
+            before = Some(Camera {
+                name: format!("{} afresh", camera.name),
+                ..camera.clone()
+            });
+        }
         let frame = foveal::Frame {
             camera,
             previous_camera: before.as_ref(),

@@ -4,10 +4,11 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
-use foveal::{Culling, Settings, Shading};
+use foveal::{Antialiasing, Culling, Settings, Shading};
+use foveal_measure::Finding;
 use foveal_scene::generate;
 
-use super::{News, Request, Shown, Worker};
+use super::{Compared, News, Request, Shown, Worker};
 use crate::{Host, Loaded};
 
 fn worker() -> Worker {
@@ -30,6 +31,7 @@ fn worker() -> Worker {
         read_settings: |_| bail!("no files here"),
         rate_image: |_| Ok(None),
         flags: |_| Vec::new(),
+        scene_flags: Vec::new(),
     };
     Worker::start(Arc::new(host), || ()).expect("threads can be started")
 }
@@ -174,4 +176,59 @@ fn a_lost_device_is_news_and_the_picture_is_drawn_on_a_new_one() {
     assert!(failure(&worker).contains("lost"));
     // Nobody asked again.
     assert_eq!(picture(&worker).picture.bytes, before.picture.bytes);
+}
+
+/// The comparison of the request's settings with a reference, once it says something.
+fn compared(worker: &Worker, chosen: Settings, reference: Settings) -> Compared {
+    worker.load("cornell".to_owned());
+    worker.draw(Request {
+        settings: chosen,
+        reference: Some(reference),
+        ..request()
+    });
+    next(worker, |news| match news {
+        News::Picture(shown) => shown.compared.filter(|c| c.pairs >= 20),
+        News::Failed(cause) => panic!("{cause}"),
+        _ => None,
+    })
+}
+
+#[test]
+fn equal_settings_are_no_difference_after_twenty_frames() {
+    let settings = Settings {
+        width: 320,
+        height: 200,
+        ..request().settings
+    };
+    let compared = compared(&worker(), settings.clone(), settings);
+    assert_eq!(compared.pairs, 20);
+    let frame = compared.frame.expect("twenty pairs are enough to tell");
+    assert_eq!(frame.finding, Finding::NoDifference, "{frame:?}");
+}
+
+#[test]
+fn a_picture_of_nine_times_the_samples_is_slower() {
+    let settings = Settings {
+        width: 320,
+        height: 200,
+        ..request().settings
+    };
+    let supersampled = Settings {
+        aa: Antialiasing::Ssaa,
+        samples: 9,
+        ..settings.clone()
+    };
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.draw(Request {
+        settings: supersampled,
+        reference: Some(settings),
+        ..request()
+    });
+    let found = next(&worker, |news| match news {
+        News::Picture(shown) => shown.compared.filter(|c| c.is_done).and_then(|c| c.frame),
+        News::Failed(cause) => panic!("{cause}"),
+        _ => None,
+    });
+    assert_eq!(found.finding, Finding::Slower, "{found:?}");
 }

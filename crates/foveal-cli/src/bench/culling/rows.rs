@@ -12,7 +12,7 @@ use crate::cull::occluders::Occluders;
 use crate::cull::truth::Check;
 use crate::cull::views::NamedEye;
 use crate::cull::workers::Workers;
-use crate::median::median;
+use foveal_measure::median;
 
 const WARM_UP: u32 = 3;
 

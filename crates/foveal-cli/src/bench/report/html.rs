@@ -78,9 +78,9 @@ pub(super) fn escaped(text: &str) -> String {
 
 pub(super) const STYLE: &str = "
 :root { color-scheme: light dark; --back: #fbfbfc; --card: #fff; --line: #dfe3e8; --text: #1c2026; --faint: #626b78;
-  --accent: #1f6fb4; --bad: #b3382c; }
+  --accent: #1f6fb4; --bad: #b3382c; --good: #1d7a3a; --pay: #8a5a00; }
 @media (prefers-color-scheme: dark) { :root { --back: #14161a; --card: #1d2026; --line: #343a44; --text: #dce0e6;
-  --faint: #97a0ad; --accent: #6cb6ff; --bad: #ff7b72; } }
+  --faint: #97a0ad; --accent: #6cb6ff; --bad: #ff7b72; --good: #6fd08c; --pay: #e6b450; } }
 * { box-sizing: border-box; }
 body { margin: 0; background: var(--back); color: var(--text); font: 15px/1.5 system-ui, sans-serif; }
 main { max-width: 1080px; margin: 0 auto; padding: 24px 16px 64px; }
@@ -92,7 +92,8 @@ nav a { color: var(--text); text-decoration: none; border: 1px solid var(--line)
   background: var(--card); } nav a.off { color: var(--faint); }
 .scroll { overflow-x: auto; } table { border-collapse: collapse; font-variant-numeric: tabular-nums; min-width: 100%; }
 th, td { text-align: right; padding: 4px 8px; border-bottom: 1px solid var(--line); white-space: nowrap; }
-th:first-child, td:first-child { text-align: left; white-space: normal; min-width: 9em; } th { color: var(--faint); font-weight: 600; }
+th:first-child, td:first-child { text-align: left; white-space: normal; min-width: 9em; position: sticky; left: 0;
+  background: var(--card); } td { vertical-align: top; } small { color: var(--faint); } th { color: var(--faint); font-weight: 600; }
 code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: var(--back); border-radius: 4px; padding: 1px 5px; }
 .columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(400px, 100%), 1fr)); gap: 18px; }
 .compare { position: relative; display: grid; overflow: hidden; border-radius: 6px; touch-action: pan-y; }
@@ -103,6 +104,16 @@ code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: 
 .compare .left { left: 8px; } .compare .right { right: 8px; }
 input[type=range] { width: 100%; margin: 8px 0 0; } figure { margin: 12px 0; } figcaption { color: var(--faint); }
 .difference { width: 100%; border-radius: 6px; display: block; } svg { width: 100%; max-width: 480px; height: auto; display: block; }
+svg .grid { stroke: var(--line); } svg .one { stroke: var(--faint); } svg .error { stroke-width: 1.5; opacity: 0.75; }
+svg .faster { color: var(--good); } svg .slower { color: var(--bad); } svg .no-difference, svg .too-few { color: var(--faint); }
+.verdicts p { display: grid; grid-template-columns: 6.5em 1fr; gap: 8px; margin: 8px 0; }
+.adopt > b { color: var(--good); } .look > b, .pay > b { color: var(--pay); } .skip > b, .impossible > b { color: var(--faint); }
+.copy { display: flex; gap: 8px; align-items: flex-start; } .copy code { flex: 1; padding: 6px 8px; } button { font: inherit;
+  color: var(--text); background: var(--back); border: 1px solid var(--line); border-radius: 6px; padding: 3px 12px; cursor: pointer; }
+summary { cursor: pointer; color: var(--accent); margin: 10px 0 4px; }
+@media (max-width: 480px) { section { padding: 14px 10px; } .verdicts p { grid-template-columns: 1fr; gap: 0; } }
+@media print { :root { --back: #fff; --card: #fff; --line: #ccc; --text: #000; --faint: #444; } nav, button, input { display: none; }
+  section { break-inside: avoid; border: none; padding: 0; } .scroll { overflow: visible; } main { max-width: none; padding: 0; } }
 svg text { fill: var(--text); font: 12px system-ui, sans-serif; } svg .faint { fill: var(--faint); }
 ";
 
@@ -112,5 +123,12 @@ for (const slider of document.querySelectorAll('input[type=range]')) {
   const compare = slider.previousElementSibling;
   slider.addEventListener('input', () => compare.style.setProperty('--at', slider.value + '%'));
 }
+for (const button of document.querySelectorAll('.copy button')) {
+  button.addEventListener('click', async () => {
+    await navigator.clipboard.writeText(button.previousElementSibling.textContent);
+    button.textContent = 'Copied';
+  });
+}
+addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((fold) => { fold.open = true; }));
 document.documentElement.dataset.ready = 'yes';
 ";

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::html::{Figures, SCRIPT, STYLE};
-use super::plan::{BENCHES, Bench};
-use super::plots;
+use super::plan::{BENCHES, Bench, Column, VERDICT};
+use super::{plots, verdict};
 use serde_json::Value;
 
 /// The whole page.
@@ -12,7 +12,12 @@ pub(super) fn of(report: &Value) -> String {
     let f = Figures(report);
     let mut body = String::new();
     head(&mut body, &f);
+    verdict::show(&mut body, &f);
+    navigation(&mut body, &f);
     for (index, bench) in BENCHES.iter().enumerate() {
+        if bench.name == VERDICT {
+            continue;
+        }
         section(&mut body, &f, index, bench);
     }
     format!(
@@ -26,17 +31,17 @@ pub(super) fn of(report: &Value) -> String {
 fn head(body: &mut String, f: &Figures<'_>) {
     let _ = write!(
         body,
-        "<h1>Foveal report</h1>\n<p>Every technique beside its plain reference, and beside what its source publishes, \
-         measured on the scene <b>{}</b> at {} x {} pixels in {} minutes.</p>\n",
+        "<h1>Foveal report</h1>\n<p>The scene <b>{}</b> at {} x {} pixels, measured in {} minutes.</p>\n",
         f.text("/scene"),
         f.figure("/width", 1.0, 0),
         f.figure("/height", 1.0, 0),
         f.figure("/minutes", 1.0, 1),
     );
-    let _ = write!(
+    let _ = writeln!(
         body,
-        "<p class=\"faint\">{}, {} threads, {}; {} ({}, {}). Foveal {}. Figures are medians of {} passes. The sources' \
-         figures come from other machines: compare ratios, not times.</p>\n<nav>",
+        "<p class=\"faint\">{}, {} threads, {}; {} ({}, {}). Foveal {}. In the sections after \
+         the verdict figures are medians of {} passes; small figures are the passes' range. The sources' \
+         figures come from other machines: compare ratios, not times.</p>",
         f.text("/machine/processor"),
         f.figure("/machine/threads", 1.0, 0),
         f.text("/machine/system"),
@@ -46,7 +51,11 @@ fn head(body: &mut String, f: &Figures<'_>) {
         f.text("/program_version"),
         f.figure("/passes", 1.0, 0),
     );
-    for (index, bench) in BENCHES.iter().enumerate() {
+}
+
+fn navigation(body: &mut String, f: &Figures<'_>) {
+    body.push_str("<nav>");
+    for (index, bench) in BENCHES.iter().enumerate().skip(1) {
         let measured = f.text(&format!("/benches/{index}/status")) == "measured";
         let class = if measured { "" } else { " class=\"off\"" };
         let _ = write!(
@@ -71,7 +80,8 @@ fn section(body: &mut String, f: &Figures<'_>, index: usize, bench: &Bench) {
     if status != "measured" {
         let _ = writeln!(
             body,
-            "<p class=\"bad\">{status}: {}</p>",
+            "<p class=\"{}\">{status}: {}</p>",
+            if status == "skipped" { "faint" } else { "bad" },
             f.text(&format!("{at}/cause"))
         );
     }
@@ -95,8 +105,12 @@ fn section(body: &mut String, f: &Figures<'_>, index: usize, bench: &Bench) {
         }
     }
     body.push_str("</div>\n");
-    table(body, f, &at, bench);
-    pictures(body, f, &at);
+    if f.len(&format!("{at}/rows")) + f.len(&format!("{at}/pictures")) > 0 {
+        body.push_str("<details><summary>Figures and pictures</summary>\n");
+        table(body, f, &at, bench.columns);
+        pictures(body, f, &at);
+        body.push_str("</details>\n");
+    }
     if status != "skipped" {
         let _ = writeln!(
             body,
@@ -139,23 +153,35 @@ fn published(body: &mut String, f: &Figures<'_>, at: &str) {
     );
 }
 
-fn table(body: &mut String, f: &Figures<'_>, at: &str, bench: &Bench) {
+/// The rows as a table: medians, and under them the passes' range where they differ.
+pub(super) fn table(body: &mut String, f: &Figures<'_>, at: &str, columns: &[Column]) {
     let rows = f.len(&format!("{at}/rows"));
     if rows == 0 {
         return;
     }
     body.push_str("<h3>Ours, here</h3>\n<div class=\"scroll\"><table><tr><th></th>");
-    for column in bench.columns {
+    for column in columns {
         let _ = write!(body, "<th>{}</th>", column.title);
     }
     body.push_str("</tr>");
     for row in 0..rows {
         let label = f.text(&format!("{at}/rows/{row}/label"));
         let _ = write!(body, "<tr><td>{label}</td>");
-        for column in bench.columns {
+        for column in columns {
             let pointer = format!("{at}/rows/{row}/{}", column.key);
             let figure = f.figure(&pointer, column.factor, column.digits);
-            let _ = write!(body, "<td>{figure}</td>");
+            let end = |i: usize| {
+                let pointer = format!("{at}/rows/{row}/spread/{}/{i}", column.key);
+                f.number(&pointer)?;
+                Some(f.figure(&pointer, column.factor, column.digits))
+            };
+            let range = match (end(0), end(1)) {
+                (Some(least), Some(most)) => {
+                    format!("<br><small>{least} &ndash; {most}</small>")
+                }
+                _ => String::new(),
+            };
+            let _ = write!(body, "<td>{figure}{range}</td>");
         }
         body.push_str("</tr>");
     }

@@ -88,10 +88,7 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
     let dots = || all.iter().flat_map(|line| &line.dots);
     let least = dots().map(|dot| dot.load).min_by(f64::total_cmp)?;
     let most = dots().map(|dot| dot.load).max_by(f64::total_cmp)?;
-    let of_all = all
-        .iter()
-        .flat_map(|line| line.dots.iter().map(move |dot| (line.cost, dot)));
-    let (dearest_cost, dearest) = of_all.max_by(|a, b| a.1.cost.total_cmp(&b.1.cost))?;
+    let most_ms = dots().map(|dot| dot.cost).max_by(f64::total_cmp)?;
     let is_logarithmic = least > 0.0 && most / least > LOGARITHMIC_FROM;
     let along = |load: f64| {
         if is_logarithmic {
@@ -101,30 +98,28 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
         }
     };
     let x = |load: f64| LEFT + 14.0 + along(load) * (WIDTH - LEFT - 44.0);
-    let y = |cost: f64| FLOOR - cost / dearest.cost.max(1e-9) * (FLOOR - 40.0);
+    let ticks = super::ticks(most_ms);
+    let top = ticks.last().copied().unwrap_or(1.0);
+    let y = |cost: f64| FLOOR - cost / top * (FLOOR - 40.0);
 
     let height = FLOOR + 58.0 + all.len() as f64 * 18.0;
     let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\">");
     let _ = write!(
         svg,
         "<path d=\"M{LEFT} 10V{FLOOR}H{right}\" fill=\"none\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-         <text class=\"faint\" x=\"{}\" y=\"18\">ms; the dearest {}</text>\
+         <text class=\"faint\" x=\"{}\" y=\"18\">ms</text>\
          <text class=\"faint\" x=\"{right}\" y=\"{}\" text-anchor=\"end\">{}{}</text>",
         LEFT + 6.0,
-        f.svg_figure(
-            &format!("{at}/rows/{}/{}", dearest.row, dearest_cost),
-            1.0,
-            if dearest.cost < 10.0 { 2 } else { 1 }
-        ),
         FLOOR + 34.0,
         load.title,
         if is_logarithmic { ", logarithmic" } else { "" },
         right = WIDTH - 10.0,
     );
-    let mut ticks: Vec<&Dot> = dots().collect();
-    ticks.sort_by(|a, b| a.load.total_cmp(&b.load));
+    super::heights(&mut svg, &ticks, LEFT, WIDTH - 10.0, y);
+    let mut loads: Vec<&Dot> = dots().collect();
+    loads.sort_by(|a, b| a.load.total_cmp(&b.load));
     let mut last = f64::NEG_INFINITY;
-    for dot in ticks {
+    for dot in loads {
         let at_x = x(dot.load);
         if at_x - last >= LEAST_GAP {
             let _ = write!(
@@ -141,6 +136,13 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
         let (color, fill) = mark(i);
         let mut path = String::new();
         for (j, dot) in line.dots.iter().enumerate() {
+            let end = |i: usize| {
+                let spread = format!("{at}/rows/{}/spread/{}/{i}", dot.row, line.cost);
+                f.number(&spread)
+            };
+            if let (Some(least), Some(most)) = (end(0), end(1)) {
+                super::upright_error_bar(&mut svg, x(dot.load), y(least), y(most));
+            }
             let (x, y) = (x(dot.load), y(dot.cost));
             let _ = write!(path, "{}{x:.1} {y:.1}", if j == 0 { 'M' } else { 'L' });
             let _ = write!(

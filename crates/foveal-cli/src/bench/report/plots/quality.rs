@@ -10,14 +10,11 @@ const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 24.0;
 const TOP: f64 = 36.0;
 const FLOOR: f64 = 220.0;
-/// Figures nearer to each other than this are not both shown.
-const LEAST_GAP: f64 = 16.0;
 /// More curves than these cannot be told apart; the table has all rows.
 const MOST_CURVES: usize = 12;
 
 /// A row of the table.
 struct Dot {
-    row: usize,
     x: f64,
     error: f64,
     /// What grows along the curve.
@@ -45,7 +42,6 @@ fn curves(f: &Figures<'_>, at: &str, quality: &Quality, part: &str) -> Vec<Curve
         };
         let along = quality.along.and_then(|(key, _)| f.number(&of(key)));
         let dot = Dot {
-            row,
             x,
             error,
             along: along.unwrap_or_default(),
@@ -92,20 +88,20 @@ pub(in super::super) fn quality(f: &Figures<'_>, at: &str, bench: &Bench) -> Vec
         .into_iter()
         .filter_map(|part| {
             let curves = curves(f, at, quality, &part);
-            let svg = plot(f, at, quality, &curves)?;
+            let svg = plot(quality, &curves)?;
             Some((part, svg))
         })
         .collect()
 }
 
-fn plot(f: &Figures<'_>, at: &str, quality: &Quality, curves: &[Curve]) -> Option<String> {
+fn plot(quality: &Quality, curves: &[Curve]) -> Option<String> {
     let dots: Vec<&Dot> = curves.iter().flat_map(|curve| &curve.dots).collect();
-    let farthest = dots.iter().max_by(|a, b| a.x.total_cmp(&b.x))?;
-    let nearest = dots.iter().min_by(|a, b| a.x.total_cmp(&b.x))?;
-    let worst = dots.iter().max_by(|a, b| a.error.total_cmp(&b.error))?;
-    let best = dots.iter().min_by(|a, b| a.error.total_cmp(&b.error))?;
-    let x = |value: f64| LEFT + value / farthest.x.max(1e-9) * (RIGHT - LEFT - 8.0);
-    let y = |error: f64| FLOOR - error / worst.error.max(1e-9) * (FLOOR - TOP);
+    let most_x = dots.iter().map(|dot| dot.x).max_by(f64::total_cmp)?;
+    let most_error = dots.iter().map(|dot| dot.error).max_by(f64::total_cmp)?;
+    let (across, upward) = (super::ticks(most_x), super::ticks(most_error));
+    let ends = [&across, &upward].map(|ticks| ticks.last().copied().unwrap_or(1.0));
+    let x = |value: f64| LEFT + value / ends[0] * (RIGHT - LEFT - 8.0);
+    let y = |error: f64| FLOOR - error / ends[1] * (FLOOR - TOP);
 
     let is_curve = curves.iter().any(|curve| curve.dots.len() > 1);
     let legend = FLOOR + if is_curve { 74.0 } else { 56.0 };
@@ -120,36 +116,16 @@ fn plot(f: &Figures<'_>, at: &str, quality: &Quality, curves: &[Curve]) -> Optio
         quality.axis,
         LEFT + 6.0,
     );
-    let figure =
-        |dot: &Dot, key, digits| f.svg_figure(&format!("{at}/rows/{}/{key}", dot.row), 1.0, digits);
-    let mut across = |dot: &Dot| {
+    super::heights(&mut svg, &upward, LEFT, RIGHT, y);
+    for tick in across {
         let _ = write!(
             svg,
             "<path d=\"M{at_x:.1} {FLOOR}v4\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-             <text class=\"faint\" x=\"{at_x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
+             <text class=\"faint tick\" x=\"{at_x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
             FLOOR + 17.0,
-            figure(dot, quality.x, quality.digits),
-            at_x = x(dot.x),
+            super::tick_text(tick),
+            at_x = x(tick),
         );
-    };
-    across(farthest);
-    if x(farthest.x) - x(nearest.x) > 2.5 * LEAST_GAP {
-        across(nearest);
-    }
-    let mut upward = |dot: &Dot| {
-        let _ = write!(
-            svg,
-            "<path d=\"M{LEFT} {at_y:.1}h-4\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-             <text class=\"faint\" x=\"{}\" y=\"{:.1}\" text-anchor=\"end\">{}</text>",
-            LEFT - 6.0,
-            y(dot.error) + 4.0,
-            figure(dot, quality.error, 4),
-            at_y = y(dot.error),
-        );
-    };
-    upward(worst);
-    if y(best.error) - y(worst.error) > LEAST_GAP {
-        upward(best);
     }
     if let (Some((_, title)), true) = (quality.along, is_curve) {
         let _ = write!(
