@@ -51,6 +51,18 @@ pub(crate) struct ImportArgs {
 }
 
 impl ImportArgs {
+    /// The flags that decide what of a scene is shown, as a command has them.
+    pub(crate) fn shown_flags(&self) -> Vec<String> {
+        let clip = self.clip.as_ref().map(ToString::to_string);
+        let mut flags = Vec::new();
+        for (flag, value) in [("--clip", clip), ("--variant", self.variant.clone())] {
+            if let Some(value) = value {
+                flags.extend([flag.to_owned(), value]);
+            }
+        }
+        flags
+    }
+
     /// The importer's options.
     pub(crate) fn options(&self) -> LoadOptions {
         let d = LoadOptions::default();

@@ -48,7 +48,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
     let (first, camera) = (args.scene.clone(), args.camera.clone());
     let point_lights = args.point_lights;
     let options = args.import.options();
-    let mut scene_flags = Vec::new();
+    let mut scene_flags = args.import.shown_flags();
     if point_lights > 0 {
         scene_flags.extend(["--point-lights".to_owned(), point_lights.to_string()]);
     }

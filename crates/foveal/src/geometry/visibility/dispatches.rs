@@ -169,6 +169,8 @@ fn a_picture_by_families_is_the_one_by_materials_to_the_byte() {
         shading,
         rate,
         rate_stage: RateStage::Both,
+        // That of light needs materials at every pixel.
+        composite: crate::Composite::Smooth,
         force_rate: true,
         ..plain.clone()
     };
@@ -191,7 +193,7 @@ fn a_picture_by_families_is_the_one_by_materials_to_the_byte() {
         ),
         (
             "coarse",
-            rated(Shading::Coarse, RateSource::Foveated),
+            rated(Shading::Coarse, RateSource::Radii),
             limits(256, 2048),
         ),
         ("smoothed", smoothed, device),
