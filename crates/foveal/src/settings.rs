@@ -253,7 +253,7 @@ settings! {
         }
         "Eye" {
             /// Display that the picture is seen on, from which rates follow: camera (it fills the camera's own field of view),
-            /// fhd-24, uhd-27, quest-3, vision-pro, phone, degrees across, or WIDTHxDISTANCE in metres
+            /// hmd (92 degrees), h60 (60), fhd-24, uhd-27, quest-3, vision-pro, phone, degrees across, or WIDTHxDISTANCE in metres
             display: String = "camera".to_owned(), "Display", Kind::Text;
             /// Quality aimed at, in JOD: 10 is no visible difference from full shading, 9 one that 75 % of observers would see
             quality: f32 = 9.5, "Quality", Kind::Number { least: 5.0, most: 10.0 };

@@ -14,9 +14,10 @@ const BRIGHTEST_JOD: f32 = 8.0;
 
 /// How the pictures are looked at.
 #[derive(Debug, clap::Args)]
-pub(super) struct Args {
+pub(super) struct EyeArgs {
     /// The display that the pictures fill, which adds the quality in JOD at the gaze: hmd (a headset's eye, 91.5 degrees
-    /// across), h60 (60 degrees across), fhd (a 24-inch monitor at 0.6 m), degrees across, or WIDTHxDISTANCE in metres
+    /// across), h60 (60 degrees across), fhd (a 24-inch monitor at 0.6 m), one that foveal render --display names, degrees
+    /// across, or WIDTHxDISTANCE in metres
     #[arg(long, value_name = "WHICH", value_parser = display, help_heading = "Eye")]
     display: Option<Display>,
 
@@ -52,7 +53,7 @@ pub(super) struct Verdict {
     pub(super) gaze: [f32; 2],
 }
 
-impl Args {
+impl EyeArgs {
     /// The display that was asked for; `wanted` asks for `h60` where none was named.
     pub(super) fn display(&self, wanted: bool) -> Option<Display> {
         let changed = self.peak.is_some() || self.ambient.is_some() || self.heat_map.is_some();
@@ -136,6 +137,20 @@ fn display(text: &str) -> Result<Display, String> {
     if let Some(display) = Display::named(text) {
         return Ok(display);
     }
+    // Those that rates are made for have the same names here.
+    if text.starts_with(char::is_alphabetic)
+        && let Some(foveal::Display::Across(radians)) = foveal::Display::parse(text)
+    {
+        let like = if text.ends_with(char::is_numeric) && text.contains("hd") {
+            Display::MONITOR_24
+        } else {
+            Display::HEADSET
+        };
+        return Ok(Display {
+            extent: Extent::FieldOfView(radians.to_degrees()),
+            ..like
+        });
+    }
     let extent = match text.split_once(['x', 'X']) {
         Some((width, distance)) => Extent::Flat {
             width_m: values::positive(width)?,
@@ -162,6 +177,18 @@ mod tests {
     fn displays_are_names_degrees_or_metres() {
         assert_eq!(display("fhd"), Ok(Display::MONITOR_24));
         assert_eq!(display("60"), Ok(Display::DEGREES_60));
+        assert_eq!(display("uhd-27").unwrap().peak, Display::MONITOR_24.peak);
+        assert_eq!(display("quest-3").unwrap().peak, Display::HEADSET.peak);
+        // The metric's names are names of displays to render for, and mean the same.
+        for name in Display::NAMES {
+            let Some(foveal::Display::Across(radians)) = foveal::Display::parse(name) else {
+                panic!("{name}");
+            };
+            let Extent::FieldOfView(degrees) = display(name).unwrap().extent else {
+                panic!("{name}");
+            };
+            assert!((radians.to_degrees() - degrees).abs() < 0.2, "{name}");
+        }
         let desk = display("0.53x0.6").unwrap();
         assert_eq!(
             desk.extent,

@@ -27,7 +27,7 @@ pub(crate) struct Args {
     b: PathBuf,
 
     #[command(flatten)]
-    eye: eye::Args,
+    eye: eye::EyeArgs,
 
     /// Write FLIP's error map: black where no eye sees a difference, through magenta to yellow
     #[arg(long, value_name = "FILE.png")]

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
-use foveal::{Antialiasing, Culling, Settings, Shading};
+use foveal::{Antialiasing, Culling, RateSource, Settings, Shading};
 use foveal_measure::Finding;
 use foveal_scene::generate;
 
@@ -130,6 +130,7 @@ fn the_reference_is_drawn_beside_and_flip_tells_them_apart() {
     assert_eq!(compared(request().settings), (0.0, true));
     let coarse = Settings {
         shading: Shading::Coarse,
+        rate: RateSource::Radii,
         fovea_inner: 0.0,
         ..request().settings
     };

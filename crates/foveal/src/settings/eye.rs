@@ -13,7 +13,11 @@ pub enum Display {
 }
 
 /// Displays with a name: width over distance, both in the same unit.
-const NAMED: [(&str, f32, f32); 5] = [
+const NAMED: [(&str, f32, f32); 8] = [
+    // The metric's: a headset's eye of 91.5 degrees, 60 degrees, and the 24-inch monitor.
+    ("hmd", 2.053, 1.0),
+    ("h60", 1.1547, 1.0),
+    ("fhd", 0.531, 0.6),
     // 24 inches at 0.6 m: 48 degrees, 38 pixels a degree at 1920.
     ("fhd-24", 0.531, 0.6),
     // 27 inches at 0.6 m: 53 degrees, 67 pixels a degree at 3840.
@@ -26,12 +30,12 @@ const NAMED: [(&str, f32, f32); 5] = [
     ("phone", 0.141, 0.3),
 ];
 
-const EXPECTED: &str = "camera, fhd-24, uhd-27, quest-3, vision-pro, phone, degrees across between 1 and 170, or \
+const EXPECTED: &str = "camera, hmd, h60, fhd-24, uhd-27, quest-3, vision-pro, phone, degrees across between 1 and 170, or \
                         WIDTHxDISTANCE in metres";
 
 impl Display {
-    /// A display by its name (`camera`, `fhd-24`, `uhd-27`, `quest-3`, `vision-pro`, `phone`), its field of view in degrees across, or
-    /// `WIDTHxDISTANCE` in metres.
+    /// A display by its name (`camera`, `hmd`, `h60`, `fhd-24`, `uhd-27`, `quest-3`, `vision-pro`, `phone`), its field of view in
+    /// degrees across, or `WIDTHxDISTANCE` in metres.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         if text == "camera" {
@@ -88,6 +92,8 @@ mod tests {
             other => panic!("{text}: {other:?}"),
         };
         assert_eq!(Display::parse("camera"), Some(Display::Camera));
+        assert!((degrees("hmd") - 91.5).abs() < 0.1);
+        assert!((degrees("h60") - 60.0).abs() < 0.1);
         assert!((degrees("fhd-24") - 47.8).abs() < 0.2);
         assert!((degrees("uhd-27") - 53.0).abs() < 0.3);
         assert!((degrees("quest-3") - 110.0).abs() < 0.1);
