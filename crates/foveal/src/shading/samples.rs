@@ -1,10 +1,7 @@
 //! Which samples are shaded.
 #![cfg_attr(
     not(test),
-    expect(
-        dead_code,
-        reason = "the frame shades every pixel until a rate map asks for less"
-    )
+    expect(dead_code, reason = "tests alone list texels on the CPU")
 )]
 
 use crate::gpu::Gpu;
