@@ -15,7 +15,7 @@ use crate::lights::LightAssigner;
 use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{CoarseShading, ShadingPass, VariableStage};
+use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
 use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings};
@@ -104,6 +104,8 @@ struct CoarseStages {
     rate_map: RateMapPass,
     shading: CoarseShading,
     composite: CompositePass,
+    /// Stands in for both where light is kept from frame to frame.
+    history: Option<HistoryStage>,
     overlay: Option<OverlayPass>,
 }
 
@@ -192,6 +194,15 @@ impl Renderer {
             return Ok(());
         }
         self.scene.geometry.check(&self.gpu, settings.geometry)?;
+        if (Settings {
+            gaze: settings.gaze,
+            gaze_shift: settings.gaze_shift,
+            ..old.clone()
+        }) == *settings
+        {
+            self.stages.settings = settings.clone();
+            return Ok(());
+        }
         // Its counts are read from targets that go.
         self.in_flight = None;
         if (Settings {
@@ -209,9 +220,7 @@ impl Renderer {
             self.stages.targets = targets;
             self.stages.geometry.resize(settings);
             self.stages.forward.resize(settings);
-            if let Some(variable) = &mut self.stages.variable {
-                variable.forget();
-            }
+            self.stages.forget();
             self.stages.settings = settings.clone();
             return Ok(());
         }
@@ -270,9 +279,7 @@ impl Renderer {
         trap.finish().await?;
         written?;
         self.scene = uploaded;
-        if let Some(variable) = &mut self.stages.variable {
-            variable.forget();
-        }
+        self.stages.forget();
         Ok(())
     }
 
@@ -283,9 +290,15 @@ impl Renderer {
     /// [`Error::OutOfMemory`].
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
-        self.scene.update_pose(&self.gpu, scene);
+        let (moves, lights_before) = self.scene.update_pose(&self.gpu, scene);
         if let Some(variable) = &mut self.stages.variable {
             variable.scene_moved();
+        }
+        if let Some(history) = self.stages.history() {
+            if moves {
+                history.scene_moved();
+            }
+            history.lamps_changed(&lights_before, &self.scene.lights);
         }
         self.frame_bindings
             .write_instances(&self.gpu, self.scene.instance_uniforms())?;
@@ -313,6 +326,9 @@ impl Renderer {
         }
         if let Some(unlit) = counters.unlit {
             counts.unlit = Some(read_buffer(&self.gpu, unlit).await?);
+        }
+        if let Some(kept) = counters.kept {
+            counts.kept = Some(read_buffer(&self.gpu, kept).await?);
         }
         if let Some(edges) = counters.edges {
             counts.edges = Some(read_buffer(&self.gpu, edges).await?);

@@ -52,7 +52,7 @@ impl Targets {
                 if gpu.is_reduced() {
                     wgpu::TextureUsages::empty()
                 } else {
-                    wgpu::TextureUsages::STORAGE_BINDING | copied
+                    wgpu::TextureUsages::STORAGE_BINDING | wgpu::TextureUsages::COPY_DST
                 },
             ),
             radiance_layers: layered.then(|| {

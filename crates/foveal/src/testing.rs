@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use foveal_scene::{Camera, Scene};
 
 use crate::gpu::read_texture;
-use crate::{Frame, Gpu, Renderer, Settings};
+use crate::{Frame, FrameStats, Gpu, Renderer, Settings};
 
 /// One device for all tests of the process.
 pub(crate) fn gpu() -> &'static Gpu {
@@ -69,6 +69,49 @@ pub(crate) fn small(width: u32, height: u32) -> Settings {
     Settings {
         width,
         height,
+        // Tests of light that is kept turn it on.
+        history: false,
         ..Settings::default()
     }
+}
+
+/// A renderer with a scene, and the camera of its last frame.
+pub(crate) struct Film {
+    pub(crate) renderer: Renderer,
+    /// What the next frame follows.
+    pub(crate) last: Option<Camera>,
+}
+
+impl Film {
+    pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
+        pollster::block_on(async {
+            let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+            renderer.set_scene(scene).await.unwrap();
+            Self {
+                renderer,
+                last: None,
+            }
+        })
+    }
+
+    pub(crate) fn draw(&mut self, camera: &Camera) -> FrameStats {
+        let frame = Frame {
+            camera,
+            previous_camera: self.last.as_ref(),
+        };
+        let stats = pollster::block_on(self.renderer.render(&frame)).unwrap();
+        self.last = Some(camera.clone());
+        stats
+    }
+
+    pub(crate) fn radiance(&self) -> Vec<[u16; 4]> {
+        texels(&self.renderer.targets().radiance_view)
+    }
+}
+
+/// The camera moved to the right, in metres of the world's x.
+pub(crate) fn shifted(camera: &Camera, x: f32) -> Camera {
+    let mut camera = camera.clone();
+    camera.world_from_view.w_axis.x += x;
+    camera
 }

@@ -11,7 +11,7 @@ const FAINTEST: f32 = 1.0 / 256.0;
 
 /// Mirrors `Light` in `shared/lighting.wgsl`, where the fields are explained.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct LightUniform {
     pub(crate) position: [f32; 3],
     pub(crate) range: f32,

@@ -5,7 +5,7 @@ use crate::antialias::AntialiasStage;
 use crate::culling::CullingCounts;
 use crate::gpu::{Arriving, CpuTimer, Gpu, Handover, work_done};
 use crate::output::Upscale;
-use crate::shading::CountPass;
+use crate::shading::{CountPass, HistoryStage};
 use crate::stereo::EyeLayout;
 use crate::{CoarseStats, Error, FrameStats, Timing};
 
@@ -16,6 +16,8 @@ pub(super) struct Counts<T> {
     pub(super) tiles: Option<T>,
     /// Pixels of coarse shading that no tile's sample speaks for.
     pub(super) unlit: Option<T>,
+    /// The lists of light that is kept from frame to frame.
+    pub(super) kept: Option<T>,
     /// Edge pixels and lighting evaluations of anti-aliasing.
     pub(super) edges: Option<T>,
     /// Samples of variable shading.
@@ -51,11 +53,12 @@ impl InFlight {
         let counts = Counts {
             tiles: record(counters.tiles),
             unlit: record(counters.unlit),
+            kept: record(counters.kept),
             edges: record(counters.edges),
             rates: record(counters.rates),
         };
         gpu.queue.submit([encoder.finish()]);
-        let all = counts.tiles.iter().chain(&counts.unlit);
+        let all = counts.tiles.iter().chain(&counts.unlit).chain(&counts.kept);
         for arriving in all.chain(&counts.edges).chain(&counts.rates) {
             arriving.submitted();
         }
@@ -76,10 +79,13 @@ impl Renderer {
             (Some(_), Some(tiles), None) => Some(tiles),
             _ => None,
         };
+        let kept = tiles.and_then(|tiles| Some(&tiles.history.as_ref()?.listed));
+        let tiles = tiles.filter(|_| kept.is_none());
         let samples = stages.targets.samples.as_ref();
         Counts {
             tiles: tiles.map(|tiles| &tiles.counts),
             unlit: tiles.and_then(|tiles| Some(&tiles.light.as_ref()?.unlit_count)),
+            kept,
             edges: samples
                 .filter(|_| stages.antialias.is_some())
                 .map(|samples| &samples.queue),
@@ -138,6 +144,7 @@ impl Renderer {
         if !(in_flight.done.is_given()
             && arrived(&in_flight.counts.tiles)
             && arrived(&in_flight.counts.unlit)
+            && arrived(&in_flight.counts.kept)
             && arrived(&in_flight.counts.edges)
             && arrived(&in_flight.counts.rates))
         {
@@ -163,6 +170,7 @@ impl Renderer {
         let counts = Counts {
             tiles: counts.tiles.and_then(|arriving| arriving.take()),
             unlit: counts.unlit.and_then(|arriving| arriving.take()),
+            kept: counts.kept.and_then(|arriving| arriving.take()),
             edges: counts.edges.and_then(|arriving| arriving.take()),
             rates: counts.rates.and_then(|arriving| arriving.take()),
         };
@@ -231,8 +239,12 @@ impl Renderer {
         counts: &Counts<Vec<u8>>,
         gpu_ms: &[Timing],
     ) -> Option<CoarseStats> {
-        let bytes = counts.tiles.as_ref()?;
         let settings = &self.stages.settings;
+        if let Some(bytes) = &counts.kept {
+            let pixels = EyeLayout::of(settings).pixels();
+            return Some(HistoryStage::stats(bytes, settings.coarsest_level, pixels));
+        }
+        let bytes = counts.tiles.as_ref()?;
         let tiles = CountPass::tiles(bytes, settings.coarsest_level);
         let unlit = counts
             .unlit

@@ -11,7 +11,7 @@ use crate::lights::LightAssigner;
 use crate::output::{EyesPass, OverlayPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::scene::FrameBindings;
-use crate::shading::{CoarseShading, ShadingPass, VariableStage};
+use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
 use crate::stereo::{EyeLayout, LensFit, Submission, Trials, eyes};
 use crate::targets::Targets;
 use crate::{Error, Settings, Shading};
@@ -48,12 +48,28 @@ impl CoarseStages {
             rate_map,
             shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
             composite: CompositePass::new(gpu, settings, frame),
+            history: HistoryStage::new(gpu, settings, frame, full.input_layout()),
             overlay: OverlayPass::new(gpu, settings.view, frame),
         }
     }
 }
 
 impl Stages {
+    /// What is kept from frame to frame.
+    pub(super) fn history(&mut self) -> Option<&mut HistoryStage> {
+        self.coarse.as_mut()?.history.as_mut()
+    }
+
+    /// The next frame follows none: what is known belongs to another scene or size.
+    pub(super) fn forget(&mut self) {
+        if let Some(variable) = &mut self.variable {
+            variable.forget();
+        }
+        if let Some(history) = self.history() {
+            history.forget();
+        }
+    }
+
     pub(super) async fn new(
         gpu: &Gpu,
         settings: &Settings,

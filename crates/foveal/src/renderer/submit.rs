@@ -169,6 +169,10 @@ impl Stages {
         };
         if let Some((coarse, tiles)) = coarse {
             let eyes = (&seen.eyes, seen.lenses.as_ref());
+            if let Some(history) = &mut coarse.history {
+                let before = frame.previous_camera.unwrap_or(frame.camera);
+                history.begin(recorder.gpu, settings, (frame.camera, before));
+            }
             coarse
                 .rate_map
                 .draw(recorder, settings, eyes, &targets.gbuffer, &tiles.rate);
@@ -223,11 +227,15 @@ impl Stages {
         }
         let input = shading.input(recorder.gpu, &targets.gbuffer, &scene.light_buffer, lights);
         if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
-            coarse.shading.shade(recorder, &input, tiles);
-            coarse.composite.join(recorder, targets, tiles);
-            if let Some(light) = &tiles.light {
-                let unlit = Samples::List(&light.unlit);
-                shading.shade(recorder, &input, unlit, &targets.radiance_view);
+            if let (Some(history), Some(kept)) = (&coarse.history, &tiles.history) {
+                history.light(recorder, &input, targets, (&tiles.rate, kept));
+            } else {
+                coarse.shading.shade(recorder, &input, tiles);
+                coarse.composite.join(recorder, targets, tiles);
+                if let Some(light) = &tiles.light {
+                    let unlit = Samples::List(&light.unlit);
+                    shading.shade(recorder, &input, unlit, &targets.radiance_view);
+                }
             }
         } else if let (Some(variable), true) = (
             variable.as_ref(),

@@ -7,7 +7,7 @@ use crate::geometry::{Evaluation, GeometryPass};
 use crate::lights::{ClusterGrid, LightAssigner};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
-use crate::shading::{CoarseShading, Samples};
+use crate::shading::{CoarseShading, HistoryStage, Samples};
 use crate::stereo::{EyeLayout, eyes};
 use crate::targets::Targets;
 use foveal_scene::Camera;
@@ -71,6 +71,12 @@ impl Renderer {
 
     pub(crate) fn targets(&self) -> &Targets {
         &self.stages.targets
+    }
+
+    pub(crate) fn history(&self) -> &HistoryStage {
+        let coarse = self.stages.coarse.as_ref();
+        let history = coarse.and_then(|coarse| coarse.history.as_ref());
+        history.expect("light is kept")
     }
 
     pub(crate) fn lights(&self) -> (&LightAssigner, &[crate::lights::LightUniform]) {

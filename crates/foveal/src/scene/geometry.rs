@@ -210,6 +210,11 @@ impl SceneGeometry {
         &self.places
     }
 
+    /// Whether any mesh changes its shape with the pose.
+    pub(crate) fn deforms(&self) -> bool {
+        self.deforms
+    }
+
     /// Uploads the deformed meshes; the vertices so far become the previous ones.
     pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) {
         if !self.deforms {

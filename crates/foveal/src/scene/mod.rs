@@ -111,16 +111,22 @@ impl SceneOnGpu {
         })
     }
 
-    /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
-    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) {
+    /// Takes over a new pose of the same scene; the pose so far becomes the previous one. Says whether anything has moved, and
+    /// gives the lights so far.
+    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) -> (bool, Vec<LightUniform>) {
+        let mut moves = self.geometry.deforms();
         for (uniform, instance) in self.uniforms.iter_mut().zip(&scene.instances) {
-            *uniform = uniform.moved_to(instance.world_from_object);
+            let moved = uniform.moved_to(instance.world_from_object);
+            moves |= bytemuck::bytes_of(&moved) != bytemuck::bytes_of(uniform);
+            *uniform = moved;
         }
         self.instances = drawn_instances(scene);
-        self.lights = scene.lights.iter().map(LightUniform::new).collect();
+        let lights = scene.lights.iter().map(LightUniform::new).collect();
+        let before = std::mem::replace(&mut self.lights, lights);
         write_lights(gpu, &self.light_buffer, &self.lights);
         self.geometry.update_pose(gpu, scene);
         self.culling.update_pose(scene);
+        (moves, before)
     }
 
     /// The instances as the vertex shader reads them.

@@ -530,6 +530,7 @@ pub(crate) const COMPOSITE_PAPER: Parts = &[
     TILING,
     include_str!("../composite/paper.wgsl"),
 ];
+const GATHER_LIGHT: &str = include_str!("../composite/gather.wgsl");
 pub(crate) const COMPOSITE_LIGHT: Parts = &[
     FRAME,
     SURFACE,
@@ -538,6 +539,7 @@ pub(crate) const COMPOSITE_LIGHT: Parts = &[
     TILING,
     LAYERS,
     SAMPLE_LIGHT,
+    GATHER_LIGHT,
     include_str!("../composite/light.wgsl"),
 ];
 pub(crate) const COMPOSITE_FIT: Parts = &[
@@ -639,4 +641,71 @@ pub(crate) const REDUCED_FORWARD: Parts = &[
     MATERIAL,
     include_str!("../reduced/forward.wgsl"),
     include_str!("../forward/forward.wgsl"),
+];
+
+const REMEMBERED: &str = include_str!("../shading/history/remembered.wgsl");
+const ORDER: &str = include_str!("../shading/history/order.wgsl");
+const MEASURED: &str = include_str!("../shading/history/measured.wgsl");
+pub(crate) const HISTORY_TILES: Parts = &[
+    FRAME,
+    REMEMBERED,
+    MEASURED,
+    include_str!("../shading/history/tiles.wgsl"),
+];
+pub(crate) const HISTORY_CARRY: Parts = &[
+    FRAME,
+    SURFACE,
+    SURROUNDINGS,
+    BLOCKS,
+    TILING,
+    LAYERS,
+    SAMPLE_LIGHT,
+    REMEMBERED,
+    ORDER,
+    include_str!("../shading/history/carry.wgsl"),
+];
+pub(crate) const HISTORY_SIZE: Parts = &[
+    FRAME,
+    REMEMBERED,
+    include_str!("../shading/history/size.wgsl"),
+];
+pub(crate) const HISTORY_SHADE: Parts = &[
+    FRAME,
+    SURFACE,
+    LIGHT,
+    LIGHTING,
+    LAYERS,
+    SHADING,
+    BLOCKS,
+    include_str!("../shading/coarse/block.wgsl"),
+    SAMPLE_LIGHT,
+    include_str!("../shading/coarse/block_light.wgsl"),
+    REMEMBERED,
+    MEASURED,
+    include_str!("../shading/history/shade.wgsl"),
+];
+pub(crate) const HISTORY_GATHER: Parts = &[
+    FRAME,
+    SURFACE,
+    SURROUNDINGS,
+    BLOCKS,
+    TILING,
+    LAYERS,
+    SAMPLE_LIGHT,
+    GATHER_LIGHT,
+    REMEMBERED,
+    include_str!("../shading/history/gather.wgsl"),
+];
+pub(crate) const HISTORY_SCATTER: Parts = &[
+    FRAME,
+    REMEMBERED,
+    include_str!("../shading/history/scatter.wgsl"),
+];
+pub(crate) const HISTORY_REST: Parts = &[
+    FRAME,
+    BLOCKS,
+    LAYERS,
+    REMEMBERED,
+    ORDER,
+    include_str!("../shading/history/rest.wgsl"),
 ];

@@ -4,6 +4,7 @@
 //! one and the same; rate, backend and anti-aliasing differ only in the samples that they ask for.
 
 mod coarse;
+mod history;
 mod pass;
 mod samples;
 #[cfg(test)]
@@ -17,6 +18,7 @@ pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
     CoarseShading, CoarseTargets, CountPass, LEVELS, LevelNumbers, STENCIL_FORMAT, stencil_state,
 };
+pub(crate) use history::{HistoryStage, HistoryTargets};
 pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};
 #[cfg(test)]

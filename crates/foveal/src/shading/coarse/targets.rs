@@ -4,7 +4,7 @@ use super::LEVELS;
 use crate::composite::{LightTargets, PatchTargets};
 use crate::gpu::{Gpu, MipChain};
 use crate::rate::RateTargets;
-use crate::shading::RADIANCE_FORMAT;
+use crate::shading::{HistoryTargets, RADIANCE_FORMAT};
 use crate::stereo::EyeLayout;
 use crate::{Backend, Composite, Settings};
 
@@ -21,6 +21,8 @@ pub(crate) struct CoarseTargets {
     pub(crate) patches: Option<PatchTargets>,
     /// For the composite that puts surfaces into the samples' light.
     pub(crate) light: Option<LightTargets>,
+    /// Where light is kept from frame to frame.
+    pub(crate) history: Option<HistoryTargets>,
     /// Nonzero where a level has a tile; for the stencil backend.
     pub(super) stencil: Option<MipChain>,
     /// Tiles of each level as x | y << 16; for the compute backend and the smooth composite.
@@ -39,6 +41,7 @@ impl CoarseTargets {
             + self.samples.bytes()
             + self.patches.as_ref().map_or(0, PatchTargets::bytes)
             + self.light.as_ref().map_or(0, LightTargets::bytes)
+            + self.history.as_ref().map_or(0, HistoryTargets::bytes)
             + self.stencil.as_ref().map_or(0, MipChain::bytes)
             + buffers.map(wgpu::Buffer::size).sum::<u64>()
     }
@@ -75,6 +78,7 @@ impl CoarseTargets {
                 Composite::Smooth => PatchTargets::new(gpu, settings),
                 Composite::Light | Composite::Nearest | Composite::Paper => None,
             },
+            history: HistoryTargets::new(gpu, settings),
             light: (settings.composite == Composite::Light)
                 .then(|| LightTargets::new(gpu, settings)),
             stencil: (settings.backend != Backend::Compute).then(|| {

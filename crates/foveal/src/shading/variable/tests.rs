@@ -1,17 +1,15 @@
 //! Variable shading on the device against its twins, against full shading, and against time.
 
-use foveal_scene::{Camera, Scene, generate};
+use foveal_scene::{Scene, generate};
 use glam::{UVec2, Vec2, Vec3};
 
 use super::probes::{Probe, Probes};
 use super::twin::{self, Seen};
 use crate::gpu::read_buffer;
 use crate::shading::twin::{shade, unpack_surface};
+pub(super) use crate::testing::{Film, shifted};
 use crate::testing::{f32_of_half, gpu, picture, small, texels};
-use crate::{
-    Contrast, Frame, FrameStats, Geometry, RateCombine, RateSource, RateStage, Renderer, Settings,
-    Shading, View,
-};
+use crate::{Contrast, Geometry, RateCombine, RateSource, RateStage, Settings, Shading, View};
 
 /// Odd sizes; the last is smaller than a quad.
 const SIZES: [(u32, u32); 3] = [(157, 101), (64, 48), (1, 1)];
@@ -31,34 +29,7 @@ pub(super) fn variable(size: (u32, u32)) -> Settings {
     }
 }
 
-/// A renderer with a scene, and the camera of its last frame.
-pub(super) struct Film {
-    pub(super) renderer: Renderer,
-    last: Option<Camera>,
-}
-
 impl Film {
-    pub(super) fn new(scene: &Scene, settings: &Settings) -> Self {
-        pollster::block_on(async {
-            let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
-            renderer.set_scene(scene).await.unwrap();
-            Self {
-                renderer,
-                last: None,
-            }
-        })
-    }
-
-    pub(super) fn draw(&mut self, camera: &Camera) -> FrameStats {
-        let frame = Frame {
-            camera,
-            previous_camera: self.last.as_ref(),
-        };
-        let stats = pollster::block_on(self.renderer.render(&frame)).unwrap();
-        self.last = Some(camera.clone());
-        stats
-    }
-
     pub(super) fn mask(&self) -> Vec<u32> {
         texels(&self.renderer.targets().variable.as_ref().unwrap().mask)
     }
@@ -78,16 +49,6 @@ impl Film {
             depth: texels(&g.depth_view),
         }
     }
-
-    pub(super) fn radiance(&self) -> Vec<[u16; 4]> {
-        texels(&self.renderer.targets().radiance_view)
-    }
-}
-
-pub(super) fn shifted(camera: &Camera, x: f32) -> Camera {
-    let mut camera = camera.clone();
-    camera.world_from_view.w_axis.x += x;
-    camera
 }
 
 /// Values that differ; a rounded one may fall to either side of a threshold.

@@ -1,0 +1,87 @@
+// The light of the samples around a pixel. After frame, surface, surroundings, blocks, tiling, layers and
+// shading/coarse/light.wgsl. The includer binds `gbuffer_depth` and says where a tile's sample lies (`sampled_at`) and what it holds
+// (`light_of`). CPU twin: `composite/light_twin.rs`.
+//
+// A pixel of a tile of level l looks at the four points around it of the lattice of that level's centres, and at the samples of
+// the tiles that hold them. Samples count by the distance of their points (bilinear), by how near they lie to the plane of the
+// pixel's surface, and by how alike the normals are.
+
+// Beyond this rise over distance a sample lies on another plane than the pixel, and below the second one on the same.
+const OFF_PLANE: f32 = 0.6;
+const ON_PLANE: f32 = 0.2;
+// Weight of samples whose normal is at right angles to the pixel's.
+const LEAST_ALIKE: f32 = 0.005;
+// Below this sum of weights no sample speaks for a pixel.
+const LEAST_WEIGHT: f32 = 0.02;
+
+// Change of depth per texel along an axis: of the two sides of a texel the one that changes less.
+fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {
+    let picture = picture_of(texel);
+    var before = texel;
+    var after = texel;
+    before[axis] = max(texel[axis], picture.low[axis] + 1u) - 1u;
+    after[axis] = min(texel[axis] + 1u, picture.end[axis] - 1u);
+    let backwards = depth - load_depth(gbuffer_depth, before);
+    let forwards = load_depth(gbuffer_depth, after) - depth;
+    let takes_after = before[axis] == texel[axis] || (after[axis] != texel[axis] && abs(forwards) < abs(backwards));
+    return select(backwards, forwards, takes_after);
+}
+
+// Weighted sums over the samples around a pixel.
+struct Gathered {
+    // Light on the pixel's own surface.
+    diffuse: vec3f,
+    mirrored: vec3f,
+    // Where it comes from.
+    direction: vec3f,
+    mirrored_direction: vec3f,
+    spread: f32,
+    weight: f32,
+}
+
+// How far a sample at `offset` pixels rises from the plane through the pixel, over its distance.
+fn rise(depth: f32, slope: vec2f, offset: vec2f, sample_depth: f32) -> f32 {
+    let expected = depth + dot(slope, offset);
+    let there = view_distance(sample_depth);
+    let pixel_side = 2.0 * abs(frame.views[0].view_from_ndc.x) / frame.size.x * select(there, 1.0, frame.orthographic != 0u);
+    let apart = abs(there - view_distance(max(expected, 1e-20)));
+    return apart / (length(offset) * pixel_side + 1e-6 * there);
+}
+
+fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered {
+    let slope = vec2f(depth_slope(texel, 0u, depth), depth_slope(texel, 1u, depth));
+    let picture = picture_of(texel);
+    let side = f32(1u << own.level);
+    // Of the pixel on the lattice of the level's sample points.
+    let place = (vec2f(texel) - floor(0.5 * side)) / side;
+    let first = floor(place);
+    let along = place - first;
+    let low = vec2i(picture.low >> vec2u(own.level));
+    let last = vec2i((picture.end - 1u) >> vec2u(own.level));
+    let a2 = squared_alpha(s);
+    var sum = Gathered(vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0);
+    for (var i = 0u; i < 4u; i++) {
+        let step = vec2u(i & 1u, i >> 1u);
+        let block = vec2u(clamp(vec2i(first) + vec2i(step), low, last));
+        let tile = tile_at(sample_texel(block, own.level, 0u));
+        let at = sampled_at(tile);
+        let sampled = unpack_light(light_of(tile, at));
+        let sample_depth = load_depth(gbuffer_depth, at);
+        let offset = vec2f(at) - vec2f(texel);
+        let near = mix(1.0 - along, along, vec2f(step));
+        let steep = rise(depth, slope, offset, max(sample_depth, 1e-20));
+        let same_plane = 1.0 - smoothstep(ON_PLANE, OFF_PLANE, steep);
+        let cosine = saturate(dot(s.normal, sampled.normal));
+        let alike = mix(LEAST_ALIKE, 1.0, cosine * cosine * cosine * cosine);
+        let weight = select(0.0, near.x * near.y * same_plane * alike, sample_depth > 0.0);
+        let diffuse = sampled.diffuse * max(dot(s.normal, sampled.direction), LEAST_COSINE);
+        let mirror = sampled.mirrored * highlight(s.normal, v, sampled.mirrored_direction, a2 + sampled.spread);
+        sum.diffuse += weight * diffuse;
+        sum.mirrored += weight * mirror;
+        sum.direction += weight * luminance(diffuse) * sampled.direction;
+        sum.mirrored_direction += weight * luminance(mirror) * sampled.mirrored_direction;
+        sum.spread += weight * sampled.spread;
+        sum.weight += weight;
+    }
+    return sum;
+}

@@ -1,0 +1,65 @@
+// Pixels that remember nothing take the light of the samples around them. After composite/gather.wgsl and remembered.wgsl.
+
+@group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
+@group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
+// Pixels' light, where it was carried over or sampled.
+@group(1) @binding(3) var light: texture_2d<u32>;
+@group(1) @binding(4) var radiance: texture_storage_2d<rgba16float, write>;
+@group(1) @binding(5) var<storage, read_write> listed: array<Listed, 3>;
+// Of the pixels that remember nothing.
+@group(1) @binding(9) var<storage, read> dispatch: Dispatch;
+@group(1) @binding(6) var<storage, read> bare: array<u32>;
+// Pixels that no sample speaks for.
+@group(1) @binding(7) var<storage, read_write> unlit: array<vec2u>;
+// What pixels remember from here on, on its way to `light`.
+@group(1) @binding(8) var gathered: texture_storage_2d<rgba32uint, write>;
+
+fn sampled_at(tile: Tile) -> vec2u {
+    return sample_texel(tile.block, tile.level, 0u);
+}
+
+fn light_of(tile: Tile, at: vec2u) -> vec4u {
+    return textureLoad(light, at, 0);
+}
+
+fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
+    let size = length(direction);
+    return select(other, direction / max(size, 1e-30), size > 1e-30);
+}
+
+@compute @workgroup_size(64)
+fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    if index >= dispatch.count {
+        return;
+    }
+    let texel = entry_texel(bare[index]);
+    let pixel = vec2f(texel) + 0.5;
+    let depth = load_depth(gbuffer_depth, texel);
+    let position = world_position(pixel, view_distance(depth));
+    let v = direction_to_eye(view_at(pixel), position);
+    let s = unpack_surface(load_words(gbuffer_surface, texel), position);
+    let found = gather(texel, tile_at(texel), s, v, depth);
+    if found.weight < LEAST_WEIGHT {
+        unlit[atomicAdd(&listed[UNLIT].count, 1u)] = vec2u(sample_entry(texel, 0u), 0u);
+        textureStore(gathered, texel, vec4u(0u));
+        return;
+    }
+    let diffuse = found.diffuse / found.weight;
+    let mirror = found.mirrored / found.weight;
+    let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
+    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lamps, vec3f(65504.0)), 1.0));
+    // As light from one direction each, which gives the same on this surface.
+    let direction = unit_or(found.direction, s.normal);
+    let mirrored_direction = unit_or(found.mirrored_direction, s.normal);
+    let spread = found.spread / found.weight;
+    let lobe = highlight(s.normal, v, mirrored_direction, squared_alpha(s) + spread);
+    textureStore(gathered, texel, pack_light(SampleLight(
+        diffuse / max(dot(s.normal, direction), LEAST_COSINE),
+        mirror / max(lobe, 1e-6),
+        direction,
+        mirrored_direction,
+        spread,
+        s.normal,
+    )));
+}

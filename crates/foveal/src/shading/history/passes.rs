@@ -1,0 +1,340 @@
+//! The passes that carry light from frame to frame.
+
+use bytemuck::{Pod, Zeroable};
+
+use super::targets::{HistoryTargets, LIST_STEP, List, SEEN_FORMAT};
+use super::{Lit, ROUND};
+use crate::composite::LIGHT_FORMAT;
+use crate::gpu::{
+    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
+    uniform, written,
+};
+use crate::rate::RateTargets;
+use crate::recorder::Recorder;
+use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::targets::Targets;
+use crate::{Settings, shader};
+
+/// Pixels a side that one workgroup looks at.
+const TILE: u32 = 8;
+
+/// Mirrors `History` in `remembered.wgsl`, where the fields are explained.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+pub(crate) struct HistoryUniform {
+    pub(crate) rounding: [f32; 2],
+    pub(crate) phase: u32,
+    pub(crate) reset: u32,
+    pub(crate) renewal: f32,
+    pub(crate) tolerance: f32,
+    pub(crate) change: f32,
+    pub(crate) changed_count: u32,
+    pub(crate) changed: [[f32; 4]; 16],
+}
+
+/// A pipeline and the layout of its own bind group.
+#[derive(Debug)]
+struct Pass {
+    pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+/// All passes.
+#[derive(Debug)]
+pub(super) struct HistoryPasses {
+    keep: Pass,
+    spread: Pass,
+    carry: Pass,
+    size: Pass,
+    shade: Pass,
+    gather: Pass,
+    scatter: Pass,
+    rest: Pass,
+    uniform: wgpu::Buffer,
+}
+
+impl HistoryPasses {
+    pub(super) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        input: &wgpu::BindGroupLayout,
+    ) -> Self {
+        let uint = sampled(wgpu::TextureSampleType::Uint);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
+        let depth = sampled_layers(wgpu::TextureSampleType::Depth);
+        let (read, write) = (storage_read(), storage_write());
+        let light = written(LIGHT_FORMAT);
+        let radiance = written(RADIANCE_FORMAT);
+        let pass = |label, parts, entry, more: Option<&_>, types: &[_], constants: &[_]| {
+            let layout = bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types);
+            let mut groups = vec![frame];
+            groups.extend(more);
+            groups.push(&layout);
+            Pass {
+                pipeline: shader::compute(
+                    gpu,
+                    label,
+                    &shader::module(gpu, label, parts),
+                    entry,
+                    &groups,
+                    constants,
+                ),
+                layout,
+            }
+        };
+        let tiles = [uniform(), write, write, write];
+        Self {
+            keep: pass(
+                "kept tiles",
+                shader::HISTORY_TILES,
+                "keep",
+                None,
+                &tiles,
+                &[],
+            ),
+            spread: pass("tiles", shader::HISTORY_TILES, "spread", None, &tiles, &[]),
+            carry: pass(
+                "carrying light",
+                shader::HISTORY_CARRY,
+                "carry",
+                None,
+                &[
+                    uint,
+                    words,
+                    depth,
+                    words,
+                    uniform(),
+                    uint,
+                    uint,
+                    read,
+                    light,
+                    written(SEEN_FORMAT),
+                    radiance,
+                    write,
+                    write,
+                    write,
+                    write,
+                ],
+                &[],
+            ),
+            size: pass(
+                "list dispatches",
+                shader::HISTORY_SIZE,
+                "size_lists",
+                None,
+                &[write, write],
+                &[],
+            ),
+            shade: pass(
+                "shading of samples",
+                shader::HISTORY_SHADE,
+                "shade_samples",
+                Some(input),
+                &[read, read, light, radiance, write],
+                &lighting_constants(settings),
+            ),
+            gather: pass(
+                "gathering light",
+                shader::HISTORY_GATHER,
+                "gather_light",
+                None,
+                &[
+                    uint, words, depth, uint, radiance, write, read, write, light, read,
+                ],
+                &[],
+            ),
+            scatter: pass(
+                "gathered light",
+                shader::HISTORY_SCATTER,
+                "scatter",
+                None,
+                &[read, read, uint, light],
+                &[],
+            ),
+            rest: pass(
+                "pixels in turn",
+                shader::HISTORY_REST,
+                "list_turn",
+                None,
+                &[uniform(), depth, write, write],
+                &[("ROUND", f64::from(ROUND))],
+            ),
+            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("history"),
+                size: size_of::<HistoryUniform>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            }),
+        }
+    }
+
+    /// Tells the passes of the frame at hand.
+    pub(super) fn write(&self, gpu: &Gpu, uniform: &HistoryUniform) {
+        gpu.queue
+            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+    }
+}
+
+impl HistoryPasses {
+    /// Encodes the frame's passes: lights `h.radiance`, and remembers what the next frame needs.
+    pub(super) fn light(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        targets: &Targets,
+        rate: &RateTargets,
+        h: &HistoryTargets,
+        lit: Lit,
+    ) {
+        let gpu = recorder.gpu;
+        let gbuffer = &targets.gbuffer;
+        let view = wgpu::BindingResource::TextureView;
+        let group = |pass: &Pass, label, resources: &[wgpu::BindingResource<'_>]| {
+            bind_group(&gpu.device, label, &pass.layout, resources)
+        };
+        let [now, before] = match lit.even {
+            true => [0, 1],
+            false => [1, 0],
+        };
+        let size = h.radiance.texture().size();
+        let (across, down) = (size.width.div_ceil(TILE), size.height.div_ceil(TILE));
+        let listed = h.listed.as_entire_binding();
+        let samples = h.samples.as_entire_binding();
+        let bare = h.bare.as_entire_binding();
+        let uniform = self.uniform.as_entire_binding();
+        let tiles = [
+            uniform.clone(),
+            h.measured.as_entire_binding(),
+            h.kept.as_entire_binding(),
+            h.tiles.as_entire_binding(),
+        ];
+        let tiles = group(&self.keep, "tiles", &tiles);
+        let carry = group(
+            &self.carry,
+            "carrying light",
+            &[
+                view(&rate.owner.whole),
+                view(&gbuffer.surface_layers),
+                view(&gbuffer.depth_layers),
+                view(&gbuffer.identity_layers),
+                uniform.clone(),
+                view(&h.light[before]),
+                view(&h.seen[before]),
+                h.tiles.as_entire_binding(),
+                view(&h.light[now]),
+                view(&h.seen[now]),
+                view(&h.radiance),
+                listed.clone(),
+                samples.clone(),
+                bare.clone(),
+                h.wanted.as_entire_binding(),
+            ],
+        );
+        let sizing = group(
+            &self.size,
+            "list dispatches",
+            &[listed.clone(), h.dispatches.as_entire_binding()],
+        );
+        let shade = [List::Samples, List::Unlit].map(|list| {
+            group(
+                &self.shade,
+                "shading of samples",
+                &[
+                    h.dispatch(list),
+                    samples.clone(),
+                    view(&h.light[now]),
+                    view(&h.radiance),
+                    h.measured.as_entire_binding(),
+                ],
+            )
+        });
+        let gather = group(
+            &self.gather,
+            "gathering light",
+            &[
+                view(&rate.owner.whole),
+                view(&gbuffer.surface_layers),
+                view(&gbuffer.depth_layers),
+                view(&h.light[now]),
+                view(&h.radiance),
+                listed.clone(),
+                bare.clone(),
+                samples.clone(),
+                view(&h.light[before]),
+                h.dispatch(List::Bare),
+            ],
+        );
+        let scatter = group(
+            &self.scatter,
+            "gathered light",
+            &[
+                h.dispatch(List::Bare),
+                bare,
+                view(&h.light[before]),
+                view(&h.light[now]),
+            ],
+        );
+        let rest = group(
+            &self.rest,
+            "pixels in turn",
+            &[uniform, view(&gbuffer.depth_layers), listed, samples],
+        );
+        let at = |list: List| list as u64 * LIST_STEP;
+        recorder.encoder.clear_buffer(&h.listed, 0, None);
+        if lit.turn.is_none() {
+            recorder.encoder.clear_buffer(&h.wanted, 0, None);
+            let mut pass = recorder.compute_pass("carrying light");
+            let of_tiles = (across * down).div_ceil(64);
+            pass.set_bind_group(1, &tiles, &[]);
+            pass.set_pipeline(&self.keep.pipeline);
+            pass.dispatch_workgroups(of_tiles, 1, 1);
+            pass.set_pipeline(&self.spread.pipeline);
+            pass.dispatch_workgroups(of_tiles, 1, 1);
+            pass.set_pipeline(&self.carry.pipeline);
+            pass.set_bind_group(1, &carry, &[]);
+            pass.dispatch_workgroups(across, down, 1);
+        } else {
+            let mut pass = recorder.compute_pass("carrying light");
+            pass.set_pipeline(&self.rest.pipeline);
+            pass.set_bind_group(1, &rest, &[]);
+            pass.dispatch_workgroups(across, down, 1);
+        }
+        recorder.encoder.clear_buffer(&h.measured, 0, None);
+        {
+            let mut pass = recorder.compute_pass("shading");
+            pass.set_pipeline(&self.size.pipeline);
+            pass.set_bind_group(1, &sizing, &[]);
+            pass.dispatch_workgroups(1, 1, 1);
+            pass.set_pipeline(&self.shade.pipeline);
+            pass.set_bind_group(1, input, &[]);
+            pass.set_bind_group(2, &shade[0], &[]);
+            pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Samples));
+        }
+        if lit.turn.is_none() {
+            {
+                let mut pass = recorder.compute_pass("composite");
+                pass.set_pipeline(&self.gather.pipeline);
+                pass.set_bind_group(1, &gather, &[]);
+                pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Bare));
+                pass.set_pipeline(&self.scatter.pipeline);
+                pass.set_bind_group(1, &scatter, &[]);
+                pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Bare));
+                pass.set_pipeline(&self.size.pipeline);
+                pass.set_bind_group(1, &sizing, &[]);
+                pass.dispatch_workgroups(1, 1, 1);
+            }
+            let mut pass = recorder.compute_pass("shading");
+            pass.set_pipeline(&self.shade.pipeline);
+            pass.set_bind_group(1, input, &[]);
+            pass.set_bind_group(2, &shade[1], &[]);
+            pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Unlit));
+        }
+        // Blended surfaces are drawn over the copy.
+        recorder.encoder.copy_texture_to_texture(
+            h.radiance.texture().as_image_copy(),
+            targets.radiance_view.texture().as_image_copy(),
+            size,
+        );
+    }
+}

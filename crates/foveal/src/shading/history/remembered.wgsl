@@ -1,0 +1,96 @@
+// What is remembered of each pixel and of each tile of 8 x 8 pixels from frame to frame. After frame.wgsl.
+// Rust: `shading/history/passes.rs`.
+
+struct History {
+    // Added to a place before it is rounded to whole pixels; -0.5 to 0.5, another one each frame.
+    rounding: vec2f,
+    // Added to the pixels' order of renewal; another one each frame.
+    phase: u32,
+    // 1: nothing is remembered.
+    reset: u32,
+    // Samples a frame for each block, by which a block's light is renewed while nothing changes.
+    renewal: f32,
+    // Relative error of what is remembered from which on it is renewed more often.
+    tolerance: f32,
+    // Relative change of a pixel's light from which on what is remembered around it counts no more.
+    change: f32,
+    // Places in `changed`.
+    changed_count: u32,
+    // Where lamps light now or lit in the frame before that have changed: centre and radius, world space. Nothing is remembered there.
+    changed: array<vec4f, 16>,
+}
+
+// What a pixel remembers besides its light: the instance that is seen (12 bits of its number + 1), the level of the block that
+// its light was sampled for (3 bits), two notes, and the distance's upper 15 bits as a rounded float, which is 0.4 % apart.
+const SEEN_INSTANCE: u32 = 0xfffu;
+const SEEN_LEVEL_SHIFT: u32 = 12u;
+const SEEN_LEVEL: u32 = 7u;
+// Something is remembered.
+const SEEN_AT_ALL: u32 = 0x8000u;
+// The light was sampled at this place of the surface, not around it.
+const SEEN_OWN: u32 = 0x10000u;
+const SEEN_DISTANCE: u32 = 0xfffe0000u;
+
+// Relative difference of distances that counts as the same surface.
+const SAME_DISTANCE: f32 = 0.02;
+
+fn distance_bits(distance: f32) -> u32 {
+    return ((bitcast<u32>(distance) + 0x8000u) << 1u) & SEEN_DISTANCE;
+}
+
+fn distance_from_bits(bits: u32) -> f32 {
+    return bitcast<f32>((bits & SEEN_DISTANCE) >> 1u);
+}
+
+// A tile of 8 x 8 pixels.
+struct TileHistory {
+    // Relative error of what its samples were expected to be, the largest of late.
+    error: f32,
+    // The same of pixels whose own light was remembered: nothing but time can have changed it.
+    change: f32,
+}
+
+// Tiles across the target.
+fn tiles_across() -> u32 {
+    return (u32(frame.target_size.x) + 7u) / 8u;
+}
+
+fn tiles_down() -> u32 {
+    return (u32(frame.target_size.y) + 7u) / 8u;
+}
+
+fn tile_number(texel: vec2u) -> u32 {
+    return (texel.y / 8u) * tiles_across() + texel.x / 8u;
+}
+
+// A sample to be shaded: x: column and row in 14 bits each, and the level in 4; y: the luminance that is expected there, and
+// what it is known from (below), as halves.
+const EXPECTED_NOTHING: f32 = 0.0;
+const EXPECTED_AROUND: f32 = 1.0;
+const EXPECTED_OWN: f32 = 2.0;
+
+fn sample_entry(texel: vec2u, level: u32) -> u32 {
+    return texel.x | (texel.y << 14u) | (level << 28u);
+}
+
+fn entry_texel(entry: u32) -> vec2u {
+    return vec2u(entry, entry >> 14u) & vec2u(0x3fffu);
+}
+
+// How long a list is, and how many of its samples are of each level.
+struct Listed {
+    count: atomic<u32>,
+    of_level: array<atomic<u32>, 9>,
+}
+
+// A list's workgroups in x, y and z, and its length; as large as the step between bindings.
+struct Dispatch {
+    groups: vec3u,
+    count: u32,
+    reserved: array<vec4u, 15>,
+}
+
+// The lists: samples; pixels that remember nothing; of these the ones that no sample speaks for.
+const SAMPLES: u32 = 0u;
+const BARE: u32 = 1u;
+const UNLIT: u32 = 2u;

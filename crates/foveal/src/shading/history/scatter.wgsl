@@ -1,0 +1,15 @@
+// Puts gathered light where it is remembered. After frame and remembered.wgsl.
+
+@group(1) @binding(0) var<storage, read> dispatch: Dispatch;
+@group(1) @binding(1) var<storage, read> bare: array<u32>;
+@group(1) @binding(2) var gathered: texture_2d<u32>;
+@group(1) @binding(3) var light: texture_storage_2d<rgba32uint, write>;
+
+@compute @workgroup_size(64)
+fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    if index < dispatch.count {
+        let texel = entry_texel(bare[index]);
+        textureStore(light, texel, textureLoad(gathered, texel, 0));
+    }
+}

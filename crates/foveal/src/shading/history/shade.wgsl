@@ -1,0 +1,30 @@
+// Shades the samples of a list, and measures by how much they differ from what was expected. After shading/coarse/block_light
+// and remembered.wgsl.
+
+@group(2) @binding(0) var<storage, read> dispatch: Dispatch;
+@group(2) @binding(1) var<storage, read> samples_listed: array<vec2u>;
+@group(2) @binding(2) var light: texture_storage_2d<rgba32uint, write>;
+@group(2) @binding(3) var radiance: texture_storage_2d<rgba16float, write>;
+@group(2) @binding(4) var<storage, read_write> measured: array<Measured>;
+
+@compute @workgroup_size(64)
+fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
+    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    if index >= dispatch.count {
+        return;
+    }
+    let entry = samples_listed[index];
+    let level = entry.x >> 28u;
+    let texel = entry_texel(entry.x);
+    let lit = light_block(texel >> vec2u(level), level);
+    textureStore(light, texel, lit.light);
+    if level > 0u {
+        return;
+    }
+    textureStore(radiance, texel, vec4f(lit.radiance.rgb, 1.0));
+    let expected = unpack2x16float(entry.y);
+    if expected.y == EXPECTED_NOTHING {
+        return;
+    }
+    measure(tile_number(texel), luminance(lit.radiance.rgb) * frame.exposure, expected.x * frame.exposure, expected.y == EXPECTED_OWN);
+}

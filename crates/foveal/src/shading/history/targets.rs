@@ -1,0 +1,133 @@
+//! What is remembered from frame to frame, and the lists of a frame.
+
+use crate::gpu::{self, Gpu};
+use crate::shading::RADIANCE_FORMAT;
+use crate::stereo::EyeLayout;
+use crate::{Settings, composite::LIGHT_FORMAT};
+
+/// What a pixel remembers besides its light: `remembered.wgsl`.
+pub(super) const SEEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// Bytes of `Listed` in `remembered.wgsl`.
+pub(super) const LISTED_BYTES: u64 = 40;
+/// Bytes of `Dispatch` there: the step between bindings.
+pub(super) const LIST_STEP: u64 = 256;
+/// Bytes of a listed sample.
+const SAMPLE_BYTES: u64 = 8;
+
+/// A list of a frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum List {
+    Samples = 0,
+    Bare = 1,
+    Unlit = 2,
+}
+
+/// The targets of one frame size.
+#[derive(Debug)]
+pub(crate) struct HistoryTargets {
+    /// Each pixel's light, of even and of odd frames.
+    pub(super) light: [wgpu::TextureView; 2],
+    /// What else each pixel remembers.
+    pub(super) seen: [wgpu::TextureView; 2],
+    /// Radiance of solid surfaces, without what is blended over it.
+    pub(super) radiance: wgpu::TextureView,
+    /// `Listed` of each list.
+    pub(crate) listed: wgpu::Buffer,
+    /// `Dispatch` of each list.
+    pub(super) dispatches: wgpu::Buffer,
+    /// Samples to be shaded: first those that are chosen, then those of unlit pixels.
+    pub(super) samples: wgpu::Buffer,
+    /// Pixels that remember nothing.
+    pub(super) bare: wgpu::Buffer,
+    /// A bit for each pixel that is a block's sample.
+    pub(super) wanted: wgpu::Buffer,
+    /// What samples say of each tile.
+    pub(super) measured: wgpu::Buffer,
+    /// What they said of late.
+    pub(super) kept: wgpu::Buffer,
+    /// What follows from it.
+    pub(super) tiles: wgpu::Buffer,
+}
+
+/// Whether the lists of a frame of this size can be bound.
+pub(super) fn fits(gpu: &Gpu, settings: &Settings) -> bool {
+    let (width, height) = EyeLayout::of(settings).target_size();
+    let bytes = u64::from(width) * u64::from(height) * SAMPLE_BYTES;
+    bytes <= gpu.device.limits().max_storage_buffer_binding_size
+}
+
+impl HistoryTargets {
+    /// `None` where light is not carried along.
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
+        if !super::is_used(gpu, settings) {
+            return None;
+        }
+        let size = EyeLayout::of(settings).target_size();
+        let target = |label, format| {
+            gpu::target(
+                gpu,
+                label,
+                size,
+                format,
+                wgpu::TextureUsages::STORAGE_BINDING,
+            )
+        };
+        let buffer = |label, size, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage
+                    | wgpu::BufferUsages::STORAGE
+                    | wgpu::BufferUsages::COPY_DST
+                    | wgpu::BufferUsages::COPY_SRC,
+                mapped_at_creation: false,
+            })
+        };
+        let none = wgpu::BufferUsages::empty();
+        let pixels = u64::from(size.0) * u64::from(size.1);
+        let tiles = u64::from(size.0.div_ceil(8)) * u64::from(size.1.div_ceil(8));
+        Some(Self {
+            light: ["light, even", "light, odd"].map(|label| target(label, LIGHT_FORMAT)),
+            seen: ["seen, even", "seen, odd"].map(|label| target(label, SEEN_FORMAT)),
+            radiance: target("radiance of solid surfaces", RADIANCE_FORMAT),
+            listed: buffer("lists", 3 * LISTED_BYTES, none),
+            dispatches: buffer(
+                "list dispatches",
+                3 * LIST_STEP,
+                wgpu::BufferUsages::INDIRECT,
+            ),
+            samples: buffer("samples", pixels * SAMPLE_BYTES, none),
+            bare: buffer("bare pixels", pixels * 4, none),
+            wanted: buffer("wanted samples", pixels.div_ceil(32) * 4, none),
+            measured: buffer("measured tiles", tiles * 8, none),
+            kept: buffer("kept tiles", tiles * 8, none),
+            tiles: buffer("tiles", tiles * 8, none),
+        })
+    }
+
+    /// Bytes of everything.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.radiance.texture().size();
+        let buffers = [
+            &self.listed,
+            &self.dispatches,
+            &self.samples,
+            &self.bare,
+            &self.wanted,
+            &self.measured,
+            &self.kept,
+            &self.tiles,
+        ];
+        u64::from(size.width) * u64::from(size.height) * (2 * 16 + 2 * 4 + 8)
+            + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
+    }
+
+    /// The binding of one list's `Dispatch`.
+    pub(super) fn dispatch(&self, list: List) -> wgpu::BindingResource<'_> {
+        wgpu::BindingResource::Buffer(wgpu::BufferBinding {
+            buffer: &self.dispatches,
+            offset: list as u64 * LIST_STEP,
+            size: std::num::NonZeroU64::new(LIST_STEP),
+        })
+    }
+}

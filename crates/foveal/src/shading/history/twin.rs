@@ -1,0 +1,142 @@
+//! The CPU twin of what the device carries along and shades anew, of one eye.
+
+use foveal_scene::Camera;
+use glam::{IVec2, UVec2, Vec2};
+
+use super::passes::HistoryUniform;
+use crate::shading::sample_texel;
+use crate::shading::twin::{position_at, unit_from_octahedral, unit_from_square};
+use crate::testing::f32_of_half;
+
+/// The constants of `remembered.wgsl` and `carry.wgsl`.
+const INSTANCE: u32 = 0xfff;
+const LEVEL_SHIFT: u32 = 12;
+const AT_ALL: u32 = 0x8000;
+const OWN: u32 = 0x1_0000;
+const DISTANCE: u32 = 0xfffe_0000;
+const SAME_DISTANCE: f32 = 0.02;
+const SAME_NORMAL: f32 = 0.95;
+const LEAST_RENEWAL: f32 = 1.0 / 512.0;
+const MOST_A_BLOCK: f32 = 2.0;
+
+/// What the pass reads of the frame at hand.
+pub(super) struct Seen {
+    pub(super) size: UVec2,
+    pub(super) surface: Vec<[u32; 4]>,
+    pub(super) depth: Vec<f32>,
+    pub(super) identity: Vec<[u32; 2]>,
+    /// Of 2 x 2 pixels each.
+    pub(super) owner: Vec<u8>,
+}
+
+/// What it reads of the frame before.
+pub(super) struct Before {
+    pub(super) light: Vec<[u32; 4]>,
+    pub(super) seen: Vec<u32>,
+    /// Error and change of each tile.
+    pub(super) tiles: Vec<[f32; 2]>,
+}
+
+/// What becomes of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Fate {
+    Backdrop,
+    /// Its light is carried along.
+    Carried,
+    /// It is shaded by itself.
+    Shaded,
+    /// It takes the light of the samples around it.
+    Bare,
+}
+
+/// A pixel's fate, and what it remembers besides light from here on.
+pub(super) type Carried = (Fate, u32);
+
+impl Seen {
+    fn level(&self, texel: UVec2) -> u32 {
+        let across = self.size.x.div_ceil(2);
+        u32::from(self.owner[(texel.y / 2 * across + texel.x / 2) as usize] & 15)
+    }
+
+    fn index(&self, texel: UVec2) -> usize {
+        (texel.y * self.size.x + texel.x) as usize
+    }
+
+    /// `carry.wgsl`, of perspective cameras and without lamps that have changed.
+    pub(super) fn carry(
+        &self,
+        [camera, previous]: [&Camera; 2],
+        before: &Before,
+        told: &HistoryUniform,
+        texel: UVec2,
+    ) -> Carried {
+        let i = self.index(texel);
+        let depth = self.depth[i];
+        if depth == 0.0 {
+            return (Fate::Backdrop, 0);
+        }
+        let level = self.level(texel);
+        let distance = camera.clip_from_view(1.0).w_axis.z / depth;
+        let pixel = texel.as_vec2() + 0.5;
+        let position = position_at(camera, self.size.as_vec2(), pixel, depth);
+        let expected = -previous
+            .world_from_view
+            .inverse()
+            .transform_point3(position)
+            .z;
+        let [who, motion] = self.identity[i];
+        let motion = [motion as u16, (motion >> 16) as u16].map(f32_of_half);
+        let normal = unit_from_octahedral(self.surface[i][1]);
+        let remembered = |place: Vec2| {
+            let place = place.as_ivec2();
+            let inside = place.cmpge(IVec2::ZERO).all() && place.as_uvec2().cmplt(self.size).all();
+            let from = inside.then(|| place.as_uvec2())?;
+            let old = before.seen[self.index(from)];
+            let across = self.size.x.div_ceil(8);
+            let tile = before.tiles[(from.y / 8 * across + from.x / 8) as usize];
+            let bits = before.light[self.index(from)][3] >> 20;
+            let part = |by: u32| (bits >> by & 63) as f32 / 31.0 - 1.0;
+            let then = unit_from_square(Vec2::new(part(0), part(6)));
+            let away = (f32::from_bits((old & DISTANCE) >> 1) - expected).abs();
+            let known = told.reset == 0
+                && old & AT_ALL != 0
+                && (old ^ who) & INSTANCE == 0
+                && away <= SAME_DISTANCE * expected
+                && (old >> LEVEL_SHIFT & 7) <= level
+                && tile[1] < told.change
+                && then.dot(normal) > SAME_NORMAL;
+            known.then_some((old, tile))
+        };
+        let place = pixel - Vec2::from(motion);
+        let rounded = (place + Vec2::from(told.rounding)).floor();
+        let first = (place - 0.5).floor();
+        let found = remembered(rounded).or_else(|| {
+            (1..4u32).find_map(|i| {
+                let step = UVec2::new(i & 1, i >> 1 & 1).as_vec2();
+                remembered(first + (rounded - first - step).abs())
+            })
+        });
+        let distance_bits = (distance.to_bits() + 0x8000) << 1 & DISTANCE;
+        let now = who & INSTANCE | AT_ALL | distance_bits;
+        if let Some((old, [error, _])) = found {
+            let block = 0.25_f32.powi(level as i32);
+            let haste = (error / told.tolerance).clamp(1.0, MOST_A_BLOCK / told.renewal);
+            let share = (block * told.renewal * haste).clamp(LEAST_RENEWAL, 1.0);
+            let order = (texel.x.wrapping_mul(3_242_174_889))
+                .wrapping_add(texel.y.wrapping_mul(2_447_445_414));
+            let is_renewed = (order.wrapping_add(told.phase) as f32) < share * 4_294_967_296.0;
+            let block = texel >> level;
+            let sample = sample_texel(block.into(), level, 0, self.size.into());
+            let is_block_sample = level > 0 && UVec2::from(sample) == texel;
+            if !is_renewed {
+                return (Fate::Carried, now | old & (OWN | 7 << LEVEL_SHIFT));
+            } else if !is_block_sample {
+                return (Fate::Shaded, now | OWN);
+            }
+        }
+        if level == 0 {
+            return (Fate::Shaded, now | OWN);
+        }
+        (Fate::Bare, now | level.min(7) << LEVEL_SHIFT)
+    }
+}
