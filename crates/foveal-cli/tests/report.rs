@@ -44,8 +44,7 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
         let bench = bench(&report, name);
         assert_eq!(bench["status"], "measured", "{bench}");
         assert!(bench["rows"].as_array().unwrap().len() > 3, "{name}");
-        // The command is one that the program takes.
-        let command = bench["command"].as_str().unwrap();
+        let command = bench["commands"][0].as_str().unwrap();
         assert!(command.starts_with("foveal "), "{command}");
     }
     // The first page decides about each candidate, and says why.

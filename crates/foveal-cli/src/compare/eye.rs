@@ -122,7 +122,7 @@ impl Verdict {
 }
 
 /// A picture as the metric takes it.
-pub(super) fn pixels(picture: &Picture) -> Pixels<'_> {
+pub(crate) fn pixels(picture: &Picture) -> Pixels<'_> {
     Pixels::Rgba(&picture.pixels)
 }
 

@@ -2,11 +2,14 @@
 
 mod eye;
 pub(crate) mod flip;
+mod nearness;
 mod numeric;
 mod sequence;
 mod ssim;
 
+pub(crate) use eye::pixels;
 pub(crate) use flip::ErrorMap;
+pub(crate) use nearness::{BENCH_DISPLAY, Nearness, jod};
 
 use std::fmt::Write;
 use std::path::PathBuf;
