@@ -82,9 +82,21 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
     fs::write(at.join("slower.json"), slower.to_string()).unwrap();
     fail(
         folder.path(),
-        &["bench", "diff", "r/report.json", "r/slower.json", "--fail"],
+        &[
+            "bench",
+            "diff",
+            "r/report.json",
+            "r/slower.json",
+            "--fail",
+            "--page",
+            "diff.html",
+        ],
         &["became slower"],
     );
+    // The page shows the same, the old time by the new one.
+    let page = fs::read_to_string(folder.path().join("diff.html")).unwrap();
+    assert!(page.contains("<td>0.33</td><td class=\"slower\">slower</td>"));
+    assert!(!page.contains("class=\"faster\""), "nothing became faster");
 }
 
 #[test]
