@@ -2,12 +2,12 @@
 
 const COLOURS = ['#59c2ff', '#ffb454', '#7fd962', '#d2a6ff', '#f07178', '#95e6cb', '#e6b450', '#6c9cff', '#ff8f40', '#aad94c', '#c594c5', '#5fb3b3'];
 
-// A name, what it is of a side, how it is written, and whether the sides are compared: a count is exact; the time of one frame
-// is not, and says nothing by itself.
+// A name, what it is of a side, how it is written, and how the sides are compared: a count is exact; the time of one frame is
+// not: what many frames say stands under the name of the comparison.
 const rows = [
-  ['Frame', (s) => s.frame_ms, ms, 'time'],
-  ['Passes in all', (s) => (s.gpu_ms.length ? total(s.gpu_ms) : undefined), ms, 'time'],
-  ['Processor', (s) => total(s.cpu_ms), ms, 'time'],
+  ['Frame', (s) => s.frame_ms, ms, 'frame'],
+  ['Passes in all', (s) => (s.gpu_ms.length ? total(s.gpu_ms) : undefined), ms, 'passes'],
+  ['Processor', (s) => total(s.cpu_ms), ms],
   ['Objects drawn', (s) => s.objects_visible, count, 'count'],
   ['Draws', (s) => s.draws, count, 'count'],
   ['Triangles', (s) => s.triangles, count, 'count'],
@@ -35,21 +35,23 @@ function cell(name, text, kind) {
   return made;
 }
 
-/** Reference / chosen: above 1 the chosen side takes less. Of times it is that of one frame, and grey. */
-function ratioCell(compare, left, right) {
-  const ratio = compare && left > 0 && right > 0 ? left / right : undefined;
-  const made = cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`);
-  if (compare === 'time') {
-    made.className = 'grey';
-    made.title = 'Of one frame: it varies from frame to frame. foveal bench verdict compares many.';
-  } else if (ratio > 1) {
-    made.className = 'better';
+const COLOUR_OF_FINDING = { faster: 'better', slower: 'worse' };
+
+/** Reference / chosen: above 1 the chosen side takes less. Times have a colour where many frames differ. */
+function ratioCell(compare, left, right, found) {
+  if (compare === 'count') {
+    const ratio = left > 0 && right > 0 ? left / right : undefined;
+    return cell('td', ratio === undefined ? '' : `${ratio.toFixed(2)}x`, ratio > 1 ? 'better' : '');
   }
+  if (!compare || !(left > 0 && right > 0)) return cell('td', '');
+  const told = found?.[compare];
+  const made = cell('td', told ? told.text : 'measuring', COLOUR_OF_FINDING[told?.finding] ?? 'grey');
+  made.title = 'Reference / chosen, over frames that both sides draw in turn, by lot; in brackets the interval that holds the true ratio in 998 of 1,000 cases.';
   return made;
 }
 
 /** Fills the table; a side that was not drawn keeps its last figures. */
-export function showFigures(table, passes, notices, { reference, chosen }) {
+export function showFigures(table, passes, notices, { reference, chosen, found }) {
   const body = table.tBodies[0];
   body.replaceChildren();
   for (const [name, pick, write, compare] of rows) {
@@ -58,7 +60,7 @@ export function showFigures(table, passes, notices, { reference, chosen }) {
     const row = body.insertRow();
     row.append(cell('th', name));
     for (const value of [left, right]) row.append(cell('td', value === undefined ? '–' : write(value)));
-    row.append(ratioCell(compare, left, right));
+    row.append(ratioCell(compare, left, right, found));
   }
   showPasses(passes, reference, chosen);
   notices.textContent = noticesOf(chosen).join(' ');

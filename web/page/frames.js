@@ -39,7 +39,9 @@ async function drawFrame() {
   page.unsettled -= 1;
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
-  page.costs = { reference: cost.reference ?? page.costs.reference, chosen: cost.chosen ?? page.costs.chosen };
+  const found = { frame: cost.frame, passes: cost.passes };
+  page.costs = { reference: cost.reference ?? page.costs.reference, chosen: cost.chosen ?? page.costs.chosen, found };
+  page.measured = cost.is_measured;
   showFigures($('figures'), $('passes'), $('notices'), page.costs);
   showFooting($('footing'), page.firstFrameMs, page.memory.buffer.byteLength);
   adapt(cost.total_ms);
@@ -59,12 +61,13 @@ export async function turn(now) {
   const seconds = (now - last) / 1000;
   last = now;
   if (page.camera.step(seconds) || page.always) redraw();
-  if ((page.stale || page.unsettled > 0) && !page.busy) {
+  if ((page.stale || page.unsettled > 0 || !page.measured) && !page.busy) {
     page.busy = true;
     try {
       await drawFrame();
     } catch (cause) {
       page.unsettled = 0;
+      page.measured = true;
       await mend(cause);
     } finally {
       page.busy = false;

@@ -39,7 +39,9 @@ export const page = {
   firstFrameMs: null,
   // Of the WebAssembly.
   memory: null,
-  costs: { reference: null, chosen: null },
+  costs: { reference: null, chosen: null, found: null },
+  // Whether more frames can tell nothing more of the two sides.
+  measured: false,
 };
 
 export function redraw() {

@@ -31,7 +31,7 @@ test('the page draws, names what it draws with and says nothing in the console',
   assert.ok(chosen.shaded_samples < 0.6 * reference.shaded_samples, 'coarse shading lights fewer samples');
   assert.equal(await page.locator('#wait').isVisible(), false);
   assert.ok((await page.locator('#figures tbody tr').count()) >= 7);
-  // Reference / chosen: fewer samples are above 1; the time of one frame has no colour.
+  // Reference / chosen: fewer samples are above 1; times have no colour before enough frames were drawn.
   const told = await page.locator('#figures tbody tr').evaluateAll((all) => Object.fromEntries(all.map((row) => [row.cells[0].textContent, [parseFloat(row.cells[3].textContent), row.cells[3].className]])));
   assert.ok(told['Samples lit'][0] > 1.6 && told['Samples lit'][1] === 'better', JSON.stringify(told));
   assert.equal(told.Frame[1], 'grey');
@@ -39,6 +39,33 @@ test('the page draws, names what it draws with and says nothing in the console',
   assert.equal(await page.locator('#reduced').isVisible(), false);
   console.log(await footing(page));
   await shot(page, 'desktop');
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('equal settings are no difference, many more samples are slower', async () => {
+  const { page, said } = await site.visit('#scene=demo:1000&technique=antialiasing&scale=0.25', SMALL);
+  await settled(page);
+  const compared = async (antialiasing) => {
+    await page.evaluate((aa) => {
+      const { foveal } = window;
+      const { sides } = foveal.settings;
+      sides.chosen = { ...sides.reference, aa };
+      Object.assign(foveal, { unapplied: true, stale: true, measured: false });
+      foveal.costs.found = null;
+    }, antialiasing);
+    await page.waitForFunction(() => window.foveal.measured && window.foveal.costs.found?.frame, null, { timeout: 120_000 });
+    return page.locator('#figures tbody tr').evaluateAll((all) => {
+      const cell = all.find((row) => row.cells[0].textContent === 'Frame').cells[3];
+      return [cell.textContent, cell.className];
+    });
+  };
+  const [same, color] = await compared('none');
+  assert.match(same, /^no difference \(/);
+  assert.equal(color, 'grey');
+  const [slower, worse] = await compared('ssaa');
+  assert.match(slower, /^0\.\d\dx \(0\.\d\d to 0\.\d\d\)$/);
+  assert.equal(worse, 'worse');
   assert.deepEqual(said, []);
   await page.context().close();
 });

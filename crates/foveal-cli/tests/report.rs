@@ -44,8 +44,7 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
         let bench = bench(&report, name);
         assert_eq!(bench["status"], "measured", "{bench}");
         assert!(bench["rows"].as_array().unwrap().len() > 3, "{name}");
-        // The command is one that the program takes.
-        let command = bench["command"].as_str().unwrap();
+        let command = bench["commands"][0].as_str().unwrap();
         assert!(command.starts_with("foveal "), "{command}");
     }
     // The first page decides about each candidate, and says why.
@@ -83,9 +82,21 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
     fs::write(at.join("slower.json"), slower.to_string()).unwrap();
     fail(
         folder.path(),
-        &["bench", "diff", "r/report.json", "r/slower.json", "--fail"],
+        &[
+            "bench",
+            "diff",
+            "r/report.json",
+            "r/slower.json",
+            "--fail",
+            "--page",
+            "diff.html",
+        ],
         &["became slower"],
     );
+    // The page shows the same, the old time by the new one.
+    let page = fs::read_to_string(folder.path().join("diff.html")).unwrap();
+    assert!(page.contains("<td>0.33</td><td class=\"slower\">slower</td>"));
+    assert!(!page.contains("class=\"faster\""), "nothing became faster");
 }
 
 #[test]

@@ -50,17 +50,105 @@ impl Display {
         }
     }
 
-    /// Names that [`Display::named`] knows.
-    pub const NAMES: [&'static str; 3] = ["hmd", "h60", "fhd"];
+    const fn flat(width_m: f32, distance_m: f32, like: Self) -> Self {
+        Self {
+            extent: Extent::Flat {
+                width_m,
+                distance_m,
+            },
+            ..like
+        }
+    }
 
-    /// The display called `hmd`, `h60` or `fhd`.
+    /// Names that [`Display::named`] knows, and their displays. Headsets and the phone are seen in the dark at 100 cd/m²,
+    /// monitors in an office at 200.
+    pub const NAMED: [(&'static str, Self); 8] = [
+        ("hmd", Self::HEADSET),
+        ("h60", Self::DEGREES_60),
+        ("fhd", Self::MONITOR_24),
+        // 24 inches at 0.6 m, again: 47.8 degrees by the width.
+        ("fhd-24", Self::flat(0.531, 0.6, Self::MONITOR_24)),
+        // 27 inches at 0.6 m: 53 degrees.
+        ("uhd-27", Self::flat(0.598, 0.6, Self::MONITOR_24)),
+        // 110 degrees across an eye.
+        ("quest-3", Self::flat(2.856, 1.0, Self::HEADSET)),
+        // 100 degrees across an eye.
+        ("vision-pro", Self::flat(2.384, 1.0, Self::HEADSET)),
+        // 6.1 inches on its side at 0.3 m: 26 degrees.
+        ("phone", Self::flat(0.141, 0.3, Self::HEADSET)),
+    ];
+
+    /// The display of a name in [`Display::NAMED`].
     #[must_use]
     pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "hmd" => Some(Self::HEADSET),
-            "h60" => Some(Self::DEGREES_60),
-            "fhd" => Some(Self::MONITOR_24),
-            _ => None,
+        let found = Self::NAMED.iter().find(|(known, _)| *known == name);
+        found.map(|&(_, display)| display)
+    }
+
+    /// A display by its name, its degrees across, or `WIDTHxDISTANCE` in metres; those without a name have the light of
+    /// [`Display::DEGREES_60`]. `None` where the text is none of these, or the display cannot be.
+    ///
+    /// ```
+    /// # use foveal_vdp::Display;
+    /// assert_eq!(Display::parse("fhd"), Some(Display::MONITOR_24));
+    /// assert!(Display::parse("90").is_some() && Display::parse("0.5x0.6").is_some());
+    /// assert_eq!(Display::parse("sofa"), None);
+    /// ```
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        if let Some(display) = Self::named(text) {
+            return Some(display);
+        }
+        let extent = match text.split_once(['x', 'X']) {
+            Some((width, distance)) => Extent::Flat {
+                width_m: width.parse().ok()?,
+                distance_m: distance.parse().ok()?,
+            },
+            None => Extent::FieldOfView(text.parse().ok()?),
+        };
+        let display = Self {
+            extent,
+            ..Self::DEGREES_60
+        };
+        display.check().is_ok().then_some(display)
+    }
+
+    /// The same display, of which only `part` of the width is there, around the middle: with as many of its pixels, the
+    /// same pixels per degree.
+    ///
+    /// ```
+    /// # use foveal_vdp::Display;
+    /// let (whole, part) = (Display::HEADSET, Display::HEADSET.cut(0.25));
+    /// let (a, b) = (whole.pixels_per_degree(2560), part.pixels_per_degree(640));
+    /// assert!((a / b - 1.0).abs() < 1e-5);
+    /// ```
+    #[must_use]
+    pub fn cut(&self, part: f32) -> Self {
+        let extent = match self.extent {
+            Extent::FieldOfView(degrees) => {
+                let half = f64::from(part) * (f64::from(degrees) / 2.0).to_radians().tan();
+                Extent::FieldOfView(2.0 * half.atan().to_degrees() as f32)
+            }
+            Extent::Flat {
+                width_m,
+                distance_m,
+            } => Extent::Flat {
+                width_m: part * width_m,
+                distance_m,
+            },
+        };
+        Self { extent, ..*self }
+    }
+
+    /// Degrees from its left to its right border.
+    #[must_use]
+    pub fn degrees_across(&self) -> f32 {
+        match self.extent {
+            Extent::FieldOfView(degrees) => degrees,
+            Extent::Flat {
+                width_m,
+                distance_m,
+            } => 2.0 * (0.5 * width_m / distance_m).atan().to_degrees(),
         }
     }
 
@@ -204,8 +292,11 @@ mod tests {
             };
             assert!(display.check().is_err());
         }
-        for name in Display::NAMES {
-            assert_eq!(Display::named(name).unwrap().check(), Ok(()));
+        for (name, display) in Display::NAMED {
+            assert_eq!(display.check(), Ok(()), "{name}");
+        }
+        for text in ["", "quest", "-5", "0", "1x", "1x0", "nan", "171"] {
+            assert_eq!(Display::parse(text), None, "{text}");
         }
     }
 }

@@ -14,7 +14,7 @@ use toml::Table;
 use crate::Host;
 use crate::history::History;
 use crate::navigator::Navigator;
-use crate::worker::{LoadedScene, News, Request, Rgba, Shown, Worker};
+use crate::worker::{LoadedScene, News, Quality, Request, Rgba, Shown, Worker};
 use crate::{panels, viewport};
 
 /// A line that tells the user something for a while, or until it is dismissed.
@@ -70,6 +70,8 @@ pub(crate) struct App {
     pub(crate) loading: bool,
     pub(crate) adapter: Option<AdapterStats>,
     pub(crate) shown: Option<Box<Shown>>,
+    /// Of the view and the settings that are asked for.
+    pub(crate) quality: Option<Box<Quality>>,
     pub(crate) picture: Option<TextureHandle>,
     pub(crate) reference_picture: Option<TextureHandle>,
     pub(crate) depth_picture: Option<TextureHandle>,
@@ -117,6 +119,7 @@ impl App {
             loading: true,
             adapter: None,
             shown: None,
+            quality: None,
             picture: None,
             reference_picture: None,
             depth_picture: None,
@@ -210,6 +213,12 @@ impl App {
                     self.scene = Some(*scene);
                 }
                 News::Picture(shown) => self.take_picture(context, shown),
+                News::Quality(quality) => {
+                    let is_wanted = |asked: &Request| asked.shows_the_same(&quality.request);
+                    if self.asked.as_ref().is_some_and(is_wanted) {
+                        self.quality = Some(quality);
+                    }
+                }
                 News::Failed(cause) => {
                     // What was typed stays, to be mended.
                     self.loading = false;
@@ -342,6 +351,10 @@ impl App {
             let before = self.asked.as_ref().map(|asked| &asked.settings);
             if before.is_some_and(|settings| *settings != request.settings) {
                 self.history.clear();
+            }
+            let is_same = |quality: &Quality| quality.request.shows_the_same(&request);
+            if !self.quality.as_deref().is_some_and(is_same) {
+                self.quality = None;
             }
             self.worker.draw(request.clone());
             self.asked = Some(request);

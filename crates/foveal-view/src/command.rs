@@ -34,8 +34,9 @@ pub(crate) fn words(
     words
 }
 
-/// A camera to the last bit: the shortest decimal that is the same number again.
-fn exact(camera: &Camera) -> String {
+/// A camera to the last bit, as `foveal render --exact-camera` takes it: shortest decimals that are the same numbers again.
+#[must_use]
+pub fn exact(camera: &Camera) -> String {
     let (kind, mut numbers) = match camera.projection {
         Projection::Perspective { fov_y_rad, near_m } => ("perspective", vec![fov_y_rad, near_m]),
         Projection::Orthographic {
@@ -51,7 +52,8 @@ fn exact(camera: &Camera) -> String {
 }
 
 /// A word as a shell takes it.
-pub(crate) fn quoted(word: &str) -> String {
+#[must_use]
+pub fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,+=@%#".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()

@@ -21,6 +21,7 @@ mod viewport;
 mod window;
 mod worker;
 
+pub use command::{exact as exact_camera, quoted};
 pub use keys::help as keys_help;
 pub use settled::{Settled, Settler, Sight};
 

@@ -7,12 +7,13 @@
 
 mod drawing;
 mod inbox;
+mod judge;
 mod measuring;
 #[cfg(test)]
 mod tests;
 
-use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use foveal::{AdapterStats, CullingFigures, Error, FrameStats, SceneStats, Settings, Visibility};
 use foveal_scene::{Aabb, Camera};
@@ -20,6 +21,8 @@ use foveal_scene::{Aabb, Camera};
 use crate::Host;
 use drawing::Drawing;
 use inbox::{Inbox, Order};
+use judge::Judge;
+pub(crate) use judge::Quality;
 pub(crate) use measuring::Compared;
 
 /// How often a settled request is drawn.
@@ -42,6 +45,15 @@ pub(crate) struct Request {
     pub(crate) time_s: f32,
     /// Whether to draw on without a change.
     pub(crate) always: bool,
+}
+
+impl Request {
+    /// Whether both ask for the same pictures.
+    pub(crate) fn shows_the_same(&self, other: &Self) -> bool {
+        (&self.settings, &self.reference, &self.camera)
+            == (&other.settings, &other.reference, &other.camera)
+            && self.time_s == other.time_s
+    }
 }
 
 /// sRGB RGBA8 rows, top to bottom.
@@ -96,6 +108,8 @@ pub(crate) enum News {
     Adapter(AdapterStats),
     Scene(Box<LoadedScene>),
     Picture(Box<Shown>),
+    /// How visible the difference of two sides is that were drawn before.
+    Quality(Box<Quality>),
     Failed(String),
 }
 
@@ -115,13 +129,16 @@ impl Worker {
         let inbox = Arc::new(Inbox::default());
         let (sender, news) = channel();
         let theirs = Arc::clone(&inbox);
+        let wake = Arc::new(Mutex::new(wake));
+        let tell = Teller { sender, wake };
+        let judged = tell.clone();
+        let judge = Judge::start(move |quality| judged.tell(News::Quality(Box::new(quality))))?;
         let thread = std::thread::Builder::new()
             .name("draw".to_owned())
             // Debug builds decode deep files with large frames.
             .stack_size(16 << 20)
             .spawn(move || {
-                let tell = Teller { sender, wake };
-                work(&host, &theirs, &tell);
+                work(&host, &theirs, &judge, &tell);
             })?;
         Ok(Self {
             inbox,
@@ -159,13 +176,22 @@ impl Drop for Worker {
 
 struct Teller<W> {
     sender: Sender<News>,
-    wake: W,
+    wake: Arc<Mutex<W>>,
+}
+
+impl<W> Clone for Teller<W> {
+    fn clone(&self) -> Self {
+        Self {
+            sender: self.sender.clone(),
+            wake: Arc::clone(&self.wake),
+        }
+    }
 }
 
 impl<W: Fn()> Teller<W> {
     fn tell(&self, news: News) {
         if self.sender.send(news).is_ok() {
-            (self.wake)();
+            (self.wake.lock().unwrap_or_else(PoisonError::into_inner))();
         }
     }
 
@@ -174,7 +200,7 @@ impl<W: Fn()> Teller<W> {
     }
 }
 
-fn work<W: Fn()>(host: &Host, inbox: &Inbox, tell: &Teller<W>) {
+fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
     let mut drawing = Drawing::default();
     let mut settled = 0;
     let mut is_second_try = false;
@@ -217,7 +243,12 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, tell: &Teller<W>) {
         }
         let Some(request) = &wanted else { continue };
         match drawing.draw(host, request, settled) {
-            Ok(Some(shown)) => tell.tell(News::Picture(Box::new(shown))),
+            Ok(Some(shown)) => {
+                if let (true, Some((reference, _))) = (shown.flip.is_some(), &shown.reference) {
+                    judge.judge(request, reference, &shown.picture);
+                }
+                tell.tell(News::Picture(Box::new(shown)));
+            }
             Ok(None) => {}
             Err(error) => {
                 tell.fail(&error);

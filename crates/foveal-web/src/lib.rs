@@ -10,6 +10,8 @@
 #[cfg(target_arch = "wasm32")]
 mod camera;
 #[cfg(target_arch = "wasm32")]
+mod compare;
+#[cfg(target_arch = "wasm32")]
 mod present;
 #[cfg(all(target_arch = "wasm32", feature = "webgl"))]
 mod pump;

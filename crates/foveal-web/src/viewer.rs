@@ -1,18 +1,20 @@
 //! What the page calls.
 
 use foveal::{FrameStats, Gpu, Settings};
+use foveal_measure::{Comparison, Finding};
 use foveal_scene::Scene;
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use crate::camera::Place;
+use crate::compare::Measuring;
 use crate::present::Present;
 use crate::scenes::{self, Shown};
 use crate::side::Side;
 
 /// One frame, as the page asks for it.
-#[derive(Deserialize)]
-struct Wish {
+#[derive(Clone, PartialEq, Deserialize)]
+pub(crate) struct Wish {
     camera: Place,
     /// Size of the picture in pixels.
     width: u32,
@@ -21,11 +23,46 @@ struct Wish {
     split: f32,
 }
 
+impl Wish {
+    /// Whether both show the same, wherever the line stands.
+    pub(crate) fn shows_the_same(&self, other: &Self) -> bool {
+        let split = other.split;
+        Self {
+            split,
+            ..self.clone()
+        } == *other
+    }
+}
+
+/// Which side is faster, as the page tells it.
+#[derive(Serialize)]
+struct Told {
+    /// "1.26x (1.22 to 1.30)", "no difference (0.98 to 1.03)".
+    text: String,
+    finding: Finding,
+    pairs: usize,
+}
+
+impl Told {
+    fn of(found: &Comparison) -> Self {
+        Self {
+            text: found.text(),
+            finding: found.finding,
+            pairs: found.pairs,
+        }
+    }
+}
+
 /// What a frame cost, per side that was drawn.
 #[derive(Serialize)]
 struct Cost {
     reference: Option<FrameStats>,
     chosen: Option<FrameStats>,
+    /// Whole frames and all passes of both sides compared; `None` until enough frames were drawn.
+    frame: Option<Told>,
+    passes: Option<Told>,
+    /// Whether more frames can tell nothing more of the two sides.
+    is_measured: bool,
     /// Milliseconds from the wish to the canvas.
     total_ms: f64,
 }
@@ -38,6 +75,7 @@ pub struct Viewer {
     scene: Scene,
     reference: Side,
     chosen: Side,
+    measuring: Measuring,
     #[cfg(feature = "webgl")]
     _pump: crate::pump::Pump,
 }
@@ -112,6 +150,7 @@ impl Viewer {
             scene,
             reference,
             chosen,
+            measuring: Measuring::default(),
             #[cfg(feature = "webgl")]
             _pump: pump,
         })
@@ -149,6 +188,7 @@ impl Viewer {
         let read =
             |text: &str| serde_json::from_str::<Settings>(text).map_err(|cause| cause.to_string());
         let (reference, chosen) = (read(reference)?, read(chosen)?);
+        self.measuring = Measuring::default();
         self.reference.wish(reference);
         self.chosen.wish(chosen);
         Ok(())
@@ -163,14 +203,19 @@ impl Viewer {
         let started_ms = crate::side::now_ms();
         let camera = wish.camera.camera()?;
         let size = (wish.width, wish.height);
-        let reference = match wish.split > 0.0 {
-            true => Some(self.reference.draw(&self.scene, &camera, size).await?),
-            false => None,
-        };
-        let chosen = match wish.split < 1.0 {
-            true => Some(self.chosen.draw(&self.scene, &camera, size).await?),
-            false => None,
-        };
+        let (mut reference, mut chosen) = (None, None);
+        self.measuring.show(&wish);
+        let order = self.measuring.order();
+        for side in order {
+            if side == 0 && wish.split > 0.0 {
+                reference = Some(self.reference.draw(&self.scene, &camera, size).await?);
+            } else if side == 1 && wish.split < 1.0 {
+                chosen = Some(self.chosen.draw(&self.scene, &camera, size).await?);
+            }
+        }
+        if let (Some(reference), Some(chosen)) = (&reference, &chosen) {
+            self.measuring.add(reference, chosen);
+        }
         let left = if reference.is_some() {
             &self.reference
         } else {
@@ -183,9 +228,13 @@ impl Viewer {
         };
         self.present
             .show(&self.gpu, left.picture(), right.picture(), wish.split)?;
+        let is_one_alone = reference.is_none() || chosen.is_none();
         let cost = Cost {
             reference,
             chosen,
+            frame: self.measuring.frame().map(Told::of),
+            passes: self.measuring.passes().map(Told::of),
+            is_measured: is_one_alone || self.measuring.is_done(),
             total_ms: crate::side::now_ms() - started_ms,
         };
         serde_json::to_string(&cost).map_err(|cause| cause.to_string())
@@ -212,6 +261,7 @@ impl Viewer {
 
 impl Viewer {
     async fn show(&mut self, scene: Scene) -> Result<String, String> {
+        self.measuring = Measuring::default();
         self.reference.set_scene(&scene).await?;
         if let Err(cause) = self.chosen.set_scene(&scene).await {
             // Both sides show the same scene, whatever happens.

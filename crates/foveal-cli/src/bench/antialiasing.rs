@@ -9,13 +9,13 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::figures::FigureArgs;
-use super::table::text;
-use crate::compare::ErrorMap;
+use super::subject::{Subject, SubjectArgs};
+use super::table::{jod_text, text};
+use crate::compare::Nearness;
 use crate::picture::Picture;
-use crate::render::{CameraArgs, Viewpoint, now_ms};
+use crate::render::now_ms;
+use crate::values;
 use crate::values::VariantParser;
-use crate::{gpu, scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
@@ -27,16 +27,12 @@ const SOURCE_FPS: [(&str, &str); 3] =
 /// Arguments of `foveal bench antialiasing`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene
-    #[arg(default_value = scene_source::DEFAULT_SCENE)]
-    scene: String,
+    #[command(flatten)]
+    subject: SubjectArgs,
 
     /// Width and height in pixels; the source's by default
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1000x1500")]
     size: (u32, u32),
-
-    #[command(flatten)]
-    camera: CameraArgs,
 
     /// Add N coloured point lights to the scene
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = values::point_lights)]
@@ -57,9 +53,6 @@ pub(crate) struct Args {
     /// Sub-samples of the SSAA picture that is taken for the truth; 0: leave it out
     #[arg(long, value_name = "N", default_value_t = 64)]
     reference: u32,
-
-    #[command(flatten)]
-    figures: FigureArgs,
 }
 
 /// All figures of a run.
@@ -107,6 +100,9 @@ struct Row {
     /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
     flip_to_ssaa: f64,
     flip_to_reference: Option<f64>,
+    /// The same in JOD at 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod_to_ssaa: Option<f32>,
+    jod_to_reference: Option<f32>,
 }
 
 /// One mode while it is measured.
@@ -177,13 +173,7 @@ fn modes(base: &Settings) -> Vec<Settings> {
 
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    now_ms();
-    args.figures.check()?;
-    let mut scene = scene_source::load(&args.scene)?;
-    scene_source::add_point_lights(&mut scene, args.point_lights, 0);
-    scene.light_by_default();
-    let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
-    let gpu = gpu::open(args.figures.adapter.as_deref())?;
+    let subject = args.subject.open(args.point_lights)?;
     let base = Settings {
         width: args.size.0,
         height: args.size.1,
@@ -194,23 +184,21 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let report = Report {
         schema: "foveal-bench-antialiasing",
         schema_version: SCHEMA_VERSION,
-        adapter: gpu.adapter_stats(),
-        rows: rows(args, &gpu, &scene, &camera, &base)?,
-        scene: scene.name,
-        camera: camera.name,
+        adapter: subject.adapter(),
+        rows: rows(args, &subject, &base)?,
+        scene: subject.scene.name,
+        camera: subject.camera.name,
         point_lights: args.point_lights,
         lights: base.lights,
         lighting: base.lighting,
         rounds: args.rounds,
     };
-    args.figures.give(&report, &summary(&report))
+    args.subject.give(&report, &summary(&report))
 }
 
 fn rows(
     args: &Args,
-    gpu: &Gpu,
-    scene: &Scene,
-    camera: &Camera,
+    Subject { gpu, scene, camera }: &Subject,
     base: &Settings,
 ) -> anyhow::Result<Vec<Row>> {
     let mut modes = modes(base)
@@ -240,8 +228,8 @@ fn rows(
     let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
     Ok((modes.iter().zip(&pictures).enumerate())
         .map(|(number, (mode, picture))| {
-            let flip = |truth: &Picture| ErrorMap::between(truth, picture).mean();
-            let reference = reference.as_ref().map(flip);
+            let near = |truth: &Picture| Nearness::of(truth, picture);
+            let reference = reference.as_ref().map(near);
             // Each is compared with none by the same geometry.
             let geometry = mode.renderer.settings().geometry;
             let same = |m: &Mode| m.renderer.settings().geometry == geometry;
@@ -250,7 +238,7 @@ fn rows(
                 let (none_ms, ms) = (modes[none].times(figure), mode.times(figure));
                 Comparison::of_rounds(modes.len(), (none, &none_ms), (number, &ms))
             };
-            mode.row(&scene.name, &compared, flip(&pictures[1]), reference)
+            mode.row(&scene.name, &compared, near(&pictures[1]), reference)
         })
         .collect())
 }
@@ -294,8 +282,8 @@ impl Mode {
         &self,
         scene: &str,
         compared: &dyn Fn(fn(&Times) -> f64) -> Option<Comparison>,
-        to_ssaa: f64,
-        to_reference: Option<f64>,
+        to_ssaa: Nearness,
+        to_reference: Option<Nearness>,
     ) -> Row {
         let settings = self.renderer.settings();
         let middle = |figure: fn(&Times) -> f64| median(&self.times(figure));
@@ -325,8 +313,10 @@ impl Mode {
             frame_ratio_high: interval.map(|ends| ends[1]),
             finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
             shade_ratio: compared(|t| t.shade_ms).map_or(1.0, |shade| shade.ratio),
-            flip_to_ssaa: to_ssaa,
-            flip_to_reference: to_reference,
+            flip_to_ssaa: to_ssaa.flip,
+            flip_to_reference: to_reference.map(|near| near.flip),
+            jod_to_ssaa: to_ssaa.jod,
+            jod_to_reference: to_reference.and_then(|near| near.jod),
         }
     }
 }
@@ -364,6 +354,7 @@ fn summary(report: &Report) -> String {
         "none/shade",
         "FLIP to ssaa",
         "FLIP to truth",
+        "JOD to truth",
         "MB",
         "source fps",
     ];
@@ -385,6 +376,7 @@ fn summary(report: &Report) -> String {
             format!("{:.4}", row.flip_to_ssaa),
             row.flip_to_reference
                 .map_or("-".to_owned(), |f| format!("{f:.4}")),
+            jod_text(row.jod_to_reference),
             format!("{:.0}", row.target_bytes as f64 / 1e6),
             source.map_or(String::new(), |(_, fps)| (*fps).to_owned()),
         ]);

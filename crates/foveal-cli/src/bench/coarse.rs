@@ -15,12 +15,11 @@ use foveal_scene::{Camera, Scene};
 use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
 
-use super::figures::FigureArgs;
-use super::table::text;
-use crate::compare::flip::ErrorMap;
-use crate::render::{CameraArgs, Viewpoint};
+use super::subject::SubjectArgs;
+use super::table::{jod_text, text};
+use crate::compare::Nearness;
 use crate::values::VariantParser;
-use crate::{gpu, scene_source, values};
+use crate::{scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
@@ -32,12 +31,8 @@ const SOURCE_FPS: [(&str, f64); 3] = [("full", 36.4), ("interpolated", 60.1), ("
 /// Arguments of `foveal bench coarse`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene
-    #[arg(default_value = scene_source::DEFAULT_SCENE)]
-    scene: String,
-
     #[command(flatten)]
-    camera: CameraArgs,
+    subject: SubjectArgs,
 
     /// Width and height; may be given several times [default: 1000x1500 and 1920x1080]
     #[arg(long, value_name = "WxH", value_parser = values::size)]
@@ -83,9 +78,6 @@ pub(crate) struct Args {
     /// Rounds that are measured, after one that warms up; below 10 the ratio has no interval
     #[arg(long, value_name = "N", default_value_t = 3)]
     pairs: u32,
-
-    #[command(flatten)]
-    figures: FigureArgs,
 }
 
 /// All figures of a run; docs/program.md describes the fields.
@@ -131,6 +123,8 @@ struct Row {
     full_frame_ms: f64,
     coarse_frame_ms: f64,
     flip_mean: f64,
+    /// At 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod: Option<f32>,
     /// Share of pixels in the fovea's disc that differ: 0 where it is shaded as in full.
     fovea_differing: f64,
     /// `null` for equal pictures.
@@ -146,7 +140,6 @@ struct Case {
 }
 
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    args.figures.check()?;
     let sizes = match args.size.as_slice() {
         [] => &[(1000, 1500), (1920, 1080)][..],
         given => given,
@@ -155,9 +148,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         [] => &[Backend::Stencil, Backend::Compute][..],
         given => given,
     };
-    let gpu = gpu::open(args.figures.adapter.as_deref())?;
-    let mut scene = scene_source::load(&args.scene)?;
-    let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
+    let gpu = args.subject.begin()?;
+    let mut scene = scene_source::load(&args.subject.scene)?;
+    let camera = args.subject.viewpoint(&scene)?.at(&scene, 0.0);
     let mut rows = Vec::new();
     let mut measure = |case: Case, backends: &[Backend]| -> anyhow::Result<()> {
         light(&mut scene, case.lights, args.light_range);
@@ -201,7 +194,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         camera: camera.name.clone(),
         rows,
     };
-    args.figures.give(&report, &beside_the_source(&report.rows))
+    args.subject.give(&report, &beside_the_source(&report.rows))
 }
 
 /// Puts `count` point lights in place of the scene's.
@@ -270,13 +263,14 @@ fn measure(
         .zip(&sides)
         .map(|(number, coarse)| {
             let picture = coarse.picture()?;
+            let nearness = Nearness::of(&reference, &picture);
             let settings = coarse.renderer.settings();
             let of_full = (0, full.frame_ms.as_slice());
             let frame = Comparison::of_rounds(count, of_full, (number, &coarse.frame_ms));
             let interval = frame.as_ref().and_then(|frame| frame.interval);
             let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
             Ok(Row {
-                scene: args.scene.clone(),
+                scene: args.subject.scene.clone(),
                 width: settings.width,
                 height: settings.height,
                 lights: case.lights,
@@ -301,7 +295,8 @@ fn measure(
                 coarse_material_ms: median(&coarse.material_ms),
                 full_frame_ms: median(&full.frame_ms),
                 coarse_frame_ms: median(&coarse.frame_ms),
-                flip_mean: ErrorMap::between(&reference, &picture).mean(),
+                flip_mean: nearness.flip,
+                jod: nearness.jod,
                 fovea_differing: fovea_differing(&reference, &picture, settings),
                 psnr: psnr(&reference, &picture),
             })
@@ -311,7 +306,7 @@ fn measure(
 
 fn print(row: &Row) {
     eprintln!(
-        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, fovea {:.4}",
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, {:.2} JOD, fovea {:.4}",
         row.scene,
         row.width,
         row.height,
@@ -329,6 +324,7 @@ fn print(row: &Row) {
         row.full_material_ms,
         row.coarse_material_ms,
         row.flip_mean,
+        row.jod.unwrap_or(f32::NAN),
         row.fovea_differing,
     );
 }
@@ -351,15 +347,25 @@ fn beside_the_source(rows: &[Row]) -> String {
     let full_fps = 1000.0 / first.full_frame_ms;
     let source_full = SOURCE_FPS[0].1;
     let mut lines = vec![
-        ["", "fps", "gain", "lighting", "FLIP", "source fps", "gain"]
-            .map(str::to_owned)
-            .to_vec(),
+        [
+            "",
+            "fps",
+            "gain",
+            "lighting",
+            "FLIP",
+            "JOD",
+            "source fps",
+            "gain",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         vec![
             "full".to_owned(),
             format!("{full_fps:.2}"),
             String::new(),
             "1.0x".to_owned(),
             "0".to_owned(),
+            "10".to_owned(),
             source_full.to_string(),
         ],
     ];
@@ -380,6 +386,7 @@ fn beside_the_source(rows: &[Row]) -> String {
             gain(fps, full_fps),
             format!("{:.1}x", row.ratio),
             format!("{:.4}", row.flip_mean),
+            jod_text(row.jod),
             source.map_or("-".to_owned(), |s| s.to_string()),
             source.map_or(String::new(), |s| gain(s, source_full)),
         ]);

@@ -2,16 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
+use foveal::Gpu;
 use serde::Serialize;
 
-use crate::{atomic_file, console};
+use crate::render::now_ms;
+use crate::{atomic_file, console, gpu};
 
 /// What every such bench is told.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct FigureArgs {
     /// The graphics adapter: part of its name, or its number in `foveal adapters`
     #[arg(long, value_name = "NAME|NUMBER")]
-    pub(super) adapter: Option<String>,
+    adapter: Option<String>,
 
     /// Write the figures as JSON; `-`: print JSON instead of the table
     #[arg(long, value_name = "FILE.json", num_args = 0..=1, default_missing_value = "-")]
@@ -23,9 +25,20 @@ impl FigureArgs {
         self.json.as_deref().filter(|path| path.as_os_str() != "-")
     }
 
-    /// Fails where the figures could not be written later; nothing shall be measured for nothing.
-    pub(super) fn check(&self) -> anyhow::Result<()> {
-        self.file().map_or(Ok(()), atomic_file::check_writable)
+    /// Starts the clock and opens the device. Fails where the figures could not be written later; nothing shall be
+    /// measured for nothing.
+    pub(super) fn begin(&self) -> anyhow::Result<Gpu> {
+        now_ms();
+        self.file().map_or(Ok(()), atomic_file::check_writable)?;
+        gpu::open(self.adapter.as_deref())
+    }
+
+    /// The flags by which other commands use the same adapter.
+    pub(super) fn adapter_flags(&self) -> Vec<String> {
+        let adapter = self.adapter.iter();
+        adapter
+            .flat_map(|name| ["--adapter".to_owned(), name.clone()])
+            .collect()
     }
 
     /// Writes the report where it was asked for, and prints it or the table.

@@ -4,11 +4,14 @@
 //! busy with something else slows all of them alike.
 
 mod antialiasing;
+mod changes;
 mod coarse;
 mod culling;
+mod eye;
 mod figures;
 mod report;
 mod stereo;
+mod subject;
 mod table;
 mod variable;
 mod verdict;
@@ -26,6 +29,8 @@ pub(crate) enum BenchCommand {
     Coarse(coarse::Args),
     /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
     Antialiasing(antialiasing::Args),
+    /// What an eye sees of each way of shading, on displays: JOD, lit samples, time, flicker
+    Eye(eye::Args),
     /// Shading at a rate that the content decides against shading every pixel
     Variable(variable::Args),
     /// Two eyes by each way of submission, against one eye and against two passes
@@ -43,6 +48,7 @@ impl BenchCommand {
             Self::Verdict(_) => "bench verdict",
             Self::Culling(_) => "bench culling",
             Self::Coarse(_) => "bench coarse",
+            Self::Eye(_) => "bench eye",
             Self::Antialiasing(_) => "bench antialiasing",
             Self::Variable(_) => "bench variable",
             Self::Stereo(_) => "bench stereo",
@@ -57,6 +63,7 @@ impl BenchCommand {
             Self::Verdict(args) => verdict::run(args),
             Self::Culling(args) => culling::run(args),
             Self::Coarse(args) => coarse::run(args),
+            Self::Eye(args) => eye::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),
             Self::Variable(args) => variable::run(args),
             Self::Stereo(args) => stereo::run(args),

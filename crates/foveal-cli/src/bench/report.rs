@@ -32,7 +32,7 @@ use crate::{atomic_file, console, scene_source, values};
 use plan::Bench;
 
 /// Version of the JSON's shape.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// Arguments of `foveal bench all`.
 #[derive(Debug, clap::Args)]
@@ -45,7 +45,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "DIR")]
     report: PathBuf,
 
-    /// Small pictures and few repetitions: about four minutes on a machine without a graphics card
+    /// Small pictures and few repetitions: about five minutes on a machine without a graphics card
     #[arg(long)]
     quick: bool,
 
@@ -160,7 +160,7 @@ fn measure(
         "name": bench.name,
         "title": bench.title,
         "about": bench.about,
-        "command": bench.command_line(&words),
+        "commands": bench.command_lines(&words),
         "published": published::of(bench.name),
         "status": "measured",
         "cause": null,

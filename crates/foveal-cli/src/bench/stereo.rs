@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::figures::FigureArgs;
 use super::table::text;
 use crate::render::{CameraArgs, Viewpoint, now_ms};
-use crate::{gpu, scene_source, values};
+use crate::{scene_source, values};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
@@ -161,13 +161,11 @@ impl Times {
 
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    now_ms();
-    args.figures.check()?;
     let scenes = match args.scenes.as_slice() {
         [] => SCENES.map(str::to_owned).to_vec(),
         given => given.to_vec(),
     };
-    let gpu = gpu::open(args.figures.adapter.as_deref())?;
+    let gpu = args.figures.begin()?;
     let (ways, skipped) = usable(&gpu)?;
     let mut rows = Vec::new();
     for name in &scenes {

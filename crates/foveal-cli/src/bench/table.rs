@@ -21,6 +21,11 @@ pub(super) fn text(lines: &[Vec<String>]) -> String {
         .collect()
 }
 
+/// A quality with two digits.
+pub(super) fn jod_text(jod: Option<f32>) -> String {
+    jod.map_or_else(|| "-".to_owned(), |jod| format!("{jod:.2}"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -10,12 +10,12 @@ use foveal_scene::{Camera, ProceduralLayers, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::figures::FigureArgs;
-use super::table::text;
-use crate::compare::ErrorMap;
+use super::subject::SubjectArgs;
+use super::table::{jod_text, text};
+use crate::compare::Nearness;
 use crate::picture::Picture;
-use crate::render::{CameraArgs, Viewpoint, now_ms};
-use crate::{gpu, scene_source, values};
+use crate::render::now_ms;
+use crate::values;
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
@@ -29,16 +29,12 @@ const WARM_UP: u32 = 2;
 /// Arguments of `foveal bench variable`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene
-    #[arg(default_value = scene_source::DEFAULT_SCENE)]
-    scene: String,
+    #[command(flatten)]
+    subject: SubjectArgs,
 
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "960x540")]
     size: (u32, u32),
-
-    #[command(flatten)]
-    camera: CameraArgs,
 
     /// Coloured point lights that are added to the scene; may be given several times
     #[arg(long, value_name = "N", default_values_t = [32, 128], value_parser = values::point_lights)]
@@ -55,9 +51,6 @@ pub(crate) struct Args {
     /// Frames that are measured, after those that warm up; figures are medians over them
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
-
-    #[command(flatten)]
-    figures: FigureArgs,
 }
 
 /// All figures of a run.
@@ -99,6 +92,8 @@ struct Row {
     shaded_fraction: f64,
     /// Of the last frame.
     flip_mean: f64,
+    /// Of the last frame, at 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod: Option<f32>,
 }
 
 /// What is made of the scene's materials: their factors alone, as they are, factors and eight layers of noise.
@@ -106,22 +101,18 @@ const COSTS: [&str; 3] = ["plain", "textured", "procedural"];
 
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    now_ms();
-    args.figures.check()?;
-    let gpu = gpu::open(args.figures.adapter.as_deref())?;
+    let gpu = args.subject.begin()?;
     let mut rows = Vec::new();
     for &lights in &args.point_lights {
         for cost in COSTS {
-            let mut scene = scene_source::load(&args.scene)?;
+            let mut scene = args.subject.scene(lights)?;
             if cost != "textured" {
                 strip_textures(&mut scene);
             }
             if cost == "procedural" {
                 add_layers(&mut scene);
             }
-            scene_source::add_point_lights(&mut scene, lights, 0);
-            scene.light_by_default();
-            let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
+            let camera = args.subject.viewpoint(&scene)?.at(&scene, 0.0);
             for stage in [RateStage::Lighting, RateStage::Material, RateStage::Both] {
                 for &threshold in &args.contrast_threshold {
                     let row = measure(args, &gpu, &scene, &camera, stage, cost, threshold)?;
@@ -138,7 +129,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         rounds: args.rounds,
         rows,
     };
-    args.figures.give(&report, &summary(&report))
+    args.subject.give(&report, &summary(&report))
 }
 
 /// Leaves each material its factors alone.
@@ -268,6 +259,7 @@ fn measure(
         |figure: &dyn Fn(&[f64; 5]) -> f64| median(&frames.iter().map(figure).collect::<Vec<_>>());
     let frame = Comparison::of_rounds(2, (0, &full_frame_ms), (1, &variable_frame_ms));
     let interval = frame.as_ref().and_then(|frame| frame.interval);
+    let nearness = Nearness::of(&full.picture()?, &variable.picture()?);
     Ok(Row {
         full_frame_ms: median(&full_frame_ms),
         variable_frame_ms: median(&variable_frame_ms),
@@ -291,9 +283,8 @@ fn measure(
         net_ms: middle(&|f| f[0] - f[1] - f[2] - f[3]),
         ratio: middle(&|f| f[0] / f[1].max(1e-9)),
         shaded_fraction: fraction,
-        flip_mean: f64::from(
-            ErrorMap::between(&full.picture()?, &variable.picture()?).mean() as f32,
-        ),
+        flip_mean: f64::from(nearness.flip as f32),
+        jod: nearness.jod,
     })
 }
 
@@ -316,6 +307,7 @@ fn line(row: &Row) -> Vec<String> {
         format!("{:.2}", row.ratio),
         format!("{:.3}", row.shaded_fraction),
         format!("{:.4}", row.flip_mean),
+        jod_text(row.jod),
     ]
 }
 
@@ -333,6 +325,7 @@ fn summary(report: &Report) -> String {
         "ratio",
         "shaded",
         "FLIP",
+        "JOD",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     lines.extend(report.rows.iter().map(line));

@@ -11,32 +11,28 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::figures::FigureArgs;
-use super::table::text;
-use crate::compare::ErrorMap;
+use super::subject::{Subject, SubjectArgs, WARM_UP};
+use super::table::{jod_text, text};
+use crate::compare::{BENCH_DISPLAY, Nearness};
 use crate::picture::Picture;
-use crate::render::{CameraArgs, Viewpoint, flags, now_ms};
-use crate::{gpu, scene_source, values};
+use crate::render::{flags, now_ms};
+use crate::values;
 use candidates::{ALL, Aim, Candidate, together};
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
 
-/// Frames that compile shaders, and in which what adapts from frame to frame adapts.
-const WARM_UP: u32 = 8;
-
 /// The mean FLIP error up to which a faster picture is taken for as good.
 const MOST_FLIP: f64 = 0.05;
+
+/// The quality from which on it is: one difference that three quarters of observers see.
+const LEAST_JOD: f32 = 9.0;
 
 /// Arguments of `foveal bench verdict`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file or a generated scene
-    #[arg(default_value = scene_source::DEFAULT_SCENE)]
-    scene: String,
-
     #[command(flatten)]
-    camera: CameraArgs,
+    subject: SubjectArgs,
 
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1280x720")]
@@ -49,9 +45,6 @@ pub(crate) struct Args {
     /// Frames of each candidate that count, after eight that warm up; below 10 there is no verdict
     #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=200))]
     rounds: u32,
-
-    #[command(flatten)]
-    figures: FigureArgs,
 }
 
 /// All figures of a run; docs/program.md describes the fields.
@@ -108,10 +101,14 @@ struct Row {
     chosen_low_ms: Option<f64>,
     chosen_high_ms: Option<f64>,
     flip_mean: Option<f64>,
+    /// At 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod: Option<f32>,
     /// The flags that differ from the defaults.
     flags: String,
     /// The command that draws it.
     command: String,
+    /// The commands that draw the plain picture and this one, and compare both.
+    made_by: [String; 3],
 }
 
 /// One of those that are drawn in turn.
@@ -130,7 +127,7 @@ struct Found {
     /// Whole frames by the processor's time, of all threads: where the processor draws, and other programs take their share
     /// of it, that is steadier.
     work: Option<Comparison>,
-    flip: f64,
+    nearness: Nearness,
 }
 
 impl Found {
@@ -148,27 +145,18 @@ type Measured = Result<Found, String>;
 
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    now_ms();
-    args.figures.check()?;
-    let gpu = gpu::open(args.figures.adapter.as_deref())?;
-    let mut scene = scene_source::load(&args.scene)?;
-    if args.point_lights > 0 {
-        scene_source::add_point_lights(&mut scene, args.point_lights, 0);
-    }
-    scene.light_by_default();
-    let camera = Viewpoint::choose(&args.camera, &scene, &args.scene)?.at(&scene, 0.0);
+    let subject = args.subject.open(args.point_lights)?;
     let plain = Settings {
         width: args.size.0,
         height: args.size.1,
         ..Settings::default()
     };
-    let subject = (&gpu, &scene, &camera);
     let candidates: Vec<(&Candidate, Settings)> = ALL
         .iter()
         .map(|candidate| Ok((candidate, candidate.settings(&plain)?)))
         .collect::<anyhow::Result<_>>()?;
     let chosen: Vec<&Settings> = candidates.iter().map(|(_, settings)| settings).collect();
-    let measured = measure(subject, &plain, &chosen, args.rounds)?;
+    let measured = measure(&subject, &plain, &chosen, args.rounds)?;
     let mut rows: Vec<Row> = candidates
         .iter()
         .zip(measured)
@@ -184,7 +172,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         .collect();
     if adopted.len() > 1 {
         let settings = together(&plain, &adopted)?;
-        let mut measured = measure(subject, &plain, &[&settings], args.rounds)?;
+        let mut measured = measure(&subject, &plain, &[&settings], args.rounds)?;
         if let Some(measured) = measured.pop() {
             let row = row(args, "These together", Aim::Faster, &settings, measured);
             rows.push(row);
@@ -193,20 +181,20 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let report = Report {
         schema: "foveal-bench-verdict",
         schema_version: SCHEMA_VERSION,
-        adapter: gpu.adapter_stats(),
-        scene: scene.name.clone(),
-        camera: camera.name.clone(),
+        adapter: subject.adapter(),
+        scene: subject.scene.name,
+        camera: subject.camera.name,
         width: args.size.0,
         height: args.size.1,
         rounds: args.rounds,
         rows,
     };
-    args.figures.give(&report, &summary(&report))
+    args.subject.give(&report, &summary(&report))
 }
 
 /// Draws the plain settings and the others in turn; what each of the others turned out to be.
 fn measure(
-    (gpu, scene, camera): (&Gpu, &Scene, &Camera),
+    Subject { gpu, scene, camera }: &Subject,
     plain: &Settings,
     chosen: &[&Settings],
     rounds: u32,
@@ -266,7 +254,7 @@ fn measure(
             Ok(Ok(Found {
                 frame,
                 work: work.flatten(),
-                flip: ErrorMap::between(&reference, &side.picture()?).mean(),
+                nearness: Nearness::of(&reference, &side.picture()?),
             }))
         })
         .collect()
@@ -322,15 +310,17 @@ fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured:
     };
     let of_size = flags(&size).len();
     let all = flags(settings);
-    let command = format!(
-        "foveal render {} --output picture.png{} {}",
-        args.scene,
-        match args.point_lights {
-            0 => String::new(),
-            lights => format!(" --point-lights {lights}"),
-        },
-        all.join(" ")
-    );
+    let command = |output: &str, flags: &[String]| {
+        let words = args.subject.words(args.point_lights, output);
+        format!("foveal render {words} {}", flags.join(" "))
+            .trim_end()
+            .to_owned()
+    };
+    let made_by = [
+        command("plain.png", &flags(&size)),
+        command("this.png", &all),
+        format!("foveal compare plain.png this.png --display {BENCH_DISPLAY}"),
+    ];
     let found = measured.as_ref().ok().map(|found| &found.frame);
     let work = measured.as_ref().ok().and_then(|found| found.work.as_ref());
     let time = |side: fn(&Comparison) -> &Spread, part: fn(&Spread) -> f64| {
@@ -355,10 +345,17 @@ fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured:
         chosen_ms: time(|c| &c.chosen, |s| s.median),
         chosen_low_ms: time(|c| &c.chosen, |s| s.low),
         chosen_high_ms: time(|c| &c.chosen, |s| s.high),
-        flip_mean: measured.as_ref().ok().map(|found| found.flip),
+        flip_mean: measured.as_ref().ok().map(|found| found.nearness.flip),
+        jod: (measured.as_ref().ok()).and_then(|found| found.nearness.jod),
         flags: all[of_size.min(all.len())..].join(" "),
-        command: command.trim_end().to_owned(),
+        command: command("picture.png", &all),
+        made_by,
     }
+}
+
+/// Whether a picture is taken for as good as the plain one.
+fn is_near(Nearness { flip, jod }: Nearness) -> bool {
+    flip <= MOST_FLIP && jod.is_none_or(|jod| jod >= LEAST_JOD)
 }
 
 /// What to do, and why, in a sentence.
@@ -368,7 +365,7 @@ fn decide(aim: Aim, measured: &Measured) -> (Decision, String) {
         Err(cause) => return (Decision::Impossible, cause.clone()),
     };
     let (found, is_work) = measured.deciding();
-    let flip = measured.flip;
+    let Nearness { flip, jod } = measured.nearness;
     let subject = if is_work {
         "whole frames by the processor's time"
     } else {
@@ -377,7 +374,8 @@ fn decide(aim: Aim, measured: &Measured) -> (Decision, String) {
     let picture = if flip == 0.0 {
         "the picture is the same".to_owned()
     } else {
-        format!("the mean FLIP error is {flip:.4}")
+        let seen = jod.map_or_else(String::new, |jod| format!("{jod:.2} JOD, "));
+        format!("{seen}mean FLIP error {flip:.4}")
     };
     let gain = found.text();
     match (found.finding, aim) {
@@ -385,7 +383,7 @@ fn decide(aim: Aim, measured: &Measured) -> (Decision, String) {
             Decision::Skip,
             "too few frames were drawn for a verdict".to_owned(),
         ),
-        (Finding::Faster, _) if flip <= MOST_FLIP => {
+        (Finding::Faster, _) if is_near(measured.nearness) => {
             (Decision::Adopt, format!("{subject}: {gain}; {picture}"))
         }
         (Finding::Faster, _) => (Decision::Look, format!("{subject}: {gain}; but {picture}")),
@@ -404,6 +402,7 @@ fn summary(report: &Report) -> String {
         "plain / this",
         "by processor time",
         "FLIP",
+        "JOD",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
     let number = |number: Option<f64>, digits: usize| {
@@ -418,6 +417,7 @@ fn summary(report: &Report) -> String {
             row.gain.clone(),
             row.work_gain.clone().unwrap_or_default(),
             number(row.flip_mean, 4),
+            jod_text(row.jod),
         ]);
     }
     let mut said = format!(
@@ -448,7 +448,7 @@ mod tests {
         Ok(Found {
             frame: Comparison::of(&pairs).unwrap(),
             work: None,
-            flip,
+            nearness: Nearness { flip, jod: None },
         })
     }
 
@@ -470,6 +470,17 @@ mod tests {
         // What the wall clock says holds.
         let slower = both(measured(20.0, 30.0, 0.0, 20), less_work());
         assert_eq!(decide(Aim::Faster, &slower).0, Decision::Skip);
+    }
+
+    #[test]
+    fn what_the_eye_sees_is_looked_at_first() {
+        for (jod, expected) in [(9.2, Decision::Adopt), (8.9, Decision::Look)] {
+            let mut found = measured(20.0, 10.0, 0.01, 20);
+            found.as_mut().unwrap().nearness.jod = Some(jod);
+            let (decision, why) = decide(Aim::Faster, &found);
+            assert_eq!(decision, expected, "{why}");
+            assert!(why.contains(&format!("{jod:.2} JOD")), "{why}");
+        }
     }
 
     #[test]

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use foveal_vdp::{Display, Extent, Gaze, HeatMap, Metric, Pixels};
+use foveal_vdp::{Display, Gaze, HeatMap, Metric, Pixels};
 use serde::Serialize;
 
 use super::flip;
@@ -16,8 +16,8 @@ const BRIGHTEST_JOD: f32 = 8.0;
 #[derive(Debug, clap::Args)]
 pub(super) struct EyeArgs {
     /// The display that the pictures fill, which adds the quality in JOD at the gaze: hmd (a headset's eye, 91.5 degrees
-    /// across), h60 (60 degrees across), fhd (a 24-inch monitor at 0.6 m), one that foveal render --display names, degrees
-    /// across, or WIDTHxDISTANCE in metres
+    /// across), h60 (60 degrees across), fhd and fhd-24 (a 24-inch monitor at 0.6 m), uhd-27, quest-3, vision-pro, phone,
+    /// degrees across, or WIDTHxDISTANCE in metres
     #[arg(long, value_name = "WHICH", value_parser = display, help_heading = "Eye")]
     display: Option<Display>,
 
@@ -122,7 +122,7 @@ impl Verdict {
 }
 
 /// A picture as the metric takes it.
-pub(super) fn pixels(picture: &Picture) -> Pixels<'_> {
+pub(crate) fn pixels(picture: &Picture) -> Pixels<'_> {
     Pixels::Rgba(&picture.pixels)
 }
 
@@ -134,38 +134,11 @@ fn write_heat_map(file: &Path, map: &HeatMap) -> anyhow::Result<()> {
 
 /// Reads `--display`.
 fn display(text: &str) -> Result<Display, String> {
-    if let Some(display) = Display::named(text) {
-        return Ok(display);
-    }
-    // Those that rates are made for have the same names here.
-    if text.starts_with(char::is_alphabetic)
-        && let Some(foveal::Display::Across(radians)) = foveal::Display::parse(text)
-    {
-        let like = if text.ends_with(char::is_numeric) && text.contains("hd") {
-            Display::MONITOR_24
-        } else {
-            Display::HEADSET
-        };
-        return Ok(Display {
-            extent: Extent::FieldOfView(radians.to_degrees()),
-            ..like
-        });
-    }
-    let extent = match text.split_once(['x', 'X']) {
-        Some((width, distance)) => Extent::Flat {
-            width_m: values::positive(width)?,
-            distance_m: values::positive(distance)?,
-        },
-        None => Extent::FieldOfView(values::positive(text).map_err(|_| {
-            format!(
-                "a display is {}, degrees across, or WIDTHxDISTANCE in metres",
-                Display::NAMES.join(", ")
-            )
-        })?),
-    };
-    Ok(Display {
-        extent,
-        ..Display::DEGREES_60
+    Display::parse(text).ok_or_else(|| {
+        let names = Display::NAMED.map(|(name, _)| name).join(", ");
+        format!(
+            "a display is {names}, degrees across between 1 and 170, or WIDTHxDISTANCE in metres"
+        )
     })
 }
 
@@ -174,31 +147,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn displays_are_names_degrees_or_metres() {
-        assert_eq!(display("fhd"), Ok(Display::MONITOR_24));
-        assert_eq!(display("60"), Ok(Display::DEGREES_60));
-        assert_eq!(display("uhd-27").unwrap().peak, Display::MONITOR_24.peak);
-        assert_eq!(display("quest-3").unwrap().peak, Display::HEADSET.peak);
-        // The metric's names are names of displays to render for, and mean the same.
-        for name in Display::NAMES {
+    fn what_is_drawn_for_a_display_is_compared_at_the_same_one() {
+        for (name, display) in Display::NAMED {
             let Some(foveal::Display::Across(radians)) = foveal::Display::parse(name) else {
                 panic!("{name}");
             };
-            let Extent::FieldOfView(degrees) = display(name).unwrap().extent else {
-                panic!("{name}");
-            };
+            let degrees = display.degrees_across();
             assert!((radians.to_degrees() - degrees).abs() < 0.2, "{name}");
         }
-        let desk = display("0.53x0.6").unwrap();
-        assert_eq!(
-            desk.extent,
-            Extent::Flat {
-                width_m: 0.53,
-                distance_m: 0.6
-            }
-        );
-        for text in ["", "quest", "-5", "0", "1x", "1x0", "nan"] {
-            assert!(display(text).is_err(), "{text}");
-        }
+        assert!(display("sofa").unwrap_err().contains("uhd-27"));
     }
 }

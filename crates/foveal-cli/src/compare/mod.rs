@@ -2,11 +2,14 @@
 
 mod eye;
 pub(crate) mod flip;
+mod nearness;
 mod numeric;
 mod sequence;
 mod ssim;
 
+pub(crate) use eye::pixels;
 pub(crate) use flip::ErrorMap;
+pub(crate) use nearness::{BENCH_DISPLAY, Nearness, jod};
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -95,27 +98,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         Some(display) => Some(args.eye.compare(&display, &a, &b)?),
         None => None,
     };
-    let failures = args.failures(&comparison);
+    let failures = args.failures(&Measured {
+        flip: comparison.flip,
+        psnr_db: comparison.psnr_db,
+        jod: comparison.eye.as_ref().map(|eye| eye.jod),
+    });
     comparison.passed = failures.is_empty();
 
     if let Some(diff) = &args.diff {
         picture::write_rgb(diff, a.width, a.height, &map.heat_rgb())?;
     }
-    let text = if args.json {
-        serde_json::to_string_pretty(&comparison)? + "\n"
-    } else {
-        comparison.text()
-    };
-    console::print_result(&text)?;
-    if !failures.is_empty() {
-        bail!(
-            "'{}' differs too much from '{}': {}",
-            args.b.display(),
-            args.a.display(),
-            failures.join(", ")
-        );
-    }
-    Ok(())
+    args.conclude(&comparison, &comparison.text(), &failures)
 }
 
 fn compare(a: &Picture, b: &Picture) -> (ErrorMap, Comparison) {
@@ -134,28 +127,57 @@ fn compare(a: &Picture, b: &Picture) -> (ErrorMap, Comparison) {
     (map, comparison)
 }
 
+/// What thresholds are held against.
+struct Measured {
+    flip: f64,
+    psnr_db: Option<f64>,
+    jod: Option<f32>,
+}
+
 impl Args {
-    fn failures(&self, comparison: &Comparison) -> Vec<String> {
+    /// The thresholds that are not met.
+    fn failures(&self, measured: &Measured) -> Vec<String> {
         let mut failures = Vec::new();
+        let Measured { flip, psnr_db, jod } = *measured;
         if let Some(most) = self.max_flip
-            && comparison.flip > most
+            && flip > most
         {
-            failures.push(format!("FLIP is {:.6}, --max-flip {most}", comparison.flip));
+            failures.push(format!("FLIP is {flip:.6}, --max-flip {most}"));
         }
-        if let (Some(least), Some(psnr_db)) = (self.min_psnr, comparison.psnr_db)
+        if let (Some(least), Some(psnr_db)) = (self.min_psnr, psnr_db)
             && psnr_db < least
         {
             failures.push(format!("PSNR is {psnr_db:.3} dB, --min-psnr {least}"));
         }
-        if let Some(eye) = &comparison.eye {
-            failures.extend(self.jod_failure(eye.jod));
+        if let (Some(least), Some(jod)) = (self.min_jod, jod)
+            && f64::from(jod) < least
+        {
+            failures.push(format!("the quality is {jod:.3} JOD, --min-jod {least}"));
         }
         failures
     }
 
-    fn jod_failure(&self, jod: f32) -> Option<String> {
-        let least = self.min_jod.filter(|&least| f64::from(jod) < least)?;
-        Some(format!("the quality is {jod:.3} JOD, --min-jod {least}"))
+    /// Prints what was found, as text or as JSON, and fails where a threshold is not met.
+    fn conclude(
+        &self,
+        found: &impl Serialize,
+        text: &str,
+        failures: &[String],
+    ) -> anyhow::Result<()> {
+        if self.json {
+            console::print_result(&(serde_json::to_string_pretty(found)? + "\n"))?;
+        } else {
+            console::print_result(text)?;
+        }
+        if !failures.is_empty() {
+            bail!(
+                "'{}' differs too much from '{}': {}",
+                self.b.display(),
+                self.a.display(),
+                failures.join(", ")
+            );
+        }
+        Ok(())
     }
 }
 

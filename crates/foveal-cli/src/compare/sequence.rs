@@ -7,8 +7,7 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use serde::Serialize;
 
-use super::{Args, ErrorMap, eye};
-use crate::console;
+use super::{Args, ErrorMap, Measured, eye};
 use crate::failure::usage;
 use crate::picture::Picture;
 
@@ -35,29 +34,13 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         return usage("--diff and --min-psnr are for pictures, not for folders".to_owned());
     }
     let mut comparison = compare(args)?;
-    let mut failures = Vec::new();
-    if let Some(most) = args.max_flip
-        && comparison.flip > most
-    {
-        failures.push(format!("FLIP is {:.6}, --max-flip {most}", comparison.flip));
-    }
-    failures.extend(args.jod_failure(comparison.eye.jod));
+    let failures = args.failures(&Measured {
+        flip: comparison.flip,
+        psnr_db: None,
+        jod: Some(comparison.eye.jod),
+    });
     comparison.passed = failures.is_empty();
-    let text = if args.json {
-        serde_json::to_string_pretty(&comparison)? + "\n"
-    } else {
-        comparison.text()
-    };
-    console::print_result(&text)?;
-    if !failures.is_empty() {
-        bail!(
-            "'{}' differs too much from '{}': {}",
-            args.b.display(),
-            args.a.display(),
-            failures.join(", ")
-        );
-    }
-    Ok(())
+    args.conclude(&comparison, &comparison.text(), &failures)
 }
 
 fn compare(args: &Args) -> anyhow::Result<Comparison> {

@@ -1,5 +1,7 @@
 //! A scene on a device, drawn moment by moment.
 
+use std::rc::Rc;
+
 use foveal::{Frame, FrameStats, Renderer};
 use foveal_scene::Scene;
 use pollster::block_on;
@@ -9,10 +11,10 @@ use super::viewpoint::Viewpoint;
 use crate::picture::Picture;
 
 /// Everything that one frame needs, ready.
-pub(super) struct Drawing {
+pub(crate) struct Drawing {
     pub(super) renderer: Renderer,
     pub(super) scene: Scene,
-    pub(super) viewpoint: Viewpoint,
+    pub(super) viewpoint: Rc<Viewpoint>,
     /// Time of the renderer's current pose; `None` where it is not known, or does not matter.
     posed_s: Option<f32>,
     /// Whether the pose before was the same: nothing moves.
@@ -21,7 +23,7 @@ pub(super) struct Drawing {
 
 impl Drawing {
     /// `renderer` holds `scene`, posed at time 0.
-    pub(super) fn new(renderer: Renderer, scene: Scene, viewpoint: Viewpoint) -> Self {
+    pub(crate) fn new(renderer: Renderer, scene: Scene, viewpoint: Rc<Viewpoint>) -> Self {
         Self {
             renderer,
             scene,
@@ -34,15 +36,24 @@ impl Drawing {
     /// Draws one frame. Its picture depends on the job alone, not on the frames drawn before: the pose and the
     /// camera before it, from which motion is taken, are those of the moment before it.
     pub(super) fn draw(&mut self, job: &FrameJob) -> anyhow::Result<FrameStats> {
-        if self.posed_s != Some(job.previous_time_s) {
-            self.pose(job.previous_time_s)?;
+        self.draw_moment(job.time_s, job.previous_time_s)
+    }
+
+    /// Draws a moment, with motion since another.
+    pub(crate) fn draw_moment(
+        &mut self,
+        time_s: f32,
+        previous_time_s: f32,
+    ) -> anyhow::Result<FrameStats> {
+        if self.posed_s != Some(previous_time_s) {
+            self.pose(previous_time_s)?;
         }
-        let previous_camera = self.viewpoint.at(&self.scene, job.previous_time_s);
+        let previous_camera = self.viewpoint.at(&self.scene, previous_time_s);
         // What is at rest is left there: another pose, though the same, would be taken for a movement.
-        if !(self.is_at_rest && self.posed_s == Some(job.time_s)) {
-            self.pose(job.time_s)?;
+        if !(self.is_at_rest && self.posed_s == Some(time_s)) {
+            self.pose(time_s)?;
         }
-        let camera = self.viewpoint.at(&self.scene, job.time_s);
+        let camera = self.viewpoint.at(&self.scene, time_s);
         let frame = Frame {
             camera: &camera,
             previous_camera: Some(&previous_camera),
@@ -51,7 +62,7 @@ impl Drawing {
     }
 
     /// The last frame.
-    pub(super) fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
+    pub(crate) fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
         Picture::from_rgba(stats.width, stats.height, &bytes)
     }

@@ -74,16 +74,20 @@ pub(super) struct FrameJob {
 
 /// The frames of a range. Each depends on its own number alone, so that any sub-range gives the same files.
 pub(super) fn sequence(range: Range<u32>, fps: f32, pattern: &FramePattern) -> Vec<FrameJob> {
-    // In f64: exact for every frame number, so that the moment does not depend on how it was reached.
-    let time = |frame: u32| (f64::from(frame) / f64::from(fps)) as f32;
     range
         .map(|frame| FrameJob {
             frame,
-            time_s: time(frame),
-            previous_time_s: time(frame.saturating_sub(1)),
+            time_s: moment(frame, fps),
+            previous_time_s: moment(frame.saturating_sub(1), fps),
             file: pattern.file(frame),
         })
         .collect()
+}
+
+/// When a frame is, in seconds.
+pub(crate) fn moment(frame: u32, fps: f32) -> f32 {
+    // In f64: exact for every frame number, so that the moment does not depend on how it was reached.
+    (f64::from(frame) / f64::from(fps)) as f32
 }
 
 /// A single picture at a moment.

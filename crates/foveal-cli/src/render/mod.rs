@@ -18,6 +18,7 @@ mod stats;
 mod summary;
 mod viewpoint;
 
+use std::rc::Rc;
 use std::thread;
 
 use anyhow::{Context, anyhow};
@@ -27,6 +28,8 @@ use pollster::block_on;
 
 pub(crate) use args::{Args, CameraArgs};
 pub(crate) use clock::now_ms;
+pub(crate) use drawing::Drawing;
+pub(crate) use frame_files::moment;
 pub(crate) use rate_image::rate_image;
 pub(crate) use settings::read as read_settings;
 pub(crate) use settings_args::{SettingsArgs, flags};
@@ -35,7 +38,6 @@ pub(crate) use viewpoint::Viewpoint;
 
 use crate::{atomic_file, console, gpu, scene_source};
 use clock::timed;
-use drawing::Drawing;
 use frame_files::{FrameJob, FramePattern};
 use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};
 
@@ -183,7 +185,7 @@ fn prepare(
     // They are on the device now, and nothing here reads them again.
     scene.textures = Vec::new();
     Ok((
-        Drawing::new(renderer, scene, viewpoint),
+        Drawing::new(renderer, scene, Rc::new(viewpoint)),
         gpu.adapter_stats(),
     ))
 }

@@ -27,7 +27,12 @@ enum Kind {
     Still(Camera),
     Path(CameraPath, f32),
     Generated(TimedCamera),
+    /// To and fro, sideways.
+    Sway(Box<Kind>),
 }
+
+/// How far [`Kind::Sway`] moves to either side in metres; in a radian per second, so that it is the speed too.
+const SWAY_M: f32 = 0.05;
 
 impl Viewpoint {
     /// Follows the arguments; `scene` is posed at time 0, so that the choice does not depend on the frame.
@@ -38,13 +43,21 @@ impl Viewpoint {
     ) -> anyhow::Result<Self> {
         let fov_y_deg = args.fov.unwrap_or(DEFAULT_FOV_DEG);
         let fov_y_rad = args.fov.map(f32::to_radians);
+        let sways = args.path.as_deref() == Some("sway");
+        let is_placed = args.camera.is_some() || args.eye.is_some() || args.exact_camera.is_some();
+        if args.path.is_some() && !sways && is_placed {
+            return usage(
+                "--path says where the camera is, as --camera, --eye and --exact-camera do: only --path sway goes with one \
+                 of them",
+            );
+        }
         let kind = if let Some(camera) = &args.exact_camera {
             Kind::Still(camera.clone())
         } else if let (Some(eye), Some(target)) = (args.eye, args.target) {
             let up = args.up.unwrap_or(Vec3::Y);
             let camera = Camera::look_at(eye, target, up, fov_y_deg.to_radians());
             Kind::Still(with_near_plane(camera, near_m(scene)))
-        } else if let Some(path) = &args.path {
+        } else if let Some(path) = args.path.as_ref().filter(|_| !sways) {
             Self::path(path, fov_y_deg, scene, scene_name)?
         } else if let Some(name) = &args.camera {
             by_name(name, scene)?
@@ -52,6 +65,11 @@ impl Viewpoint {
             Kind::OfScene(0)
         } else {
             Kind::Still(inside_camera(scene).unwrap_or_else(|| scene.overview_camera()))
+        };
+        let kind = if sways {
+            Kind::Sway(Box::new(kind))
+        } else {
+            kind
         };
         let viewpoint = Self { kind, fov_y_rad };
         let camera = viewpoint.at(scene, 0.0);
@@ -81,12 +99,7 @@ impl Viewpoint {
 
     /// The camera at `time_s`, to which `scene` is posed.
     pub(crate) fn at(&self, scene: &Scene, time_s: f32) -> Camera {
-        let mut camera = match &self.kind {
-            Kind::OfScene(index) => scene.cameras[*index].clone(),
-            Kind::Still(camera) => camera.clone(),
-            Kind::Path(path, near_m) => with_near_plane(path.at(time_s), *near_m),
-            Kind::Generated(path) => path(time_s),
-        };
+        let mut camera = self.kind.at(scene, time_s);
         if let (Some(fov), Projection::Perspective { fov_y_rad, .. }) =
             (self.fov_y_rad, &mut camera.projection)
             && !matches!(self.kind, Kind::Path(..))
@@ -94,6 +107,23 @@ impl Viewpoint {
             *fov_y_rad = fov;
         }
         camera
+    }
+}
+
+impl Kind {
+    fn at(&self, scene: &Scene, time_s: f32) -> Camera {
+        match self {
+            Self::OfScene(index) => scene.cameras[*index].clone(),
+            Self::Still(camera) => camera.clone(),
+            Self::Path(path, near_m) => with_near_plane(path.at(time_s), *near_m),
+            Self::Generated(path) => path(time_s),
+            Self::Sway(around) => {
+                let mut camera = around.at(scene, time_s);
+                let sideways = camera.world_from_view.x_axis * (SWAY_M * time_s.sin());
+                camera.world_from_view.w_axis += sideways;
+                camera
+            }
+        }
     }
 }
 
@@ -199,6 +229,29 @@ mod tests {
             };
             assert_eq!(chosen(&args, &scene).unwrap().eye(), Vec3::Y * 9.0);
         }
+    }
+
+    #[test]
+    fn swaying_begins_at_the_camera_and_moves_sideways() {
+        let scene = scene();
+        let args = CameraArgs {
+            camera: Some("roof".to_owned()),
+            path: Some("sway".to_owned()),
+            ..args()
+        };
+        let viewpoint = Viewpoint::choose(&args, &scene, "x.glb").unwrap();
+        let start = viewpoint.at(&scene, 0.0);
+        assert_eq!(start.eye(), Vec3::Y * 9.0);
+        let moved = viewpoint.at(&scene, 0.5).eye() - start.eye();
+        let sideways = start.world_from_view.x_axis.truncate();
+        assert!((moved - sideways * 0.05 * 0.5f32.sin()).length() < 1e-6);
+        // Another path says where the camera is by itself.
+        let args = CameraArgs {
+            path: Some("demo".to_owned()),
+            ..args
+        };
+        let error = chosen(&args, &scene).unwrap_err().to_string();
+        assert!(error.contains("--path"), "{error}");
     }
 
     #[test]

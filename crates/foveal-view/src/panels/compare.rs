@@ -7,7 +7,7 @@ use foveal_measure::{Comparison, ENOUGH_PAIRS, Finding, LEAST_PAIRS, Spread};
 use super::{card, figure};
 use crate::app::App;
 use crate::look;
-use crate::worker::Compared;
+use crate::worker::{Compared, Quality};
 
 pub(super) fn show(app: &mut App, ui: &mut Ui) {
     card(ui, "Compare", |ui| {
@@ -24,8 +24,26 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             .flip
             .map_or("...".to_owned(), |flip| format!("{flip:.4}"));
         figure(ui, "FLIP error", flip);
+        quality(ui, app.quality.as_deref());
     });
     ui.add_space(6.0);
+}
+
+/// What an eye sees, and at which display.
+fn quality(ui: &mut Ui, found: Option<&Quality>) {
+    let (name, jod) = match found {
+        Some(found) => (
+            format!("JOD ({})", found.display),
+            format!("{:.2}", found.jod),
+        ),
+        None => ("JOD".to_owned(), "...".to_owned()),
+    };
+    ui.scope(|ui| figure(ui, &name, jod))
+        .response
+        .on_hover_text(
+            "What an eye sees of the difference that looks at the gaze on the display of the settings (Eye), by FovVideoVDP: \
+             10 is no visible difference, 9 one that three quarters of observers see. Measured once the view stands still.",
+        );
 }
 
 /// What the chosen settings are compared with.

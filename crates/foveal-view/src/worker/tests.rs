@@ -233,3 +233,39 @@ fn a_picture_of_nine_times_the_samples_is_slower() {
     });
     assert_eq!(found.finding, Finding::Slower, "{found:?}");
 }
+
+#[test]
+fn the_eye_judges_both_sides_at_the_display_of_the_settings() {
+    let reference = Settings {
+        width: 320,
+        height: 200,
+        ..request().settings
+    };
+    let coarse = Settings {
+        shading: Shading::Coarse,
+        rate: RateSource::Constant,
+        rate_level: 4,
+        display: "fhd-24".to_owned(),
+        ..reference.clone()
+    };
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    let judged = |chosen: &Settings| {
+        let request = Request {
+            settings: chosen.clone(),
+            reference: Some(reference.clone()),
+            ..request()
+        };
+        worker.draw(request.clone());
+        let found = next(&worker, |news| match news {
+            News::Quality(quality) => Some(quality),
+            News::Failed(cause) => panic!("{cause}"),
+            _ => None,
+        });
+        assert!(found.request.shows_the_same(&request));
+        found
+    };
+    let found = judged(&coarse);
+    assert_eq!(found.display, "fhd-24");
+    assert!(found.jod < 9.9, "{}", found.jod);
+}

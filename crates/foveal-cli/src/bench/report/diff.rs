@@ -3,13 +3,15 @@
 //! A time counts as slower when its median grew by more than a twentieth *and* the new passes all lie above the old
 //! ones: where the passes of both overlap, the machine's noise explains the difference.
 
+mod page;
+
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use serde_json::Value;
 
 use crate::bench::table::text;
-use crate::console;
+use crate::{atomic_file, console};
 
 /// By what part a median must differ.
 const LEAST_CHANGE: f64 = 0.05;
@@ -24,6 +26,9 @@ pub(crate) struct Args {
     /// Exit with 1 where anything became slower
     #[arg(long)]
     fail: bool,
+    /// Write all of it as a page: what changed, then each bench
+    #[arg(long, value_name = "FILE.html")]
+    page: Option<PathBuf>,
 }
 
 /// How a time changed.
@@ -59,6 +64,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             );
         }
     }
+    if let Some(file) = &args.page {
+        atomic_file::check_writable(file)?;
+    }
     let pairs = pairs(&old, &new);
     if pairs.is_empty() {
         bail!("the reports have no row in common");
@@ -66,9 +74,17 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let slower = pairs.iter().filter(|p| p.change == Change::Slower).count();
     let faster = pairs.iter().filter(|p| p.change == Change::Faster).count();
     let mut lines = vec![
-        ["bench", "row", "figure", "old", "new", "new/old", ""]
-            .map(str::to_owned)
-            .to_vec(),
+        [
+            "bench",
+            "row",
+            "figure",
+            "old ms",
+            "new ms",
+            "old / new",
+            "",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
     ];
     for pair in pairs.iter().filter(|p| p.change != Change::Same) {
         lines.push(vec![
@@ -77,7 +93,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             pair.figure.clone(),
             format!("{:.3}", pair.old_ms),
             format!("{:.3}", pair.new_ms),
-            format!("{:.3}", pair.new_ms / pair.old_ms),
+            format!("{:.3}", pair.old_ms / pair.new_ms),
             format!("{:?}", pair.change).to_lowercase(),
         ]);
     }
@@ -91,6 +107,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         pairs.len(),
         pairs.len() - slower - faster
     );
+    if let Some(file) = &args.page {
+        atomic_file::write(file, page::of(&old, &new, &pairs).as_bytes())?;
+    }
     console::print_result(&said)?;
     if args.fail && slower > 0 {
         bail!("{slower} times became slower");

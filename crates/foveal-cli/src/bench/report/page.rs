@@ -112,13 +112,19 @@ fn section(body: &mut String, f: &Figures<'_>, index: usize, bench: &Bench) {
         body.push_str("</details>\n");
     }
     if status != "skipped" {
-        let _ = writeln!(
-            body,
-            "<h3>To measure it again</h3>\n<p><code>{}</code></p>",
-            f.text(&format!("{at}/command"))
-        );
+        body.push_str("<h3>To measure it again</h3>\n<p>");
+        commands(body, f, &at);
+        body.push_str("</p>\n");
     }
     body.push_str("</section>\n");
+}
+
+/// The bench's commands, one a line.
+pub(super) fn commands(body: &mut String, f: &Figures<'_>, at: &str) {
+    for index in 0..f.len(&format!("{at}/commands")) {
+        let command = f.text(&format!("{at}/commands/{index}"));
+        let _ = write!(body, "<code>{command}</code><br>");
+    }
 }
 
 fn published(body: &mut String, f: &Figures<'_>, at: &str) {
@@ -203,12 +209,14 @@ fn pictures(body: &mut String, f: &Figures<'_>, at: &str) {
              <input type=\"range\" min=\"0\" max=\"100\" value=\"50\" aria-label=\"how much of each\">\
              <figcaption>before <code>{before}</code><br>after <code>{after}</code></figcaption></figure>\n\
              <figure><img class=\"difference\" src=\"{}\" alt=\"difference\">\
-             <figcaption>FLIP's error, black for none: mean {}</figcaption></figure></div>\n",
+             <figcaption>FLIP's error, black for none: mean {}; {} JOD<br><code>{}</code></figcaption></figure></div>\n",
             f.text(&format!("{at}/title")),
             f.text(&format!("{at}/before")),
             f.text(&format!("{at}/after")),
             f.text(&format!("{at}/difference")),
             f.figure(&format!("{at}/flip_mean"), 1.0, 4),
+            f.figure(&format!("{at}/jod"), 1.0, 2),
+            f.text(&format!("{at}/compare")),
         );
     }
 }

@@ -3,14 +3,15 @@
 use anyhow::Context;
 use foveal::{Frame, Gpu, Renderer, Settings};
 use foveal_scene::{Camera, Scene};
+use foveal_view::quoted;
 use image::codecs::jpeg::JpegEncoder;
 use image::{ExtendedColorType, ImageEncoder};
 use pollster::block_on;
 use serde_json::{Value, json};
-use toml::Table;
 
 use super::plan::Bench;
-use crate::compare::ErrorMap;
+use crate::bench::changes::{Changes, changed};
+use crate::compare::{BENCH_DISPLAY, ErrorMap, jod};
 use crate::picture::Picture;
 use crate::render::{CameraArgs, Viewpoint, flags};
 use crate::{gpu, scene_source};
@@ -32,6 +33,7 @@ pub(super) fn draw(
     let mut scene = scene_source::load(scene_name)?;
     scene.light_by_default();
     let camera = Viewpoint::choose(&CameraArgs::default(), &scene, scene_name)?.at(&scene, 0.0);
+    let flag = adapter.map_or_else(String::new, |name| format!(" --adapter {}", quoted(name)));
     let mut pictures = Vec::new();
     for pair in bench.pairs {
         let (before, before_settings) = one(&gpu, &scene, &camera, size, pair.before)?;
@@ -40,9 +42,11 @@ pub(super) fn draw(
         let shown = before_settings.picture_size();
         pictures.push(json!({
             "title": pair.title,
-            "before_flags": spelled(scene_name, "before.png", &before_settings),
-            "after_flags": spelled(scene_name, "after.png", &after_settings),
+            "before_flags": spelled(scene_name, "before.png", &before_settings, &flag),
+            "after_flags": spelled(scene_name, "after.png", &after_settings, &flag),
+            "compare": format!("foveal compare before.png after.png --display {BENCH_DISPLAY}"),
             "flip_mean": map.mean(),
+            "jod": jod(&before, &after),
             "before": jpeg(&before.rgb_bytes(), shown)?,
             "after": jpeg(&after.rgb_bytes(), shown)?,
             "difference": jpeg(&map.heat_rgb(), shown)?,
@@ -65,9 +69,10 @@ pub(super) fn strip(report: &mut Value) {
 }
 
 /// The command that draws it.
-fn spelled(scene: &str, output: &str, settings: &Settings) -> String {
-    let flags = flags(settings).join(" ");
-    format!("foveal render {scene} --output {output} {flags}")
+fn spelled(scene: &str, output: &str, settings: &Settings, adapter: &str) -> String {
+    let (scene, flags) = (quoted(scene), flags(settings).join(" "));
+    let warmup = FRAMES - 1;
+    format!("foveal render {scene} --output {output} --warmup {warmup} {flags}{adapter}")
 }
 
 fn one(
@@ -75,9 +80,9 @@ fn one(
     scene: &Scene,
     camera: &Camera,
     size: (u32, u32),
-    changes: &[(&str, &str)],
+    changes: Changes,
 ) -> anyhow::Result<(Picture, Settings)> {
-    let settings = changed(size, changes)?;
+    let settings = settings(size, changes)?;
     let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
     block_on(renderer.set_scene(scene))?;
     let frame = Frame {
@@ -93,18 +98,13 @@ fn one(
 }
 
 /// Settings that differ from the defaults by these.
-fn changed(size: (u32, u32), changes: &[(&str, &str)]) -> anyhow::Result<Settings> {
-    let mut table = Table::try_from(Settings {
+fn settings(size: (u32, u32), changes: Changes) -> anyhow::Result<Settings> {
+    let plain = Settings {
         width: size.0,
         height: size.1,
         ..Settings::default()
-    })?;
-    for &(key, value) in changes {
-        let switch = value.parse::<bool>();
-        let value = switch.map_or_else(|_| value.into(), toml::Value::from);
-        table.insert(key.to_owned(), value);
-    }
-    Ok(table.try_into()?)
+    };
+    changed(&plain, changes)
 }
 
 /// A data URL.
@@ -138,13 +138,13 @@ fn base64(bytes: &[u8]) -> String {
 #[cfg(test)]
 mod tests {
     use super::super::plan::BENCHES;
-    use super::{base64, changed};
+    use super::{base64, settings};
 
     #[test]
     fn every_pair_differs_in_settings_that_are_there() {
         for pair in BENCHES.iter().flat_map(|bench| bench.pairs) {
             let [before, after] = [pair.before, pair.after].map(|changes| {
-                let settings = changed((64, 48), changes).expect(pair.title);
+                let settings = settings((64, 48), changes).expect(pair.title);
                 settings
                     .validate(&wgpu::Limits::default())
                     .expect(pair.title);

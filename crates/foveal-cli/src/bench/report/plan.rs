@@ -3,7 +3,11 @@
 use std::path::Path;
 use std::process::Command;
 
+use foveal_view::quoted;
 use serde_json::{Value, json};
+
+use crate::bench::changes::Changes;
+use crate::compare::BENCH_DISPLAY;
 
 /// A column of the page's table.
 pub(super) struct Column {
@@ -35,8 +39,8 @@ const fn percent(key: &'static str, title: &'static str) -> Column {
 /// Two settings whose pictures are laid over each other.
 pub(super) struct Pair {
     pub(super) title: &'static str,
-    pub(super) before: &'static [(&'static str, &'static str)],
-    pub(super) after: &'static [(&'static str, &'static str)],
+    pub(super) before: Changes,
+    pub(super) after: Changes,
 }
 
 /// How cost grows with the load.
@@ -59,8 +63,10 @@ pub(super) struct Quality {
     /// What lies to the right, and where on that axis better is.
     pub(super) x: &'static str,
     pub(super) axis: &'static str,
-    /// A FLIP error.
-    pub(super) error: &'static str,
+    /// An error, and what it is called; small is good.
+    pub(super) error: (&'static str, &'static str),
+    /// Where the figure is not the error itself but a quality: the best one, from which it is counted.
+    pub(super) best: Option<f64>,
     /// What grows along a curve, and its title; none: each row stands alone.
     pub(super) along: Option<(&'static str, &'static str)>,
     /// What tells a curve from the others.
@@ -132,6 +138,8 @@ const THE_SCENE: &str = "SCENE";
 /// The bench that the first page is made of.
 pub(super) const VERDICT: &str = "verdict";
 
+const FLIP: &str = "FLIP error: low is better";
+
 /// The verdict, then in the order of the frame.
 pub(super) const BENCHES: &[Bench] = &[
     Bench {
@@ -155,6 +163,7 @@ pub(super) const BENCHES: &[Bench] = &[
             column("chosen_low_ms", "a tenth below", 2),
             column("chosen_high_ms", "a tenth above", 2),
             column("flip_mean", "FLIP", 4),
+            column("jod", "JOD", 2),
             column("pairs", "pairs", 0),
         ],
         cost: "chosen_ms",
@@ -370,13 +379,15 @@ pub(super) const BENCHES: &[Bench] = &[
             column("coarse_ms", "coarse lighting ms", 1),
             column("ratio", "lighting alone", 2),
             column("flip_mean", "FLIP", 4),
+            column("jod", "JOD", 2),
             column("psnr", "PSNR dB", 1),
         ],
         cost: "coarse_frame_ms",
         quality: Some(Quality {
             x: "frame_ratio",
             axis: "full / coarse, whole frames: right is better",
-            error: "flip_mean",
+            error: ("flip_mean", FLIP),
+            best: None,
             along: Some(("lights", "more lights")),
             series: &["composite", "backend"],
             apart: None,
@@ -401,6 +412,56 @@ pub(super) const BENCHES: &[Bench] = &[
                 after: &[("shading", "coarse"), ("composite", "paper")],
             },
         ],
+    },
+    Bench {
+        name: "eye",
+        title: "What the eye sees",
+        about: "Each way of shading against every pixel lit, on displays that are seen at one point: lit samples, whole frames, and JOD: ten is no visible difference, one less is a difference that three of four observers see. Pictures show the display's middle, with its own pixels per degree. Of MSAA it is no loss, but the difference from a picture without anti-aliasing.",
+        subcommand: &["bench", "eye"],
+        quick: &[THE_SCENE, "--quick", "--display", "h60"],
+        full: &[THE_SCENE],
+        sized: true,
+        variants: &[],
+        rows: own_rows,
+        label: &["display", "way"],
+        columns: &[
+            column("width", "pixels across", 0),
+            column("degrees_across", "degrees", 1),
+            column("pixels_per_degree", "pixels per degree", 1),
+            percent("lit_fraction", "lit %"),
+            column("jod", "JOD", 2),
+            column("flip_mean", "FLIP", 4),
+            percent("off_lit_fraction", "lit %, gaze off"),
+            column("off_jod", "JOD, gaze off", 2),
+            percent("video_lit_fraction", "lit %, video"),
+            column("video_jod", "JOD, video", 2),
+            column("flicker", "flicker by full's", 2),
+            column("full_frame_ms", "full frame ms", 1),
+            column("frame_ms", "frame ms", 1),
+            column("frame_ratio", "full / this", 2),
+            column("frame_ratio_low", "at least", 2),
+            column("frame_ratio_high", "at most", 2),
+        ],
+        cost: "frame_ms",
+        quality: Some(Quality {
+            x: "frame_ratio",
+            axis: "full / this, whole frames: right is better",
+            error: ("jod", "JOD lost: low is better"),
+            best: Some(10.0),
+            along: None,
+            series: &["way"],
+            apart: Some("display"),
+        }),
+        load: None,
+        pairs: &[Pair {
+            title: "Every pixel, and samples of light",
+            before: &[],
+            after: &[
+                ("shading", "coarse"),
+                ("display", BENCH_DISPLAY),
+                ("quality", "9.3"),
+            ],
+        }],
     },
     Bench {
         name: "variable",
@@ -436,12 +497,14 @@ pub(super) const BENCHES: &[Bench] = &[
             column("net_ms", "net ms", 1),
             column("ratio", "stage alone", 2),
             column("flip_mean", "FLIP", 4),
+            column("jod", "JOD", 2),
         ],
         cost: "variable_frame_ms",
         quality: Some(Quality {
             x: "frame_ratio",
             axis: "full / variable, whole frames: right is better",
-            error: "flip_mean",
+            error: ("flip_mean", FLIP),
+            best: None,
             along: Some(("contrast_threshold", "a higher contrast threshold")),
             series: &["stage", "lights"],
             apart: Some("material_cost"),
@@ -487,12 +550,14 @@ pub(super) const BENCHES: &[Bench] = &[
             column("shade_ratio", "none / shade", 2),
             column("flip_to_ssaa", "FLIP to ssaa", 4),
             column("flip_to_reference", "FLIP to truth", 4),
+            column("jod_to_reference", "JOD to truth", 2),
         ],
         cost: "frame_ms",
         quality: Some(Quality {
             x: "frame_ms",
             axis: "ms a frame: left is better",
-            error: "flip_to_reference",
+            error: ("flip_to_reference", FLIP),
+            best: None,
             along: None,
             series: &["name"],
             apart: None,
@@ -514,10 +579,13 @@ pub(super) const BENCHES: &[Bench] = &[
 ];
 
 impl Bench {
-    /// How many passes are made where all others make `passes`: the verdict draws its sides in turn, and has an interval of
-    /// its own.
+    /// How many passes are made where all others make `passes`: some draw their sides in turn, and have intervals of their
+    /// own.
     pub(super) fn passes(&self, passes: usize) -> usize {
-        if self.name == VERDICT { 1 } else { passes }
+        match self.name {
+            VERDICT | "eye" => 1,
+            _ => passes,
+        }
     }
 
     /// The command's words, without where its figures go.
@@ -543,13 +611,21 @@ impl Bench {
         words
     }
 
-    /// The command as a user types it.
-    pub(super) fn command_line(&self, words: &[String]) -> String {
+    /// The commands as a user types them: one for each variant, or one.
+    pub(super) fn command_lines(&self, words: &[String]) -> Vec<String> {
         let output = match self.subcommand {
             ["render"] => " --output frame_#.png",
             _ => "",
         };
-        format!("foveal {}{output}", words.join(" "))
+        let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+        let line = |variant: &[&str]| {
+            let variant: String = variant.iter().map(|word| format!(" {word}")).collect();
+            format!("foveal {}{output}{variant}", words.join(" "))
+        };
+        match self.variants {
+            [] => vec![line(&[])],
+            variants => variants.iter().map(|variant| line(variant)).collect(),
+        }
     }
 
     /// Adds where the figures go.

@@ -40,6 +40,16 @@ pub(super) fn of(bench: &str) -> Value {
                 ["nearest", 68.6, 1.88],
             ],
         }),
+        "eye" => json!({
+            "source": "Guenter et al. 2012; VaFR, from deferred shading at retinal resolution; Patney et al. 2016",
+            "machine": "the sources', at qualities that are theirs to judge",
+            "columns": ["", "gain"],
+            "rows": [
+                ["Foveated 3D graphics", "5 to 6 times"],
+                ["Visual acuity-consistent foveated rendering", "6.5 to 9.3 times"],
+                ["Towards foveated rendering", "up to 70 % fewer shades"],
+            ],
+        }),
         "variable" => json!({
             "source": "Monsho, software variable-rate shading",
             "machine": "the source's",

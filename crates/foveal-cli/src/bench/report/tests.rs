@@ -35,13 +35,14 @@ fn report() -> Value {
                 "name": bench.name,
                 "title": bench.title,
                 "about": bench.about,
-                "command": "foveal bench <x> --size 480x270",
+                "commands": ["foveal bench <x> --size 480x270"],
                 "published": published::of(bench.name),
                 "status": if measured { "measured" } else { "skipped" },
                 "cause": if measured { Value::Null } else { "no such adapter".into() },
                 "rows": if measured { merge::passes(bench, &passes) } else { json!([]) },
                 "pictures": [{
-                    "title": "a & b", "before_flags": "--aa none", "after_flags": "--aa msaa", "flip_mean": 0.01234,
+                    "title": "a & b", "before_flags": "--aa none", "after_flags": "--aa msaa", "flip_mean": 0.01234, "jod": 9.876,
+                    "compare": "foveal compare",
                     "before": "data:,1", "after": "data:,2", "difference": "data:,3",
                 }],
             })

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::html::Figures;
-use super::page::table;
+use super::page::{commands, table};
 use super::plan::{BENCHES, VERDICT};
 use super::plots;
 
@@ -72,11 +72,26 @@ pub(super) fn show(body: &mut String, f: &Figures<'_>) {
          <details><summary>Figures</summary>\n",
     );
     table(body, f, &at, bench.columns);
-    let again = f.text(&format!("{at}/command"));
-    let _ = writeln!(
-        body,
-        "<h3>To measure it again</h3>\n<p><code>{again}</code></p></details>\n</section>"
-    );
+    body.push_str("<h3>To measure it again</h3>\n<p>");
+    commands(body, f, &at);
+    body.push_str("</p>\n");
+    drawn_by(body, f, &at, rows);
+    body.push_str("</details>\n</section>\n");
+}
+
+/// How each picture is drawn and compared again.
+fn drawn_by(body: &mut String, f: &Figures<'_>, at: &str, rows: usize) {
+    body.push_str("<h3>To draw the pictures again, and compare them</h3>\n");
+    for row in 0..rows {
+        let at = format!("{at}/rows/{row}");
+        let label = f.text(&format!("{at}/label"));
+        let _ = write!(body, "<p>{label}<br>");
+        for index in 0..f.len(&format!("{at}/made_by")) {
+            let command = f.text(&format!("{at}/made_by/{index}"));
+            let _ = write!(body, "<code>{command}</code><br>");
+        }
+        body.push_str("</p>\n");
+    }
 }
 
 /// The line to copy: of what was adopted together, or alone.

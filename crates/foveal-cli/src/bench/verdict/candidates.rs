@@ -1,7 +1,9 @@
 //! Which settings are tried, and how those that help are put together.
 
 use foveal::Settings;
-use toml::{Table, Value};
+
+use crate::bench::changes::{Changes, changed};
+use crate::compare::BENCH_DISPLAY;
 
 /// What a candidate is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -18,16 +20,12 @@ pub(super) struct Candidate {
     pub(super) name: &'static str,
     pub(super) aim: Aim,
     /// What they change in the defaults.
-    changes: &'static [(&'static str, &'static str)],
+    changes: Changes,
     /// Of candidates with the same of this only the fastest is taken.
     family: &'static str,
 }
 
-const fn faster(
-    name: &'static str,
-    family: &'static str,
-    changes: &'static [(&'static str, &'static str)],
-) -> Candidate {
+const fn faster(name: &'static str, family: &'static str, changes: Changes) -> Candidate {
     Candidate {
         name,
         aim: Aim::Faster,
@@ -52,7 +50,12 @@ pub(super) const ALL: &[Candidate] = &[
     faster(
         "Coarse shading around the gaze",
         "shading",
-        &[("shading", "coarse"), ("composite", "smooth")],
+        // At the display where JOD is measured.
+        &[
+            ("shading", "coarse"),
+            ("display", BENCH_DISPLAY),
+            ("quality", "9.3"),
+        ],
     ),
     faster(
         "Coarse shading over a visibility buffer",
@@ -61,6 +64,7 @@ pub(super) const ALL: &[Candidate] = &[
             ("geometry", "visibility"),
             ("shading", "coarse"),
             ("composite", "smooth"),
+            ("display", BENCH_DISPLAY),
         ],
     ),
     faster(
@@ -79,13 +83,7 @@ pub(super) const ALL: &[Candidate] = &[
 impl Candidate {
     /// The settings that are tried.
     pub(super) fn settings(&self, plain: &Settings) -> anyhow::Result<Settings> {
-        let mut table = Table::try_from(plain)?;
-        for &(key, text) in self.changes {
-            let number = text.parse::<f64>();
-            let value = number.map_or_else(|_| Value::from(text), Value::from);
-            table.insert(key.to_owned(), value);
-        }
-        Ok(table.try_into()?)
+        changed(plain, self.changes)
     }
 }
 

@@ -36,10 +36,11 @@ fn curves(f: &Figures<'_>, at: &str, quality: &Quality, part: &str) -> Vec<Curve
         if quality.apart.is_some_and(|key| f.word(&of(key)) != part) {
             continue;
         }
-        let (Some(x), Some(error)) = (f.number(&of(quality.x)), f.number(&of(quality.error)))
+        let (Some(x), Some(error)) = (f.number(&of(quality.x)), f.number(&of(quality.error.0)))
         else {
             continue;
         };
+        let error = quality.best.map_or(error, |best| best - error);
         let along = quality.along.and_then(|(key, _)| f.number(&of(key)));
         let dot = Dot {
             x,
@@ -111,10 +112,11 @@ fn plot(quality: &Quality, curves: &[Curve]) -> Option<String> {
         svg,
         "<path d=\"M{LEFT} 10V{FLOOR}H{RIGHT}\" fill=\"none\" stroke=\"currentColor\" opacity=\"0.5\"/>\
          <text class=\"faint\" x=\"{RIGHT}\" y=\"{}\" text-anchor=\"end\">{}</text>\
-         <text class=\"faint\" x=\"{}\" y=\"18\">FLIP error: low is better</text>",
+         <text class=\"faint\" x=\"{}\" y=\"18\">{}</text>",
         FLOOR + 34.0,
         quality.axis,
         LEFT + 6.0,
+        quality.error.1,
     );
     super::heights(&mut svg, &upward, LEFT, RIGHT, y);
     for tick in across {
