@@ -295,7 +295,7 @@ settings! {
             composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
             /// Whether the samples' light is kept from frame to frame, carried along with what moves and renewed bit by bit, in
             /// place of shaded anew in each frame; with the composite of light, samples at centres and another backend than stencil
-            history: bool = false, "Keep light", Kind::Switch;
+            history: bool = true, "Keep light", Kind::Switch;
         }
         "Shading at a rate" {
             /// What is done once per sample: lighting, or with a visibility buffer materials too (both) or, where shading is

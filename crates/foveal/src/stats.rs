@@ -57,7 +57,7 @@ pub struct CoarseStats {
     pub shaded_fraction: f64,
     /// The backend that shaded this frame: `stencil` or `compute`.
     pub backend: String,
-    /// Why it is this backend: `asked for`, `measuring`, or what was measured.
+    /// Why it is this backend: `asked for`, `measuring`, what was measured, or that light is kept from frame to frame.
     pub backend_reason: String,
 }
 

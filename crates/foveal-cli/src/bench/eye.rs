@@ -197,7 +197,7 @@ fn measure(
     if args.rounds() > 0 {
         let chosen = WAYS.iter().map(|way| shown.settings(way, middle));
         let chosen = chosen.collect::<anyhow::Result<Vec<Settings>>>()?;
-        times.measure(studio, &full, &chosen, args.rounds())?;
+        times.measure(studio, &full, &chosen, (args.rounds(), args.fps))?;
     }
     let mut rows = Vec::new();
     for way in WAYS {

@@ -211,10 +211,12 @@ fn measure(
         });
     }
     let count = sides.iter().flatten().count() + 1;
-    for _ in 0..WARM_UP {
-        plain.draw(camera)?;
+    // The camera sways, as a head does: what is kept from frame to frame costs nothing at rest.
+    let at = |frame: u32| swayed(camera, frame);
+    for frame in 1..=WARM_UP {
+        plain.draw(&at(frame), &at(frame - 1))?;
         for side in sides.iter_mut().flatten() {
-            side.draw(camera)?;
+            side.draw(&at(frame), &at(frame - 1))?;
         }
     }
     for side in std::iter::once(&mut plain).chain(sides.iter_mut().flatten()) {
@@ -222,24 +224,26 @@ fn measure(
         side.work_ms.clear();
     }
     let processor_draws = gpu.adapter_stats().kind == "cpu";
-    for round in 0..u64::from(rounds) {
-        for number in turn(round, count) {
+    for round in 0..rounds {
+        let frame = WARM_UP + 1 + round;
+        let [now, before] = [at(frame), at(frame - 1)];
+        for number in turn(u64::from(round), count) {
             match number.checked_sub(1) {
-                None => plain.draw(camera)?,
+                None => plain.draw(&now, &before)?,
                 Some(number) => {
                     if let Some(side) = sides.iter_mut().flatten().nth(number) {
-                        side.draw(camera)?;
+                        side.draw(&now, &before)?;
                     }
                 }
             };
         }
     }
-    let reference = plain.picture()?;
+    let reference = plain.picture(camera)?;
     let mut number = 0;
     sides
         .into_iter()
         .map(|side| {
-            let side = match side {
+            let mut side = match side {
                 Ok(side) => side,
                 Err(cause) => return Ok(Err(cause)),
             };
@@ -254,7 +258,7 @@ fn measure(
             Ok(Ok(Found {
                 frame,
                 work: work.flatten(),
-                nearness: Nearness::of(&reference, &side.picture()?),
+                nearness: Nearness::of(&reference, &side.picture(camera)?),
             }))
         })
         .collect()
@@ -272,10 +276,10 @@ impl Side {
         })
     }
 
-    fn draw(&mut self, camera: &Camera) -> anyhow::Result<()> {
+    fn draw(&mut self, camera: &Camera, before: &Camera) -> anyhow::Result<()> {
         let frame = Frame {
             camera,
-            previous_camera: Some(camera),
+            previous_camera: Some(before),
         };
         let before_ms = process_ms();
         let stats: FrameStats = block_on(self.renderer.render(&frame))?;
@@ -284,11 +288,33 @@ impl Side {
         Ok(())
     }
 
-    fn picture(&self) -> anyhow::Result<Picture> {
+    /// The picture of the camera at rest, as the row's command makes it.
+    fn picture(&mut self, camera: &Camera) -> anyhow::Result<Picture> {
+        // A frame that follows none: nothing of the frames before is in it.
+        let none = Camera {
+            name: format!("before {}", camera.name),
+            ..camera.clone()
+        };
+        self.draw(camera, &none)?;
+        for _ in 0..WARM_UP {
+            self.draw(camera, camera)?;
+        }
         let bytes = block_on(self.renderer.read_picture())?;
         let (width, height) = self.settings.picture_size();
         Picture::from_rgba(width, height, &bytes)
     }
+}
+
+/// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within half a metre.
+fn swayed(camera: &Camera, frame: u32) -> Camera {
+    const STEP_M: f32 = 0.02;
+    const STEPS: u32 = 24;
+    let turn = frame % (2 * STEPS);
+    let away = turn.min(2 * STEPS - turn) as f32 * STEP_M;
+    let mut camera = camera.clone();
+    let right = camera.world_from_view.x_axis;
+    camera.world_from_view.w_axis += right * away;
+    camera
 }
 
 /// Milliseconds that this process has had of the processor, all threads together; 0 where nobody says.

@@ -475,6 +475,23 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             ]
         );
     }
+    for parts in [HISTORY_CARRY, HISTORY_TILES, HISTORY_REST] {
+        assert_same_layout!(
+            parts,
+            "History",
+            crate::shading::HistoryParameters,
+            [
+                rounding,
+                phase,
+                reset,
+                renewal,
+                tolerance,
+                change,
+                changed_count,
+                changed
+            ]
+        );
+    }
     assert_same_layout!(
         RESOLVE[0],
         "Windows",

@@ -18,6 +18,8 @@ pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
     CoarseShading, CoarseTargets, CountPass, LEVELS, LevelNumbers, STENCIL_FORMAT, stencil_state,
 };
+#[cfg(test)]
+pub(crate) use history::HistoryParameters;
 pub(crate) use history::{HistoryStage, HistoryTargets};
 pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};

@@ -24,6 +24,11 @@ impl<'a> Side<'a> {
         camera: &'a Camera,
         settings: &Settings,
     ) -> anyhow::Result<Self> {
+        // What the technique itself costs: each frame shades all of its samples.
+        let settings = &Settings {
+            history: false,
+            ..settings.clone()
+        };
         let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
         block_on(renderer.set_scene(scene))?;
         let mut side = Self {

@@ -78,9 +78,9 @@ impl<'a> Studio<'a> {
         Ok(shot)
     }
 
-    /// A renderer for pictures at rest.
-    pub(super) fn at_rest(&self, settings: &Settings) -> anyhow::Result<Drawing> {
-        self.drawing(settings, &self.at_rest)
+    /// A renderer for what moves along the path.
+    pub(super) fn along(&self, settings: &Settings) -> anyhow::Result<Drawing> {
+        self.drawing(settings, &self.along)
     }
 
     fn drawing(&self, settings: &Settings, view: &Rc<Viewpoint>) -> anyhow::Result<Drawing> {

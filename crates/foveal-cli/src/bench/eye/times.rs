@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::studio::Studio;
 use crate::bench::subject::WARM_UP;
-use crate::render::Drawing;
+use crate::render::{Drawing, moment};
 
 /// A way's whole frames; times are medians in milliseconds.
 #[derive(Clone, Debug, Serialize)]
@@ -40,7 +40,7 @@ impl Times {
         studio: &Studio<'_>,
         full: &Settings,
         chosen: &[Settings],
-        rounds: u32,
+        (rounds, fps): (u32, f32),
     ) -> anyhow::Result<()> {
         let is_new = |settings: &&Settings| *settings != full && self.of(settings).is_none();
         let new: Vec<&Settings> = chosen.iter().filter(is_new).collect();
@@ -48,21 +48,24 @@ impl Times {
             .chain(new.iter().copied())
             .map(|settings| {
                 Ok(Side {
-                    drawing: studio.at_rest(settings)?,
+                    drawing: studio.along(settings)?,
                     frame_ms: Vec::new(),
                 })
             })
             .collect::<anyhow::Result<Vec<Side>>>()?;
-        for _ in 0..WARM_UP {
+        // All that is measured moves: what is kept from frame to frame costs nothing at rest.
+        let at = |frame: u32| moment(frame, fps);
+        for frame in 1..=WARM_UP {
             for side in &mut sides {
-                side.drawing.draw_moment(0.0, 0.0)?;
+                side.drawing.draw_moment(at(frame), at(frame - 1))?;
             }
         }
         let count = sides.len();
         for round in 0..u64::from(rounds) {
             for number in turn(round, count) {
                 let side = &mut sides[number];
-                let stats = side.drawing.draw_moment(0.0, 0.0)?;
+                let frame = WARM_UP + 1 + round as u32;
+                let stats = side.drawing.draw_moment(at(frame), at(frame - 1))?;
                 side.frame_ms.push(stats.frame_ms);
             }
         }

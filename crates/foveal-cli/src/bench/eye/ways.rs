@@ -49,6 +49,11 @@ pub(super) const WAYS: &[Way] = &[
         &[("shading", "coarse")],
     ),
     way(
+        "coarse, light, shaded anew",
+        Follows::GazeAndDisplay,
+        &[("shading", "coarse"), ("history", "false")],
+    ),
+    way(
         "coarse, light, quality 9.3",
         Follows::GazeAndDisplay,
         &[("shading", "coarse"), ("quality", "9.3")],

@@ -5,7 +5,7 @@
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
-@group(1) @binding(4) var<uniform> history: History;
+@group(1) @binding(4) var<storage, read> history: History;
 // Of the frame before: pixels' light, and what else they remember.
 @group(1) @binding(5) var light_before: texture_2d<u32>;
 @group(1) @binding(6) var seen_before: texture_2d<u32>;
@@ -116,10 +116,8 @@ fn carry(@builtin(global_invocation_id) id: vec3u) {
     let own = tile_at(texel);
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let who = load_words(gbuffer_identity, texel).xy;
-    var expect = Expected(s.normal, distance, who.x & SEEN_INSTANCE, own.level);
-    if frame.orthographic == 0u {
-        expect.distance = distance_before(texel, position);
-    }
+    let distance_then = select(distance_before(texel, position), distance, frame.orthographic != 0u);
+    let expect = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
     let before = pixel - unpack2x16float(who.y);
     let rounded = floor(before + history.rounding);
     var memory = remembered_at(vec2i(rounded), texel, expect);

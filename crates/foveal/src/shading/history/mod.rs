@@ -30,7 +30,8 @@ use crate::shading::coarse::UsedBackend;
 use crate::targets::Targets;
 use crate::{Backend, CoarseSample, CoarseStats, Composite, Settings, Shading, View};
 use changed::Changed;
-use passes::{HistoryPasses, HistoryUniform};
+pub(crate) use passes::HistoryParameters;
+use passes::HistoryPasses;
 
 /// Frames at rest until each pixel was shaded by itself.
 pub(crate) const ROUND: u32 = 16;
@@ -75,7 +76,7 @@ pub(crate) struct HistoryStage {
     rested: u32,
     lit: Lit,
     /// What the last frame's passes were told.
-    told: HistoryUniform,
+    told: HistoryParameters,
 }
 
 impl HistoryStage {
@@ -95,7 +96,7 @@ impl HistoryStage {
             frame: 0,
             rested: 0,
             lit: Lit::default(),
-            told: HistoryUniform::default(),
+            told: HistoryParameters::default(),
         })
     }
 
@@ -140,15 +141,15 @@ impl HistoryStage {
             turn: self.rested.checked_sub(1),
         };
         self.last = Some(camera.clone());
-        self.told = self.uniform(settings, reset, &changed);
+        self.told = self.parameters(settings, reset, &changed);
         self.passes.write(gpu, &self.told);
     }
 
     /// What the frame's passes are told.
-    fn uniform(&self, settings: &Settings, reset: bool, changed: &Changed) -> HistoryUniform {
+    fn parameters(&self, settings: &Settings, reset: bool, changed: &Changed) -> HistoryParameters {
         // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a factor of 4. Found by measurement.
         let finer = 4.0_f32.powf(settings.quality - 9.5);
-        let mut uniform = HistoryUniform {
+        let mut parameters = HistoryParameters {
             rounding: rounding(self.frame),
             phase: match self.lit.turn {
                 Some(turn) => turn,
@@ -159,13 +160,13 @@ impl HistoryStage {
             renewal: (finer / 12.0).clamp(1.0 / 64.0, 1.0),
             tolerance: (0.07 / finer).clamp(0.01, 1.0),
             change: 0.5,
-            ..HistoryUniform::default()
+            ..HistoryParameters::default()
         };
         if let Changed::Within(places) = changed {
-            uniform.changed_count = places.len() as u32;
-            uniform.changed[..places.len()].copy_from_slice(places);
+            parameters.changed_count = places.len() as u32;
+            parameters.changed[..places.len()].copy_from_slice(places);
         }
-        uniform
+        parameters
     }
 
     /// Encodes the frame's lighting of solid surfaces into the radiance target.

@@ -7,7 +7,7 @@ use super::{Lit, ROUND};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
-    uniform, written,
+    written,
 };
 use crate::rate::RateTargets;
 use crate::recorder::Recorder;
@@ -21,7 +21,7 @@ const TILE: u32 = 8;
 /// Mirrors `History` in `remembered.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-pub(crate) struct HistoryUniform {
+pub(crate) struct HistoryParameters {
     pub(crate) rounding: [f32; 2],
     pub(crate) phase: u32,
     pub(crate) reset: u32,
@@ -50,7 +50,8 @@ pub(super) struct HistoryPasses {
     gather: Pass,
     scatter: Pass,
     rest: Pass,
-    uniform: wgpu::Buffer,
+    /// What the passes are told: read from storage, as branches hang on it (ARCHITECTURE.md).
+    parameters: wgpu::Buffer,
 }
 
 impl HistoryPasses {
@@ -83,7 +84,7 @@ impl HistoryPasses {
                 layout,
             }
         };
-        let tiles = [uniform(), write, write, write];
+        let tiles = [read, write, write, write];
         Self {
             keep: pass(
                 "kept tiles",
@@ -104,7 +105,7 @@ impl HistoryPasses {
                     words,
                     depth,
                     words,
-                    uniform(),
+                    read,
                     uint,
                     uint,
                     read,
@@ -157,22 +158,22 @@ impl HistoryPasses {
                 shader::HISTORY_REST,
                 "list_turn",
                 None,
-                &[uniform(), depth, write, write],
+                &[read, depth, write, write],
                 &[("ROUND", f64::from(ROUND))],
             ),
-            uniform: gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            parameters: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("history"),
-                size: size_of::<HistoryUniform>() as u64,
-                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                size: size_of::<HistoryParameters>() as u64,
+                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
         }
     }
 
     /// Tells the passes of the frame at hand.
-    pub(super) fn write(&self, gpu: &Gpu, uniform: &HistoryUniform) {
+    pub(super) fn write(&self, gpu: &Gpu, parameters: &HistoryParameters) {
         gpu.queue
-            .write_buffer(&self.uniform, 0, bytemuck::bytes_of(uniform));
+            .write_buffer(&self.parameters, 0, bytemuck::bytes_of(parameters));
     }
 }
 
@@ -202,9 +203,9 @@ impl HistoryPasses {
         let listed = h.listed.as_entire_binding();
         let samples = h.samples.as_entire_binding();
         let bare = h.bare.as_entire_binding();
-        let uniform = self.uniform.as_entire_binding();
+        let parameters = self.parameters.as_entire_binding();
         let tiles = [
-            uniform.clone(),
+            parameters.clone(),
             h.measured.as_entire_binding(),
             h.kept.as_entire_binding(),
             h.tiles.as_entire_binding(),
@@ -218,7 +219,7 @@ impl HistoryPasses {
                 view(&gbuffer.surface_layers),
                 view(&gbuffer.depth_layers),
                 view(&gbuffer.identity_layers),
-                uniform.clone(),
+                parameters.clone(),
                 view(&h.light[before]),
                 view(&h.seen[before]),
                 h.tiles.as_entire_binding(),
@@ -278,7 +279,7 @@ impl HistoryPasses {
         let rest = group(
             &self.rest,
             "pixels in turn",
-            &[uniform, view(&gbuffer.depth_layers), listed, samples],
+            &[parameters, view(&gbuffer.depth_layers), listed, samples],
         );
         let at = |list: List| list as u64 * LIST_STEP;
         recorder.encoder.clear_buffer(&h.listed, 0, None);

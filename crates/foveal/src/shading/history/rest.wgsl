@@ -1,7 +1,7 @@
 // While nothing moves: lists the pixels whose turn it is, so that after a round each was shaded by itself. After frame, blocks,
 // layers, remembered and order.wgsl.
 
-@group(1) @binding(0) var<uniform> history: History;
+@group(1) @binding(0) var<storage, read> history: History;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(2) var<storage, read_write> listed: array<Listed, 3>;
 @group(1) @binding(3) var<storage, read_write> samples_listed: array<vec2u>;

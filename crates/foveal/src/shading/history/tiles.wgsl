@@ -1,6 +1,6 @@
 // What the last frame's samples say of each tile. After frame, remembered and measured.wgsl.
 
-@group(1) @binding(0) var<uniform> history: History;
+@group(1) @binding(0) var<storage, read> history: History;
 @group(1) @binding(1) var<storage, read_write> measured: array<Measured>;
 // Errors that were measured of late, tile by tile.
 @group(1) @binding(2) var<storage, read_write> kept: array<vec2f>;

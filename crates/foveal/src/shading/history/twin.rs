@@ -3,7 +3,7 @@
 use foveal_scene::Camera;
 use glam::{IVec2, UVec2, Vec2};
 
-use super::passes::HistoryUniform;
+use super::passes::HistoryParameters;
 use crate::shading::sample_texel;
 use crate::shading::twin::{position_at, unit_from_octahedral, unit_from_square};
 use crate::testing::f32_of_half;
@@ -67,7 +67,7 @@ impl Seen {
         &self,
         [camera, previous]: [&Camera; 2],
         before: &Before,
-        told: &HistoryUniform,
+        told: &HistoryParameters,
         texel: UVec2,
     ) -> Carried {
         let i = self.index(texel);
