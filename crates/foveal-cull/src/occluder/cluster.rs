@@ -1,7 +1,7 @@
 //! Clusters: quads that lie together and look the same way.
 //!
-//! A recursive median split over six coordinates, position and normal, so that clusters are compact and
-//! their normal cones narrow. Each cluster gets its own vertex list (numbers fit a byte).
+//! A recursive split by the surface-area heuristic over six coordinates, position and normal, so that clusters are compact,
+//! large quads lie apart from small ones, and normal cones are narrow. Each cluster gets its own vertex list (numbers fit a byte).
 
 use super::quads::Quad;
 use super::ring::{self, Neighbours};
@@ -10,13 +10,22 @@ use crate::query::project::Boxes8;
 use glam::Vec3;
 
 const MAX_QUADS: usize = 64;
-/// Weight of the normal against position, as a part of the node's diagonal.
-const NORMAL_WEIGHT: f32 = 0.35;
 
 struct Item {
     quad: Quad,
-    center: Vec3,
+    lo: Vec3,
+    hi: Vec3,
     normal: Vec3,
+}
+
+impl Item {
+    fn key(&self, axis: usize) -> f32 {
+        if axis < 3 {
+            self.lo[axis] + self.hi[axis]
+        } else {
+            self.normal[axis - 3]
+        }
+    }
 }
 
 pub(crate) fn build(
@@ -39,7 +48,8 @@ pub(crate) fn build(
                 .normalize_or_zero();
             Item {
                 quad,
-                center: (lo + hi) * 0.5,
+                lo,
+                hi,
                 normal,
             }
         })
@@ -85,41 +95,130 @@ fn split(
     if items.is_empty() {
         return;
     }
-    if items.len() <= MAX_QUADS && emit(mesh, points, near, items) {
+    let cut = cut(items);
+    let cheaper = cut.cost < WORTH_A_CUT * Part::of(items).cost();
+    if items.len() <= MAX_QUADS && !cheaper && emit(mesh, points, near, items) {
         return;
     }
-    let spread = |f: &dyn Fn(&Item) -> Vec3| {
-        let (lo, hi) = items
-            .iter()
-            .fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), i| {
-                (lo.min(f(i)), hi.max(f(i)))
-            });
-        hi - lo
-    };
-    let size = spread(&|i| i.center);
-    let turn = spread(&|i| i.normal) * (size.length() * NORMAL_WEIGHT);
-    let axes = [size.x, size.y, size.z, turn.x, turn.y, turn.z];
-    let axis = (0..6).fold(0, |best, a| if axes[a] > axes[best] { a } else { best });
-    let key = |i: &Item| {
-        if axis < 3 {
-            i.center[axis]
-        } else {
-            i.normal[axis - 3]
-        }
-    };
-    // Full leaves: split at a multiple of the cluster size nearest to the middle.
-    let half = items.len() / 2;
-    let middle = if items.len() > MAX_QUADS {
-        (half.div_ceil(MAX_QUADS) * MAX_QUADS).min(items.len() - 1)
-    } else {
-        half
-    };
-    items.select_nth_unstable_by(middle, |a, b| {
-        key(a).total_cmp(&key(b)).then_with(|| a.quad.cmp(&b.quad))
+    items.select_nth_unstable_by(cut.at, |a, b| {
+        (a.key(cut.axis).total_cmp(&b.key(cut.axis))).then_with(|| a.quad.cmp(&b.quad))
     });
-    let (left, right) = items.split_at_mut(middle);
+    let (left, right) = items.split_at_mut(cut.at);
     split(mesh, points, near, left);
     split(mesh, points, near, right);
+}
+
+/// Where quads are split: the first `at` of them in the order of an axis (three of position, three of the normal).
+#[derive(Clone, Copy)]
+struct Cut {
+    cost: f32,
+    axis: usize,
+    at: usize,
+}
+
+/// What the set-up of a cluster takes, in quads.
+const COST_OF_CLUSTER: f32 = 32.0;
+/// What fits a cluster is cut only where that costs less than this part of it: mostly where large quads leave small ones.
+const WORTH_A_CUT: f32 = 0.5;
+/// So many places at most are looked at along an axis.
+const PLACES: usize = 32;
+
+/// The cheapest of the cuts between bins along six axes, by the surface-area heuristic.
+fn cut(items: &[Item]) -> Cut {
+    let mut best = Cut {
+        cost: f32::INFINITY,
+        axis: 0,
+        at: items.len() / 2,
+    };
+    for axis in 0..6 {
+        let (lo, hi) = items
+            .iter()
+            .map(|i| i.key(axis))
+            .fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), v| {
+                (lo.min(v), hi.max(v))
+            });
+        let scale = PLACES as f32 / (hi - lo);
+        if !scale.is_finite() {
+            continue;
+        }
+        let mut bins = [Part::NONE; PLACES];
+        for item in items {
+            let bin = ((item.key(axis) - lo) * scale) as usize;
+            bins[bin.min(PLACES - 1)].add(item);
+        }
+        let mut after = [Part::NONE; PLACES + 1];
+        for k in (0..PLACES).rev() {
+            after[k] = after[k + 1].with(&bins[k]);
+        }
+        let mut before = Part::NONE;
+        for k in 1..PLACES {
+            before = before.with(&bins[k - 1]);
+            if before.count == 0 || after[k].count == 0 {
+                continue;
+            }
+            let cost = before.cost() + after[k].cost();
+            if cost < best.cost {
+                (best.cost, best.axis, best.at) = (cost, axis, before.count);
+            }
+        }
+    }
+    best
+}
+
+/// Some quads: how many, their bounds, and those of their normals.
+#[derive(Clone, Copy)]
+struct Part {
+    count: usize,
+    lo: Vec3,
+    hi: Vec3,
+    normal_lo: Vec3,
+    normal_hi: Vec3,
+}
+
+impl Part {
+    const NONE: Self = Self {
+        count: 0,
+        lo: Vec3::INFINITY,
+        hi: Vec3::NEG_INFINITY,
+        normal_lo: Vec3::INFINITY,
+        normal_hi: Vec3::NEG_INFINITY,
+    };
+
+    fn of(items: &[Item]) -> Self {
+        let mut part = Self::NONE;
+        items.iter().for_each(|i| part.add(i));
+        part
+    }
+
+    fn add(&mut self, item: &Item) {
+        *self = self.with(&Self {
+            count: 1,
+            lo: item.lo,
+            hi: item.hi,
+            normal_lo: item.normal,
+            normal_hi: item.normal,
+        });
+    }
+
+    fn with(&self, other: &Self) -> Self {
+        Self {
+            count: self.count + other.count,
+            lo: self.lo.min(other.lo),
+            hi: self.hi.max(other.hi),
+            normal_lo: self.normal_lo.min(other.normal_lo),
+            normal_hi: self.normal_hi.max(other.normal_hi),
+        }
+    }
+
+    /// What it costs in the mean: how often it is seen, by the surface of its box and the part of all directions from which
+    /// any of its quads faces the eye, times what it takes then.
+    fn cost(&self) -> f32 {
+        let size = self.hi - self.lo;
+        let surface = size.dot(Vec3::new(size.y, size.z, size.x));
+        // The sine of the angle to the middle of a cone of normals, or more.
+        let spread = ((self.normal_hi - self.normal_lo).length() * 0.5).min(1.0);
+        surface * (0.5 + 0.5 * spread) * (self.count.next_multiple_of(8) as f32 + COST_OF_CLUSTER)
+    }
 }
 
 /// How much of its box's outline a cluster can fill. The outline of a convex body is a fourth of its surface in the mean
@@ -278,6 +377,42 @@ mod tests {
         let (wide, thin) = (fills(&strips(1.0)), fills(&strips(0.1)));
         assert!(wide[0] > 0.6, "{wide:?}");
         assert!((0.05..0.1).contains(&thin[0]), "{thin:?}");
+    }
+
+    #[test]
+    fn large_quads_lie_apart_from_small_ones() {
+        let (mut points, mut indices) = (Vec::new(), Vec::new());
+        let mut quad = |x: f32, z: f32, size: f32| {
+            let at = points.len() as u32;
+            let corners = [(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)];
+            points.extend(corners.map(|(dx, dz)| Vec3::new(x + dx * size, 0.0, z + dz * size)));
+            indices.extend([0, 1, 2, 0, 2, 3].map(|i| at + i));
+        };
+        quad(0.0, 0.0, 100.0);
+        (0..56).for_each(|i| quad(10.0 + (i % 8) as f32, 80.0 + (i / 8) as f32, 0.9));
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        let [one, rest] = &mesh.clusters[..] else {
+            panic!("{} clusters", mesh.clusters.len());
+        };
+        let (large, small) = if one.half.x > 40.0 {
+            (one, rest)
+        } else {
+            (rest, one)
+        };
+        // Eight are set up at once, so that up to seven may go with the large one.
+        assert!(large.quad_count <= 8, "{}", large.quad_count);
+        assert_eq!(large.quad_count + small.quad_count, 57);
+        assert!(small.half.x < 5.0 && small.half.z < 5.0, "{:?}", small.half);
+    }
+
+    #[test]
+    fn numbers_too_large_for_surfaces_are_baked_all_the_same() {
+        let points: Vec<Vec3> = (0..300)
+            .map(|i| Vec3::new(3e38 * [1.0, -1.0][i % 2], 0.0, 1e38 * (i % 3) as f32))
+            .collect();
+        let indices: Vec<u32> = (0..298).flat_map(|i| [i, i + 1, i + 2]).collect();
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        assert!(mesh.cluster_count() < 300);
     }
 
     #[test]
