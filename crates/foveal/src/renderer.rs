@@ -35,7 +35,8 @@ pub type Clock = fn() -> f64;
 pub struct Frame<'a> {
     /// Where the frame is seen from.
     pub camera: &'a Camera,
-    /// Where the frame before it was seen from, for motion vectors; `None`: from the same place.
+    /// Where the frame before it was seen from, for motion vectors and for what is kept from frame to frame, which is given up where
+    /// this is not the camera that was drawn last; `None`: from the same place.
     pub previous_camera: Option<&'a Camera>,
 }
 

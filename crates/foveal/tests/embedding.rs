@@ -89,6 +89,8 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
             shading,
             aa,
             backend: foveal::Backend::Compute,
+            // Each frame is the first one's equal.
+            history: false,
             ..Settings::default()
         };
         pollster::block_on(async {
