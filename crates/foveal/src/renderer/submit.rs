@@ -10,7 +10,7 @@ use crate::gpu::CpuTimer;
 use crate::lights::ClusterGrid;
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
-use crate::shading::{Plan, Samples};
+use crate::shading::{HistoryStage, Plan, Samples};
 use crate::stereo::EyeLayout;
 
 impl Renderer {
@@ -173,9 +173,15 @@ impl Stages {
                 let before = frame.previous_camera.unwrap_or(frame.camera);
                 history.begin(recorder.gpu, settings, (frame.camera, before));
             }
-            coarse
-                .rate_map
-                .draw(recorder, settings, eyes, &targets.gbuffer, &tiles.rate);
+            if coarse
+                .history
+                .as_ref()
+                .is_none_or(HistoryStage::needs_rates)
+            {
+                coarse
+                    .rate_map
+                    .draw(recorder, settings, eyes, &targets.gbuffer, &tiles.rate);
+            }
             if material {
                 evaluate(recorder, Evaluation::at_rates(&tiles.rate.owner.whole));
             }

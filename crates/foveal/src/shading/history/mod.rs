@@ -169,6 +169,11 @@ impl HistoryStage {
         parameters
     }
 
+    /// Whether the frame's rates matter: at rest pixels are shaded in turn, whatever their rate.
+    pub(crate) fn needs_rates(&self) -> bool {
+        self.lit.turn.is_none()
+    }
+
     /// Encodes the frame's lighting of solid surfaces into the radiance target.
     pub(crate) fn light(
         &self,

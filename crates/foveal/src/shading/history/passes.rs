@@ -188,6 +188,11 @@ impl HistoryPasses {
         h: &HistoryTargets,
         lit: Lit,
     ) {
+        recorder.encoder.clear_buffer(&h.listed, 0, None);
+        if lit.turn.is_some_and(|turn| turn >= ROUND) {
+            show(recorder, targets, h);
+            return;
+        }
         let gpu = recorder.gpu;
         let gbuffer = &targets.gbuffer;
         let view = wgpu::BindingResource::TextureView;
@@ -282,7 +287,6 @@ impl HistoryPasses {
             &[parameters, view(&gbuffer.depth_layers), listed, samples],
         );
         let at = |list: List| list as u64 * LIST_STEP;
-        recorder.encoder.clear_buffer(&h.listed, 0, None);
         if lit.turn.is_none() {
             recorder.encoder.clear_buffer(&h.wanted, 0, None);
             let mut pass = recorder.compute_pass("carrying light");
@@ -331,11 +335,16 @@ impl HistoryPasses {
             pass.set_bind_group(2, &shade[1], &[]);
             pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Unlit));
         }
-        // Blended surfaces are drawn over the copy.
-        recorder.encoder.copy_texture_to_texture(
-            h.radiance.texture().as_image_copy(),
-            targets.radiance_view.texture().as_image_copy(),
-            size,
-        );
+        show(recorder, targets, h);
     }
+}
+
+/// Copies the radiance of solid surfaces to where blended ones are drawn over it.
+fn show(recorder: &mut Recorder<'_>, targets: &Targets, h: &HistoryTargets) {
+    let radiance = h.radiance.texture();
+    recorder.encoder.copy_texture_to_texture(
+        radiance.as_image_copy(),
+        targets.radiance_view.texture().as_image_copy(),
+        radiance.size(),
+    );
 }
