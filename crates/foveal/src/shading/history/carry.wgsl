@@ -138,7 +138,7 @@ fn carry(@builtin(global_invocation_id) id: vec3u) {
     let tile = memory.tile;
     let now = (who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance);
 
-    // One sample a block at most where something is remembered; more is what a block without is given.
+    // What proved wrong is renewed sooner.
     let block = exp2(-2.0 * f32(own.level));
     let haste = clamp(tile.error / history.tolerance, 1.0, MOST_A_BLOCK / history.renewal);
     let share = clamp(block * history.renewal * haste, LEAST_RENEWAL, 1.0);
