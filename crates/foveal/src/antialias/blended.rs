@@ -52,7 +52,7 @@ impl BlendedStage {
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let types = [uniform(), float];
         let layout = bind_group_layout(&gpu.device, "blended", fragment, &types);
-        let module = shader::module(gpu, "blended", shader::AA_BLENDED);
+        let module = shader::module(gpu, "blended", shader::ANTIALIAS_BLENDED);
         let pipeline = |entry, blend| {
             shader::screen(
                 gpu,

@@ -1,5 +1,8 @@
-// Blended surfaces, drawn at the sub-samples over nothing: averaged band by band, then laid over the pixels' radiance.
-// After samples.wgsl. CPU twin: `antialias/blended.rs`.
+// Blended surfaces, drawn at the sub-samples over nothing: averaged band by band, then laid over
+// the pixels' radiance. CPU twin: `antialias/blended.rs`.
+
+#import antialias/samples.wgsl
+#import shared/full_screen.wgsl
 
 @group(1) @binding(0) var<uniform> band: Band;
 // Premultiplied: of sub-samples, or averaged.

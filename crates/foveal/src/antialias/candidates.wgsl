@@ -1,5 +1,9 @@
-// Lists the band's pixels that show several triangles: few, and the only ones whose triangles are looked at. After
-// ids.wgsl.
+// Lists the band's pixels that show several triangles: few, and the only ones whose triangles are
+// looked at.
+
+#import antialias/ids.wgsl
+#import antialias/samples.wgsl
+#import shared/frame.wgsl
 
 struct Candidates {
     // Workgroups of 64 candidates, as an indirect dispatch wants them.

@@ -1,5 +1,10 @@
-// From the band of triangles to one triangle per pixel, the largest surface's. Materials are evaluated afterwards,
-// once for each. After ids.wgsl.
+// From the band of triangles to one triangle per pixel, the largest surface's. Materials are
+// evaluated afterwards, once for each.
+
+#import antialias/ids.wgsl
+#import antialias/samples.wgsl
+#import antialias/surfaces.wgsl
+#import shared/full_screen.wgsl
 
 // As sort.wgsl left it; 0 where the pixel shows one triangle.
 @group(3) @binding(0) var largest: texture_2d<u32>;

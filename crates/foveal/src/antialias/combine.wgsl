@@ -1,6 +1,9 @@
-// Combination: what the entries of a pixel came to, with the ordinary path's radiance for the rest of its
-// coverage. The result stays in the sums: no texture is read and written in one step, so store.wgsl follows.
-// After frame.wgsl, weight.wgsl and queue.wgsl.
+// Combination: what the entries of a pixel came to, with the ordinary path's radiance for the rest
+// of its coverage. The result stays in the sums: no texture is read and written in one step, so
+// store.wgsl follows.
+
+#import antialias/queue.wgsl
+#import antialias/weight.wgsl
 
 // The entries hold all of a pixel; else the largest surface is the ordinary path's.
 override ALL: bool = false;

@@ -1,4 +1,7 @@
-// The queue while it is filled; the includer binds `queue` and `entries`. After queue.wgsl.
+// The queue while it is filled; the importing shader binds `queue` and `entries`.
+
+#import antialias/queue.wgsl
+#expects queue, entries
 
 // `Queue`, to be counted in.
 struct QueueCounters {

@@ -1,5 +1,8 @@
-// A pixel's further surface: its texel's place in the picture comes with it. In place of every.wgsl, after
-// quarters.wgsl.
+// A pixel's further surface: its texel's place in the picture comes with it.
+
+#import antialias/quarters.wgsl
+#import shared/layers.wgsl
+#expects identity
 
 fn covered_by(texel: vec2u) -> vec2u {
     return vec2u(1u);

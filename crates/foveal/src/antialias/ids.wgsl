@@ -1,4 +1,11 @@
-// Sub-samples that are known by their triangles alone. After attributes.wgsl and surfaces.wgsl.
+// Sub-samples that are known by their triangles alone.
+
+#import antialias/samples.wgsl
+#import antialias/surfaces.wgsl
+#import shared/attributes.wgsl
+#import shared/frame.wgsl
+#import shared/instances.wgsl
+#import shared/vertex.wgsl
 
 @group(1) @binding(0) var<uniform> band: Band;
 @group(1) @binding(1) var sample_identity: texture_2d<u32>;

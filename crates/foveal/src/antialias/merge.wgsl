@@ -1,5 +1,14 @@
-// Merge: from the band of sub-samples to one G-buffer texel per pixel, which the ordinary stages read, and to
-// entries for what else the pixel shows. After stored.wgsl and counters.wgsl.
+// Merge: from the band of sub-samples to one G-buffer texel per pixel, which the ordinary stages
+// read, and to entries for what else the pixel shows.
+
+#import antialias/counters.wgsl
+#import antialias/queue.wgsl
+#import antialias/samples.wgsl
+#import antialias/stored.wgsl
+#import antialias/surfaces.wgsl
+#import shading/input.wgsl
+#import shared/full_screen.wgsl
+#import shared/layers.wgsl
 
 // Which pixels are edges: 0 none, 1 all, 2 by depth, 3 by surface.
 override EDGES: u32 = 3u;

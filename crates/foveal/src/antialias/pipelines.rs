@@ -82,7 +82,7 @@ impl AntialiasPipelines {
             compute,
             &[read, read, write, radiance],
         );
-        let combination = shader::module(gpu, "combination", shader::AA_COMBINE);
+        let combination = shader::module(gpu, "combination", shader::ANTIALIAS_COMBINE);
 
         let [model, brute] = lighting_constants(settings);
         // Views of the G-buffer show averages.
@@ -96,7 +96,7 @@ impl AntialiasPipelines {
             shade: shader::compute(
                 gpu,
                 "edge shading",
-                &shader::module(gpu, "edge shading", shader::AA_SHADE),
+                &shader::module(gpu, "edge shading", shader::ANTIALIAS_SHADE),
                 "shade_entries",
                 &[frame, shading_input, &shade_layout],
                 &[model, brute, count, side, mirror, ("ALL", all)],
@@ -112,7 +112,7 @@ impl AntialiasPipelines {
             store: shader::compute(
                 gpu,
                 "combination, store",
-                &shader::module(gpu, "combination, store", shader::AA_STORE),
+                &shader::module(gpu, "combination, store", shader::ANTIALIAS_STORE),
                 "store",
                 &[frame, &store_layout],
                 &[],
@@ -130,7 +130,7 @@ fn merge(
     groups: &[&wgpu::BindGroupLayout],
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
-    let module = shader::module(gpu, "merge", shader::AA_MERGE);
+    let module = shader::module(gpu, "merge", shader::ANTIALIAS_MERGE);
     let compilation_options = wgpu::PipelineCompilationOptions {
         constants,
         ..Default::default()

@@ -1,4 +1,7 @@
-// The sub-samples of a pixel in the band of supersampled texels, which the includer binds as `band`. Rust: `antialias/pattern.rs`.
+// The sub-samples of a pixel in the band of supersampled texels, which the importing shader binds as
+// `band`. Rust: `antialias/pattern.rs`.
+
+#expects band
 
 // Sub-samples per pixel.
 override COUNT: u32 = 4u;

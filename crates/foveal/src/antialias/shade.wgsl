@@ -1,5 +1,12 @@
-// Shading of the queue's entries: a further surface, or every sub-sample of a pixel. After stored.wgsl,
-// weight.wgsl and queue.wgsl.
+// Shading of the queue's entries: a further surface, or every sub-sample of a pixel.
+
+#import antialias/queue.wgsl
+#import antialias/samples.wgsl
+#import antialias/stored.wgsl
+#import antialias/weight.wgsl
+#import shading/input.wgsl
+#import shading/shading.wgsl
+#import shared/layers.wgsl
 
 // An entry stands for every sub-sample of its pixel, else for those of one surface.
 override ALL: bool = false;
@@ -15,14 +22,14 @@ fn all_of(pixel: vec2u) -> vec4f {
         let texel = sample_texel(pixel, i);
         let depth = load_depth(gbuffer_depth, texel);
         let words = load_words(gbuffer_surface, texel);
-        sum += weighted(radiance_at(sample_position(pixel, i), depth, words).rgb, 1u);
+        sum += weighted(radiance_at(sample_position(pixel, i), depth, words).rgb, 1u, COUNT);
     }
     return sum;
 }
 
 fn surface_of(pixel: vec2u, members: u32) -> vec4f {
     let mean = blend_of(pixel, members);
-    return weighted(radiance_at(mean.position, mean.depth, mean.words).rgb, countOneBits(members));
+    return weighted(radiance_at(mean.position, mean.depth, mean.words).rgb, countOneBits(members), COUNT);
 }
 
 @compute @workgroup_size(64)

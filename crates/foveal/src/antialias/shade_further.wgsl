@@ -1,6 +1,15 @@
-// Shading of the entries whose materials were evaluated from triangles. After shading.wgsl, samples.wgsl, weight.wgsl,
-// queue.wgsl and quarters.wgsl.
+// Shading of the entries whose materials were evaluated from triangles.
 
+#import antialias/quarters.wgsl
+#import antialias/queue.wgsl
+#import antialias/weight.wgsl
+#import shading/input.wgsl
+#import shading/shading.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+
+// Sub-samples per pixel.
+override COUNT: u32 = 4u;
 // Owner levels of 2 x 2 pixels each: what lies in coarse pixels is not shaded.
 override COARSE: bool = false;
 
@@ -27,6 +36,6 @@ fn shade_further(@builtin(global_invocation_id) id: vec3u) {
         let position = unpack_quarters(textureLoad(further_identity, texel, 0).y);
         let depth = bitcast<f32>(textureLoad(further_depth, texel, 0).x);
         let radiance = radiance_at(position, depth, load_words(gbuffer_surface, texel)).rgb;
-        sums[i] = pack_half4(weighted(radiance, countOneBits(entry.samples & 0xffffu)));
+        sums[i] = pack_half4(weighted(radiance, countOneBits(entry.samples & 0xffffu), COUNT));
     }
 }

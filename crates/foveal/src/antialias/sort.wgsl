@@ -1,5 +1,13 @@
-// Sorts the sub-samples of listed pixels into surfaces: the largest is noted, the others become entries. After
-// ids.wgsl, counters.wgsl and quarters.wgsl.
+// Sorts the sub-samples of listed pixels into surfaces: the largest is noted, the others become
+// entries.
+
+#import antialias/counters.wgsl
+#import antialias/ids.wgsl
+#import antialias/quarters.wgsl
+#import antialias/queue.wgsl
+#import antialias/samples.wgsl
+#import antialias/surfaces.wgsl
+#import shared/frame.wgsl
 
 @group(3) @binding(0) var<storage, read_write> queue: QueueCounters;
 @group(3) @binding(1) var<storage, read_write> entries: array<Entry>;

@@ -290,7 +290,7 @@ fn view_pipeline(
     let pipeline = shader::full_screen(
         gpu,
         "tally",
-        &shader::module(gpu, "tally", shader::AA_VIEW),
+        &shader::module(gpu, "tally", shader::ANTIALIAS_VIEW),
         "view",
         &[frame, &layout],
         PICTURE_FORMAT,

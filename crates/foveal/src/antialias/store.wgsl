@@ -1,4 +1,6 @@
-// The combined radiances go to their pixels. After queue.wgsl.
+// The combined radiances go to their pixels.
+
+#import antialias/queue.wgsl
 
 @group(1) @binding(0) var<storage, read> queue: Queue;
 @group(1) @binding(1) var<storage, read> entries: array<Entry>;

@@ -1,4 +1,12 @@
-// Sub-samples whose surfaces are stored: what each knows, and what several see together. After surfaces.wgsl.
+// Sub-samples whose surfaces are stored: what each knows, and what several see together.
+
+#import antialias/samples.wgsl
+#import antialias/surfaces.wgsl
+#import shading/input.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
 
 @group(2) @binding(0) var<uniform> band: Band;
 @group(2) @binding(1) var sample_identity: texture_2d<u32>;

@@ -1,5 +1,9 @@
-// Which sub-samples of a pixel see the same surface. After samples.wgsl, and stored.wgsl or ids.wgsl.
-// CPU twin: `antialias/twin.rs`; nothing here needs a root or a transcendental function, so that it is exact.
+// Which sub-samples of a pixel see the same surface. CPU twin: `antialias/twin.rs`; nothing here
+// needs a root or a transcendental function, so that it is exact.
+
+#import antialias/samples.wgsl
+#import shared/frame.wgsl
+#expects facet_at
 
 // Steps off the plane that still count as on it: this part of a pixel's side at that distance,
 const PLANE_PIXELS: f32 = 0.5;

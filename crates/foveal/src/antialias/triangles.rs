@@ -196,11 +196,11 @@ impl TriangleStage {
         let [count, side] = Pattern::of(settings).constants();
         let coarse = f64::from(u8::from(settings.shading == Shading::Coarse));
         let geometry = geometry_layout(gpu);
-        let sorting = |label, parts, entry, group: &wgpu::BindGroupLayout| {
+        let sorting = |label, shader, entry, group: &wgpu::BindGroupLayout| {
             shader::compute(
                 gpu,
                 label,
-                &shader::module(gpu, label, parts),
+                &shader::module(gpu, label, shader),
                 entry,
                 &[frame, &samples_layout, &geometry, group],
                 &[count, side],
@@ -210,15 +210,20 @@ impl TriangleStage {
         Self {
             candidates: sorting(
                 "candidates",
-                shader::AA_CANDIDATES,
+                shader::ANTIALIAS_CANDIDATES,
                 "list_candidates",
                 &candidates_layout,
             ),
-            sort: sorting("sorting", shader::AA_SORT, "sort_pixels", &sort_layout),
+            sort: sorting(
+                "sorting",
+                shader::ANTIALIAS_SORT,
+                "sort_pixels",
+                &sort_layout,
+            ),
             classify: shader::screen(
                 gpu,
                 "classification",
-                &shader::module(gpu, "classification", shader::AA_CLASSIFY),
+                &shader::module(gpu, "classification", shader::ANTIALIAS_CLASSIFY),
                 ("full_screen", "classify"),
                 wgpu::PrimitiveTopology::TriangleList,
                 &[frame, &samples_layout, &geometry, &classify_layout],
@@ -235,7 +240,7 @@ impl TriangleStage {
             shade: shader::compute(
                 gpu,
                 "further shading",
-                &shader::module(gpu, "further shading", shader::AA_SHADE_FURTHER),
+                &shader::module(gpu, "further shading", shader::ANTIALIAS_SHADE_FURTHER),
                 "shade_further",
                 &[frame, shading_input, &shade_layout],
                 &[model, brute, count, ("COARSE", coarse)],

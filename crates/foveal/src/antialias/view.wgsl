@@ -1,5 +1,7 @@
 // Views of anti-aliasing: where pixels are shaded more than once, and how often.
 
+#import shared/full_screen.wgsl
+
 // 0 edges, 1 how often.
 override VIEW: u32 = 0u;
 override COUNT: u32 = 4u;

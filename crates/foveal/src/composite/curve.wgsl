@@ -1,9 +1,15 @@
-// Radiance within a tile: its patch, raised to pass through the tile's sample and through the middles between it and
-// neighbours of its size: bilinear interpolation where tiles are alike. After seen.wgsl and patches.wgsl.
-// CPU twin of all of the smooth composite: `composite/twin.rs`.
+// Radiance within a tile: its patch, raised to pass through the tile's sample and through the
+// middles between it and neighbours of its size: bilinear interpolation where tiles are alike. CPU
+// twin of all of the smooth composite: `composite/twin.rs`.
 //
-// Patches meet along their edges, tiles raise a common edge alike and the sample's raise vanishes there, so the
-// picture is continuous. Where radiance is affine, patches are and all raises are zero, so it is exact.
+// Patches meet along their edges, tiles raise a common edge alike and the sample's raise vanishes
+// there, so the picture is continuous. Where radiance is affine, patches are and all raises are
+// zero, so it is exact.
+
+#import composite/patches.wgsl
+#import composite/tiling.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
 
 // Two for each patch, and one.
 @group(1) @binding(5) var<storage, read> patches: array<vec4u>;

@@ -1,9 +1,17 @@
-// The patch of each listed tile of a level. After seen.wgsl, patches.wgsl and raise.wgsl.
+// The patch of each listed tile of a level.
 //
-// Radiance at a corner is the affine least-squares fit through the samples of the tiles that touch it, so that
-// affine radiance comes out exactly, and all tiles around a corner find the same value. A corner that lies within the
-// edge of a coarser tile takes that edge's value instead, so that patches meet without a gap; levels are therefore
-// fitted coarsest first. Tiles that show another surface than this one's sample are left out.
+// Radiance at a corner is the affine least-squares fit through the samples of the tiles that touch
+// it, so that affine radiance comes out exactly, and all tiles around a corner find the same value.
+// A corner that lies within the edge of a coarser tile takes that edge's value instead, so that
+// patches meet without a gap; levels are therefore fitted coarsest first. Tiles that show another
+// surface than this one's sample are left out.
+
+#import composite/patches.wgsl
+#import composite/raise.wgsl
+#import composite/seen.wgsl
+#import composite/tiling.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
 
 // Tiles of this level and up are drawn as quads by the composite, whatever they hold.
 override QUAD_LEVEL: u32 = 3u;

@@ -1,10 +1,20 @@
-// The light of the samples around a pixel. After frame, surface, surroundings, blocks, tiling, layers and
-// shading/coarse/light.wgsl. The includer binds `gbuffer_depth` and says where a tile's sample lies (`sampled_at`) and what it holds
-// (`light_of`). CPU twin: `composite/light_twin.rs`.
+// The light of the samples around a pixel. The importing shader binds `gbuffer_depth` and says where a
+// tile's sample lies (`sampled_at`) and what it holds (`light_of`). CPU twin:
+// `composite/light_twin.rs`.
 //
-// A pixel of a tile of level l looks at the four points around it of the lattice of that level's centres, and at the samples of
-// the tiles that hold them. Samples count by the distance of their points (bilinear), by how near they lie to the plane of the
-// pixel's surface, and by how alike the normals are.
+// A pixel of a tile of level l looks at the four points around it of the lattice of that level's
+// centres, and at the samples of the tiles that hold them. Samples count by the distance of their
+// points (bilinear), by how near they lie to the plane of the pixel's surface, and by how alike the
+// normals are.
+
+#import composite/tiling.wgsl
+#import shading/coarse/light.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
+#expects gbuffer_depth, sampled_at, light_of
 
 // Beyond this rise over distance a sample lies on another plane than the pixel, and below the second one on the same.
 const OFF_PLANE: f32 = 0.6;

@@ -118,7 +118,7 @@ impl LightComposite {
             size: shader::compute(
                 gpu,
                 "unlit dispatch",
-                &shader::module(gpu, "unlit dispatch", shader::COARSE_DISPATCH),
+                &shader::module(gpu, "unlit dispatch", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

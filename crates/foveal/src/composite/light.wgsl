@@ -1,6 +1,15 @@
-// Each pixel's own surface in the light of the samples around it. After gather.wgsl. CPU twin: `composite/light_twin.rs`.
+// Each pixel's own surface in the light of the samples around it. CPU twin:
+// `composite/light_twin.rs`.
 //
 // Where no sample counts, the pixel is listed, to be shaded by itself.
+
+#import composite/gather.wgsl
+#import composite/tiling.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
 
 @group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(3) var gbuffer_depth: texture_depth_2d_array;

@@ -44,7 +44,7 @@ impl CompositePass {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let taps = |parts, entry| Self::Taps(TapComposite::new(gpu, frame_layout, parts, entry));
+        let taps = |shader, entry| Self::Taps(TapComposite::new(gpu, frame_layout, shader, entry));
         match settings.composite {
             // Where all tiles are pixels there is nothing to smooth.
             Composite::Smooth if settings.coarsest_level > 0 => {

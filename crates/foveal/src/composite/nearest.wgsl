@@ -1,4 +1,7 @@
-// Each pixel takes its tile's sample. After tiling.wgsl.
+// Each pixel takes its tile's sample.
+
+#import composite/tiling.wgsl
+#import shared/level.wgsl
 
 @fragment
 fn nearest(in: LevelVertex) -> @location(0) vec4f {

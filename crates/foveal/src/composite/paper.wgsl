@@ -1,10 +1,14 @@
-// The interpolating composite of the technique's source (Imagire, 'Coarse pixel shading by stencil pyramid').
-// After tiling.wgsl.
+// The interpolating composite of the technique's source (Imagire, 'Coarse pixel shading by stencil
+// pyramid').
 //
-// The text gives the neighbours' tangential coordinate as `P_x` or `P_y`, and the fourth point's as that of the
-// neighbour; here a neighbour keeps the pixel's own tangential coordinate, and the fourth point steps on
-// perpendicularly from the neighbour that lies along the axis that is interpolated last. Points beyond the picture are
-// moved to its border.
+// The text gives the neighbours' tangential coordinate as `P_x` or `P_y`, and the fourth point's as
+// that of the neighbour; here a neighbour keeps the pixel's own tangential coordinate, and the
+// fourth point steps on perpendicularly from the neighbour that lies along the axis that is
+// interpolated last. Points beyond the picture are moved to its border.
+
+#import composite/tiling.wgsl
+#import shared/frame.wgsl
+#import shared/level.wgsl
 
 struct Tap {
     center: vec2f,

@@ -1,5 +1,8 @@
-// A tile's patch: radiance at the corners of the tile's part inside the picture, bilinear between, and how far the
-// middles of its left and its upper edge are raised above that. After tiling.wgsl.
+// A tile's patch: radiance at the corners of the tile's part inside the picture, bilinear between,
+// and how far the middles of its left and its upper edge are raised above that.
+
+#import composite/tiling.wgsl
+#import shared/frame.wgsl
 
 struct Patch {
     c00: vec3f,

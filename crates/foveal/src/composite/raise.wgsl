@@ -1,7 +1,13 @@
-// How far radiance at the middle of an edge between two tiles of one size lies above the mean of the edge's ends:
-// interpolation between the two samples instead of between corners. After seen.wgsl and patches.wgsl. Each tile
-// holds the raises of its left and its upper edge; where the neighbour has another size or shows another surface,
-// and at the picture's border, there is none.
+// How far radiance at the middle of an edge between two tiles of one size lies above the mean of
+// the edge's ends: interpolation between the two samples instead of between corners. Each tile
+// holds the raises of its left and its upper edge; where the neighbour has another size or shows
+// another surface, and at the picture's border, there is none.
+
+#import composite/patches.wgsl
+#import composite/seen.wgsl
+#import composite/tiling.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
 
 // `axis` is that across the edge, `begin` and `end` are the edge's ends.
 fn edge_raise(tile: Tile, value: vec4f, seen: Seen, axis: u32, begin: vec3f, end: vec3f) -> vec3f {

@@ -1,5 +1,12 @@
-// What is seen at a texel of the G-buffer, and whether two texels show the same surface. After tiling.wgsl,
-// normal_of_surface.wgsl or normal_of_depth.wgsl.
+// What is seen at a texel of the G-buffer, and whether two texels show the same surface.
+
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#ifdef BY_DEPTH
+#import shared/normal_of_depth.wgsl
+#else
+#import shared/normal_of_surface.wgsl
+#endif
 
 @group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;

@@ -32,7 +32,6 @@ impl SmoothComposite {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let by_depth = usize::from(settings.sees_by_depth());
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
@@ -52,7 +51,12 @@ impl SmoothComposite {
                 storage_read(),
             ],
         );
-        let module = shader::module(gpu, "smooth composite", shader::COMPOSITE_SMOOTH[by_depth]);
+        let shader = if settings.sees_by_depth() {
+            shader::COMPOSITE_SMOOTH.variant(&["BY_DEPTH"])
+        } else {
+            shader::COMPOSITE_SMOOTH
+        };
+        let module = shader::module(gpu, "smooth composite", shader);
         let target = |write_mask| wgpu::ColorTargetState {
             format: RADIANCE_FORMAT,
             blend: None,

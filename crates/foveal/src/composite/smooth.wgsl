@@ -1,8 +1,19 @@
-// The smooth composite's draws. After curve.wgsl.
+// The smooth composite's draws.
 //
-// Large tiles, and those that hold an edge, are drawn as quads, whose vertices carry all that the tile's pixels need;
-// then the other pixels, each looking up its own tile. A pixel on another surface than its tile's sample is marked
-// and drawn again from the patches of the neighbours on its side that sampled its surface.
+// Large tiles, and those that hold an edge, are drawn as quads, whose vertices carry all that the
+// tile's pixels need; then the other pixels, each looking up its own tile. A pixel on another
+// surface than its tile's sample is marked and drawn again from the patches of the neighbours on
+// its side that sampled its surface.
+
+#variant
+#variant BY_DEPTH
+#import composite/curve.wgsl
+#import composite/patches.wgsl
+#import composite/seen.wgsl
+#import composite/tiling.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/level.wgsl
 
 @group(1) @binding(7) var<storage, read> quad_tiles: array<u32>;
 

@@ -16,7 +16,7 @@ impl TapComposite {
     pub(super) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
-        parts: shader::Parts,
+        shader: shader::Shader,
         entry_point: &str,
     ) -> Self {
         let layout = bind_group_layout(
@@ -31,7 +31,7 @@ impl TapComposite {
         let pipeline = shader::level_screen(
             gpu,
             "composite",
-            &shader::module(gpu, "composite", parts),
+            &shader::module(gpu, "composite", shader),
             entry_point,
             &[frame_layout, &layout],
             &[Some(RADIANCE_FORMAT.into())],

@@ -1,4 +1,6 @@
-// What the composites read: the tiling and its samples. After frame, level and blocks.wgsl.
+// What the composites read: the tiling and its samples.
+
+#import shared/blocks.wgsl
 
 // Of 2 x 2 pixels each.
 @group(1) @binding(0) var owner_levels: texture_2d<u32>;

@@ -1,10 +1,29 @@
 // Forward pass for blended surfaces, back to front over the deferred picture.
-// After frame, surface, vertex, material, lighting and lights.wgsl.
+
+#variant
+#variant CLIPPED
+#variant LAYERED
+#variant REDUCED
+#import shared/frame.wgsl
+#import shared/lighting.wgsl
+#import shared/material_at.wgsl
+#import shared/vertex.wgsl
+#ifndef REDUCED
+#import shared/light.wgsl
+#endif
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;
 // Drawn at sub-samples: what is drawn to has other texels than the picture.
 override SAMPLED: bool = false;
+
+#ifdef REDUCED
+@group(2) @binding(0) var light_table: texture_2d<u32>;
+@group(2) @binding(1) var cluster_table: texture_2d<u32>;
+#else
+@group(2) @binding(0) var<storage, read> lights: Lights;
+@group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
+#endif
 
 // A fragment's position in pixels of the target.
 fn target_position(in: VertexOut) -> vec2f {

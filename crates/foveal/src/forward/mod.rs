@@ -49,15 +49,15 @@ impl ForwardPass {
         constants.push(("LAYERED", f64::from(u8::from(layered))));
         let sampled = settings.aa != Antialiasing::None;
         constants.push(("SAMPLED", f64::from(u8::from(sampled))));
-        let parts = match submission {
-            _ if submission.clips() => shader::FORWARD_CLIPPED,
-            Submission::Multiview => shader::FORWARD_LAYERED,
-            _ if gpu.is_reduced() => shader::REDUCED_FORWARD,
-            _ => shader::FORWARD,
+        let shader = match submission {
+            _ if submission.clips() => shader::FORWARD_FORWARD.variant(&["CLIPPED"]),
+            Submission::Multiview => shader::FORWARD_FORWARD.variant(&["LAYERED"]),
+            _ if gpu.is_reduced() => shader::FORWARD_FORWARD.variant(&["REDUCED"]),
+            _ => shader::FORWARD_FORWARD,
         };
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "forward",
-            module: shader::module(gpu, "forward", parts),
+            module: shader::module(gpu, "forward", shader),
             layout: shader::pipeline_layout(
                 gpu,
                 "forward",

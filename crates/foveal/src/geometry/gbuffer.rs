@@ -190,15 +190,15 @@ impl GeometryPass {
         if !gpu.is_reduced() {
             constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
         }
-        let parts = match submission {
-            _ if submission.clips() => shader::GBUFFER_CLIPPED,
-            Submission::Multiview => shader::GBUFFER_LAYERED,
-            _ if gpu.is_reduced() => shader::REDUCED_GBUFFER,
-            _ => shader::GBUFFER,
+        let shader = match submission {
+            _ if submission.clips() => shader::GEOMETRY_GBUFFER.variant(&["CLIPPED"]),
+            Submission::Multiview => shader::GEOMETRY_GBUFFER.variant(&["LAYERED"]),
+            _ if gpu.is_reduced() => shader::REDUCED_GBUFFER.variant(&["REDUCED"]),
+            _ => shader::GEOMETRY_GBUFFER,
         };
         Pipelines::new(PipelineRecipe {
             label: "geometry",
-            module: shader::module(gpu, "geometry", parts),
+            module: shader::module(gpu, "geometry", shader),
             layout: shader::pipeline_layout(gpu, "geometry", &[frame_layout, material_layout]),
             vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",

@@ -1,4 +1,12 @@
-// Geometry pass: what is seen at each pixel. After frame, surface, vertex and material.wgsl.
+// Geometry pass: what is seen at each pixel.
+
+#variant
+#variant CLIPPED
+#variant LAYERED
+#import shared/material_at.wgsl
+#import shared/material_bindings.wgsl
+#import shared/surface.wgsl
+#import shared/vertex.wgsl
 
 // Alpha cuts holes; without, the depth test may run before the shader.
 override MASKED: bool = false;

@@ -122,7 +122,7 @@ impl LightAssigner {
             wgpu::ShaderStages::COMPUTE,
             &[storage_read(), storage_write()],
         );
-        let module = shader::module(gpu, "clusters", shader::CLUSTERS);
+        let module = shader::module(gpu, "clusters", shader::LIGHTS_CLUSTERS);
         let pipeline = shader::compute(
             gpu,
             "light assignment",

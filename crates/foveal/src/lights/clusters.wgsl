@@ -1,5 +1,8 @@
-// Light assignment: which lights reach which cluster (froxel), one bit each. After frame and
-// light.wgsl. One workgroup per light walks the clusters around the light's sphere.
+// Light assignment: which lights reach which cluster (froxel), one bit each. One workgroup per
+// light walks the clusters around the light's sphere.
+
+#import shared/frame.wgsl
+#import shared/light.wgsl
 
 @group(1) @binding(0) var<storage, read> lights: Lights;
 @group(1) @binding(1) var<storage, read_write> cluster_bits: array<atomic<u32>>;

@@ -6,7 +6,7 @@ use super::{LightUniform, LightsHeader};
 use crate::frame::{FrameUniform, ViewUniform};
 use crate::gpu::{Gpu, Table};
 
-/// The lights and the clusters' bits where shaders look them up (`reduced/lights.wgsl`).
+/// The lights and the clusters' bits where shaders look them up (`shared/light_list.wgsl`).
 #[derive(Debug)]
 pub(crate) struct LightTables {
     pub(crate) lights: Table,

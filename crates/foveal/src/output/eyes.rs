@@ -69,7 +69,7 @@ impl EyesPass {
             pipeline: shader::full_screen(
                 gpu,
                 "eyes",
-                &shader::module(gpu, "eyes", shader::SHOW_EYES),
+                &shader::module(gpu, "eyes", shader::OUTPUT_EYES),
                 "show_eyes",
                 &[frame_layout, &layout],
                 PICTURE_FORMAT,

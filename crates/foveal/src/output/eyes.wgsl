@@ -1,5 +1,8 @@
-// What the picture shows of the eyes' pictures, which hold sRGB values. After frame.wgsl. CPU twin:
+// What the picture shows of the eyes' pictures, which hold sRGB values. CPU twin:
 // `stereo/tests.rs`.
+
+#import shared/frame.wgsl
+#import shared/full_screen.wgsl
 
 // 0 the left eye, 1 both side by side, 2 at half the width each, 3 anaglyph, 4 anaglyph after Dubois, 5 headset.
 override OUTPUT: u32 = 0u;

@@ -34,7 +34,7 @@ impl OverlayPass {
         let pipeline = shader::level_screen(
             gpu,
             "overlay",
-            &shader::module(gpu, "overlay", shader::OVERLAY),
+            &shader::module(gpu, "overlay", shader::OUTPUT_OVERLAY),
             "overlay",
             &[frame_layout, &layout],
             &[Some(wgpu::ColorTargetState {

@@ -1,4 +1,8 @@
-// The tiling drawn over the picture, alpha saying how much of it. After tiling.wgsl.
+// The tiling drawn over the picture, alpha saying how much of it.
+
+#import composite/tiling.wgsl
+#import shared/blocks.wgsl
+#import shared/level.wgsl
 
 // Which: 1 levels, 2 tile borders, 3 samples.
 override VIEW: u32 = 1u;

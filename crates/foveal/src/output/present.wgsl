@@ -1,4 +1,4 @@
-// The picture into the host's texture, stretched to its size. After frame.wgsl.
+// The picture into the host's texture, stretched to its size.
 
 // Whether the target encodes sRGB by itself.
 override ENCODED_BY_TARGET: bool = false;

@@ -1,4 +1,7 @@
-// Radiance to display values. After frame.wgsl.
+// Radiance to display values.
+
+#import shared/frame.wgsl
+#import shared/full_screen.wgsl
 
 // Clipped at 1, else a filmic curve.
 override CLIPPED: bool = false;

@@ -37,7 +37,7 @@ impl ViewPass {
                 storage_read(),
             ],
         );
-        let module = shader::module(gpu, "view", shader::VIEW);
+        let module = shader::module(gpu, "view", shader::OUTPUT_VIEW);
         let constants = [("VIEW", f64::from(number))];
         let pipeline = shader::full_screen(
             gpu,

@@ -1,4 +1,9 @@
-// The G-buffer made visible. After frame and surface.wgsl.
+// The G-buffer made visible.
+
+#import shared/frame.wgsl
+#import shared/full_screen.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
 
 // Which: 1 depth, 2 normals, 3 base colour, 4 instances, 5 motion, 6 materials.
 override VIEW: u32 = 1u;

@@ -1,4 +1,7 @@
-// Creases between blocks of 2 x 2 pixels, by depth alone. After normal_of_depth.wgsl, before wish.wgsl.
+// Creases between blocks of 2 x 2 pixels, by depth alone.
+
+#import shared/normal_of_depth.wgsl
+#expects depth_at
 
 // Of five texels in a row from `first` on: depth's step between the first two, and between the last two, so that a crease
 // anywhere between the second and the fourth lies between both steps; those before and after are the neighbours'. Both are

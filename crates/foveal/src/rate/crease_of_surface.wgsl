@@ -1,4 +1,8 @@
-// Creases between blocks of 2 x 2 pixels, by their surfaces' normals. After surface.wgsl and layers.wgsl, before wish.wgsl.
+// Creases between blocks of 2 x 2 pixels, by their surfaces' normals.
+
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#expects gbuffer_surface
 
 fn normal_at(texel: vec2i) -> vec3f {
     return unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, vec2u(texel)).y));

@@ -1,5 +1,6 @@
-// Where the eye looks, and how coarsely it resolves what lies beside. After frame.wgsl; before wish.wgsl or
-// shading/variable/mask.wgsl. Rust: `rate/wish.rs`.
+// Where the eye looks, and how coarsely it resolves what lies beside. Rust: `rate/wish.rs`.
+
+#import shared/frame.wgsl
 
 struct Wish {
     // Gaze of the left and of the right eye, xy in pixels of the target.

@@ -67,11 +67,11 @@ impl RateMapPass {
             &[uniform(), cells, words, words, depth],
         );
         let cells_layout = bind_group_layout(&gpu.device, "rate cells", stage, &[cells]);
-        let pipeline = |label, parts, entry, layout, constant: &[(&str, f64)]| {
+        let pipeline = |label, shader, entry, layout, constant: &[(&str, f64)]| {
             shader::level_screen(
                 gpu,
                 label,
-                &shader::module(gpu, label, parts),
+                &shader::module(gpu, label, shader),
                 entry,
                 &[frame_layout, layout],
                 &[Some(CELL_FORMAT.into())],
@@ -90,7 +90,11 @@ impl RateMapPass {
         Self {
             wish: pipeline(
                 "rate wish",
-                shader::RATE_WISH[usize::from(settings.sees_by_depth())],
+                if settings.sees_by_depth() {
+                    shader::RATE_WISH.variant(&["BY_DEPTH"])
+                } else {
+                    shader::RATE_WISH
+                },
                 "wish_level",
                 &wish_layout,
                 &super::wish::wish_constants(settings),

@@ -1,6 +1,8 @@
-// Owner level of 2 x 2 pixels, and whether the owner holds a geometric edge. Tiles of level 1 and up hold such
-// quads whole, so the pixels of one agree. After frame, level and blocks.wgsl. CPU twin: `rate/pyramid.rs`,
-// `owner_level`.
+// Owner level of 2 x 2 pixels, and whether the owner holds a geometric edge. Tiles of level 1 and
+// up hold such quads whole, so the pixels of one agree. CPU twin: `rate/pyramid.rs`, `owner_level`.
+
+#import shared/blocks.wgsl
+#import shared/level.wgsl
 
 override COARSEST: u32 = 8u;
 

@@ -1,5 +1,9 @@
-// One level of the min-pyramid from the one below, from level 2 on. After frame, level and blocks.wgsl. CPU twin:
-// `rate/pyramid.rs`, `reduce`.
+// One level of the min-pyramid from the one below, from level 2 on. CPU twin: `rate/pyramid.rs`,
+// `reduce`.
+
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/level.wgsl
 
 // Neighbouring tiles differ by one level at most: a block is allowed only where all blocks around its children are
 // allowed at their level.

@@ -1,5 +1,18 @@
-// The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level 1 of the
-// min-pyramid. After frame, surface, level, blocks and fovea.wgsl. Rust: `rate/wish.rs`.
+// The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level
+// 1 of the min-pyramid. Rust: `rate/wish.rs`.
+
+#variant
+#variant BY_DEPTH
+#import rate/fovea.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/level.wgsl
+#ifdef BY_DEPTH
+#import rate/crease_of_depth.wgsl
+#else
+#import rate/crease_of_surface.wgsl
+#endif
 
 // 0 foveated, 1 constant, 2 image, 3 lens, 4 radii.
 override SOURCE: u32 = 0u;

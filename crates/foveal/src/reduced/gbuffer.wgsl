@@ -1,5 +1,12 @@
-// Geometry pass without a depth texture that could be read: the second target holds the depth's bits where the full
-// renderer's holds instance and motion, which nothing here asks for. After frame, surface, vertex and material.wgsl.
+// Geometry pass without a depth texture that could be read: the second target holds the depth's
+// bits where the full renderer's holds instance and motion, which nothing here asks for.
+
+#variant REDUCED
+#import shared/frame.wgsl
+#import shared/material_at.wgsl
+#import shared/material_bindings.wgsl
+#import shared/surface.wgsl
+#import shared/vertex.wgsl
 
 // Alpha cuts holes; without, the depth test may run before the shader.
 override MASKED: bool = false;

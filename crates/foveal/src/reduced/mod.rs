@@ -1,8 +1,8 @@
 //! The renderer on devices that have neither storage buffers nor compute shaders, held to the full one.
 //!
 //! Such a device (WebGL 2) gets tables in textures for storage buffers (`gpu/table.rs`), lights assigned on the CPU
-//! (`lights/tables.rs`) and a G-buffer that holds depth as an integer; all else is the same code. The shaders of this
-//! folder stand in for those parts that name a storage buffer.
+//! (`lights/tables.rs`) and a G-buffer that holds depth as an integer; all else is the same code. In
+//! shaders, `#ifdef REDUCED` has what reads tables.
 
 use std::sync::OnceLock;
 
@@ -10,7 +10,7 @@ use foveal_scene::{Camera, Scene, generate};
 
 use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;
-use crate::shader::{self, Parts};
+use crate::shader::{self, Shader};
 use crate::testing::{gpu, picture, rendered, rendered_on, small};
 use crate::{Culling, Gpu, Output, Renderer, Settings, Stereo};
 
@@ -122,15 +122,24 @@ fn the_cpu_assigns_lights_to_the_clusters_that_the_device_finds() {
 /// WebGL 2 takes GLSL ES 3.00 alone.
 #[test]
 fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
-    let all: [(Parts, [&str; 2]); 5] = [
-        (shader::REDUCED_GBUFFER, ["vertex", "fragment"]),
-        (shader::REDUCED_SHADE, ["full_screen", "shade_pixel"]),
-        (shader::REDUCED_FORWARD, ["vertex", "fragment"]),
-        (shader::TONE_MAP, ["full_screen", "tone_map"]),
-        (shader::SHOW_EYES, ["full_screen", "show_eyes"]),
+    let all: [(Shader, [&str; 2]); 5] = [
+        (
+            shader::REDUCED_GBUFFER.variant(&["REDUCED"]),
+            ["vertex", "fragment"],
+        ),
+        (
+            shader::SHADING_EVERY_PIXEL.variant(&["REDUCED"]),
+            ["full_screen", "shade_pixel"],
+        ),
+        (
+            shader::FORWARD_FORWARD.variant(&["REDUCED"]),
+            ["vertex", "fragment"],
+        ),
+        (shader::OUTPUT_TONE_MAP, ["full_screen", "tone_map"]),
+        (shader::OUTPUT_EYES, ["full_screen", "show_eyes"]),
     ];
-    for (parts, entry_points) in all {
-        let module = naga::front::wgsl::parse_str(&shader::source(parts)).expect("it parses");
+    for (shader, entry_points) in all {
+        let module = naga::front::wgsl::parse_str(&shader.source()).expect("it parses");
         let mut validator = naga::valid::Validator::new(
             naga::valid::ValidationFlags::all(),
             naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,

@@ -22,7 +22,10 @@ impl Renderer {
                 &stages.settings,
                 self.frame_bindings.layout(),
                 stages.shading.input_layout(),
-                crate::shader::COARSE_AFFINE,
+                [
+                    crate::shader::SHADING_COARSE_SHADE_DRAW.variant(&["AFFINE"]),
+                    crate::shader::SHADING_COARSE_SHADE_LIST.variant(&["AFFINE"]),
+                ],
             );
         }
     }

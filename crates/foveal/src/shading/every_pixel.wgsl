@@ -1,4 +1,9 @@
-// Entry points of the draw that shades every pixel of its viewport. After shading.wgsl.
+// Shades every pixel of a draw's viewport.
+
+#variant
+#variant REDUCED
+#import shading/shading.wgsl
+#import shared/full_screen.wgsl
 
 @fragment
 fn shade_pixel(@builtin(position) position: vec4f) -> @location(0) vec4f {

@@ -1,5 +1,24 @@
-// What shading reads. After layers.wgsl. reduced/input.wgsl stands in where there are no storage buffers.
+// What shading reads: the G-buffer and the lights.
 
+#ifndef REDUCED
+#import shared/layers.wgsl
+#import shared/light.wgsl
+#endif
+
+#ifdef REDUCED
+@group(1) @binding(0) var gbuffer_surface: texture_2d<u32>;
+@group(1) @binding(1) var gbuffer_depth: texture_2d<u32>;
+@group(1) @binding(2) var light_table: texture_2d<u32>;
+@group(1) @binding(3) var cluster_table: texture_2d<u32>;
+
+fn gbuffer_words_at(texel: vec2u) -> vec4u {
+    return textureLoad(gbuffer_surface, texel, 0);
+}
+
+fn gbuffer_depth_at(texel: vec2u) -> f32 {
+    return bitcast<f32>(textureLoad(gbuffer_depth, texel, 0).x);
+}
+#else
 @group(1) @binding(0) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(2) var<storage, read> lights: Lights;
@@ -12,3 +31,4 @@ fn gbuffer_words_at(texel: vec2u) -> vec4u {
 fn gbuffer_depth_at(texel: vec2u) -> f32 {
     return load_depth(gbuffer_depth, texel);
 }
+#endif

@@ -1,4 +1,6 @@
-// Entry point that shades the samples of a list. After shading.wgsl.
+// Entry point that shades the samples of a list.
+
+#import shading/shading.wgsl
 
 // Texels as x | y << 16.
 @group(2) @binding(0) var<storage, read> samples: array<u32>;

@@ -73,16 +73,16 @@ impl ShadingPass {
             wgpu::ShaderStages::COMPUTE,
             if gpu.is_reduced() { &[] } else { &listed },
         );
-        let every_pixel_parts = if gpu.is_reduced() {
-            shader::REDUCED_SHADE
+        let every_pixel_shader = if gpu.is_reduced() {
+            shader::SHADING_EVERY_PIXEL.variant(&["REDUCED"])
         } else {
-            shader::SHADE_EVERY_PIXEL
+            shader::SHADING_EVERY_PIXEL
         };
         let constants = lighting_constants(settings);
         let every_pixel = shader::full_screen(
             gpu,
             "shading",
-            &shader::module(gpu, "shading, every pixel", every_pixel_parts),
+            &shader::module(gpu, "shading, every pixel", every_pixel_shader),
             "shade_pixel",
             &[frame_layout, &input_layout],
             RADIANCE_FORMAT,
@@ -92,7 +92,7 @@ impl ShadingPass {
             shader::compute(
                 gpu,
                 "shading list",
-                &shader::module(gpu, "shading, list", shader::SHADE_LIST),
+                &shader::module(gpu, "shading, list", shader::SHADING_LIST),
                 "shade_list",
                 &[frame_layout, &input_layout, &list_layout],
                 &constants,

@@ -1,7 +1,10 @@
-// Deferred shading: one lighting evaluation per sample. After frame, surface,
-// lighting and input.wgsl.
-// A sample is a texel of the G-buffer; which samples are shaded is the caller's choice: the fragments of
-// a draw, or a list.
+// Deferred shading: one lighting evaluation per sample. A sample is a texel of the G-buffer; which
+// samples are shaded is the caller's choice: the fragments of a draw, or a list.
+
+#import shading/input.wgsl
+#import shared/frame.wgsl
+#import shared/lighting.wgsl
+#import shared/surface.wgsl
 
 // Radiance at a position in pixels, from what the G-buffer holds there.
 fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {

@@ -1,10 +1,14 @@
-// What the rasterizer would have interpolated at a point of a triangle, without the rasterizer. After frame,
-// surface and vertex.wgsl. Rust: `scene/geometry.rs`.
+// What the rasterizer would have interpolated at a point of a triangle, without the rasterizer.
+// Rust: `scene/geometry.rs`.
 //
-// Barycentric coordinates in homogeneous screen space (Olano and Greer 1997, 'Triangle scan conversion using 2D
-// homogeneous coordinates'): no vertex is divided by its w, so that triangles may pass beside and behind the eye.
-// Derivatives are those of the same quotient, as in Burns and Hunt 2013, 'The visibility buffer', and Schied and
-// Dachsbacher 2015, 'Deferred attribute interpolation for memory-efficient deferred shading'.
+// Barycentric coordinates in homogeneous screen space (Olano and Greer 1997, 'Triangle scan
+// conversion using 2D homogeneous coordinates'): no vertex is divided by its w, so that triangles
+// may pass beside and behind the eye. Derivatives are those of the same quotient, as in Burns and
+// Hunt 2013, 'The visibility buffer', and Schied and Dachsbacher 2015, 'Deferred attribute
+// interpolation for memory-efficient deferred shading'.
+
+#import shared/instances.wgsl
+#import shared/vertex.wgsl
 
 struct Place {
     // Of the instance's mesh in `indices`.

@@ -1,7 +1,8 @@
-// Blocks of the coarse tiling: level l has square blocks of 2^l pixels. Blocks of all levels begin anew where the right
-// eye's picture does, so that none belongs to both; those at a picture's right and lower border may reach beyond it.
-// After frame.wgsl.
-// CPU twins: `rate/pyramid.rs`, `shading/coarse/block.rs`.
+// Blocks of the coarse tiling: level l has square blocks of 2^l pixels. Blocks of all levels begin
+// anew where the right eye's picture does, so that none belongs to both; those at a picture's right
+// and lower border may reach beyond it. CPU twins: `rate/pyramid.rs`, `shading/coarse/block.rs`.
+
+#import shared/frame.wgsl
 
 // Bits of a rate-map cell: the level, and whether the block holds a geometric edge.
 const CELL_LEVEL: u32 = 15u;

@@ -1,8 +1,9 @@
-// What every pass knows of the frame. Rust: `frame.rs`, `FrameUniform`.
-// Nothing here may decide a branch by itself: `select`, or an override (ARCHITECTURE.md says why).
+// What every pass knows of the frame. Rust: `frame.rs`, `FrameUniform`. Nothing here may decide a
+// branch by itself: `select`, or an override (ARCHITECTURE.md says why).
 //
-// With two eyes, targets hold the left one's picture and, from `eye_stride` on, the right one's. A position in
-// pixels or texels is one of the target; whose it is, `view_of` and `view_at` say. With one eye all are view 0.
+// With two eyes, targets hold the left one's picture and, from `eye_stride` on, the right one's. A
+// position in pixels or texels is one of the target; whose it is, `view_of` and `view_at` say. With
+// one eye all are view 0.
 
 struct View {
     clip_from_world: mat4x4f,

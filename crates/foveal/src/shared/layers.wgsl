@@ -1,6 +1,6 @@
-// Reading and writing what geometry was drawn into: one layer for the whole target, or one for each eye. With two, a layer is
-// as wide as the stride between the eyes' pictures: from there on a texel of the target lies in the right eye's.
-// Rust: `geometry/gbuffer.rs`.
+// Reading and writing what geometry was drawn into: one layer for the whole target, or one for each
+// eye. With two, a layer is as wide as the stride between the eyes' pictures: from there on a texel
+// of the target lies in the right eye's. Rust: `geometry/gbuffer.rs`.
 
 // Column and row, and the layer, of a texel of the target; layers are `across` texels wide.
 fn in_layers(across: u32, texel: vec2u) -> vec3u {

@@ -1,5 +1,5 @@
-// A full-screen draw at one level of a mip chain. The level arrives as the draw's instance number, so that one
-// pipeline serves all levels.
+// A full-screen draw at one level of a mip chain. The level arrives as the draw's instance number,
+// so that one pipeline serves all levels.
 
 struct LevelVertex {
     @builtin(position) position: vec4f,

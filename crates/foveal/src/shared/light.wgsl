@@ -1,4 +1,6 @@
-// A light, and where along the view axis it is looked for. Needs frame.wgsl. Rust: `lights/upload.rs`.
+// A light, and where along the view axis it is looked for. Rust: `lights/upload.rs`.
+
+#import shared/frame.wgsl
 
 const LIGHT_DIRECTIONAL: u32 = 0u;
 const LIGHT_SPOT: u32 = 2u;

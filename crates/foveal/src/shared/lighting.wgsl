@@ -1,5 +1,13 @@
-// How a surface is lit by lamps: the one lighting model of all passes. After frame, surface, light, light_list and
-// surroundings.wgsl.
+// How a surface is lit by lamps: the one lighting model of all passes.
+
+#import shared/frame.wgsl
+#import shared/light.wgsl
+#import shared/light_list.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
+#ifdef REDUCED
+#import reduced/missing.wgsl
+#endif
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.
 override BLINN_PHONG: bool = false;

@@ -1,4 +1,6 @@
-// One material and its textures, bound together. Before material.wgsl.
+// One material and its textures, bound together.
+
+#import shared/material.wgsl
 
 @group(1) @binding(0) var<uniform> material: Material;
 @group(1) @binding(1) var base_color_texture: texture_2d<f32>;

@@ -1,7 +1,12 @@
-// The normal seen at a texel, world space, where surfaces are not evaluated at every pixel: the triangle's, from depth. After
-// frame.wgsl and layers.wgsl, beside `gbuffer_depth`. CPU twin: `shading/twin.rs`, `normal_of_depth`.
+// The normal seen at a texel, world space, where surfaces are not evaluated at every pixel: the
+// triangle's, from depth. CPU twin: `shading/twin.rs`, `normal_of_depth`.
 //
-// Reversed depth is affine on the screen along a plane: its change per texel tells how the plane is tilted.
+// Reversed depth is affine on the screen along a plane: its change per texel tells how the plane is
+// tilted.
+
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#expects gbuffer_depth
 
 // As in normal_of_surface.wgsl: 45 degrees, as at the creases that mark tiles (rate/crease_of_depth.wgsl).
 const SAME_NORMAL: f32 = 0.7;

@@ -1,5 +1,8 @@
-// The normal seen at a texel, world space: the surface's, bumps included. After surface.wgsl and layers.wgsl, beside
-// `gbuffer_surface`.
+// The normal seen at a texel, world space: the surface's, bumps included.
+
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#expects gbuffer_surface
 
 // Cosine of the angle from which on two normals are two surfaces': 60 degrees, as surfaces may be bumpy.
 const SAME_NORMAL: f32 = 0.5;

@@ -1,5 +1,7 @@
-// A surface without textures: eight layers of noise in world space, each over those before where its height is great.
-// After frame.wgsl, before material.wgsl. CPU twin: `geometry/procedural.rs`.
+// A surface without textures: eight layers of noise in world space, each over those before where
+// its height is great. CPU twin: `geometry/procedural.rs`.
+
+#import shared/frame.wgsl
 
 const PROCEDURAL_LAYERS: u32 = 8u;
 

@@ -1,5 +1,7 @@
-// Textures where there are no neighbours: the includer sets how both UV sets change from pixel to pixel.
-// Before material.wgsl.
+// Textures where there are no neighbours: the importing shader sets how both UV sets change from pixel to
+// pixel.
+
+#import shared/material.wgsl
 
 // Per pixel to the right, per pixel down.
 var<private> uv_right: vec4f;

@@ -1,5 +1,9 @@
 // A point on a surface, ready to be lit, and its packed form in the G-buffer.
 
+#ifdef REDUCED
+#import reduced/missing.wgsl
+#endif
+
 struct Surface {
     // World space.
     position: vec3f,

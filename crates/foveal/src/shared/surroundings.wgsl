@@ -1,4 +1,7 @@
-// What a surface reflects of its surroundings, lamps aside. After frame and surface.wgsl.
+// What a surface reflects of its surroundings, lamps aside.
+
+#import shared/frame.wgsl
+#import shared/surface.wgsl
 
 const PI: f32 = 3.14159265;
 

@@ -1,14 +1,10 @@
-// From a mesh's vertex to the world and the screen. Needs frame.wgsl and instances.wgsl. Rust: `scene/instances.rs`.
+// From a mesh's vertex to the world and the screen.
 
-struct Instance {
-    // Rows of the affine world_from_object.
-    world_x: vec4f,
-    world_y: vec4f,
-    world_z: vec4f,
-    previous_x: vec4f,
-    previous_y: vec4f,
-    previous_z: vec4f,
-}
+#ifdef CLIPPED
+enable clip_distances;
+#endif
+#import shared/frame.wgsl
+#import shared/instances.wgsl
 
 struct VertexIn {
     @builtin(instance_index) drawn_index: u32,
@@ -150,3 +146,38 @@ fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {
     let squared = dot(v, v);
     return select(otherwise, v * inverseSqrt(max(squared, 1e-37)), squared > 1e-30);
 }
+
+#ifdef LAYERED
+// Run once for each layer of the target; a layer is an eye's.
+@vertex
+fn vertex_layered(in: VertexIn, @builtin(view_index) view: u32) -> VertexOut {
+    return vertex_of(in, Drawn(drawn[in.drawn_index], view));
+}
+#endif
+
+#ifdef CLIPPED
+// `VertexOut` with a clip plane between the eyes' parts of the target.
+struct ClippedVertexOut {
+    @invariant @builtin(position) clip: vec4f,
+    @builtin(clip_distances) inside_own_half: array<f32, 1>,
+    @location(0) world: vec3f,
+    @location(1) normal: vec3f,
+    @location(2) tangent: vec4f,
+    @location(3) uv: vec4f,
+    @location(4) color: vec4f,
+    @location(5) @interpolate(flat) instance: u32,
+    @location(6) now: vec3f,
+    @location(7) before: vec3f,
+}
+
+@vertex
+fn vertex_clipped(in: VertexIn) -> ClippedVertexOut {
+    let v = vertex_of(in, drawn_as(in.drawn_index));
+    // A little beyond the middle, so that rounding takes no pixel away, and less than any sub-sample lies beyond it.
+    let slack = v.now.z / (64.0 * frame.size.x);
+    let inside = array<f32, 1>(inside_own_half(v.now, v.instance) + slack);
+    return ClippedVertexOut(
+        v.clip, inside, v.world, v.normal, v.tangent, v.uv, v.color, v.instance, v.now, v.before,
+    );
+}
+#endif

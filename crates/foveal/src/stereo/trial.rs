@@ -120,11 +120,13 @@ struct Trial {
 
 impl Trial {
     fn new(gpu: &Gpu, way: Submission) -> Self {
-        let (parts, vertex) = match way {
-            Submission::Mono | Submission::TwoPass { .. } => (shader::TRIAL, "eye_alone"),
-            Submission::Instanced { clips: false } => (shader::TRIAL, "eyes_beside"),
-            Submission::Instanced { clips: true } => (shader::TRIAL_CLIPPED, "eyes_clipped"),
-            Submission::Multiview => (shader::TRIAL_LAYERED, "eyes_layered"),
+        let (shader, vertex) = match way {
+            Submission::Mono | Submission::TwoPass { .. } => (shader::STEREO_TRIAL, "eye_alone"),
+            Submission::Instanced { clips: false } => (shader::STEREO_TRIAL, "eyes_beside"),
+            Submission::Instanced { clips: true } => {
+                (shader::STEREO_TRIAL.variant(&["CLIPPED"]), "eyes_clipped")
+            }
+            Submission::Multiview => (shader::STEREO_TRIAL.variant(&["LAYERED"]), "eyes_layered"),
         };
         let beside = matches!(way, Submission::Instanced { .. });
         let (size, layers) = if beside {
@@ -136,7 +138,7 @@ impl Trial {
         let target = |format| layered_target(gpu, "stereo trial", size, layers, format, none);
         Self {
             way,
-            pipeline: pipeline(gpu, way, parts, vertex),
+            pipeline: pipeline(gpu, way, shader, vertex),
             layers,
             color: target(COLOR),
             depth: target(DEPTH),
@@ -191,10 +193,10 @@ impl Trial {
 fn pipeline(
     gpu: &Gpu,
     way: Submission,
-    parts: shader::Parts,
+    shader: shader::Shader,
     vertex: &str,
 ) -> wgpu::RenderPipeline {
-    let module = shader::module(gpu, "stereo trial", parts);
+    let module = shader::module(gpu, "stereo trial", shader);
     gpu.device
         .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
             label: Some("stereo trial"),

@@ -1,5 +1,12 @@
-// A small scene on which the ways of submission are tried: draws of a few triangles each that lie everywhere and beyond
-// every border. Rust: `stereo/trial.rs`.
+// A small scene on which the ways of submission are tried: draws of a few triangles each that lie
+// everywhere and beyond every border. Rust: `stereo/trial.rs`.
+
+#variant
+#variant CLIPPED
+#variant LAYERED
+#ifdef CLIPPED
+enable clip_distances;
+#endif
 
 // Triangles of a draw.
 const TRIANGLES: u32 = 128u;
@@ -64,3 +71,32 @@ fn number(in: Corner) -> @location(0) u32 {
     }
     return in.number;
 }
+
+#ifdef CLIPPED
+// Both eyes side by side with a clip plane between them.
+struct ClippedCorner {
+    @invariant @builtin(position) clip: vec4f,
+    @builtin(clip_distances) inside: array<f32, 1>,
+    @location(0) @interpolate(flat) number: u32,
+    @location(1) inside_own_half: f32,
+}
+
+@vertex
+fn eyes_clipped(@builtin(instance_index) drawn: u32, @builtin(vertex_index) vertex: u32) -> ClippedCorner {
+    let c = beside(drawn, vertex);
+    // The plane alone decides.
+    return ClippedCorner(c.clip, array<f32, 1>(c.inside_own_half), c.number, 1.0);
+}
+#endif
+
+#ifdef LAYERED
+// Both eyes to layers of their own.
+@vertex
+fn eyes_layered(
+    @builtin(instance_index) drawn: u32,
+    @builtin(vertex_index) vertex: u32,
+    @builtin(view_index) view: u32,
+) -> Corner {
+    return corner(drawn, vertex, view);
+}
+#endif

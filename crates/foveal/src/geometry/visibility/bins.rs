@@ -83,9 +83,17 @@ impl BinPass {
         }
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = bind_group_layout(&gpu.device, "binning", compute, &types);
-        let parts = rates.map_or(shader::BINS, Rates::bins);
-        let parts = parts[usize::from(subgroups)];
-        let module = shader::module(gpu, "binning", parts);
+        let shader = if subgroups {
+            shader::GEOMETRY_VISIBILITY_BINS_SUBGROUPS
+        } else {
+            shader::GEOMETRY_VISIBILITY_BINS_TABLE
+        };
+        let shader = shader.variant(match rates {
+            None => &["EVERY"],
+            Some(Rates::Samples) => &["RATED"],
+            Some(Rates::Tiles(_)) => &["TILED"],
+        });
+        let module = shader::module(gpu, "binning", shader);
         let constant = rates.and_then(Rates::constant);
         let pipeline = |entry, constants: &[_]| {
             let groups = [frame_layout, &layout];

@@ -1,8 +1,12 @@
-// The seen pixels sorted by material: counted, summed up, scattered. Materials of a family have bins side by side, so
-// that its pixels are one range of the list. After layers.wgsl and family.wgsl. CPU twin: `twin.rs`.
+// The seen pixels sorted by material: counted, summed up, scattered. Materials of a family have
+// bins side by side, so that its pixels are one range of the list. CPU twin: `twin.rs`.
 //
-// A workgroup looks at 16 x 16 pixels, a thread at 2 x 2 of them. Counted and scattered they are by bins_table.wgsl or
-// bins_subgroups.wgsl.
+// A workgroup looks at 16 x 16 pixels, a thread at 2 x 2 of them. Counted and scattered they are by
+// bins_table.wgsl or bins_subgroups.wgsl.
+
+#import geometry/visibility/family.wgsl
+#import shared/layers.wgsl
+#import geometry/visibility/listed.wgsl
 
 // Workgroups that a dispatch may have in one dimension.
 const MAX_ROW: u32 = 65535u;
@@ -30,6 +34,10 @@ struct Bin {
 @group(1) @binding(3) var<storage, read_write> pixels: array<u32>;
 @group(1) @binding(4) var surface: texture_storage_2d_array<rgba32uint, write>;
 @group(1) @binding(5) var<storage, read_write> families: array<Family>;
+#ifndef EVERY
+// Shading rates or owner levels of 2 x 2 pixels each.
+@group(1) @binding(6) var mask: texture_2d<u32>;
+#endif
 
 // What a thread finds at its 2 x 2 pixels: bin + 1, or 0 where nothing is, or where the pixel is another's to stand
 // for.

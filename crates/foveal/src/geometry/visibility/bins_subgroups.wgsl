@@ -1,5 +1,11 @@
-// As bins_table.wgsl where subgroups can be asked: each of their materials is one sum and touches its bin once.
-// After bins.wgsl.
+// As bins_table.wgsl where subgroups can be asked: each of their materials is one sum and touches
+// its bin once.
+
+#variant EVERY
+#variant RATED
+#variant TILED
+#import geometry/visibility/bins.wgsl
+#import shared/layers.wgsl
 
 const NONE: u32 = 0xffffffffu;
 

@@ -1,5 +1,11 @@
-// Pixels counted and scattered where subgroups cannot be asked: what a workgroup finds is gathered in a small hash table
-// first, so that the bins are touched once per workgroup and material. After bins.wgsl.
+// Pixels counted and scattered where subgroups cannot be asked: what a workgroup finds is gathered
+// in a small hash table first, so that the bins are touched once per workgroup and material.
+
+#variant EVERY
+#variant RATED
+#variant TILED
+#import geometry/visibility/bins.wgsl
+#import shared/layers.wgsl
 
 // The hash table: bin + 1, pixels of it, where they go.
 var<workgroup> keys: array<atomic<u32>, 256>;

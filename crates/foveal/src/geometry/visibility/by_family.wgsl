@@ -1,5 +1,8 @@
-// The materials of a family: textures are layers of its arrays. Before material.wgsl, with sample_gradients.wgsl.
-// Rust: `scene/families.rs`.
+// The materials of a family: textures are layers of its arrays. Rust: `scene/families.rs`.
+
+#import shared/attributes.wgsl
+#import shared/material.wgsl
+#import shared/sample_gradients.wgsl
 
 // All of the scene.
 @group(1) @binding(0) var<storage, read> materials: array<Material>;

@@ -1,4 +1,8 @@
-// One material alone. After material_bindings.wgsl; before material.wgsl, with sample_gradients.wgsl.
+// One material alone.
+
+#import shared/material.wgsl
+#export shared/material_bindings.wgsl
+#import shared/sample_gradients.wgsl
 
 fn dispatch_number() -> u32 {
     return material.number;

@@ -1,4 +1,4 @@
-// Every pixel stands for itself. Before bins.wgsl or resolve.wgsl.
+// Every pixel stands for itself.
 
 // What tells which pixels of a quad are listed.
 fn rate_at(quad: vec2u) -> u32 {

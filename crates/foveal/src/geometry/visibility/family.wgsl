@@ -1,4 +1,4 @@
-// What one dispatch evaluates. Before bins.wgsl or resolve.wgsl. Rust: `scene/families.rs`.
+// What one dispatch evaluates. Rust: `scene/families.rs`.
 
 struct Family {
     // Workgroups of 64 pixels, as an indirect dispatch wants them.

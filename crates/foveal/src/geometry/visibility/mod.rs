@@ -22,7 +22,7 @@ use crate::gpu::{Gpu, layered_target, layers_of};
 use crate::recorder::Recorder;
 use crate::scene::{MaterialDispatch, SceneOnGpu, family_layout};
 use crate::stereo::{EyeLayout, Submission};
-use crate::{CoarseSample, Settings, Shading, shader};
+use crate::{CoarseSample, Settings, Shading};
 use bins::{BinPass, Bins};
 use raster::VisiblePass;
 use resolve::ResolvePass;
@@ -127,6 +127,16 @@ pub(crate) enum Rates {
     Tiles(CoarseSample),
 }
 
+/// Which pixels' materials are evaluated: a variant of `listed.wgsl`.
+#[derive(Clone, Copy, Debug)]
+enum Listed {
+    Every,
+    Rated,
+    Tiled,
+    /// Further surfaces of pixels at edges.
+    Further,
+}
+
 impl Rates {
     /// What these settings need.
     pub(crate) fn wanted_by(settings: &Settings) -> Option<Self> {
@@ -137,17 +147,10 @@ impl Rates {
         }
     }
 
-    fn bins(self) -> [shader::Parts; 2] {
+    fn listed(self) -> Listed {
         match self {
-            Self::Samples => shader::BINS_RATED,
-            Self::Tiles(_) => shader::BINS_TILED,
-        }
-    }
-
-    fn resolve(self) -> [shader::Parts; 2] {
-        match self {
-            Self::Samples => shader::RESOLVE_RATED,
-            Self::Tiles(_) => shader::RESOLVE_TILED,
+            Self::Samples => Listed::Rated,
+            Self::Tiles(_) => Listed::Tiled,
         }
     }
 
@@ -204,12 +207,12 @@ impl VisibilityPass {
         };
         let layouts = [frame_layout, layout, &geometry_layout];
         let materials = |rates: Option<Rates>| {
-            let parts = rates.map_or(shader::RESOLVE, Rates::resolve);
+            let listed = rates.map_or(Listed::Every, Rates::listed);
             Materials {
                 bin: BinPass::new(gpu, frame_layout, rates),
                 resolve: ResolvePass::new(
                     gpu,
-                    (parts, by),
+                    (listed, by),
                     layouts,
                     face_normals,
                     windows,
@@ -224,8 +227,15 @@ impl VisibilityPass {
             full: materials(None),
             rated: rates.map(|rates| materials(Some(rates))),
             further: further.map(|footprint| {
-                let parts = shader::RESOLVE_FURTHER;
-                ResolvePass::new(gpu, (parts, by), layouts, none, 1, footprint, None)
+                ResolvePass::new(
+                    gpu,
+                    (Listed::Further, by),
+                    layouts,
+                    none,
+                    1,
+                    footprint,
+                    None,
+                )
             }),
             bins: Bins::new(gpu, 1),
             by,

@@ -1,5 +1,12 @@
-// For devices that do not number triangles: drawn without an index buffer, so that a vertex knows its own.
-// After visible.wgsl and attributes.wgsl.
+// For devices that do not number triangles: drawn without an index buffer, so that a vertex knows
+// its own.
+
+#variant
+#variant LAYERED
+#import geometry/visibility/visible.wgsl
+#import shared/attributes.wgsl
+#import shared/instances.wgsl
+#import shared/vertex.wgsl
 
 @vertex
 fn vertex_pulled(@builtin(instance_index) drawn_index: u32, @builtin(vertex_index) at: u32) -> VisibleVertex {
@@ -20,3 +27,15 @@ fn pulled_vertex(d: Drawn, at: u32) -> VisibleVertex {
 fn visible_pulled(in: VisibleVertex) -> VisibleOut {
     return visible(in, in.triangle);
 }
+
+#ifdef LAYERED
+// Run once for each layer of the target; a layer is an eye's.
+@vertex
+fn vertex_pulled_layered(
+    @builtin(instance_index) drawn_index: u32,
+    @builtin(vertex_index) at: u32,
+    @builtin(view_index) view: u32,
+) -> VisibleVertex {
+    return pulled_vertex(Drawn(drawn[drawn_index], view), at);
+}
+#endif

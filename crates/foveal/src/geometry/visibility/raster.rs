@@ -34,11 +34,17 @@ impl VisiblePass {
             .contains(wgpu::Features::PRIMITIVE_INDEX);
         let layouts = [frame_layout, material_layout, geometry_layout];
         let layered = eyes.0 == Submission::Multiview;
-        let (parts, vertex) = match (numbered, layered) {
-            (true, false) => (shader::VISIBLE_INDEXED, "vertex_indexed"),
-            (true, true) => (shader::VISIBLE_INDEXED_LAYERED, "vertex_indexed_layered"),
-            (false, false) => (shader::VISIBLE_PULLED, "vertex_pulled"),
-            (false, true) => (shader::VISIBLE_PULLED_LAYERED, "vertex_pulled_layered"),
+        let (shader, vertex) = match (numbered, layered) {
+            (true, false) => (shader::GEOMETRY_VISIBILITY_INDEXED, "vertex_indexed"),
+            (true, true) => (
+                shader::GEOMETRY_VISIBILITY_INDEXED.variant(&["LAYERED"]),
+                "vertex_indexed_layered",
+            ),
+            (false, false) => (shader::GEOMETRY_VISIBILITY_PULLED, "vertex_pulled"),
+            (false, true) => (
+                shader::GEOMETRY_VISIBILITY_PULLED.variant(&["LAYERED"]),
+                "vertex_pulled_layered",
+            ),
         };
         let (layouts, vertex, fragment) = if numbered {
             let vertex = VertexSource::Buffers(vertex);
@@ -49,7 +55,7 @@ impl VisiblePass {
         };
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "visibility",
-            module: shader::module(gpu, "visibility", parts),
+            module: shader::module(gpu, "visibility", shader),
             layout: shader::pipeline_layout(gpu, "visibility", layouts),
             vertex,
             fragment,

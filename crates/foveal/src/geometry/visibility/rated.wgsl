@@ -1,5 +1,7 @@
-// A sample's upper left pixel stands for all of its pixels. After the mask's binding and rates.wgsl, before bins.wgsl
-// or resolve.wgsl.
+// A sample's upper left pixel stands for all of its pixels.
+
+#import shading/variable/rates.wgsl
+#expects mask
 
 fn rate_at(quad: vec2u) -> u32 {
     return textureLoad(mask, quad, 0).x & RATE;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Evaluation, Rates, VisibilityTargets, with_mask};
+use super::{Evaluation, Listed, Rates, VisibilityTargets, with_mask};
 use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, uniform,
@@ -48,10 +48,23 @@ pub(super) struct ResolvePass {
     by: MaterialDispatch,
 }
 
+fn shader_of(listed: Listed, by: MaterialDispatch) -> shader::Shader {
+    shader::GEOMETRY_VISIBILITY_RESOLVE.variant(match (by, listed) {
+        (MaterialDispatch::Family, Listed::Every) => &["BY_FAMILY", "EVERY"],
+        (MaterialDispatch::Family, Listed::Rated) => &["BY_FAMILY", "RATED"],
+        (MaterialDispatch::Family, Listed::Tiled) => &["BY_FAMILY", "TILED"],
+        (MaterialDispatch::Family, Listed::Further) => &["BY_FAMILY", "FURTHER"],
+        (MaterialDispatch::Material, Listed::Every) => &["BY_MATERIAL", "EVERY"],
+        (MaterialDispatch::Material, Listed::Rated) => &["BY_MATERIAL", "RATED"],
+        (MaterialDispatch::Material, Listed::Tiled) => &["BY_MATERIAL", "TILED"],
+        (MaterialDispatch::Material, Listed::Further) => &["BY_MATERIAL", "FURTHER"],
+    })
+}
+
 impl ResolvePass {
     pub(super) fn new(
         gpu: &Gpu,
-        (parts, by): ([shader::Parts; 2], MaterialDispatch),
+        (listed, by): (Listed, MaterialDispatch),
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
         windows: u32,
@@ -79,7 +92,7 @@ impl ResolvePass {
         );
         let written = u8::from(face_normals == FaceNormals::Written);
         Self {
-            module: shader::module(gpu, "materials of triangles", parts[by as usize]),
+            module: shader::module(gpu, "materials of triangles", shader_of(listed, by)),
             layout: shader::pipeline_layout(
                 gpu,
                 "materials of triangles",

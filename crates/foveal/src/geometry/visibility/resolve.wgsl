@@ -1,6 +1,28 @@
-// From triangles to the G-buffer's surfaces: the pixels of one family of materials, or of one material. After frame, surface, vertex,
-// attributes, sample_gradients, by_family or by_material, material and family.wgsl, and every.wgsl or what takes
-// its place.
+// From triangles to the G-buffer's surfaces: the pixels of one family of materials, or of one
+// material.
+
+#variant BY_FAMILY EVERY
+#variant BY_FAMILY RATED
+#variant BY_FAMILY TILED
+#variant BY_FAMILY FURTHER
+#variant BY_MATERIAL EVERY
+#variant BY_MATERIAL RATED
+#variant BY_MATERIAL TILED
+#variant BY_MATERIAL FURTHER
+#import geometry/visibility/family.wgsl
+#import shared/attributes.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/material_at.wgsl
+#import shared/sample_gradients.wgsl
+#import shared/surface.wgsl
+#import shared/vertex.wgsl
+#import geometry/visibility/listed.wgsl
+#ifdef BY_FAMILY
+#import geometry/visibility/by_family.wgsl
+#else
+#import geometry/visibility/by_material.wgsl
+#endif
 
 // As in geometry/gbuffer.wgsl.
 override FACE_NORMAL: bool = false;
@@ -21,6 +43,14 @@ struct Windows {
 @group(3) @binding(3) var<storage, read> pixels: array<u32>;
 @group(3) @binding(4) var<uniform> windows: Windows;
 @group(3) @binding(5) var surface: texture_storage_2d_array<rgba32uint, write>;
+#ifdef RATED
+// Shading rates or owner levels of 2 x 2 pixels each.
+@group(3) @binding(6) var mask: texture_2d<u32>;
+#endif
+#ifdef TILED
+// Shading rates or owner levels of 2 x 2 pixels each.
+@group(3) @binding(6) var mask: texture_2d<u32>;
+#endif
 
 // The frame around a texel.
 fn frame_around(texel: vec2u) -> vec4f {

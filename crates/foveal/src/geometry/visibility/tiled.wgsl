@@ -1,5 +1,7 @@
-// Where tiles of a rate map are sampled, and nowhere else: the shading looks at no other pixel. After frame.wgsl,
-// blocks.wgsl and the binding of `mask`, the owner levels; before bins.wgsl or resolve.wgsl.
+// Where tiles of a rate map are sampled, and nowhere else: the shading looks at no other pixel.
+
+#import shared/blocks.wgsl
+#expects mask
 
 // Any of five candidates may be asked for: as in shading/coarse/block.wgsl.
 override TYPICAL: bool = false;

@@ -1,4 +1,10 @@
-// Which triangle is seen at each pixel. After frame, surface, vertex, sample_implicit and material.wgsl.
+// Which triangle is seen at each pixel.
+
+#import shared/frame.wgsl
+#import shared/instances.wgsl
+#import shared/material_at.wgsl
+#import shared/material_bindings.wgsl
+#import shared/vertex.wgsl
 
 // Alpha cuts holes; without, the depth test may run before the shader.
 override MASKED: bool = false;

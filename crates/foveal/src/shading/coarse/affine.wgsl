@@ -1,4 +1,7 @@
-// For tests: radiance that is an affine function of the sample's position, in place of shading.wgsl.
+// For tests: radiance that is an affine function of the sample's position, in place of
+// shading.wgsl.
+
+#import shared/frame.wgsl
 
 // As lighting.wgsl has them.
 override BLINN_PHONG: bool = false;

@@ -1,4 +1,14 @@
-// Radiance of a block. After shading.wgsl and blocks.wgsl. CPU twin: `shading/coarse/block.rs`.
+// Radiance of a block. CPU twin: `shading/coarse/block.rs`.
+
+#import shared/blocks.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#ifdef AFFINE
+#import shading/coarse/affine.wgsl
+#else
+#import shading/input.wgsl
+#import shading/shading.wgsl
+#endif
 
 // The sample whose depth and normal are nearest to the average of five, else the centre.
 override TYPICAL: bool = false;

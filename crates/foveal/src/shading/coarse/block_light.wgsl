@@ -1,4 +1,14 @@
-// Radiance of a block's sample, and its light. After block.wgsl and light.wgsl.
+// Radiance of a block's sample, and its light.
+
+#import shading/coarse/block.wgsl
+#import shading/coarse/light.wgsl
+#import shading/input.wgsl
+#import shading/shading.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/lighting.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
 
 // By how much lamps in all directions widen a highlight. Found by measurement: 0.5, which follows from half-way directions' turning by
 // half as much as the lamps, makes rough stones too bright.

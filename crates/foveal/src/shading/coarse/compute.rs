@@ -21,7 +21,7 @@ impl ComputeBackend {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
-        parts: shader::Parts,
+        shader: shader::Shader,
     ) -> Self {
         let has_light = settings.composite == Composite::Light;
         let types = [
@@ -41,7 +41,7 @@ impl ComputeBackend {
             shade: shader::compute(
                 gpu,
                 "coarse shading, list",
-                &shader::module(gpu, "coarse shading, list", parts),
+                &shader::module(gpu, "coarse shading, list", shader),
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
                 &shading_constants(settings),

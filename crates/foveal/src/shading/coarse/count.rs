@@ -35,7 +35,7 @@ impl CountPass {
         let pipeline = shader::compute(
             gpu,
             "tile counting",
-            &shader::module(gpu, "tile counting", shader::COARSE_LIST),
+            &shader::module(gpu, "tile counting", shader::SHADING_COARSE_LIST),
             "count_tiles",
             &[frame_layout, &layout],
             &[("COARSEST", f64::from(settings.coarsest_level))],

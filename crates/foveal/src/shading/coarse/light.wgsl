@@ -1,8 +1,13 @@
-// What a sample of coarse shading holds beside its radiance: the lamps' light, freed of the surface's own colour, so that other
-// surfaces can be put into it (composite/light.wgsl). After surroundings.wgsl. Rust: `composite/light_twin.rs`.
+// What a sample of coarse shading holds beside its radiance: the lamps' light, freed of the
+// surface's own colour, so that other surfaces can be put into it (composite/light.wgsl). Rust:
+// `composite/light_twin.rs`.
 //
-// Diffuse light is that of one lamp in the direction that light comes from on the whole, mirrored light that of one in the
-// direction that it mostly comes from, spread out as the lamps are: so that each pixel's own normal and roughness shape both.
+// Diffuse light is that of one lamp in the direction that light comes from on the whole, mirrored
+// light that of one in the direction that it mostly comes from, spread out as the lamps are: so
+// that each pixel's own normal and roughness shape both.
+
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
 
 // Least cosine between a normal and a direction of light: light that grazes a surface tells little of light on another.
 const LEAST_COSINE: f32 = 0.1;

@@ -1,4 +1,6 @@
-// Lists the tiles of each level, and sizes the dispatches that shade them. After frame and blocks.wgsl.
+// Lists the tiles of each level, and sizes the dispatches that shade them.
+
+#import shared/blocks.wgsl
 
 override COARSEST: u32 = 8u;
 

@@ -1,4 +1,4 @@
-// Which block of a level's list a thread visits. Before shade_list.wgsl or light_list.wgsl.
+// Which block of a level's list a thread visits.
 
 struct Level {
     level: u32,

@@ -75,7 +75,7 @@ impl TileListing {
             list: shader::compute(
                 gpu,
                 "tile listing",
-                &shader::module(gpu, "tile listing", shader::COARSE_LIST),
+                &shader::module(gpu, "tile listing", shader::SHADING_COARSE_LIST),
                 "list_tiles",
                 &[frame_layout, &list_layout],
                 &[("COARSEST", f64::from(settings.coarsest_level))],
@@ -83,7 +83,7 @@ impl TileListing {
             size: shader::compute(
                 gpu,
                 "tile dispatches",
-                &shader::module(gpu, "tile dispatches", shader::COARSE_DISPATCH),
+                &shader::module(gpu, "tile dispatches", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

@@ -1,5 +1,8 @@
-// Marks in the stencil which blocks of a level are tiles: the others are discarded. After frame, level and
-// blocks.wgsl. CPU twin: `rate/pyramid.rs`, `owns`.
+// Marks in the stencil which blocks of a level are tiles: the others are discarded. CPU twin:
+// `rate/pyramid.rs`, `owns`.
+
+#import shared/blocks.wgsl
+#import shared/level.wgsl
 
 override COARSEST: u32 = 8u;
 

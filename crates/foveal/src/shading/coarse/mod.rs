@@ -64,9 +64,15 @@ impl CoarseShading {
         input_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let shaders = if settings.composite == Composite::Light {
-            [shader::COARSE_LIGHT_DRAW, shader::COARSE_LIGHT_LIST]
+            [
+                shader::SHADING_COARSE_SHADE_DRAW.variant(&["LIGHT"]),
+                shader::SHADING_COARSE_SHADE_LIST.variant(&["LIGHT"]),
+            ]
         } else {
-            [shader::COARSE_SHADE_DRAW, shader::COARSE_SHADE_LIST]
+            [
+                shader::SHADING_COARSE_SHADE_DRAW,
+                shader::SHADING_COARSE_SHADE_LIST,
+            ]
         };
         Self::with_shaders(gpu, settings, frame_layout, input_layout, shaders)
     }
@@ -77,7 +83,7 @@ impl CoarseShading {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
-        [draw, list]: [shader::Parts; 2],
+        [draw, list]: [shader::Shader; 2],
     ) -> Self {
         let backend = settings.backend;
         Self {

@@ -1,4 +1,16 @@
-// Shades the listed blocks of a level. After block.wgsl and listed.wgsl.
+// Shades the listed blocks of a level; with LIGHT, their samples' light too.
+
+#variant
+#variant LIGHT
+#variant AFFINE
+#import shading/coarse/listed.wgsl
+#ifdef LIGHT
+#import shading/coarse/block_light.wgsl
+
+@group(2) @binding(4) var light: texture_storage_2d<rgba32uint, write>;
+#else
+#import shading/coarse/block.wgsl
+#endif
 
 @compute @workgroup_size(64)
 fn shade_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
@@ -7,5 +19,11 @@ fn shade_tiles(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_in
         return;
     }
     let block = listed_block(index);
+#ifdef LIGHT
+    let lit = light_block(block, current.level);
+    textureStore(radiance, block, lit.radiance);
+    textureStore(light, block, lit.light);
+#else
     textureStore(radiance, block, shade_block(block, current.level));
+#endif
 }

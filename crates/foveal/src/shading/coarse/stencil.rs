@@ -54,7 +54,7 @@ impl StencilBackend {
         settings: &Settings,
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
-        parts: shader::Parts,
+        shader: shader::Shader,
     ) -> Self {
         let cells_layout = bind_group_layout(
             &gpu.device,
@@ -80,7 +80,7 @@ impl StencilBackend {
         let mark = shader::level_screen(
             gpu,
             "tile marks",
-            &shader::module(gpu, "tile marks", shader::COARSE_MARK),
+            &shader::module(gpu, "tile marks", shader::SHADING_COARSE_MARK),
             "mark",
             &[frame_layout, &cells_layout],
             // The pass has colour targets; the marking leaves them alone.
@@ -95,7 +95,7 @@ impl StencilBackend {
         let shade = shader::level_screen(
             gpu,
             "coarse shading",
-            &shader::module(gpu, "coarse shading, draw", parts),
+            &shader::module(gpu, "coarse shading, draw", shader),
             "shade_blocks",
             &[frame_layout, input_layout],
             &targets(wgpu::ColorWrites::ALL),

@@ -1,6 +1,14 @@
-// Carries each pixel's light over from the frame before, puts the pixel's surface into it, and lists what is shaded anew.
-// After frame, surface, surroundings, blocks, tiling, layers, shading/coarse/light, remembered and place.wgsl.
-// CPU twin: `shading/history/twin.rs`.
+// Carries each pixel's light over from the frame before, puts the pixel's surface into it, and
+// lists what is shaded anew. CPU twin: `shading/history/twin.rs`.
+
+#import composite/tiling.wgsl
+#import shading/coarse/light.wgsl
+#import shading/history/remembered.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;

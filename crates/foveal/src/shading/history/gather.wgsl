@@ -1,4 +1,14 @@
-// Pixels that remember nothing take the light of the samples around them. After composite/gather.wgsl and remembered.wgsl.
+// Pixels that remember nothing take the light of the samples around them.
+
+#import composite/gather.wgsl
+#import composite/tiling.wgsl
+#import shading/coarse/light.wgsl
+#import shading/history/remembered.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/surface.wgsl
+#import shared/surroundings.wgsl
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;

@@ -1,4 +1,6 @@
-// How far samples lie from what was expected, tile by tile. After remembered.wgsl.
+// How far samples lie from what was expected, tile by tile.
+
+#expects measured
 
 // The largest of a tile, as bits of floats: of all samples, and of those whose own light was remembered.
 struct Measured {

@@ -67,7 +67,7 @@ impl HistoryPasses {
         let (read, write) = (storage_read(), storage_write());
         let light = written(LIGHT_FORMAT);
         let radiance = written(RADIANCE_FORMAT);
-        let pass = |label, parts, entry, more: Option<&_>, types: &[_], constants: &[_]| {
+        let pass = |label, shader, entry, more: Option<&_>, types: &[_], constants: &[_]| {
             let layout = bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types);
             let mut groups = vec![frame];
             groups.extend(more);
@@ -76,7 +76,7 @@ impl HistoryPasses {
                 pipeline: shader::compute(
                     gpu,
                     label,
-                    &shader::module(gpu, label, parts),
+                    &shader::module(gpu, label, shader),
                     entry,
                     &groups,
                     constants,
@@ -88,16 +88,23 @@ impl HistoryPasses {
         Self {
             keep: pass(
                 "kept tiles",
-                shader::HISTORY_TILES,
+                shader::SHADING_HISTORY_TILES,
                 "keep",
                 None,
                 &tiles,
                 &[],
             ),
-            spread: pass("tiles", shader::HISTORY_TILES, "spread", None, &tiles, &[]),
+            spread: pass(
+                "tiles",
+                shader::SHADING_HISTORY_TILES,
+                "spread",
+                None,
+                &tiles,
+                &[],
+            ),
             carry: pass(
                 "carrying light",
-                shader::HISTORY_CARRY,
+                shader::SHADING_HISTORY_CARRY,
                 "carry",
                 None,
                 &[
@@ -121,7 +128,7 @@ impl HistoryPasses {
             ),
             size: pass(
                 "list dispatches",
-                shader::HISTORY_SIZE,
+                shader::SHADING_HISTORY_SIZE,
                 "size_lists",
                 None,
                 &[write, write],
@@ -129,7 +136,7 @@ impl HistoryPasses {
             ),
             shade: pass(
                 "shading of samples",
-                shader::HISTORY_SHADE,
+                shader::SHADING_HISTORY_SHADE,
                 "shade_samples",
                 Some(input),
                 &[read, read, light, radiance, write],
@@ -137,7 +144,7 @@ impl HistoryPasses {
             ),
             gather: pass(
                 "gathering light",
-                shader::HISTORY_GATHER,
+                shader::SHADING_HISTORY_GATHER,
                 "gather_light",
                 None,
                 &[
@@ -147,7 +154,7 @@ impl HistoryPasses {
             ),
             scatter: pass(
                 "gathered light",
-                shader::HISTORY_SCATTER,
+                shader::SHADING_HISTORY_SCATTER,
                 "scatter",
                 None,
                 &[read, read, uint, light],
@@ -155,7 +162,7 @@ impl HistoryPasses {
             ),
             rest: pass(
                 "pixels in turn",
-                shader::HISTORY_REST,
+                shader::SHADING_HISTORY_REST,
                 "list_turn",
                 None,
                 &[read, depth, write, write],

@@ -1,5 +1,7 @@
-// What is remembered of each pixel and of each tile of 8 x 8 pixels from frame to frame. After frame.wgsl.
-// Rust: `shading/history/passes.rs`.
+// What is remembered of each pixel and of each tile of 8 x 8 pixels from frame to frame. Rust:
+// `shading/history/passes.rs`.
+
+#import shared/frame.wgsl
 
 struct History {
     // Added to a place before it is rounded to whole pixels; -0.5 to 0.5, another one each frame.
@@ -94,3 +96,9 @@ struct Dispatch {
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;
+
+// A pixel's place in it: any share of the least numbers lies evenly in the picture (the additive recurrence by the plastic
+// number: Roberts 2018, 'The Unreasonable Effectiveness of Quasirandom Sequences').
+fn order_of(texel: vec2u) -> u32 {
+    return texel.x * 3242174889u + texel.y * 2447445414u;
+}

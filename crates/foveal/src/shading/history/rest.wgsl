@@ -1,5 +1,10 @@
-// While nothing moves: lists the pixels whose turn it is, so that after a round each was shaded by itself. After frame, blocks,
-// layers, remembered and order.wgsl.
+// While nothing moves: lists the pixels whose turn it is, so that after a round each was shaded by
+// itself.
+
+#import shading/history/remembered.wgsl
+#import shared/blocks.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
 
 @group(1) @binding(0) var<storage, read> history: History;
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;

@@ -1,4 +1,6 @@
-// Puts gathered light where it is remembered. After frame and remembered.wgsl.
+// Puts gathered light where it is remembered.
+
+#import shading/history/remembered.wgsl
 
 @group(1) @binding(0) var<storage, read> dispatch: Dispatch;
 @group(1) @binding(1) var<storage, read> bare: array<u32>;

@@ -1,5 +1,10 @@
-// Shades the samples of a list, and measures by how much they differ from what was expected. After shading/coarse/block_light
-// and remembered.wgsl.
+// Shades the samples of a list, and measures by how much they differ from what was expected.
+
+#import shading/coarse/block_light.wgsl
+#import shading/history/measured.wgsl
+#import shading/history/remembered.wgsl
+#import shared/frame.wgsl
+#import shared/surroundings.wgsl
 
 @group(2) @binding(0) var<storage, read> dispatch: Dispatch;
 @group(2) @binding(1) var<storage, read> samples_listed: array<vec2u>;

@@ -1,4 +1,6 @@
-// Dispatches from the lengths of lists. After frame and remembered.wgsl.
+// Dispatches from the lengths of lists.
+
+#import shading/history/remembered.wgsl
 
 // Workgroups that a dispatch may have in one dimension.
 const MAX_ROW: u32 = 65535u;

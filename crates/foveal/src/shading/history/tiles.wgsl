@@ -1,4 +1,7 @@
-// What the last frame's samples say of each tile. After frame, remembered and measured.wgsl.
+// What the last frame's samples say of each tile.
+
+#import shading/history/measured.wgsl
+#import shading/history/remembered.wgsl
 
 @group(1) @binding(0) var<storage, read> history: History;
 @group(1) @binding(1) var<storage, read_write> measured: array<Measured>;

@@ -1,5 +1,11 @@
-// At which rate each quad is shaded, and the list of the samples that follows. After frame, layers, rates, fovea, passes
-// and reproject.wgsl. CPU twin: `twin.rs`.
+// At which rate each quad is shaded, and the list of the samples that follows. CPU twin: `twin.rs`.
+
+#import rate/fovea.wgsl
+#import shading/variable/passes.wgsl
+#import shading/variable/rates.wgsl
+#import shading/variable/reproject.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
 
 // 0 foveated, 1 constant, 3 content, 4 radii.
 override SOURCE: u32 = 3u;

@@ -92,10 +92,11 @@ impl RatePasses {
         );
         let size_layout = layout("rate dispatch", &[write]);
         let shade_layout = layout("rate samples", &[read, read, radiance]);
-        let pipeline = |label, parts, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
-            let module = shader::module(gpu, label, parts);
-            shader::compute(gpu, label, &module, entry, groups, constants)
-        };
+        let pipeline =
+            |label, shader, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
+                let module = shader::module(gpu, label, shader);
+                shader::compute(gpu, label, &module, entry, groups, constants)
+            };
         let buffer = |label, size: usize| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -110,7 +111,7 @@ impl RatePasses {
             reproject: looks_around(settings).then(|| {
                 pipeline(
                     "reprojection",
-                    shader::VARIABLE_REPROJECT,
+                    shader::SHADING_VARIABLE_MASK,
                     "reproject",
                     &[frame, &find_layout],
                     &[],
@@ -118,21 +119,21 @@ impl RatePasses {
             }),
             find: pipeline(
                 "rate mask",
-                shader::VARIABLE_MASK,
+                shader::SHADING_VARIABLE_MASK,
                 "find_rates",
                 &[frame, &find_layout],
                 &find_constants(settings),
             ),
             size: pipeline(
                 "rate dispatch",
-                shader::VARIABLE_SIZE,
+                shader::SHADING_VARIABLE_SIZE,
                 "size_list",
                 &[&size_layout],
                 &[],
             ),
             shade: pipeline(
                 "rate samples",
-                shader::VARIABLE_SHADE,
+                shader::SHADING_VARIABLE_SHADE,
                 "shade_samples",
                 &[frame, input, &shade_layout],
                 &[model, assignment, ("ONE_SURFACE", one_surface)],

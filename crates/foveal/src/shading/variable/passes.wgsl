@@ -1,4 +1,4 @@
-// What the passes that find rates are told, read and write. After fovea.wgsl. Rust: `shading/variable/passes.rs`.
+// What the passes that find rates are told, read and write. Rust: `shading/variable/passes.rs`.
 
 struct Rates {
     // Least relative contrast that is shaded in full.

@@ -1,11 +1,16 @@
-// What is known of each quad, carried over from the frame before. After frame, layers and passes.wgsl.
-// CPU twin: `twin.rs`.
+// What is known of each quad, carried over from the frame before. CPU twin: `twin.rs`.
 //
-// Known are the luminances of the quad's four pixels when they were last shaded one by one: a quad that was shaded
-// coarsely keeps those from before. So no rate ever depends on what coarse shading made of the picture.
+// Known are the luminances of the quad's four pixels when they were last shaded one by one: a quad
+// that was shaded coarsely keeps those from before. So no rate ever depends on what coarse shading
+// made of the picture.
 //
-// x: luminances, 8 bits each (upper left, upper right, lower left, lower right). y: the distance's upper half, as a
-// rounded float of 16 bits, which is 0.4 % apart; the notes below; 14 bits of the instance's number + 1.
+// x: luminances, 8 bits each (upper left, upper right, lower left, lower right). y: the distance's
+// upper half, as a rounded float of 16 bits, which is 0.4 % apart; the notes below; 14 bits of the
+// instance's number + 1.
+
+#import shading/variable/passes.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
 
 const KNOWN_INSTANCE: u32 = 0x3fffu;
 // Something is known.

@@ -1,5 +1,12 @@
-// Lighting once per listed sample, at its centre, written to all of its pixels. After shading.wgsl and rates.wgsl.
-// CPU twin: `twin.rs`.
+// Lighting once per listed sample, at its centre, written to all of its pixels. CPU twin:
+// `twin.rs`.
+
+#import shading/input.wgsl
+#import shading/variable/rates.wgsl
+#import shared/frame.wgsl
+#import shared/layers.wgsl
+#import shared/lighting.wgsl
+#import shared/surface.wgsl
 
 // The surfaces of a sample's pixels are one already.
 override ONE_SURFACE: bool = false;

@@ -34,7 +34,7 @@ impl RateView {
         let pipeline = shader::full_screen(
             gpu,
             "rate view",
-            &shader::module(gpu, "rate view", shader::VARIABLE_VIEW),
+            &shader::module(gpu, "rate view", shader::SHADING_VARIABLE_VIEW),
             "show",
             &[frame_layout, &layout],
             PICTURE_FORMAT,

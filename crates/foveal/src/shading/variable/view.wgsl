@@ -1,4 +1,7 @@
-// The rates over the finished frame. After rates.wgsl and frame.wgsl.
+// The rates over the finished frame.
+
+#import shading/variable/rates.wgsl
+#import shared/full_screen.wgsl
 
 // 1 rates in the source's colours, 2 quads of which nothing was known, 3 the samples' own pixels.
 override VIEW: u32 = 1u;

@@ -1,25 +1,17 @@
-//! Shaders: put together from their parts, one constant per module (`parts.rs`), compiled, and made into pipelines.
+//! Shaders: composed from files that import each other (`compose.rs`), compiled, and made into pipelines.
 
-mod parts;
+mod compose;
 
-pub(crate) use parts::*;
+pub(crate) use compose::*;
 
 use crate::gpu::Gpu;
 
-/// A shader's parts in the order in which they are joined.
-pub(crate) type Parts = &'static [&'static str];
-
-/// Joins a shader's parts.
-pub(crate) fn source(parts: Parts) -> String {
-    parts.join("\n")
-}
-
 /// Compiles a shader.
-pub(crate) fn module(gpu: &Gpu, label: &str, parts: Parts) -> wgpu::ShaderModule {
+pub(crate) fn module(gpu: &Gpu, label: &str, shader: Shader) -> wgpu::ShaderModule {
     gpu.device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(source(parts).into()),
+            source: wgpu::ShaderSource::Wgsl(shader.source().into()),
         })
 }
 
