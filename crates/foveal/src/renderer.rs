@@ -22,6 +22,7 @@ use crate::{Error, FrameStats, SceneStats, Settings};
 use figures::{Counts, InFlight};
 
 mod figures;
+mod plan;
 mod stages;
 mod submit;
 #[cfg(test)]

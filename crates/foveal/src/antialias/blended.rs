@@ -4,6 +4,7 @@
 use super::pattern::{Band, Pattern};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, target, uniform};
 use crate::recorder::{Recorder, drawn_over};
+use crate::shader::Screen;
 use crate::shading::RADIANCE_FORMAT;
 use crate::{Settings, shader};
 
@@ -14,7 +15,7 @@ pub(super) const TEXEL_BYTES: u64 = 8;
 #[derive(Debug)]
 pub(crate) struct BlendedTargets {
     /// The sub-samples of one band.
-    pub(super) samples_view: wgpu::TextureView,
+    pub(crate) samples_view: wgpu::TextureView,
     /// The picture's pixels.
     average_view: wgpu::TextureView,
 }
@@ -56,18 +57,16 @@ impl BlendedStage {
         let pipeline = |entry, blend| {
             shader::screen(
                 gpu,
-                "blended",
-                &module,
-                ("full_screen", entry),
-                wgpu::PrimitiveTopology::TriangleList,
-                &[frame, &layout],
-                &[Some(wgpu::ColorTargetState {
-                    format: RADIANCE_FORMAT,
-                    blend,
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-                None,
-                &Pattern::of(settings).constants(),
+                &Screen {
+                    groups: &[frame, &layout],
+                    targets: &[Some(wgpu::ColorTargetState {
+                        format: RADIANCE_FORMAT,
+                        blend,
+                        write_mask: wgpu::ColorWrites::ALL,
+                    })],
+                    constants: &Pattern::of(settings).constants(),
+                    ..Screen::of("blended", &module, entry)
+                },
             )
         };
         let over = wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING;

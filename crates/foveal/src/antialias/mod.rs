@@ -20,7 +20,7 @@ mod twin;
 pub(crate) use limits::validate;
 #[cfg(test)]
 pub(crate) use pattern::BandUniform;
-pub(crate) use stage::AntialiasStage;
+pub(crate) use stage::{AntialiasStage, Shadings};
 #[cfg(test)]
 pub(crate) use targets::QueueUniform;
 pub(crate) use targets::SampleTargets;

@@ -1,9 +1,7 @@
 //! One frame of anti-aliasing, band by band.
 
-use crate::forward::ForwardPass;
-use crate::geometry::{DrawList, GeometryPass, Window};
+use crate::geometry::DrawList;
 use crate::gpu::{Gpu, bind_group};
-use crate::lights::LightAssigner;
 use crate::output::PICTURE_FORMAT;
 use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::scene::SceneOnGpu;
@@ -11,7 +9,7 @@ use crate::shading::ShadingPass;
 use crate::targets::Targets;
 use crate::{Antialiasing, Settings, View, shader};
 
-use super::blended::BlendedStage;
+use super::blended::{BlendedStage, BlendedTargets};
 use super::pattern::{Band, Pattern};
 use super::pipelines::{AntialiasPipelines, Edges};
 use super::targets::{ALL_GROUPS, QueueUniform, SampleTargets};
@@ -29,6 +27,15 @@ pub(crate) struct EdgeCounts {
     pub(crate) evaluations: u64,
     /// Entries that were wanted, whether there was room for them or not.
     pub(crate) entries: u64,
+}
+
+/// How a band's entries are shaded.
+#[derive(Clone, Copy)]
+pub(crate) struct Shadings<'a> {
+    /// What shading reads of the sub-samples' G-buffer.
+    pub(crate) input: &'a wgpu::BindGroup,
+    /// They are shaded at all.
+    pub(crate) shade: bool,
 }
 
 /// Fills the G-buffer from sub-samples, and shades what one evaluation per pixel leaves out.
@@ -69,60 +76,58 @@ impl AntialiasStage {
         })
     }
 
-    /// Draws all bands: fills the ordinary G-buffer and, if `shade`, the sums of the edge pixels.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
-    pub(crate) fn draw(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
-        geometry: &GeometryPass,
-        shading: &ShadingPass,
-        forward: &ForwardPass,
-        lights: &LightAssigner,
-        targets: &Targets,
-        shade: bool,
-    ) {
-        let Some(t) = &targets.samples else { return };
+    /// Whether sub-samples' materials are evaluated only once their triangles were sorted into surfaces.
+    pub(crate) fn sorts_triangles(&self) -> bool {
+        self.triangles.is_some()
+    }
+
+    /// Begins a frame, before its bands.
+    pub(crate) fn begin(&self, recorder: &mut Recorder<'_>, t: &SampleTargets) {
         t.begin_frame(recorder.encoder);
-        let blend =
-            |recorder: &mut Recorder<'_>, band: &(Band, wgpu::Buffer), windows: &[Window]| {
-                if let (Some(blended), true) = (&t.blended, shade && !list.blended.is_empty()) {
-                    let (target, depth) = (&blended.samples_view, &t.samples.depth_view);
-                    forward.draw_alone(recorder, scene, lights, list, target, depth, windows);
-                    self.blended.average(recorder, blended, band.0, &band.1);
-                }
-            };
-        if let Some(triangles) = &self.triangles {
-            triangles.draw(recorder, scene, list, geometry, t, targets, blend);
-            return;
-        }
-        let size = targets.picture_view.texture().size();
-        let input = shading.input(recorder.gpu, &t.samples, &scene.light_buffer, lights);
-        for at in &t.bands {
-            let (band, uniform) = at;
-            let windows = band.windows(&t.pattern, size.width, size.height);
-            geometry.draw_windows(recorder, scene, list, &t.samples, &windows);
-            blend(recorder, at, &windows);
-            t.begin_band(recorder.encoder);
-            self.merge(recorder, &input, t, targets, *band, uniform);
-            if shade && self.edges != Edges::None {
-                self.shade_entries(recorder, &input, t, uniform);
-            }
+        if self.triangles.is_some() {
+            TriangleStage::begin(recorder, t);
         }
     }
 
-    fn merge(
+    /// Encodes what averages a band's blended surfaces, drawn at the sub-samples.
+    pub(crate) fn average(
+        &self,
+        recorder: &mut Recorder<'_>,
+        blended: &BlendedTargets,
+        (band, uniform): &(Band, wgpu::Buffer),
+    ) {
+        self.blended.average(recorder, blended, *band, uniform);
+    }
+
+    /// Encodes what becomes of a band's sub-samples once they are drawn: each pixel's largest surface goes to the ordinary
+    /// G-buffer, the others to the queue; entries are shaded at once where their surfaces are known.
+    pub(crate) fn merge(
+        &self,
+        recorder: &mut Recorder<'_>,
+        scene: &SceneOnGpu,
+        targets: &Targets,
+        (band, uniform): &(Band, wgpu::Buffer),
+        shading: Shadings<'_>,
+    ) {
+        let Some(t) = &targets.samples else { return };
+        if let Some(triangles) = &self.triangles {
+            return triangles.classify(recorder, scene, t, targets, (*band, uniform));
+        }
+        let Shadings { input, shade } = shading;
+        t.begin_band(recorder.encoder);
+        self.merge_surfaces(recorder, input, t, targets, (*band, uniform));
+        if shade && self.edges != Edges::None {
+            self.shade_entries(recorder, input, t, uniform);
+        }
+    }
+
+    fn merge_surfaces(
         &self,
         recorder: &mut Recorder<'_>,
         input: &wgpu::BindGroup,
         t: &SampleTargets,
         targets: &Targets,
-        band: Band,
-        uniform: &wgpu::Buffer,
+        (band, uniform): (Band, &wgpu::Buffer),
     ) {
         let group = bind_group(
             &recorder.gpu.device,
@@ -185,23 +190,20 @@ impl AntialiasStage {
         self.edges != Edges::All
     }
 
-    /// Joins the entries with the ordinary path's radiance, in the radiance target.
+    /// Joins the entries with the ordinary path's radiance, in the radiance target; `further` is what shading reads of
+    /// the further surfaces' G-buffer.
     pub(crate) fn combine(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        shading: &ShadingPass,
-        lights: &LightAssigner,
         targets: &Targets,
+        further: Option<&wgpu::BindGroup>,
     ) {
         let Some(t) = &targets.samples else { return };
         if self.edges == Edges::None {
             return;
         }
-        if let Some(triangles) = &self.triangles {
-            let gpu = recorder.gpu;
-            let input = |gbuffer: &_| shading.input(gpu, gbuffer, &scene.light_buffer, lights);
-            triangles.shade(recorder, input, t, targets);
+        if let (Some(triangles), Some(further)) = (&self.triangles, further) {
+            triangles.shade(recorder, further, t, targets);
         }
         let p = &self.pipelines;
         // Without a rate map it is not looked at.
@@ -240,10 +242,10 @@ impl AntialiasStage {
         }
     }
 
-    /// Draws the view of the tally that the settings ask for; `false` where they ask for none.
-    pub(crate) fn show(&self, recorder: &mut Recorder<'_>, targets: &Targets) -> bool {
+    /// Draws the view of the tally that the settings ask for.
+    pub(crate) fn show(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
         let (Some((pipeline, layout)), Some(t)) = (&self.view, &targets.samples) else {
-            return false;
+            return;
         };
         let tally = [wgpu::BindingResource::TextureView(&t.tally_view)];
         let group = bind_group(&recorder.gpu.device, "tally", layout, &tally);
@@ -252,7 +254,6 @@ impl AntialiasStage {
         pass.set_pipeline(pipeline);
         pass.set_bind_group(1, &group, &[]);
         pass.draw(0..3, 0..1);
-        true
     }
 
     /// What the frame shaded after which the targets' queue held these bytes.

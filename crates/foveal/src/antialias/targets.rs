@@ -4,7 +4,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use crate::Settings;
-use crate::geometry::{GBuffer, VisibilityTargets};
+use crate::geometry::{GBuffer, VisibilityTargets, Window};
 use crate::gpu::{Gpu, target};
 use crate::stereo::EyeLayout;
 
@@ -95,6 +95,32 @@ impl SampleTargets {
             pixels
         };
         Self::with_room(gpu, settings, rows, room)
+    }
+
+    /// The frame's bands of rows, and what shaders are told of each.
+    pub(crate) fn bands(&self) -> &[(Band, wgpu::Buffer)] {
+        &self.bands
+    }
+
+    /// How the frame is drawn to fill a band's sub-samples.
+    pub(crate) fn windows(&self, band: Band) -> Vec<Window> {
+        let size = self.tally_view.texture().size();
+        band.windows(&self.pattern, size.width, size.height)
+    }
+
+    /// The G-buffer of the sub-samples of a band.
+    pub(crate) fn gbuffer(&self) -> &GBuffer {
+        &self.samples
+    }
+
+    /// The G-buffer of further surfaces, where triangles are sorted.
+    pub(crate) fn further_gbuffer(&self) -> Option<&GBuffer> {
+        self.further.as_ref().map(|further| &further.gbuffer)
+    }
+
+    /// Where blended surfaces are drawn, if any were.
+    pub(crate) fn blended(&self) -> Option<&BlendedTargets> {
+        self.blended.as_ref()
     }
 
     /// Entries that there is room for.

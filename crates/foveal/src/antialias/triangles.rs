@@ -6,16 +6,16 @@
 //! those alone, so a pixel within a surface costs what it costs without anti-aliasing, where the other way evaluates
 //! and averages all sub-samples.
 
-use crate::geometry::DrawList;
 use crate::geometry::{
-    DEPTH_FORMAT, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, TRIANGLE_FORMAT,
-    VisibilityTargets, Window, geometry_layout,
+    DEPTH_FORMAT, GBuffer, IDENTITY_FORMAT, SURFACE_FORMAT, TRIANGLE_FORMAT, VisibilityTargets,
+    geometry_layout,
 };
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, target, uniform,
 };
 use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::scene::SceneOnGpu;
+use crate::shader::Screen;
 use crate::shading::lighting_constants;
 use crate::targets::Targets;
 use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, Shading, shader};
@@ -49,7 +49,7 @@ const NONE: (u32, u32) = (1, 1);
 #[derive(Debug)]
 pub(crate) struct FurtherTargets {
     /// Of entry i, row by row; without depth.
-    gbuffer: GBuffer,
+    pub(super) gbuffer: GBuffer,
     depth_view: wgpu::TextureView,
     /// Of one band: how many pixels show several triangles, which they are, and each one's largest surface.
     candidates: wgpu::Buffer,
@@ -207,6 +207,7 @@ impl TriangleStage {
             )
         };
         let targets = [IDENTITY_FORMAT, TRIANGLE_FORMAT, TALLY_FORMAT].map(|f| Some(f.into()));
+        let classification = shader::module(gpu, "classification", shader::ANTIALIAS_CLASSIFY);
         Self {
             candidates: sorting(
                 "candidates",
@@ -222,20 +223,19 @@ impl TriangleStage {
             ),
             classify: shader::screen(
                 gpu,
-                "classification",
-                &shader::module(gpu, "classification", shader::ANTIALIAS_CLASSIFY),
-                ("full_screen", "classify"),
-                wgpu::PrimitiveTopology::TriangleList,
-                &[frame, &samples_layout, &geometry, &classify_layout],
-                &targets,
-                Some(wgpu::DepthStencilState {
-                    format: DEPTH_FORMAT,
-                    depth_write_enabled: Some(true),
-                    depth_compare: Some(wgpu::CompareFunction::Always),
-                    stencil: wgpu::StencilState::default(),
-                    bias: wgpu::DepthBiasState::default(),
-                }),
-                &[count, side],
+                &Screen {
+                    groups: &[frame, &samples_layout, &geometry, &classify_layout],
+                    targets: &targets,
+                    depth_stencil: Some(wgpu::DepthStencilState {
+                        format: DEPTH_FORMAT,
+                        depth_write_enabled: Some(true),
+                        depth_compare: Some(wgpu::CompareFunction::Always),
+                        stencil: wgpu::StencilState::default(),
+                        bias: wgpu::DepthBiasState::default(),
+                    }),
+                    constants: &[count, side],
+                    ..Screen::of("classification", &classification, "classify")
+                },
             ),
             shade: shader::compute(
                 gpu,
@@ -253,59 +253,26 @@ impl TriangleStage {
         }
     }
 
-    /// Encodes all but the shading: fills the ordinary G-buffer and that of the further surfaces. `blend` draws each
-    /// band's blended surfaces.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
-    pub(super) fn draw(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
-        geometry: &GeometryPass,
-        t: &SampleTargets,
-        targets: &Targets,
-        blend: impl Fn(&mut Recorder<'_>, &(Band, wgpu::Buffer), &[Window]),
-    ) {
-        // The settings that lead here have both.
-        let (Some(triangles), Some(further)) = (geometry.triangles(), &t.further) else {
-            return;
-        };
-        let size = targets.picture_view.texture().size();
-        // Entries that no pixel has show nothing.
-        let emptied = [overwritten(&further.gbuffer.identity_view)];
-        drop(recorder.render_pass("classification", &emptied, None));
-        for at in &t.bands {
-            let (band, uniform) = at;
-            let windows = band.windows(&t.pattern, size.width, size.height);
-            triangles.draw_triangles(recorder, scene, list, &t.samples, &windows);
-            blend(recorder, at, &windows);
-            self.classify(recorder, scene, t, further, targets, *band, uniform);
+    /// Empties what entries that no pixel has show.
+    pub(super) fn begin(recorder: &mut Recorder<'_>, t: &SampleTargets) {
+        if let Some(further) = &t.further {
+            let emptied = [overwritten(&further.gbuffer.identity_view)];
+            drop(recorder.render_pass("classification", &emptied, None));
         }
-        let whole = Window {
-            frame: [0.0, 0.0, size.width as f32, size.height as f32],
-            part: [0, 0, size.width, size.height],
-        };
-        triangles.evaluate(recorder, scene, list, &targets.gbuffer, &[whole]);
-        triangles.evaluate_further(recorder, scene, list, &further.gbuffer, whole);
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
-    fn classify(
+    /// Encodes the sorting of a band's sub-samples, whose triangles are known: each pixel's largest surface into the
+    /// ordinary G-buffer, the others into that of further surfaces.
+    pub(super) fn classify(
         &self,
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         t: &SampleTargets,
-        further: &FurtherTargets,
         targets: &Targets,
-        band: Band,
-        uniform: &wgpu::Buffer,
+        (band, uniform): (Band, &wgpu::Buffer),
     ) {
+        // The settings that lead here have them.
+        let Some(further) = &t.further else { return };
         let (Some(samples), Some(ordinary), Some(rest)) = (
             &t.samples.visibility,
             &targets.gbuffer.visibility,
@@ -402,7 +369,7 @@ impl TriangleStage {
     pub(super) fn shade(
         &self,
         recorder: &mut Recorder<'_>,
-        input: impl FnOnce(&GBuffer) -> wgpu::BindGroup,
+        input: &wgpu::BindGroup,
         t: &SampleTargets,
         targets: &Targets,
     ) {
@@ -425,10 +392,9 @@ impl TriangleStage {
                 view(owners),
             ],
         );
-        let input = input(&further.gbuffer);
         let mut pass = recorder.compute_pass("edge shading");
         pass.set_pipeline(&self.shade);
-        pass.set_bind_group(1, &input, &[]);
+        pass.set_bind_group(1, input, &[]);
         pass.set_bind_group(2, &group, &[]);
         pass.dispatch_workgroups_indirect(&t.queue, ALL_GROUPS);
     }

@@ -7,6 +7,7 @@
 use super::patches::{DRAW_BYTES, PatchPass, PatchTargets};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
+use crate::shader::Screen;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT, stencil_state};
 use crate::targets::Targets;
 use crate::{Settings, shader};
@@ -65,14 +66,14 @@ impl SmoothComposite {
         let pipeline = |label, vertex, fragment, topology, stencil, write_mask| {
             shader::screen(
                 gpu,
-                label,
-                &module,
-                (vertex, fragment),
-                topology,
-                &[frame_layout, &layout],
-                &[Some(target(write_mask))],
-                Some(stencil),
-                &[],
+                &Screen {
+                    vertex,
+                    topology,
+                    groups: &[frame_layout, &layout],
+                    targets: &[Some(target(write_mask))],
+                    depth_stencil: Some(stencil),
+                    ..Screen::of(label, &module, fragment)
+                },
             )
         };
         use wgpu::{ColorWrites, CompareFunction as Compare, StencilOperation as Op};

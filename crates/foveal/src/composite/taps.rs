@@ -3,6 +3,7 @@
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
 use crate::shader;
+use crate::shader::Screen;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
 
 /// A pixel's radiance from a few taps.
@@ -28,15 +29,14 @@ impl TapComposite {
                 sampled(wgpu::TextureSampleType::Float { filterable: false }),
             ],
         );
-        let pipeline = shader::level_screen(
+        let module = shader::module(gpu, "composite", shader);
+        let pipeline = shader::screen(
             gpu,
-            "composite",
-            &shader::module(gpu, "composite", shader),
-            entry_point,
-            &[frame_layout, &layout],
-            &[Some(RADIANCE_FORMAT.into())],
-            None,
-            &[],
+            &Screen {
+                groups: &[frame_layout, &layout],
+                targets: &[Some(RADIANCE_FORMAT.into())],
+                ..Screen::of_level("composite", &module, entry_point)
+            },
         );
         Self { pipeline, layout }
     }

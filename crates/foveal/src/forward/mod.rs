@@ -3,11 +3,12 @@
 #[cfg(test)]
 pub(crate) mod twin;
 
-use crate::geometry::{DrawList, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window};
+use crate::geometry::{
+    DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window,
+};
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
-use crate::lights::LightAssigner;
+use crate::lights::SceneLights;
 use crate::recorder::{Recorder, drawn_over, overwritten};
-use crate::scene::SceneOnGpu;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
@@ -18,6 +19,12 @@ use crate::{Antialiasing, Settings, shader};
 enum Copied {
     ToLayers,
     Back,
+}
+
+/// What blended surfaces are drawn to, and tested against.
+struct ForwardTarget<'a> {
+    color: Option<wgpu::RenderPassColorAttachment<'a>>,
+    depth: &'a wgpu::TextureView,
 }
 
 /// Draws blended surfaces.
@@ -102,62 +109,54 @@ impl ForwardPass {
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        lights: &LightAssigner,
-        list: &DrawList,
+        draws: Draws<'_>,
+        lights: SceneLights<'_>,
         targets: &Targets,
     ) {
-        if list.blended.is_empty() {
+        if draws.list.blended.is_empty() {
             return;
         }
         let radiance = targets.radiance_layers.as_ref();
-        let color = drawn_over(radiance.unwrap_or(&targets.radiance_view));
+        let target = ForwardTarget {
+            color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
+            depth: &targets.gbuffer.depth_view,
+        };
         let (width, height) = self.layout.target_size();
         let whole = [Window::sized(width, height)];
-        let depth = &targets.gbuffer.depth_view;
         self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
-        self.draw_windows(recorder, scene, lights, list, color, depth, &whole);
+        self.draw_windows(recorder, draws, lights, target, &whole);
         self.copy_radiance(recorder.encoder, targets, Copied::Back);
     }
 
-    /// Encodes the pass over nothing, for the frame drawn once into each of `windows`: sub-samples.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
+    /// Encodes the pass over nothing, for the frame drawn once into each of `windows`: sub-samples, whose depth is
+    /// known.
     pub(crate) fn draw_alone(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        lights: &LightAssigner,
-        list: &DrawList,
-        target: &wgpu::TextureView,
-        depth: &wgpu::TextureView,
+        draws: Draws<'_>,
+        lights: SceneLights<'_>,
+        (color, depth): (&wgpu::TextureView, &wgpu::TextureView),
         windows: &[Window],
     ) {
-        let color = overwritten(target);
-        self.draw_windows(recorder, scene, lights, list, color, depth, windows);
+        let color = overwritten(color);
+        let target = ForwardTarget { color, depth };
+        self.draw_windows(recorder, draws, lights, target, windows);
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
     fn draw_windows(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        lights: &LightAssigner,
-        list: &DrawList,
-        color: Option<wgpu::RenderPassColorAttachment<'_>>,
-        depth: &wgpu::TextureView,
+        draws: Draws<'_>,
+        lights: SceneLights<'_>,
+        ForwardTarget { color, depth }: ForwardTarget<'_>,
         windows: &[Window],
     ) {
+        let Draws { scene, list } = draws;
         let lights = bind_group(
             &recorder.gpu.device,
             "forward lights",
             &self.lights_layout,
-            &lights.resources(&scene.light_buffer),
+            &lights.resources(),
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: depth,

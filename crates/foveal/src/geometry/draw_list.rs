@@ -32,6 +32,13 @@ pub(crate) struct DrawList {
     pub(crate) triangles: u64,
 }
 
+/// A scene and what a frame draws of it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Draws<'a> {
+    pub(crate) scene: &'a SceneOnGpu,
+    pub(crate) list: &'a DrawList,
+}
+
 impl DrawList {
     /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`; where they `merge`,
     /// equal ones become instances of one draw.

@@ -1,7 +1,7 @@
 //! The G-buffer and the pass that fills it.
 
 use super::{
-    DrawList, Evaluation, PipelineKey, PipelineRecipe, Pipelines, Rates, VertexSource,
+    DrawList, Draws, Evaluation, PipelineKey, PipelineRecipe, Pipelines, Rates, VertexSource,
     VisibilityPass, VisibilityTargets,
 };
 use crate::gpu::{self, Gpu};
@@ -225,6 +225,7 @@ impl GeometryPass {
     }
 
     /// The visibility buffer's passes, where they are used.
+    #[cfg(test)]
     pub(crate) fn triangles(&self) -> Option<&VisibilityPass> {
         match &self.means {
             Means::Triangles(pass) => Some(pass),
@@ -247,42 +248,56 @@ impl GeometryPass {
     }
 
     /// Encodes the pass.
-    pub(crate) fn draw(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
-        target: &GBuffer,
-    ) {
-        self.draw_windows(recorder, scene, list, target, &[self.whole()]);
+    pub(crate) fn draw(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>, target: &GBuffer) {
+        self.draw_windows(recorder, draws, target, &[self.whole()]);
     }
 
-    /// Encodes what of [`GeometryPass::draw`] does not depend on materials; `false` where all of it does.
+    /// Encodes what of [`GeometryPass::draw`] does not depend on materials, where surfaces are evaluated after the
+    /// rasterizer.
     pub(crate) fn draw_triangles(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
-    ) -> bool {
-        let Means::Triangles(pass) = &self.means else {
-            return false;
-        };
-        pass.draw_triangles(recorder, scene, list, target, &[self.whole()]);
-        true
+    ) {
+        self.draw_triangle_windows(recorder, draws, target, &[self.whole()]);
     }
 
-    /// Encodes the rest of it.
+    /// The same, drawing the frame once into each of `windows`.
+    pub(crate) fn draw_triangle_windows(
+        &self,
+        recorder: &mut Recorder<'_>,
+        draws: Draws<'_>,
+        target: &GBuffer,
+        windows: &[Window],
+    ) {
+        if let Means::Triangles(pass) = &self.means {
+            pass.draw_triangles(recorder, draws, target, windows);
+        }
+    }
+
+    /// Encodes the rest of it, at the pixels of `at`.
     pub(crate) fn evaluate(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         at: &Evaluation<'_>,
     ) {
         if let Means::Triangles(pass) = &self.means {
-            pass.evaluate_at(recorder, scene, list, target, &[self.whole()], at);
+            pass.evaluate(recorder, draws, target, &[self.whole()], at);
+        }
+    }
+
+    /// Encodes the evaluation of further surfaces of pixels at edges into texels that lie anywhere in the picture.
+    pub(crate) fn evaluate_further(
+        &self,
+        recorder: &mut Recorder<'_>,
+        draws: Draws<'_>,
+        target: &GBuffer,
+    ) {
+        if let Means::Triangles(pass) = &self.means {
+            pass.evaluate_further(recorder, draws, target, self.whole());
         }
     }
 
@@ -290,15 +305,15 @@ impl GeometryPass {
     pub(crate) fn draw_windows(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         windows: &[Window],
     ) {
         let pipelines = match &self.means {
             Means::Surfaces(pipelines) => pipelines,
             Means::Triangles(pass) => {
-                return pass.draw_windows(recorder, scene, list, target, windows);
+                pass.draw_triangles(recorder, draws, target, windows);
+                return pass.evaluate(recorder, draws, target, windows, &Evaluation::FULL);
             }
         };
         let depth = wgpu::RenderPassDepthStencilAttachment {
@@ -315,13 +330,13 @@ impl GeometryPass {
         ];
         let mask = self.submission.multiview_mask();
         let mut pass = recorder.layered_pass("geometry", &colors, Some(depth), mask);
-        scene.geometry.bind(&mut pass);
+        draws.scene.geometry.bind(&mut pass);
         for &Window { frame, part } in windows {
             for &drawn in self.submission.drawn() {
                 self.layout
                     .window_of(drawn, Window { frame, part })
                     .set(&mut pass);
-                DrawList::issue(&list.solid, &mut pass, scene, pipelines, drawn);
+                DrawList::issue(&draws.list.solid, &mut pass, draws.scene, pipelines, drawn);
             }
         }
     }

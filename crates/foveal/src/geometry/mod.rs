@@ -10,7 +10,7 @@ mod twin;
 mod visibility;
 
 pub(crate) use crate::scene::geometry_layout;
-pub(crate) use draw_list::DrawList;
+pub(crate) use draw_list::{DrawList, Draws};
 pub(crate) use gbuffer::{
     DEPTH_FORMAT, FaceNormals, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, Window,
 };

@@ -106,6 +106,27 @@ enum Means {
     Tables(LightTables),
 }
 
+/// A scene's lights, and which of them reach which cluster.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct SceneLights<'a> {
+    /// Without tables, the lights.
+    pub(crate) buffer: &'a wgpu::Buffer,
+    pub(crate) assigner: &'a LightAssigner,
+}
+
+impl<'a> SceneLights<'a> {
+    /// What lighting binds: the lights, and the clusters' bits.
+    pub(crate) fn resources(self) -> [wgpu::BindingResource<'a>; 2] {
+        match &self.assigner.means {
+            Means::Pass(..) => [
+                self.buffer.as_entire_binding(),
+                self.assigner.bits.as_entire_binding(),
+            ],
+            Means::Tables(tables) => [tables.lights.resource(), tables.clusters.resource()],
+        }
+    }
+}
+
 impl LightAssigner {
     /// For a frame of one or two `eyes`.
     pub(crate) fn new(gpu: &Gpu, eyes: u32, frame_layout: &wgpu::BindGroupLayout) -> Self {
@@ -135,20 +156,6 @@ impl LightAssigner {
             means: Means::Pass(pipeline, layout),
             eyes,
             bits: bits_buffer(gpu, 1),
-        }
-    }
-
-    /// What lighting binds: the lights, which without tables are in `light_buffer`, and the clusters' bits.
-    pub(crate) fn resources<'a>(
-        &'a self,
-        light_buffer: &'a wgpu::Buffer,
-    ) -> [wgpu::BindingResource<'a>; 2] {
-        match &self.means {
-            Means::Pass(..) => [
-                light_buffer.as_entire_binding(),
-                self.bits.as_entire_binding(),
-            ],
-            Means::Tables(tables) => [tables.lights.resource(), tables.clusters.resource()],
         }
     }
 

@@ -10,7 +10,7 @@ mod tables;
 mod twin;
 mod upload;
 
-pub(crate) use clusters::{ClusterGrid, LightAssigner};
+pub(crate) use clusters::{ClusterGrid, LightAssigner, SceneLights};
 pub(crate) use tables::LightTables;
 #[cfg(test)]
 pub(crate) use tables::cluster_bits;

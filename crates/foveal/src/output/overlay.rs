@@ -3,6 +3,7 @@
 use super::PICTURE_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, drawn_over};
+use crate::shader::Screen;
 use crate::shading::CoarseTargets;
 use crate::{View, shader};
 
@@ -31,19 +32,19 @@ impl OverlayPass {
                 sampled(wgpu::TextureSampleType::Float { filterable: false }),
             ],
         );
-        let pipeline = shader::level_screen(
+        let module = shader::module(gpu, "overlay", shader::OUTPUT_OVERLAY);
+        let pipeline = shader::screen(
             gpu,
-            "overlay",
-            &shader::module(gpu, "overlay", shader::OUTPUT_OVERLAY),
-            "overlay",
-            &[frame_layout, &layout],
-            &[Some(wgpu::ColorTargetState {
-                format: PICTURE_FORMAT,
-                blend: Some(wgpu::BlendState::ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::COLOR,
-            })],
-            None,
-            &[("VIEW", f64::from(number))],
+            &Screen {
+                groups: &[frame_layout, &layout],
+                targets: &[Some(wgpu::ColorTargetState {
+                    format: PICTURE_FORMAT,
+                    blend: Some(wgpu::BlendState::ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::COLOR,
+                })],
+                constants: &[("VIEW", f64::from(number))],
+                ..Screen::of_level("overlay", &module, "overlay")
+            },
         );
         Some(Self { pipeline, layout })
     }

@@ -4,6 +4,7 @@ use super::{RateImage, WishUniform};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
 use crate::recorder::{Recorder, overwritten};
+use crate::shader::Screen;
 use crate::stereo::{Eye, EyeLayout, LensFit};
 use crate::{Settings, shader};
 
@@ -68,15 +69,14 @@ impl RateMapPass {
         );
         let cells_layout = bind_group_layout(&gpu.device, "rate cells", stage, &[cells]);
         let pipeline = |label, shader, entry, layout, constant: &[(&str, f64)]| {
-            shader::level_screen(
+            shader::screen(
                 gpu,
-                label,
-                &shader::module(gpu, label, shader),
-                entry,
-                &[frame_layout, layout],
-                &[Some(CELL_FORMAT.into())],
-                None,
-                constant,
+                &Screen {
+                    groups: &[frame_layout, layout],
+                    targets: &[Some(CELL_FORMAT.into())],
+                    constants: constant,
+                    ..Screen::of_level(label, &shader::module(gpu, label, shader), entry)
+                },
             )
         };
         let coarsest = f64::from(settings.coarsest_level);

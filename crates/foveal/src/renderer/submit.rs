@@ -1,16 +1,16 @@
 //! One frame as commands, stage by stage.
 
+use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
 use crate::FrameStats;
-use crate::antialias::AntialiasStage;
+use crate::antialias::Shadings;
 use crate::culling::CullingCounts;
 use crate::frame::FrameUniform;
-use crate::geometry::{DrawList, Evaluation};
+use crate::geometry::{Draws, Evaluation};
 use crate::gpu::CpuTimer;
-use crate::lights::ClusterGrid;
+use crate::lights::{ClusterGrid, SceneLights};
 use crate::recorder::Recorder;
-use crate::scene::SceneOnGpu;
-use crate::shading::{HistoryStage, Plan, Samples};
+use crate::shading::{HistoryStage, Samples};
 use crate::stereo::EyeLayout;
 
 impl Renderer {
@@ -22,67 +22,64 @@ impl Renderer {
         target: Option<Target<'_>>,
         cpu: &mut CpuTimer,
     ) -> FrameStats {
-        let Self {
-            gpu,
-            timer,
-            frame_bindings,
-            stages,
-            scene,
-            draw_list,
-            present,
-            upscale,
-            clock,
-            frozen,
-            ..
-        } = self;
-        let Stages {
-            settings,
-            culling,
-            lights,
-            geometry,
-            variable,
-            forward,
-            targets,
-            ..
-        } = stages;
-        let plan = match variable {
-            Some(variable) if settings.view.is_lit() => variable.plan(),
-            _ => Plan::default(),
-        };
+        let culled = self.cull(frame, seen);
+        cpu.stage("culling");
+        self.list_draws(frame);
+        cpu.stage("draw list");
+        let clusters = self.upload(frame, seen);
+        cpu.stage("upload");
+        self.encode_frame(frame, seen, target, &clusters, cpu);
+        self.submitted(culled, cpu)
+    }
 
-        let culled = match culling {
-            Some(culling)
-                if *frozen && culling.visibility().len() == scene.stats.objects as usize =>
-            {
+    /// Finds out which objects are seen, unless the last answer is held on to.
+    fn cull(&mut self, frame: &Frame<'_>, seen: &Seen) -> CullingCounts {
+        let settings = &self.stages.settings;
+        let objects = self.scene.stats.objects;
+        match &mut self.stages.culling {
+            Some(culling) if self.frozen && culling.visibility().len() == objects as usize => {
                 culling.counts()
             }
             Some(culling) => {
                 let size = (settings.width, settings.height);
                 let eyes = settings.is_stereo().then_some(&seen.eyes);
-                culling.cull(&scene.culling, frame.camera, eyes, size, *clock)
+                culling.cull(&self.scene.culling, frame.camera, eyes, size, self.clock)
             }
             None => CullingCounts {
-                visible: scene.stats.objects,
+                visible: objects,
                 ..CullingCounts::default()
             },
-        };
-        cpu.stage("culling");
+        }
+    }
 
+    /// Lists the draws of what is seen, and makes the pipelines that they need.
+    fn list_draws(&mut self, frame: &Frame<'_>) {
+        let (gpu, scene, list) = (&self.gpu, &self.scene, &mut self.draw_list);
+        let Stages {
+            settings,
+            culling,
+            geometry,
+            forward,
+            targets,
+            ..
+        } = &mut self.stages;
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
-        draw_list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
-        geometry.prepare(gpu, scene, draw_list);
-        forward.prepare(gpu, draw_list);
-        if !draw_list.blended.is_empty() {
+        list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
+        geometry.prepare(gpu, scene, list);
+        forward.prepare(gpu, list);
+        if !list.blended.is_empty() {
             targets.blend_samples(gpu, settings);
         }
-        cpu.stage("draw list");
+    }
 
-        let clusters = ClusterGrid::new(
-            &EyeLayout::of(settings),
-            &seen.eyes,
-            frame.camera,
-            &scene.lights,
-        );
+    /// Writes what shaders are told of the frame.
+    fn upload(&mut self, frame: &Frame<'_>, seen: &Seen) -> ClusterGrid {
+        let (gpu, scene) = (&self.gpu, &self.scene);
+        let Stages {
+            settings, lights, ..
+        } = &mut self.stages;
+        let layout = EyeLayout::of(settings);
+        let clusters = ClusterGrid::new(&layout, &seen.eyes, frame.camera, &scene.lights);
         lights.reserve(gpu, &clusters);
         let uniform = FrameUniform::new(
             settings,
@@ -92,190 +89,264 @@ impl Renderer {
             &scene.environment,
             &clusters,
         );
-        frame_bindings.write_frame(gpu, &uniform);
-        frame_bindings.write_drawn(gpu, &draw_list.drawn);
+        self.frame_bindings.write_frame(gpu, &uniform);
+        self.frame_bindings.write_drawn(gpu, &self.draw_list.drawn);
         lights.assign_on_cpu(gpu, &uniform, &scene.lights);
-        cpu.stage("upload");
+        clusters
+    }
 
+    /// Encodes and submits the frame's passes.
+    fn encode_frame(
+        &mut self,
+        frame: &Frame<'_>,
+        seen: &Seen,
+        target: Option<Target<'_>>,
+        clusters: &ClusterGrid,
+        cpu: &mut CpuTimer,
+    ) {
+        let (gpu, stages) = (&self.gpu, &mut self.stages);
+        let plan = stages.plan();
+        let draws = Draws {
+            scene: &self.scene,
+            list: &self.draw_list,
+        };
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         let recorder = &mut Recorder {
             gpu,
             encoder: &mut encoder,
-            timer,
-            frame: frame_bindings,
+            timer: &mut self.timer,
+            frame: &self.frame_bindings,
         };
-        lights.assign(recorder, &scene.light_buffer, &clusters);
-        stages.see(recorder, scene, draw_list, (frame, seen), &plan);
-        stages.light(recorder, scene, draw_list, &plan);
+        stages
+            .lights
+            .assign(recorder, &draws.scene.light_buffer, clusters);
+        stages.fill_gbuffer(recorder, draws, &plan);
+        stages.find_rates(recorder, draws, (frame, seen), &plan);
+        if plan.is_lit {
+            stages.light(recorder, draws, &plan);
+            stages.blend(recorder, draws);
+            stages.tone_map(recorder);
+        } else {
+            stages.show_gbuffer(recorder, draws);
+        }
         let targets = &stages.targets;
         if let Some(eyes_shown) = &stages.eyes_shown {
             eyes_shown.show(recorder, seen.lenses.as_ref(), targets);
         }
-        if let Some(upscale) = upscale {
+        if let Some(upscale) = &mut self.upscale {
             upscale.stretch(recorder, targets.shown());
         }
         if let Some(target) = target {
-            present.present(recorder, targets.shown(), target);
+            self.present.present(recorder, targets.shown(), target);
         }
-        timer.resolve(&mut encoder);
+        self.timer.resolve(&mut encoder);
         cpu.stage("encode");
 
         gpu.queue.submit([encoder.finish()]);
-        timer.end_frame();
+        self.timer.end_frame();
         cpu.stage("submit");
-        self.submitted(culled, cpu)
     }
 }
 
 impl Stages {
-    /// Encodes geometry, the rates that what is seen asks for, and materials that are evaluated at these.
-    fn see(
+    fn scene_lights<'a>(&'a self, draws: Draws<'a>) -> SceneLights<'a> {
+        SceneLights {
+            buffer: &draws.scene.light_buffer,
+            assigner: &self.lights,
+        }
+    }
+
+    /// Geometry: what is seen at each pixel. Materials that are evaluated at a rate are left for later.
+    fn fill_gbuffer(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>, plan: &FramePlan) {
+        let (geometry, gbuffer) = (&self.geometry, &self.targets.gbuffer);
+        if plan.edges {
+            self.draw_sub_samples(recorder, draws, plan);
+        } else if plan.materials == SampleChoice::Every {
+            geometry.draw(recorder, draws, gbuffer);
+        } else {
+            geometry.draw_triangles(recorder, draws, gbuffer);
+        }
+    }
+
+    /// The G-buffer of each pixel's largest surface, from sub-samples that are drawn band by band.
+    fn draw_sub_samples(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>, plan: &FramePlan) {
+        let Self {
+            targets,
+            geometry,
+            shading,
+            forward,
+            ..
+        } = self;
+        let (Some(antialias), Some(samples)) = (&self.antialias, &targets.samples) else {
+            return;
+        };
+        let lights = self.scene_lights(draws);
+        let gbuffer = samples.gbuffer();
+        let input = &shading.input(recorder.gpu, gbuffer, lights);
+        let blended = samples
+            .blended()
+            .filter(|_| plan.is_lit && !draws.list.blended.is_empty());
+        antialias.begin(recorder, samples);
+        for band in samples.bands() {
+            let windows = samples.windows(band.0);
+            if antialias.sorts_triangles() {
+                geometry.draw_triangle_windows(recorder, draws, gbuffer, &windows);
+            } else {
+                geometry.draw_windows(recorder, draws, gbuffer, &windows);
+            }
+            if let Some(blended) = blended {
+                let target = (&blended.samples_view, &gbuffer.depth_view);
+                forward.draw_alone(recorder, draws, lights, target, &windows);
+                antialias.average(recorder, blended, band);
+            }
+            let shade = plan.is_lit;
+            let shadings = Shadings { input, shade };
+            antialias.merge(recorder, draws.scene, targets, band, shadings);
+        }
+        if let Some(further) = samples.further_gbuffer() {
+            geometry.evaluate(recorder, draws, &targets.gbuffer, &Evaluation::FULL);
+            geometry.evaluate_further(recorder, draws, further);
+        }
+    }
+
+    /// Shading rates that what is seen asks for, and materials that are evaluated at these.
+    fn find_rates(
         &mut self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        draw_list: &DrawList,
+        draws: Draws<'_>,
         (frame, seen): (&Frame<'_>, &Seen),
-        plan: &Plan,
+        plan: &FramePlan,
     ) {
         let Self {
             settings,
             targets,
-            lights,
             geometry,
-            shading,
-            antialias,
             coarse,
             variable,
-            forward,
             ..
         } = self;
-        let material = settings.stage().has_material();
-        let coarse = match (coarse, &targets.coarse) {
-            (Some(coarse), Some(tiles)) if settings.view.is_lit() => Some((coarse, tiles)),
-            _ => None,
-        };
-        if let Some(antialias) = antialias {
-            let shade = settings.view.is_lit();
-            antialias.draw(
-                recorder, scene, draw_list, geometry, shading, forward, lights, targets, shade,
-            );
-        } else if material && (plan.active || coarse.is_some()) {
-            geometry.draw_triangles(recorder, scene, draw_list, &targets.gbuffer);
-        } else {
-            geometry.draw(recorder, scene, draw_list, &targets.gbuffer);
-        }
-        let evaluate = |recorder: &mut _, at| {
-            geometry.evaluate(recorder, scene, draw_list, &targets.gbuffer, &at)
-        };
-        if let Some((coarse, tiles)) = coarse {
-            let eyes = (&seen.eyes, seen.lenses.as_ref());
-            if let Some(history) = &mut coarse.history {
-                let before = frame.previous_camera.unwrap_or(frame.camera);
-                history.begin(recorder.gpu, settings, (frame.camera, before));
-            }
-            if coarse
-                .history
-                .as_ref()
-                .is_none_or(HistoryStage::needs_rates)
-            {
-                coarse
-                    .rate_map
-                    .draw(recorder, settings, eyes, &targets.gbuffer, &tiles.rate);
-            }
-            if material {
-                evaluate(recorder, Evaluation::at_rates(&tiles.rate.owner.whole));
-            }
-        }
-        if let (Some(variable), true) = (variable.as_mut(), plan.active) {
-            let before = frame.previous_camera.unwrap_or(frame.camera);
-            let cameras = (frame.camera, before);
-            variable.find_rates(recorder, settings, targets, &seen.eyes, cameras);
-            if let (Some(t), true) = (&targets.variable, material) {
-                if plan.compares {
-                    evaluate(recorder, Evaluation::COMPARED);
+        let gbuffer = &targets.gbuffer;
+        let at_rates = plan.materials == plan.rates;
+        let cameras = (frame.camera, frame.previous_camera.unwrap_or(frame.camera));
+        match plan.rates {
+            SampleChoice::Every => {}
+            SampleChoice::Coarse => {
+                let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) else {
+                    return;
+                };
+                if let Some(history) = &mut coarse.history {
+                    history.begin(recorder.gpu, settings, cameras);
                 }
-                evaluate(recorder, Evaluation::at_rates(&t.mask));
+                let history = coarse.history.as_ref();
+                if history.is_none_or(HistoryStage::needs_rates) {
+                    let eyes = (&seen.eyes, seen.lenses.as_ref());
+                    let rate_map = &mut coarse.rate_map;
+                    rate_map.draw(recorder, settings, eyes, gbuffer, &tiles.rate);
+                }
+                if at_rates {
+                    let at = Evaluation::at_rates(&tiles.rate.owner.whole);
+                    geometry.evaluate(recorder, draws, gbuffer, &at);
+                }
+            }
+            SampleChoice::Variable => {
+                let (Some(variable), Some(rates)) = (variable, &targets.variable) else {
+                    return;
+                };
+                variable.find_rates(recorder, settings, targets, &seen.eyes, cameras);
+                if at_rates && plan.compares {
+                    geometry.evaluate(recorder, draws, gbuffer, &Evaluation::COMPARED);
+                }
+                if at_rates {
+                    let at = Evaluation::at_rates(&rates.mask);
+                    geometry.evaluate(recorder, draws, gbuffer, &at);
+                }
             }
         }
     }
 
-    /// Encodes the picture of what is seen: a view of the G-buffer, or light and what is made of it.
-    fn light(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        draw_list: &DrawList,
-        plan: &Plan,
-    ) {
+    /// Shading and composite: the radiance of opaque surfaces at each pixel.
+    fn light(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>, plan: &FramePlan) {
         let Self {
-            settings,
-            targets,
-            lights,
-            shading,
-            antialias,
-            coarse,
-            variable,
-            forward,
-            tone_map,
-            view,
-            ..
+            targets, shading, ..
         } = self;
-        if let Some(view) = view {
-            let places = scene.geometry.places();
-            view.show(recorder, &targets.gbuffer, places, &targets.picture_view);
-            return;
-        }
-        if antialias
-            .as_ref()
-            .is_some_and(|a| a.show(recorder, targets))
-        {
-            return;
-        }
-        let input = shading.input(recorder.gpu, &targets.gbuffer, &scene.light_buffer, lights);
-        if let (Some(coarse), Some(tiles)) = (coarse.as_ref(), &targets.coarse) {
-            if let (Some(history), Some(kept)) = (&coarse.history, &tiles.history) {
-                history.light(recorder, &input, targets, (&tiles.rate, kept));
-            } else {
-                coarse.shading.shade(recorder, &input, tiles);
-                coarse.composite.join(recorder, targets, tiles);
-                if let Some(light) = &tiles.light {
-                    let unlit = Samples::List(&light.unlit);
-                    shading.shade(recorder, &input, unlit, &targets.radiance_view);
+        let radiance = &targets.radiance_view;
+        let lights = self.scene_lights(draws);
+        let input = &shading.input(recorder.gpu, &targets.gbuffer, lights);
+        match plan.lighting {
+            None => {}
+            Some(SampleChoice::Every) => {
+                shading.shade(recorder, input, Samples::EveryPixel, radiance);
+            }
+            Some(SampleChoice::Coarse) => self.light_coarsely(recorder, input),
+            Some(SampleChoice::Variable) => {
+                if plan.compares {
+                    shading.shade_every_pixel(recorder, input, radiance, "full shading");
+                }
+                if let Some(variable) = &self.variable {
+                    variable.shade(recorder, input, targets);
                 }
             }
-        } else if let (Some(variable), true) = (
-            variable.as_ref(),
-            plan.active && settings.stage().has_lighting(),
-        ) {
-            if plan.compares {
-                let target = &targets.radiance_view;
-                shading.shade_every_pixel(recorder, &input, target, "full shading");
+        }
+        if let Some(antialias) = &self.antialias {
+            let further = targets.samples.as_ref().and_then(|s| s.further_gbuffer());
+            let further = further.map(|gbuffer| shading.input(recorder.gpu, gbuffer, lights));
+            antialias.combine(recorder, targets, further.as_ref());
+        }
+    }
+
+    /// Light at the samples of the rate map, joined at each pixel.
+    fn light_coarsely(&self, recorder: &mut Recorder<'_>, input: &wgpu::BindGroup) {
+        let targets = &self.targets;
+        let (Some(coarse), Some(tiles)) = (&self.coarse, &targets.coarse) else {
+            return;
+        };
+        if let (Some(history), Some(kept)) = (&coarse.history, &tiles.history) {
+            return history.light(recorder, input, targets, (&tiles.rate, kept));
+        }
+        coarse.shading.shade(recorder, input, tiles);
+        coarse.composite.join(recorder, targets, tiles);
+        if let Some(light) = &tiles.light {
+            let unlit = Samples::List(&light.unlit);
+            let radiance = &targets.radiance_view;
+            self.shading.shade(recorder, input, unlit, radiance);
+        }
+    }
+
+    /// Forward: blended surfaces over that.
+    fn blend(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
+        match &self.antialias {
+            Some(antialias) => antialias.blend(recorder, draws.list, &self.targets),
+            None => {
+                let lights = self.scene_lights(draws);
+                self.forward.draw(recorder, draws, lights, &self.targets);
             }
-            variable.shade(recorder, &input, targets);
-        } else if antialias
-            .as_ref()
-            .is_none_or(AntialiasStage::needs_ordinary)
-        {
-            let target = &targets.radiance_view;
-            shading.shade(recorder, &input, Samples::EveryPixel, target);
         }
-        if let Some(antialias) = antialias {
-            antialias.combine(recorder, scene, shading, lights, targets);
-            antialias.blend(recorder, draw_list, targets);
-        } else {
-            forward.draw(recorder, scene, lights, draw_list, targets);
-        }
+    }
+
+    /// Tone map: radiance to display values, and what debug views lay over the picture.
+    fn tone_map(&self, recorder: &mut Recorder<'_>) {
+        let targets = &self.targets;
         let finished = targets.variable.as_ref().and_then(|t| t.finished.as_ref());
         let finished = finished.unwrap_or(&targets.picture_view);
-        tone_map.map(recorder, &targets.radiance_view, finished);
-        if let Some(variable) = variable {
+        self.tone_map
+            .map(recorder, &targets.radiance_view, finished);
+        if let Some(variable) = &self.variable {
             variable.show(recorder, targets);
         }
-        if let (Some(overlay), Some(tiles)) = (
-            coarse.as_ref().and_then(|c| c.overlay.as_ref()),
-            &targets.coarse,
-        ) {
+        let overlay = self.coarse.as_ref().and_then(|c| c.overlay.as_ref());
+        if let (Some(overlay), Some(tiles)) = (overlay, &targets.coarse) {
             overlay.draw(recorder, tiles, &targets.picture_view);
+        }
+    }
+
+    /// A debug view of the G-buffer or of anti-aliasing in place of light.
+    fn show_gbuffer(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
+        let targets = &self.targets;
+        if let Some(view) = &self.view {
+            let places = draws.scene.geometry.places();
+            view.show(recorder, &targets.gbuffer, places, &targets.picture_view);
+        } else if let Some(antialias) = &self.antialias {
+            antialias.show(recorder, targets);
         }
     }
 }

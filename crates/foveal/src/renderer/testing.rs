@@ -4,7 +4,7 @@ use super::{Frame, Renderer, Stages};
 use crate::FrameStats;
 use crate::frame::FrameUniform;
 use crate::geometry::{Evaluation, GeometryPass};
-use crate::lights::{ClusterGrid, LightAssigner};
+use crate::lights::{ClusterGrid, LightAssigner, SceneLights};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
 use crate::shading::{CoarseShading, HistoryStage, Samples};
@@ -126,8 +126,11 @@ impl Renderer {
         self.encode(|recorder, stages, scene| {
             let (shading, targets) = (&stages.shading, &stages.targets);
             let list = crate::shading::SampleList::from_texels(recorder.gpu, texels);
-            let lights = &scene.light_buffer;
-            let input = shading.input(recorder.gpu, &targets.gbuffer, lights, &stages.lights);
+            let lights = SceneLights {
+                buffer: &scene.light_buffer,
+                assigner: &stages.lights,
+            };
+            let input = shading.input(recorder.gpu, &targets.gbuffer, lights);
             let samples = Samples::List(&list);
             shading.shade(recorder, &input, samples, &targets.radiance_view);
         });

@@ -53,35 +53,6 @@ pub(crate) fn compute(
         })
 }
 
-/// A pipeline that draws one level of a mip chain (`shared/level.wgsl`).
-#[expect(
-    clippy::too_many_arguments,
-    reason = "what a pipeline differs in, by name"
-)]
-pub(crate) fn level_screen(
-    gpu: &Gpu,
-    label: &str,
-    module: &wgpu::ShaderModule,
-    entry_point: &str,
-    groups: &[&wgpu::BindGroupLayout],
-    targets: &[Option<wgpu::ColorTargetState>],
-    depth_stencil: Option<wgpu::DepthStencilState>,
-    constants: &[(&str, f64)],
-) -> wgpu::RenderPipeline {
-    let entry_points = ("level_screen", entry_point);
-    screen(
-        gpu,
-        label,
-        module,
-        entry_points,
-        wgpu::PrimitiveTopology::TriangleList,
-        groups,
-        targets,
-        depth_stencil,
-        constants,
-    )
-}
-
 /// A pipeline that draws one full-screen triangle into one target.
 pub(crate) fn full_screen(
     gpu: &Gpu,
@@ -92,62 +63,87 @@ pub(crate) fn full_screen(
     target: wgpu::TextureFormat,
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
-    let entry_points = ("full_screen", entry_point);
-    let targets = [Some(target.into())];
     screen(
         gpu,
-        label,
-        module,
-        entry_points,
-        wgpu::PrimitiveTopology::TriangleList,
-        groups,
-        &targets,
-        None,
-        constants,
+        &Screen {
+            groups,
+            targets: &[Some(target.into())],
+            constants,
+            ..Screen::of(label, module, entry_point)
+        },
     )
 }
 
-/// A pipeline of any vertex and fragment entry points, without vertex buffers.
-#[expect(
-    clippy::too_many_arguments,
-    reason = "what a pipeline differs in, by name"
-)]
-pub(crate) fn screen(
-    gpu: &Gpu,
-    label: &str,
-    module: &wgpu::ShaderModule,
-    (vertex, fragment): (&str, &str),
-    topology: wgpu::PrimitiveTopology,
-    groups: &[&wgpu::BindGroupLayout],
-    targets: &[Option<wgpu::ColorTargetState>],
-    depth_stencil: Option<wgpu::DepthStencilState>,
-    constants: &[(&str, f64)],
-) -> wgpu::RenderPipeline {
+/// A render pipeline without vertex buffers.
+#[derive(Clone)]
+pub(crate) struct Screen<'a> {
+    pub(crate) label: &'a str,
+    pub(crate) module: &'a wgpu::ShaderModule,
+    pub(crate) vertex: &'a str,
+    pub(crate) fragment: &'a str,
+    pub(crate) topology: wgpu::PrimitiveTopology,
+    pub(crate) groups: &'a [&'a wgpu::BindGroupLayout],
+    pub(crate) targets: &'a [Option<wgpu::ColorTargetState>],
+    pub(crate) depth_stencil: Option<wgpu::DepthStencilState>,
+    pub(crate) constants: &'a [(&'a str, f64)],
+}
+
+impl<'a> Screen<'a> {
+    /// A full-screen triangle (`shared/full_screen.wgsl`) that binds nothing and draws to nothing.
+    pub(crate) fn of(label: &'a str, module: &'a wgpu::ShaderModule, fragment: &'a str) -> Self {
+        Self {
+            label,
+            module,
+            vertex: "full_screen",
+            fragment,
+            topology: wgpu::PrimitiveTopology::TriangleList,
+            groups: &[],
+            targets: &[],
+            depth_stencil: None,
+            constants: &[],
+        }
+    }
+
+    /// The same for one level of a mip chain (`shared/level.wgsl`).
+    pub(crate) fn of_level(
+        label: &'a str,
+        module: &'a wgpu::ShaderModule,
+        fragment: &'a str,
+    ) -> Self {
+        Self {
+            vertex: "level_screen",
+            ..Self::of(label, module, fragment)
+        }
+    }
+}
+
+/// Makes a render pipeline without vertex buffers.
+pub(crate) fn screen(gpu: &Gpu, recipe: &Screen<'_>) -> wgpu::RenderPipeline {
     let compilation_options = wgpu::PipelineCompilationOptions {
-        constants,
+        constants: recipe.constants,
         ..Default::default()
     };
     gpu.device
         .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(label),
-            layout: Some(&pipeline_layout(gpu, label, groups)),
+            label: Some(recipe.label),
+            layout: Some(&pipeline_layout(gpu, recipe.label, recipe.groups)),
             vertex: wgpu::VertexState {
-                module,
-                entry_point: Some(vertex),
+                module: recipe.module,
+                entry_point: Some(recipe.vertex),
                 compilation_options: compilation_options.clone(),
                 buffers: &[],
             },
             primitive: wgpu::PrimitiveState {
-                topology,
+                topology: recipe.topology,
                 ..Default::default()
             },
-            depth_stencil,
+            depth_stencil: recipe.depth_stencil.clone(),
             multisample: wgpu::MultisampleState::default(),
             fragment: Some(wgpu::FragmentState {
-                module,
-                entry_point: Some(fragment),
+                module: recipe.module,
+                entry_point: Some(recipe.fragment),
                 compilation_options,
-                targets,
+                targets: recipe.targets,
             }),
             multiview_mask: None,
             cache: None,

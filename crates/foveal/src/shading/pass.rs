@@ -5,7 +5,7 @@ use crate::geometry::GBuffer;
 use crate::gpu::{
     Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
 };
-use crate::lights::LightAssigner;
+use crate::lights::SceneLights;
 use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
@@ -116,10 +116,9 @@ impl ShadingPass {
         &self,
         gpu: &Gpu,
         gbuffer: &GBuffer,
-        light_buffer: &wgpu::Buffer,
-        lights: &LightAssigner,
+        lights: SceneLights<'_>,
     ) -> wgpu::BindGroup {
-        let [light_list, cluster_bits] = lights.resources(light_buffer);
+        let [light_list, cluster_bits] = lights.resources();
         // The reduced G-buffer holds depth where others hold identity, and is no array.
         let (surface, depth) = if gpu.is_reduced() {
             (&gbuffer.surface_view, &gbuffer.identity_view)

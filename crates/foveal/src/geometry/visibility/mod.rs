@@ -17,7 +17,7 @@ mod resolve;
 #[cfg(test)]
 mod tests;
 
-use super::{DrawList, FaceNormals, GBuffer, Window};
+use super::{DrawList, Draws, FaceNormals, GBuffer, Window};
 use crate::gpu::{Gpu, layered_target, layers_of};
 use crate::recorder::Recorder;
 use crate::scene::{MaterialDispatch, SceneOnGpu, family_layout};
@@ -265,53 +265,26 @@ impl VisibilityPass {
         }
     }
 
-    /// Encodes all passes, for the frame drawn once into each of `windows`.
-    pub(crate) fn draw_windows(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
-        target: &GBuffer,
-        windows: &[Window],
-    ) {
-        self.draw_triangles(recorder, scene, list, target, windows);
-        self.evaluate(recorder, scene, list, target, windows);
-    }
-
-    /// Encodes the first pass alone: identity, triangle and depth.
+    /// Encodes the first pass: identity, triangle and depth, for the frame drawn once into each of `windows`.
     pub(crate) fn draw_triangles(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         windows: &[Window],
     ) {
         // Targets and passes are made for the same settings.
         if let Some(visibility) = &target.visibility {
             self.raster
-                .draw(recorder, scene, list, target, visibility, windows);
+                .draw(recorder, draws, target, visibility, windows);
         }
     }
 
-    /// Encodes the passes after that: from identity and triangle to surfaces.
+    /// Encodes the passes after that: from identity and triangle to surfaces, at the pixels of `at`.
     pub(crate) fn evaluate(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
-        target: &GBuffer,
-        windows: &[Window],
-    ) {
-        self.evaluate_at(recorder, scene, list, target, windows, &Evaluation::FULL);
-    }
-
-    /// The same at the pixels of `at`.
-    pub(crate) fn evaluate_at(
-        &self,
-        recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         windows: &[Window],
         at: &Evaluation<'_>,
@@ -321,7 +294,7 @@ impl VisibilityPass {
             (None, _) => Some(&self.full),
         };
         if let Some(Materials { bin, resolve }) = materials {
-            self.evaluate_by((bin, resolve), recorder, scene, list, target, windows, at);
+            self.evaluate_by((bin, resolve), recorder, draws, target, windows, at);
         }
     }
 
@@ -349,28 +322,22 @@ impl VisibilityPass {
     pub(crate) fn evaluate_further(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         whole: Window,
     ) {
         if let Some(further) = &self.further {
             let passes = (&self.full.bin, further);
             let at = &Evaluation::FULL;
-            self.evaluate_by(passes, recorder, scene, list, target, &[whole], at);
+            self.evaluate_by(passes, recorder, draws, target, &[whole], at);
         }
     }
 
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
     fn evaluate_by(
         &self,
         (bin, resolve): (&BinPass, &ResolvePass),
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         windows: &[Window],
         at: &Evaluation<'_>,
@@ -378,14 +345,8 @@ impl VisibilityPass {
         let Some(visibility) = &target.visibility else {
             return;
         };
-        bin.sort(
-            recorder,
-            scene,
-            target,
-            visibility,
-            (&self.bins, self.by),
-            at,
-        );
-        resolve.draw(recorder, scene, list, target, visibility, windows, at);
+        let bins = (&self.bins, self.by);
+        bin.sort(recorder, draws.scene, target, visibility, bins, at);
+        resolve.draw(recorder, draws, target, visibility, windows, at);
     }
 }

@@ -2,12 +2,11 @@
 
 use super::{TRIANGLE_FORMAT, VisibilityTargets};
 use crate::geometry::{
-    DrawList, GBuffer, IDENTITY_FORMAT, PipelineKey, PipelineRecipe, Pipelines, VertexSource,
-    Window,
+    DrawList, Draws, GBuffer, IDENTITY_FORMAT, PipelineKey, PipelineRecipe, Pipelines,
+    VertexSource, Window,
 };
 use crate::gpu::Gpu;
 use crate::recorder::{Recorder, overwritten};
-use crate::scene::SceneOnGpu;
 use crate::shader;
 use crate::stereo::{EyeLayout, Submission};
 
@@ -99,12 +98,12 @@ impl VisiblePass {
     pub(super) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         visibility: &VisibilityTargets,
         windows: &[Window],
     ) {
+        let Draws { scene, list } = draws;
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: &target.depth_view,
             depth_ops: Some(wgpu::Operations {

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use bytemuck::{Pod, Zeroable};
 
 use super::{Evaluation, Listed, Rates, VisibilityTargets, with_mask};
-use crate::geometry::{DrawList, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
+use crate::geometry::{Draws, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, uniform,
     written_layers,
 };
 use crate::recorder::Recorder;
-use crate::scene::{FAMILY_BYTES, MaterialDispatch, SceneOnGpu};
+use crate::scene::{FAMILY_BYTES, MaterialDispatch};
 use crate::shader;
 
 /// Most windows that a frame is drawn into at once.
@@ -133,20 +133,16 @@ impl ResolvePass {
     }
 
     /// Encodes the pass.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
     pub(super) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
-        scene: &SceneOnGpu,
-        list: &DrawList,
+        draws: Draws<'_>,
         target: &GBuffer,
         visibility: &VisibilityTargets,
         windows: &[Window],
         at: &Evaluation<'_>,
     ) {
+        let Draws { scene, list } = draws;
         // A scene that this geometry could not draw has none.
         let Some(families) = scene.materials.family_bindings() else {
             return;

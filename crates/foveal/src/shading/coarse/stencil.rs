@@ -8,6 +8,7 @@ use super::{CoarseTargets, shading_constants, targets::STENCIL_FORMAT};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
+use crate::shader::Screen;
 use crate::shading::RADIANCE_FORMAT;
 use crate::{Composite, Settings, shader};
 
@@ -77,33 +78,35 @@ impl StencilBackend {
             };
             formats.iter().map(target).collect()
         };
-        let mark = shader::level_screen(
+        let marks = shader::module(gpu, "tile marks", shader::SHADING_COARSE_MARK);
+        let mark = shader::screen(
             gpu,
-            "tile marks",
-            &shader::module(gpu, "tile marks", shader::SHADING_COARSE_MARK),
-            "mark",
-            &[frame_layout, &cells_layout],
-            // The pass has colour targets; the marking leaves them alone.
-            &targets(wgpu::ColorWrites::empty()),
-            Some(stencil_state(
-                wgpu::CompareFunction::Always,
-                wgpu::StencilOperation::Replace,
-            )),
-            &[("COARSEST", f64::from(settings.coarsest_level))],
+            &Screen {
+                groups: &[frame_layout, &cells_layout],
+                // The pass has colour targets; the marking leaves them alone.
+                targets: &targets(wgpu::ColorWrites::empty()),
+                depth_stencil: Some(stencil_state(
+                    wgpu::CompareFunction::Always,
+                    wgpu::StencilOperation::Replace,
+                )),
+                constants: &[("COARSEST", f64::from(settings.coarsest_level))],
+                ..Screen::of_level("tile marks", &marks, "mark")
+            },
         );
         let constants = shading_constants(settings);
-        let shade = shader::level_screen(
+        let blocks = shader::module(gpu, "coarse shading, draw", shader);
+        let shade = shader::screen(
             gpu,
-            "coarse shading",
-            &shader::module(gpu, "coarse shading, draw", shader),
-            "shade_blocks",
-            &[frame_layout, input_layout],
-            &targets(wgpu::ColorWrites::ALL),
-            Some(stencil_state(
-                wgpu::CompareFunction::Equal,
-                wgpu::StencilOperation::Keep,
-            )),
-            &constants,
+            &Screen {
+                groups: &[frame_layout, input_layout],
+                targets: &targets(wgpu::ColorWrites::ALL),
+                depth_stencil: Some(stencil_state(
+                    wgpu::CompareFunction::Equal,
+                    wgpu::StencilOperation::Keep,
+                )),
+                constants: &constants,
+                ..Screen::of_level("coarse shading", &blocks, "shade_blocks")
+            },
         );
         Self {
             mark,

@@ -23,9 +23,9 @@ pub(crate) mod twin;
 mod view;
 
 use balance::Balance;
-use passes::RatePasses;
 #[cfg(test)]
 pub(crate) use passes::RatesUniform;
+use passes::{RatePasses, Turn};
 use probes::Probes;
 pub(crate) use targets::VariableTargets;
 use view::RateView;
@@ -119,10 +119,13 @@ impl VariableStage {
         } else if known != Some(camera) {
             self.probes.disturb();
         }
-        let probe = self.probes.next();
-        let even = self.frame.is_multiple_of(2);
+        let turn = Turn {
+            even: self.frame.is_multiple_of(2),
+            reset,
+            probe: self.probes.next(),
+        };
         self.passes
-            .find_rates(recorder, settings, targets, (t, eyes), even, reset, probe);
+            .find_rates(recorder, settings, targets, (t, eyes), turn);
         self.last = Some(camera.clone());
         self.frame = self.frame.wrapping_add(1);
     }

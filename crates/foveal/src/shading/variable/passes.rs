@@ -56,6 +56,16 @@ const fn written(format: wgpu::TextureFormat) -> wgpu::BindingType {
     }
 }
 
+/// What differs from frame to frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Turn {
+    /// Which of the targets are this frame's.
+    pub(super) even: bool,
+    /// Nothing is known of the frame before.
+    pub(super) reset: bool,
+    pub(super) probe: Probe,
+}
+
 impl RatePasses {
     pub(super) fn new(
         gpu: &Gpu,
@@ -148,20 +158,15 @@ impl RatePasses {
 
     /// Encodes reprojection from the frame before, into what is known in `even` or odd frames, and from it the rates
     /// and samples; one pass does it all unless contrast is looked for beyond the quad.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a stage names all that it reads and writes"
-    )]
     pub(super) fn find_rates(
         &self,
         recorder: &mut Recorder<'_>,
         settings: &Settings,
         targets: &Targets,
         (t, eyes): (&VariableTargets, &[Eye; 2]),
-        even: bool,
-        reset: bool,
-        probe: Probe,
+        turn: Turn,
     ) {
+        let Turn { even, reset, probe } = turn;
         let gpu = recorder.gpu;
         let rates = RatesUniform {
             threshold: settings.contrast_threshold,
