@@ -325,9 +325,9 @@ settings! {
             fovea_curve: f32 = 1.5, "Curve", Kind::Number { least: 0.1, most: 10.0 };
             /// Limit of one level between neighbouring blocks. Off: blocks of any sizes may touch.
             rate_balance: bool = true, "Balance", Kind::Switch;
-            /// Finer shading at geometric edges: graded shades all edges two levels finer, inner
-            /// shades edges near the gaze pixel by pixel, everywhere shades all edges so, off
-            /// leaves them as requested.
+            /// Finer shading at geometric edges: graded shades all edges one level finer (two where
+            /// samples hold colours), inner shades edges near the gaze pixel by pixel, everywhere
+            /// shades all edges so, off leaves them as requested.
             refine_edges: RefineEdges = RefineEdges::default(), "Refine edges", Kind::choice::<RefineEdges>();
             /// Pixel of a block that its sample shades: center takes the one at the centre, typical
             /// the most typical of five.

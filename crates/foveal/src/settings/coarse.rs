@@ -70,7 +70,8 @@ pub enum RateCombine {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RefineEdges {
-    /// All edges, two levels finer than requested.
+    /// All edges: one level finer than requested with [`Composite::Light`], two with the other
+    /// composites.
     #[default]
     Graded,
     /// Edges near the gaze, pixel by pixel: where the requested level is at most half the coarsest
