@@ -16,7 +16,7 @@ const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
 const SLOPE: f32 = 0.0275;
 
 /// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each: means over the demo scene, Sponza
-/// and the castle at 60 degrees across (docs/coarse-notes.md). That of 10 is extrapolated, that of 8.91 from three pictures of five.
+/// and the castle at 60 degrees across (docs/benchmarks/coarse.md). That of 10 is extrapolated, that of 8.91 from three pictures of five.
 const QUALITIES: [(f32, f32); 7] = [
     (10.0, 0.05),
     (9.85, 0.15),

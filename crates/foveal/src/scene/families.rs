@@ -109,7 +109,7 @@ impl MaterialDispatch {
         match settings.material_dispatch {
             crate::MaterialDispatch::Family => Self::Family,
             crate::MaterialDispatch::Material => Self::Material,
-            // Lavapipe gathers what differs from pixel to pixel lane by lane: docs/variable-notes.md.
+            // Lavapipe gathers what differs from pixel to pixel lane by lane: docs/decisions/0213-families-of-materials.md.
             crate::MaterialDispatch::Auto => {
                 if gpu.is_lavapipe() {
                     Self::Material

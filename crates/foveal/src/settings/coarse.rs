@@ -1,113 +1,117 @@
-//! Choices about coarse pixel shading: how finely which place is shaded, by what means, and how the samples
-//! are joined to a picture.
+//! Settings of coarse shading: the shading rate, the method that visits samples, and the
+//! reconstruction of pixels from them.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Settings, View};
 use crate::Error;
 
-/// How many samples the deferred stage shades.
+/// Number of samples that the lighting stage shades.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shading {
-    /// One per pixel: the reference.
+    /// One sample per pixel: the reference.
     #[default]
     Full,
-    /// One per square block of pixels, the blocks' sizes taken from the rate map.
+    /// One sample per square block of pixels. The rate map gives the block sizes.
     Coarse,
-    /// One per 1 x 1, 2 x 1, 1 x 2 or 2 x 2 pixels, as the picture's content allows.
+    /// One sample per 1 x 1, 2 x 1, 1 x 2 or 2 x 2 pixels, as the picture's content allows.
     Variable,
 }
 
-/// By what means coarse samples are visited.
+/// Method that visits the samples of coarse shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Backend {
-    /// Whichever the first frames show to be faster here.
+    /// The method that the first frames show to be faster on this device.
     #[default]
     Auto,
     /// Full-screen draws per level behind a stencil test.
     Stencil,
-    /// Lists of blocks and indirect dispatches.
+    /// Indirect dispatches over lists of blocks.
     Compute,
 }
 
-/// Where wished levels come from. Level l asks for one sample per 2^l x 2^l pixels.
+/// Source of the requested level. Level l requests one sample per 2^l x 2^l pixels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateSource {
-    /// What the eye resolves: the angle to the gaze on [`Settings::display`], for [`Settings::quality`].
+    /// The eye's resolution: the angle to the gaze on [`Settings::display`], for
+    /// [`Settings::quality`].
     #[default]
     Foveated,
-    /// The distance to the gaze in pixels, between [`Settings::fovea_inner`] and [`Settings::fovea_outer`]: the map of coarse
-    /// shading's source.
+    /// The distance to the gaze in pixels, between [`Settings::fovea_inner`] and
+    /// [`Settings::fovea_outer`], as in the technique's source.
     Radii,
     /// [`Settings::rate_level`] everywhere.
     Constant,
-    /// A picture stretched over the frame: black asks for every pixel, white for the coarsest level.
+    /// A picture stretched over the frame: black requests every pixel, white requests level 8.
     Image,
-    /// The contrast of the frame before; for [`Shading::Variable`] alone.
+    /// The contrast of the previous frame. Only for [`Shading::Variable`].
     Content,
     /// The lens of the headset output: coarser where the screen has fewer pixels.
     Lens,
 }
 
-/// What becomes of the second source of wishes.
+/// Use of the second source of levels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateCombine {
-    /// It is not looked at.
+    /// The second source is ignored.
     #[default]
     First,
-    /// Per pixel the coarser wish holds.
+    /// The coarser level at each pixel.
     Coarser,
-    /// Per pixel the finer wish holds.
+    /// The finer level at each pixel.
     Finer,
 }
 
-/// Where geometric edges are shaded more finely than wished.
+/// Geometric edges that are shaded more finely than requested.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RefineEdges {
-    /// Two levels finer than wished, everywhere.
+    /// All edges: one level finer than requested with [`Composite::Light`], two with the other
+    /// composites.
     #[default]
     Graded,
-    /// Pixel by pixel outside the periphery: where the wish is at most half the coarsest level.
+    /// Edges near the gaze, pixel by pixel: where the requested level is at most half the coarsest
+    /// level.
     Inner,
-    /// Pixel by pixel everywhere.
+    /// All edges, pixel by pixel.
     Everywhere,
-    /// Nowhere.
+    /// No edges.
     Off,
 }
 
-/// Which of its pixels a block's sample looks at.
+/// Pixel of a block that its sample shades.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CoarseSample {
-    /// The one at the centre.
+    /// The pixel at the block's centre.
     #[default]
     Center,
-    /// That of five whose depth and normal are nearest to the five's average.
+    /// The one of five pixels whose depth and normal are nearest to the average of the five.
     Typical,
 }
 
-/// How samples become pixels.
+/// Reconstruction of pixels from samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Composite {
-    /// Samples hold light, freed of the surface's own colour; each pixel's own surface is put into the light of the samples
-    /// around it. Pixels that no sample speaks for are shaded.
+    /// Samples hold light without the surface's own colour. Each pixel's own surface is lit by the
+    /// samples around it. Pixels that no sample fits are shaded by themselves.
     #[default]
     Light,
-    /// Samples hold colours, joined by continuous patches through them, guided by geometry; exact where radiance is linear.
+    /// Samples hold colours. Continuous patches through the samples join them, guided by geometry;
+    /// exact where radiance is linear.
     Smooth,
-    /// Four taps, as in the technique's source.
+    /// Samples hold colours. Four taps interpolate them, as in the technique's source.
     Paper,
-    /// The block's sample as it is.
+    /// Samples hold colours. Each pixel takes its block's sample.
     Nearest,
 }
 
-/// The coarsest level that the renderer knows: blocks of 256 x 256 pixels.
+/// Coarsest level of the renderer: blocks of 256 x 256 pixels.
 pub const COARSEST_LEVEL: u8 = 8;
 
 /// Checks the settings of coarse shading.

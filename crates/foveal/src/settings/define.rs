@@ -1,28 +1,29 @@
-//! The one definition of the settings: the macro that makes the struct, its defaults and the table of
-//! descriptions out of one list, and what the table says. Flags and panels are built from the table, the TOML
-//! file's keys are the struct's fields: a setting that is added to the list is in all three.
+//! The definition of settings: a macro that makes the struct, its defaults and a table of
+//! descriptions from one list. The program's flags, the window's panels and the page's controls are
+//! made from the table; the keys of a TOML file are the struct's fields. A setting that is added to
+//! the list is in all of them.
 
 use serde::Deserialize;
 use serde::de::value::Error;
 use serde::de::{Deserializer, Error as _, Visitor};
 use serde::forward_to_deserialize_any;
 
-/// What is to be known of a setting in order to offer it: as a flag, in a file, on a panel.
+/// Description of a setting, from which flags, panels and controls are made.
 #[derive(Clone, Copy, Debug)]
 pub struct Setting {
-    /// Its key in a settings file, and its flag without the dashes: `tone-map`.
+    /// Key in a settings file, and the flag without its dashes: `tone-map`.
     pub key: &'static str,
-    /// The stage of the frame that it belongs to, as a heading.
+    /// Stage of the frame that the setting belongs to, as a heading.
     pub stage: &'static str,
-    /// Its name on a panel.
+    /// Name on a panel.
     pub label: &'static str,
-    /// What it does, in a few sentences of plain text.
+    /// Help text: a few sentences without markup.
     pub help: &'static str,
-    /// What values it takes.
+    /// Values that the setting takes.
     pub kind: Kind,
 }
 
-/// What values a setting takes.
+/// Values that a setting takes.
 #[derive(Clone, Copy, Debug)]
 pub enum Kind {
     /// `true` or `false`.
@@ -31,34 +32,35 @@ pub enum Kind {
     Choice(fn() -> &'static [&'static str]),
     /// A whole number in this range.
     Integer {
-        /// The least one.
+        /// Smallest value.
         least: i64,
-        /// The largest one.
+        /// Largest value.
         most: i64,
     },
-    /// A number, mostly in this range; [`Settings::validate`](crate::Settings::validate) says how far it may leave it.
+    /// A number. The range is a slider's; [`Settings::validate`](crate::Settings::validate) may
+    /// accept more.
     Number {
-        /// Where a slider begins.
+        /// Smallest value of a slider.
         least: f64,
-        /// Where it ends.
+        /// Largest value of a slider.
         most: f64,
     },
-    /// A place in the picture: two fractions of its size, from the top left corner.
+    /// A place in the picture: two fractions of its size from the top left corner.
     Place,
     /// The path of a PNG file.
     File,
-    /// Words or numbers, as the help says.
+    /// Words or numbers, as the help text says.
     Text,
 }
 
 impl Kind {
-    /// One of the unit variants of `T`.
+    /// A choice between the unit variants of `T`.
     pub(super) const fn choice<T: for<'de> Deserialize<'de>>() -> Self {
         Self::Choice(variant_names::<T>)
     }
 }
 
-/// The field's name as a settings file spells it.
+/// A field's name as a settings file spells it: kebab case.
 pub(super) const fn kebab<const N: usize>(name: &str) -> [u8; N] {
     let mut key = [0; N];
     let mut i = 0;
@@ -70,9 +72,9 @@ pub(super) const fn kebab<const N: usize>(name: &str) -> [u8; N] {
     key
 }
 
-/// Makes the struct, its [`Default`] and its table of [`Setting`]s. Per stage a heading, per setting: what it does
-/// (the text of its documentation, its flag's help and its panel's tooltip), `field: type = default`, its label and
-/// its kind.
+/// Makes the struct, its [`Default`] and its table of [`Setting`]s. Each stage has a heading. Each
+/// setting has a help text (rustdoc, `--help`, the window's tooltip), `field: type = default`, a
+/// label and a kind.
 macro_rules! settings {
     (
         $(#[$attribute:meta])*
@@ -94,7 +96,7 @@ macro_rules! settings {
         }
 
         impl $name {
-            /// All settings, stage by stage in the order of the frame.
+            /// Descriptions of all settings, stage by stage in the order of the frame.
             pub const ALL: &'static [$crate::settings::Setting] = &[
                 $( $( $crate::settings::Setting {
                     key: {
@@ -116,7 +118,7 @@ macro_rules! settings {
 }
 pub(super) use settings;
 
-/// The names of the unit variants of `T` as serde spells them, in the order of its declaration.
+/// Names of the unit variants of `T` as serde spells them, in the order of declaration.
 #[must_use]
 pub fn variant_names<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] {
     let mut found: &'static [&'static str] = &[];
@@ -124,7 +126,7 @@ pub fn variant_names<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] 
     found
 }
 
-/// A deserializer that gives nothing, and notes which variants are asked for.
+/// A deserializer that yields no value and records the names of the variants that are expected.
 struct Probe<'a>(&'a mut &'static [&'static str]);
 
 impl<'de> Deserializer<'de> for Probe<'_> {

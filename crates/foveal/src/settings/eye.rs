@@ -1,20 +1,21 @@
-//! Choices about the eye that looks: on which display, and how small a difference it may see.
+//! Settings of the eye: the display that it looks at and the difference that it may see.
 
 use super::Settings;
 use crate::Error;
 
-/// Where the picture is seen: how wide a field of view it fills.
+/// Display on which the picture is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Display {
-    /// As wide as the camera's own: the picture is seen in its true perspective, as in a headset.
+    /// A display that fills the camera's own field of view: the picture has its true perspective,
+    /// as in a headset.
     Camera,
-    /// So many radians across, on a plane before the eye.
+    /// A plane in front of the eye, with this field of view from left to right in radians.
     Across(f32),
 }
 
-/// Displays with a name: width over distance, both in the same unit.
+/// Named displays: name, width, distance, both in the same unit.
 const NAMED: [(&str, f32, f32); 8] = [
-    // The metric's: a headset's eye of 91.5 degrees, 60 degrees, and the 24-inch monitor.
+    // Displays of the metric: a headset's eye of 91.5 degrees, 60 degrees, and the 24-inch monitor.
     ("hmd", 2.053, 1.0),
     ("h60", 1.1547, 1.0),
     ("fhd", 0.531, 0.6),
@@ -34,8 +35,9 @@ const EXPECTED: &str = "camera, hmd, h60, fhd-24, uhd-27, quest-3, vision-pro, p
                         WIDTHxDISTANCE in metres";
 
 impl Display {
-    /// A display by its name (`camera`, `hmd`, `h60`, `fhd-24`, `uhd-27`, `quest-3`, `vision-pro`, `phone`), its field of view in
-    /// degrees across, or `WIDTHxDISTANCE` in metres.
+    /// Reads a display from a name (`camera`, `hmd`, `h60`, `fhd-24`, `uhd-27`, `quest-3`,
+    /// `vision-pro`, `phone`), a field of view in degrees from left to right, or `WIDTHxDISTANCE`
+    /// in metres.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         if text == "camera" {
@@ -58,7 +60,7 @@ impl Display {
 }
 
 impl Settings {
-    /// The display that the picture is made for.
+    /// The display that the settings name.
     pub(crate) fn seen_on(&self) -> Result<Display, Error> {
         Display::parse(&self.display).ok_or_else(|| Error::Setting {
             name: "display",

@@ -1,27 +1,29 @@
-//! What devices without storage buffers and compute shaders can meet: see [`Gpu::reduced_limits`](crate::Gpu::reduced_limits).
+//! Settings on devices without storage buffers and compute shaders
+//! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
 use super::{Antialiasing, Geometry, Setting, Settings, Shading, View};
 use crate::Error;
 
-/// Stages that such devices lack altogether.
+/// Stages that are missing on such devices.
 const MISSING_STAGES: [&str; 4] = [
     "Anti-aliasing",
     "Shading rate",
     "Coarse shading",
     "Variable shading",
 ];
-/// Single settings that they lack.
+/// Single settings that are missing there.
 const MISSING_KEYS: [&str; 3] = ["view", "geometry", "material-dispatch"];
 
 impl Setting {
-    /// Whether it means anything on devices with [`Gpu::reduced_limits`](crate::Gpu::reduced_limits) alone.
+    /// Whether the setting has an effect on devices that offer only
+    /// [`Gpu::reduced_limits`](crate::Gpu::reduced_limits).
     #[must_use]
     pub fn is_in_reduced_set(&self) -> bool {
         !MISSING_STAGES.contains(&self.stage) && !MISSING_KEYS.contains(&self.key)
     }
 }
 
-/// Checks that the settings ask for nothing that is missing there.
+/// Checks that the settings need nothing that is missing there.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {
     let wishes = [
         ("view", s.view == View::Final, "final"),

@@ -1,4 +1,5 @@
-//! Choices about two eyes: how both are drawn, where they stand, and how the picture brings each to its own.
+//! Settings of stereo: the way both eyes are drawn, their poses and frusta, and the presentation of
+//! their pictures.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,49 +7,51 @@ use super::{Antialiasing, RateCombine, RateSource, Settings, Shading};
 use crate::Error;
 use crate::stereo::EyeLayout;
 
-/// Whether there are two eyes, and how their geometry is submitted.
+/// Number of eyes, and submission of their geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Stereo {
     /// One eye.
     #[default]
     Off,
-    /// Two eyes, by the best way that works on this device.
+    /// Two eyes, drawn in the fastest way that works on this device.
     Auto,
-    /// Each draw once for both, with twice the instances, into one target of twice the width.
+    /// Two eyes; each draw is submitted once with twice the instances, into one target of twice the
+    /// width.
     Instanced,
-    /// Each draw once, which the device repeats into a layer for each eye.
+    /// Two eyes; each draw is submitted once, and the device repeats it into a layer for each eye.
     Multiview,
-    /// Each draw once per eye: the reference.
+    /// Two eyes; each draw is submitted once per eye: the reference.
     TwoPass,
 }
 
-/// What keeps an eye's geometry from leaking into the other's half of the target with [`Stereo::Instanced`].
+/// Method that keeps one eye's geometry out of the other eye's half of the target with
+/// [`Stereo::Instanced`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EyeClipping {
     /// Clip distances where the device has them, else discard.
     #[default]
     Auto,
-    /// A clip plane at the middle; with [`Stereo::TwoPass`] too, which else has scissors alone. Clipped triangles are other
-    /// polygons: their last bits differ.
+    /// A clip plane between the halves, also with [`Stereo::TwoPass`], which otherwise uses
+    /// scissors alone. Clipped triangles are other polygons, so their last bits differ.
     Clip,
-    /// Fragments beyond the middle are discarded.
+    /// Fragments in the other half are discarded.
     Discard,
 }
 
-/// How the picture shows what two eyes see; that of one eye is shown as it is.
+/// Presentation of both eyes' pictures. With one eye its picture is shown unchanged.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Output {
-    /// The left or only eye's picture.
+    /// The picture of the left or only eye.
     #[default]
     Flat,
-    /// Left beside right, each in full: twice the width.
+    /// Left beside right, each at full width: twice the width.
     SideBySide,
     /// Left beside right, each at half its width.
     SideBySideHalf,
-    /// For red-cyan glasses: the left eye's luma in red, the right one's in green and blue.
+    /// For red-cyan glasses: the left eye's luma in red, the right eye's in green and blue.
     Anaglyph,
     /// For red-cyan glasses: colours by Dubois' least-squares projection.
     AnaglyphDubois,
@@ -56,17 +59,18 @@ pub enum Output {
     Headset,
 }
 
-/// A headset's lens: radial polynomials. Radii are tangents of the angle to the lens's axis. What the screen shows
-/// at radius `p` the eye sees at `p (1 + k1 p² + k2 p⁴ + k3 p⁶)`, times the colour's own factor.
+/// A headset's lens as a radial polynomial. Radii are tangents of the angle to the lens's axis. A
+/// point that the screen shows at radius `p` appears to the eye at `p (1 + k1 p² + k2 p⁴ + k3 p⁶)`,
+/// times a factor per colour.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LensProfile {
-    /// k1, k2, k3.
+    /// Coefficients k1, k2, k3.
     pub distortion: [f32; 3],
-    /// Red is seen at c0 + c1 p² times the radius of green.
+    /// Factors c0, c1 of red: it is seen at c0 + c1 p² times the radius of green.
     #[serde(default = "no_fringe")]
     pub red: [f32; 2],
-    /// Blue, likewise.
+    /// Factors c0, c1 of blue.
     #[serde(default = "no_fringe")]
     pub blue: [f32; 2],
 }
@@ -76,8 +80,8 @@ fn no_fringe() -> [f32; 2] {
 }
 
 impl LensProfile {
-    /// A lens by its name, or by its coefficients with commas between: k1, k2, k3, and where colours part c0 and c1 of
-    /// red, then of blue. `None` for anything else.
+    /// Reads a lens from a name, or from coefficients with commas between: k1, k2, k3, optionally
+    /// followed by c0 and c1 of red and of blue. `None` for anything else.
     #[must_use]
     pub fn parse(text: &str) -> Option<Self> {
         let pure = |distortion| Self {
@@ -87,11 +91,12 @@ impl LensProfile {
         };
         Some(match text {
             "ideal" => pure([0.0; 3]),
-            // The viewers' own parameters: https://support.google.com/cardboard/manufacturers/answer/6324808
+            // The viewers' own parameters:
+            // https://support.google.com/cardboard/manufacturers/answer/6324808
             "cardboard-v1" => pure([0.441, 0.156, 0.0]),
             "cardboard-v2" => pure([0.34, 0.55, 0.0]),
-            // The SDK's 1, 0.22, 0.24 and 0.996, -0.004, 1.014, 0 are of radii in halves of an eye's 74.88 mm wide half of
-            // the screen, which is 41 mm away: 0.9132 as a tangent.
+            // The SDK's 1, 0.22, 0.24 and 0.996, -0.004, 1.014, 0 are of radii in halves of an
+            // eye's 74.88 mm wide half of the screen, which is 41 mm away: 0.9132 as a tangent.
             "dk1" => Self {
                 distortion: [0.2638, 0.3451, 0.0],
                 red: [0.996, -0.0048],
@@ -121,14 +126,14 @@ impl Settings {
         self.stereo != Stereo::Off
     }
 
-    /// Whether two eyes have the same place, frustum and gaze: one picture then shows what both see.
+    /// Whether both eyes have the same position, frustum and gaze, so that one picture serves both.
     pub(crate) fn is_seen_alike(&self) -> bool {
         let same = matches!(self.frusta(), Ok(None))
             || matches!(self.frusta(), Ok(Some([a, b])) if a == b);
         self.is_stereo() && self.ipd == 0.0 && same && self.gaze_shift == [0.0; 2]
     }
 
-    /// Width and height of the picture that [`crate::Renderer::read_picture`] gives.
+    /// Width and height in pixels of the picture that [`crate::Renderer::read_picture`] returns.
     #[must_use]
     pub fn picture_size(&self) -> (u32, u32) {
         match self.show {
@@ -139,7 +144,8 @@ impl Settings {
         }
     }
 
-    /// The eyes' own frusta: left, right, bottom, top of the left and of the right one; none where the camera's is taken.
+    /// Frusta of both eyes as tangents (left, right, bottom, top); `None` where the camera's
+    /// frustum is used.
     pub(crate) fn frusta(&self) -> Result<Option<[[f32; 4]; 2]>, Error> {
         if self.eye_tangents.is_empty() {
             return Ok(None);
@@ -163,7 +169,7 @@ impl Settings {
         })
     }
 
-    /// Whether the rate map follows the lens.
+    /// Whether a source of the rate map is the lens.
     pub(crate) fn rates_by_lens(&self) -> bool {
         let second = self.rate_combine != RateCombine::First;
         self.shading == Shading::Coarse

@@ -1,52 +1,54 @@
-//! Choices about the geometry pass and about shading at a rate that the picture's content decides.
+//! Settings of the geometry pass and of variable shading, whose rate follows the picture's content.
 
 use serde::{Deserialize, Serialize};
 
 use super::{Antialiasing, Composite, RateCombine, RateSource, Settings, Shading, View};
 use crate::Error;
 
-/// How the G-buffer is filled.
+/// Way to fill the G-buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Geometry {
-    /// By the rasterizer: materials are evaluated for every fragment that passes the depth test.
+    /// The rasterizer evaluates materials for every fragment that passes the depth test.
     #[default]
     Gbuffer,
-    /// By a visibility buffer: the rasterizer finds the triangle at each pixel, and materials are evaluated once per
-    /// pixel afterwards.
+    /// The rasterizer writes the triangle at each pixel (a visibility buffer); materials are
+    /// resolved once per pixel afterwards.
     Visibility,
 }
 
-/// What is done once per sample instead of once per pixel where shading is coarse or variable.
+/// Work done once per sample instead of once per pixel in coarse and variable shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateStage {
-    /// [`RateStage::Both`] where it can be: with [`Geometry::Visibility`], without anti-aliasing, and with another composite
-    /// than [`Composite::Light`], which needs each pixel's surface; else lighting.
+    /// [`RateStage::Both`] where it is possible: with [`Geometry::Visibility`], without
+    /// anti-aliasing, and without [`Composite::Light`], which needs each pixel's surface. Else
+    /// lighting.
     #[default]
     Auto,
     /// Lighting.
     Lighting,
-    /// Materials, as variable shading's source does; needs [`Geometry::Visibility`] and [`Shading::Variable`].
+    /// Materials, as in variable shading's source. Needs [`Geometry::Visibility`] and
+    /// [`Shading::Variable`].
     Material,
-    /// Both; needs [`Geometry::Visibility`].
+    /// Materials and lighting. Needs [`Geometry::Visibility`].
     Both,
 }
 
 impl RateStage {
-    /// Materials are evaluated at the rate.
+    /// Whether materials are resolved once per sample.
     pub(crate) fn has_material(self) -> bool {
         matches!(self, Self::Material | Self::Both)
     }
 
-    /// Lighting is evaluated at the rate.
+    /// Whether lighting is evaluated once per sample.
     pub(crate) fn has_lighting(self) -> bool {
         self != Self::Material
     }
 }
 
 impl Settings {
-    /// What is done once per sample, the choice having been made.
+    /// Work done once per sample, with [`RateStage::Auto`] decided. Never `Auto`.
     pub(crate) fn stage(&self) -> RateStage {
         let light = self.shading == Shading::Coarse && self.composite == Composite::Light;
         let material =
@@ -59,13 +61,14 @@ impl Settings {
         }
     }
 
-    /// Coarse shading's samples alone have surfaces: what looks at other pixels goes by their depth.
+    /// Whether only the samples of coarse shading have surfaces, so that comparisons of other
+    /// pixels use depth alone.
     pub(crate) fn sees_by_depth(&self) -> bool {
         self.shading == Shading::Coarse && self.stage().has_material()
     }
 }
 
-/// What the content's contrast is measured by.
+/// Measure of the contrast in variable shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Contrast {

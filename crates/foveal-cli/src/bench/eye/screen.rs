@@ -22,7 +22,7 @@ const fn screen(name: &'static str, width: u32, height: u32) -> Screen {
     }
 }
 
-/// All with a name; `hmd` and `h60` have as many pixels as docs/coarse-notes.md compares them with.
+/// All with a name; `hmd` and `h60` have as many pixels as docs/benchmarks/coarse.md compares them with.
 pub(super) const ALL: [Screen; 7] = [
     screen("h60", 1280, 720),
     screen("fhd-24", 1920, 1080),
