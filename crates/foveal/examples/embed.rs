@@ -56,11 +56,10 @@ fn embed(scene: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
 
         // The renderer on the host's device.
         let gpu = Gpu::from_device(device.clone(), queue.clone());
-        let settings = Settings {
-            width: 320,
-            height: 180,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 320;
+            s.picture.height = 180;
+        });
         let mut renderer = Renderer::new(&gpu, &settings, None).await?;
         renderer.set_scene(&scene).await?;
         let camera = scene

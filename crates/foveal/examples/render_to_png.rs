@@ -23,11 +23,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             .first()
             .cloned()
             .unwrap_or_else(|| scene.overview_camera());
-        let settings = Settings {
-            width: 960,
-            height: 540,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 960;
+            s.picture.height = 540;
+        });
 
         let gpu = Gpu::open(None).await?;
         let mut renderer = Renderer::new(&gpu, &settings, None).await?;
@@ -43,8 +42,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         image::save_buffer(
             &path,
             &pixels,
-            settings.width,
-            settings.height,
+            settings.picture.width,
+            settings.picture.height,
             image::ColorType::Rgba8,
         )?;
         println!(

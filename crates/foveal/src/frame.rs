@@ -95,7 +95,7 @@ impl FrameUniform {
             } else {
                 layout.stride
             },
-            exposure: settings.exposure.exp2(),
+            exposure: settings.picture.exposure_stops.exp2(),
             orthographic,
         }
     }

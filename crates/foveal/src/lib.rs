@@ -39,10 +39,13 @@ pub use gpu::Gpu;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Clock, Frame, Renderer, Target};
 pub use settings::{
-    Antialiasing, Backend, COARSEST_LEVEL, CoarseSample, Composite, Contrast, Culling, CullingEyes,
-    Display, EdgeTest, EyeClipping, Geometry, Kind, LensProfile, LightAssignment, LightingModel,
-    MaterialDispatch, Output, RateCombine, RateSource, RateStage, RefineEdges, SamplePattern,
-    Setting, Settings, Shading, Stereo, ToneMap, View, variant_names,
+    Antialiasing, AntialiasingSettings, COARSEST_LEVEL, CoarseBackend, CoarseSample,
+    CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,
+    EdgeTest, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings, Kind, Lens,
+    LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch, Output,
+    PictureSettings, RateCombine, RateSource, RateStage, RefineEdges, SamplePattern, Setting,
+    Settings, Shading, ShadingSettings, Stereo, StereoSettings, ToneMap, VariableSettings,
+    variant_names,
 };
 pub use stats::{
     AdapterStats, CoarseStats, FrameStats, SceneStats, StereoStats, Timing, VariableStats,

@@ -170,7 +170,7 @@ impl Renderer {
     }
 
     /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
-    /// [`Settings::anisotropy`], and one to [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are
+    /// [`LightingSettings::anisotropy`], and one to [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are
     /// baked with the scene, takes effect with the next [`Renderer::set_scene`].
     ///
     /// # Errors
@@ -195,24 +195,24 @@ impl Renderer {
         if *settings == *old {
             return Ok(());
         }
-        self.scene.geometry.check(&self.gpu, settings.geometry)?;
-        if (Settings {
-            gaze: settings.gaze,
-            gaze_shift: settings.gaze_shift,
-            ..old.clone()
-        }) == *settings
-        {
+        self.scene
+            .geometry
+            .check(&self.gpu, settings.geometry.path)?;
+        let looking = old.clone().with(|s| {
+            s.eye.gaze = settings.eye.gaze;
+            s.stereo.gaze_shift = settings.stereo.gaze_shift;
+        });
+        let sized = old.clone().with(|s| {
+            s.picture.width = settings.picture.width;
+            s.picture.height = settings.picture.height;
+        });
+        if looking == *settings {
             self.stages.settings = settings.clone();
             return Ok(());
         }
         // Its counts are read from targets that go.
         self.in_flight = None;
-        if (Settings {
-            width: settings.width,
-            height: settings.height,
-            ..old.clone()
-        }) == *settings
-        {
+        if sized == *settings {
             let culling = CullingStage::new(settings)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
             let submission = self.stages.submission.0;
@@ -272,7 +272,7 @@ impl Renderer {
         );
         trap.finish().await?;
         let uploaded = uploaded?;
-        let geometry = self.stages.settings.geometry;
+        let geometry = self.stages.settings.geometry.path;
         uploaded.geometry.check(&self.gpu, geometry)?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's instances");
         let written = self

@@ -45,7 +45,7 @@ impl Targets {
         };
         let target = |label, format, usage| gpu::target(gpu, label, (width, height), format, usage);
         Self {
-            gbuffer: GBuffer::new(gpu, settings.geometry, size, layers),
+            gbuffer: GBuffer::new(gpu, settings.geometry.path, size, layers),
             radiance_view: target(
                 "radiance",
                 RADIANCE_FORMAT,
@@ -64,10 +64,11 @@ impl Targets {
                 let (size, none) = (settings.picture_size(), wgpu::TextureUsages::empty());
                 gpu::target(gpu, "shown picture", size, PICTURE_FORMAT, none)
             }),
-            samples: (settings.aa != Antialiasing::None).then(|| SampleTargets::new(gpu, settings)),
-            coarse: (settings.shading == Shading::Coarse)
+            samples: (settings.antialiasing.mode != Antialiasing::None)
+                .then(|| SampleTargets::new(gpu, settings)),
+            coarse: (settings.shading.mode == Shading::Coarse)
                 .then(|| CoarseTargets::new(gpu, settings)),
-            variable: (settings.shading == Shading::Variable)
+            variable: (settings.shading.mode == Shading::Variable)
                 .then(|| VariableTargets::new(gpu, settings)),
         }
     }
@@ -110,10 +111,7 @@ mod tests {
     #[test]
     fn coarse_targets_count_too() {
         let bytes = |shading| {
-            let settings = Settings {
-                shading,
-                ..crate::testing::small(64, 64)
-            };
+            let settings = crate::testing::small(64, 64).with(|s| s.shading.mode = shading);
             Targets::new(crate::testing::gpu(), &settings, Submission::Mono).bytes()
         };
         let full = bytes(Shading::Full);

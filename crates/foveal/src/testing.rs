@@ -66,13 +66,12 @@ pub(crate) fn picture(renderer: &Renderer) -> Vec<u8> {
 
 /// Settings for a small target.
 pub(crate) fn small(width: u32, height: u32) -> Settings {
-    Settings {
-        width,
-        height,
+    Settings::default().with(|s| {
+        s.picture.width = width;
+        s.picture.height = height;
         // Tests of light that is kept turn it on.
-        history: false,
-        ..Settings::default()
-    }
+        s.coarse.history = false;
+    })
 }
 
 /// A renderer with a scene, and the camera of its last frame.

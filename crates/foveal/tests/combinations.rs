@@ -16,32 +16,30 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
     let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
     let mut scene = generate::cornell();
     generate::add_point_lights(&mut scene, 8, 3);
-    let plain = Settings {
-        width: 160,
-        height: 90,
-        aa,
-        stereo,
-        show: match stereo {
+    let plain = Settings::default().with(|s| {
+        s.picture.width = 160;
+        s.picture.height = 90;
+        s.antialiasing.mode = aa;
+        s.stereo.mode = stereo;
+        s.stereo.output = match stereo {
             Stereo::Off => Output::Flat,
             _ => Output::SideBySide,
-        },
-        ..Settings::default()
-    };
+        };
+    });
     let reference = drawn(&gpu, &scene, &plain, FRAMES);
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
         for shading in [Shading::Full, Shading::Coarse, Shading::Variable] {
-            let settings = Settings {
-                geometry,
-                shading,
-                rate: match shading {
+            let settings = plain.clone().with(|s| {
+                s.geometry.path = geometry;
+                s.shading.mode = shading;
+                s.coarse.source = match shading {
                     Shading::Variable => RateSource::Content,
                     _ => RateSource::Foveated,
-                },
-                force_rate: true,
+                };
+                s.variable.force = true;
                 // Blocks as large as 4 x 4: the picture is small.
-                coarsest_level: 2,
-                ..plain.clone()
-            };
+                s.coarse.coarsest_level = 2;
+            });
             let error = mean_flip(&reference, &drawn(&gpu, &scene, &settings, FRAMES));
             println!("{geometry:?}, {shading:?}, {aa:?}, {stereo:?}: {error:.4}");
             // Over a visibility buffer a pixel's materials are averaged by surface, not by sub-sample.

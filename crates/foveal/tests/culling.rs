@@ -51,11 +51,12 @@ fn assert_same_pictures(
     width: u32,
     height: u32,
 ) -> (u64, u64) {
-    let settings = |culling| Settings {
-        width,
-        height,
-        culling,
-        ..Settings::default()
+    let settings = |culling| {
+        Settings::default().with(|s| {
+            s.picture.width = width;
+            s.picture.height = height;
+            s.culling.mode = culling;
+        })
     };
     let reference = draw(scene, cameras, &settings(Culling::Off));
     let (mut occluded, mut outside) = (0, 0);
@@ -128,12 +129,13 @@ fn a_result_that_is_kept_while_the_eye_moves_a_little_leaves_the_picture_as_it_i
             })
         })
         .collect();
-    let settings = |culling| Settings {
-        width: 253,
-        height: 143,
-        culling,
-        culling_radius: 0.05,
-        ..Settings::default()
+    let settings = |culling| {
+        Settings::default().with(|s| {
+            s.picture.width = 253;
+            s.picture.height = 143;
+            s.culling.mode = culling;
+            s.culling.radius_m = 0.05;
+        })
     };
     let reference = draw(&scene, &cameras, &settings(Culling::Off));
     for culling in [Culling::Frustum, Culling::Occlusion] {
@@ -155,15 +157,16 @@ fn assert_same_to_two_eyes(
     cameras: &[Camera],
     culling_radius: f32,
 ) -> [u64; 2] {
-    let settings = |culling, culling_eyes| Settings {
-        width: 189,
-        height: 107,
-        culling,
-        culling_eyes,
-        culling_radius,
-        stereo: Stereo::Auto,
-        show: Output::SideBySide,
-        ..Settings::default()
+    let settings = |culling, culling_eyes| {
+        Settings::default().with(|s| {
+            s.picture.width = 189;
+            s.picture.height = 107;
+            s.culling.mode = culling;
+            s.culling.eyes = culling_eyes;
+            s.culling.radius_m = culling_radius;
+            s.stereo.mode = Stereo::Auto;
+            s.stereo.output = Output::SideBySide;
+        })
     };
     let reference = draw(scene, cameras, &settings(Culling::Off, CullingEyes::Each));
     [CullingEyes::Each, CullingEyes::Shared].map(|eyes| {
@@ -216,14 +219,13 @@ fn a_time_budget_draws_more_and_leaves_the_picture_as_it_is() {
     })
     .expect("options fit");
     let draw = |culling, culling_budget| {
-        let settings = Settings {
-            width: 120,
-            height: 90,
-            culling,
-            culling_budget,
-            culling_threads: 1,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 120;
+            s.picture.height = 90;
+            s.culling.mode = culling;
+            s.culling.budget_ms = culling_budget;
+            s.culling.threads = 1;
+        });
         draw(&scene, &scene.cameras[..1], &settings).remove(0)
     };
     let (expected, _) = draw(Culling::Off, 0.0);

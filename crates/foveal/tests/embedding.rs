@@ -83,16 +83,15 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
         (Shading::Coarse, Antialiasing::None),
         (Shading::Full, Antialiasing::Msaa),
     ] {
-        let settings = Settings {
-            width: 64,
-            height: 40,
-            shading,
-            aa,
-            backend: foveal::Backend::Compute,
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 40;
+            s.shading.mode = shading;
+            s.antialiasing.mode = aa;
+            s.coarse.backend = foveal::CoarseBackend::Compute;
             // Each frame is the first one's equal.
-            history: false,
-            ..Settings::default()
-        };
+            s.coarse.history = false;
+        });
         pollster::block_on(async {
             let mut renderer = Renderer::new(&gpu, &settings, Some(clock))
                 .await
@@ -163,11 +162,10 @@ fn the_hosts_own_handlers_stay_in_place() {
         let _ = sender.send(());
     });
     let gpu = Gpu::from_device(device.clone(), queue);
-    let settings = Settings {
-        width: 32,
-        height: 32,
-        ..Settings::default()
-    };
+    let settings = Settings::default().with(|s| {
+        s.picture.width = 32;
+        s.picture.height = 32;
+    });
     let mut renderer = pollster::block_on(Renderer::new(&gpu, &settings, None)).expect("fits");
     device.destroy();
     let _ = device.poll(wgpu::PollType::wait_indefinitely());

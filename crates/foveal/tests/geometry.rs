@@ -40,12 +40,11 @@ fn picture(renderer: &mut Renderer, scene: &Scene) -> nv_flip::FlipImageRgb8 {
 fn renderers() -> [Renderer; 2] {
     let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
     [Geometry::Gbuffer, Geometry::Visibility].map(|geometry| {
-        let settings = Settings {
-            width: WIDTH,
-            height: HEIGHT,
-            geometry,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = WIDTH;
+            s.picture.height = HEIGHT;
+            s.geometry.path = geometry;
+        });
         pollster::block_on(Renderer::new(&gpu, &settings, None)).expect("settings fit")
     })
 }

@@ -5,7 +5,7 @@
 
 use std::path::PathBuf;
 
-use foveal::{Frame, Gpu, LightingModel, Renderer, Settings, View};
+use foveal::{DebugView, Frame, Gpu, LightingModel, Renderer, Settings};
 use foveal_scene::generate;
 
 /// Two adapters that draw the same picture differ by less, a missing light or texture by far more.
@@ -54,11 +54,10 @@ fn flip(a: &[u8], b: &[u8]) -> f32 {
 }
 
 fn assert_golden(name: &str, scene: &str, settings: Settings) {
-    let settings = Settings {
-        width: WIDTH,
-        height: HEIGHT,
-        ..settings
-    };
+    let settings = settings.with(|s| {
+        s.picture.width = WIDTH;
+        s.picture.height = HEIGHT;
+    });
     let drawn = draw(scene, &settings);
     let golden = folder().join(format!("{name}.png"));
     if std::env::var_os("UPDATE_GOLDEN").is_some() {
@@ -88,10 +87,7 @@ fn cornell_looks_as_it_should() {
 
 #[test]
 fn blinn_phong_looks_as_it_should() {
-    let settings = Settings {
-        lighting: LightingModel::BlinnPhong,
-        ..Settings::default()
-    };
+    let settings = Settings::default().with(|s| s.lighting.model = LightingModel::BlinnPhong);
     assert_golden("cornell-blinn-phong", "cornell", settings);
 }
 
@@ -110,27 +106,20 @@ fn normals_look_as_they_should() {
     assert_golden(
         "alpha-normals",
         "alpha",
-        Settings {
-            view: View::Normals,
-            ..Settings::default()
-        },
+        Settings::default().with(|s| s.picture.view = DebugView::Normals),
     );
 }
 
 #[test]
 fn different_pictures_are_told_apart() {
-    let settings = Settings {
-        width: WIDTH,
-        height: HEIGHT,
-        ..Settings::default()
-    };
+    let settings = Settings::default().with(|s| {
+        s.picture.width = WIDTH;
+        s.picture.height = HEIGHT;
+    });
     let cornell = draw("cornell", &settings);
     let brighter = draw(
         "cornell",
-        &Settings {
-            exposure: 0.3,
-            ..settings
-        },
+        &settings.with(|s| s.picture.exposure_stops = 0.3),
     );
     assert!(flip(&cornell, &brighter) > MAX_FLIP);
 }

@@ -31,11 +31,10 @@ fn resident_bytes() -> u64 {
 #[test]
 fn a_thousand_frames_with_a_resize_every_fifty_leave_memory_flat() {
     let gpu = open();
-    let mut settings = Settings {
-        width: 96,
-        height: 54,
-        ..Settings::default()
-    };
+    let mut settings = Settings::default().with(|s| {
+        s.picture.width = 96;
+        s.picture.height = 54;
+    });
     let mut renderer = renderer(&gpu, &settings);
     let scene = generate::cornell();
     let frame = Frame {
@@ -49,8 +48,8 @@ fn a_thousand_frames_with_a_resize_every_fifty_leave_memory_flat() {
             if i % 50 == 0 {
                 // Ten sizes, each once in the first half and once in the second.
                 let step = i / 50 % 10;
-                settings.width = 96 + 32 * step;
-                settings.height = 54 + 18 * step;
+                settings.picture.width = 96 + 32 * step;
+                settings.picture.height = 54 + 18 * step;
                 renderer
                     .set_settings(&settings)
                     .await
@@ -84,11 +83,10 @@ fn a_lost_device_is_an_error_and_no_panic() {
     };
     let mut renderer = renderer(
         &gpu,
-        &Settings {
-            width: 64,
-            height: 36,
-            ..Settings::default()
-        },
+        &Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 36;
+        }),
     );
     pollster::block_on(async {
         renderer.set_scene(&scene).await.expect("scene fits");
@@ -107,10 +105,7 @@ fn a_lost_device_is_an_error_and_no_panic() {
 fn settings_that_cannot_be_met_name_the_limit() {
     let gpu = open();
     let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
-    let absurd = Settings {
-        width: 1_000_000,
-        ..Settings::default()
-    };
+    let absurd = Settings::default().with(|s| s.picture.width = 1_000_000);
     match pollster::block_on(Renderer::new(&gpu, &absurd, None)) {
         Err(Error::Limit {
             value: 1_000_000,
@@ -120,18 +115,9 @@ fn settings_that_cannot_be_met_name_the_limit() {
         other => panic!("{other:?}"),
     }
     for bad in [
-        Settings {
-            height: 0,
-            ..Settings::default()
-        },
-        Settings {
-            exposure: f32::NAN,
-            ..Settings::default()
-        },
-        Settings {
-            anisotropy: 17,
-            ..Settings::default()
-        },
+        Settings::default().with(|s| s.picture.height = 0),
+        Settings::default().with(|s| s.picture.exposure_stops = f32::NAN),
+        Settings::default().with(|s| s.lighting.anisotropy = 17),
     ] {
         let refused = pollster::block_on(Renderer::new(&gpu, &bad, None));
         assert!(matches!(refused, Err(Error::Setting { .. })), "{refused:?}");
@@ -143,11 +129,10 @@ fn a_scene_over_a_limit_is_refused_and_the_old_one_stays() {
     let gpu = open();
     let mut renderer = renderer(
         &gpu,
-        &Settings {
-            width: 64,
-            height: 36,
-            ..Settings::default()
-        },
+        &Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 36;
+        }),
     );
     let scene = generate::cornell();
     let frame = Frame {
@@ -201,11 +186,10 @@ fn an_empty_scene_shows_the_backdrop() {
     let gpu = open();
     let mut renderer = renderer(
         &gpu,
-        &Settings {
-            width: 16,
-            height: 9,
-            ..Settings::default()
-        },
+        &Settings::default().with(|s| {
+            s.picture.width = 16;
+            s.picture.height = 9;
+        }),
     );
     let scene = Scene::default();
     let camera = scene.overview_camera();

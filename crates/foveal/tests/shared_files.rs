@@ -43,11 +43,10 @@ fn scenes_below(folder: &Path) -> Vec<PathBuf> {
 }
 
 fn renderer() -> Renderer {
-    let settings = Settings {
-        width: 96,
-        height: 54,
-        ..Settings::default()
-    };
+    let settings = Settings::default().with(|s| {
+        s.picture.width = 96;
+        s.picture.height = 54;
+    });
     pollster::block_on(async {
         let gpu = Gpu::open(None)
             .await

@@ -201,12 +201,11 @@ mod tests {
             (Antialiasing::Msaa, EdgeTest::Surface, Geometry::Visibility),
             (Antialiasing::Ssaa, EdgeTest::Surface, Geometry::Visibility),
         ] {
-            let settings = Settings {
-                aa,
-                edge_test,
-                geometry,
-                ..small(width, height)
-            };
+            let settings = small(width, height).with(|s| {
+                s.antialiasing.mode = aa;
+                s.antialiasing.edge_test = edge_test;
+                s.geometry.path = geometry;
+            });
             let (sum, most) = off(&settings);
             // Where the opaque quad ends behind glass, the two are averaged one by one, and bright weighs less.
             assert!(
@@ -214,11 +213,10 @@ mod tests {
                 "{aa:?} {geometry:?}: {sum} of {none}, {most}"
             );
         }
-        let rotated = Settings {
-            aa: Antialiasing::Msaa,
-            pattern: SamplePattern::Rotated,
-            ..small(width, height)
-        };
+        let rotated = small(width, height).with(|s| {
+            s.antialiasing.mode = Antialiasing::Msaa;
+            s.antialiasing.pattern = SamplePattern::Rotated;
+        });
         let (sum, _) = off(&rotated);
         // Its samples lie elsewhere.
         assert!(sum < 0.65 * none, "{sum} of {none}");
@@ -227,10 +225,7 @@ mod tests {
     #[test]
     fn glass_is_the_same_in_bands() {
         let (scene, camera) = (glasses(), camera());
-        let settings = Settings {
-            aa: Antialiasing::Msaa,
-            ..small(SIZE.0, SIZE.1)
-        };
+        let settings = small(SIZE.0, SIZE.1).with(|s| s.antialiasing.mode = Antialiasing::Msaa);
         let mut renderer = rendered(&scene, &camera, &settings);
         let whole = radiance(&renderer);
         renderer.redraw_in_bands(&camera, 5);

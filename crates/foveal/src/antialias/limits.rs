@@ -2,7 +2,7 @@
 
 use super::targets::most_entries;
 use crate::stereo::EyeLayout;
-use crate::{Antialiasing, Error, SamplePattern, Settings, View};
+use crate::{Antialiasing, DebugView, Error, SamplePattern, Settings};
 
 /// Largest side of a grid.
 const MAX_SIDE: u32 = 16;
@@ -14,9 +14,9 @@ const MAX_MSAA: u32 = 16;
 /// # Errors
 /// [`Error::Setting`] and [`Error::Limit`].
 pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
-    if settings.aa == Antialiasing::None {
-        return match settings.view {
-            View::Edges | View::Samples => Err(Error::Setting {
+    if settings.antialiasing.mode == Antialiasing::None {
+        return match settings.picture.view {
+            DebugView::Edges | DebugView::Samples => Err(Error::Setting {
                 name: "view",
                 value: "a view of anti-aliasing".to_owned(),
                 expected: "another one where aa is none",
@@ -24,7 +24,7 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
             _ => Ok(()),
         };
     }
-    let samples = settings.samples;
+    let samples = settings.antialiasing.samples;
     let wrong = |expected| {
         Err(Error::Setting {
             name: "samples",
@@ -32,7 +32,7 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
             expected,
         })
     };
-    match settings.pattern {
+    match settings.antialiasing.pattern {
         SamplePattern::Rotated if samples == 4 || samples == 8 => {
             return fits_buffers(settings, limits);
         }
@@ -43,7 +43,7 @@ pub(crate) fn validate(settings: &Settings, limits: &wgpu::Limits) -> Result<(),
     if side * side != samples || !(2..=MAX_SIDE).contains(&side) {
         return wrong("a square from 4 to 256 (4, 9, 16, ...) with the grid pattern");
     }
-    if settings.aa == Antialiasing::Msaa && samples > MAX_MSAA {
+    if settings.antialiasing.mode == Antialiasing::Msaa && samples > MAX_MSAA {
         return wrong("at most 16 with msaa");
     }
     let (width, height) = EyeLayout::of(settings).target_size();
@@ -73,7 +73,7 @@ fn fits_buffers(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error>
     let (width, height) = EyeLayout::of(settings).target_size();
     let pixels = u64::from(width) * u64::from(height);
     let most = most_entries(limits);
-    if settings.aa == Antialiasing::Ssaa && pixels > most {
+    if settings.antialiasing.mode == Antialiasing::Ssaa && pixels > most {
         return Err(Error::Limit {
             what: "the picture's number of pixels with ssaa".to_owned(),
             value: pixels,
@@ -103,12 +103,11 @@ mod tests {
     }
 
     fn with(aa: Antialiasing, pattern: SamplePattern, samples: u32) -> Settings {
-        Settings {
-            aa,
-            pattern,
-            samples,
-            ..Settings::default()
-        }
+        Settings::default().with(|s| {
+            s.antialiasing.mode = aa;
+            s.antialiasing.pattern = pattern;
+            s.antialiasing.samples = samples;
+        })
     }
 
     #[test]
@@ -142,31 +141,28 @@ mod tests {
 
     #[test]
     fn what_exceeds_the_device_names_the_limit_and_the_largest_that_fits() {
-        let settings = Settings {
-            width: 7680,
-            height: 4320,
-            ..with(Antialiasing::Ssaa, SamplePattern::Grid, 256)
-        };
+        let settings = with(Antialiasing::Ssaa, SamplePattern::Grid, 256).with(|s| {
+            s.picture.width = 7680;
+            s.picture.height = 4320;
+        });
         let text = message(&settings);
         for part in ["7680 pixels x 16", "122880", "16384", "samples up to 4"] {
             assert!(text.contains(part), "{text}");
         }
-        let settings = Settings {
-            width: 10_000,
-            samples: 4,
-            ..settings
-        };
+        let settings = settings.with(|s| {
+            s.picture.width = 10_000;
+            s.antialiasing.samples = 4;
+        });
         assert!(message(&settings).contains("rotated pattern only"));
     }
 
     #[test]
     fn ssaa_of_more_pixels_than_a_buffer_holds_is_refused() {
-        let settings = Settings {
-            width: 7680,
-            height: 4320,
-            aa: Antialiasing::Ssaa,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 7680;
+            s.picture.height = 4320;
+            s.antialiasing.mode = Antialiasing::Ssaa;
+        });
         // 2 x 2 fits the texture: the buffer is the limit.
         let error = validate(
             &settings,
@@ -184,13 +180,10 @@ mod tests {
 
     #[test]
     fn views_of_antialiasing_need_antialiasing() {
-        for view in [View::Edges, View::Samples] {
-            let mut settings = Settings {
-                view,
-                ..Settings::default()
-            };
+        for view in [DebugView::Edges, DebugView::Samples] {
+            let mut settings = Settings::default().with(|s| s.picture.view = view);
             assert!(message(&settings).contains("aa is none"));
-            settings.aa = Antialiasing::Msaa;
+            settings.antialiasing.mode = Antialiasing::Msaa;
             assert_eq!(message(&settings), "");
         }
     }

@@ -39,7 +39,7 @@ pub(crate) enum Pattern {
 impl Pattern {
     /// The pattern of settings that were found valid.
     pub(crate) fn of(settings: &Settings) -> Self {
-        match (settings.pattern, settings.samples) {
+        match (settings.antialiasing.pattern, settings.antialiasing.samples) {
             (SamplePattern::Rotated, 8) => Self::Rotated(&ROTATED_8),
             (SamplePattern::Rotated, _) => Self::Rotated(&ROTATED_4),
             (SamplePattern::Grid, samples) => Self::Grid {

@@ -19,7 +19,7 @@ pub(super) enum Edges {
 
 impl Edges {
     pub(super) fn of(settings: &Settings) -> Self {
-        match (settings.aa, settings.edge_test) {
+        match (settings.antialiasing.mode, settings.antialiasing.edge_test) {
             (Antialiasing::Ssaa, _) => Self::All,
             (_, EdgeTest::Surface) => Self::BySurface,
             (_, EdgeTest::Paper) => Self::ByDepth,
@@ -71,7 +71,7 @@ impl AntialiasPipelines {
             &[uniform(), uint, read, read, write],
         );
         let combine_layout = layout("combination", compute, &[read, read, write, float, uint]);
-        let coarse = f64::from(u8::from(settings.shading == Shading::Coarse));
+        let coarse = f64::from(u8::from(settings.shading.mode == Shading::Coarse));
         let radiance = wgpu::BindingType::StorageTexture {
             access: wgpu::StorageTextureAccess::WriteOnly,
             format: RADIANCE_FORMAT,
@@ -86,7 +86,10 @@ impl AntialiasPipelines {
 
         let [model, brute] = lighting_constants(settings);
         // Views of the G-buffer show averages.
-        let mirror = ("MIRROR", f64::from(u8::from(settings.view.is_lit())));
+        let mirror = (
+            "MIRROR",
+            f64::from(u8::from(settings.picture.view.is_lit())),
+        );
         Self {
             merge: merge(
                 gpu,

@@ -7,7 +7,7 @@ use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::shading::ShadingPass;
 use crate::targets::Targets;
-use crate::{Antialiasing, Settings, View, shader};
+use crate::{Antialiasing, DebugView, Settings, shader};
 
 use super::blended::{BlendedStage, BlendedTargets};
 use super::pattern::{Band, Pattern};
@@ -46,7 +46,7 @@ pub(crate) struct AntialiasStage {
     /// Over a visibility buffer.
     triangles: Option<TriangleStage>,
     blended: BlendedStage,
-    /// Draws [`View::Edges`] or [`View::Samples`].
+    /// Draws [`DebugView::Edges`] or [`DebugView::Samples`].
     view: Option<(wgpu::RenderPipeline, wgpu::BindGroupLayout)>,
 }
 
@@ -58,12 +58,12 @@ impl AntialiasStage {
         frame: &wgpu::BindGroupLayout,
         shading: &ShadingPass,
     ) -> Option<Self> {
-        if settings.aa == Antialiasing::None {
+        if settings.antialiasing.mode == Antialiasing::None {
             return None;
         }
-        let number = match settings.view {
-            View::Edges => Some(0.0),
-            View::Samples => Some(1.0),
+        let number = match settings.picture.view {
+            DebugView::Edges => Some(0.0),
+            DebugView::Samples => Some(1.0),
             _ => None,
         };
         Some(Self {

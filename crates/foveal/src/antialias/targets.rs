@@ -199,7 +199,7 @@ impl SampleTargets {
             bands: bands.collect(),
             samples: match further {
                 Some(_) => band_of_triangles(gpu, (texels_x, texels_y)),
-                None => GBuffer::new(gpu, settings.geometry, (texels_x, texels_y), 1),
+                None => GBuffer::new(gpu, settings.geometry.path, (texels_x, texels_y), 1),
             },
             tally_view,
             queue: buffer("queue", queue_bytes, storage | wgpu::BufferUsages::INDIRECT),

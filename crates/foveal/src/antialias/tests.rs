@@ -11,12 +11,11 @@ const WIDTH: u32 = 41;
 const HEIGHT: u32 = 27;
 
 fn settings(aa: Antialiasing, edge_test: EdgeTest, samples: u32) -> Settings {
-    Settings {
-        aa,
-        edge_test,
-        samples,
-        ..small(WIDTH, HEIGHT)
-    }
+    small(WIDTH, HEIGHT).with(|s| {
+        s.antialiasing.mode = aa;
+        s.antialiasing.edge_test = edge_test;
+        s.antialiasing.samples = samples;
+    })
 }
 
 fn radiance(renderer: &Renderer) -> Vec<Vec3> {
@@ -35,8 +34,8 @@ fn samples_of(renderer: &Renderer) -> SampleTexels {
     let settings = renderer.settings();
     SampleTexels {
         pattern: targets.pattern,
-        width: settings.width,
-        height: settings.height,
+        width: settings.picture.width,
+        height: settings.picture.height,
         surface: texels(&targets.samples.surface_view),
         identity: texels(&targets.samples.identity_view),
         depth: texels(&targets.samples.depth_view),
@@ -140,10 +139,7 @@ fn the_surface_test_equals_its_twin() {
         assert_surfaces_equal_twin(&scene, &scene.cameras[0], &msaa(samples));
     }
     for samples in [4, 8] {
-        let rotated = Settings {
-            pattern: SamplePattern::Rotated,
-            ..msaa(samples)
-        };
+        let rotated = msaa(samples).with(|s| s.antialiasing.pattern = SamplePattern::Rotated);
         assert_surfaces_equal_twin(&scene, &scene.cameras[0], &rotated);
     }
     assert_surfaces_equal_twin(&scene, &orthographic(&scene.cameras[0]), &msaa(4));
@@ -173,10 +169,8 @@ fn every_mode_is_nearer_to_64_samples_than_none_is() {
                 (SamplePattern::Rotated, 4),
                 (SamplePattern::Rotated, 8),
             ] {
-                let settings = Settings {
-                    pattern,
-                    ..settings(aa, EdgeTest::Surface, samples)
-                };
+                let settings = settings(aa, EdgeTest::Surface, samples)
+                    .with(|s| s.antialiasing.pattern = pattern);
                 let off = difference(&draw(&settings), &truth);
                 assert!(
                     off < 0.6 * none,
@@ -196,11 +190,10 @@ fn bands_leave_no_trace() {
         (SamplePattern::Grid, Geometry::Visibility),
     ] {
         for aa in [Antialiasing::Ssaa, Antialiasing::Msaa] {
-            let settings = Settings {
-                pattern,
-                geometry,
-                ..settings(aa, EdgeTest::Surface, 4)
-            };
+            let settings = settings(aa, EdgeTest::Surface, 4).with(|s| {
+                s.antialiasing.pattern = pattern;
+                s.geometry.path = geometry;
+            });
             let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
             let whole = picture(&renderer);
             for rows in [1, 4, 13] {
@@ -234,17 +227,13 @@ fn the_stats_count_what_is_shaded() {
 
 #[test]
 fn two_by_two_at_1080p_stays_under_250_megabytes() {
-    let settings = Settings {
-        width: 1920,
-        height: 1080,
-        aa: Antialiasing::Msaa,
-        ..Settings::default()
-    };
+    let settings = Settings::default().with(|s| {
+        s.picture.width = 1920;
+        s.picture.height = 1080;
+        s.antialiasing.mode = Antialiasing::Msaa;
+    });
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
-        let settings = Settings {
-            geometry,
-            ..settings.clone()
-        };
+        let settings = settings.clone().with(|s| s.geometry.path = geometry);
         let bytes = crate::targets::Targets::new(
             crate::testing::gpu(),
             &settings,
@@ -266,10 +255,9 @@ fn triangles_are_sorted_into_the_same_surfaces_as_stored_subsamples() {
         for camera in [scene.cameras[0].clone(), orthographic(&scene.cameras[0])] {
             for samples in [4, 9, 16] {
                 let stored = settings(Antialiasing::Msaa, EdgeTest::Surface, samples);
-                let sorted = Settings {
-                    geometry: Geometry::Visibility,
-                    ..stored.clone()
-                };
+                let sorted = stored
+                    .clone()
+                    .with(|s| s.geometry.path = Geometry::Visibility);
                 let [stored, sorted] =
                     [stored, sorted].map(|s| tally(&rendered(&scene, &camera, &s)));
                 let edges = stored.iter().filter(|t| t[0] > 1).count();
@@ -291,10 +279,8 @@ fn triangles_are_sorted_into_the_same_surfaces_as_stored_subsamples() {
 #[test]
 fn over_a_visibility_buffer_pixels_within_a_triangle_equal_none_and_edges_come_near_ssaa() {
     let scene = generate::cornell();
-    let with = |aa| Settings {
-        geometry: Geometry::Visibility,
-        ..settings(aa, EdgeTest::Surface, 4)
-    };
+    let with =
+        |aa| settings(aa, EdgeTest::Surface, 4).with(|s| s.geometry.path = Geometry::Visibility);
     let draw = |aa| rendered(&scene, &scene.cameras[0], &with(aa));
     let msaa = draw(Antialiasing::Msaa);
     let tally = tally(&msaa);
@@ -317,10 +303,7 @@ fn over_a_visibility_buffer_pixels_within_a_triangle_equal_none_and_edges_come_n
 /// Mean distance of msaa and of none to ssaa, over pixels that msaa shades once.
 fn within_surfaces(scene: &Scene, geometry: Geometry) -> [f32; 2] {
     let draw = |aa| {
-        let settings = Settings {
-            geometry,
-            ..settings(aa, EdgeTest::Surface, 4)
-        };
+        let settings = settings(aa, EdgeTest::Surface, 4).with(|s| s.geometry.path = geometry);
         rendered(scene, &scene.cameras[0], &settings)
     };
     let msaa = draw(Antialiasing::Msaa);
@@ -352,16 +335,13 @@ fn within_surfaces_msaa_is_near_to_ssaa_by_gbuffer_and_nearer_than_none_over_a_v
 fn with_a_rate_map_pixels_of_level_0_are_antialiased_and_the_others_coarse() {
     use crate::{RateSource, RefineEdges, Shading};
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
-        let fine = Settings {
-            geometry,
-            ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
-        };
-        let coarse = Settings {
-            shading: Shading::Coarse,
-            rate: RateSource::Radii,
-            refine_edges: RefineEdges::Off,
-            ..fine.clone()
-        };
+        let fine =
+            settings(Antialiasing::Msaa, EdgeTest::Surface, 4).with(|s| s.geometry.path = geometry);
+        let coarse = fine.clone().with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.source = RateSource::Radii;
+            s.coarse.refine_edges = RefineEdges::Off;
+        });
         assert_fine_where_the_level_is_0(&fine, &coarse);
     }
 }
@@ -398,10 +378,8 @@ fn assert_fine_where_the_level_is_0(antialiased: &Settings, coarse: &Settings) {
 fn surfaces_without_room_are_counted_and_have_it_in_the_next_frame() {
     let scene = generate::cornell();
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
-        let settings = Settings {
-            geometry,
-            ..settings(Antialiasing::Msaa, EdgeTest::Surface, 4)
-        };
+        let settings =
+            settings(Antialiasing::Msaa, EdgeTest::Surface, 4).with(|s| s.geometry.path = geometry);
         let camera = &scene.cameras[0];
         let mut renderer = rendered(&scene, camera, &settings);
         let whole = picture(&renderer);

@@ -25,10 +25,10 @@ use super::targets::{ALL_GROUPS, SampleTargets, TALLY_FORMAT};
 
 /// Whether the settings ask for this way.
 pub(crate) fn by_triangles(settings: &Settings) -> bool {
-    settings.aa == Antialiasing::Msaa
-        && settings.geometry == Geometry::Visibility
-        && settings.edge_test == EdgeTest::Surface
-        && settings.pattern == SamplePattern::Grid
+    settings.antialiasing.mode == Antialiasing::Msaa
+        && settings.geometry.path == Geometry::Visibility
+        && settings.antialiasing.edge_test == EdgeTest::Surface
+        && settings.antialiasing.pattern == SamplePattern::Grid
 }
 
 /// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated once for n x n
@@ -194,7 +194,7 @@ impl TriangleStage {
         );
         let [model, brute] = lighting_constants(settings);
         let [count, side] = Pattern::of(settings).constants();
-        let coarse = f64::from(u8::from(settings.shading == Shading::Coarse));
+        let coarse = f64::from(u8::from(settings.shading.mode == Shading::Coarse));
         let geometry = geometry_layout(gpu);
         let sorting = |label, shader, entry, group: &wgpu::BindGroupLayout| {
             shader::compute(

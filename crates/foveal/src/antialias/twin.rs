@@ -166,11 +166,10 @@ pub(super) fn resolve(parts: impl IntoIterator<Item = (Vec3, f32)>, exposure: f3
 /// The windows of one band that is the whole frame.
 #[test]
 fn a_rotated_patterns_windows_put_each_sample_in_the_middle_of_its_texel() {
-    let settings = crate::Settings {
-        pattern: crate::SamplePattern::Rotated,
-        samples: 8,
-        ..crate::Settings::default()
-    };
+    let settings = crate::Settings::default().with(|s| {
+        s.antialiasing.pattern = crate::SamplePattern::Rotated;
+        s.antialiasing.samples = 8;
+    });
     let pattern = Pattern::of(&settings);
     let texels = SampleTexels {
         pattern,

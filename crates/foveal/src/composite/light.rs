@@ -53,7 +53,7 @@ impl LightTargets {
                 gpu,
                 "coarse light",
                 size,
-                0..=u32::from(settings.coarsest_level),
+                0..=u32::from(settings.coarse.coarsest_level),
                 LIGHT_FORMAT,
                 wgpu::TextureUsages::TEXTURE_BINDING
                     | wgpu::TextureUsages::STORAGE_BINDING
@@ -105,7 +105,7 @@ impl LightComposite {
             ],
         );
         let size_layout = layout("unlit dispatch", &[storage_read(), storage_write()]);
-        let typical = settings.coarse_sample == CoarseSample::Typical;
+        let typical = settings.coarse.sample == CoarseSample::Typical;
         Self {
             join: shader::compute(
                 gpu,

@@ -81,7 +81,7 @@ impl<'a> Inputs<'a> {
             scene,
             camera,
             settings,
-            size: UVec2::new(settings.width, settings.height),
+            size: UVec2::new(settings.picture.width, settings.picture.height),
             lights: renderer.lights().1,
             surface: texels(&targets.gbuffer.surface_view),
             depth: texels(&targets.gbuffer.depth_view),
@@ -166,7 +166,7 @@ impl<'a> Inputs<'a> {
             s.roughness = (a2 + 1.0 - normal.length() / count).min(1.0).powf(0.25);
         }
         let v = to_eye(self.camera, s.position);
-        let lit = light_surface(self.scene, self.lights, self.settings.lighting, &s, v);
+        let lit = light_surface(self.scene, self.lights, self.settings.lighting.model, &s, v);
         let direction = lit.direction.try_normalize().unwrap_or(s.normal);
         let mirrored_direction = lit.mirrored_direction.try_normalize().unwrap_or(s.normal);
         let together = lit.mirrored_direction.length() / luminance(lit.mirrored).max(1e-30);
@@ -260,17 +260,16 @@ fn radiance(renderer: &Renderer) -> Vec<[u16; 4]> {
 }
 
 fn settings(size: (u32, u32), coarse_sample: CoarseSample) -> Settings {
-    Settings {
-        shading: Shading::Coarse,
-        composite: Composite::Light,
-        rate: RateSource::Radii,
-        fovea_inner: 0.05,
-        fovea_outer: 0.5,
-        gaze: [0.3, 0.6],
-        refine_edges: RefineEdges::Graded,
-        coarse_sample,
-        ..small(size.0, size.1)
-    }
+    small(size.0, size.1).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.composite = Composite::Light;
+        s.coarse.source = RateSource::Radii;
+        s.coarse.fovea_inner = 0.05;
+        s.coarse.fovea_outer = 0.5;
+        s.eye.gaze = [0.3, 0.6];
+        s.coarse.refine_edges = RefineEdges::Graded;
+        s.coarse.sample = coarse_sample;
+    })
 }
 
 fn scene() -> Scene {

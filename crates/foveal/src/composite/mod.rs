@@ -45,9 +45,9 @@ impl CompositePass {
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let taps = |shader, entry| Self::Taps(TapComposite::new(gpu, frame_layout, shader, entry));
-        match settings.composite {
+        match settings.coarse.composite {
             // Where all tiles are pixels there is nothing to smooth.
-            Composite::Smooth if settings.coarsest_level > 0 => {
+            Composite::Smooth if settings.coarse.coarsest_level > 0 => {
                 Self::Smooth(SmoothComposite::new(gpu, settings, frame_layout))
             }
             Composite::Light => Self::Light(LightComposite::new(gpu, settings, frame_layout)),

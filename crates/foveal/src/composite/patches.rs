@@ -48,7 +48,7 @@ impl PatchTargets {
 
     /// `None` where all tiles are pixels.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
-        let coarsest = u32::from(settings.coarsest_level);
+        let coarsest = u32::from(settings.coarse.coarsest_level);
         if coarsest == 0 {
             return None;
         }
@@ -97,7 +97,7 @@ fn patches((width, height): (u32, u32), coarsest: u32) -> u64 {
 /// [`Error::Limit`] where the device cannot bind as large a buffer as the patches of these settings need.
 pub(crate) fn check_limits(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
     let size = EyeLayout::of(settings).target_size();
-    let value = PART_BYTES[0] * patches(size, settings.coarsest_level.into());
+    let value = PART_BYTES[0] * patches(size, settings.coarse.coarsest_level.into());
     let limit = limits
         .max_storage_buffer_binding_size
         .min(limits.max_buffer_size);

@@ -48,7 +48,7 @@ fn affine_error(
         renderer.render(&frame).await.unwrap();
         renderer
     });
-    let size = (settings.width, settings.height);
+    let size = (settings.picture.width, settings.picture.height);
     let mut worst = (0.0, 0, 0);
     for (i, texel) in (0..).zip(texels::<[u16; 4]>(&renderer.targets().radiance_view)) {
         let (x, y) = (i % size.0, i / size.0);
@@ -68,13 +68,12 @@ fn affine_error(
 }
 
 fn settings(size: (u32, u32), seed: u32) -> Settings {
-    Settings {
-        shading: Shading::Coarse,
-        composite: Composite::Smooth,
-        rate: RateSource::Image,
-        rate_balance: seed.is_multiple_of(2),
-        ..small(size.0, size.1)
-    }
+    small(size.0, size.1).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.composite = Composite::Smooth;
+        s.coarse.source = RateSource::Image;
+        s.coarse.balance = seed.is_multiple_of(2);
+    })
 }
 
 #[test]
@@ -102,47 +101,36 @@ fn smooth_returns_affine_radiance_for_random_maps() {
 
 #[test]
 fn smooth_returns_affine_radiance_for_typical_samples() {
-    let settings = Settings {
-        coarse_sample: CoarseSample::Typical,
-        ..settings((601, 523), 1)
-    };
+    let settings = settings((601, 523), 1).with(|s| s.coarse.sample = CoarseSample::Typical);
     let (error, x, y) = affine_error(&wall(), &settings, random_map(7, 3));
     assert!(error <= 1.0 / 255.0, "{} / 255 at {x}, {y}", error * 255.0);
 }
 
 #[test]
 fn the_sources_composite_bends_affine_radiance() {
-    let settings = Settings {
-        composite: Composite::Paper,
-        ..settings((601, 523), 1)
-    };
+    let settings = settings((601, 523), 1).with(|s| s.coarse.composite = Composite::Paper);
     assert!(affine_error(&backdrop(), &settings, random_map(7, 3)).0 > 8.0 / 255.0);
 }
 
 #[test]
 fn patches_too_large_for_the_device_are_an_error_that_says_so() {
     let limits = wgpu::Limits::default();
-    let large = Settings {
-        shading: Shading::Coarse,
-        composite: Composite::Smooth,
-        width: 7680,
-        height: 4320,
-        ..Settings::default()
-    };
+    let large = Settings::default().with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.composite = Composite::Smooth;
+        s.picture.width = 7680;
+        s.picture.height = 4320;
+    });
     let said = large.validate(&limits).unwrap_err().to_string();
     assert!(
         said.contains("patches") && said.contains("134217728"),
         "{said}"
     );
-    let full_hd = Settings {
-        width: 1920,
-        height: 1080,
-        ..large.clone()
-    };
+    let full_hd = large.clone().with(|s| {
+        s.picture.width = 1920;
+        s.picture.height = 1080;
+    });
     assert!(full_hd.validate(&limits).is_ok());
-    let nearest = Settings {
-        composite: Composite::Nearest,
-        ..large
-    };
+    let nearest = large.with(|s| s.coarse.composite = Composite::Nearest);
     assert!(nearest.validate(&limits).is_ok());
 }

@@ -8,7 +8,7 @@ use crate::shading::sample_texel;
 use crate::shading::twin::{normal_of_depth, position_at, unit_from_octahedral};
 use crate::testing::{f32_of_half, gpu, rendered, small, texels};
 use crate::{
-    CoarseSample, Composite, Frame, Geometry, RateSource, RefineEdges, Renderer, Settings, Shading,
+    CoarseSample, Composite, Frame, Geometry, RateSource, RefineEdges, Renderer, Shading,
 };
 
 /// Bits of a rate map's cell.
@@ -80,7 +80,10 @@ impl Inputs {
         let owner = &coarse.rate.owner;
         let samples = &coarse.samples;
         Self {
-            size: UVec2::new(renderer.settings().width, renderer.settings().height),
+            size: UVec2::new(
+                renderer.settings().picture.width,
+                renderer.settings().picture.height,
+            ),
             camera: camera.clone(),
             owner: read(&owner.texture, 0, owner.blocks(1)),
             samples: samples
@@ -411,18 +414,17 @@ fn smooth_equals_its_twin() {
             by_triangles,
         ),
     ] {
-        let settings = Settings {
-            shading: Shading::Coarse,
-            composite: Composite::Smooth,
-            rate: RateSource::Radii,
-            fovea_inner: 0.05,
-            fovea_outer: 0.4,
-            gaze: [0.3, 0.6],
-            refine_edges,
-            coarse_sample,
-            geometry,
-            ..small(size.0, size.1)
-        };
+        let settings = small(size.0, size.1).with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.composite = Composite::Smooth;
+            s.coarse.source = RateSource::Radii;
+            s.coarse.fovea_inner = 0.05;
+            s.coarse.fovea_outer = 0.4;
+            s.eye.gaze = [0.3, 0.6];
+            s.coarse.refine_edges = refine_edges;
+            s.coarse.sample = coarse_sample;
+            s.geometry.path = geometry;
+        });
         let camera = &scene.cameras[0];
         let mut renderer = rendered(&scene, camera, &settings);
         // What an earlier frame with other tiles left behind must not show.

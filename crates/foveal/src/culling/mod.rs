@@ -81,9 +81,9 @@ impl CullingStage {
     /// # Errors
     /// [`Error::Limit`] where the picture is too large for the occlusion buffer.
     pub(crate) fn new(settings: &Settings) -> Result<Option<Self>, Error> {
-        let (width, height) = (settings.width, settings.height);
-        let scale = u32::from(settings.occlusion_scale);
-        let occlusion = match settings.culling {
+        let (width, height) = (settings.picture.width, settings.picture.height);
+        let scale = u32::from(settings.culling.buffer_scale);
+        let occlusion = match settings.culling.mode {
             Culling::Off => return Ok(None),
             Culling::Frustum => false,
             Culling::Occlusion => true,
@@ -98,18 +98,18 @@ impl CullingStage {
         })?;
         Ok(Some(Self {
             occlusion,
-            occluder_size: settings.occluder_size,
-            occludee_size: settings.occludee_size,
+            occluder_size: settings.culling.occluder_size,
+            occludee_size: settings.culling.occludee_size,
             scale,
-            threads: Workers::new(settings.culling_threads),
+            threads: Workers::new(settings.culling.threads),
             culler,
             results: Vec::new(),
             of_eye: Vec::new(),
             rasterize_ms: 0.0,
             test_ms: 0.0,
-            radius_m: settings.culling_radius.into(),
-            eyes: settings.culling_eyes,
-            budget_ms: settings.culling_budget.into(),
+            radius_m: settings.culling.radius_m.into(),
+            eyes: settings.culling.eyes,
+            budget_ms: settings.culling.budget_ms.into(),
             found_for: None,
             reused: false,
             over_budget: 0,

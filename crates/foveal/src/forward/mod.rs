@@ -54,7 +54,7 @@ impl ForwardPass {
         constants.extend(submission.constants());
         let layered = submission == Submission::Multiview;
         constants.push(("LAYERED", f64::from(u8::from(layered))));
-        let sampled = settings.aa != Antialiasing::None;
+        let sampled = settings.antialiasing.mode != Antialiasing::None;
         constants.push(("SAMPLED", f64::from(u8::from(sampled))));
         let shader = match submission {
             _ if submission.clips() => shader::FORWARD_FORWARD.variant(&["CLIPPED"]),

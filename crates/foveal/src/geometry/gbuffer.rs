@@ -112,7 +112,7 @@ pub(crate) enum FaceNormals {
 impl FaceNormals {
     /// What these settings need.
     pub(crate) fn wanted_by(settings: &Settings) -> Self {
-        match (settings.aa, settings.edge_test) {
+        match (settings.antialiasing.mode, settings.antialiasing.edge_test) {
             // Triangles are asked for theirs where they matter.
             _ if crate::antialias::by_triangles(settings) => Self::Omitted,
             (Antialiasing::Msaa, EdgeTest::Surface) => Self::Written,
@@ -146,12 +146,16 @@ impl GeometryPass {
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let means = match settings.geometry {
+        let means = match settings.geometry.path {
             Geometry::Visibility => {
                 // A rotated pattern draws the frame once per sample; there are at most 8.
-                let rotated =
-                    settings.aa != Antialiasing::None && settings.pattern == SamplePattern::Rotated;
-                let windows = if rotated { settings.samples } else { 1 };
+                let rotated = settings.antialiasing.mode != Antialiasing::None
+                    && settings.antialiasing.pattern == SamplePattern::Rotated;
+                let windows = if rotated {
+                    settings.antialiasing.samples
+                } else {
+                    1
+                };
                 let further = crate::antialias::footprint(settings);
                 Means::Triangles(Box::new(VisibilityPass::new(
                     gpu,

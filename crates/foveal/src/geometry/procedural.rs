@@ -5,7 +5,7 @@ use glam::{IVec3, UVec3, Vec2, Vec3, Vec4};
 
 use crate::shading::twin::{position_at, unpack_surface};
 use crate::testing::{rendered, small, texels};
-use crate::{Geometry, Settings};
+use crate::Geometry;
 
 fn lattice_hash(cell: UVec3, seed: u32) -> u32 {
     let mixed = cell.x.wrapping_mul(0x8da6_b343)
@@ -85,10 +85,7 @@ fn procedural_materials_equal_their_twin() {
     let (width, height) = (61, 47);
     let size = Vec2::new(width as f32, height as f32);
     for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
-        let settings = Settings {
-            geometry,
-            ..small(width, height)
-        };
+        let settings = small(width, height).with(|s| s.geometry.path = geometry);
         let read = |scene| {
             let renderer = rendered(scene, camera, &settings);
             let g = &renderer.targets().gbuffer;

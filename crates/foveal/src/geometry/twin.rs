@@ -9,7 +9,7 @@ use glam::{Mat3, Vec2, Vec3};
 use crate::forward::twin::{front, quads};
 use crate::shading::twin::{position_at, unpack_surface};
 use crate::testing::{rendered, small, texels};
-use crate::{Geometry, Settings};
+use crate::Geometry;
 
 struct Hit {
     distance: f32,
@@ -73,10 +73,7 @@ fn assert_equals_twin(scene: &Scene, camera: &Camera) {
 
 fn assert_geometry_equals_twin(scene: &Scene, camera: &Camera, geometry: Geometry) {
     let (width, height) = (47, 33);
-    let settings = Settings {
-        geometry,
-        ..small(width, height)
-    };
+    let settings = small(width, height).with(|s| s.geometry.path = geometry);
     let renderer = rendered(scene, camera, &settings);
     let gbuffer = &renderer.targets().gbuffer;
     let words: Vec<[u32; 4]> = texels(&gbuffer.surface_view);

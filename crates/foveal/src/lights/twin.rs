@@ -31,11 +31,14 @@ fn assert_assignment(scene: &Scene, camera: &Camera) {
     let grid = ClusterGrid::new(&EyeLayout::of(&settings), &eyes, camera, lights);
     let bytes = pollster::block_on(read_buffer(gpu(), assigner.bits())).expect("read-back works");
     let bits: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
-    let size = Vec2::new(settings.width as f32, settings.height as f32);
+    let size = Vec2::new(
+        settings.picture.width as f32,
+        settings.picture.height as f32,
+    );
 
     let mut reached = 0;
-    for y in (0..settings.height).step_by(7) {
-        for x in (0..settings.width).step_by(5) {
+    for y in (0..settings.picture.height).step_by(7) {
+        for x in (0..settings.picture.width).step_by(5) {
             let pixel = Vec2::new(x as f32, y as f32) + 0.5;
             for step in 0..60 {
                 let distance = 0.06 * 1.15f32.powi(step);

@@ -48,7 +48,7 @@ impl EyesPass {
         if !settings.is_stereo() {
             return None;
         }
-        let number = match settings.show {
+        let number = match settings.stereo.output {
             Output::Flat => 0,
             Output::SideBySide => 1,
             Output::SideBySideHalf => 2,

@@ -5,7 +5,7 @@ use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, drawn_over};
 use crate::shader::Screen;
 use crate::shading::CoarseTargets;
-use crate::{View, shader};
+use crate::{DebugView, shader};
 
 /// Draws levels, tile borders or samples over the picture.
 #[derive(Debug)]
@@ -16,11 +16,15 @@ pub(crate) struct OverlayPass {
 
 impl OverlayPass {
     /// `None` for views that do not show the tiling.
-    pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        view: DebugView,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Option<Self> {
         let number = match view {
-            View::Rate => 1,
-            View::Blocks => 2,
-            View::Shaded => 3,
+            DebugView::Rate => 1,
+            DebugView::Blocks => 2,
+            DebugView::Shaded => 3,
             _ => return None,
         };
         let layout = bind_group_layout(

@@ -36,7 +36,7 @@ impl ToneMapPass {
             PICTURE_FORMAT,
             &[(
                 "CLIPPED",
-                f64::from(u8::from(settings.tone_map == ToneMap::Linear)),
+                f64::from(u8::from(settings.picture.tone_map == ToneMap::Linear)),
             )],
         );
         Self { pipeline, layout }

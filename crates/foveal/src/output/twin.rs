@@ -5,7 +5,7 @@ use glam::{Mat3, Vec2, Vec3};
 
 use crate::shading::twin::unit_from_octahedral;
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
-use crate::{Frame, Settings, ToneMap, View};
+use crate::{DebugView, Frame, ToneMap};
 
 fn aces(color: Vec3) -> Vec3 {
     let into = Mat3::from_cols_array(&[
@@ -47,11 +47,10 @@ fn assert_close(device: &[u8], twin: &[Vec3], what: &str) {
 fn the_tone_map_equals_its_twin() {
     let scene = generate::cornell();
     for tone_map in [ToneMap::Aces, ToneMap::Linear] {
-        let settings = Settings {
-            tone_map,
-            exposure: 0.5,
-            ..small(61, 40)
-        };
+        let settings = small(61, 40).with(|s| {
+            s.picture.tone_map = tone_map;
+            s.picture.exposure_stops = 0.5;
+        });
         let renderer = rendered(&scene, &scene.cameras[0], &settings);
         let expected: Vec<Vec3> = texels::<[u16; 4]>(&renderer.targets().radiance_view)
             .iter()
@@ -81,14 +80,16 @@ fn the_views_equal_their_twins() {
     let camera = &scene.cameras[0];
     let mut before = camera.clone();
     before.world_from_view.w_axis.x += 0.1;
-    for view in [View::Depth, View::Normals, View::BaseColor, View::Motion] {
+    for view in [
+        DebugView::Depth,
+        DebugView::Normals,
+        DebugView::BaseColor,
+        DebugView::Motion,
+    ] {
         let mut renderer = rendered(
             &scene,
             camera,
-            &Settings {
-                view,
-                ..small(61, 40)
-            },
+            &small(61, 40).with(|s| s.picture.view = view),
         );
         pollster::block_on(renderer.render(&Frame {
             camera,
@@ -104,12 +105,12 @@ fn the_views_equal_their_twins() {
         };
         let expected: Vec<Vec3> = (0..depth.len())
             .map(|i| match view {
-                _ if depth[i] == 0.0 && view != View::Motion => Vec3::ZERO,
-                View::Depth => Vec3::splat(
+                _ if depth[i] == 0.0 && view != DebugView::Motion => Vec3::ZERO,
+                DebugView::Depth => Vec3::splat(
                     1.0 - (((near_m / depth[i]).max(near_m) / near_m).log2() / 16.0).min(1.0),
                 ),
-                View::Normals => unit_from_octahedral(words[i][1]) * 0.5 + 0.5,
-                View::BaseColor => {
+                DebugView::Normals => unit_from_octahedral(words[i][1]) * 0.5 + 0.5,
+                DebugView::BaseColor => {
                     let [r, g, b, _] = words[i][0].to_le_bytes().map(|b| f32::from(b) / 255.0);
                     Vec3::new(r, g, b)
                 }

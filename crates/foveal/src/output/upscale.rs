@@ -49,7 +49,7 @@ mod tests {
     use foveal_scene::generate;
 
     use crate::testing::{picture, rendered, small};
-    use crate::{Geometry, RateSource, Settings, Shading};
+    use crate::{Geometry, RateSource, Shading};
 
     /// A picture of `from`'s size, stretched as a sampler does that clamps to the border.
     fn stretched(bytes: &[u8], from: (u32, u32), to: (u32, u32)) -> Vec<f32> {
@@ -84,28 +84,34 @@ mod tests {
             ((121, 67), 0.75, Shading::Variable),
             ((121, 67), 0.6, Shading::Coarse),
         ] {
-            let scaled = Settings {
-                render_scale: scale,
-                geometry: Geometry::Visibility,
-                shading,
-                rate: match shading {
+            let scaled = small(size.0, size.1).with(|s| {
+                s.picture.render_scale = scale;
+                s.geometry.path = Geometry::Visibility;
+                s.shading.mode = shading;
+                s.coarse.source = match shading {
                     Shading::Variable => RateSource::Content,
                     _ => RateSource::Foveated,
-                },
-                force_rate: true,
-                ..small(size.0, size.1)
-            };
+                };
+                s.variable.force = true;
+            });
             let drawn = scaled.drawn();
             let mut large = rendered(&scene, camera, &scaled);
             let mut own = rendered(&scene, camera, &drawn);
             for _ in 0..3 {
                 let (a, b) = (large.redraw(camera), own.redraw(camera));
                 assert_eq!((a.width, a.height), size);
-                assert_eq!((b.width, b.height), (drawn.width, drawn.height));
+                assert_eq!(
+                    (b.width, b.height),
+                    (drawn.picture.width, drawn.picture.height)
+                );
                 // The mask is that of what is drawn, whatever size it is shown in.
                 assert_eq!(a.shaded_samples, b.shaded_samples);
             }
-            let expected = stretched(&picture(&own), (drawn.width, drawn.height), size);
+            let expected = stretched(
+                &picture(&own),
+                (drawn.picture.width, drawn.picture.height),
+                size,
+            );
             let bytes = picture(&large);
             assert_eq!(bytes.len(), expected.len());
             let off = bytes.iter().zip(&expected);

@@ -4,7 +4,7 @@ use super::PICTURE_FORMAT;
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
-use crate::{View, shader};
+use crate::{DebugView, shader};
 
 /// Draws one of the views other than the finished frame.
 #[derive(Debug)]
@@ -15,16 +15,22 @@ pub(crate) struct ViewPass {
 
 impl ViewPass {
     /// `None` for the finished frame and for what other stages show.
-    pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        view: DebugView,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Option<Self> {
         let number = match view {
-            View::Final | View::Edges | View::Samples => return None,
-            View::Rate | View::Blocks | View::Shaded | View::Unknown => return None,
-            View::Depth => 1,
-            View::Normals => 2,
-            View::BaseColor => 3,
-            View::Instances => 4,
-            View::Motion => 5,
-            View::Bins => 6,
+            DebugView::Final | DebugView::Edges | DebugView::Samples => return None,
+            DebugView::Rate | DebugView::Blocks | DebugView::Shaded | DebugView::Unknown => {
+                return None;
+            }
+            DebugView::Depth => 1,
+            DebugView::Normals => 2,
+            DebugView::BaseColor => 3,
+            DebugView::Instances => 4,
+            DebugView::Motion => 5,
+            DebugView::Bins => 6,
         };
         let layout = bind_group_layout(
             &gpu.device,

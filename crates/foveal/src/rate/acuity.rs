@@ -2,10 +2,10 @@
 //!
 //! The smallest angle that the eye resolves grows in proportion to the angle to the gaze (Guenter, Finch, Drucker, Tan and Snyder
 //! 2012, 'Foveated 3D graphics', eq. 1): `ACUITY + SLOPE * eccentricity`, in degrees a cycle. A block's side is that times a
-//! factor, which [`Settings::quality`] names by the difference that is left.
+//! factor, which [`EyeSettings::quality_jod`] names by the difference that is left.
 
+use crate::Settings;
 use crate::stereo::Eye;
-use crate::{Display, Settings};
 
 #[cfg(test)]
 use super::WishUniform;
@@ -61,14 +61,18 @@ impl Blocks {
 
 /// Tangents on the display of a point of an eye's picture, from normalized device coordinates: scale in xy, offset in zw.
 pub(super) fn display_from_ndc(s: &Settings, eye: &Eye) -> [f32; 4] {
-    let across = match s.seen_on() {
-        Ok(Display::Across(across)) => across,
-        _ if eye.orthographic => PARALLEL_ACROSS,
-        // Settings are checked before they come here.
-        _ => return eye.view_from_ndc(),
+    let across = match s.eye.display.across() {
+        Some(across) => across,
+        None if eye.orthographic => PARALLEL_ACROSS,
+        None => return eye.view_from_ndc(),
     };
     let half = (0.5 * across).tan();
-    [half, half * s.height as f32 / s.width as f32, 0.0, 0.0]
+    [
+        half,
+        half * s.picture.height as f32 / s.picture.width as f32,
+        0.0,
+        0.0,
+    ]
 }
 
 /// Unit vector to a place of the picture, given as fractions of it.
@@ -86,7 +90,10 @@ fn tangents([sx, sy, ox, oy]: [f32; 4], [x, y]: [f32; 2]) -> [f32; 2] {
 #[cfg(test)]
 pub(super) fn level(wish: &WishUniform, s: &Settings, pixel: [f32; 2]) -> u32 {
     let to_display = wish.display_from_ndc[0];
-    let place = [pixel[0] / s.width as f32, pixel[1] / s.height as f32];
+    let place = [
+        pixel[0] / s.picture.width as f32,
+        pixel[1] / s.picture.height as f32,
+    ];
     let to_pixel = direction(to_display, place);
     let chord: f32 = (0..3)
         .map(|i| (to_pixel[i] - wish.gaze_direction[0][i]).powi(2))
@@ -94,7 +101,7 @@ pub(super) fn level(wish: &WishUniform, s: &Settings, pixel: [f32; 2]) -> u32 {
     let half = (0.5 * chord.sqrt()).min(0.75);
     let squared = half * half;
     let series = 1.0 + squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * (15.0 / 336.0)));
-    let pixel_side = 2.0 * to_display[0] / s.width as f32 * to_pixel[2];
+    let pixel_side = 2.0 * to_display[0] / s.picture.width as f32 * to_pixel[2];
     let side = (wish.block_at_gaze + wish.block_growth * 2.0 * half * series) / pixel_side;
     (side.log2().floor().max(0.0) as u32).min(wish.coarsest)
 }

@@ -29,7 +29,7 @@ impl RateTargets {
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let size = EyeLayout::of(settings).target_size();
         // Level 0 tiles are found by their parent, so there is always one.
-        let coarsest = u32::from(settings.coarsest_level).max(1);
+        let coarsest = u32::from(settings.coarse.coarsest_level).max(1);
         let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
         let chain = |label, last| MipChain::new(gpu, label, size, 1..=last, CELL_FORMAT, usage);
         Self {
@@ -79,8 +79,8 @@ impl RateMapPass {
                 },
             )
         };
-        let coarsest = f64::from(settings.coarsest_level);
-        let balance = f64::from(u8::from(settings.rate_balance));
+        let coarsest = f64::from(settings.coarse.coarsest_level);
+        let balance = f64::from(u8::from(settings.coarse.balance));
         let wish_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("rate wish"),
             size: size_of::<WishUniform>() as u64,

@@ -34,36 +34,36 @@ const GRADED_BY: u8 = 2;
 impl WishUniform {
     /// The uniform for these settings and eyes; `lenses` are both eyes' where the output has them.
     pub(crate) fn new(s: &Settings, eyes: &[Eye; 2], lenses: Option<&[LensFit; 2]>) -> Self {
-        let (width, height) = (s.width as f32, s.height as f32);
+        let (width, height) = (s.picture.width as f32, s.picture.height as f32);
         let layout = EyeLayout::of(s);
-        let right = [0, 1].map(|axis| s.gaze[axis] + s.gaze_shift[axis]);
-        let blocks = acuity::Blocks::of_quality(s.quality);
+        let right = [0, 1].map(|axis| s.eye.gaze[axis] + s.stereo.gaze_shift[axis]);
+        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod);
         let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
             let first = (eye * layout.stride) as f32;
             [first + x * width, y * height, 0.0, 0.0]
         };
-        let refine_up_to = match s.refine_edges {
-            RefineEdges::Inner => s.coarsest_level / 2,
-            RefineEdges::Graded | RefineEdges::Everywhere => s.coarsest_level,
+        let refine_up_to = match s.coarse.refine_edges {
+            RefineEdges::Inner => s.coarse.coarsest_level / 2,
+            RefineEdges::Graded | RefineEdges::Everywhere => s.coarse.coarsest_level,
             RefineEdges::Off => 0,
         };
         Self {
-            gaze: [gaze(0, s.gaze), gaze(1, right)],
+            gaze: [gaze(0, s.eye.gaze), gaze(1, right)],
             squared_radii: squared_radii(s),
             lens_squared_radii: lenses.map_or([[[f32::MAX; 4]; 2]; 2], |lenses| {
                 lenses.map(|lens| halves(lens.squared_radii()))
             }),
             eye_width: layout.stride as f32,
-            coarsest: u32::from(s.coarsest_level),
-            constant_level: u32::from(s.rate_level),
+            coarsest: u32::from(s.coarse.coarsest_level),
+            constant_level: u32::from(s.coarse.constant_level),
             refine_up_to: u32::from(refine_up_to),
-            edges_up_to: u32::from(match s.composite {
-                Composite::Smooth => s.coarsest_level,
+            edges_up_to: u32::from(match s.coarse.composite {
+                Composite::Smooth => s.coarse.coarsest_level,
                 Composite::Light | Composite::Nearest | Composite::Paper => refine_up_to,
             }),
-            refine_by: u32::from(match s.refine_edges {
-                RefineEdges::Graded => match s.composite {
+            refine_by: u32::from(match s.coarse.refine_edges {
+                RefineEdges::Graded => match s.coarse.composite {
                     Composite::Light => 1,
                     _ => GRADED_BY,
                 },
@@ -73,7 +73,7 @@ impl WishUniform {
             block_growth: blocks.growth,
             display_from_ndc: displays,
             gaze_direction: [
-                acuity::direction(displays[0], s.gaze),
+                acuity::direction(displays[0], s.eye.gaze),
                 acuity::direction(displays[1], right),
             ],
         }
@@ -102,15 +102,15 @@ impl WishUniform {
             RateSource::Lens => 0,
             RateSource::Image | RateSource::Content => image.map_or(0, |i| {
                 let (w, h) = i.size();
-                let texel = y * h / s.height * w + x * w / s.width;
+                let texel = y * h / s.picture.height * w + x * w / s.picture.width;
                 u32::from(i.levels()[texel as usize])
             }),
         };
-        let first = from(s.rate);
-        let level = match s.rate_combine {
+        let first = from(s.coarse.source);
+        let level = match s.coarse.combine {
             RateCombine::First => first,
-            RateCombine::Coarser => first.max(from(s.rate_other)),
-            RateCombine::Finer => first.min(from(s.rate_other)),
+            RateCombine::Coarser => first.max(from(s.coarse.other_source)),
+            RateCombine::Finer => first.min(from(s.coarse.other_source)),
         };
         level.min(self.coarsest) as u8
     }
@@ -126,14 +126,14 @@ pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
         RateSource::Lens => 3.0,
         RateSource::Radii => 4.0,
     };
-    let combine = match s.rate_combine {
+    let combine = match s.coarse.combine {
         RateCombine::First => 0.0,
         RateCombine::Coarser => 1.0,
         RateCombine::Finer => 2.0,
     };
     [
-        ("SOURCE", number(s.rate)),
-        ("OTHER", number(s.rate_other)),
+        ("SOURCE", number(s.coarse.source)),
+        ("OTHER", number(s.coarse.other_source)),
         ("COMBINE", combine),
     ]
 }
@@ -141,12 +141,16 @@ pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
 /// Squared radii in pixels from which on levels 1, 2, ... are wished; out of reach beyond the coarsest. They come
 /// from the CPU once a frame, so that no device's power function decides over a pixel's level.
 fn squared_radii(s: &Settings) -> [[f32; 4]; 2] {
-    let height = s.height as f32;
-    let (inner, outer) = (s.fovea_inner * height, s.fovea_outer * height);
-    let steps = f32::from(s.coarsest_level.max(2) - 1);
+    let height = s.picture.height as f32;
+    let (inner, outer) = (s.coarse.fovea_inner * height, s.coarse.fovea_outer * height);
+    let steps = f32::from(s.coarse.coarsest_level.max(2) - 1);
     let mut radii = [f32::MAX; 8];
-    for (step, radius) in radii.iter_mut().take(s.coarsest_level.into()).enumerate() {
-        let along = (step as f32 / steps).powf(s.fovea_curve);
+    for (step, radius) in radii
+        .iter_mut()
+        .take(s.coarse.coarsest_level.into())
+        .enumerate()
+    {
+        let along = (step as f32 / steps).powf(s.coarse.fovea_curve);
         let r = inner + (outer - inner).max(0.0) * along;
         *radius = r * r;
     }
@@ -172,12 +176,11 @@ mod tests {
     #[test]
     fn foveated_blocks_are_as_large_as_the_smallest_angle_that_the_eye_resolves() {
         // 60 degrees across: 1108.5 pixels before the plane of 1280 pixels.
-        let s = Settings {
-            width: 1280,
-            height: 720,
-            display: "60".to_owned(),
-            ..Settings::default()
-        };
+        let s = Settings::default().with(|s| {
+            s.picture.width = 1280;
+            s.picture.height = 720;
+            s.eye.display = "60".parse().expect("it can be read");
+        });
         let uniform = WishUniform::new(&s, &eyes_of(&s), None);
         let factor = uniform.block_growth / 0.0275;
         let plane = 640.0 / 30f32.to_radians().tan();
@@ -197,13 +200,12 @@ mod tests {
     #[test]
     fn better_quality_and_closer_displays_ask_for_smaller_blocks() {
         let level = |quality, display: &str, x| {
-            let s = Settings {
-                width: 1280,
-                height: 720,
-                display: display.to_owned(),
-                quality,
-                ..Settings::default()
-            };
+            let s = Settings::default().with(|s| {
+                s.picture.width = 1280;
+                s.picture.height = 720;
+                s.eye.display = display.parse().expect("it can be read");
+                s.eye.quality_jod = quality;
+            });
             WishUniform::new(&s, &eyes_of(&s), None).level(&s, x, 360, None)
         };
         for x in [640, 760, 900, 1270] {
@@ -218,15 +220,14 @@ mod tests {
 
     #[test]
     fn levels_grow_from_the_inner_to_the_outer_radius() {
-        let s = Settings {
-            rate: RateSource::Radii,
-            width: 1000,
-            height: 1000,
-            gaze: [0.0, 0.0],
-            fovea_inner: 0.1,
-            fovea_outer: 0.8,
-            ..Settings::default()
-        };
+        let s = Settings::default().with(|s| {
+            s.coarse.source = RateSource::Radii;
+            s.picture.width = 1000;
+            s.picture.height = 1000;
+            s.eye.gaze = [0.0, 0.0];
+            s.coarse.fovea_inner = 0.1;
+            s.coarse.fovea_outer = 0.8;
+        });
         let uniform = WishUniform::new(&s, &eyes_of(&s), None);
         let along: Vec<u8> = (0..1000).map(|x| uniform.level(&s, x, 0, None)).collect();
         assert!(along[..100].iter().all(|&l| l == 0));
@@ -240,15 +241,14 @@ mod tests {
     fn two_sources_combine_to_the_coarser_or_the_finer_wish() {
         let image = RateImage::new(2, 1, vec![0, 255]);
         let level = |combine| {
-            let s = Settings {
-                rate: RateSource::Constant,
-                rate_level: 3,
-                rate_other: RateSource::Image,
-                rate_combine: combine,
-                width: 10,
-                height: 1,
-                ..Settings::default()
-            };
+            let s = Settings::default().with(|s| {
+                s.coarse.source = RateSource::Constant;
+                s.coarse.constant_level = 3;
+                s.coarse.other_source = RateSource::Image;
+                s.coarse.combine = combine;
+                s.picture.width = 10;
+                s.picture.height = 1;
+            });
             [0, 9].map(|x| WishUniform::new(&s, &eyes_of(&s), None).level(&s, x, 0, image.as_ref()))
         };
         assert_eq!(level(RateCombine::First), [3, 3]);

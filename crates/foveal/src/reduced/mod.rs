@@ -51,12 +51,11 @@ fn differing(a: &[u8], b: &[u8], tolerance: u8) -> f64 {
 #[test]
 fn the_reduced_renderer_gives_the_full_ones_picture() {
     assert!(reduced_gpu().is_reduced() && !gpu().is_reduced());
-    let stereo = Settings {
-        stereo: Stereo::Auto,
-        show: Output::AnaglyphDubois,
-        culling: Culling::Occlusion,
-        ..small(160, 100)
-    };
+    let stereo = small(160, 100).with(|s| {
+        s.stereo.mode = Stereo::Auto;
+        s.stereo.output = Output::AnaglyphDubois;
+        s.culling.mode = Culling::Occlusion;
+    });
     for name in ["cornell", "alpha", "materials-grid", "demo:1000"] {
         let scene = generate::by_name(name).expect("it is generated");
         for settings in [small(161, 99), stereo.clone()] {
@@ -76,11 +75,10 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
 fn two_eyes_in_one_submission_are_those_of_two_passes() {
     let scene = generate::by_name("demo:1000").expect("it is generated");
     let of = |stereo| {
-        let settings = Settings {
-            stereo,
-            show: Output::SideBySide,
-            ..small(96, 64)
-        };
+        let settings = small(96, 64).with(|s| {
+            s.stereo.mode = stereo;
+            s.stereo.output = Output::SideBySide;
+        });
         let renderer = reduced(&scene, &scene.cameras[0], &settings);
         pollster::block_on(renderer.read_picture()).expect("read-back works")
     };
@@ -95,10 +93,7 @@ fn the_cpu_assigns_lights_to_the_clusters_that_the_device_finds() {
         light.range_m = Some(0.6);
     }
     for stereo in [Stereo::Off, Stereo::Auto] {
-        let settings = Settings {
-            stereo,
-            ..small(320, 200)
-        };
+        let settings = small(320, 200).with(|s| s.stereo.mode = stereo);
         let camera = &scene.cameras[0];
         let renderer = rendered(&scene, camera, &settings);
         let (assigner, lights) = renderer.lights();

@@ -187,7 +187,7 @@ impl Renderer {
         frame_ms: f64,
     ) -> FrameStats {
         let coarse = self.coarse_figures(counts, &gpu_ms);
-        let lit = self.stages.settings.view.is_lit();
+        let lit = self.stages.settings.picture.view.is_lit();
         let stages = &mut self.stages;
         let variable = stages.variable.as_mut().filter(|_| lit);
         let bytes = counts.rates.as_deref();
@@ -242,10 +242,14 @@ impl Renderer {
         let settings = &self.stages.settings;
         if let Some(bytes) = &counts.kept {
             let pixels = EyeLayout::of(settings).pixels();
-            return Some(HistoryStage::stats(bytes, settings.coarsest_level, pixels));
+            return Some(HistoryStage::stats(
+                bytes,
+                settings.coarse.coarsest_level,
+                pixels,
+            ));
         }
         let bytes = counts.tiles.as_ref()?;
-        let tiles = CountPass::tiles(bytes, settings.coarsest_level);
+        let tiles = CountPass::tiles(bytes, settings.coarse.coarsest_level);
         let unlit = counts
             .unlit
             .as_ref()

@@ -33,7 +33,7 @@ pub(super) struct FramePlan {
 impl Stages {
     /// Chooses the samples of the next frame.
     pub(super) fn plan(&mut self) -> FramePlan {
-        let is_lit = self.settings.view.is_lit();
+        let is_lit = self.settings.picture.view.is_lit();
         let stage = self.settings.stage();
         let variable = match &mut self.variable {
             Some(variable) if is_lit => variable.plan(),

@@ -49,7 +49,7 @@ impl CoarseStages {
             shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
             composite: CompositePass::new(gpu, settings, frame),
             history: HistoryStage::new(gpu, settings, frame, full.input_layout()),
-            overlay: OverlayPass::new(gpu, settings.view, frame),
+            overlay: OverlayPass::new(gpu, settings.picture.view, frame),
         }
     }
 }
@@ -91,14 +91,14 @@ impl Stages {
             lights: LightAssigner::new(gpu, layout.eyes, frame),
             geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
-            coarse: (settings.shading == Shading::Coarse)
+            coarse: (settings.shading.mode == Shading::Coarse)
                 .then(|| CoarseStages::new(gpu, settings, frame, &shading, rate_image)),
-            variable: (settings.shading == Shading::Variable)
+            variable: (settings.shading.mode == Shading::Variable)
                 .then(|| VariableStage::new(gpu, settings, frame, shading.input_layout())),
             shading,
             forward: ForwardPass::new(gpu, settings, submission, frame, material_layout),
             tone_map: ToneMapPass::new(gpu, settings, frame),
-            view: ViewPass::new(gpu, settings.view, frame),
+            view: ViewPass::new(gpu, settings.picture.view, frame),
             eyes_shown: EyesPass::new(gpu, settings, frame),
             submission: (submission, reason),
         };

@@ -41,7 +41,7 @@ impl Renderer {
                 culling.counts()
             }
             Some(culling) => {
-                let size = (settings.width, settings.height);
+                let size = (settings.picture.width, settings.picture.height);
                 let eyes = settings.is_stereo().then_some(&seen.eyes);
                 culling.cull(&self.scene.culling, frame.camera, eyes, size, self.clock)
             }
@@ -64,7 +64,12 @@ impl Renderer {
             ..
         } = &mut self.stages;
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
-        list.build(scene, frame.camera.eye(), settings.merge_draws, is_visible);
+        list.build(
+            scene,
+            frame.camera.eye(),
+            settings.geometry.merge_draws,
+            is_visible,
+        );
         geometry.prepare(gpu, scene, list);
         forward.prepare(gpu, list);
         if !list.blended.is_empty() {

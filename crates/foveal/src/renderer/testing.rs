@@ -116,7 +116,7 @@ impl Renderer {
     /// Leaves anti-aliasing room for one entry or, over a visibility buffer, one row of them.
     pub(crate) fn cut_room_for_edges(&mut self) {
         let settings = &self.stages.settings;
-        let rows = settings.height;
+        let rows = settings.picture.height;
         let targets = crate::antialias::SampleTargets::with_room(&self.gpu, settings, rows, 1);
         self.stages.targets.samples = Some(targets);
     }

@@ -106,7 +106,7 @@ pub(crate) enum MaterialDispatch {
 impl MaterialDispatch {
     /// What these settings ask for, or what is the faster on this device.
     pub(crate) fn of(gpu: &Gpu, settings: &Settings) -> Self {
-        match settings.material_dispatch {
+        match settings.geometry.material_dispatch {
             crate::MaterialDispatch::Family => Self::Family,
             crate::MaterialDispatch::Material => Self::Material,
             // Lavapipe gathers what differs from pixel to pixel lane by lane: docs/decisions/0213-families-of-materials.md.

@@ -152,7 +152,7 @@ impl SceneMaterials {
         let missing = scene.textures.len() as u32;
         let textures: Vec<_> = scene.textures.iter().chain([&white]).collect();
         let textures = Textures::new(gpu, &textures, limits)?;
-        let mut samplers = Samplers::new(gpu, settings.anisotropy);
+        let mut samplers = Samplers::new(gpu, settings.lighting.anisotropy);
         let slots_of = |material: &Material| {
             slots(material).map(|slot| {
                 slot.map(|slot| Slot {

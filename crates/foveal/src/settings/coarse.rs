@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Settings, View};
+use super::{DebugView, Settings};
 use crate::Error;
 
 /// Number of samples that the lighting stage shades.
@@ -22,7 +22,7 @@ pub enum Shading {
 /// Method that visits the samples of coarse shading.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Backend {
+pub enum CoarseBackend {
     /// The method that the first frames show to be faster on this device.
     #[default]
     Auto,
@@ -36,14 +36,14 @@ pub enum Backend {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateSource {
-    /// The eye's resolution: the angle to the gaze on [`Settings::display`], for
-    /// [`Settings::quality`].
+    /// The eye's resolution: the angle to the gaze on [`EyeSettings::display`], for
+    /// [`EyeSettings::quality_jod`].
     #[default]
     Foveated,
-    /// The distance to the gaze in pixels, between [`Settings::fovea_inner`] and
-    /// [`Settings::fovea_outer`], as in the technique's source.
+    /// The distance to the gaze in pixels, between [`CoarseSettings::fovea_inner`] and
+    /// [`CoarseSettings::fovea_outer`], as in the technique's source.
     Radii,
-    /// [`Settings::rate_level`] everywhere.
+    /// [`CoarseSettings::constant_level`] everywhere.
     Constant,
     /// A picture stretched over the frame: black requests every pixel, white requests level 8.
     Image,
@@ -123,35 +123,38 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             expected,
         })
     };
-    let shows_tiles = matches!(s.view, View::Rate | View::Blocks | View::Shaded);
-    if shows_tiles && s.shading == Shading::Full {
-        let value = format!("{:?}", s.view).to_lowercase();
+    let shows_tiles = matches!(
+        s.picture.view,
+        DebugView::Rate | DebugView::Blocks | DebugView::Shaded
+    );
+    if shows_tiles && s.shading.mode == Shading::Full {
+        let value = format!("{:?}", s.picture.view).to_lowercase();
         return wrong("view", value, "another one unless shading is coarse");
     }
     for (name, level) in [
-        ("coarsest-level", s.coarsest_level),
-        ("rate-level", s.rate_level),
+        ("coarsest-level", s.coarse.coarsest_level),
+        ("rate-level", s.coarse.constant_level),
     ] {
         if level > COARSEST_LEVEL {
             return wrong(name, level.to_string(), "between 0 and 8");
         }
     }
-    if !s.gaze.iter().all(|g| g.is_finite() && g.abs() <= 16.0) {
-        let value = format!("{},{}", s.gaze[0], s.gaze[1]);
+    if !s.eye.gaze.iter().all(|g| g.is_finite() && g.abs() <= 16.0) {
+        let value = format!("{},{}", s.eye.gaze[0], s.eye.gaze[1]);
         return wrong("gaze", value, "two numbers between -16 and 16");
     }
     for (name, value) in [
-        ("fovea-inner", s.fovea_inner),
-        ("fovea-outer", s.fovea_outer),
+        ("fovea-inner", s.coarse.fovea_inner),
+        ("fovea-outer", s.coarse.fovea_outer),
     ] {
         if !(0.0..=1000.0).contains(&value) {
             return wrong(name, value.to_string(), "between 0 and 1000");
         }
     }
-    if !(0.1..=10.0).contains(&s.fovea_curve) {
+    if !(0.1..=10.0).contains(&s.coarse.fovea_curve) {
         return wrong(
             "fovea-curve",
-            s.fovea_curve.to_string(),
+            s.coarse.fovea_curve.to_string(),
             "between 0.1 and 10",
         );
     }

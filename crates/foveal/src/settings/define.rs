@@ -72,36 +72,75 @@ pub(super) const fn kebab<const N: usize>(name: &str) -> [u8; N] {
     key
 }
 
-/// Makes the struct, its [`Default`] and its table of [`Setting`]s. Each stage has a heading. Each
-/// setting has a help text (rustdoc, `--help`, the window's tooltip), `field: type = default`, a
-/// label and a kind.
+/// Makes [`Settings`](crate::Settings), a struct per stage, their defaults and the table of
+/// [`Setting`]s. Each stage has a help text, a heading and its place in `Settings`. Each setting has
+/// a help text (rustdoc, `--help`, the window's tooltip), `key => field: type = default`, a label and
+/// a kind. In a settings file all keys lie side by side.
 macro_rules! settings {
     (
-        $(#[$attribute:meta])*
-        pub struct $name:ident {
-            $( $stage:literal {
-                $( $(#[doc = $help:literal])+ $field:ident: $type:ty = $default:expr, $label:literal, $kind:expr; )+
-            } )+
-        }
+        $(
+            $(#[doc = $about:literal])+
+            $stage:literal $place:ident: $group:ident {
+                $( $(#[doc = $help:literal])+ $key:ident => $field:ident: $type:ty = $default:expr, $label:literal, $kind:expr; )+
+            }
+        )+
     ) => {
-        $(#[$attribute])*
-        pub struct $name {
-            $( $( $(#[doc = $help])+ pub $field: $type, )+ )+
+        /// All settings of a frame. In a file, and as flags, all keys lie side by side:
+        /// `coarse.source` is `rate`, `stereo.ipd_m` is `ipd`; [`Settings::ALL`] lists them.
+        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+        #[serde(from = "Keys", into = "Keys")]
+        #[non_exhaustive]
+        pub struct Settings {
+            $( $(#[doc = $about])+ pub $place: $group, )+
         }
 
-        impl Default for $name {
+        $(
+            $(#[doc = $about])+
+            #[derive(Clone, Debug, PartialEq)]
+            #[non_exhaustive]
+            pub struct $group {
+                $( $(#[doc = $help])+ pub $field: $type, )+
+            }
+
+            impl Default for $group {
+                fn default() -> Self {
+                    Self { $( $field: $default, )+ }
+                }
+            }
+        )+
+
+        /// A settings file.
+        #[derive(Serialize, Deserialize)]
+        #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
+        struct Keys {
+            $( $( $key: $type, )+ )+
+        }
+
+        impl Default for Keys {
             fn default() -> Self {
-                Self { $( $( $field: $default, )+ )+ }
+                Settings::default().into()
             }
         }
 
-        impl $name {
+        impl From<Keys> for Settings {
+            fn from(keys: Keys) -> Self {
+                Self { $( $place: $group { $( $field: keys.$key, )+ }, )+ }
+            }
+        }
+
+        impl From<Settings> for Keys {
+            fn from(settings: Settings) -> Self {
+                Self { $( $( $key: settings.$place.$field, )+ )+ }
+            }
+        }
+
+        impl Settings {
             /// Descriptions of all settings, stage by stage in the order of the frame.
             pub const ALL: &'static [$crate::settings::Setting] = &[
                 $( $( $crate::settings::Setting {
                     key: {
-                        const KEY: [u8; stringify!($field).len()] =
-                            $crate::settings::define::kebab(stringify!($field));
+                        const KEY: [u8; stringify!($key).len()] =
+                            $crate::settings::define::kebab(stringify!($key));
                         match std::str::from_utf8(&KEY) {
                             Ok(key) => key,
                             Err(_) => "",
@@ -117,6 +156,26 @@ macro_rules! settings {
     };
 }
 pub(super) use settings;
+
+/// Lets serde have a type as the text that [`FromStr`](std::str::FromStr) reads and
+/// [`Display`](std::fmt::Display) writes.
+macro_rules! as_text {
+    ($type:ty) => {
+        impl serde::Serialize for $type {
+            fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+                serializer.collect_str(self)
+            }
+        }
+
+        impl<'de> serde::Deserialize<'de> for $type {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                let text = <std::borrow::Cow<'_, str>>::deserialize(deserializer)?;
+                text.parse().map_err(serde::de::Error::custom)
+            }
+        }
+    };
+}
+pub(super) use as_text;
 
 /// Names of the unit variants of `T` as serde spells them, in the order of declaration.
 #[must_use]
@@ -155,12 +214,12 @@ impl<'de> Deserializer<'de> for Probe<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{LightingModel, Settings, View};
+    use crate::{DebugView, LightingModel, Settings};
 
     #[test]
     fn names_are_those_of_the_settings_file() {
         assert_eq!(variant_names::<LightingModel>(), ["ggx", "blinn-phong"]);
-        assert!(variant_names::<View>().contains(&"base-color"));
+        assert!(variant_names::<DebugView>().contains(&"base-color"));
         assert!(variant_names::<u32>().is_empty());
     }
 

@@ -1,7 +1,7 @@
 //! Settings on devices without storage buffers and compute shaders
 //! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
-use super::{Antialiasing, Geometry, Setting, Settings, Shading, View};
+use super::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading};
 use crate::Error;
 
 /// Stages that are missing on such devices.
@@ -26,10 +26,10 @@ impl Setting {
 /// Checks that the settings need nothing that is missing there.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {
     let wishes = [
-        ("view", s.view == View::Final, "final"),
-        ("geometry", s.geometry == Geometry::Gbuffer, "gbuffer"),
-        ("aa", s.aa == Antialiasing::None, "none"),
-        ("shading", s.shading == Shading::Full, "full"),
+        ("view", s.picture.view == DebugView::Final, "final"),
+        ("geometry", s.geometry.path == Geometry::Gbuffer, "gbuffer"),
+        ("aa", s.antialiasing.mode == Antialiasing::None, "none"),
+        ("shading", s.shading.mode == Shading::Full, "full"),
     ];
     match wishes.into_iter().find(|(_, is_met, _)| !is_met) {
         None => Ok(()),
@@ -59,15 +59,14 @@ mod tests {
     #[test]
     fn devices_without_storage_buffers_refuse_what_needs_them() {
         let limits = crate::Gpu::reduced_limits();
-        let mut settings = Settings {
-            width: 64,
-            height: 64,
-            stereo: crate::Stereo::Auto,
-            culling: crate::Culling::Occlusion,
-            ..Settings::default()
-        };
+        let mut settings = Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 64;
+            s.stereo.mode = crate::Stereo::Auto;
+            s.culling.mode = crate::Culling::Occlusion;
+        });
         settings.validate(&limits).expect("in the reduced set");
-        settings.shading = Shading::Coarse;
+        settings.shading.mode = Shading::Coarse;
         let refused = settings.validate(&limits).expect_err("needs compute");
         assert!(refused.to_string().contains("shading"), "{refused}");
     }

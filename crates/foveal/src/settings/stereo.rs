@@ -1,9 +1,12 @@
 //! Settings of stereo: the way both eyes are drawn, their poses and frusta, and the presentation of
 //! their pictures.
 
+use std::fmt;
+use std::str::FromStr;
+
 use serde::{Deserialize, Serialize};
 
-use super::{Antialiasing, RateCombine, RateSource, Settings, Shading};
+use super::{Antialiasing, RateCombine, RateSource, Settings, Shading, as_text};
 use crate::Error;
 use crate::stereo::EyeLayout;
 
@@ -62,57 +65,178 @@ pub enum Output {
 /// A headset's lens as a radial polynomial. Radii are tangents of the angle to the lens's axis. A
 /// point that the screen shows at radius `p` appears to the eye at `p (1 + k1 p² + k2 p⁴ + k3 p⁶)`,
 /// times a factor per colour.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LensProfile {
     /// Coefficients k1, k2, k3.
     pub distortion: [f32; 3],
     /// Factors c0, c1 of red: it is seen at c0 + c1 p² times the radius of green.
-    #[serde(default = "no_fringe")]
     pub red: [f32; 2],
     /// Factors c0, c1 of blue.
-    #[serde(default = "no_fringe")]
     pub blue: [f32; 2],
 }
 
-fn no_fringe() -> [f32; 2] {
-    [1.0, 0.0]
+impl LensProfile {
+    /// A lens that bends all colours alike.
+    #[must_use]
+    pub const fn without_fringe(distortion: [f32; 3]) -> Self {
+        Self {
+            distortion,
+            red: NO_FRINGE,
+            blue: NO_FRINGE,
+        }
+    }
 }
 
-impl LensProfile {
-    /// Reads a lens from a name, or from coefficients with commas between: k1, k2, k3, optionally
-    /// followed by c0 and c1 of red and of blue. `None` for anything else.
+const NO_FRINGE: [f32; 2] = [1.0, 0.0];
+
+/// Lens of the headset output. As text a name, or coefficients with commas between: k1, k2, k3,
+/// optionally followed by c0 and c1 of red and of blue.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum Lens {
+    /// `cardboard-v2`.
+    #[default]
+    CardboardV2,
+    /// `cardboard-v1`.
+    CardboardV1,
+    /// `dk1`: the first Oculus development kit.
+    Dk1,
+    /// `ideal`: a lens that bends nothing.
+    Ideal,
+    /// Any other.
+    Custom(LensProfile),
+}
+
+/// The lenses with names.
+const LENSES: [(&str, Lens, LensProfile); 4] = [
+    // The viewers' own parameters:
+    // https://support.google.com/cardboard/manufacturers/answer/6324808
+    (
+        "cardboard-v2",
+        Lens::CardboardV2,
+        LensProfile::without_fringe([0.34, 0.55, 0.0]),
+    ),
+    (
+        "cardboard-v1",
+        Lens::CardboardV1,
+        LensProfile::without_fringe([0.441, 0.156, 0.0]),
+    ),
+    // The SDK's 1, 0.22, 0.24 and 0.996, -0.004, 1.014, 0 are of radii in halves of an eye's
+    // 74.88 mm wide half of the screen, which is 41 mm away: 0.9132 as a tangent.
+    (
+        "dk1",
+        Lens::Dk1,
+        LensProfile {
+            distortion: [0.2638, 0.3451, 0.0],
+            red: [0.996, -0.0048],
+            blue: [1.014, 0.0],
+        },
+    ),
+    ("ideal", Lens::Ideal, LensProfile::without_fringe([0.0; 3])),
+];
+
+impl Lens {
+    /// The polynomial.
     #[must_use]
-    pub fn parse(text: &str) -> Option<Self> {
-        let pure = |distortion| Self {
-            distortion,
-            red: no_fringe(),
-            blue: no_fringe(),
-        };
-        Some(match text {
-            "ideal" => pure([0.0; 3]),
-            // The viewers' own parameters:
-            // https://support.google.com/cardboard/manufacturers/answer/6324808
-            "cardboard-v1" => pure([0.441, 0.156, 0.0]),
-            "cardboard-v2" => pure([0.34, 0.55, 0.0]),
-            // The SDK's 1, 0.22, 0.24 and 0.996, -0.004, 1.014, 0 are of radii in halves of an
-            // eye's 74.88 mm wide half of the screen, which is 41 mm away: 0.9132 as a tangent.
-            "dk1" => Self {
-                distortion: [0.2638, 0.3451, 0.0],
-                red: [0.996, -0.0048],
-                blue: [1.014, 0.0],
-            },
-            _ => match numbers(text)?[..] {
-                [k1, k2, k3] => pure([k1, k2, k3]),
-                [k1, k2, k3, r0, r1, b0, b1] => Self {
-                    distortion: [k1, k2, k3],
-                    red: [r0, r1],
-                    blue: [b0, b1],
-                },
-                _ => return None,
-            },
-        })
+    pub fn profile(self) -> LensProfile {
+        if let Self::Custom(profile) = self {
+            return profile;
+        }
+        let named = LENSES.iter().find(|(_, lens, _)| *lens == self);
+        named.map_or(LensProfile::without_fringe([0.0; 3]), |l| l.2)
     }
+}
+
+impl FromStr for Lens {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        if let Some((_, lens, _)) = LENSES.iter().find(|(name, ..)| *name == text) {
+            return Ok(*lens);
+        }
+        match numbers(text).as_deref() {
+            Some(&[k1, k2, k3]) => Ok(Self::Custom(LensProfile::without_fringe([k1, k2, k3]))),
+            Some(&[k1, k2, k3, r0, r1, b0, b1]) => Ok(Self::Custom(LensProfile {
+                distortion: [k1, k2, k3],
+                red: [r0, r1],
+                blue: [b0, b1],
+            })),
+            _ => Err(Error::Setting {
+                name: "lens",
+                value: text.to_owned(),
+                expected: "cardboard-v2, cardboard-v1, dk1, ideal, or 3 or 7 numbers",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for Lens {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some((name, ..)) = LENSES.iter().find(|(_, lens, _)| lens == self) {
+            return f.write_str(name);
+        }
+        let LensProfile {
+            distortion,
+            red,
+            blue,
+        } = self.profile();
+        if [red, blue] == [NO_FRINGE; 2] {
+            write_numbers(f, &distortion)
+        } else {
+            write_numbers(f, &[&distortion[..], &red, &blue].concat())
+        }
+    }
+}
+
+as_text!(Lens);
+
+/// Frusta of both eyes. As text nothing, or eight tangents with commas between: left, right, bottom
+/// and top of the left eye, then of the right eye.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
+pub enum EyeFrusta {
+    /// The camera's frustum, shifted by the convergence.
+    #[default]
+    Camera,
+    /// Tangents of the angles to the view axis: left, right, bottom and top of each eye.
+    Tangents([[f32; 4]; 2]),
+}
+
+impl FromStr for EyeFrusta {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        if text.is_empty() {
+            return Ok(Self::Camera);
+        }
+        match numbers(text).as_deref() {
+            Some(&[a, b, c, d, e, f, g, h]) => Ok(Self::Tangents([[a, b, c, d], [e, f, g, h]])),
+            _ => Err(Error::Setting {
+                name: "eye-tangents",
+                value: text.to_owned(),
+                expected: TANGENTS,
+            }),
+        }
+    }
+}
+
+impl fmt::Display for EyeFrusta {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Camera => Ok(()),
+            Self::Tangents(eyes) => write_numbers(f, eyes.as_flattened()),
+        }
+    }
+}
+
+as_text!(EyeFrusta);
+
+fn write_numbers(f: &mut fmt::Formatter<'_>, numbers: &[f32]) -> fmt::Result {
+    for (i, number) in numbers.iter().enumerate() {
+        let comma = if i == 0 { "" } else { "," };
+        write!(f, "{comma}{number}")?;
+    }
+    Ok(())
 }
 
 fn numbers(text: &str) -> Option<Vec<f32>> {
@@ -123,57 +247,35 @@ impl Settings {
     /// Whether there are two eyes.
     #[must_use]
     pub fn is_stereo(&self) -> bool {
-        self.stereo != Stereo::Off
+        self.stereo.mode != Stereo::Off
     }
 
     /// Whether both eyes have the same position, frustum and gaze, so that one picture serves both.
     pub(crate) fn is_seen_alike(&self) -> bool {
-        let same = matches!(self.frusta(), Ok(None))
-            || matches!(self.frusta(), Ok(Some([a, b])) if a == b);
-        self.is_stereo() && self.ipd == 0.0 && same && self.gaze_shift == [0.0; 2]
+        let same = match self.stereo.frusta {
+            EyeFrusta::Camera => true,
+            EyeFrusta::Tangents([left, right]) => left == right,
+        };
+        self.is_stereo() && self.stereo.ipd_m == 0.0 && same && self.stereo.gaze_shift == [0.0; 2]
     }
 
     /// Width and height in pixels of the picture that [`crate::Renderer::read_picture`] returns.
     #[must_use]
     pub fn picture_size(&self) -> (u32, u32) {
-        match self.show {
-            _ if !self.is_stereo() => (self.width, self.height),
-            Output::SideBySide | Output::Headset => (2 * self.width, self.height),
-            Output::Flat | Output::SideBySideHalf => (self.width, self.height),
-            Output::Anaglyph | Output::AnaglyphDubois => (self.width, self.height),
+        match self.stereo.output {
+            _ if !self.is_stereo() => (self.picture.width, self.picture.height),
+            Output::SideBySide | Output::Headset => (2 * self.picture.width, self.picture.height),
+            Output::Flat | Output::SideBySideHalf => (self.picture.width, self.picture.height),
+            Output::Anaglyph | Output::AnaglyphDubois => (self.picture.width, self.picture.height),
         }
-    }
-
-    /// Frusta of both eyes as tangents (left, right, bottom, top); `None` where the camera's
-    /// frustum is used.
-    pub(crate) fn frusta(&self) -> Result<Option<[[f32; 4]; 2]>, Error> {
-        if self.eye_tangents.is_empty() {
-            return Ok(None);
-        }
-        match numbers(&self.eye_tangents).as_deref() {
-            Some(&[a, b, c, d, e, f, g, h]) => Ok(Some([[a, b, c, d], [e, f, g, h]])),
-            _ => Err(Error::Setting {
-                name: "eye-tangents",
-                value: self.eye_tangents.clone(),
-                expected: TANGENTS,
-            }),
-        }
-    }
-
-    /// The lens of the headset output.
-    pub(crate) fn lens_profile(&self) -> Result<LensProfile, Error> {
-        LensProfile::parse(&self.lens).ok_or_else(|| Error::Setting {
-            name: "lens",
-            value: self.lens.clone(),
-            expected: "cardboard-v2, cardboard-v1, dk1, ideal, or 3 or 7 numbers",
-        })
     }
 
     /// Whether a source of the rate map is the lens.
     pub(crate) fn rates_by_lens(&self) -> bool {
-        let second = self.rate_combine != RateCombine::First;
-        self.shading == Shading::Coarse
-            && (self.rate == RateSource::Lens || second && self.rate_other == RateSource::Lens)
+        let second = self.coarse.combine != RateCombine::First;
+        self.shading.mode == Shading::Coarse
+            && (self.coarse.source == RateSource::Lens
+                || second && self.coarse.other_source == RateSource::Lens)
     }
 }
 
@@ -188,37 +290,44 @@ pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error>
             expected,
         })
     };
-    if s.rates_by_lens() && !(s.is_stereo() && s.show == Output::Headset) {
+    if s.rates_by_lens() && !(s.is_stereo() && s.stereo.output == Output::Headset) {
         return wrong(
             "rate",
             "lens".to_owned(),
             "another source unless stereo is on and the output is a headset's",
         );
     }
-    if s.stereo == Stereo::Multiview && s.aa != Antialiasing::None {
+    if s.stereo.mode == Stereo::Multiview && s.antialiasing.mode != Antialiasing::None {
         let expected = "auto, instanced or two-pass where edges are smoothed: sub-samples of both eyes lie in one target";
         return wrong("stereo", "multiview".to_owned(), expected);
     }
-    if !(0.0..=1000.0).contains(&s.ipd) {
-        return wrong("ipd", s.ipd.to_string(), "between 0 and 1000 metres");
+    if !(0.0..=1000.0).contains(&s.stereo.ipd_m) {
+        return wrong(
+            "ipd",
+            s.stereo.ipd_m.to_string(),
+            "between 0 and 1000 metres",
+        );
     }
-    if !(1e-3..=1e9).contains(&s.convergence) {
-        let value = s.convergence.to_string();
+    if !(1e-3..=1e9).contains(&s.stereo.convergence_m) {
+        let value = s.stereo.convergence_m.to_string();
         return wrong("convergence", value, "between 0.001 and 1e9 metres");
     }
-    let frusta = s.frusta()?;
-    for [left, right, bottom, top] in frusta.iter().flatten() {
+    let frusta = match s.stereo.frusta {
+        EyeFrusta::Camera => &[][..],
+        EyeFrusta::Tangents(ref eyes) => &eyes[..],
+    };
+    for [left, right, bottom, top] in frusta {
         let sound = [left, right, bottom, top].iter().all(|t| t.abs() <= 100.0);
         if !(sound && right - left >= 1e-3 && top - bottom >= 1e-3) {
-            return wrong("eye-tangents", s.eye_tangents.clone(), TANGENTS);
+            return wrong("eye-tangents", s.stereo.frusta.to_string(), TANGENTS);
         }
     }
-    let [x, y] = s.gaze_shift;
+    let [x, y] = s.stereo.gaze_shift;
     if !(x.abs() <= 16.0 && y.abs() <= 16.0) {
         let expected = "two numbers between -16 and 16";
         return wrong("gaze-shift", format!("{x},{y}"), expected);
     }
-    crate::stereo::check_lens(&s.lens_profile()?)?;
+    crate::stereo::check_lens(&s.stereo.lens.profile())?;
     let layout = EyeLayout::of(s);
     let width = u64::from(layout.target_size().0).max(u64::from(s.picture_size().0));
     if width > u64::from(limits.max_texture_dimension_2d) {
@@ -243,43 +352,65 @@ mod tests {
 
     #[test]
     fn impossible_eyes_and_lenses_are_refused_by_name() {
-        let stereo = Settings {
-            stereo: Stereo::Instanced,
-            ..Settings::default()
-        };
+        let stereo = Settings::default().with(|s| s.stereo.mode = Stereo::Instanced);
         assert_eq!(message(&stereo), "");
         type Change = fn(&mut Settings);
-        let wrong: [(&str, Change); 14] = [
-            ("ipd", |s| s.ipd = -0.06),
-            ("ipd", |s| s.ipd = f32::NAN),
-            ("convergence", |s| s.convergence = 0.0),
-            ("convergence", |s| s.convergence = f32::INFINITY),
+        let wrong: [(&str, Change); 13] = [
+            ("ipd", |s| s.stereo.ipd_m = -0.06),
+            ("ipd", |s| s.stereo.ipd_m = f32::NAN),
+            ("convergence", |s| s.stereo.convergence_m = 0.0),
+            ("convergence", |s| s.stereo.convergence_m = f32::INFINITY),
             ("eye-tangents", |s| {
-                s.eye_tangents = "1,-1,-1,1,-1,1,-1,1".into()
+                s.stereo.frusta = "1,-1,-1,1,-1,1,-1,1".parse().expect("it can be read")
             }),
             ("eye-tangents", |s| {
-                s.eye_tangents = "-1,1,-1,1,-1,1,1,1".into()
+                s.stereo.frusta = "-1,1,-1,1,-1,1,1,1".parse().expect("it can be read")
             }),
             ("eye-tangents", |s| {
-                s.eye_tangents = "-1,nan,-1,1,-1,1,-1,1".into()
+                s.stereo.frusta = "-1,nan,-1,1,-1,1,-1,1".parse().expect("it can be read")
             }),
             ("eye-tangents", |s| {
-                s.eye_tangents = "-1,inf,-1,1,-1,1,-1,1".into()
+                s.stereo.frusta = "-1,inf,-1,1,-1,1,-1,1".parse().expect("it can be read")
             }),
-            ("eye-tangents", |s| s.eye_tangents = "-1,1,-1,1".into()),
-            ("gaze-shift", |s| s.gaze_shift = [f32::NAN, 0.0]),
+            ("gaze-shift", |s| s.stereo.gaze_shift = [f32::NAN, 0.0]),
             ("rate", |s| {
-                (s.shading, s.rate) = (Shading::Coarse, RateSource::Lens);
+                (s.shading.mode, s.coarse.source) = (Shading::Coarse, RateSource::Lens);
             }),
-            ("lens", |s| s.lens = "-0.5,0,0".into()),
-            ("lens", |s| s.lens = "nan,0,0".into()),
-            ("both eyes", |s| s.width = 5000),
+            ("lens", |s| {
+                s.stereo.lens = "-0.5,0,0".parse().expect("it can be read")
+            }),
+            ("lens", |s| {
+                s.stereo.lens = "nan,0,0".parse().expect("it can be read")
+            }),
+            ("both eyes", |s| s.picture.width = 5000),
         ];
         for (name, change) in wrong {
             let mut s = stereo.clone();
             change(&mut s);
             let text = message(&s);
             assert!(text.contains(name), "{name}: '{text}'");
+        }
+    }
+
+    #[test]
+    fn lenses_and_frusta_are_read_as_they_are_written() {
+        for text in [
+            "cardboard-v2",
+            "dk1",
+            "ideal",
+            "0.1,0.2,0",
+            "0.1,0.2,0,1,0.01,1,0.02",
+        ] {
+            assert_eq!(text.parse::<Lens>().expect(text).to_string(), text);
+        }
+        for text in ["", "-1,1,-0.5,0.5,-1,1,-0.5,0.25"] {
+            assert_eq!(text.parse::<EyeFrusta>().expect(text).to_string(), text);
+        }
+        for wrong in ["cardboard", "1,2", "1,2,3,4", "a,b,c"] {
+            assert!(wrong.parse::<Lens>().is_err(), "{wrong}");
+        }
+        for wrong in ["-1,1,-1,1", "x", "-1,1,-1,1,-1,1,-1,1,0"] {
+            assert!(wrong.parse::<EyeFrusta>().is_err(), "{wrong}");
         }
     }
 }

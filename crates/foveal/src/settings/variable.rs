@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Antialiasing, Composite, RateCombine, RateSource, Settings, Shading, View};
+use super::{Antialiasing, Composite, DebugView, RateCombine, RateSource, Settings, Shading};
 use crate::Error;
 
 /// Way to fill the G-buffer.
@@ -50,10 +50,12 @@ impl RateStage {
 impl Settings {
     /// Work done once per sample, with [`RateStage::Auto`] decided. Never `Auto`.
     pub(crate) fn stage(&self) -> RateStage {
-        let light = self.shading == Shading::Coarse && self.composite == Composite::Light;
-        let material =
-            self.geometry == Geometry::Visibility && self.aa == Antialiasing::None && !light;
-        match (self.shading, self.rate_stage) {
+        let light =
+            self.shading.mode == Shading::Coarse && self.coarse.composite == Composite::Light;
+        let material = self.geometry.path == Geometry::Visibility
+            && self.antialiasing.mode == Antialiasing::None
+            && !light;
+        match (self.shading.mode, self.shading.stage) {
             (Shading::Full, _) => RateStage::Lighting,
             (_, RateStage::Auto) if material => RateStage::Both,
             (_, RateStage::Auto) => RateStage::Lighting,
@@ -64,7 +66,7 @@ impl Settings {
     /// Whether only the samples of coarse shading have surfaces, so that comparisons of other
     /// pixels use depth alone.
     pub(crate) fn sees_by_depth(&self) -> bool {
-        self.shading == Shading::Coarse && self.stage().has_material()
+        self.shading.mode == Shading::Coarse && self.stage().has_material()
     }
 }
 
@@ -91,10 +93,13 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         })
     };
     let name = |value: &dyn std::fmt::Debug| format!("{value:?}").to_lowercase();
-    let variable = s.shading == Shading::Variable;
-    for (setting, source) in [("rate", s.rate), ("rate-other", s.rate_other)] {
-        let used = setting == "rate" || s.rate_combine != RateCombine::First;
-        if used && source == RateSource::Content && s.shading == Shading::Coarse {
+    let variable = s.shading.mode == Shading::Variable;
+    for (setting, source) in [
+        ("rate", s.coarse.source),
+        ("rate-other", s.coarse.other_source),
+    ] {
+        let used = setting == "rate" || s.coarse.combine != RateCombine::First;
+        if used && source == RateSource::Content && s.shading.mode == Shading::Coarse {
             return wrong(
                 setting,
                 name(&source),
@@ -109,53 +114,53 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             );
         }
     }
-    if s.view == View::Unknown && !variable {
+    if s.picture.view == DebugView::Unknown && !variable {
         return wrong(
             "view",
-            name(&s.view),
+            name(&s.picture.view),
             "another one unless shading is variable",
         );
     }
-    if variable && s.view == View::Blocks {
+    if variable && s.picture.view == DebugView::Blocks {
         return wrong(
             "view",
-            name(&s.view),
+            name(&s.picture.view),
             "another one unless shading is coarse",
         );
     }
-    if s.shading == Shading::Coarse && s.rate_stage == RateStage::Material {
+    if s.shading.mode == Shading::Coarse && s.shading.stage == RateStage::Material {
         return wrong(
             "rate-stage",
-            name(&s.rate_stage),
+            name(&s.shading.stage),
             "another one unless shading is variable",
         );
     }
-    if s.sees_by_depth() && s.composite == Composite::Light {
+    if s.sees_by_depth() && s.coarse.composite == Composite::Light {
         return wrong(
             "rate-stage",
-            name(&s.rate_stage),
+            name(&s.shading.stage),
             "lighting where the composite is light",
         );
     }
     if s.stage().has_material() {
-        if s.geometry != Geometry::Visibility {
+        if s.geometry.path != Geometry::Visibility {
             return wrong(
                 "rate-stage",
-                name(&s.rate_stage),
+                name(&s.shading.stage),
                 "lighting unless the geometry is visibility",
             );
         }
-        if s.aa != Antialiasing::None {
+        if s.antialiasing.mode != Antialiasing::None {
             return wrong(
                 "rate-stage",
-                name(&s.rate_stage),
+                name(&s.shading.stage),
                 "lighting where edges are smoothed",
             );
         }
     }
     for (setting, value) in [
-        ("contrast-threshold", s.contrast_threshold),
-        ("velocity-gain", s.velocity_gain),
+        ("contrast-threshold", s.variable.threshold),
+        ("velocity-gain", s.variable.velocity_gain),
     ] {
         if !(0.0..=10.0).contains(&value) {
             return wrong(setting, value.to_string(), "between 0 and 10");

@@ -17,11 +17,15 @@ pub(crate) fn lighting_constants(settings: &Settings) -> [(&'static str, f64); 2
     [
         (
             "BLINN_PHONG",
-            f64::from(u8::from(settings.lighting == LightingModel::BlinnPhong)),
+            f64::from(u8::from(
+                settings.lighting.model == LightingModel::BlinnPhong,
+            )),
         ),
         (
             "BRUTE",
-            f64::from(u8::from(settings.lights == LightAssignment::Brute)),
+            f64::from(u8::from(
+                settings.lighting.assignment == LightAssignment::Brute,
+            )),
         ),
     ]
 }

@@ -5,7 +5,7 @@ use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
 use crate::lights::LightUniform;
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
-use crate::{LightAssignment, LightingModel, Renderer, Settings, View};
+use crate::{DebugView, LightAssignment, LightingModel, Renderer, Settings};
 
 pub(crate) struct Surface {
     pub(crate) position: Vec3,
@@ -309,18 +309,21 @@ fn assert_equals_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
     let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
     let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);
     let lights = renderer.lights().1;
-    let size = Vec2::new(settings.width as f32, settings.height as f32);
+    let size = Vec2::new(
+        settings.picture.width as f32,
+        settings.picture.height as f32,
+    );
     let mut lit = 0;
     for (i, gpu) in radiance(&renderer).into_iter().enumerate() {
         let pixel = Vec2::new(
-            (i as u32 % settings.width) as f32,
-            (i as u32 / settings.width) as f32,
+            (i as u32 % settings.picture.width) as f32,
+            (i as u32 / settings.picture.width) as f32,
         ) + 0.5;
         let cpu = shade(
             scene,
             camera,
             lights,
-            settings.lighting,
+            settings.lighting.model,
             size,
             pixel,
             words[i],
@@ -343,10 +346,7 @@ fn shading_equals_its_twin_for_both_lighting_models() {
         assert_equals_twin(
             &scene,
             &scene.cameras[0],
-            &Settings {
-                lighting,
-                ..small(WIDTH, HEIGHT)
-            },
+            &small(WIDTH, HEIGHT).with(|s| s.lighting.model = lighting),
         );
     }
 }
@@ -371,10 +371,7 @@ fn a_list_shades_its_texels_to_the_same_bytes_as_the_draw_and_no_others() {
     let drawn = rendered(&scene, camera, &small(WIDTH, HEIGHT));
     let drawn: Vec<[u16; 4]> = texels(&drawn.targets().radiance_view);
     // A view leaves the radiance untouched: zero.
-    let settings = Settings {
-        view: View::Depth,
-        ..small(WIDTH, HEIGHT)
-    };
+    let settings = small(WIDTH, HEIGHT).with(|s| s.picture.view = DebugView::Depth);
     let mut renderer = rendered(&scene, camera, &settings);
     let listed = |x: u32, y: u32| !(x + y).is_multiple_of(3);
     let all = (0..HEIGHT).flat_map(|y| (0..WIDTH).map(move |x| (x, y)));
@@ -396,19 +393,15 @@ fn clustered_and_brute_lighting_give_the_same_bytes() {
     let mut scene = generate::cornell();
     generate::add_point_lights(&mut scene, 150, 7);
     for camera in [scene.cameras[0].clone(), scene.overview_camera()] {
-        let settings = Settings {
-            width: 200,
-            height: 150,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 200;
+            s.picture.height = 150;
+        });
         let clustered = rendered(&scene, &camera, &settings);
         let brute = rendered(
             &scene,
             &camera,
-            &Settings {
-                lights: LightAssignment::Brute,
-                ..settings
-            },
+            &settings.with(|s| s.lighting.assignment = LightAssignment::Brute),
         );
         assert_eq!(
             texels::<[u16; 4]>(&clustered.targets().radiance_view),
@@ -421,10 +414,7 @@ fn clustered_and_brute_lighting_give_the_same_bytes() {
 #[test]
 fn views_do_not_shade() {
     let scene = generate::cornell();
-    let settings = Settings {
-        view: View::Depth,
-        ..small(WIDTH, HEIGHT)
-    };
+    let settings = small(WIDTH, HEIGHT).with(|s| s.picture.view = DebugView::Depth);
     let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
     assert!(radiance(&renderer).iter().all(|r| *r == Vec3::ZERO));
     assert_eq!(renderer.redraw(&scene.cameras[0]).shaded_samples, 0);

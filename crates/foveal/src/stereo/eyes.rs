@@ -4,6 +4,7 @@ use foveal_scene::{Camera, Projection};
 use glam::{Mat4, Vec3};
 
 use super::EyeLayout;
+use crate::EyeFrusta;
 use crate::{Error, Settings};
 
 /// One eye: a pose and a frustum.
@@ -50,7 +51,7 @@ impl Eye {
 /// [`Error::Setting`] where the camera makes no sense, and where two eyes should see in parallel projection.
 pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Error> {
     check(settings, camera)?;
-    let aspect = settings.width as f32 / settings.height as f32;
+    let aspect = settings.picture.width as f32 / settings.picture.height as f32;
     let clip_from_view = camera.clip_from_view(aspect);
     let middle = Eye {
         world_from_view: camera.world_from_view,
@@ -60,14 +61,13 @@ pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Err
     if !settings.is_stereo() {
         return Ok([middle; 2]);
     }
-    let frusta = settings.frusta()?;
     Ok([-0.5f32, 0.5].map(|side| {
-        let x = side * settings.ipd;
+        let x = side * settings.stereo.ipd_m;
         let mut eye = middle;
         let right = camera.world_from_view.x_axis;
         eye.world_from_view.w_axis += right * x;
-        match frusta {
-            Some(tangents) => {
+        match settings.stereo.frusta {
+            EyeFrusta::Tangents(tangents) => {
                 let [left, right, bottom, top] = tangents[usize::from(side > 0.0)];
                 let m = &mut eye.clip_from_view;
                 m.x_axis.x = 2.0 / (right - left);
@@ -76,8 +76,9 @@ pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Err
                 m.z_axis.y = (top + bottom) / (top - bottom);
             }
             // Points straight ahead at the convergence distance keep the middle's place in the picture.
-            None => {
-                eye.clip_from_view.z_axis.x -= clip_from_view.x_axis.x * x / settings.convergence
+            EyeFrusta::Camera => {
+                eye.clip_from_view.z_axis.x -=
+                    clip_from_view.x_axis.x * x / settings.stereo.convergence_m
             }
         }
         eye

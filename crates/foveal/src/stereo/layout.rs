@@ -18,18 +18,18 @@ pub(crate) struct EyeLayout {
 
 impl EyeLayout {
     pub(crate) fn of(settings: &Settings) -> Self {
-        let coarsest = match settings.shading {
+        let coarsest = match settings.shading.mode {
             Shading::Full => 0,
             // Samples stand for 4 x 4 pixels at most, and every fourth quad across is probed.
             Shading::Variable => 3,
             // The rate map's cells are 2 x 2 pixels at least.
-            Shading::Coarse => u32::from(settings.coarsest_level).max(1),
+            Shading::Coarse => u32::from(settings.coarse.coarsest_level).max(1),
         };
-        let width = settings.width;
+        let width = settings.picture.width;
         Self {
             eyes: 1 + u32::from(settings.is_stereo() && !settings.is_seen_alike()),
             width,
-            height: settings.height,
+            height: settings.picture.height,
             stride: width
                 .checked_next_multiple_of(1 << coarsest)
                 .unwrap_or(width),

@@ -126,10 +126,10 @@ impl LensFit {
     /// # Errors
     /// As [`LensFit::new`].
     pub(crate) fn of(settings: &Settings, eyes: &[Eye; 2]) -> Result<Option<[Self; 2]>, Error> {
-        if !settings.is_stereo() || settings.show != crate::Output::Headset {
+        if !settings.is_stereo() || settings.stereo.output != crate::Output::Headset {
             return Ok(None);
         }
-        let lens = settings.lens_profile()?;
+        let lens = settings.stereo.lens.profile();
         Ok(Some([
             Self::new(lens, &eyes[0])?,
             Self::new(lens, &eyes[1])?,

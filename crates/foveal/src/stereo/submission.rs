@@ -62,15 +62,15 @@ impl Submission {
             && !gpu.is_reduced();
         // The visibility buffer's fragments are so small that a plane would save nothing.
         let clips = has_clip
-            && settings.eye_clipping != EyeClipping::Discard
-            && settings.geometry == Geometry::Gbuffer;
+            && settings.stereo.clipping != EyeClipping::Discard
+            && settings.geometry.path == Geometry::Gbuffer;
         let instanced = Self::Instanced { clips };
-        let lacks = if settings.eye_clipping == EyeClipping::Clip && !has_clip {
+        let lacks = if settings.stereo.clipping == EyeClipping::Clip && !has_clip {
             "; discards, as the device has no clip distances"
         } else {
             ""
         };
-        let this = match settings.stereo {
+        let this = match settings.stereo.mode {
             Stereo::Off => Self::Mono,
             _ if settings.is_seen_alike() => {
                 let why = "both eyes see the same: drawn once, shown to both";
@@ -78,7 +78,7 @@ impl Submission {
             }
             Stereo::TwoPass => Self::TwoPass {
                 // Scissors do without, unless it is to be compared.
-                clips: clips && settings.eye_clipping == EyeClipping::Clip,
+                clips: clips && settings.stereo.clipping == EyeClipping::Clip,
             },
             Stereo::Instanced => instanced,
             Stereo::Multiview => {
@@ -90,7 +90,7 @@ impl Submission {
             }
             Stereo::Auto => {
                 let mut ways = vec![instanced, Self::TwoPass { clips: false }];
-                if gpu.has_multiview() && settings.aa == Antialiasing::None {
+                if gpu.has_multiview() && settings.antialiasing.mode == Antialiasing::None {
                     ways.insert(0, Self::Multiview);
                 }
                 return Self::fastest(gpu, &ways, trials, clock).await;

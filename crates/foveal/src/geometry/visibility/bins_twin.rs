@@ -7,7 +7,7 @@ use super::bins::BIN_BYTES;
 use crate::gpu::read_buffer;
 use crate::shading::sample_extent;
 use crate::testing::{gpu, rendered, small, texels};
-use crate::{Geometry, RateSource, RateStage, Renderer, Settings, Shading, Stereo};
+use crate::{Geometry, RateSource, RateStage, Renderer, Shading, Stereo};
 
 /// Of each bin the pixels that it should hold, `x | y << 16`.
 fn twin(renderer: &Renderer, scene: &Scene, size: UVec2, mask: Option<&[u32]>) -> Vec<Vec<u32>> {
@@ -63,19 +63,17 @@ fn every_listed_pixel_is_in_its_materials_bin_once() {
             (Stereo::Off, true),
             (Stereo::Instanced, false),
         ] {
-            let settings = Settings {
-                geometry: Geometry::Visibility,
-                stereo,
-                ..small(width, height)
-            };
+            let settings = small(width, height).with(|s| {
+                s.geometry.path = Geometry::Visibility;
+                s.stereo.mode = stereo;
+            });
             let settings = if rated {
-                Settings {
-                    shading: Shading::Variable,
-                    rate: RateSource::Content,
-                    rate_stage: RateStage::Both,
-                    force_rate: true,
-                    ..settings
-                }
+                settings.with(|s| {
+                    s.shading.mode = Shading::Variable;
+                    s.coarse.source = RateSource::Content;
+                    s.shading.stage = RateStage::Both;
+                    s.variable.force = true;
+                })
             } else {
                 settings
             };

@@ -154,35 +154,31 @@ fn drawn(scene: &Scene, settings: &Settings, limits: ArrayLimits) -> Renderer {
 }
 
 fn by(dispatch: crate::MaterialDispatch, settings: &Settings) -> Settings {
-    Settings {
-        geometry: Geometry::Visibility,
-        material_dispatch: dispatch,
-        ..settings.clone()
-    }
+    settings.clone().with(|s| {
+        s.geometry.path = Geometry::Visibility;
+        s.geometry.material_dispatch = dispatch;
+    })
 }
 
 #[test]
 fn a_picture_by_families_is_the_one_by_materials_to_the_byte() {
     let scene = patchwork();
     let plain = small(157, 101);
-    let rated = |shading, rate| Settings {
-        shading,
-        rate,
-        rate_stage: RateStage::Both,
-        // That of light needs materials at every pixel.
-        composite: crate::Composite::Smooth,
-        force_rate: true,
-        ..plain.clone()
+    let rated = |shading, rate| {
+        plain.clone().with(|s| {
+            s.shading.mode = shading;
+            s.coarse.source = rate;
+            s.shading.stage = RateStage::Both;
+            // That of light needs materials at every pixel.
+            s.coarse.composite = crate::Composite::Smooth;
+            s.variable.force = true;
+        })
     };
-    let smoothed = Settings {
-        aa: Antialiasing::Msaa,
-        pattern: SamplePattern::Grid,
-        ..plain.clone()
-    };
-    let eyes = Settings {
-        stereo: Stereo::Instanced,
-        ..plain.clone()
-    };
+    let smoothed = plain.clone().with(|s| {
+        s.antialiasing.mode = Antialiasing::Msaa;
+        s.antialiasing.pattern = SamplePattern::Grid;
+    });
+    let eyes = plain.clone().with(|s| s.stereo.mode = Stereo::Instanced);
     let device = ArrayLimits::of(gpu());
     let cases = [
         ("full", plain.clone(), device),
@@ -255,7 +251,7 @@ fn each_dispatch_covers_its_own_pixels_and_no_others() {
         let mut expected = vec![Vec::new(); dispatches.len()];
         for (i, id) in (0..).zip(&ids).filter(|(_, id)| id[0] > 0) {
             let material = scene.instances[id[0] as usize - 1].material;
-            let pixel = (i % settings.width) | (i / settings.width) << 16;
+            let pixel = (i % settings.picture.width) | (i / settings.picture.width) << 16;
             expected[number(material) as usize].push(pixel);
         }
         for (found, expected) in dispatches.iter().zip(&mut expected) {

@@ -140,9 +140,9 @@ enum Listed {
 impl Rates {
     /// What these settings need.
     pub(crate) fn wanted_by(settings: &Settings) -> Option<Self> {
-        match settings.shading {
+        match settings.shading.mode {
             _ if !settings.stage().has_material() => None,
-            Shading::Coarse => Some(Self::Tiles(settings.coarse_sample)),
+            Shading::Coarse => Some(Self::Tiles(settings.coarse.sample)),
             _ => Some(Self::Samples),
         }
     }

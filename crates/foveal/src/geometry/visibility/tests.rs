@@ -13,10 +13,9 @@ use crate::testing::{gpu, picture, rendered, small, texels};
 use crate::{Antialiasing, EdgeTest, Frame, Geometry, Gpu, Renderer, SamplePattern, Settings};
 
 fn by_triangles(settings: &Settings) -> Settings {
-    Settings {
-        geometry: Geometry::Visibility,
-        ..settings.clone()
-    }
+    settings
+        .clone()
+        .with(|s| s.geometry.path = Geometry::Visibility)
 }
 
 /// Draws both ways: identity and depth must be equal to the bit but for `moved` motions that round differently,
@@ -240,10 +239,7 @@ fn motion_is_the_rasterizers() {
     let mut before = camera.clone();
     before.world_from_view.w_axis.x += 0.05;
     let motions = [Geometry::Gbuffer, Geometry::Visibility].map(|geometry| {
-        let settings = Settings {
-            geometry,
-            ..small(61, 40)
-        };
+        let settings = small(61, 40).with(|s| s.geometry.path = geometry);
         let mut renderer = rendered(&scene, camera, &settings);
         let frame = Frame {
             camera,
@@ -302,17 +298,16 @@ fn anti_aliasing_looks_the_same_on_both_geometries() {
         (Antialiasing::Msaa, SamplePattern::Rotated, 8),
         (Antialiasing::Ssaa, SamplePattern::Rotated, 4),
     ] {
-        let settings = Settings {
-            aa,
-            pattern,
-            samples,
+        let settings = small(97, 61).with(|s| {
+            s.antialiasing.mode = aa;
+            s.antialiasing.pattern = pattern;
+            s.antialiasing.samples = samples;
             // On a grid the surface test goes another way over triangles: antialias/triangles.rs and its tests.
-            edge_test: match pattern {
+            s.antialiasing.edge_test = match pattern {
                 SamplePattern::Grid => EdgeTest::Paper,
                 SamplePattern::Rotated => EdgeTest::Surface,
-            },
-            ..small(97, 61)
-        };
+            };
+        });
         let [raster, triangles] = [settings.clone(), by_triangles(&settings)]
             .map(|s| picture(&rendered(&scene, &scene.cameras[0], &s)));
         let off = raster.iter().zip(&triangles);

@@ -3,7 +3,7 @@
 //! A device that does not reject fragments early by stencil pays the stencil backend as much as full shading,
 //! and no feature flag tells. Both backends give the same bytes, so trying them costs time alone.
 
-use crate::Backend;
+use crate::CoarseBackend;
 use crate::gpu::Gpu;
 
 /// A backend that can be in use.
@@ -38,16 +38,18 @@ pub(crate) enum BackendChoice {
 }
 
 impl BackendChoice {
-    pub(super) fn new(asked: Backend, gpu: &Gpu) -> Self {
+    pub(super) fn new(asked: CoarseBackend, gpu: &Gpu) -> Self {
         let has_timestamps = gpu
             .device
             .features()
             .contains(wgpu::Features::TIMESTAMP_QUERY);
         match asked {
-            Backend::Stencil => Self::Fixed(UsedBackend::Stencil, "asked for"),
-            Backend::Compute => Self::Fixed(UsedBackend::Compute, "asked for"),
-            Backend::Auto if has_timestamps => Self::Measuring(Vec::new()),
-            Backend::Auto => Self::Fixed(UsedBackend::Compute, "no timestamps to measure with"),
+            CoarseBackend::Stencil => Self::Fixed(UsedBackend::Stencil, "asked for"),
+            CoarseBackend::Compute => Self::Fixed(UsedBackend::Compute, "asked for"),
+            CoarseBackend::Auto if has_timestamps => Self::Measuring(Vec::new()),
+            CoarseBackend::Auto => {
+                Self::Fixed(UsedBackend::Compute, "no timestamps to measure with")
+            }
         }
     }
 

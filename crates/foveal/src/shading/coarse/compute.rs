@@ -23,7 +23,7 @@ impl ComputeBackend {
         input_layout: &wgpu::BindGroupLayout,
         shader: shader::Shader,
     ) -> Self {
-        let has_light = settings.composite == Composite::Light;
+        let has_light = settings.coarse.composite == Composite::Light;
         let types = [
             uniform(),
             storage_read(),

@@ -38,7 +38,7 @@ impl CountPass {
             &shader::module(gpu, "tile counting", shader::SHADING_COARSE_LIST),
             "count_tiles",
             &[frame_layout, &layout],
-            &[("COARSEST", f64::from(settings.coarsest_level))],
+            &[("COARSEST", f64::from(settings.coarse.coarsest_level))],
         );
         Self {
             pipeline,

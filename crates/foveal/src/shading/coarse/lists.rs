@@ -78,7 +78,7 @@ impl TileListing {
                 &shader::module(gpu, "tile listing", shader::SHADING_COARSE_LIST),
                 "list_tiles",
                 &[frame_layout, &list_layout],
-                &[("COARSEST", f64::from(settings.coarsest_level))],
+                &[("COARSEST", f64::from(settings.coarse.coarsest_level))],
             ),
             size: shader::compute(
                 gpu,

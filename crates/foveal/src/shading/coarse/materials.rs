@@ -20,18 +20,17 @@ fn scene() -> Scene {
 }
 
 fn settings(rate_stage: RateStage) -> Settings {
-    Settings {
-        geometry: Geometry::Visibility,
-        shading: Shading::Coarse,
-        composite: Composite::Nearest,
-        rate: RateSource::Radii,
-        fovea_inner: 0.2,
-        fovea_outer: 0.6,
-        gaze: [0.3, 0.6],
-        refine_edges: RefineEdges::Off,
-        rate_stage,
-        ..small(SIZE.0, SIZE.1)
-    }
+    small(SIZE.0, SIZE.1).with(|s| {
+        s.geometry.path = Geometry::Visibility;
+        s.shading.mode = Shading::Coarse;
+        s.coarse.composite = Composite::Nearest;
+        s.coarse.source = RateSource::Radii;
+        s.coarse.fovea_inner = 0.2;
+        s.coarse.fovea_outer = 0.6;
+        s.eye.gaze = [0.3, 0.6];
+        s.coarse.refine_edges = RefineEdges::Off;
+        s.shading.stage = rate_stage;
+    })
 }
 
 /// Levels of the pixels' owners, row by row.
@@ -52,11 +51,10 @@ fn without_textures_materials_at_the_rate_give_the_same_bytes() {
         for stereo in [Stereo::Off, Stereo::Instanced] {
             let [lighting, both, auto] = [RateStage::Lighting, RateStage::Both, RateStage::Auto]
                 .map(|stage| {
-                    let settings = Settings {
-                        coarse_sample,
-                        stereo,
-                        ..settings(stage)
-                    };
+                    let settings = settings(stage).with(|s| {
+                        s.coarse.sample = coarse_sample;
+                        s.stereo.mode = stereo;
+                    });
                     picture(&rendered(&scene, &scene.cameras[0], &settings))
                 });
             assert!(lighting == both, "{coarse_sample:?} {stereo:?}");
@@ -73,19 +71,13 @@ fn surfaces_are_evaluated_where_tiles_are_sampled_and_nowhere_else() {
         let full = rendered(
             &scene,
             camera,
-            &Settings {
-                shading: Shading::Full,
-                ..settings(RateStage::Lighting)
-            },
+            &settings(RateStage::Lighting).with(|s| s.shading.mode = Shading::Full),
         );
         let full: Vec<[u32; 4]> = texels(&full.targets().gbuffer.surface_view);
         let coarse = rendered(
             &scene,
             camera,
-            &Settings {
-                coarse_sample,
-                ..settings(RateStage::Both)
-            },
+            &settings(RateStage::Both).with(|s| s.coarse.sample = coarse_sample),
         );
         let surfaces: Vec<[u32; 4]> = texels(&coarse.targets().gbuffer.surface_view);
         let identity: Vec<[u32; 2]> = texels(&coarse.targets().gbuffer.identity_view);
@@ -115,16 +107,12 @@ fn level_zero_everywhere_is_full_shading() {
     let scene = generate::materials();
     let camera = &scene.cameras[0];
     for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
-        let coarse = Settings {
-            rate: RateSource::Constant,
-            rate_level: 0,
-            composite,
-            ..settings(RateStage::Both)
-        };
-        let full = Settings {
-            shading: Shading::Full,
-            ..coarse.clone()
-        };
+        let coarse = settings(RateStage::Both).with(|s| {
+            s.coarse.source = RateSource::Constant;
+            s.coarse.constant_level = 0;
+            s.coarse.composite = composite;
+        });
+        let full = coarse.clone().with(|s| s.shading.mode = Shading::Full);
         let [coarse, full] = [coarse, full].map(|s| picture(&rendered(&scene, camera, &s)));
         assert!(coarse == full, "{composite:?}");
     }
@@ -138,11 +126,10 @@ fn textures_are_filtered_over_the_tile() {
         let renderer = rendered(
             &scene,
             &camera,
-            &Settings {
-                rate: RateSource::Constant,
-                rate_level: 2,
-                ..settings(rate_stage)
-            },
+            &settings(rate_stage).with(|s| {
+                s.coarse.source = RateSource::Constant;
+                s.coarse.constant_level = 2;
+            }),
         );
         let surfaces: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
         let at = |x: u32, y: u32| surfaces[(y * SIZE.0 + x) as usize][0] & 255;
@@ -211,12 +198,6 @@ fn what_cannot_be_done_at_the_rate_is_refused() {
         );
     };
     wrong(settings(RateStage::Material));
-    wrong(Settings {
-        geometry: Geometry::Gbuffer,
-        ..settings(RateStage::Both)
-    });
-    wrong(Settings {
-        aa: Antialiasing::Msaa,
-        ..settings(RateStage::Both)
-    });
+    wrong(settings(RateStage::Both).with(|s| s.geometry.path = Geometry::Gbuffer));
+    wrong(settings(RateStage::Both).with(|s| s.antialiasing.mode = Antialiasing::Msaa));
 }

@@ -26,20 +26,21 @@ pub(crate) use targets::{CoarseTargets, STENCIL_FORMAT};
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::shading::lighting_constants;
-use crate::{Backend, CoarseSample, CoarseStats, Composite, Settings, Timing, shader};
+use crate::{CoarseBackend, CoarseSample, CoarseStats, Composite, Settings, Timing, shader};
 
 /// Most levels that there can be.
 pub(crate) const LEVELS: u32 = crate::COARSEST_LEVEL as u32 + 1;
 
 /// Whether some stage visits tiles by lists.
 fn needs_lists(settings: &Settings) -> bool {
-    settings.backend != Backend::Stencil || settings.composite == Composite::Smooth
+    settings.coarse.backend != CoarseBackend::Stencil
+        || settings.coarse.composite == Composite::Smooth
 }
 
 /// Settings that change the shading shaders.
 fn shading_constants(settings: &Settings) -> [(&'static str, f64); 3] {
     let [model, assignment] = lighting_constants(settings);
-    let typical = settings.coarse_sample == CoarseSample::Typical;
+    let typical = settings.coarse.sample == CoarseSample::Typical;
     [model, assignment, ("TYPICAL", f64::from(u8::from(typical)))]
 }
 
@@ -63,7 +64,7 @@ impl CoarseShading {
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let shaders = if settings.composite == Composite::Light {
+        let shaders = if settings.coarse.composite == Composite::Light {
             [
                 shader::SHADING_COARSE_SHADE_DRAW.variant(&["LIGHT"]),
                 shader::SHADING_COARSE_SHADE_LIST.variant(&["LIGHT"]),
@@ -85,15 +86,15 @@ impl CoarseShading {
         input_layout: &wgpu::BindGroupLayout,
         [draw, list]: [shader::Shader; 2],
     ) -> Self {
-        let backend = settings.backend;
+        let backend = settings.coarse.backend;
         Self {
-            stencil: (backend != Backend::Compute)
+            stencil: (backend != CoarseBackend::Compute)
                 .then(|| StencilBackend::new(gpu, settings, frame_layout, input_layout, draw)),
-            compute: (backend != Backend::Stencil)
+            compute: (backend != CoarseBackend::Stencil)
                 .then(|| ComputeBackend::new(gpu, settings, frame_layout, input_layout, list)),
             listing: needs_lists(settings).then(|| TileListing::new(gpu, settings, frame_layout)),
             count: CountPass::new(gpu, settings, frame_layout),
-            composite: settings.composite,
+            composite: settings.coarse.composite,
             choice: BackendChoice::new(backend, gpu),
         }
     }

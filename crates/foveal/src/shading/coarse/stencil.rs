@@ -63,7 +63,7 @@ impl StencilBackend {
             wgpu::ShaderStages::FRAGMENT,
             &[sampled(wgpu::TextureSampleType::Uint)],
         );
-        let formats: &[_] = if settings.composite == Composite::Light {
+        let formats: &[_] = if settings.coarse.composite == Composite::Light {
             &[RADIANCE_FORMAT, LIGHT_FORMAT]
         } else {
             &[RADIANCE_FORMAT]
@@ -89,7 +89,7 @@ impl StencilBackend {
                     wgpu::CompareFunction::Always,
                     wgpu::StencilOperation::Replace,
                 )),
-                constants: &[("COARSEST", f64::from(settings.coarsest_level))],
+                constants: &[("COARSEST", f64::from(settings.coarse.coarsest_level))],
                 ..Screen::of_level("tile marks", &marks, "mark")
             },
         );

@@ -6,7 +6,7 @@ use crate::gpu::{Gpu, MipChain};
 use crate::rate::RateTargets;
 use crate::shading::{HistoryTargets, RADIANCE_FORMAT};
 use crate::stereo::EyeLayout;
-use crate::{Backend, Composite, Settings};
+use crate::{CoarseBackend, Composite, Settings};
 
 /// A stencil whose mips can be attached one by one.
 pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
@@ -48,7 +48,7 @@ impl CoarseTargets {
 
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
         let size = EyeLayout::of(settings).target_size();
-        let levels = 0..=u32::from(settings.coarsest_level);
+        let levels = 0..=u32::from(settings.coarse.coarsest_level);
         let buffer = |label, bytes: u64, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -74,14 +74,14 @@ impl CoarseTargets {
                     | wgpu::TextureUsages::STORAGE_BINDING
                     | wgpu::TextureUsages::COPY_SRC,
             ),
-            patches: match settings.composite {
+            patches: match settings.coarse.composite {
                 Composite::Smooth => PatchTargets::new(gpu, settings),
                 Composite::Light | Composite::Nearest | Composite::Paper => None,
             },
             history: HistoryTargets::new(gpu, settings),
-            light: (settings.composite == Composite::Light)
+            light: (settings.coarse.composite == Composite::Light)
                 .then(|| LightTargets::new(gpu, settings)),
-            stencil: (settings.backend != Backend::Compute).then(|| {
+            stencil: (settings.coarse.backend != CoarseBackend::Compute).then(|| {
                 MipChain::new(
                     gpu,
                     "tile stencil",

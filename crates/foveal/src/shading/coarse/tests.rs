@@ -6,7 +6,7 @@ use super::block::sample_texel;
 use crate::gpu::{MipChain, read_level};
 use crate::testing::{gpu, picture, rendered, small, texels};
 use crate::{
-    Backend, CoarseSample, Composite, Frame, MinPyramid, RateImage, RateSource, RefineEdges,
+    CoarseBackend, CoarseSample, Composite, Frame, MinPyramid, RateImage, RateSource, RefineEdges,
     Renderer, Settings, Shading,
 };
 
@@ -27,15 +27,14 @@ fn scene() -> Scene {
 }
 
 fn nearest(size: (u32, u32)) -> Settings {
-    Settings {
-        shading: Shading::Coarse,
-        composite: Composite::Nearest,
-        rate: RateSource::Radii,
-        fovea_inner: 0.2,
-        fovea_outer: 0.6,
-        gaze: [0.3, 0.6],
-        ..small(size.0, size.1)
-    }
+    small(size.0, size.1).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.composite = Composite::Nearest;
+        s.coarse.source = RateSource::Radii;
+        s.coarse.fovea_inner = 0.2;
+        s.coarse.fovea_outer = 0.6;
+        s.eye.gaze = [0.3, 0.6];
+    })
 }
 
 fn draw(settings: &Settings) -> Renderer {
@@ -72,11 +71,16 @@ fn twin(renderer: &Renderer) -> MinPyramid {
     let s = renderer.settings();
     let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
     let quads = cells(&rate.pyramid, 1);
-    let across = s.width.div_ceil(2);
-    let wishes: Vec<u8> = (0..s.width * s.height)
-        .map(|i| quads[(i / s.width / 2 * across + i % s.width / 2) as usize])
+    let across = s.picture.width.div_ceil(2);
+    let wishes: Vec<u8> = (0..s.picture.width * s.picture.height)
+        .map(|i| quads[(i / s.picture.width / 2 * across + i % s.picture.width / 2) as usize])
         .collect();
-    MinPyramid::new(s.width, &wishes, s.coarsest_level, s.rate_balance)
+    MinPyramid::new(
+        s.picture.width,
+        &wishes,
+        s.coarse.coarsest_level,
+        s.coarse.balance,
+    )
 }
 
 fn noise_image(side: u32, seed: u32) -> RateImage {
@@ -90,11 +94,10 @@ fn noise_image(side: u32, seed: u32) -> RateImage {
 fn the_rate_map_equals_its_twin_byte_for_byte() {
     for size in SIZES {
         for (balance, image_side) in [(false, 3), (true, 7), (false, 40)] {
-            let settings = Settings {
-                rate: RateSource::Image,
-                rate_balance: balance,
-                ..nearest(size)
-            };
+            let settings = nearest(size).with(|s| {
+                s.coarse.source = RateSource::Image;
+                s.coarse.balance = balance;
+            });
             let renderer = draw_with_image(&settings, noise_image(image_side, 1));
             let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
             let twin = twin(&renderer);
@@ -124,11 +127,10 @@ fn the_rate_map_equals_its_twin_byte_for_byte() {
 #[test]
 fn wishes_equal_their_twin() {
     for rate in [RateSource::Foveated, RateSource::Radii, RateSource::Image] {
-        let settings = Settings {
-            rate,
-            refine_edges: RefineEdges::Off,
-            ..nearest(SIZES[0])
-        };
+        let settings = (nearest(SIZES[0])).with(|s| {
+            s.coarse.source = rate;
+            s.coarse.refine_edges = RefineEdges::Off;
+        });
         let image = noise_image(5, 9);
         let renderer = draw_with_image(&settings, image.clone());
         let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
@@ -142,7 +144,7 @@ fn wishes_equal_their_twin() {
         let differing = (0..)
             .zip(quads)
             .filter(|&(i, wish)| {
-                let across = settings.width.div_ceil(2);
+                let across = settings.picture.width.div_ceil(2);
                 let (x, y) = (i % across * 2, i / across * 2);
                 let finest = level(x, y)
                     .min(level(x + 1, y))
@@ -165,14 +167,14 @@ fn both_backends_give_the_same_bytes() {
             (CoarseSample::Center, Composite::Light),
             (CoarseSample::Typical, Composite::Light),
         ] {
-            let [stencil, compute] = [Backend::Stencil, Backend::Compute].map(|backend| {
-                draw(&Settings {
-                    backend,
-                    coarse_sample,
-                    composite,
-                    ..nearest(size)
-                })
-            });
+            let [stencil, compute] =
+                [CoarseBackend::Stencil, CoarseBackend::Compute].map(|backend| {
+                    draw(&nearest(size).with(|s| {
+                        s.coarse.backend = backend;
+                        s.coarse.sample = coarse_sample;
+                        s.coarse.composite = composite;
+                    }))
+                });
             assert_eq!(radiance(&stencil), radiance(&compute));
             assert_eq!(picture(&stencil), picture(&compute));
         }
@@ -184,14 +186,13 @@ fn level_zero_everywhere_is_full_shading() {
     for size in SIZES {
         for composite in ALL_COMPOSITES {
             let full = draw(&small(size.0, size.1));
-            for backend in [Backend::Stencil, Backend::Compute] {
-                let coarse = draw(&Settings {
-                    rate: RateSource::Constant,
-                    rate_level: 0,
-                    backend,
-                    composite,
-                    ..nearest(size)
-                });
+            for backend in [CoarseBackend::Stencil, CoarseBackend::Compute] {
+                let coarse = draw(&nearest(size).with(|s| {
+                    s.coarse.source = RateSource::Constant;
+                    s.coarse.constant_level = 0;
+                    s.coarse.backend = backend;
+                    s.coarse.composite = composite;
+                }));
                 assert!(picture(&coarse) == picture(&full), "{size:?} {composite:?}");
                 assert!(radiance(&coarse) == radiance(&full));
             }
@@ -221,10 +222,7 @@ fn the_fovea_of_every_composite_is_full_shading() {
     let size = SIZES[0];
     let full = radiance(&draw(&small(size.0, size.1)));
     for composite in ALL_COMPOSITES {
-        let coarse = draw(&Settings {
-            composite,
-            ..nearest(size)
-        });
+        let coarse = draw(&nearest(size).with(|s| s.coarse.composite = composite));
         let twin = twin(&coarse);
         let mut fine = 0;
         for (i, pixel) in (0..).zip(radiance(&coarse)) {
@@ -240,11 +238,8 @@ fn the_fovea_of_every_composite_is_full_shading() {
 #[test]
 fn shaded_samples_are_the_tiles() {
     let scene = scene();
-    for backend in [Backend::Stencil, Backend::Compute] {
-        let settings = Settings {
-            backend,
-            ..nearest(SIZES[0])
-        };
+    for backend in [CoarseBackend::Stencil, CoarseBackend::Compute] {
+        let settings = (nearest(SIZES[0])).with(|s| s.coarse.backend = backend);
         let mut renderer = draw(&settings);
         let frame = Frame {
             camera: &scene.cameras[0],

@@ -28,7 +28,7 @@ use crate::rate::RateTargets;
 use crate::recorder::Recorder;
 use crate::shading::coarse::UsedBackend;
 use crate::targets::Targets;
-use crate::{Backend, CoarseSample, CoarseStats, Composite, Settings, Shading, View};
+use crate::{CoarseBackend, CoarseSample, CoarseStats, Composite, DebugView, Settings, Shading};
 use changed::Changed;
 pub(crate) use passes::HistoryParameters;
 use passes::HistoryPasses;
@@ -38,13 +38,13 @@ pub(crate) const ROUND: u32 = 16;
 
 /// Whether these settings carry light along on this device.
 fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
-    settings.history
+    settings.coarse.history
         // Other views of a lit frame show its tiles.
-        && settings.view == View::Final
-        && settings.shading == Shading::Coarse
-        && settings.composite == Composite::Light
-        && settings.coarse_sample == CoarseSample::Center
-        && settings.backend != Backend::Stencil
+        && settings.picture.view == DebugView::Final
+        && settings.shading.mode == Shading::Coarse
+        && settings.coarse.composite == Composite::Light
+        && settings.coarse.sample == CoarseSample::Center
+        && settings.coarse.backend != CoarseBackend::Stencil
         && !gpu.is_reduced()
         && targets::fits(gpu, settings)
 }
@@ -66,7 +66,7 @@ pub(crate) struct HistoryStage {
     last: Option<Camera>,
     /// The scene's pose has changed since.
     moved: bool,
-    /// Where the eyes looked: `Settings::gaze` and `Settings::gaze_shift`.
+    /// Where the eyes looked: `EyeSettings::gaze` and `StereoSettings::gaze_shift`.
     gaze: [[f32; 2]; 2],
     /// Where lamps have changed since.
     changed: Changed,
@@ -91,7 +91,7 @@ impl HistoryStage {
             passes: HistoryPasses::new(gpu, settings, frame, input),
             last: None,
             moved: false,
-            gaze: [settings.gaze, settings.gaze_shift],
+            gaze: [settings.eye.gaze, settings.stereo.gaze_shift],
             changed: Changed::default(),
             frame: 0,
             rested: 0,
@@ -122,7 +122,7 @@ impl HistoryStage {
         settings: &Settings,
         (camera, previous): (&Camera, &Camera),
     ) {
-        let gaze = [settings.gaze, settings.gaze_shift];
+        let gaze = [settings.eye.gaze, settings.stereo.gaze_shift];
         let moved = std::mem::take(&mut self.moved)
             || self.changed != Changed::Nowhere
             || std::mem::replace(&mut self.gaze, gaze) != gaze;
@@ -148,7 +148,7 @@ impl HistoryStage {
     /// What the frame's passes are told.
     fn parameters(&self, settings: &Settings, reset: bool, changed: &Changed) -> HistoryParameters {
         // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a factor of 4. Found by measurement.
-        let finer = 4.0_f32.powf(settings.quality - 9.5);
+        let finer = 4.0_f32.powf(settings.eye.quality_jod - 9.5);
         let mut parameters = HistoryParameters {
             rounding: rounding(self.frame),
             phase: match self.lit.turn {

@@ -21,15 +21,14 @@ fn scene() -> Scene {
 }
 
 fn kept() -> Settings {
-    Settings {
-        shading: Shading::Coarse,
-        history: true,
+    small(SIZE.0, SIZE.1).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.history = true;
         // Small pictures have few levels by what the eye resolves.
-        rate: RateSource::Radii,
-        fovea_inner: 0.1,
-        fovea_outer: 1.0,
-        ..small(SIZE.0, SIZE.1)
-    }
+        s.coarse.source = RateSource::Radii;
+        s.coarse.fovea_inner = 0.1;
+        s.coarse.fovea_outer = 1.0;
+    })
 }
 
 /// The eyes' radiances, without what lies between their pictures.
@@ -49,26 +48,22 @@ fn seen(renderer: &Renderer) -> Vec<[u16; 4]> {
 /// The same frame with every pixel shaded: by a map of pixels where there are two eyes, whose pictures' places in the target
 /// depend on the way of shading.
 fn full(scene: &Scene, camera: &Camera, settings: &Settings) -> Vec<[u16; 4]> {
-    let settings = Settings {
-        shading: if settings.stereo == Stereo::Off {
+    let settings = settings.clone().with(|s| {
+        s.shading.mode = if settings.stereo.mode == Stereo::Off {
             Shading::Full
         } else {
             Shading::Coarse
-        },
-        history: false,
-        rate: RateSource::Constant,
-        rate_level: 0,
-        ..settings.clone()
-    };
+        };
+        s.coarse.history = false;
+        s.coarse.source = RateSource::Constant;
+        s.coarse.constant_level = 0;
+    });
     seen(&rendered(scene, camera, &settings))
 }
 
 /// The same frame with samples shaded anew.
 fn anew(scene: &Scene, camera: &Camera, settings: &Settings) -> Vec<[u16; 4]> {
-    let settings = Settings {
-        history: false,
-        ..settings.clone()
-    };
+    let settings = settings.clone().with(|s| s.coarse.history = false);
     seen(&rendered(scene, camera, &settings))
 }
 
@@ -109,14 +104,8 @@ fn at_rest_the_picture_becomes_full_shadings_and_nothing_more_is_shaded() {
     let camera = &scene.cameras[0];
     for settings in [
         kept(),
-        Settings {
-            geometry: Geometry::Visibility,
-            ..kept()
-        },
-        Settings {
-            stereo: Stereo::Instanced,
-            ..kept()
-        },
+        kept().with(|s| s.geometry.path = Geometry::Visibility),
+        kept().with(|s| s.stereo.mode = Stereo::Instanced),
     ] {
         let mut film = Film::new(&scene, &settings);
         for frame in 0..4 {
@@ -157,13 +146,7 @@ fn the_first_frame_is_that_of_samples_shaded_anew() {
 fn while_the_camera_moves_less_is_shaded_and_the_picture_is_no_worse() {
     let scene = scene();
     let camera = &scene.cameras[0];
-    for settings in [
-        kept(),
-        Settings {
-            stereo: Stereo::TwoPass,
-            ..kept()
-        },
-    ] {
+    for settings in [kept(), kept().with(|s| s.stereo.mode = Stereo::TwoPass)] {
         let mut film = Film::new(&scene, &settings);
         let (mut first, mut later, mut errors) = (0.0, 0.0, [0.0; 2]);
         for frame in 0..12 {
@@ -229,14 +212,8 @@ fn a_cut_remembers_nothing() {
 fn a_gaze_that_jumps_sees_every_pixel_in_the_next_frame() {
     let scene = scene();
     let camera = &scene.cameras[0];
-    let left = Settings {
-        gaze: [0.1, 0.5],
-        ..kept()
-    };
-    let right = Settings {
-        gaze: [0.9, 0.5],
-        ..left.clone()
-    };
+    let left = kept().with(|s| s.eye.gaze = [0.1, 0.5]);
+    let right = left.clone().with(|s| s.eye.gaze = [0.9, 0.5]);
     let mut film = Film::new(&scene, &left);
     for frame in 0..4 {
         film.draw(&shifted(camera, 0.001 * frame as f32));
@@ -283,18 +260,9 @@ fn other_ways_of_shading_keep_nothing() {
     let scene = generate::cornell();
     let camera = &scene.cameras[0];
     for settings in [
-        Settings {
-            backend: crate::Backend::Stencil,
-            ..kept()
-        },
-        Settings {
-            composite: crate::Composite::Paper,
-            ..kept()
-        },
-        Settings {
-            view: crate::View::Blocks,
-            ..kept()
-        },
+        kept().with(|s| s.coarse.backend = crate::CoarseBackend::Stencil),
+        kept().with(|s| s.coarse.composite = crate::Composite::Paper),
+        kept().with(|s| s.picture.view = crate::DebugView::Blocks),
     ] {
         let mut film = Film::new(&scene, &settings);
         film.draw(camera);

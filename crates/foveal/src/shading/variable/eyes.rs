@@ -6,6 +6,7 @@ use glam::UVec2;
 use super::probes::Probes;
 use super::tests::{Film, carried, differing, known_otherwise, shifted, variable};
 use super::twin::{self, Seen};
+use crate::EyeFrusta;
 use crate::gpu::read_buffer;
 use crate::testing::{gpu, texels};
 use crate::{Contrast, Geometry, RateStage, Settings, Stereo};
@@ -33,14 +34,13 @@ fn two_eyes(camera: &Camera, stereo: Stereo) -> Settings {
     };
     let y = (fov_y_rad * 0.5).tan();
     let x = y * SIZE.0 as f32 / SIZE.1 as f32;
-    Settings {
-        stereo,
-        ipd: IPD,
-        eye_tangents: format!("{0},{x},{1},{y},{0},{x},{1},{y}", -x, -y),
-        rate_4x4: true,
-        contrast: Contrast::Neighbors,
-        ..variable(SIZE)
-    }
+    variable(SIZE).with(|s| {
+        s.stereo.mode = stereo;
+        s.stereo.ipd_m = IPD;
+        s.stereo.frusta = EyeFrusta::Tangents([[-x, x, -y, y]; 2]);
+        s.variable.blocks_4x4 = true;
+        s.variable.contrast = Contrast::Neighbors;
+    })
 }
 
 fn of_eye(camera: &Camera, eye: u32) -> Camera {
@@ -123,15 +123,11 @@ fn each_eye_is_shaded_at_the_rates_of_one_eye_alone() {
         (Stereo::Instanced, Geometry::Gbuffer, RateStage::Lighting),
         (Stereo::Instanced, Geometry::Visibility, RateStage::Both),
     ] {
-        let both = Settings {
-            geometry,
-            rate_stage,
-            ..two_eyes(camera, stereo)
-        };
-        let one = Settings {
-            stereo: Stereo::Off,
-            ..both.clone()
-        };
+        let both = two_eyes(camera, stereo).with(|s| {
+            s.geometry.path = geometry;
+            s.shading.stage = rate_stage;
+        });
+        let one = both.clone().with(|s| s.stereo.mode = Stereo::Off);
         let mut film = Film::new(&scene, &both);
         let mut alone = [0, 1].map(|_| Film::new(&scene, &one));
         for frame in 0..4 {

@@ -69,9 +69,9 @@ impl VariableStage {
     ) -> Self {
         Self {
             passes: RatePasses::new(gpu, settings, frame_layout, input_layout),
-            view: RateView::new(gpu, settings.view, frame_layout),
+            view: RateView::new(gpu, settings.picture.view, frame_layout),
             probes: Probes::default(),
-            balance: Balance::new(settings.force_rate),
+            balance: Balance::new(settings.variable.force),
             last: None,
             frame: 0,
         }

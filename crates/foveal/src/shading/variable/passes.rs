@@ -169,8 +169,8 @@ impl RatePasses {
         let Turn { even, reset, probe } = turn;
         let gpu = recorder.gpu;
         let rates = RatesUniform {
-            threshold: settings.contrast_threshold,
-            velocity_gain: settings.velocity_gain,
+            threshold: settings.variable.threshold,
+            velocity_gain: settings.variable.velocity_gain,
             probe_mask: probe.mask,
             probe_x: probe.class[0],
             probe_y: probe.class[1],
@@ -253,7 +253,7 @@ impl RatePasses {
 
 /// Whether contrast is looked for beyond the quad.
 pub(super) fn looks_around(s: &Settings) -> bool {
-    s.contrast != Contrast::Quad
+    s.variable.contrast != Contrast::Quad
 }
 
 fn find_constants(s: &Settings) -> [(&'static str, f64); 6] {
@@ -264,22 +264,22 @@ fn find_constants(s: &Settings) -> [(&'static str, f64); 6] {
         RateSource::Image | RateSource::Lens | RateSource::Content => 3.0,
         RateSource::Radii => 4.0,
     };
-    let combine = match s.rate_combine {
+    let combine = match s.coarse.combine {
         RateCombine::First => 0.0,
         RateCombine::Coarser => 1.0,
         RateCombine::Finer => 2.0,
     };
-    let contrast = match s.contrast {
+    let contrast = match s.variable.contrast {
         Contrast::Quad => 0.0,
         Contrast::Neighbors => 1.0,
         Contrast::Sobel => 2.0,
     };
     [
-        ("SOURCE", source(s.rate)),
-        ("OTHER", source(s.rate_other)),
+        ("SOURCE", source(s.coarse.source)),
+        ("OTHER", source(s.coarse.other_source)),
         ("COMBINE", combine),
         ("CONTRAST", contrast),
-        ("BLOCKS", f64::from(u8::from(s.rate_4x4))),
+        ("BLOCKS", f64::from(u8::from(s.variable.blocks_4x4))),
         ("LOOKS_AROUND", f64::from(u8::from(looks_around(s)))),
     ]
 }

@@ -4,7 +4,7 @@ use super::passes::looks_around;
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::stereo::EyeLayout;
-use crate::{Settings, View};
+use crate::{DebugView, Settings};
 
 /// What is known of a quad: `reproject.wgsl`.
 pub(super) const KNOWN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
@@ -49,7 +49,10 @@ impl VariableTargets {
                 mapped_at_creation: false,
             })
         };
-        let shows_rates = matches!(settings.view, View::Rate | View::Shaded | View::Unknown);
+        let shows_rates = matches!(
+            settings.picture.view,
+            DebugView::Rate | DebugView::Shaded | DebugView::Unknown
+        );
         let finished = shows_rates.then(|| {
             let none = wgpu::TextureUsages::empty();
             gpu::target(gpu, "finished frame", size, PICTURE_FORMAT, none)

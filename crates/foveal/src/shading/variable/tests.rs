@@ -9,7 +9,7 @@ use crate::gpu::read_buffer;
 use crate::shading::twin::{shade, unpack_surface};
 pub(super) use crate::testing::{Film, shifted};
 use crate::testing::{f32_of_half, gpu, picture, small, texels};
-use crate::{Contrast, Geometry, RateCombine, RateSource, RateStage, Settings, Shading, View};
+use crate::{Contrast, DebugView, Geometry, RateCombine, RateSource, RateStage, Settings, Shading};
 
 /// Odd sizes; the last is smaller than a quad.
 const SIZES: [(u32, u32); 3] = [(157, 101), (64, 48), (1, 1)];
@@ -21,12 +21,11 @@ fn scene() -> Scene {
 }
 
 pub(super) fn variable(size: (u32, u32)) -> Settings {
-    Settings {
-        shading: Shading::Variable,
-        rate: RateSource::Content,
-        force_rate: true,
-        ..small(size.0, size.1)
-    }
+    small(size.0, size.1).with(|s| {
+        s.shading.mode = Shading::Variable;
+        s.coarse.source = RateSource::Content;
+        s.variable.force = true;
+    })
 }
 
 impl Film {
@@ -44,7 +43,7 @@ impl Film {
         let s = self.renderer.settings();
         let g = &self.renderer.targets().gbuffer;
         Seen {
-            size: UVec2::new(s.width, s.height),
+            size: UVec2::new(s.picture.width, s.picture.height),
             identity: texels(&g.identity_view),
             depth: texels(&g.depth_view),
         }
@@ -90,11 +89,10 @@ fn reprojection_rates_and_samples_equal_their_twins() {
             (Contrast::Neighbors, true, 0.02),
             (Contrast::Sobel, true, 0.1),
         ] {
-            let settings = Settings {
-                contrast,
-                rate_4x4,
-                ..variable(size)
-            };
+            let settings = variable(size).with(|s| {
+                s.variable.contrast = contrast;
+                s.variable.blocks_4x4 = rate_4x4;
+            });
             let mut film = Film::new(&scene, &settings);
             let mut probes = Probes::default();
             film.draw(camera);
@@ -145,14 +143,13 @@ fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
     let scene = scene();
     let camera = &scene.cameras[0];
     for rate_combine in [RateCombine::Coarser, RateCombine::Finer] {
-        let settings = Settings {
-            rate_other: RateSource::Radii,
-            rate_combine,
-            rate_4x4: true,
-            fovea_inner: 0.2,
-            fovea_outer: 0.5,
-            ..variable(SIZES[0])
-        };
+        let settings = (variable(SIZES[0])).with(|s| {
+            s.coarse.other_source = RateSource::Radii;
+            s.coarse.combine = rate_combine;
+            s.variable.blocks_4x4 = true;
+            s.coarse.fovea_inner = 0.2;
+            s.coarse.fovea_outer = 0.5;
+        });
         let mut film = Film::new(&scene, &settings);
         film.draw(camera);
         film.draw(camera);
@@ -169,10 +166,7 @@ fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
     let scene = scene();
     let camera = &scene.cameras[0];
     for size in SIZES {
-        let settings = Settings {
-            rate_4x4: true,
-            ..variable(size)
-        };
+        let settings = variable(size).with(|s| s.variable.blocks_4x4 = true);
         let full = {
             let mut film = Film::new(&scene, &small(size.0, size.1));
             film.draw(camera);
@@ -219,7 +213,7 @@ fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
                 &scene,
                 camera,
                 lights,
-                settings.lighting,
+                settings.lighting.model,
                 Vec2::new(size.0 as f32, size.1 as f32),
                 centre,
                 words[pixels[0]],
@@ -252,12 +246,11 @@ fn a_still_camera_has_a_constant_mask_and_picture_from_the_third_frame_on() {
         (RateStage::Both, Contrast::Neighbors),
         (RateStage::Material, Contrast::Sobel),
     ] {
-        let settings = Settings {
-            geometry: Geometry::Visibility,
-            rate_stage: stage,
-            contrast,
-            ..variable((93, 61))
-        };
+        let settings = variable((93, 61)).with(|s| {
+            s.geometry.path = Geometry::Visibility;
+            s.shading.stage = stage;
+            s.variable.contrast = contrast;
+        });
         let mut film = Film::new(&scene, &settings);
         for _ in 0..3 {
             film.draw(camera);
@@ -277,12 +270,11 @@ fn after_a_walk_and_back_the_mask_is_that_of_a_fresh_start_within_eight_frames()
     let scene = scene();
     let camera = &scene.cameras[0];
     for stage in [RateStage::Lighting, RateStage::Both] {
-        let settings = Settings {
-            geometry: Geometry::Visibility,
-            rate_stage: stage,
-            contrast: Contrast::Neighbors,
-            ..variable(SIZES[0])
-        };
+        let settings = (variable(SIZES[0])).with(|s| {
+            s.geometry.path = Geometry::Visibility;
+            s.shading.stage = stage;
+            s.variable.contrast = Contrast::Neighbors;
+        });
         let mut fresh = Film::new(&scene, &settings);
         for _ in 0..3 {
             fresh.draw(camera);
@@ -355,11 +347,14 @@ fn what_does_not_follow_the_frame_before_starts_afresh() {
 fn views_of_the_rates_do_not_change_the_rates() {
     let scene = scene();
     let camera = &scene.cameras[0];
-    let masks = [View::Final, View::Rate, View::Shaded, View::Unknown].map(|view| {
-        let settings = Settings {
-            view,
-            ..variable(SIZES[0])
-        };
+    let masks = [
+        DebugView::Final,
+        DebugView::Rate,
+        DebugView::Shaded,
+        DebugView::Unknown,
+    ]
+    .map(|view| {
+        let settings = (variable(SIZES[0])).with(|s| s.picture.view = view);
         let mut film = Film::new(&scene, &settings);
         for _ in 0..4 {
             film.draw(camera);

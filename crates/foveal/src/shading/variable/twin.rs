@@ -225,16 +225,20 @@ pub(super) fn rates(
                 RateSource::Constant => of_level(wish.constant_level),
                 RateSource::Image | RateSource::Lens | RateSource::Content => {
                     let motion = seen.motion(quad * 2).length();
-                    let threshold =
-                        settings.contrast_threshold * (1.0 + settings.velocity_gain * motion);
-                    let c = contrast(settings.contrast, known, quads, quad);
+                    let threshold = settings.variable.threshold
+                        * (1.0 + settings.variable.velocity_gain * motion);
+                    let c = contrast(settings.variable.contrast, known, quads, quad);
                     u32::from(c.x <= threshold) | u32::from(c.y <= threshold) << 1
                 }
             };
-            let wished = match settings.rate_combine {
-                RateCombine::First => from(settings.rate),
-                RateCombine::Coarser => from(settings.rate) | from(settings.rate_other),
-                RateCombine::Finer => from(settings.rate) & from(settings.rate_other),
+            let wished = match settings.coarse.combine {
+                RateCombine::First => from(settings.coarse.source),
+                RateCombine::Coarser => {
+                    from(settings.coarse.source) | from(settings.coarse.other_source)
+                }
+                RateCombine::Finer => {
+                    from(settings.coarse.source) & from(settings.coarse.other_source)
+                }
             };
             let rate = wished & (surface_limit(seen, camera, quad * 2) | 4);
             (if rate & 3 == 3 { rate } else { rate & 3 }, 0)
@@ -255,8 +259,8 @@ pub(super) fn rates(
             let together = block.iter().fold(7, |rates, &i| rates & single[i].0);
             let all = block.iter().flat_map(|&i| lumas(known[i][0]).to_array());
             let (low, high) = all.fold((1.0f32, 0.0f32), |(l, h), v| (l.min(v), h.max(v)));
-            let alike = high - low <= settings.contrast_threshold * (0.5 * (low + high) + DARK);
-            let is_block = settings.rate_4x4
+            let alike = high - low <= settings.variable.threshold * (0.5 * (low + high) + DARK);
+            let is_block = settings.variable.blocks_4x4
                 && block.len() == 4
                 && block.iter().all(|&i| who(i) == who(block[0]))
                 && (together & 4 != 0 || together == 3 && alike)

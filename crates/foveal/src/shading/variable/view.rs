@@ -4,7 +4,7 @@ use super::VariableTargets;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::output::PICTURE_FORMAT;
 use crate::recorder::{Recorder, overwritten};
-use crate::{View, shader};
+use crate::{DebugView, shader};
 
 /// Draws one of the views of the rates.
 #[derive(Debug)]
@@ -15,11 +15,15 @@ pub(crate) struct RateView {
 
 impl RateView {
     /// `None` for views that do not show rates.
-    pub(crate) fn new(gpu: &Gpu, view: View, frame_layout: &wgpu::BindGroupLayout) -> Option<Self> {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        view: DebugView,
+        frame_layout: &wgpu::BindGroupLayout,
+    ) -> Option<Self> {
         let number = match view {
-            View::Rate => 1,
-            View::Unknown => 2,
-            View::Shaded => 3,
+            DebugView::Rate => 1,
+            DebugView::Unknown => 2,
+            DebugView::Shaded => 3,
             _ => return None,
         };
         let layout = bind_group_layout(

@@ -6,8 +6,8 @@ use glam::Vec3;
 use super::{WAYS, halves, two_eyes};
 use crate::testing::{gpu, picture, rendered, small, texels};
 use crate::{
-    Antialiasing, Backend, Composite, Culling, EyeClipping, LightAssignment, SamplePattern,
-    Settings, Shading, Stereo, View,
+    Antialiasing, CoarseBackend, Composite, Culling, DebugView, EyeClipping, LightAssignment,
+    SamplePattern, Settings, Shading, Stereo,
 };
 
 /// Differing pixels of two pictures and the largest difference of a channel.
@@ -29,53 +29,48 @@ fn scenes() -> Vec<Scene> {
 
 /// Deferred stages in all combinations that read neighbours, and views.
 fn pipelines(base: &Settings) -> Vec<(&'static str, Settings)> {
-    let coarse = |composite, backend| Settings {
-        shading: Shading::Coarse,
-        coarsest_level: 5,
-        composite,
-        backend,
-        ..base.clone()
+    let coarse = |composite, backend| {
+        base.clone().with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.coarsest_level = 5;
+            s.coarse.composite = composite;
+            s.coarse.backend = backend;
+        })
     };
-    let msaa = |pattern| Settings {
-        aa: Antialiasing::Msaa,
-        pattern,
-        ..base.clone()
+    let msaa = |pattern| {
+        base.clone().with(|s| {
+            s.antialiasing.mode = Antialiasing::Msaa;
+            s.antialiasing.pattern = pattern;
+        })
     };
     vec![
         ("full", base.clone()),
-        ("light", coarse(Composite::Light, Backend::Compute)),
-        ("smooth", coarse(Composite::Smooth, Backend::Compute)),
-        ("paper", coarse(Composite::Paper, Backend::Stencil)),
-        ("nearest", coarse(Composite::Nearest, Backend::Compute)),
+        ("light", coarse(Composite::Light, CoarseBackend::Compute)),
+        ("smooth", coarse(Composite::Smooth, CoarseBackend::Compute)),
+        ("paper", coarse(Composite::Paper, CoarseBackend::Stencil)),
+        (
+            "nearest",
+            coarse(Composite::Nearest, CoarseBackend::Compute),
+        ),
         ("msaa, grid", msaa(SamplePattern::Grid)),
         ("msaa, rotated", msaa(SamplePattern::Rotated)),
         (
             "msaa and coarse",
-            Settings {
-                aa: Antialiasing::Msaa,
-                ..coarse(Composite::Smooth, Backend::Compute)
-            },
+            coarse(Composite::Smooth, CoarseBackend::Compute)
+                .with(|s| s.antialiasing.mode = Antialiasing::Msaa),
         ),
         (
             "visibility",
-            Settings {
-                geometry: crate::Geometry::Visibility,
-                ..base.clone()
-            },
+            base.clone()
+                .with(|s| s.geometry.path = crate::Geometry::Visibility),
         ),
         (
             "visibility, msaa",
-            Settings {
-                geometry: crate::Geometry::Visibility,
-                ..msaa(SamplePattern::Grid)
-            },
+            msaa(SamplePattern::Grid).with(|s| s.geometry.path = crate::Geometry::Visibility),
         ),
         (
             "depth",
-            Settings {
-                view: View::Depth,
-                ..base.clone()
-            },
+            base.clone().with(|s| s.picture.view = DebugView::Depth),
         ),
     ]
 }
@@ -90,23 +85,21 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
             let one: Vec<[u8; 4]> =
                 bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono)));
             // What both eyes see alike is drawn once, whatever the way.
-            let once = Settings {
-                stereo: Stereo::Instanced,
-                ipd: 0.0,
-                show: crate::Output::SideBySide,
-                ..mono.clone()
-            };
+            let once = mono.clone().with(|s| {
+                s.stereo.mode = Stereo::Instanced;
+                s.stereo.ipd_m = 0.0;
+                s.stereo.output = crate::Output::SideBySide;
+            });
             for both in halves(&scene, camera, &once) {
                 assert_eq!(difference(&one, &both), (0, 0), "{}, {name}", scene.name);
             }
             for (stereo, eye_clipping) in WAYS {
                 // Another gaze has its own picture.
-                let settings = Settings {
-                    stereo,
-                    eye_clipping,
-                    gaze_shift: [0.0, f32::MIN_POSITIVE],
-                    ..once.clone()
-                };
+                let settings = once.clone().with(|s| {
+                    s.stereo.mode = stereo;
+                    s.stereo.clipping = eye_clipping;
+                    s.stereo.gaze_shift = [0.0, f32::MIN_POSITIVE];
+                });
                 for (eye, both) in halves(&scene, camera, &settings).iter().enumerate() {
                     let (differing, by) = difference(&one, both);
                     let what = format!(
@@ -115,7 +108,11 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
                     );
                     // Rasterizers interpolate from the target's corner, which lies elsewhere; averages of sub-samples
                     // are rounded besides.
-                    let rounded = if mono.aa == Antialiasing::None { 2 } else { 10 };
+                    let rounded = if mono.antialiasing.mode == Antialiasing::None {
+                        2
+                    } else {
+                        10
+                    };
                     assert!(
                         differing <= rounded && by <= 1,
                         "{what}: {differing} pixels by {by}"
@@ -139,12 +136,11 @@ fn eyes_that_see_alike_are_drawn_once_whatever_is_asked_for() {
         Stereo::Multiview,
     ] {
         for eye_tangents in ["", "-1,1,-0.8,0.6,-1,1,-0.8,0.6"] {
-            let settings = Settings {
-                stereo,
-                ipd: 0.0,
-                eye_tangents: eye_tangents.to_owned(),
-                ..two_eyes(150, 101)
-            };
+            let settings = two_eyes(150, 101).with(|s| {
+                s.stereo.mode = stereo;
+                s.stereo.ipd_m = 0.0;
+                s.stereo.frusta = eye_tangents.parse().expect("it can be read");
+            });
             let [left, right] = halves(&scene, camera, &settings);
             assert!(left == right, "{stereo:?}");
             assert!(!eye_tangents.is_empty() || left == flat, "{stereo:?}");
@@ -153,11 +149,12 @@ fn eyes_that_see_alike_are_drawn_once_whatever_is_asked_for() {
             assert_eq!(stats.stereo.expect("two eyes").mode, "once");
         }
     }
-    let apart = Settings {
-        eye_tangents: "-1,1,-0.8,0.6,-1,0.9,-0.8,0.6".to_owned(),
-        ipd: 0.0,
-        ..two_eyes(150, 101)
-    };
+    let apart = two_eyes(150, 101).with(|s| {
+        s.stereo.frusta = "-1,1,-0.8,0.6,-1,0.9,-0.8,0.6"
+            .parse()
+            .expect("it can be read");
+        s.stereo.ipd_m = 0.0;
+    });
     let [left, right] = halves(&scene, camera, &apart);
     assert!(left != right, "another frustum sees something else");
 }
@@ -168,22 +165,20 @@ fn another_size_changes_no_way() {
     let camera = &scene.cameras[0];
     for (stereo, eye_clipping) in WAYS.into_iter().chain([(Stereo::Off, EyeClipping::Auto)]) {
         for geometry in [crate::Geometry::Gbuffer, crate::Geometry::Visibility] {
-            let settings = Settings {
-                stereo,
-                eye_clipping,
-                geometry,
-                ..two_eyes(120, 90)
-            };
+            let settings = two_eyes(120, 90).with(|s| {
+                s.stereo.mode = stereo;
+                s.stereo.clipping = eye_clipping;
+                s.geometry.path = geometry;
+            });
             let expected = picture(&rendered(&scene, camera, &settings));
             for first in [(200, 60), (60, 120)] {
                 let mut renderer = rendered(
                     &scene,
                     camera,
-                    &Settings {
-                        width: first.0,
-                        height: first.1,
-                        ..settings.clone()
-                    },
+                    &settings.clone().with(|s| {
+                        s.picture.width = first.0;
+                        s.picture.height = first.1;
+                    }),
                 );
                 let resized = renderer.set_settings(&settings);
                 pollster::block_on(resized).expect("settings fit");
@@ -203,18 +198,14 @@ fn instancing_equals_two_passes_to_the_bit_on_every_generated_scene() {
         };
         let reference = two_eyes(320, 240);
         let [plain, with_plane] = [EyeClipping::Discard, EyeClipping::Clip].map(|eye_clipping| {
-            let reference = Settings {
-                eye_clipping,
-                ..reference.clone()
-            };
+            let reference = reference.clone().with(|s| s.stereo.clipping = eye_clipping);
             halves(&scene, &camera, &reference)
         });
         for (stereo, eye_clipping) in &WAYS[1..] {
-            let settings = Settings {
-                stereo: *stereo,
-                eye_clipping: *eye_clipping,
-                ..reference.clone()
-            };
+            let settings = reference.clone().with(|s| {
+                s.stereo.mode = *stereo;
+                s.stereo.clipping = *eye_clipping;
+            });
             let expected = match eye_clipping {
                 EyeClipping::Clip => &with_plane,
                 _ => &plain,
@@ -257,14 +248,15 @@ fn large_objects_do_not_leak_over_the_middle() {
             (Shading::Coarse, Antialiasing::None),
             (Shading::Full, Antialiasing::Ssaa),
         ] {
-            let settings = |(stereo, eye_clipping)| Settings {
-                stereo,
-                eye_clipping,
-                eye_tangents: eye_tangents.to_owned(),
-                shading,
-                aa,
-                coarsest_level: 4,
-                ..two_eyes(121, 97)
+            let settings = |(stereo, eye_clipping)| {
+                two_eyes(121, 97).with(|s| {
+                    s.stereo.mode = stereo;
+                    s.stereo.clipping = eye_clipping;
+                    s.stereo.frusta = eye_tangents.parse().expect("it can be read");
+                    s.shading.mode = shading;
+                    s.antialiasing.mode = aa;
+                    s.coarse.coarsest_level = 4;
+                })
             };
             let [reference, clip, discard] = WAYS.map(|way| {
                 let renderer = rendered(&scene, &camera, &settings(way));
@@ -292,17 +284,15 @@ fn clustered_and_brute_lighting_give_the_same_bytes_for_two_eyes() {
         "-9,-7,-1,1,7,9,-1,1",
     ] {
         for camera in [scene.cameras[0].clone(), scene.overview_camera()] {
-            let clustered = Settings {
-                stereo: Stereo::Instanced,
-                ipd: 0.4,
-                convergence: 1.0,
-                eye_tangents: eye_tangents.to_owned(),
-                ..two_eyes(200, 150)
-            };
-            let brute = Settings {
-                lights: LightAssignment::Brute,
-                ..clustered.clone()
-            };
+            let clustered = two_eyes(200, 150).with(|s| {
+                s.stereo.mode = Stereo::Instanced;
+                s.stereo.ipd_m = 0.4;
+                s.stereo.convergence_m = 1.0;
+                s.stereo.frusta = eye_tangents.parse().expect("it can be read");
+            });
+            let brute = clustered
+                .clone()
+                .with(|s| s.lighting.assignment = LightAssignment::Brute);
             let radiance = |settings| {
                 let renderer = rendered(&scene, &camera, settings);
                 texels::<[u16; 4]>(&renderer.targets().radiance_view)
@@ -322,11 +312,12 @@ fn culling_changes_no_picture_of_two_eyes() {
         .enumerate()
     {
         let camera = generate::demo_path(&options, 0.2 + 0.4 * i as f32);
-        let settings = |culling| Settings {
-            stereo: Stereo::Instanced,
-            culling,
-            eye_tangents: eye_tangents.to_owned(),
-            ..two_eyes(320, 180)
+        let settings = |culling| {
+            two_eyes(320, 180).with(|s| {
+                s.stereo.mode = Stereo::Instanced;
+                s.culling.mode = culling;
+                s.stereo.frusta = eye_tangents.parse().expect("it can be read");
+            })
         };
         let expected = halves(&scene, &camera, &settings(Culling::Off));
         for culling in [Culling::Frustum, Culling::Occlusion] {
@@ -346,21 +337,21 @@ fn culling_changes_no_picture_of_two_eyes() {
 fn each_eye_has_its_own_gaze() {
     let scene = generate::cornell();
     let camera = &scene.cameras[0];
-    let mono = |gaze| Settings {
-        shading: Shading::Coarse,
-        coarsest_level: 5,
-        backend: Backend::Compute,
-        view: View::Rate,
-        gaze,
-        ..small(200, 120)
+    let mono = |gaze| {
+        small(200, 120).with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.coarsest_level = 5;
+            s.coarse.backend = CoarseBackend::Compute;
+            s.picture.view = DebugView::Rate;
+            s.eye.gaze = gaze;
+        })
     };
-    let settings = Settings {
-        stereo: Stereo::Instanced,
-        ipd: 0.0,
-        show: crate::Output::SideBySide,
-        gaze_shift: [0.6, -0.3],
-        ..mono([0.2, 0.6])
-    };
+    let settings = (mono([0.2, 0.6])).with(|s| {
+        s.stereo.mode = Stereo::Instanced;
+        s.stereo.ipd_m = 0.0;
+        s.stereo.output = crate::Output::SideBySide;
+        s.stereo.gaze_shift = [0.6, -0.3];
+    });
     let seen = halves(&scene, camera, &settings);
     for (seen, gaze) in seen.iter().zip([[0.2, 0.6], [0.8, 0.3]]) {
         let one: Vec<[u8; 4]> =
@@ -390,11 +381,10 @@ fn a_device_that_clips_is_asked_to_and_the_stats_say_so() {
             },
         ),
     ] {
-        let settings = Settings {
-            stereo,
-            eye_clipping,
-            ..two_eyes(64, 48)
-        };
+        let settings = two_eyes(64, 48).with(|s| {
+            s.stereo.mode = stereo;
+            s.stereo.clipping = eye_clipping;
+        });
         let mut renderer = rendered(&scene, &scene.cameras[0], &settings);
         let stats = renderer.redraw(&scene.cameras[0]);
         assert_eq!((stats.width, stats.height), (128, 48));

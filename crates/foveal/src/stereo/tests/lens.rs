@@ -8,7 +8,7 @@ use super::present::linear;
 use super::{halves, shape, two_eyes};
 use crate::stereo::{LensFit, eyes};
 use crate::testing::{rendered, texels};
-use crate::{Backend, Composite, Output, RateSource, RefineEdges, Settings, Shading};
+use crate::{CoarseBackend, Composite, Output, RateSource, RefineEdges, Settings, Shading};
 
 const NAMES: [&str; 4] = ["cardboard-v2", "cardboard-v1", "dk1", "ideal"];
 
@@ -17,12 +17,13 @@ fn camera() -> Camera {
 }
 
 fn headset(lens: &str) -> Settings {
-    Settings {
-        show: Output::Headset,
-        lens: lens.to_owned(),
-        eye_tangents: "-1,0.8,-0.9,0.9,-0.8,1,-0.9,0.9".to_owned(),
-        ..two_eyes(400, 360)
-    }
+    two_eyes(400, 360).with(|s| {
+        s.stereo.output = Output::Headset;
+        s.stereo.lens = lens.parse().expect("it can be read");
+        s.stereo.frusta = "-1,0.8,-0.9,0.9,-0.8,1,-0.9,0.9"
+            .parse()
+            .expect("it can be read");
+    })
 }
 
 fn fits(settings: &Settings) -> [LensFit; 2] {
@@ -56,7 +57,7 @@ proptest! {
             let (seen, p) = seen_at(&fit, Vec2::new(x, y));
             let back = fit.lens.screen(seen.length()).expect("it is shown somewhere");
             let [l, r, ..] = fit.screen;
-            let off_px = (back - p.length()).abs() / (r - l) * settings.width as f32;
+            let off_px = (back - p.length()).abs() / (r - l) * settings.picture.width as f32;
             prop_assert!(off_px <= 0.01, "{off_px} pixels");
         }
     }
@@ -75,16 +76,16 @@ fn straight_lines_come_out_straight_through_the_lens() {
     let dark = &mut scene.environment;
     (dark.zenith, dark.horizon, dark.nadir) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
     for name in NAMES {
-        let settings = Settings {
-            tone_map: crate::ToneMap::Linear,
-            ..headset(name)
-        };
+        let settings = headset(name).with(|s| s.picture.tone_map = crate::ToneMap::Linear);
         let fits = fits(&settings);
         let pictures = halves(&scene, &camera(), &settings);
         for (fit, picture) in fits.iter().zip(&pictures) {
             let mut rows = 0;
             let (mut least, mut most) = (f32::MAX, f32::MIN);
-            for (y, row) in picture.chunks_exact(settings.width as usize).enumerate() {
+            for (y, row) in picture
+                .chunks_exact(settings.picture.width as usize)
+                .enumerate()
+            {
                 let light = |x: usize| linear(f32::from(row[x][1]) / 255.0);
                 // Where half of the light is left, unless the picture's own border takes it.
                 let edge = (60..row.len() - 8).find(|&x| light(x) >= 0.5 && light(x + 1) < 0.5);
@@ -93,12 +94,12 @@ fn straight_lines_come_out_straight_through_the_lens() {
                 };
                 let part = (light(x) - 0.5) / (light(x) - light(x + 1));
                 let at = Vec2::new(
-                    (x as f32 + 0.5 + part) / settings.width as f32,
-                    (y as f32 + 0.5) / settings.height as f32,
+                    (x as f32 + 0.5 + part) / settings.picture.width as f32,
+                    (y as f32 + 0.5) / settings.picture.height as f32,
                 );
                 let (seen, _) = seen_at(fit, at);
                 // In pixels of the eye's picture.
-                let x = (seen.x - 0.35) / 1.8 * settings.width as f32;
+                let x = (seen.x - 0.35) / 1.8 * settings.picture.width as f32;
                 (least, most) = (least.min(x), most.max(x));
                 rows += 1;
             }
@@ -119,17 +120,18 @@ fn straight_lines_come_out_straight_through_the_lens() {
 
 #[test]
 fn the_rate_map_follows_the_lens() {
-    let settings = Settings {
-        shading: Shading::Coarse,
-        rate: RateSource::Lens,
-        refine_edges: RefineEdges::Off,
-        composite: Composite::Nearest,
-        backend: Backend::Compute,
-        coarsest_level: 3,
+    let settings = (headset(NAMES[0])).with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.source = RateSource::Lens;
+        s.coarse.refine_edges = RefineEdges::Off;
+        s.coarse.composite = Composite::Nearest;
+        s.coarse.backend = CoarseBackend::Compute;
+        s.coarse.coarsest_level = 3;
         // The eyes' lenses are fitted to frusta of their own.
-        eye_tangents: "-1,0.8,-0.9,0.9,-0.7,1,-0.7,0.7".to_owned(),
-        ..headset(NAMES[0])
-    };
+        s.stereo.frusta = "-1,0.8,-0.9,0.9,-0.7,1,-0.7,0.7"
+            .parse()
+            .expect("it can be read");
+    });
     let renderer = rendered(&shape(&[Vec3::ZERO; 3]), &camera(), &settings);
     let pyramid = &renderer
         .targets()
@@ -193,10 +195,8 @@ fn the_rate_map_follows_the_lens() {
 
 #[test]
 fn a_frustum_that_a_lens_cannot_show_is_an_error() {
-    let settings = Settings {
-        eye_tangents: "-3,3,-3,3,-3,3,-3,3".to_owned(),
-        ..headset("0,-0.02,0")
-    };
+    let settings = (headset("0,-0.02,0"))
+        .with(|s| s.stereo.frusta = "-3,3,-3,3,-3,3,-3,3".parse().expect("it can be read"));
     let eyes = eyes(&settings, &camera()).expect("sound eyes");
     let error = LensFit::of(&settings, &eyes).expect_err("it folds");
     assert!(error.to_string().contains("whole frustum"), "{error}");

@@ -21,18 +21,17 @@ const WAYS: [(Stereo, EyeClipping); 3] = [
 
 /// Settings for two eyes side by side.
 fn two_eyes(width: u32, height: u32) -> Settings {
-    Settings {
-        stereo: Stereo::TwoPass,
-        show: Output::SideBySide,
-        ..small(width, height)
-    }
+    small(width, height).with(|s| {
+        s.stereo.mode = Stereo::TwoPass;
+        s.stereo.output = Output::SideBySide;
+    })
 }
 
 /// The left and the right half of a picture drawn with the output `side-by-side`.
 fn halves(scene: &Scene, camera: &Camera, settings: &Settings) -> [Vec<[u8; 4]>; 2] {
     let renderer = rendered(scene, camera, settings);
     let both: Vec<[u8; 4]> = bytemuck::pod_collect_to_vec(&picture(&renderer));
-    let width = settings.width as usize;
+    let width = settings.picture.width as usize;
     let half = |first: usize| {
         let rows = both.chunks_exact(2 * width);
         rows.flat_map(|row| row[first..first + width].to_vec())

@@ -10,8 +10,8 @@ use super::{halves, two_eyes};
 use crate::stereo::{Submission, Trials};
 use crate::testing::{gpu, picture, rendered, small};
 use crate::{
-    Backend, Composite, Geometry, Output, RateSource, RateStage, Renderer, Settings, Shading,
-    Stereo, View,
+    CoarseBackend, Composite, DebugView, Geometry, Output, RateSource, RateStage, Renderer,
+    Settings, Shading, Stereo,
 };
 
 /// SwiftShader, as Debian's chromium brings it.
@@ -42,51 +42,43 @@ fn on_swiftshader(name: &str) -> bool {
 }
 
 fn of(settings: &Settings, stereo: Stereo) -> Settings {
-    Settings {
-        stereo,
-        ..settings.clone()
-    }
+    settings.clone().with(|s| s.stereo.mode = stereo)
 }
 
 /// Settings in which geometry is drawn and read in all ways.
 fn pipelines(base: &Settings) -> Vec<Settings> {
-    let shading = |shading| Settings {
-        shading,
-        ..base.clone()
+    let shading = |shading| base.clone().with(|s| s.shading.mode = shading);
+    let coarse = |composite, backend| {
+        shading(Shading::Coarse).with(|s| {
+            s.coarse.coarsest_level = 4;
+            s.coarse.composite = composite;
+            s.coarse.backend = backend;
+        })
     };
-    let coarse = |composite, backend| Settings {
-        coarsest_level: 4,
-        composite,
-        backend,
-        ..shading(Shading::Coarse)
-    };
-    let variable = Settings {
-        rate: RateSource::Content,
-        force_rate: true,
-        ..shading(Shading::Variable)
-    };
+    let variable = shading(Shading::Variable).with(|s| {
+        s.coarse.source = RateSource::Content;
+        s.variable.force = true;
+    });
     let visibility = Geometry::Visibility;
     let mut all = vec![
         base.clone(),
-        coarse(Composite::Light, Backend::Stencil),
-        coarse(Composite::Smooth, Backend::Compute),
-        coarse(Composite::Paper, Backend::Stencil),
+        coarse(Composite::Light, CoarseBackend::Stencil),
+        coarse(Composite::Smooth, CoarseBackend::Compute),
+        coarse(Composite::Paper, CoarseBackend::Stencil),
         variable.clone(),
-        Settings {
-            geometry: visibility,
-            ..base.clone()
-        },
-        Settings {
-            geometry: visibility,
-            rate_stage: RateStage::Both,
-            ..variable
-        },
+        base.clone().with(|s| s.geometry.path = visibility),
+        variable.with(|s| {
+            s.geometry.path = visibility;
+            s.shading.stage = RateStage::Both;
+        }),
     ];
-    let views = [View::Instances, View::Depth, View::Motion, View::Normals];
-    all.extend(views.map(|view| Settings {
-        view,
-        ..base.clone()
-    }));
+    let views = [
+        DebugView::Instances,
+        DebugView::Depth,
+        DebugView::Motion,
+        DebugView::Normals,
+    ];
+    all.extend(views.map(|view| base.clone().with(|s| s.picture.view = view)));
     all
 }
 
@@ -130,7 +122,7 @@ fn layers_of_two_eyes_in_one_place_are_one_eyes_picture_to_the_bit() {
     }
     // No multiple of a block.
     for mono in pipelines(&small(150, 101)) {
-        if mono.shading == Shading::Coarse && mono.composite == Composite::Smooth {
+        if mono.shading.mode == Shading::Coarse && mono.coarse.composite == Composite::Smooth {
             // Its patches are fitted in positions of the target: rounding decides over a few of them.
             continue;
         }
@@ -138,13 +130,12 @@ fn layers_of_two_eyes_in_one_place_are_one_eyes_picture_to_the_bit() {
             let camera = &scene.cameras[0];
             let one: Vec<[u8; 4]> =
                 bytemuck::pod_collect_to_vec(&picture(&rendered(&scene, camera, &mono)));
-            let both = Settings {
-                ipd: 0.0,
+            let both = of(&mono, Stereo::Multiview).with(|s| {
+                s.stereo.ipd_m = 0.0;
                 // Another gaze has its own picture, though nothing looks at the gaze here.
-                gaze_shift: [0.0, f32::MIN_POSITIVE],
-                show: Output::SideBySide,
-                ..of(&mono, Stereo::Multiview)
-            };
+                s.stereo.gaze_shift = [0.0, f32::MIN_POSITIVE];
+                s.stereo.output = Output::SideBySide;
+            });
             for half in halves(&scene, camera, &both) {
                 assert_eq!(difference(&one, &half), (0, 0), "{}", scene.name);
             }

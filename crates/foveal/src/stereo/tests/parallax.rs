@@ -47,13 +47,12 @@ fn centroids(scene: &Scene, settings: &Settings) -> [[f64; 2]; 2] {
 fn disparity_is_that_of_the_distance_and_none_at_the_convergence_distance() {
     for (stereo, eye_clipping) in WAYS {
         for (ipd_m, convergence_m) in [(0.063, 2.0), (0.2, 3.0)] {
-            let settings = Settings {
-                stereo,
-                eye_clipping,
-                ipd: ipd_m,
-                convergence: convergence_m,
-                ..two_eyes(401, 300)
-            };
+            let settings = two_eyes(401, 300).with(|s| {
+                s.stereo.mode = stereo;
+                s.stereo.clipping = eye_clipping;
+                s.stereo.ipd_m = ipd_m;
+                s.stereo.convergence_m = convergence_m;
+            });
             // Pixels per tangent.
             let focal = 0.5 * 300.0 / (0.5f64).tan();
             for distance in [1.0f32, 2.0, 3.0, 10.0] {
@@ -73,11 +72,12 @@ fn disparity_is_that_of_the_distance_and_none_at_the_convergence_distance() {
 #[test]
 fn frusta_given_by_tangents_show_points_where_the_tangents_say() {
     let eye_tangents = [[-1.2, 0.8, -0.9, 1.1], [-0.7, 1.3, -1.0, 1.0]];
-    let settings = Settings {
-        eye_tangents: "-1.2,0.8,-0.9,1.1,-0.7,1.3,-1,1".to_owned(),
-        ipd: 0.1,
-        ..two_eyes(400, 300)
-    };
+    let settings = two_eyes(400, 300).with(|s| {
+        s.stereo.frusta = "-1.2,0.8,-0.9,1.1,-0.7,1.3,-1,1"
+            .parse()
+            .expect("it can be read");
+        s.stereo.ipd_m = 0.1;
+    });
     for distance in [1.0, 5.0] {
         let seen = centroids(&disc(distance), &settings);
         for (eye, x) in [(0, 0.05), (1, -0.05)] {

@@ -34,14 +34,20 @@ struct Pictures {
 
 impl Pictures {
     fn at(&self, eye: u32, x: i32, y: i32) -> Vec3 {
-        let (w, h) = (self.settings.width as i32, self.settings.height as i32);
+        let (w, h) = (
+            self.settings.picture.width as i32,
+            self.settings.picture.height as i32,
+        );
         let (x, y) = (x.clamp(0, w - 1), y.clamp(0, h - 1));
         let texel = self.texels[(y * 2 * w + eye as i32 * w + x) as usize];
         Vec3::new(texel[0].into(), texel[1].into(), texel[2].into()) / 255.0
     }
 
     fn light(&self, eye: u32, at: Vec2) -> Vec3 {
-        let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
+        let size = Vec2::new(
+            self.settings.picture.width as f32,
+            self.settings.picture.height as f32,
+        );
         let inside = at.min(size - at);
         let fade = (inside.min_element() / (0.02 * size.y)).clamp(0.0, 1.0);
         let corner = at.clamp(Vec2::NEG_ONE, size + 1.0) - 0.5;
@@ -55,10 +61,13 @@ impl Pictures {
     }
 
     fn headset(&self, x: u32, y: u32) -> Vec3 {
-        let eye = u32::from(x >= self.settings.width);
-        let size = Vec2::new(self.settings.width as f32, self.settings.height as f32);
+        let eye = u32::from(x >= self.settings.picture.width);
+        let size = Vec2::new(
+            self.settings.picture.width as f32,
+            self.settings.picture.height as f32,
+        );
         let fit = self.fits.expect("a headset")[eye as usize];
-        let at = (Vec2::new((x - eye * self.settings.width) as f32, y as f32) + 0.5) / size;
+        let at = (Vec2::new((x - eye * self.settings.picture.width) as f32, y as f32) + 0.5) / size;
         let [l, r, b, t] = fit.screen;
         let p = Vec2::new(l + (r - l) * at.x, t + (b - t) * at.y);
         let u = p.length_squared();
@@ -85,14 +94,14 @@ impl Pictures {
         let (px, py) = (x as i32, y as i32);
         let (left, right) = (self.at(0, px, py), self.at(1, px, py));
         let weights = Vec3::new(0.299, 0.587, 0.114);
-        match self.settings.show {
+        match self.settings.stereo.output {
             Output::Flat => left,
             Output::SideBySide => {
-                let eye = u32::from(x >= self.settings.width);
-                self.at(eye, px - (eye * self.settings.width) as i32, py)
+                let eye = u32::from(x >= self.settings.picture.width);
+                self.at(eye, px - (eye * self.settings.picture.width) as i32, py)
             }
             Output::SideBySideHalf => {
-                let half = self.settings.width.div_ceil(2);
+                let half = self.settings.picture.width.div_ceil(2);
                 let eye = u32::from(x >= half);
                 let first = 2 * (px - (eye * half) as i32);
                 let [a, b] = [0, 1].map(|d| self.at(eye, first + d, py).map(linear));
@@ -146,7 +155,7 @@ fn assert_equals_twin(scene: &Scene, settings: Settings) {
             assert!(
                 (i32::from(device[channel]) - expected).abs() <= 1,
                 "{:?} at {}, {}: device {device:?}, twin {twin}",
-                pictures.settings.show,
+                pictures.settings.stereo.output,
                 i % width,
                 i / width,
             );
@@ -166,20 +175,20 @@ fn every_output_equals_its_twin() {
         Output::Anaglyph,
         Output::AnaglyphDubois,
     ] {
-        let settings = Settings {
-            show: output,
-            ipd: 0.3,
-            ..two_eyes(101, 77)
-        };
+        let settings = two_eyes(101, 77).with(|s| {
+            s.stereo.output = output;
+            s.stereo.ipd_m = 0.3;
+        });
         assert_equals_twin(&scene, settings);
     }
     for lens in ["cardboard-v1", "dk1"] {
-        let settings = Settings {
-            show: Output::Headset,
-            lens: lens.to_owned(),
-            eye_tangents: "-0.7,0.5,-0.6,0.6,-0.5,0.7,-0.6,0.6".to_owned(),
-            ..two_eyes(101, 77)
-        };
+        let settings = two_eyes(101, 77).with(|s| {
+            s.stereo.output = Output::Headset;
+            s.stereo.lens = lens.parse().expect("it can be read");
+            s.stereo.frusta = "-0.7,0.5,-0.6,0.6,-0.5,0.7,-0.6,0.6"
+                .parse()
+                .expect("it can be read");
+        });
         assert_equals_twin(&scene, settings);
     }
 }
