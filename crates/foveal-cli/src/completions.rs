@@ -7,7 +7,7 @@ use clap::CommandFactory;
 use clap_complete::Shell;
 
 use crate::cli::Cli;
-use crate::console;
+use foveal_host::console;
 
 /// Arguments of `foveal completions`.
 #[derive(Debug, clap::Args)]

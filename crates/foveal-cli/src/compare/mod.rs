@@ -1,15 +1,9 @@
 //! `foveal compare`: how far two pictures or videos are apart, as eyes and as numbers see it.
 
 mod eye;
-pub(crate) mod flip;
-mod nearness;
 mod numeric;
 mod sequence;
 mod ssim;
-
-pub(crate) use eye::pixels;
-pub(crate) use flip::ErrorMap;
-pub(crate) use nearness::{BENCH_DISPLAY, Nearness, jod};
 
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -17,8 +11,9 @@ use std::path::PathBuf;
 use anyhow::bail;
 use serde::Serialize;
 
-use crate::picture::Picture;
-use crate::{atomic_file, console, picture, values};
+use foveal_host::difference::ErrorMap;
+use foveal_host::picture::Picture;
+use foveal_host::{atomic_file, console, picture, values};
 
 /// Arguments of `foveal compare`.
 #[derive(Debug, clap::Args)]

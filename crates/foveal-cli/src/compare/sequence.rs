@@ -7,9 +7,10 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use serde::Serialize;
 
-use super::{Args, ErrorMap, Measured, eye};
-use crate::failure::usage;
-use crate::picture::Picture;
+use super::{Args, Measured, eye};
+use foveal_host::difference::{ErrorMap, pixels};
+use foveal_host::failure::usage;
+use foveal_host::picture::Picture;
 
 /// The JSON's fields; docs/program.md describes them.
 #[derive(Debug, PartialEq, Serialize)]
@@ -76,7 +77,7 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
             Ok(picture)
         };
         let (a, b) = (read(&args.a)?, read(&args.b)?);
-        video.push(eye::pixels(&a), eye::pixels(&b))?;
+        video.push(pixels(&a), pixels(&b))?;
         flip += ErrorMap::between(&a, &b).mean();
     }
     let result = video.finish()?;

@@ -4,8 +4,8 @@ use foveal_cull::Aabb;
 use foveal_scene::Scene;
 
 use super::mocrec::Recorded;
-use super::occluders::{Choice, Occluders};
-use super::views::NamedEye;
+use foveal_host::culling::NamedEye;
+use foveal_host::culling::{Choice, Occluders};
 
 /// The things asked about, one entry per thing in each list.
 #[derive(Debug, Clone, Default)]

@@ -31,6 +31,8 @@ fn worker() -> Worker {
         read_settings: |_| bail!("no files here"),
         rate_image: |_| Ok(None),
         flags: |_| Vec::new(),
+        exact_camera: |_| String::new(),
+        quoted: str::to_owned,
         scene_flags: Vec::new(),
     };
     Worker::start(Arc::new(host), || ()).expect("threads can be started")
