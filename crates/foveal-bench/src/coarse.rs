@@ -403,7 +403,7 @@ mod tests {
 
     #[test]
     fn lights_can_be_given_a_range_or_none() {
-        let mut scene = foveal_scene::generate::cornell();
+        let mut scene = foveal_generate::cornell();
         light(&mut scene, 7, Some(2.5));
         assert!(scene.lights.len() == 7 && scene.lights.iter().all(|l| l.range_m == Some(2.5)));
         light(&mut scene, 3, Some(0.0));

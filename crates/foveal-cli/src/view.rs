@@ -1,6 +1,7 @@
 //! `foveal view`: the window, with the program's scenes, files and flags behind it.
 
-use foveal_scene::{Clip, generate};
+use foveal_generate as generate;
+use foveal_scene::Clip;
 use foveal_view::{Host, Loaded};
 
 use foveal_host::camera::{CameraArgs, Viewpoint};

@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use anyhow::bail;
 use foveal::Timing;
-use foveal_scene::generate::{self, DemoOptions, GenerateError};
+use foveal_generate as generate;
+use foveal_generate::{DemoOptions, GenerateError};
 use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene};
 
 use crate::import_args;

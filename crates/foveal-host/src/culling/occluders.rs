@@ -172,7 +172,8 @@ fn no_such_set(scene: &Scene, name: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use foveal_scene::{AlphaMode, generate};
+    use foveal_generate as generate;
+    use foveal_scene::AlphaMode;
 
     fn models(scene: &Scene, choice: &Choice) -> usize {
         Occluders::of_scene(scene, choice).unwrap().set.len()

@@ -133,7 +133,7 @@ pub fn named_eye(camera: &Camera, aspect: f64) -> NamedEye {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use foveal_scene::generate;
+    use foveal_generate as generate;
     use glam::DVec3;
 
     #[test]

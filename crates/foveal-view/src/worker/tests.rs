@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use foveal::{Antialiasing, Culling, RateSource, Settings, Shading};
+use foveal_generate as generate;
 use foveal_measure::Finding;
-use foveal_scene::generate;
 
 use super::{Compared, News, Request, Shown, Worker};
 use crate::{Host, Loaded};
