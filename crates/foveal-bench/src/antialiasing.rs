@@ -1,15 +1,15 @@
 //! `foveal bench antialiasing`: the source's comparison (none, MSAA, SSAA), and ours beside it.
 
 use foveal::{
-    AdapterStats, Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment,
-    LightingModel, Renderer, SamplePattern, Settings,
+    Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment, LightingModel,
+    Renderer, SamplePattern, Settings,
 };
 use foveal_measure::{Comparison, Finding, median, turn};
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::subject::{Subject, SubjectArgs};
+use super::subject::{Header, Subject, SubjectArgs};
 use super::table::{jod_text, text};
 use foveal_host::clock::now_ms;
 use foveal_host::difference::Nearness;
@@ -58,11 +58,8 @@ pub struct Args {
 /// All figures of a run.
 #[derive(Debug, Serialize)]
 struct Report {
-    schema: &'static str,
-    schema_version: u32,
-    adapter: AdapterStats,
-    scene: String,
-    camera: String,
+    #[serde(flatten)]
+    header: Header,
     point_lights: u32,
     lights: LightAssignment,
     lighting: LightingModel,
@@ -182,12 +179,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         ..Settings::default()
     };
     let report = Report {
-        schema: "foveal-bench-antialiasing",
-        schema_version: SCHEMA_VERSION,
-        adapter: subject.adapter(),
+        header: subject.header("foveal-bench-antialiasing", SCHEMA_VERSION),
         rows: rows(args, &subject, &base)?,
-        scene: subject.scene.name,
-        camera: subject.camera.name,
         point_lights: args.point_lights,
         lights: base.lights,
         lighting: base.lighting,
@@ -384,13 +377,13 @@ fn summary(report: &Report) -> String {
     let about = report.rows.first().map_or(String::new(), |row| {
         format!(
             "{} at {}x{}, {} point lights added, {}, {}, {}, medians of {} rounds\n",
-            report.scene,
+            report.header.scene,
             row.width,
             row.height,
             report.point_lights,
             name_of(report.lights),
             name_of(report.lighting),
-            report.adapter.name,
+            report.header.adapter.name,
             report.rounds
         )
     });

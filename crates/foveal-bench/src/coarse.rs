@@ -7,15 +7,15 @@
 mod side;
 
 use foveal::{
-    AdapterStats, Backend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateSource,
-    RateStage, RefineEdges, Settings, Shading,
+    Backend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateSource, RateStage,
+    RefineEdges, Settings, Shading,
 };
 use foveal_measure::{Comparison, Finding, median, turn};
 use foveal_scene::{Camera, Scene};
 use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
 
-use super::subject::SubjectArgs;
+use super::subject::{Header, SubjectArgs};
 use super::table::{jod_text, text};
 use foveal_host::difference::Nearness;
 use foveal_host::values::VariantParser;
@@ -83,11 +83,8 @@ pub struct Args {
 /// All figures of a run; docs/program.md describes the fields.
 #[derive(Debug, Serialize)]
 struct Report {
-    schema: &'static str,
-    schema_version: u32,
-    adapter: AdapterStats,
-    scene: String,
-    camera: String,
+    #[serde(flatten)]
+    header: Header,
     rows: Vec<Row>,
 }
 
@@ -187,11 +184,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         }
     }
     let report = Report {
-        schema: "foveal-bench-coarse",
-        schema_version: SCHEMA_VERSION,
-        adapter: gpu.adapter_stats(),
-        scene: scene.name.clone(),
-        camera: camera.name.clone(),
+        header: Header::new(
+            ("foveal-bench-coarse", SCHEMA_VERSION),
+            &gpu,
+            &scene,
+            &camera,
+        ),
         rows,
     };
     args.subject.give(&report, &beside_the_source(&report.rows))

@@ -4,6 +4,7 @@
 //! Pictures and videos are those that `foveal render` draws; each row names the commands that draw and compare them again.
 //! Times come from all ways drawn in turn, by lot.
 
+mod args;
 mod commands;
 mod screen;
 mod studio;
@@ -12,17 +13,18 @@ mod ways;
 
 use std::rc::Rc;
 
-use foveal::{AdapterStats, Settings};
+use foveal::Settings;
 use foveal_measure::Finding;
 use foveal_vdp::{Gaze, Metric};
 use serde::Serialize;
 
-use super::subject::SubjectArgs;
+use super::subject::Header;
 use super::table::text;
+pub(crate) use args::Args;
+use args::OFF_GAZE;
 use commands::{Commands, MadeBy};
 use foveal_host::difference::{ErrorMap, pixels};
-use foveal_host::values;
-use screen::{Fit, Screen};
+use screen::Screen;
 use studio::{Shot, Studio};
 use times::{Timed, Times};
 use ways::WAYS;
@@ -30,70 +32,11 @@ use ways::WAYS;
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 1;
 
-/// Where the eye looks in the second picture of each way.
-const OFF_GAZE: [f32; 2] = [0.25, 0.6];
-
-/// Arguments of `foveal bench eye`.
-#[derive(Debug, clap::Args)]
-pub struct Args {
-    #[command(flatten)]
-    subject: SubjectArgs,
-
-    /// The displays [default: all that have a name]
-    #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = screen::named)]
-    display: Vec<Screen>,
-
-    /// Largest width and height in pixels: of larger displays the middle is drawn, with the display's own pixels per degree.
-    /// `whole`: all pixels of each display [default: 640x360; with --quick 480x270]
-    #[arg(long, value_name = "WxH|whole", value_parser = screen::fit)]
-    size: Option<Fit>,
-
-    /// Coloured point lights that are added to the scene
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
-    point_lights: u32,
-
-    /// Frames of each way whose time counts, after eight that warm up; below 10 there is no verdict, 0: no times [default: 20; with
-    /// --quick 10]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=200))]
-    rounds: Option<u32>,
-
-    /// Frames of the video, along --path: the demo scene's own path, else a camera that sways; 0: no video [default: 16; with --quick
-    /// 6]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
-    frames: Option<u32>,
-
-    /// Frames of the video per second
-    #[arg(long, value_name = "N", value_parser = values::positive, default_value_t = 30.0)]
-    fps: f32,
-
-    /// Smaller pictures, fewer frames
-    #[arg(long)]
-    quick: bool,
-}
-
-impl Args {
-    fn fit(&self) -> Fit {
-        let (width, height) = if self.quick { (480, 270) } else { (640, 360) };
-        self.size.unwrap_or(Fit::Within { width, height })
-    }
-
-    fn rounds(&self) -> u32 {
-        self.rounds.unwrap_or(if self.quick { 10 } else { 20 })
-    }
-
-    fn frames(&self) -> u32 {
-        self.frames.unwrap_or(if self.quick { 6 } else { 16 })
-    }
-}
-
 /// All figures of a run; docs/program.md describes the fields.
 #[derive(Debug, Serialize)]
 struct Report {
-    schema: &'static str,
-    schema_version: u32,
-    adapter: AdapterStats,
-    scene: String,
-    camera: String,
+    #[serde(flatten)]
+    header: Header,
     point_lights: u32,
     path: String,
     frames: u32,
@@ -163,11 +106,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         }
     }
     let report = Report {
-        schema: "foveal-bench-eye",
-        schema_version: SCHEMA_VERSION,
-        adapter: subject.adapter(),
-        scene: subject.scene.name,
-        camera: subject.camera.name,
+        header: subject.header("foveal-bench-eye", SCHEMA_VERSION),
         point_lights: args.point_lights,
         path: path.flags().pop().unwrap_or_default(),
         frames: args.frames(),
@@ -309,7 +248,12 @@ fn summary(report: &Report) -> String {
     lines.extend(report.rows.iter().map(line));
     let mut said = format!(
         "{}, {}, whole frames: medians of {} rounds; video: {} frames along {}, {} a second\n",
-        report.scene, report.adapter.name, report.rounds, report.frames, report.path, report.fps
+        report.header.scene,
+        report.header.adapter.name,
+        report.rounds,
+        report.frames,
+        report.path,
+        report.fps
     ) + &text(&lines);
     let mut before = "";
     for row in &report.rows {

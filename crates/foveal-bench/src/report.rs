@@ -14,6 +14,7 @@ mod pictures;
 mod plan;
 mod plots;
 mod published;
+mod tables;
 #[cfg(test)]
 mod tests;
 mod verdict;

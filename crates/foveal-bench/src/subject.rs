@@ -26,6 +26,33 @@ pub(super) struct SubjectArgs {
     pub(super) figures: FigureArgs,
 }
 
+/// What a bench's JSON begins with.
+#[derive(Debug, Serialize)]
+pub(super) struct Header {
+    schema: &'static str,
+    schema_version: u32,
+    pub(super) adapter: AdapterStats,
+    pub(super) scene: String,
+    camera: String,
+}
+
+impl Header {
+    pub(super) fn new(
+        (schema, schema_version): (&'static str, u32),
+        gpu: &Gpu,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Self {
+        Self {
+            schema,
+            schema_version,
+            adapter: gpu.adapter_stats(),
+            scene: scene.name.clone(),
+            camera: camera.name.clone(),
+        }
+    }
+}
+
 /// The device and the scene, lit, with the first view of it.
 pub(super) struct Subject {
     pub(super) gpu: Gpu,
@@ -85,7 +112,13 @@ impl SubjectArgs {
 }
 
 impl Subject {
-    pub(super) fn adapter(&self) -> AdapterStats {
-        self.gpu.adapter_stats()
+    /// What the bench's JSON begins with.
+    pub(super) fn header(&self, schema: &'static str, schema_version: u32) -> Header {
+        Header::new(
+            (schema, schema_version),
+            &self.gpu,
+            &self.scene,
+            &self.camera,
+        )
     }
 }

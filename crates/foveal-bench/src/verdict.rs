@@ -5,13 +5,13 @@
 
 mod candidates;
 
-use foveal::{AdapterStats, Frame, FrameStats, Gpu, Renderer, Settings};
+use foveal::{Frame, FrameStats, Gpu, Renderer, Settings};
 use foveal_measure::{Comparison, Finding, Spread, turn};
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::subject::{Subject, SubjectArgs, WARM_UP};
+use super::subject::{Header, Subject, SubjectArgs, WARM_UP};
 use super::table::{jod_text, text};
 use candidates::{ALL, Aim, Candidate, together};
 use foveal_host::clock::now_ms;
@@ -51,11 +51,8 @@ pub struct Args {
 /// All figures of a run; docs/program.md describes the fields.
 #[derive(Debug, Serialize)]
 struct Report {
-    schema: &'static str,
-    schema_version: u32,
-    adapter: AdapterStats,
-    scene: String,
-    camera: String,
+    #[serde(flatten)]
+    header: Header,
     width: u32,
     height: u32,
     rounds: u32,
@@ -180,11 +177,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         }
     }
     let report = Report {
-        schema: "foveal-bench-verdict",
-        schema_version: SCHEMA_VERSION,
-        adapter: subject.adapter(),
-        scene: subject.scene.name,
-        camera: subject.camera.name,
+        header: subject.header("foveal-bench-verdict", SCHEMA_VERSION),
         width: args.size.0,
         height: args.size.1,
         rounds: args.rounds,
@@ -449,7 +442,7 @@ fn summary(report: &Report) -> String {
     }
     let mut said = format!(
         "{} at {}x{}, {}, whole frames, medians of {} pairs, drawn in turn by lot\n",
-        report.scene, report.width, report.height, report.adapter.name, report.rounds
+        report.header.scene, report.width, report.height, report.header.adapter.name, report.rounds
     ) + &text(&lines);
     for row in &report.rows {
         if matches!(row.decision, Decision::Adopt | Decision::Look) {

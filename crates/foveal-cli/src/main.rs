@@ -19,7 +19,7 @@ mod view;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use cli::{Cli, Command, SceneCommand};
 use foveal_host::failure;
 
@@ -35,7 +35,7 @@ fn main() -> ExitCode {
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
         Command::Cull(args) => cull::run(&args),
         Command::Bench(command) => command.run(),
-        Command::Completions(args) => completions::print(&args),
-        Command::Man(args) => completions::write_pages(&args),
+        Command::Completions(args) => completions::print(&args, Cli::command()),
+        Command::Man(args) => completions::write_pages(&args, Cli::command()),
     })
 }

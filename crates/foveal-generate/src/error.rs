@@ -4,7 +4,7 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum GenerateError {
     /// There is no generated scene of this name.
-    #[error("no generated scene is named '{name}'; there are: {}", super::NAMES.join(", "))]
+    #[error("no generated scene is named '{name}'; there are: {}", crate::names::NAMES.join(", "))]
     UnknownScene {
         /// The name asked for.
         name: String,

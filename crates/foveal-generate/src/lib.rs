@@ -16,6 +16,7 @@ mod error;
 mod hash;
 mod lights;
 mod materials_grid;
+mod names;
 mod registry;
 mod texture;
 mod trig;
@@ -27,7 +28,8 @@ pub use demo::{DemoOptions, demo, demo_path};
 pub use error::GenerateError;
 pub use lights::add_point_lights;
 pub use materials_grid::materials_grid;
-pub use registry::{NAMES, by_name};
+pub use names::NAMES;
+pub use registry::by_name;
 
 #[cfg(test)]
 mod tests;

@@ -1,19 +1,9 @@
 //! Generated scenes by name, as the command line gives it.
 
-use super::{DemoOptions, GenerateError};
+use crate::{DemoOptions, GenerateError};
 use foveal_scene::Scene;
 
-/// The names that [`by_name`] knows. `demo` also takes a size: `demo:50000`.
-pub const NAMES: [&str; 6] = [
-    "demo",
-    "materials",
-    "materials2",
-    "cornell",
-    "materials-grid",
-    "alpha",
-];
-
-/// Generates the scene called `name`: one of [`NAMES`], or `demo:N` for about N instances.
+/// Generates the scene called `name`: one of [`NAMES`](crate::NAMES), or `demo:N` for about N instances.
 ///
 /// # Errors
 /// [`GenerateError::UnknownScene`] for any other name (a caller that also takes file names can try
@@ -38,13 +28,13 @@ pub fn by_name(name: &str) -> Result<Scene, GenerateError> {
                     text: text.to_owned(),
                 })?;
             }
-            return super::demo(&options);
+            return crate::demo(&options);
         }
-        "materials" => super::materials,
-        "materials2" => super::materials2,
-        "cornell" => super::cornell,
-        "materials-grid" => super::materials_grid,
-        "alpha" => super::alpha,
+        "materials" => crate::materials,
+        "materials2" => crate::materials2,
+        "cornell" => crate::cornell,
+        "materials-grid" => crate::materials_grid,
+        "alpha" => crate::alpha,
         _ => {
             return Err(GenerateError::UnknownScene {
                 name: name.to_owned(),
@@ -63,6 +53,7 @@ pub fn by_name(name: &str) -> Result<Scene, GenerateError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::names::NAMES;
 
     #[test]
     fn every_name_gives_a_scene() {

@@ -5,9 +5,9 @@ use foveal_host::command_line::quoted;
 use foveal_vdp::Display;
 use serde::Serialize;
 
+use super::args::{Args, OFF_GAZE};
 use super::screen::Shown;
 use super::ways::Way;
-use super::{Args, OFF_GAZE};
 use foveal_host::camera::CameraArgs;
 use foveal_host::settings::flags;
 

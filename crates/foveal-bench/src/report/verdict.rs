@@ -3,9 +3,9 @@
 use std::fmt::Write;
 
 use super::html::Figures;
-use super::page::{commands, table};
 use super::plan::{BENCHES, VERDICT};
 use super::plots;
+use super::tables::{commands, table};
 
 /// Decisions in the order in which the page tells them, and their headings.
 const DECISIONS: [(&str, &str); 5] = [

@@ -7,7 +7,8 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use serde::Serialize;
 
-use super::{Args, Measured, eye};
+use super::args::{Args, Findings, Measured};
+use super::eye;
 use foveal_host::difference::{ErrorMap, pixels};
 use foveal_host::failure::usage;
 use foveal_host::picture::Picture;
@@ -34,14 +35,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     if args.diff.is_some() || args.min_psnr.is_some() {
         return usage("--diff and --min-psnr are for pictures, not for folders".to_owned());
     }
-    let mut comparison = compare(args)?;
-    let failures = args.failures(&Measured {
-        flip: comparison.flip,
-        psnr_db: None,
-        jod: Some(comparison.eye.jod),
-    });
-    comparison.passed = failures.is_empty();
-    args.conclude(&comparison, &comparison.text(), &failures)
+    args.conclude(compare(args)?)
 }
 
 fn compare(args: &Args) -> anyhow::Result<Comparison> {
@@ -111,7 +105,19 @@ fn frames(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
     Ok(names)
 }
 
-impl Comparison {
+impl Findings for Comparison {
+    fn measured(&self) -> Measured {
+        Measured {
+            flip: self.flip,
+            psnr_db: None,
+            jod: Some(self.eye.jod),
+        }
+    }
+
+    fn set_passed(&mut self, passed: bool) {
+        self.passed = passed;
+    }
+
     fn text(&self) -> String {
         let mut text = format!(
             "{} frames of {}x{}, {} per second\n",

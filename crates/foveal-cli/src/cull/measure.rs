@@ -7,7 +7,8 @@ use foveal_cull::{Culler, OccludeeTree, View, Visibility};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::subject::{Occludees, Subject};
+use super::occludees::Occludees;
+use super::subject::Subject;
 use foveal_host::culling::Clock;
 use foveal_host::culling::CullingArgs;
 use foveal_host::culling::Workers;

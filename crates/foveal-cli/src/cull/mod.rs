@@ -8,6 +8,7 @@ mod args;
 mod fuzz;
 mod measure;
 mod mocrec;
+mod occludees;
 mod picture;
 mod report;
 mod subject;

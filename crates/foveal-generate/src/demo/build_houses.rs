@@ -2,12 +2,12 @@
 
 use glam::{Mat4, Vec3};
 
-use super::Kit;
 use super::houses::{ARCADE_HEIGHT_M, ARCADE_M, BAY_M, DEPTH_M, STOREY_M};
 use super::lanterns::{CHAIN_M, LONG_CHAIN_M};
 use super::lots::{lot_place, lot_rng};
 use super::market::{Market, Rank, Shine};
 use super::plan::Lot;
+use super::things::Kit;
 use crate::hash::Rng;
 use crate::trig::{shift, yaw};
 

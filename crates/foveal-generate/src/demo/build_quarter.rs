@@ -2,7 +2,6 @@
 
 use glam::Vec3;
 
-use super::Kit;
 use super::build_houses::{house, wall_lantern};
 use super::build_ropes::over_lane;
 use super::build_square::{sky_lanterns, square};
@@ -12,6 +11,7 @@ use super::houses::{ARCADE_M, BAY_M, DEPTH_M, WIDTH_M};
 use super::lots::{lot_place, lot_rng};
 use super::market::{Market, Rank};
 use super::plan::{COURT_M, Lot, Plan};
+use super::things::Kit;
 use crate::trig::{shift, stand, yaw};
 
 /// The whole quarter, `lights` lanterns at least.

@@ -2,7 +2,6 @@
 
 use glam::{Mat4, Vec3};
 
-use super::Kit;
 use super::build_houses::order;
 use super::build_stalls::PAPER_SHINES;
 use super::houses::WIDTH_M;
@@ -10,6 +9,7 @@ use super::lanterns::{ROPE_M, rope_point};
 use super::lots::lot_rng;
 use super::market::{Market, Rank};
 use super::plan::{Lot, Plan};
+use super::things::Kit;
 use crate::hash::Rng;
 use crate::trig::stand;
 

@@ -2,10 +2,10 @@
 
 use glam::{Mat4, Vec3};
 
-use super::Kit;
 use super::build_houses::{WARM, wall_lantern};
 use super::build_stalls::{PAPER_SHINES, stall};
 use super::market::{Market, Rank, Shine};
+use super::things::Kit;
 use crate::hash::Rng;
 use crate::trig::{shift, sin_cos_turns, stand, yaw};
 

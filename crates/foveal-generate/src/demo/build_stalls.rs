@@ -2,11 +2,11 @@
 
 use glam::{Mat4, Vec3};
 
-use super::Kit;
 use super::build_houses::{WARM, order};
 use super::lanterns::CHAIN_M;
 use super::market::{Market, Rank, Shine};
 use super::stalls::COUNTER_M;
+use super::things::Kit;
 use crate::hash::Rng;
 use crate::trig::{pitch, shift, yaw};
 

@@ -2,11 +2,11 @@
 
 use glam::{Mat4, Vec3};
 
-use super::Kit;
 use super::build_houses::wall_lantern;
 use super::build_square::CLOCK_TOWER_Z;
 use super::market::{Market, Rank};
 use super::plan::Plan;
+use super::things::Kit;
 use super::walls::{GATE_M, GROUND_M, WALL_M};
 use crate::trig::{shift, stand};
 

@@ -3,7 +3,7 @@
 
 use glam::Vec3;
 
-use super::DemoOptions;
+use super::options::DemoOptions;
 use crate::build::named;
 use foveal_scene::Camera;
 

@@ -1,7 +1,7 @@
 //! The demo: an arcaded night market, walled, with a square, side lanes and courts.
 //!
-//! A [`Kit`] holds all things that can be placed (few meshes, many materials). The plan says
-//! where lanes and houses lie, the `build_*` files place things on it, and the [`market`] leaves
+//! A `Kit` holds all things that can be placed (few meshes, many materials). The plan says
+//! where lanes and houses lie, the `build_*` files place things on it, and the `market` leaves
 //! out the least important ones until the number of instances is the wanted one.
 
 mod arches;
@@ -20,67 +20,24 @@ mod lots;
 mod market;
 mod materials;
 mod openings;
+mod options;
 mod plan;
 mod square;
 mod stalls;
+mod things;
 mod walls;
 
 use glam::Vec3;
 
-use super::GenerateError;
-use super::build::SceneBuilder;
-use super::lights::point;
+use crate::build::SceneBuilder;
+use crate::error::GenerateError;
+use crate::lights::point;
 use foveal_scene::{Environment, Light, LightKind, Scene};
 use plan::Plan;
 
 pub use cameras::demo_path;
-
-/// What the demo scene shall be like.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct DemoOptions {
-    /// Wanted number of instances, 1,000 to 100,000; the scene's differs by less than 2 %.
-    pub instances: u32,
-    /// Number of point lights, each at a lantern; at most a fifth of the instances.
-    pub lights: u32,
-    /// Another seed gives another quarter on the same plan.
-    pub seed: u64,
-}
-
-impl Default for DemoOptions {
-    /// 5,000 instances and 200 lights.
-    fn default() -> Self {
-        Self {
-            instances: 5_000,
-            lights: 200,
-            seed: 1,
-        }
-    }
-}
-
-/// All things that can be placed.
-#[derive(Debug)]
-struct Kit {
-    houses: houses::Houses,
-    stalls: stalls::Stalls,
-    goods: goods::Goods,
-    lanterns: lanterns::Lanterns,
-    walls: walls::Walls,
-    furniture: square::Furniture,
-}
-
-impl Kit {
-    fn new(scene: &mut SceneBuilder) -> Self {
-        let m = materials::Materials::new(scene);
-        Self {
-            houses: houses::Houses::new(scene, &m),
-            stalls: stalls::Stalls::new(scene, &m),
-            goods: goods::Goods::new(scene, &m),
-            lanterns: lanterns::Lanterns::new(scene, &m),
-            walls: walls::Walls::new(scene, &m),
-            furniture: square::Furniture::new(scene, &m),
-        }
-    }
-}
+pub use options::DemoOptions;
+use things::Kit;
 
 /// Generates the demo scene: a walled market quarter at night, lit by lanterns.
 ///

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::bake::{Baked, Texel, bake, paint};
 use super::noise::{fractal, step, value};
-use super::{Baked, Texel, bake, paint};
 use crate::hash::{lattice, unit};
 use foveal_scene::Texture;
 

@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::bake::{Texel, paint, paint_clear, picture_clamped};
 use super::noise::{fractal, step, value_2};
-use super::{Texel, paint, paint_clear, picture_clamped};
 use crate::hash::{lattice, unit};
 use crate::trig::sin_cos_turns;
 use foveal_scene::Texture;

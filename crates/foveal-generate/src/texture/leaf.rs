@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::bake::{Texel, paint_masked};
 use super::noise::step;
-use super::{Texel, paint_masked};
 use crate::hash::Rng;
 use crate::trig::sin_cos_turns;
 use foveal_scene::Texture;

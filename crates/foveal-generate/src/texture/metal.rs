@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
+use super::bake::{Baked, Texel, bake};
 use super::noise::{cellular, fractal, step};
-use super::{Baked, Texel, bake};
 
 /// Hammered sheet, 0.4 m, metallic with dull patina in the hollows; nearly white, to be tinted.
 pub(crate) fn hammered() -> Baked {

@@ -82,6 +82,11 @@ pub(super) fn cellular(p: Vec2, cells: u32, jitter: f32, seed: u32) -> Cell {
     }
 }
 
+/// Rounded dents over the unit square, 0 (edge) … 1 (middle), for hammered surfaces.
+pub(crate) fn dent(p: Vec2) -> f32 {
+    step(0.0, 0.35, cellular(p, 12, 0.8, 77).border)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

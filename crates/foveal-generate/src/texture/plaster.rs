@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::bake::{Baked, Texel, bake};
 use super::noise::{cellular, fractal, step, value, value_2};
-use super::{Baked, Texel, bake};
 
 /// Lime plaster with stains, streaks of rain and hair cracks, 4 m; nearly white.
 pub(crate) fn plaster() -> Baked {

@@ -2,8 +2,8 @@
 
 use glam::Vec3;
 
+use super::bake::{Baked, Texel, bake};
 use super::noise::{fractal, step};
-use super::{Baked, Texel, bake};
 use crate::hash::{lattice, unit};
 
 /// Monk-and-nun tiles, 1.6 m: eight columns of four tiles; v runs down the slope.

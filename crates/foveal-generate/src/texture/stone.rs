@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::bake::{Baked, Texel, bake};
 use super::noise::{cellular, fractal, step, value};
-use super::{Baked, Texel, bake};
 use crate::hash::{lattice, unit};
 
 /// Rounded cobbles, 4 m, worn smooth on top and wet in the hollows.

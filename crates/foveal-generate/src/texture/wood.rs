@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
+use super::bake::{Baked, Texel, bake};
 use super::noise::{fractal, step, value_2};
-use super::{Baked, Texel, bake};
 use crate::hash::{lattice, unit};
 
 /// Planks 16 cm wide with the grain along u, 1.28 m; nearly white, to be tinted.

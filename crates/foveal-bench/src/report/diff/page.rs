@@ -5,7 +5,7 @@ use std::fmt::Write;
 use serde_json::Value;
 
 use super::super::html::{STYLE, escaped};
-use super::{Change, Pair};
+use super::pairs::{Change, Pair};
 
 /// The page.
 pub(super) fn of(old: &Value, new: &Value, pairs: &[Pair]) -> String {

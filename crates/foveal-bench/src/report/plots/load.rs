@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::super::html::Figures;
-use super::super::plan::{Bench, Load};
-use super::{WIDTH, mark};
+use super::axes::{WIDTH, heights, mark, ticks, upright_error_bar};
+use crate::report::html::Figures;
+use crate::report::plan::{Bench, Load};
 
 /// From this ratio of the largest load to the least, the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 12.0;
@@ -82,7 +82,7 @@ fn lines(f: &Figures<'_>, at: &str, load: &Load) -> Vec<Line> {
 }
 
 /// The plot, where the rows have more than one load.
-pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option<String> {
+pub(crate) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option<String> {
     let load = bench.load.as_ref()?;
     let all = lines(f, at, load);
     let dots = || all.iter().flat_map(|line| &line.dots);
@@ -98,7 +98,7 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
         }
     };
     let x = |load: f64| LEFT + 14.0 + along(load) * (WIDTH - LEFT - 44.0);
-    let ticks = super::ticks(most_ms);
+    let ticks = ticks(most_ms);
     let top = ticks.last().copied().unwrap_or(1.0);
     let y = |cost: f64| FLOOR - cost / top * (FLOOR - 40.0);
 
@@ -115,7 +115,7 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
         if is_logarithmic { ", logarithmic" } else { "" },
         right = WIDTH - 10.0,
     );
-    super::heights(&mut svg, &ticks, LEFT, WIDTH - 10.0, y);
+    heights(&mut svg, &ticks, LEFT, WIDTH - 10.0, y);
     let mut loads: Vec<&Dot> = dots().collect();
     loads.sort_by(|a, b| a.load.total_cmp(&b.load));
     let mut last = f64::NEG_INFINITY;
@@ -141,7 +141,7 @@ pub(in super::super) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option
                 f.number(&spread)
             };
             if let (Some(least), Some(most)) = (end(0), end(1)) {
-                super::upright_error_bar(&mut svg, x(dot.load), y(least), y(most));
+                upright_error_bar(&mut svg, x(dot.load), y(least), y(most));
             }
             let (x, y) = (x(dot.load), y(dot.cost));
             let _ = write!(path, "{}{x:.1} {y:.1}", if j == 0 { 'M' } else { 'L' });

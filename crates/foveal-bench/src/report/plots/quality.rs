@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use super::super::html::Figures;
-use super::super::plan::{Bench, Quality};
-use super::{WIDTH, mark};
+use super::axes::{WIDTH, heights, mark, tick_text, ticks};
+use crate::report::html::Figures;
+use crate::report::plan::{Bench, Quality};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 24.0;
@@ -72,7 +72,7 @@ fn curves(f: &Figures<'_>, at: &str, quality: &Quality, part: &str) -> Vec<Curve
 }
 
 /// A plot for each part of the rows, with the part's name.
-pub(in super::super) fn quality(f: &Figures<'_>, at: &str, bench: &Bench) -> Vec<(String, String)> {
+pub(crate) fn quality(f: &Figures<'_>, at: &str, bench: &Bench) -> Vec<(String, String)> {
     let Some(quality) = &bench.quality else {
         return Vec::new();
     };
@@ -99,7 +99,7 @@ fn plot(quality: &Quality, curves: &[Curve]) -> Option<String> {
     let dots: Vec<&Dot> = curves.iter().flat_map(|curve| &curve.dots).collect();
     let most_x = dots.iter().map(|dot| dot.x).max_by(f64::total_cmp)?;
     let most_error = dots.iter().map(|dot| dot.error).max_by(f64::total_cmp)?;
-    let (across, upward) = (super::ticks(most_x), super::ticks(most_error));
+    let (across, upward) = (ticks(most_x), ticks(most_error));
     let ends = [&across, &upward].map(|ticks| ticks.last().copied().unwrap_or(1.0));
     let x = |value: f64| LEFT + value / ends[0] * (RIGHT - LEFT - 8.0);
     let y = |error: f64| FLOOR - error / ends[1] * (FLOOR - TOP);
@@ -118,14 +118,14 @@ fn plot(quality: &Quality, curves: &[Curve]) -> Option<String> {
         LEFT + 6.0,
         quality.error.1,
     );
-    super::heights(&mut svg, &upward, LEFT, RIGHT, y);
+    heights(&mut svg, &upward, LEFT, RIGHT, y);
     for tick in across {
         let _ = write!(
             svg,
             "<path d=\"M{at_x:.1} {FLOOR}v4\" stroke=\"currentColor\" opacity=\"0.5\"/>\
              <text class=\"faint tick\" x=\"{at_x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
             FLOOR + 17.0,
-            super::tick_text(tick),
+            tick_text(tick),
             at_x = x(tick),
         );
     }

@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use super::super::html::Figures;
-use super::{WIDTH, error_bar};
+use super::axes::{WIDTH, error_bar, tick_text};
+use crate::report::html::Figures;
 
 const LINE: f64 = 34.0;
 /// Where the axis may end, on either side.
 const ENDS: [f64; 7] = [1.5, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0];
 
 /// The plot; `None` where no row has an interval.
-pub(in super::super) fn ratios(f: &Figures<'_>, at: &str) -> Option<String> {
+pub(crate) fn ratios(f: &Figures<'_>, at: &str) -> Option<String> {
     let rows = f.len(&format!("{at}/rows"));
     let of = |row: usize, key: &str| f.number(&format!("{at}/rows/{row}/{key}"));
     let shown: Vec<(usize, [f64; 3])> = (0..rows)
@@ -47,7 +47,7 @@ pub(in super::super) fn ratios(f: &Figures<'_>, at: &str) -> Option<String> {
              <text class=\"faint tick\" x=\"{at_x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
             if tick == 1.0 { "one" } else { "grid" },
             floor + 15.0,
-            super::tick_text((tick * 100.0).round() / 100.0),
+            tick_text((tick * 100.0).round() / 100.0),
             at_x = x(tick),
         );
     }

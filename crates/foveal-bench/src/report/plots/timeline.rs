@@ -2,15 +2,15 @@
 
 use std::fmt::Write;
 
-use super::super::html::Figures;
-use super::{COLORS, WIDTH};
+use super::axes::{COLORS, WIDTH};
+use crate::report::html::Figures;
 
 /// A lane's height with its name.
 const LANE: f64 = 44.0;
 
 /// Rows are stages `{unit, stage, ms}` in the order in which they run; those of other units than CPU and GPU (the
 /// whole frame) have no lane.
-pub(in super::super) fn timeline(f: &Figures<'_>, at: &str) -> String {
+pub(crate) fn timeline(f: &Figures<'_>, at: &str) -> String {
     let rows = f.len(&format!("{at}/rows"));
     let unit = |row: usize| f.text(&format!("{at}/rows/{row}/unit"));
     let ms = |row: usize| f.number(&format!("{at}/rows/{row}/ms")).unwrap_or(0.0);

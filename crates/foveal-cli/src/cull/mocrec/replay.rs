@@ -6,9 +6,10 @@ use std::ops::Range;
 use foveal_cull::{Aabb, Eye, Projection};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::read::Triangles;
-use super::{Record, Recorded, Recording, Verdict};
-use crate::cull::subject::{Occludees, Subject};
+use super::agreement::Recorded;
+use super::read::{Record, Recording, Triangles, Verdict};
+use crate::cull::occludees::Occludees;
+use crate::cull::subject::Subject;
 use foveal_host::culling::NamedEye;
 use foveal_host::culling::{Occluders, Shape};
 
