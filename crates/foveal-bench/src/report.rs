@@ -5,6 +5,7 @@
 //! and the passes tell how steady the figures are. All figures go into one JSON value; page and CSV are made from it
 //! and from nothing else.
 
+mod bench;
 mod csv;
 pub(crate) mod diff;
 mod html;
@@ -28,8 +29,8 @@ use clap::builder::PossibleValuesParser;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
+use bench::Bench;
 use foveal_host::{atomic_file, console, scene_source, values};
-use plan::Bench;
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;

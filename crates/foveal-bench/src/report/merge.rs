@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::plan::Bench;
+use super::bench::Bench;
 use foveal_measure::median;
 
 /// A row per row of the first pass. Numbers that the passes disagree about become their median; `spread` holds the least

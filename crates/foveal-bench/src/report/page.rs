@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use super::bench::{Bench, VERDICT};
 use super::html::{Figures, SCRIPT, STYLE};
-use super::plan::{BENCHES, Bench, VERDICT};
+use super::plan::BENCHES;
 use super::tables::{commands, table};
 use super::{plots, verdict};
 use serde_json::Value;

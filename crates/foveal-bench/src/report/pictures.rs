@@ -9,7 +9,7 @@ use image::{ExtendedColorType, ImageEncoder};
 use pollster::block_on;
 use serde_json::{Value, json};
 
-use super::plan::Bench;
+use super::bench::Bench;
 use crate::changes::{Changes, changed};
 use foveal_host::camera::{CameraArgs, Viewpoint};
 use foveal_host::difference::{BENCH_DISPLAY, ErrorMap, jod};

@@ -2,8 +2,8 @@
 
 use std::fmt::Write;
 
+use super::bench::Column;
 use super::html::Figures;
-use super::plan::Column;
 
 /// The bench's commands, one a line.
 pub(super) fn commands(body: &mut String, f: &Figures<'_>, at: &str) {

@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
+use super::bench::VERDICT;
 use super::html::Figures;
-use super::plan::{BENCHES, VERDICT};
+use super::plan::BENCHES;
 use super::plots;
 use super::tables::{commands, table};
 

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::axes::{COLORS, WIDTH, error_bar, tick_text, ticks};
+use crate::report::bench::Bench;
 use crate::report::html::Figures;
-use crate::report::plan::Bench;
 
 /// More bars than these are not legible: other plots say it better, and the table has all rows.
 const MOST_BARS: usize = 16;

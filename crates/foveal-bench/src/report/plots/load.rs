@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::axes::{WIDTH, heights, mark, ticks, upright_error_bar};
+use crate::report::bench::{Bench, Load};
 use crate::report::html::Figures;
-use crate::report::plan::{Bench, Load};
 
 /// From this ratio of the largest load to the least, the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 12.0;

@@ -3,8 +3,8 @@
 use std::fmt::Write;
 
 use super::axes::{WIDTH, heights, mark, tick_text, ticks};
+use crate::report::bench::{Bench, Quality};
 use crate::report::html::Figures;
-use crate::report::plan::{Bench, Quality};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 24.0;
