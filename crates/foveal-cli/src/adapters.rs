@@ -21,9 +21,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     } else {
         table(&adapters)
     };
-    crate::console::print_result(&text)?;
+    foveal_host::console::print_result(&text)?;
     if adapters.is_empty() {
-        bail!(crate::gpu::INSTALL_A_DRIVER);
+        bail!(foveal_host::gpu::INSTALL_A_DRIVER);
     }
     Ok(())
 }

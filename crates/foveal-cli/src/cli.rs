@@ -2,8 +2,8 @@
 
 use clap::{Parser, Subcommand};
 
-use crate::bench::BenchCommand;
 use crate::{adapters, compare, completions, cull, render, scene_info, view};
+use foveal_bench::BenchCommand;
 
 /// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
 #[derive(Debug, Parser)]
@@ -70,10 +70,19 @@ impl Command {
 
 #[cfg(test)]
 mod tests {
-    use clap::CommandFactory;
+    use clap::{CommandFactory, Parser};
 
     #[test]
     fn the_arguments_do_not_contradict_each_other() {
         super::Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn the_report_runs_commands_that_there_are() {
+        for words in foveal_bench::planned_commands("cornell") {
+            let line = std::iter::once("foveal").chain(words.iter().map(String::as_str));
+            let parsed = super::Cli::try_parse_from(line);
+            assert!(parsed.is_ok(), "{words:?}: {:?}", parsed.err());
+        }
     }
 }

@@ -3,11 +3,10 @@
 use std::path::PathBuf;
 
 use anyhow::Context;
-use clap::CommandFactory;
+use clap::Command;
 use clap_complete::Shell;
 
-use crate::cli::Cli;
-use crate::console;
+use foveal_host::console;
 
 /// Arguments of `foveal completions`.
 #[derive(Debug, clap::Args)]
@@ -28,18 +27,18 @@ pub(crate) struct ManArgs {
     folder: PathBuf,
 }
 
-/// Prints the completions.
-pub(crate) fn print(args: &Args) -> anyhow::Result<()> {
+/// Prints the completions of a command.
+pub(crate) fn print(args: &Args, mut command: Command) -> anyhow::Result<()> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Cli::command(), "foveal", &mut script);
+    clap_complete::generate(args.shell, &mut command, "foveal", &mut script);
     console::print_result(&String::from_utf8(script)?)
 }
 
-/// Writes the manual's pages.
-pub(crate) fn write_pages(args: &ManArgs) -> anyhow::Result<()> {
+/// Writes the manual's pages of a command.
+pub(crate) fn write_pages(args: &ManArgs, command: Command) -> anyhow::Result<()> {
     let folder = args.folder.display();
     std::fs::create_dir_all(&args.folder)
         .with_context(|| format!("cannot make the folder '{folder}'"))?;
-    clap_mangen::generate_to(Cli::command(), &args.folder)
+    clap_mangen::generate_to(command, &args.folder)
         .with_context(|| format!("cannot write the pages to '{folder}'"))
 }

@@ -5,31 +5,23 @@
 #![forbid(unsafe_code)]
 
 mod adapters;
-mod atomic_file;
-mod bench;
 mod cli;
 mod compare;
 mod completions;
-mod console;
 mod cull;
-mod failure;
-mod gpu;
-mod import_args;
 #[cfg(test)]
 #[path = "../../foveal-scene/src/gltf/tests/mutate.rs"]
 mod mutate;
-mod picture;
 mod quiet;
 mod render;
 mod scene_info;
-mod scene_source;
-mod values;
 mod view;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use cli::{Cli, Command, SceneCommand};
+use foveal_host::failure;
 
 fn main() -> ExitCode {
     quiet::hush();
@@ -43,7 +35,7 @@ fn main() -> ExitCode {
         Command::Scene(SceneCommand::Info(args)) => scene_info::run(&args),
         Command::Cull(args) => cull::run(&args),
         Command::Bench(command) => command.run(),
-        Command::Completions(args) => completions::print(&args),
-        Command::Man(args) => completions::write_pages(&args),
+        Command::Completions(args) => completions::print(&args, Cli::command()),
+        Command::Man(args) => completions::write_pages(&args, Cli::command()),
     })
 }

@@ -6,9 +6,9 @@ use foveal_scene::{Camera, Projection, Scene};
 use glam::Vec3;
 use serde::Serialize;
 
-use crate::import_args::ImportArgs;
-use crate::render::grouped;
-use crate::{console, scene_source};
+use foveal_host::console::grouped;
+use foveal_host::import_args::ImportArgs;
+use foveal_host::{console, scene_source};
 
 /// Arguments of `foveal scene info`.
 #[derive(Debug, clap::Args)]
@@ -259,7 +259,7 @@ mod tests {
     fn points_read_as_the_flags_take_them() {
         assert_eq!(point([1.0, -2.5, -0.00001]), "1,-2.5,0");
         assert_eq!(
-            crate::values::vec3(&point([100.0, 0.125, 3.0])),
+            foveal_host::values::vec3(&point([100.0, 0.125, 3.0])),
             Ok(Vec3::new(100.0, 0.125, 3.0))
         );
     }

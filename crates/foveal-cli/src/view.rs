@@ -1,11 +1,14 @@
 //! `foveal view`: the window, with the program's scenes, files and flags behind it.
 
-use foveal_scene::{Clip, generate};
+use foveal_generate as generate;
+use foveal_scene::Clip;
 use foveal_view::{Host, Loaded};
 
-use crate::import_args::ImportArgs;
-use crate::render::{CameraArgs, SettingsArgs, Viewpoint, flags, rate_image, read_settings};
-use crate::{gpu, scene_source, values};
+use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::import_args::ImportArgs;
+use foveal_host::rate_image::rate_image;
+use foveal_host::settings::{SettingsArgs, flags, read as read_settings};
+use foveal_host::{command_line, gpu, scene_source, values};
 
 /// Arguments of `foveal view`.
 #[derive(Debug, clap::Args)]
@@ -86,6 +89,8 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         read_settings,
         rate_image,
         flags,
+        exact_camera: command_line::exact_camera,
+        quoted: command_line::quoted,
         scene_flags,
     })
 }

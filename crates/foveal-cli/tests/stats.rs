@@ -64,7 +64,7 @@ fn stats_say_what_was_drawn() {
     );
     assert_eq!(stats["settings"]["width"], 48);
     assert_eq!(stats["median"]["frame_ms"], frame["frame_ms"]);
-    let scene = foveal_scene::generate::by_name("cornell").unwrap();
+    let scene = foveal_generate::by_name("cornell").unwrap();
     assert_eq!(stats["scene"]["lights"], scene.lights.len() + 7);
     assert_eq!(stats["scene"]["triangles"], scene.triangle_count());
 }

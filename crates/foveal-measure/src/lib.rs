@@ -32,7 +32,9 @@ mod signed_rank;
 #[cfg(test)]
 mod simulation;
 mod spread;
+mod turns;
 
 pub use comparison::{CONFIDENCE, Comparison, Finding, MARGIN, Pair};
 pub use series::{ENOUGH_PAIRS, LEAST_PAIRS, Series, turn};
 pub use spread::{Spread, median, quantile};
+pub use turns::{FrameTimes, Turns, WARM_UP};

@@ -1,8 +1,8 @@
 //! What a Foveal frame is made from: meshes, materials, instances, lights, cameras.
 //!
 //! A [`Scene`] is plain data without any graphics API in it. It comes from a glTF 2.0 file
-//! ([`load`]) or from the project's own code ([`generate`]), and is posed at a point in time by
-//! [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres, counter-clockwise front
+//! ([`load`]) or from a program's own code (as the scenes of `foveal-generate` do), and is posed at
+//! a point in time by [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres, counter-clockwise front
 //! faces, column vectors; matrices are named *to_from* (`world_from_object`).
 //!
 //! ```no_run
@@ -16,8 +16,6 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 
-pub mod generate;
-
 mod bounds;
 mod camera;
 mod cloud;
@@ -27,7 +25,7 @@ mod light;
 mod load;
 mod material;
 mod mesh;
-mod mip;
+pub mod mip;
 mod pose;
 mod scene;
 mod srgb;

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 /// What the channels mean for filtering.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Content {
+pub enum Content {
     /// sRGB colour; alpha is ignored by the material or not there.
     Color,
     /// sRGB colour with a meaningful alpha: transparent texels give no colour. With a threshold, the
@@ -24,12 +24,12 @@ pub(crate) enum Content {
 }
 
 /// Number of levels down to 1 x 1.
-pub(crate) fn level_count(width: u32, height: u32) -> u32 {
+pub fn level_count(width: u32, height: u32) -> u32 {
     32 - width.max(height).max(1).leading_zeros()
 }
 
 /// All levels of a picture, level 0 as given. `pixels` has `width * height * 4` bytes.
-pub(crate) fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<Vec<u8>> {
+pub fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<Vec<u8>> {
     let (mut w, mut h) = (width as usize, height as usize);
     let count = level_count(width, height) as usize;
     let mut levels = Vec::with_capacity(count);

@@ -28,34 +28,34 @@ fn entries(view: View, coarsest: u8) -> Entries {
         list.iter().map(own).collect()
     };
     match view {
-        View::Rate | View::Blocks => (0..=coarsest)
+        DebugView::Rate | DebugView::Blocks => (0..=coarsest)
             .map(|level| {
                 let side = 1u32 << level;
                 (level_color(level), format!("{side} x {side}"))
             })
             .collect(),
-        View::Shaded => named(&[(gray(200), "shaded"), (gray(20), "filled in")]),
-        View::Edges => named(&[
+        DebugView::Shaded => named(&[(gray(200), "shaded"), (gray(20), "filled in")]),
+        DebugView::Edges => named(&[
             (Color32::WHITE, "shaded more than once"),
             (Color32::BLACK, "once"),
         ]),
-        View::Samples => named(&[
+        DebugView::Samples => named(&[
             (Color32::BLACK, "once"),
             (Color32::BLUE, "few"),
             (Color32::RED, "many"),
             (Color32::WHITE, "all sub-samples"),
         ]),
-        View::Depth => named(&[
+        DebugView::Depth => named(&[
             (Color32::WHITE, "near"),
             (gray(128), "x 256"),
             (Color32::BLACK, "x 65 536"),
         ]),
-        View::Normals => named(&[
+        DebugView::Normals => named(&[
             (Color32::from_rgb(255, 128, 128), "+x"),
             (Color32::from_rgb(128, 255, 128), "+y"),
             (Color32::from_rgb(128, 128, 255), "+z"),
         ]),
-        View::Motion => named(&[
+        DebugView::Motion => named(&[
             (Color32::from_rgb(255, 128, 128), "right, 16 px"),
             (Color32::from_rgb(128, 255, 128), "down, 16 px"),
             (gray(128), "still"),

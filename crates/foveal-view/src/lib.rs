@@ -21,7 +21,6 @@ mod viewport;
 mod window;
 mod worker;
 
-pub use command::{exact as exact_camera, quoted};
 pub use keys::help as keys_help;
 pub use settled::{Settled, Settler, Sight};
 
@@ -64,6 +63,10 @@ pub struct Host {
     pub rate_image: fn(&Settings) -> anyhow::Result<Option<RateImage>>,
     /// The flags that make these settings out of the defaults.
     pub flags: fn(&Settings) -> Vec<String>,
+    /// A camera to the last bit, as `foveal render --exact-camera` takes it.
+    pub exact_camera: fn(&Camera) -> String,
+    /// A word as a shell takes it.
+    pub quoted: fn(&str) -> String,
     /// The flags of `foveal render` that stand for what `load` adds to a scene, and for the adapter.
     pub scene_flags: Vec<String>,
 }

@@ -4,7 +4,7 @@ use egui::{
     Align2, CentralPanel, Color32, CornerRadius, CursorIcon, PointerButton, Pos2, Rect, RichText,
     Sense, Stroke, StrokeKind, Vec2,
 };
-use foveal::{RateSource, View};
+use foveal::{RateSource, DebugView};
 
 use crate::app::App;
 use crate::navigator::Hands;
@@ -177,7 +177,7 @@ fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
 /// What the colours mean, at the lower left.
 fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
     let view = app.settings.view;
-    if view == View::Final && !app.display.boxes && !app.display.frozen {
+    if view == DebugView::Final && !app.display.boxes && !app.display.frozen {
         return;
     }
     egui::Area::new(ui.scope_id().with("legends"))

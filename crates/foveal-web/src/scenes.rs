@@ -1,6 +1,7 @@
 //! Scenes by name, and from dropped files.
 
-use foveal_scene::{Camera, LoadOptions, Scene, generate, load_bytes};
+use foveal_generate as generate;
+use foveal_scene::{Camera, LoadOptions, Scene, load_bytes};
 use serde::Serialize;
 
 use crate::camera::Place;

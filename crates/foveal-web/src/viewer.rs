@@ -1,20 +1,19 @@
 //! What the page calls.
 
 use foveal::{FrameStats, Gpu, Settings};
-use foveal_measure::{Comparison, Finding};
+use foveal_measure::{Comparison, Finding, FrameTimes, Turns};
 use foveal_scene::Scene;
 use serde::{Deserialize, Serialize};
 use wasm_bindgen::prelude::*;
 
 use crate::camera::Place;
-use crate::compare::Measuring;
 use crate::present::Present;
 use crate::scenes::{self, Shown};
 use crate::side::Side;
 
 /// One frame, as the page asks for it.
 #[derive(Clone, PartialEq, Deserialize)]
-pub(crate) struct Wish {
+struct Wish {
     camera: Place,
     /// Size of the picture in pixels.
     width: u32,
@@ -25,7 +24,7 @@ pub(crate) struct Wish {
 
 impl Wish {
     /// Whether both show the same, wherever the line stands.
-    pub(crate) fn shows_the_same(&self, other: &Self) -> bool {
+    fn shows_the_same(&self, other: &Self) -> bool {
         let split = other.split;
         Self {
             split,
@@ -75,7 +74,10 @@ pub struct Viewer {
     scene: Scene,
     reference: Side,
     chosen: Side,
-    measuring: Measuring,
+    /// Which side draws first, and what the pairs of this view say.
+    turns: Turns,
+    /// The view that the pairs are of.
+    turns_of: Option<Wish>,
     #[cfg(feature = "webgl")]
     _pump: crate::pump::Pump,
 }
@@ -150,7 +152,8 @@ impl Viewer {
             scene,
             reference,
             chosen,
-            measuring: Measuring::default(),
+            turns: Turns::default(),
+            turns_of: None,
             #[cfg(feature = "webgl")]
             _pump: pump,
         })
@@ -188,7 +191,7 @@ impl Viewer {
         let read =
             |text: &str| serde_json::from_str::<Settings>(text).map_err(|cause| cause.to_string());
         let (reference, chosen) = (read(reference)?, read(chosen)?);
-        self.measuring = Measuring::default();
+        self.compare_anew();
         self.reference.wish(reference);
         self.chosen.wish(chosen);
         Ok(())
@@ -204,8 +207,15 @@ impl Viewer {
         let camera = wish.camera.camera()?;
         let size = (wish.width, wish.height);
         let (mut reference, mut chosen) = (None, None);
-        self.measuring.show(&wish);
-        let order = self.measuring.order();
+        if !(self.turns_of.as_ref()).is_some_and(|shown| shown.shows_the_same(&wish)) {
+            self.compare_anew();
+            self.turns_of = Some(wish.clone());
+        }
+        let order = if self.turns.reference_first() {
+            [0, 1]
+        } else {
+            [1, 0]
+        };
         for side in order {
             if side == 0 && wish.split > 0.0 {
                 reference = Some(self.reference.draw(&self.scene, &camera, size).await?);
@@ -214,7 +224,7 @@ impl Viewer {
             }
         }
         if let (Some(reference), Some(chosen)) = (&reference, &chosen) {
-            self.measuring.add(reference, chosen);
+            self.turns.add(times(reference), times(chosen));
         }
         let left = if reference.is_some() {
             &self.reference
@@ -232,9 +242,9 @@ impl Viewer {
         let cost = Cost {
             reference,
             chosen,
-            frame: self.measuring.frame().map(Told::of),
-            passes: self.measuring.passes().map(Told::of),
-            is_measured: is_one_alone || self.measuring.is_done(),
+            frame: self.turns.frame().map(Told::of),
+            passes: self.turns.passes().map(Told::of),
+            is_measured: is_one_alone || self.turns.is_done(),
             total_ms: crate::side::now_ms() - started_ms,
         };
         serde_json::to_string(&cost).map_err(|cause| cause.to_string())
@@ -259,9 +269,21 @@ impl Viewer {
     }
 }
 
+fn times(stats: &FrameStats) -> FrameTimes {
+    FrameTimes {
+        frame_ms: stats.frame_ms,
+        passes_ms: stats.gpu_ms.iter().map(|pass| pass.ms).sum(),
+    }
+}
+
 impl Viewer {
+    /// Forgets all pairs.
+    fn compare_anew(&mut self) {
+        (self.turns, self.turns_of) = (Turns::default(), None);
+    }
+
     async fn show(&mut self, scene: Scene) -> Result<String, String> {
-        self.measuring = Measuring::default();
+        self.compare_anew();
         self.reference.set_scene(&scene).await?;
         if let Err(cause) = self.chosen.set_scene(&scene).await {
             // Both sides show the same scene, whatever happens.

@@ -7,7 +7,7 @@
 #![allow(clippy::print_stdout, reason = "an example says what it made")]
 
 use foveal::{Frame, Gpu, Renderer, Settings, Target};
-use foveal_scene::generate;
+use foveal_generate as generate;
 
 /// The host's texture: larger than the rendered picture, and sRGB, as a window's often is.
 const SIZE: (u32, u32) = (640, 360);

@@ -4,7 +4,8 @@
 #![allow(clippy::print_stdout, reason = "an example says what it made")]
 
 use foveal::{Frame, Gpu, Renderer, Settings};
-use foveal_scene::{LoadOptions, generate};
+use foveal_generate as generate;
+use foveal_scene::LoadOptions;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut arguments = std::env::args().skip(1);

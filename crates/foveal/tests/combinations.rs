@@ -6,7 +6,7 @@ mod common;
 
 use common::{drawn, mean_flip};
 use foveal::{Antialiasing, Geometry, Gpu, Output, RateSource, Settings, Shading, Stereo};
-use foveal_scene::generate;
+use foveal_generate as generate;
 
 /// Until rates that follow the picture have settled.
 const FRAMES: u32 = 4;

@@ -5,7 +5,7 @@ mod common;
 
 use common::{drawn, mean_flip};
 use foveal::{Composite, Gpu, RateSource, Settings, Shading};
-use foveal_scene::generate;
+use foveal_generate as generate;
 
 /// Mean FLIP of composites to full shading.
 fn errors<const N: usize>(scene: &str, coarse: &Settings, composites: [Composite; N]) -> [f32; N] {

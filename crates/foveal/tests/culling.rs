@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use foveal::{Culling, CullingEyes, Frame, FrameStats, Gpu, Output, Renderer, Settings, Stereo};
-use foveal_scene::generate::{self, DemoOptions};
+use foveal_generate as generate;
+use foveal_generate::DemoOptions;
 use foveal_scene::{Camera, LoadOptions, Projection, Scene};
 use glam::{Mat4, Vec3};
 

@@ -1,7 +1,7 @@
 //! The renderer as a guest on the host's device.
 
 use foveal::{Antialiasing, Error, Frame, Gpu, Renderer, Settings, Shading, Target};
-use foveal_scene::generate;
+use foveal_generate as generate;
 
 fn clock() -> f64 {
     static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();

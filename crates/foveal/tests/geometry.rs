@@ -8,7 +8,8 @@
 use std::path::Path;
 
 use foveal::{Frame, Geometry, Gpu, Renderer, Settings};
-use foveal_scene::{LoadOptions, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{LoadOptions, Scene};
 
 /// Mean FLIP that rounding and derivatives at silhouettes may cost.
 const MAX_FLIP: f32 = 0.005;

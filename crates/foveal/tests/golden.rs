@@ -6,7 +6,7 @@
 use std::path::PathBuf;
 
 use foveal::{DebugView, Frame, Gpu, LightingModel, Renderer, Settings};
-use foveal_scene::generate;
+use foveal_generate as generate;
 
 /// Two adapters that draw the same picture differ by less, a missing light or texture by far more.
 const MAX_FLIP: f32 = 0.01;

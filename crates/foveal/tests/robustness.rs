@@ -5,7 +5,8 @@
 )]
 
 use foveal::{Error, Frame, Gpu, Renderer, Settings};
-use foveal_scene::{Light, LightKind, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Light, LightKind, Scene};
 
 fn open() -> Gpu {
     pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter")

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use foveal_vdp::{Display, Gaze, HeatMap, Metric, Pixels};
+use foveal_vdp::{Display, Gaze, HeatMap, Metric};
 use serde::Serialize;
 
-use super::flip;
-use crate::picture::{self, Picture};
-use crate::values;
+use foveal_host::difference::{magma, pixels};
+use foveal_host::picture::{self, Picture};
+use foveal_host::values;
 
 /// JOD at which the heat map is brightest.
 const BRIGHTEST_JOD: f32 = 8.0;
@@ -121,15 +121,10 @@ impl Verdict {
     }
 }
 
-/// A picture as the metric takes it.
-pub(crate) fn pixels(picture: &Picture) -> Pixels<'_> {
-    Pixels::Rgba(&picture.pixels)
-}
-
 fn write_heat_map(file: &Path, map: &HeatMap) -> anyhow::Result<()> {
     let shares = map.jod_lost.iter().map(|&lost| lost / BRIGHTEST_JOD);
     let (width, height) = (map.width as u32, map.height as u32);
-    picture::write_rgb(file, width, height, &flip::magma(shares))
+    picture::write_rgb(file, width, height, &magma(shares))
 }
 
 /// Reads `--display`.

@@ -1,57 +1,21 @@
 //! `foveal compare`: how far two pictures or videos are apart, as eyes and as numbers see it.
 
+mod args;
 mod eye;
-pub(crate) mod flip;
-mod nearness;
 mod numeric;
 mod sequence;
 mod ssim;
 
-pub(crate) use eye::pixels;
-pub(crate) use flip::ErrorMap;
-pub(crate) use nearness::{BENCH_DISPLAY, Nearness, jod};
-
 use std::fmt::Write;
-use std::path::PathBuf;
 
 use anyhow::bail;
 use serde::Serialize;
 
-use crate::picture::Picture;
-use crate::{atomic_file, console, picture, values};
-
-/// Arguments of `foveal compare`.
-#[derive(Debug, clap::Args)]
-pub(crate) struct Args {
-    /// The reference: a PNG file, or a folder of PNG files, the frames of a video in the order of their names
-    a: PathBuf,
-
-    /// The picture under test, a PNG file of the same size, or a folder with files of the same names
-    b: PathBuf,
-
-    #[command(flatten)]
-    eye: eye::EyeArgs,
-
-    /// Write FLIP's error map: black where no eye sees a difference, through magenta to yellow
-    #[arg(long, value_name = "FILE.png")]
-    diff: Option<PathBuf>,
-
-    /// Exit with code 1 where the mean FLIP error is above X (0: equal to the eye, 1: as different as can be)
-    #[arg(long, value_name = "X", value_parser = values::threshold)]
-    max_flip: Option<f64>,
-
-    /// Exit with code 1 where the PSNR is below X decibels
-    #[arg(long, value_name = "X", value_parser = values::threshold)]
-    min_psnr: Option<f64>,
-
-    /// Exit with code 1 where the quality is below X JOD (10: no visible difference)
-    #[arg(long, value_name = "X", value_parser = values::threshold)]
-    min_jod: Option<f64>,
-
-    /// Print JSON instead of text
-    #[arg(long)]
-    json: bool,
-}
+pub(crate) use args::Args;
+use args::{Findings, Measured};
+use foveal_host::difference::ErrorMap;
+use foveal_host::picture::Picture;
+use foveal_host::{atomic_file, picture};
 
 /// The JSON's fields; docs/program.md describes them.
 #[derive(Debug, PartialEq, Serialize)]
@@ -98,17 +62,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         Some(display) => Some(args.eye.compare(&display, &a, &b)?),
         None => None,
     };
-    let failures = args.failures(&Measured {
-        flip: comparison.flip,
-        psnr_db: comparison.psnr_db,
-        jod: comparison.eye.as_ref().map(|eye| eye.jod),
-    });
-    comparison.passed = failures.is_empty();
-
     if let Some(diff) = &args.diff {
         picture::write_rgb(diff, a.width, a.height, &map.heat_rgb())?;
     }
-    args.conclude(&comparison, &comparison.text(), &failures)
+    args.conclude(comparison)
 }
 
 fn compare(a: &Picture, b: &Picture) -> (ErrorMap, Comparison) {
@@ -127,61 +84,19 @@ fn compare(a: &Picture, b: &Picture) -> (ErrorMap, Comparison) {
     (map, comparison)
 }
 
-/// What thresholds are held against.
-struct Measured {
-    flip: f64,
-    psnr_db: Option<f64>,
-    jod: Option<f32>,
-}
-
-impl Args {
-    /// The thresholds that are not met.
-    fn failures(&self, measured: &Measured) -> Vec<String> {
-        let mut failures = Vec::new();
-        let Measured { flip, psnr_db, jod } = *measured;
-        if let Some(most) = self.max_flip
-            && flip > most
-        {
-            failures.push(format!("FLIP is {flip:.6}, --max-flip {most}"));
+impl Findings for Comparison {
+    fn measured(&self) -> Measured {
+        Measured {
+            flip: self.flip,
+            psnr_db: self.psnr_db,
+            jod: self.eye.as_ref().map(|eye| eye.jod),
         }
-        if let (Some(least), Some(psnr_db)) = (self.min_psnr, psnr_db)
-            && psnr_db < least
-        {
-            failures.push(format!("PSNR is {psnr_db:.3} dB, --min-psnr {least}"));
-        }
-        if let (Some(least), Some(jod)) = (self.min_jod, jod)
-            && f64::from(jod) < least
-        {
-            failures.push(format!("the quality is {jod:.3} JOD, --min-jod {least}"));
-        }
-        failures
     }
 
-    /// Prints what was found, as text or as JSON, and fails where a threshold is not met.
-    fn conclude(
-        &self,
-        found: &impl Serialize,
-        text: &str,
-        failures: &[String],
-    ) -> anyhow::Result<()> {
-        if self.json {
-            console::print_result(&(serde_json::to_string_pretty(found)? + "\n"))?;
-        } else {
-            console::print_result(text)?;
-        }
-        if !failures.is_empty() {
-            bail!(
-                "'{}' differs too much from '{}': {}",
-                self.b.display(),
-                self.a.display(),
-                failures.join(", ")
-            );
-        }
-        Ok(())
+    fn set_passed(&mut self, passed: bool) {
+        self.passed = passed;
     }
-}
 
-impl Comparison {
     fn text(&self) -> String {
         let pixels = u64::from(self.width) * u64::from(self.height);
         let share = 100.0 * self.differing_pixels as f64 / pixels as f64;

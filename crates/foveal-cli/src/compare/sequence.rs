@@ -7,9 +7,11 @@ use std::path::Path;
 use anyhow::{Context, bail};
 use serde::Serialize;
 
-use super::{Args, ErrorMap, Measured, eye};
-use crate::failure::usage;
-use crate::picture::Picture;
+use super::args::{Args, Findings, Measured};
+use super::eye;
+use foveal_host::difference::{ErrorMap, pixels};
+use foveal_host::failure::usage;
+use foveal_host::picture::Picture;
 
 /// The JSON's fields; docs/program.md describes them.
 #[derive(Debug, PartialEq, Serialize)]
@@ -33,14 +35,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     if args.diff.is_some() || args.min_psnr.is_some() {
         return usage("--diff and --min-psnr are for pictures, not for folders".to_owned());
     }
-    let mut comparison = compare(args)?;
-    let failures = args.failures(&Measured {
-        flip: comparison.flip,
-        psnr_db: None,
-        jod: Some(comparison.eye.jod),
-    });
-    comparison.passed = failures.is_empty();
-    args.conclude(&comparison, &comparison.text(), &failures)
+    args.conclude(compare(args)?)
 }
 
 fn compare(args: &Args) -> anyhow::Result<Comparison> {
@@ -76,7 +71,7 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
             Ok(picture)
         };
         let (a, b) = (read(&args.a)?, read(&args.b)?);
-        video.push(eye::pixels(&a), eye::pixels(&b))?;
+        video.push(pixels(&a), pixels(&b))?;
         flip += ErrorMap::between(&a, &b).mean();
     }
     let result = video.finish()?;
@@ -110,7 +105,19 @@ fn frames(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
     Ok(names)
 }
 
-impl Comparison {
+impl Findings for Comparison {
+    fn measured(&self) -> Measured {
+        Measured {
+            flip: self.flip,
+            psnr_db: None,
+            jod: Some(self.eye.jod),
+        }
+    }
+
+    fn set_passed(&mut self, passed: bool) {
+        self.passed = passed;
+    }
+
     fn text(&self) -> String {
         let mut text = format!(
             "{} frames of {}x{}, {} per second\n",

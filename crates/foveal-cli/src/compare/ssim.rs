@@ -2,7 +2,7 @@
 //! to Structural Similarity», on luma (Rec. 601 weights, not rounded), with the paper's own choices: an 11x11 Gaussian
 //! window of σ = 1.5, K₁ = 0.01, K₂ = 0.03, the mean over all places where the window lies within the picture.
 
-use crate::picture::Picture;
+use foveal_host::picture::Picture;
 
 /// Width and height of the window.
 pub(super) const WINDOW: usize = 11;

@@ -2,18 +2,16 @@
 
 use std::path::PathBuf;
 
-use glam::Vec3;
-
-use super::occluders::Choice;
-use crate::failure::usage;
-use crate::import_args::ImportArgs;
-use crate::values;
+use foveal_host::culling::{CullingArgs, ViewArgs};
+use foveal_host::failure::usage;
+use foveal_host::import_args::ImportArgs;
+use foveal_host::values;
 
 /// Arguments of `foveal cull`.
 #[derive(Debug, Clone, clap::Args)]
 pub(crate) struct Args {
     /// A glTF 2.0 file or a generated scene, as for `foveal render`; or recorded occluder draws (.mocrec)
-    #[arg(default_value = crate::scene_source::DEFAULT_SCENE)]
+    #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
     #[command(flatten)]
@@ -62,76 +60,10 @@ pub(crate) struct Args {
     pub(super) quiet: bool,
 }
 
-/// What occludes, and what is too small to count.
-#[derive(Debug, Clone, clap::Args)]
-#[command(next_help_heading = "Culling")]
-pub(crate) struct CullingArgs {
-    /// What occludes: `auto` (what the file marks, else everything), `marked` (nodes with extras.occluder),
-    /// `all`, or names of sets (extras.set) with commas between. Only opaque surfaces occlude
-    #[arg(long, value_name = "auto|marked|all|SET,…", default_value = "auto")]
-    pub(crate) occluders: Choice,
-
-    /// Leave out occluders that look smaller than this (Intel's sample: 1.5)
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
-    pub(crate) occluder_size_threshold: f32,
-
-    /// Leave out parts of occluders that can cover fewer pixels of the depth buffer than this per quadrilateral
-    #[arg(long, value_name = "PX", default_value_t = 6.0, value_parser = values::non_negative)]
-    pub(crate) occluder_pixels_per_quad: f32,
-
-    /// Cull objects that look smaller than this (Intel's sample: 0.01)
-    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
-    pub(crate) occludee_size_threshold: f32,
-
-    /// Cull for two eyes so many metres apart, with the camera between them: what is culled is hidden from both
-    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
-    pub(crate) eyes_apart: f32,
-
-    /// The result shall hold while each eye moves by less than this, metres
-    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
-    pub(crate) validity_radius: f32,
-
-    /// Begin no occluder later than this in a frame, milliseconds: near ones come first, and what is left out
-    /// only makes more visible
-    #[arg(long, value_name = "MS", value_parser = values::non_negative)]
-    pub(crate) budget_ms: Option<f32>,
-}
-
-/// Where the scene is seen from.
-#[derive(Debug, Clone, Default, clap::Args)]
-#[command(next_help_heading = "Camera")]
-pub(crate) struct ViewArgs {
-    /// One camera of the scene, by name or by number from 0, or `overview`. Without: all of the scene's cameras
-    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "cameras"])]
-    pub(super) camera: Option<String>,
-
-    /// The eye's position in metres
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
-    #[arg(requires = "target", conflicts_with = "cameras")]
-    pub(super) eye: Option<Vec3>,
-
-    /// The point to look at in metres
-    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
-    pub(super) target: Option<Vec3>,
-
-    /// The vertical field of view in degrees [default: the camera's own, else 60]
-    #[arg(long, value_name = "DEG", value_parser = values::fov_deg, conflicts_with = "cameras")]
-    pub(super) fov: Option<f32>,
-
-    /// Cameras from a JSON list of {eye, target, up, fov_y_deg or ortho_height, aspect, near, far}; see
-    /// docs/cull-schema.md
-    #[arg(long, value_name = "FILE.json")]
-    pub(super) cameras: Option<PathBuf>,
-}
-
 impl Args {
     /// Finds what clap cannot: contradictions between the values of several arguments.
     pub(super) fn check(&self) -> anyhow::Result<()> {
-        if self.views.eye.is_some() && self.views.eye == self.views.target {
-            return usage(
-                "--eye and --target are the same point: there is no direction to look in",
-            );
-        }
+        self.views.check()?;
         for file in self.depth.iter().chain(&self.overlay) {
             if file
                 .extension()
@@ -146,12 +78,7 @@ impl Args {
         if self.depth.is_some() && self.depth == self.overlay {
             return usage("--depth and --overlay name the same file");
         }
-        if is_recording(&self.scene)
-            && (self.views.camera.is_some()
-                || self.views.eye.is_some()
-                || self.views.fov.is_some()
-                || self.views.cameras.is_some())
-        {
+        if is_recording(&self.scene) && self.views.is_given() {
             return usage("recorded draws have their own view: no camera can be chosen");
         }
         Ok(())

@@ -7,10 +7,11 @@ use foveal_cull::{Culler, OccludeeTree, View, Visibility};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::args::CullingArgs;
-use super::around::Clock;
-use super::subject::{Occludees, Subject};
-use super::workers::Workers;
+use super::occludees::Occludees;
+use super::subject::Subject;
+use foveal_host::culling::Clock;
+use foveal_host::culling::CullingArgs;
+use foveal_host::culling::Workers;
 use foveal_measure::median;
 
 /// The figures of one eye, those that Intel's occlusion culling sample shows. Times are medians.

@@ -4,39 +4,31 @@
 //! boxes, eyes), each eye is culled and timed, compared with the exact reference where wanted, and drawn.
 
 mod args;
-pub(crate) mod around;
-pub(crate) mod camera_file;
-mod frustum;
 #[cfg(test)]
 mod fuzz;
-pub(crate) mod measure;
+mod measure;
 mod mocrec;
-pub(crate) mod occluders;
+mod occludees;
 mod picture;
 mod report;
-pub(crate) mod subject;
+mod subject;
 mod table;
 #[cfg(test)]
 mod tests;
-pub(crate) mod truth;
-pub(crate) mod views;
-pub(crate) mod workers;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, bail};
 use foveal_cull::Culler;
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
-pub(crate) use args::{Args, CullingArgs};
+pub(crate) use args::Args;
 
-use crate::{atomic_file, console, scene_source};
+use foveal_host::culling::{Check, NamedEye, Workers};
+use foveal_host::progress::progress_bar;
+use foveal_host::{atomic_file, console, scene_source};
 use measure::measure;
 use report::{CameraReport, Report};
 use subject::Subject;
-use truth::Check;
-use views::NamedEye;
-use workers::Workers;
 
 /// Culls what the arguments ask for.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
@@ -192,17 +184,4 @@ fn numbered(file: &Path, number: Option<usize>) -> PathBuf {
     let mut name = stem.to_owned();
     name.push(format!("-{number}.png"));
     file.with_file_name(name)
-}
-
-/// On a terminal only, and only where there is more than one thing to do.
-pub(crate) fn progress_bar(total: u64, what: &str, quiet: bool) -> ProgressBar {
-    if quiet || total < 2 {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
-    let template = format!("{{wide_bar}} {{pos}}/{{len}} {what}, {{eta}} left");
-    match ProgressStyle::with_template(&template) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

@@ -3,8 +3,8 @@
 use foveal_cull::{Aabb, Culler, Eye, Visibility};
 use glam::DVec4;
 
-use super::frustum::{clip_position, corners};
-use crate::picture::Picture;
+use foveal_host::culling::{clip_position, corners};
+use foveal_host::picture::Picture;
 
 const EMPTY: [u8; 4] = [16, 20, 48, 255];
 const VISIBLE: [u8; 4] = [40, 220, 70, 255];

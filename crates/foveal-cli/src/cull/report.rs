@@ -7,8 +7,8 @@ use serde::Serialize;
 use super::measure::{Figures, Outcome};
 use super::mocrec::{Agreement, Verdict};
 use super::subject::Subject;
-use super::truth::Check;
-use super::views::NamedEye;
+use foveal_host::culling::Check;
+use foveal_host::culling::NamedEye;
 
 /// Grows by one whenever a field changes its meaning or goes away.
 pub(super) const SCHEMA_VERSION: u32 = 1;

@@ -4,9 +4,9 @@ use std::fmt::Write;
 
 use super::mocrec::Agreement;
 use super::report::{CameraReport, Report};
-use super::truth::Check;
-use crate::console;
-use crate::render::grouped;
+use foveal_host::console;
+use foveal_host::console::grouped;
+use foveal_host::culling::Check;
 
 /// All cameras, one after the other.
 pub(super) fn text(report: &Report) -> String {

@@ -3,7 +3,8 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use crate::failure::usage;
+use foveal_host::drawing::moment;
+use foveal_host::failure::usage;
 
 /// A file name with a place for the frame's number.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -82,12 +83,6 @@ pub(super) fn sequence(range: Range<u32>, fps: f32, pattern: &FramePattern) -> V
             file: pattern.file(frame),
         })
         .collect()
-}
-
-/// When a frame is, in seconds.
-pub(crate) fn moment(frame: u32, fps: f32) -> f32 {
-    // In f64: exact for every frame number, so that the moment does not depend on how it was reached.
-    (f64::from(frame) / f64::from(fps)) as f32
 }
 
 /// A single picture at a moment.

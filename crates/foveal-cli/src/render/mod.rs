@@ -4,40 +4,25 @@
 //! the device opens, the scene goes onto the device, each frame is drawn and written, the figures are written.
 
 mod args;
-mod camera_path;
-pub(crate) mod clock;
-mod drawing;
 mod frame_files;
-#[cfg(test)]
-mod fuzz;
-mod inside;
-mod rate_image;
-mod settings;
-mod settings_args;
 mod stats;
 mod summary;
-mod viewpoint;
 
 use std::rc::Rc;
 use std::thread;
 
 use anyhow::{Context, anyhow};
-use foveal::{AdapterStats, Renderer, Settings, Timing};
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use foveal::{AdapterStats, FrameStats, Renderer, Settings, Timing};
 use pollster::block_on;
 
-pub(crate) use args::{Args, CameraArgs};
-pub(crate) use clock::now_ms;
-pub(crate) use drawing::Drawing;
-pub(crate) use frame_files::moment;
-pub(crate) use rate_image::rate_image;
-pub(crate) use settings::read as read_settings;
-pub(crate) use settings_args::{SettingsArgs, flags};
-pub(crate) use summary::grouped;
-pub(crate) use viewpoint::Viewpoint;
+use foveal_host::camera::Viewpoint;
+use foveal_host::clock::{now_ms, timed};
+use foveal_host::drawing::Drawing;
+use foveal_host::progress::progress_bar;
+use foveal_host::rate_image::rate_image;
+use foveal_host::{atomic_file, console, gpu, scene_source};
 
-use crate::{atomic_file, console, gpu, scene_source};
-use clock::timed;
+pub(crate) use args::Args;
 use frame_files::{FrameJob, FramePattern};
 use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};
 
@@ -77,7 +62,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         counts: drawing.renderer.scene_stats(),
     };
     for _ in 0..args.warmup {
-        drawing.draw(&jobs[0])?;
+        draw(&mut drawing, &jobs[0])?;
     }
     let (frames, first_picture_ms) = draw_all(&mut drawing, &jobs, &mut load_ms, args.quiet)?;
 
@@ -190,6 +175,11 @@ fn prepare(
     ))
 }
 
+/// Draws one frame of the sequence.
+fn draw(drawing: &mut Drawing, job: &FrameJob) -> anyhow::Result<FrameStats> {
+    drawing.draw_moment(job.time_s, job.previous_time_s)
+}
+
 /// Draws and writes each frame; gives the figures and when the first picture was on the disk.
 fn draw_all(
     drawing: &mut Drawing,
@@ -197,13 +187,13 @@ fn draw_all(
     load_ms: &mut Vec<Timing>,
     quiet: bool,
 ) -> anyhow::Result<(Vec<NumberedFrameStats>, f64)> {
-    let progress = progress_bar(jobs.len() as u64, quiet);
+    let progress = progress_bar(jobs.len() as u64, "frames", quiet);
     let mut frames = Vec::with_capacity(jobs.len());
     let mut first_picture_ms = 0.0;
     let mut noticed = quiet;
     for job in jobs {
         let mut stages = Vec::new();
-        let figures = timed(&mut stages, "first_frame", || drawing.draw(job))
+        let figures = timed(&mut stages, "first_frame", || draw(drawing, job))
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
         let picture = timed(&mut stages, "read_back", || drawing.picture(&figures))?;
         timed(&mut stages, "write", || picture.write_rgb(&job.file))?;
@@ -228,16 +218,4 @@ fn draw_all(
     }
     progress.finish_and_clear();
     Ok((frames, first_picture_ms))
-}
-
-/// On a terminal only, and only for sequences.
-fn progress_bar(frames: u64, quiet: bool) -> ProgressBar {
-    if quiet || frames < 2 {
-        return ProgressBar::hidden();
-    }
-    let bar = ProgressBar::with_draw_target(Some(frames), ProgressDrawTarget::stderr());
-    match ProgressStyle::with_template("{wide_bar} {pos}/{len} frames, {eta} left") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

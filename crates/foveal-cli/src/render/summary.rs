@@ -5,6 +5,7 @@ use std::fmt::Write;
 use foveal::Timing;
 
 use super::stats::RunStats;
+use foveal_host::console::grouped;
 
 /// What was drawn, with what, how long it took, and where it is.
 pub(super) fn text(run: &RunStats) -> String {
@@ -78,29 +79,12 @@ fn ms(ms: f64) -> String {
     }
 }
 
-/// 1234567 as 1,234,567.
-pub(crate) fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn numbers_are_readable() {
-        assert_eq!(
-            [0, 999, 1000, 1_234_567].map(grouped),
-            ["0", "999", "1,000", "1,234,567"]
-        );
         assert_eq!(
             [0.123, 56.78, 999.6, 12_345.0].map(ms),
             ["0.12 ms", "56.8 ms", "1000 ms", "12.3 s"]

@@ -59,7 +59,7 @@ impl App {
             navigator.camera(),
             self.display.time_s,
         );
-        let quoted: Vec<String> = words.iter().map(|word| command::quoted(word)).collect();
+        let quoted: Vec<String> = words.iter().map(|word| (self.host.quoted)(word)).collect();
         Some(quoted.join(" "))
     }
 }

@@ -1,11 +1,8 @@
 //! Reference and chosen side compared while they are drawn in turn.
 
 use foveal::{FrameStats, Settings};
-use foveal_measure::{Comparison, Pair, Series, turn};
+use foveal_measure::{Comparison, FrameTimes, Turns};
 use foveal_scene::Camera;
-
-/// Frames of both sides that are drawn before any counts: drivers compile, and what adapts from frame to frame adapts.
-const WARM_UP: u64 = 8;
 
 /// What the pairs of frames say so far.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -25,9 +22,7 @@ pub(super) struct Measuring {
     reference: Settings,
     chosen: Settings,
     camera: Camera,
-    drawn: u64,
-    frames: Series,
-    passes: Series,
+    turns: Turns,
 }
 
 impl Measuring {
@@ -36,9 +31,7 @@ impl Measuring {
             reference: reference.clone(),
             chosen: chosen.clone(),
             camera: camera.clone(),
-            drawn: 0,
-            frames: Series::default(),
-            passes: Series::default(),
+            turns: Turns::default(),
         }
     }
 
@@ -48,36 +41,31 @@ impl Measuring {
 
     /// Whether the reference is drawn first in the next pair.
     pub(super) fn reference_first(&self) -> bool {
-        turn(self.drawn, 2)[0] == 0
+        self.turns.reference_first()
     }
 
     /// Takes over what both sides took for the pair that was just drawn.
     pub(super) fn add(&mut self, reference: &FrameStats, chosen: &FrameStats) {
-        let reference_first = self.reference_first();
-        self.drawn += 1;
-        if self.drawn <= WARM_UP || self.frames.is_done() {
-            return;
-        }
-        let pair = |ms: fn(&FrameStats) -> f64| Pair {
-            reference_ms: ms(reference),
-            chosen_ms: ms(chosen),
-            reference_first,
-        };
-        self.frames.push(pair(|stats| stats.frame_ms));
-        self.passes
-            .push(pair(|stats| stats.gpu_ms.iter().map(|pass| pass.ms).sum()));
+        self.turns.add(times(reference), times(chosen));
     }
 
     pub(super) fn is_done(&self) -> bool {
-        self.frames.is_done()
+        self.turns.is_done()
     }
 
     pub(super) fn compared(&self) -> Compared {
         Compared {
-            pairs: self.frames.pairs(),
-            frame: self.frames.found().cloned(),
-            passes: self.passes.found().cloned(),
+            pairs: self.turns.pairs(),
+            frame: self.turns.frame().cloned(),
+            passes: self.turns.passes().cloned(),
             is_done: self.is_done(),
         }
+    }
+}
+
+fn times(stats: &FrameStats) -> FrameTimes {
+    FrameTimes {
+        frame_ms: stats.frame_ms,
+        passes_ms: stats.gpu_ms.iter().map(|pass| pass.ms).sum(),
     }
 }

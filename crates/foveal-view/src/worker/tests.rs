@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use anyhow::bail;
 use foveal::{Antialiasing, Culling, RateSource, Settings, Shading};
+use foveal_generate as generate;
 use foveal_measure::Finding;
-use foveal_scene::generate;
 
 use super::{Compared, News, Request, Shown, Worker};
 use crate::{Host, Loaded};
@@ -31,6 +31,8 @@ fn worker() -> Worker {
         read_settings: |_| bail!("no files here"),
         rate_image: |_| Ok(None),
         flags: |_| Vec::new(),
+        exact_camera: |_| String::new(),
+        quoted: str::to_owned,
         scene_flags: Vec::new(),
     };
     Worker::start(Arc::new(host), || ()).expect("threads can be started")

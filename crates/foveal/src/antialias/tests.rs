@@ -1,6 +1,7 @@
 //! Anti-aliased frames against their twins, against each other and against plain frames of n times the size.
 
-use foveal_scene::{Camera, Projection, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Projection, Scene};
 use glam::Vec3;
 
 use super::twin::{SampleTexels, resolve};

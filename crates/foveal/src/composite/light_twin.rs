@@ -1,6 +1,7 @@
 //! The twin of samples' light and of the composite that puts pixels' surfaces into it: from the G-buffer and the lamps.
 
-use foveal_scene::{Camera, Projection, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Projection, Scene};
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use crate::gpu::read_level;

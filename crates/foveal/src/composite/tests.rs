@@ -1,6 +1,7 @@
 //! Composites on the device: exactness on affine radiance, and no mixing of surfaces.
 
-use foveal_scene::{Camera, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Scene};
 use glam::Vec3;
 
 use crate::testing::{f32_of_half, gpu, small, texels};

@@ -1,6 +1,7 @@
 //! The twin of the smooth composite: each pixel by itself, from the tiling, its samples and the G-buffer of one eye.
 
-use foveal_scene::{Camera, generate};
+use foveal_generate as generate;
+use foveal_scene::Camera;
 use glam::{IVec2, UVec2, Vec2, Vec3};
 
 use crate::gpu::read_level;

@@ -1,6 +1,7 @@
 //! The CPU twin of procedural materials, held to what both kinds of geometry write.
 
-use foveal_scene::{ProceduralLayers, generate};
+use foveal_generate as generate;
+use foveal_scene::ProceduralLayers;
 use glam::{IVec3, UVec3, Vec2, Vec3, Vec4};
 
 use crate::shading::twin::{position_at, unpack_surface};

@@ -1,8 +1,9 @@
 //! The CPU twin of the geometry pass: a ray per pixel against every triangle.
 
+use foveal_generate as generate;
 use foveal_scene::{
     AlphaMode, Camera, ColorSpace, Filter, Material, Projection, Sampler, Scene, Texture,
-    TextureRef, generate,
+    TextureRef,
 };
 use glam::{Mat3, Vec2, Vec3};
 

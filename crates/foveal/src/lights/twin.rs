@@ -1,6 +1,7 @@
 //! The CPU twin of light assignment, and what it must guarantee.
 
-use foveal_scene::{Camera, Projection, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Projection, Scene};
 use glam::{Vec2, Vec3};
 
 use super::{ClusterGrid, LightUniform};

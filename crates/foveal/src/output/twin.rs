@@ -1,6 +1,7 @@
 //! The CPU twins of the tone map and of the views.
 
-use foveal_scene::{Projection, generate};
+use foveal_generate as generate;
+use foveal_scene::Projection;
 use glam::{Mat3, Vec2, Vec3};
 
 use crate::shading::twin::unit_from_octahedral;

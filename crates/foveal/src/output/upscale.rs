@@ -46,7 +46,7 @@ impl Upscale {
 
 #[cfg(test)]
 mod tests {
-    use foveal_scene::generate;
+    use foveal_generate as generate;
 
     use crate::testing::{picture, rendered, small};
     use crate::{Geometry, RateSource, Shading};

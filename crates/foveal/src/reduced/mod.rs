@@ -6,7 +6,8 @@
 
 use std::sync::OnceLock;
 
-use foveal_scene::{Camera, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Scene};
 
 use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;

@@ -1,6 +1,7 @@
 //! The CPU twin of deferred shading: `surface.wgsl`, `lighting.wgsl` and `shading.wgsl` in plain Rust.
 
-use foveal_scene::{Camera, Projection, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Projection, Scene};
 use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
 use crate::lights::LightUniform;

@@ -5,54 +5,10 @@
 //! with tangents of ±1 and the recorded near plane sees exactly what was recorded; that this space is sheared
 //! against the world is all one to visibility. Matrices become affine placements of the recorded vertices.
 
+pub(crate) mod agreement;
 mod read;
 mod replay;
 
-pub(crate) use read::{Record, Recording, Verdict};
+pub(crate) use agreement::Agreement;
+pub(crate) use read::{Recording, Verdict};
 pub(crate) use replay::subjects;
-
-use foveal_cull::Visibility;
-use serde::Serialize;
-
-/// What a recording says of a query, and whether that question could be asked again.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub(crate) struct Recorded {
-    pub(crate) verdict: Verdict,
-}
-
-/// A recording's answers beside this culler's.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub(crate) struct Agreement {
-    pub(crate) queries: u64,
-    pub(crate) recorded_visible: u64,
-    pub(crate) recorded_occluded: u64,
-    pub(crate) recorded_view_culled: u64,
-    /// Both say visible, or both say culled.
-    pub(crate) agree: u64,
-    /// Recorded as occluded or view-culled, visible here.
-    pub(crate) kept_here: u64,
-    /// Recorded as visible, culled here.
-    pub(crate) culled_here: u64,
-}
-
-impl Agreement {
-    /// Counts; `None` without recorded answers.
-    pub(crate) fn of(recorded: &[Recorded], results: &[Visibility]) -> Option<Self> {
-        let mut a = Self::default();
-        for (recorded, result) in recorded.iter().zip(results) {
-            a.queries += 1;
-            match recorded.verdict {
-                Verdict::Visible => a.recorded_visible += 1,
-                Verdict::Occluded => a.recorded_occluded += 1,
-                Verdict::ViewCulled => a.recorded_view_culled += 1,
-                Verdict::Unknown => continue,
-            }
-            match (recorded.verdict == Verdict::Visible, result.is_visible()) {
-                (true, false) => a.culled_here += 1,
-                (false, true) => a.kept_here += 1,
-                _ => a.agree += 1,
-            }
-        }
-        (a.queries > 0).then_some(a)
-    }
-}

@@ -6,11 +6,12 @@ use std::ops::Range;
 use foveal_cull::{Aabb, Eye, Projection};
 use glam::{DAffine3, DMat3, DVec3, Vec3};
 
-use super::read::Triangles;
-use super::{Record, Recorded, Recording, Verdict};
-use crate::cull::occluders::{Occluders, Shape};
-use crate::cull::subject::{Occludees, Subject};
-use crate::cull::views::NamedEye;
+use super::agreement::Recorded;
+use super::read::{Record, Recording, Triangles, Verdict};
+use crate::cull::occludees::Occludees;
+use crate::cull::subject::Subject;
+use foveal_host::culling::NamedEye;
+use foveal_host::culling::{Occluders, Shape};
 
 /// Most subjects that a recording becomes. Each draws its occluders from the start, so that a recording in which
 /// every query follows a draw of its own would take time by the square of its length.

@@ -1,6 +1,7 @@
 //! The bins against their twin: by subgroups and by a hash table, at every pixel and at the samples of a mask.
 
-use foveal_scene::{Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::Scene;
 use glam::UVec2;
 
 use super::bins::BIN_BYTES;

@@ -1,8 +1,9 @@
 //! The visibility buffer against the rasterizer's own surfaces, and its bins against their twin.
 
+use foveal_generate as generate;
 use foveal_scene::{
     AlphaMode, Camera, ColorSpace, Filter, Material, Projection, Sampler, Scene, Texture,
-    TextureRef, generate,
+    TextureRef,
 };
 use glam::{Mat3, Mat4, Vec2, Vec3};
 

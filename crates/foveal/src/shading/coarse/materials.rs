@@ -1,6 +1,7 @@
 //! Coarse frames over a visibility buffer, materials being evaluated where tiles are sampled and nowhere else.
 
-use foveal_scene::{Camera, Projection, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Projection, Scene};
 use glam::UVec2;
 
 use super::block::sample_texel;

@@ -1,6 +1,7 @@
 //! Coarse frames on the device against full ones, against their twins, and against each other.
 
-use foveal_scene::{Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::Scene;
 
 use super::block::sample_texel;
 use crate::gpu::{MipChain, read_level};

@@ -1,6 +1,7 @@
 //! What light that is kept from frame to frame must keep to.
 
-use foveal_scene::{Camera, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Scene};
 
 use glam::UVec2;
 

@@ -1,6 +1,7 @@
 //! Variable shading of two eyes in one target, each against its own twin and against one eye alone.
 
-use foveal_scene::{Camera, Projection, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Projection};
 use glam::UVec2;
 
 use super::probes::Probes;

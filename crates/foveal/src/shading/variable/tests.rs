@@ -1,6 +1,7 @@
 //! Variable shading on the device against its twins, against full shading, and against time.
 
-use foveal_scene::{Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::Scene;
 use glam::{UVec2, Vec2, Vec3};
 
 use super::probes::{Probe, Probes};

@@ -1,6 +1,7 @@
 //! What must come out the same: two eyes in one place as one, and all ways of submission.
 
-use foveal_scene::{Camera, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Scene};
 use glam::Vec3;
 
 use super::{WAYS, halves, two_eyes};

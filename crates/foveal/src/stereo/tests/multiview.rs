@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use foveal_scene::generate;
+use foveal_generate as generate;
 
 use super::equal::difference;
 use super::{halves, two_eyes};

@@ -1,6 +1,7 @@
 //! The presentation's twin: what the shown picture is made from, in plain Rust.
 
-use foveal_scene::{Camera, Scene, generate};
+use foveal_generate as generate;
+use foveal_scene::{Camera, Scene};
 use glam::{Mat3, Vec2, Vec3};
 
 use super::two_eyes;

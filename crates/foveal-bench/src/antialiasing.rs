@@ -1,0 +1,391 @@
+//! `foveal bench antialiasing`: the source's comparison (none, MSAA, SSAA), and ours beside it.
+
+use foveal::{
+    Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment, LightingModel,
+    Renderer, SamplePattern, Settings,
+};
+use foveal_measure::{Comparison, Finding, median, turn};
+use foveal_scene::{Camera, Scene};
+use pollster::block_on;
+use serde::Serialize;
+
+use super::subject::{Header, Subject, SubjectArgs};
+use super::table::{jod_text, text};
+use foveal_host::clock::now_ms;
+use foveal_host::difference::Nearness;
+use foveal_host::picture::Picture;
+use foveal_host::values;
+use foveal_host::values::VariantParser;
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 2;
+
+/// Frames per second that the source reports on a GTX 960, Sponza, about 1000 x 1500: none, MSAA, SSAA.
+const SOURCE_FPS: [(&str, &str); 3] =
+    [("none", "> 60"), ("msaa", "about 30"), ("ssaa", "about 10")];
+
+/// Arguments of `foveal bench antialiasing`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    subject: SubjectArgs,
+
+    /// Width and height in pixels; the source's by default
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1000x1500")]
+    size: (u32, u32),
+
+    /// Add N coloured point lights to the scene
+    #[arg(long, value_name = "N", default_value_t = 200, value_parser = values::point_lights)]
+    point_lights: u32,
+
+    /// Which lights a sample looks at; the technique's source has no clusters: brute [default: clustered]
+    #[arg(long, value_name = "WHICH", value_parser = VariantParser::<LightAssignment>::new())]
+    lights: Option<LightAssignment>,
+
+    /// How light is reflected; the technique's source uses blinn-phong [default: ggx]
+    #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
+    lighting: Option<LightingModel>,
+
+    /// Frames of each mode after one that warms up; figures are medians over them. Below 10 there is no interval
+    #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..))]
+    rounds: u32,
+
+    /// Sub-samples of the SSAA picture that is taken for the truth; 0: leave it out
+    #[arg(long, value_name = "N", default_value_t = 64)]
+    reference: u32,
+}
+
+/// All figures of a run.
+#[derive(Debug, Serialize)]
+struct Report {
+    #[serde(flatten)]
+    header: Header,
+    point_lights: u32,
+    lights: LightAssignment,
+    lighting: LightingModel,
+    rounds: u32,
+    rows: Vec<Row>,
+}
+
+/// One mode's figures; times are medians in milliseconds.
+#[derive(Debug, Serialize)]
+struct Row {
+    /// What tells it from the others: "msaa grid 4 surface".
+    name: String,
+    scene: String,
+    width: u32,
+    height: u32,
+    geometry: Geometry,
+    mode: Antialiasing,
+    edge_test: EdgeTest,
+    pattern: SamplePattern,
+    samples: u32,
+    edge_fraction: f64,
+    shaded_samples: u64,
+    target_bytes: u64,
+    /// All from triangles to one surface per pixel.
+    gbuffer_ms: f64,
+    /// Shading, shading of edges, combination.
+    shade_ms: f64,
+    frame_ms: f64,
+    /// None / this: above 1 this takes less time; with the interval of the whole frame's, where there are rounds enough.
+    frame_ratio: f64,
+    frame_ratio_low: Option<f64>,
+    frame_ratio_high: Option<f64>,
+    finding: Finding,
+    shade_ratio: f64,
+    /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
+    flip_to_ssaa: f64,
+    flip_to_reference: Option<f64>,
+    /// The same in JOD at 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod_to_ssaa: Option<f32>,
+    jod_to_reference: Option<f32>,
+}
+
+/// One mode while it is measured.
+struct Mode {
+    renderer: Renderer,
+    picture: Option<Picture>,
+    rounds: Vec<Times>,
+    last: FrameStats,
+}
+
+#[derive(Clone, Copy)]
+struct Times {
+    gbuffer_ms: f64,
+    shade_ms: f64,
+    frame_ms: f64,
+}
+
+impl Times {
+    fn of(stats: &FrameStats) -> Self {
+        let sum = |names: &[&str]| {
+            let passes = stats.gpu_ms.iter();
+            passes
+                .filter(|t| names.contains(&t.name.as_str()))
+                .map(|t| t.ms)
+                .sum()
+        };
+        Self {
+            gbuffer_ms: sum(&[
+                "geometry",
+                "merge",
+                "sorting",
+                "classification",
+                "binning",
+                "material",
+            ]),
+            shade_ms: sum(&["shading", "edge shading", "combination"]),
+            frame_ms: stats.frame_ms,
+        }
+    }
+}
+
+/// The modes: the first by each geometry is what the others are compared with, the second of all what FLIP is.
+fn modes(base: &Settings) -> Vec<Settings> {
+    use Antialiasing::{Msaa, None, Ssaa};
+    use EdgeTest::{Paper, Surface};
+    use Geometry::{Gbuffer, Visibility};
+    use SamplePattern::{Grid, Rotated};
+    [
+        (Gbuffer, None, Surface, Grid, 4),
+        (Gbuffer, Ssaa, Surface, Grid, 4),
+        (Gbuffer, Msaa, Surface, Grid, 4),
+        (Visibility, None, Surface, Grid, 4),
+        (Visibility, Msaa, Surface, Grid, 4),
+        (Gbuffer, Msaa, Paper, Grid, 4),
+        (Gbuffer, Msaa, Surface, Rotated, 4),
+        (Gbuffer, Msaa, Surface, Rotated, 8),
+    ]
+    .map(|(geometry, aa, edge_test, pattern, samples)| Settings {
+        geometry,
+        aa,
+        edge_test,
+        pattern,
+        samples,
+        ..base.clone()
+    })
+    .to_vec()
+}
+
+/// Runs the benchmark.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    let subject = args.subject.open(args.point_lights)?;
+    let base = Settings {
+        width: args.size.0,
+        height: args.size.1,
+        lights: args.lights.unwrap_or_default(),
+        lighting: args.lighting.unwrap_or_default(),
+        ..Settings::default()
+    };
+    let report = Report {
+        header: subject.header("foveal-bench-antialiasing", SCHEMA_VERSION),
+        rows: rows(args, &subject, &base)?,
+        point_lights: args.point_lights,
+        lights: base.lights,
+        lighting: base.lighting,
+        rounds: args.rounds,
+    };
+    args.subject.give(&report, &summary(&report))
+}
+
+fn rows(
+    args: &Args,
+    Subject { gpu, scene, camera }: &Subject,
+    base: &Settings,
+) -> anyhow::Result<Vec<Row>> {
+    let mut modes = modes(base)
+        .iter()
+        .map(|settings| Mode::new(gpu, scene, settings))
+        .collect::<anyhow::Result<Vec<_>>>()?;
+    for mode in &mut modes {
+        mode.draw(camera, false)?;
+    }
+    for round in 0..u64::from(args.rounds) {
+        for number in turn(round, modes.len()) {
+            modes[number].draw(camera, true)?;
+        }
+    }
+    let reference = if args.reference > 0 {
+        let settings = Settings {
+            aa: Antialiasing::Ssaa,
+            samples: args.reference,
+            ..base.clone()
+        };
+        let mut mode = Mode::new(gpu, scene, &settings)?;
+        mode.draw(camera, false)?;
+        mode.picture
+    } else {
+        None
+    };
+    let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
+    Ok((modes.iter().zip(&pictures).enumerate())
+        .map(|(number, (mode, picture))| {
+            let near = |truth: &Picture| Nearness::of(truth, picture);
+            let reference = reference.as_ref().map(near);
+            // Each is compared with none by the same geometry.
+            let geometry = mode.renderer.settings().geometry;
+            let same = |m: &Mode| m.renderer.settings().geometry == geometry;
+            let none = modes.iter().position(same).unwrap_or(number);
+            let compared = |figure: fn(&Times) -> f64| {
+                let (none_ms, ms) = (modes[none].times(figure), mode.times(figure));
+                Comparison::of_rounds(modes.len(), (none, &none_ms), (number, &ms))
+            };
+            mode.row(&scene.name, &compared, near(&pictures[1]), reference)
+        })
+        .collect())
+}
+
+impl Mode {
+    fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
+        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        block_on(renderer.set_scene(scene))?;
+        Ok(Self {
+            renderer,
+            picture: None,
+            rounds: Vec::new(),
+            last: FrameStats::default(),
+        })
+    }
+
+    /// Draws one frame; the first one's picture is kept.
+    fn draw(&mut self, camera: &Camera, measured: bool) -> anyhow::Result<()> {
+        let frame = Frame {
+            camera,
+            previous_camera: None,
+        };
+        self.last = block_on(self.renderer.render(&frame))?;
+        if measured {
+            self.rounds.push(Times::of(&self.last));
+        }
+        if self.picture.is_none() {
+            let bytes = block_on(self.renderer.read_picture())?;
+            let (width, height) = (self.last.width, self.last.height);
+            self.picture = Some(Picture::from_rgba(width, height, &bytes)?);
+        }
+        Ok(())
+    }
+
+    fn times(&self, figure: fn(&Times) -> f64) -> Vec<f64> {
+        self.rounds.iter().map(figure).collect()
+    }
+
+    /// The mode's row; `compared` compares one of its times with that of none.
+    fn row(
+        &self,
+        scene: &str,
+        compared: &dyn Fn(fn(&Times) -> f64) -> Option<Comparison>,
+        to_ssaa: Nearness,
+        to_reference: Option<Nearness>,
+    ) -> Row {
+        let settings = self.renderer.settings();
+        let middle = |figure: fn(&Times) -> f64| median(&self.times(figure));
+        let frame = compared(|t| t.frame_ms);
+        let interval = frame.as_ref().and_then(|frame| frame.interval);
+        Row {
+            name: called(settings),
+            scene: scene.to_owned(),
+            width: settings.width,
+            height: settings.height,
+            geometry: settings.geometry,
+            mode: settings.aa,
+            edge_test: settings.edge_test,
+            pattern: settings.pattern,
+            samples: match settings.aa {
+                Antialiasing::None => 1,
+                _ => settings.samples,
+            },
+            edge_fraction: self.last.edge_fraction,
+            shaded_samples: self.last.shaded_samples,
+            target_bytes: self.last.target_bytes,
+            gbuffer_ms: middle(|t| t.gbuffer_ms),
+            shade_ms: middle(|t| t.shade_ms),
+            frame_ms: middle(|t| t.frame_ms),
+            frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
+            frame_ratio_low: interval.map(|ends| ends[0]),
+            frame_ratio_high: interval.map(|ends| ends[1]),
+            finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
+            shade_ratio: compared(|t| t.shade_ms).map_or(1.0, |shade| shade.ratio),
+            flip_to_ssaa: to_ssaa.flip,
+            flip_to_reference: to_reference.map(|near| near.flip),
+            jod_to_ssaa: to_ssaa.jod,
+            jod_to_reference: to_reference.and_then(|near| near.jod),
+        }
+    }
+}
+
+/// What tells a mode from the others.
+fn called(settings: &Settings) -> String {
+    let (mode, pattern) = (name_of(settings.aa), name_of(settings.pattern));
+    match settings.aa {
+        _ if settings.geometry == Geometry::Visibility => format!("{mode}, visibility"),
+        Antialiasing::None => mode,
+        Antialiasing::Ssaa => format!("{mode} {pattern} {}", settings.samples),
+        Antialiasing::Msaa => {
+            let test = name_of(settings.edge_test);
+            format!("{mode} {pattern} {} {test}", settings.samples)
+        }
+    }
+}
+
+/// A kebab-case name, as the settings file spells it.
+fn name_of(value: impl Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(name)) => name,
+        _ => String::new(),
+    }
+}
+
+fn summary(report: &Report) -> String {
+    let head = [
+        "mode",
+        "edges",
+        "G-buffer ms",
+        "shade ms",
+        "frame ms",
+        "none/frame",
+        "none/shade",
+        "FLIP to ssaa",
+        "FLIP to truth",
+        "JOD to truth",
+        "MB",
+        "source fps",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    for row in &report.rows {
+        let mode = name_of(row.mode);
+        let source = SOURCE_FPS.iter().find(|(m, _)| *m == mode);
+        lines.push(vec![
+            row.name.clone(),
+            format!("{:.2} %", row.edge_fraction * 100.0),
+            format!("{:.1}", row.gbuffer_ms),
+            format!("{:.1}", row.shade_ms),
+            format!("{:.1}", row.frame_ms),
+            match row.finding {
+                Finding::NoDifference => format!("~ {:.3}", row.frame_ratio),
+                _ => format!("{:.3}", row.frame_ratio),
+            },
+            format!("{:.3}", row.shade_ratio),
+            format!("{:.4}", row.flip_to_ssaa),
+            row.flip_to_reference
+                .map_or("-".to_owned(), |f| format!("{f:.4}")),
+            jod_text(row.jod_to_reference),
+            format!("{:.0}", row.target_bytes as f64 / 1e6),
+            source.map_or(String::new(), |(_, fps)| (*fps).to_owned()),
+        ]);
+    }
+    let about = report.rows.first().map_or(String::new(), |row| {
+        format!(
+            "{} at {}x{}, {} point lights added, {}, {}, {}, medians of {} rounds\n",
+            report.header.scene,
+            row.width,
+            row.height,
+            report.point_lights,
+            name_of(report.lights),
+            name_of(report.lighting),
+            report.header.adapter.name,
+            report.rounds
+        )
+    });
+    about + &text(&lines)
+}

@@ -1,0 +1,410 @@
+//! `foveal bench coarse`: full shading and coarse shading by each backend and composite, in turn, medians of all.
+//!
+//! Timed is lighting with composite: all passes but geometry, light assignment, forward, tone map and the counting
+//! of tiles for the statistics; the rate map is part of it. Materials that are evaluated after the rasterizer are timed
+//! besides.
+
+mod side;
+
+use foveal::{
+    CoarseBackend, Composite, Geometry, Gpu, LightAssignment, LightingModel, RateSource, RateStage,
+    RefineEdges, Settings, Shading,
+};
+use foveal_measure::{Comparison, Finding, median, turn};
+use foveal_scene::{Camera, Scene};
+use serde::Serialize;
+use side::{Side, fovea_differing, psnr};
+
+use super::subject::{Header, SubjectArgs};
+use super::table::{jod_text, text};
+use foveal_host::difference::Nearness;
+use foveal_host::values::VariantParser;
+use foveal_host::{scene_source, values};
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 2;
+
+/// Frames per second that the source reports (Radeon RX 560, 200 point lights, nine levels): each pixel, the
+/// interpolating composite, the nearest one.
+const SOURCE_FPS: [(&str, f64); 3] = [("full", 36.4), ("interpolated", 60.1), ("nearest", 68.6)];
+
+/// Arguments of `foveal bench coarse`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    subject: SubjectArgs,
+
+    /// Width and height; may be given several times [default: 1000x1500 and 1920x1080]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    size: Vec<(u32, u32)>,
+
+    /// Point lights in place of the scene's lights; may be given several times
+    #[arg(long, value_name = "N", default_values_t = [200])]
+    lights: Vec<u32>,
+
+    /// Range of each of them in metres; 0: no range, as in the technique's source [default: shorter the more
+    /// lights there are]
+    #[arg(long, value_name = "M", value_parser = values::non_negative)]
+    light_range: Option<f32>,
+
+    /// How light is reflected; the technique's source uses blinn-phong [default: ggx]
+    #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
+    lighting: Option<LightingModel>,
+
+    /// Radius where every pixel is shaded, by the picture's height; may be given several times
+    #[arg(long, value_name = "R", default_values_t = [0.125])]
+    fovea_inner: Vec<f32>,
+
+    /// Where geometric edges are shaded more finely [default: graded]
+    #[arg(long, value_name = "WHERE", value_parser = VariantParser::<RefineEdges>::new())]
+    refine_edges: Option<RefineEdges>,
+
+    /// How the G-buffer is filled [default: gbuffer]
+    #[arg(long, value_name = "HOW", value_parser = VariantParser::<Geometry>::new())]
+    geometry: Option<Geometry>,
+
+    /// What is done once per sample; may be given several times [default: auto]
+    #[arg(long, value_name = "STAGE", value_parser = VariantParser::<RateStage>::new())]
+    rate_stage: Vec<RateStage>,
+
+    /// Backends; may be given several times [default: stencil and compute]
+    #[arg(long, value_name = "HOW", value_parser = VariantParser::<Backend>::new())]
+    backend: Vec<Backend>,
+
+    /// Besides, rows over 10 to 2,000 lights and over fovea radii, at the last size by the last backend
+    #[arg(long)]
+    sweep: bool,
+
+    /// Rounds that are measured, after one that warms up; below 10 the ratio has no interval
+    #[arg(long, value_name = "N", default_value_t = 3)]
+    pairs: u32,
+}
+
+/// All figures of a run; docs/program.md describes the fields.
+#[derive(Debug, Serialize)]
+struct Report {
+    #[serde(flatten)]
+    header: Header,
+    rows: Vec<Row>,
+}
+
+/// One measurement.
+#[derive(Debug, Serialize)]
+struct Row {
+    scene: String,
+    width: u32,
+    height: u32,
+    lights: u32,
+    light_range_m: Option<f32>,
+    lighting: LightingModel,
+    fovea_inner: f32,
+    refine_edges: RefineEdges,
+    geometry: Geometry,
+    rate_stage: RateStage,
+    backend: Backend,
+    composite: Composite,
+    levels: u32,
+    shaded_fraction: f64,
+    /// Full / coarse, whole frames: above 1 coarse is faster; with its interval where there are pairs enough.
+    frame_ratio: f64,
+    frame_ratio_low: Option<f64>,
+    frame_ratio_high: Option<f64>,
+    finding: Finding,
+    full_ms: f64,
+    coarse_ms: f64,
+    /// Full / coarse, lighting alone.
+    ratio: f64,
+    /// Binning and evaluation of materials after the rasterizer; 0 where it does that itself.
+    full_material_ms: f64,
+    coarse_material_ms: f64,
+    full_frame_ms: f64,
+    coarse_frame_ms: f64,
+    flip_mean: f64,
+    /// At 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod: Option<f32>,
+    /// Share of pixels in the fovea's disc that differ: 0 where it is shaded as in full.
+    fovea_differing: f64,
+    /// `null` for equal pictures.
+    psnr: Option<f64>,
+}
+
+/// What a group of rows has in common.
+#[derive(Clone, Copy)]
+struct Case {
+    size: (u32, u32),
+    lights: u32,
+    fovea_inner: f32,
+}
+
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    let sizes = match args.size.as_slice() {
+        [] => &[(1000, 1500), (1920, 1080)][..],
+        given => given,
+    };
+    let backends = match args.backend.as_slice() {
+        [] => &[CoarseBackend::Stencil, CoarseBackend::Compute][..],
+        given => given,
+    };
+    let gpu = args.subject.begin()?;
+    let mut scene = scene_source::load(&args.subject.scene)?;
+    let camera = args.subject.viewpoint(&scene)?.at(&scene, 0.0);
+    let mut rows = Vec::new();
+    let mut measure = |case: Case, backends: &[Backend]| -> anyhow::Result<()> {
+        light(&mut scene, case.lights, args.light_range);
+        for row in measure(args, &gpu, &scene, &camera, case, backends)? {
+            print(&row);
+            rows.push(row);
+        }
+        Ok(())
+    };
+    let mut last = None;
+    for &lights in &args.lights {
+        for &size in sizes {
+            for &fovea_inner in &args.fovea_inner {
+                let case = Case {
+                    size,
+                    lights,
+                    fovea_inner,
+                };
+                measure(case, backends)?;
+                last = Some(case);
+            }
+        }
+    }
+    if let (true, Some(case), Some(&backend)) = (args.sweep, last, backends.last()) {
+        for lights in [10, 50, 500, 1000, 2000] {
+            measure(Case { lights, ..case }, &[backend])?;
+        }
+        for fovea_inner in [0.0, 0.0625, 0.25, 0.5] {
+            let case = Case {
+                fovea_inner,
+                ..case
+            };
+            measure(case, &[backend])?;
+        }
+    }
+    let report = Report {
+        header: Header::new(
+            ("foveal-bench-coarse", SCHEMA_VERSION),
+            &gpu,
+            &scene,
+            &camera,
+        ),
+        rows,
+    };
+    args.subject.give(&report, &beside_the_source(&report.rows))
+}
+
+/// Puts `count` point lights in place of the scene's.
+fn light(scene: &mut Scene, count: u32, range_m: Option<f32>) {
+    scene.lights.clear();
+    scene_source::add_point_lights(scene, count, 1);
+    if let Some(range_m) = range_m {
+        for light in &mut scene.lights {
+            light.range_m = (range_m > 0.0).then_some(range_m);
+        }
+    }
+}
+
+/// Rows for each backend and composite, nearest first.
+fn measure(
+    args: &Args,
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    case: Case,
+    backends: &[Backend],
+) -> anyhow::Result<Vec<Row>> {
+    let full_settings = Settings {
+        width: case.size.0,
+        height: case.size.1,
+        lights: LightAssignment::Brute,
+        lighting: args.lighting.unwrap_or_default(),
+        refine_edges: args.refine_edges.unwrap_or_default(),
+        // The map of the technique's source.
+        rate: RateSource::Radii,
+        fovea_inner: case.fovea_inner,
+        geometry: args.geometry.unwrap_or_default(),
+        ..Settings::default()
+    };
+    let mut full = Side::new(gpu, scene, camera, &full_settings)?;
+    let mut sides = Vec::new();
+    let rate_stages = match args.rate_stage.as_slice() {
+        [] => &[RateStage::Auto][..],
+        given => given,
+    };
+    for &rate_stage in rate_stages {
+        for &backend in backends {
+            for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
+                let settings = Settings {
+                    shading: Shading::Coarse,
+                    backend,
+                    composite,
+                    rate_stage,
+                    ..full_settings.clone()
+                };
+                sides.push(Side::new(gpu, scene, camera, &settings)?);
+            }
+        }
+    }
+    let count = sides.len() + 1;
+    for round in 0..u64::from(args.pairs.max(1)) {
+        for number in turn(round, count) {
+            match number.checked_sub(1) {
+                None => full.draw()?,
+                Some(number) => sides[number].draw()?,
+            }
+        }
+    }
+    let reference = full.picture()?;
+    (1..)
+        .zip(&sides)
+        .map(|(number, coarse)| {
+            let picture = coarse.picture()?;
+            let nearness = Nearness::of(&reference, &picture);
+            let settings = coarse.renderer.settings();
+            let of_full = (0, full.frame_ms.as_slice());
+            let frame = Comparison::of_rounds(count, of_full, (number, &coarse.frame_ms));
+            let interval = frame.as_ref().and_then(|frame| frame.interval);
+            let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
+            Ok(Row {
+                scene: args.subject.scene.clone(),
+                width: settings.width,
+                height: settings.height,
+                lights: case.lights,
+                light_range_m: args.light_range,
+                lighting: settings.lighting,
+                fovea_inner: settings.fovea_inner,
+                refine_edges: settings.refine_edges,
+                geometry: settings.geometry,
+                rate_stage: settings.rate_stage,
+                backend: settings.backend,
+                composite: settings.composite,
+                levels: u32::from(settings.coarsest_level) + 1,
+                shaded_fraction: coarse.shaded_fraction,
+                frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
+                frame_ratio_low: interval.map(|ends| ends[0]),
+                frame_ratio_high: interval.map(|ends| ends[1]),
+                finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
+                full_ms,
+                coarse_ms,
+                ratio: full_ms / coarse_ms,
+                full_material_ms: median(&full.material_ms),
+                coarse_material_ms: median(&coarse.material_ms),
+                full_frame_ms: median(&full.frame_ms),
+                coarse_frame_ms: median(&coarse.frame_ms),
+                flip_mean: nearness.flip,
+                jod: nearness.jod,
+                fovea_differing: fovea_differing(&reference, &picture, settings),
+                psnr: psnr(&reference, &picture),
+            })
+        })
+        .collect()
+}
+
+fn print(row: &Row) {
+    eprintln!(
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, {:.2} JOD, fovea {:.4}",
+        row.scene,
+        row.width,
+        row.height,
+        row.lights,
+        row.fovea_inner,
+        row.backend,
+        row.composite,
+        row.shaded_fraction * 100.0,
+        row.full_frame_ms,
+        row.coarse_frame_ms,
+        row.frame_ratio,
+        row.full_ms,
+        row.coarse_ms,
+        row.ratio,
+        row.full_material_ms,
+        row.coarse_material_ms,
+        row.flip_mean,
+        row.jod.unwrap_or(f32::NAN),
+        row.fovea_differing,
+    );
+}
+
+/// The source's table rebuilt: frames per second of whole frames and the gains over full shading, for the first case
+/// by its last backend.
+fn beside_the_source(rows: &[Row]) -> String {
+    let Some(first) = rows.first() else {
+        return String::new();
+    };
+    let of = |composite| {
+        let same = |r: &&Row| {
+            (r.width, r.height, r.lights, r.fovea_inner)
+                == (first.width, first.height, first.lights, first.fovea_inner)
+                && r.composite == composite
+        };
+        rows.iter().rfind(same)
+    };
+    let gain = |fps: f64, full: f64| format!("{:+.0} %", (fps / full - 1.0) * 100.0);
+    let full_fps = 1000.0 / first.full_frame_ms;
+    let source_full = SOURCE_FPS[0].1;
+    let mut lines = vec![
+        [
+            "",
+            "fps",
+            "gain",
+            "lighting",
+            "FLIP",
+            "JOD",
+            "source fps",
+            "gain",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        vec![
+            "full".to_owned(),
+            format!("{full_fps:.2}"),
+            String::new(),
+            "1.0x".to_owned(),
+            "0".to_owned(),
+            "10".to_owned(),
+            source_full.to_string(),
+        ],
+    ];
+    for (name, composite, source) in [
+        (
+            "interpolated (paper)",
+            Composite::Paper,
+            Some(SOURCE_FPS[1].1),
+        ),
+        ("nearest", Composite::Nearest, Some(SOURCE_FPS[2].1)),
+        ("smooth", Composite::Smooth, None),
+    ] {
+        let Some(row) = of(composite) else { continue };
+        let fps = 1000.0 / row.coarse_frame_ms;
+        lines.push(vec![
+            name.to_owned(),
+            format!("{fps:.2}"),
+            gain(fps, full_fps),
+            format!("{:.1}x", row.ratio),
+            format!("{:.4}", row.flip_mean),
+            jod_text(row.jod),
+            source.map_or("-".to_owned(), |s| s.to_string()),
+            source.map_or(String::new(), |s| gain(s, source_full)),
+        ]);
+    }
+    format!(
+        "{} at {}x{}, {} lights, whole frames; beside them the source's on a Radeon RX 560\n",
+        first.scene, first.width, first.height, first.lights
+    ) + &text(&lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lights_can_be_given_a_range_or_none() {
+        let mut scene = foveal_generate::cornell();
+        light(&mut scene, 7, Some(2.5));
+        assert!(scene.lights.len() == 7 && scene.lights.iter().all(|l| l.range_m == Some(2.5)));
+        light(&mut scene, 3, Some(0.0));
+        assert!(scene.lights.len() == 3 && scene.lights.iter().all(|l| l.range_m.is_none()));
+    }
+}

@@ -1,0 +1,246 @@
+//! `foveal bench culling`: what rasterizing occluders and testing boxes cost on the CPU.
+//!
+//! For each scene, camera and size a row per number of threads, as docs/cull-schema.md describes. Times are
+//! medians; numbers of threads take turns within each repetition, so that a busy machine is unfair to none.
+
+mod boxes;
+mod cameras;
+mod inside;
+mod plot;
+mod rows;
+mod scaling;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::Context;
+use serde::Serialize;
+
+use cameras::Cameras;
+use foveal_host::culling::CullingArgs;
+use foveal_host::culling::Occluders;
+use foveal_host::culling::Workers;
+use foveal_host::progress::progress_bar;
+use foveal_host::{atomic_file, console, scene_source, values};
+use rows::{Case, Row};
+
+/// Arguments of `foveal bench culling`.
+#[derive(Debug, Clone, clap::Args)]
+pub struct Args {
+    /// glTF 2.0 files or generated scenes
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
+    scenes: Vec<String>,
+
+    #[command(flatten)]
+    culling: CullingArgs,
+
+    /// `inside`: up to 48 cameras at eye height over floors with free space around, found by themselves, besides the
+    /// scene's own and eight around it. Or cameras from a JSON list, as for `foveal cull`, instead of these
+    #[arg(long, value_name = "inside|FILE.json")]
+    cameras: Option<cameras::Choice>,
+
+    /// Sizes of the depth buffer in pixels
+    #[arg(long, value_name = "WxH,…", value_parser = values::size, value_delimiter = ',')]
+    #[arg(default_value = "640x360,1280x720")]
+    sizes: Vec<(u32, u32)>,
+
+    /// Numbers of threads
+    #[arg(long, value_name = "N,…", value_delimiter = ',', default_value = "1,2")]
+    #[arg(value_parser = clap::value_parser!(u32).range(1..=256))]
+    threads: Vec<u32>,
+
+    /// How many random boxes are tested
+    #[arg(long, value_name = "N", default_value_t = 27_000)]
+    boxes: u32,
+
+    /// Times are medians of N repetitions, after three to warm up
+    #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    repetitions: u32,
+
+    /// Compare with an exact reference at the same resolution and at four times it; exit code 1 if anything
+    /// visible was culled. Slow
+    #[arg(long)]
+    check: bool,
+
+    /// Write the rows as JSON (see docs/cull-schema.md); `-` prints them instead of the table
+    #[arg(long, value_name = "FILE.json|-")]
+    json: Option<PathBuf>,
+
+    /// Instead of SCENE: cost against occluder triangles, boxes, resolution and threads on generated scenes,
+    /// as CSV, with a plot of the same name ending in .svg beside it
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenes", "cameras", "json", "check"])]
+    scaling: Option<PathBuf>,
+
+    /// Show no progress
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+#[derive(Serialize)]
+struct Report<'a> {
+    schema: &'static str,
+    schema_version: u32,
+    program_version: &'static str,
+    instruction_set: String,
+    repetitions: u32,
+    rows: &'a [Row],
+}
+
+/// Measures what the arguments ask for.
+pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
+    if let Some(file) = &args.scaling {
+        return scaling::run(file, args.repetitions, args.quiet);
+    }
+    let json_to_stdout = args.json.as_deref() == Some(Path::new("-"));
+    let json_file = args.json.as_ref().filter(|_| !json_to_stdout);
+    if let Some(file) = json_file {
+        atomic_file::check_writable(file)?;
+    }
+    let rows = measure(args)?;
+    if args.json.is_some() {
+        let report = Report {
+            schema: "foveal-bench-culling",
+            schema_version: 1,
+            program_version: env!("CARGO_PKG_VERSION"),
+            instruction_set: format!("{:?}", foveal_cull::InstructionSet::detect()),
+            repetitions: args.repetitions,
+            rows: &rows,
+        };
+        let json = serde_json::to_string_pretty(&report)? + "\n";
+        match json_file {
+            Some(file) => atomic_file::write(file, json.as_bytes())?,
+            None => console::print_result(&json)?,
+        }
+    }
+    if !json_to_stdout {
+        console::print_result(&rows::table(&rows))?;
+    }
+    if rows.iter().any(Row::is_wrong) {
+        anyhow::bail!("visible boxes were culled; see the columns 'wrong' and 'wrong 4x'");
+    }
+    Ok(())
+}
+
+fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
+    let workers: Vec<(u32, Workers)> = args
+        .threads
+        .iter()
+        .map(|&count| (count, Workers::new(count)))
+        .collect();
+    let mut rows = Vec::new();
+    for name in &args.scenes {
+        let scene = scene_source::load(name)?;
+        let occluders = Occluders::of_scene(&scene, &args.culling.occluders)?;
+        let boxes = boxes::random(scene.bounds(), args.boxes);
+        let cameras = Cameras::new(&scene, &occluders, args.cameras.as_ref())?;
+        let mut cases = Vec::new();
+        for &(width, height) in &args.sizes {
+            let aspect = f64::from(width) / f64::from(height);
+            for eye in cameras.eyes(aspect)? {
+                cases.push(((width, height), eye));
+            }
+        }
+        let progress = progress_bar(cases.len() as u64, "views", args.quiet);
+        for (size, eye) in &cases {
+            let case = Case {
+                scene: &scene.name,
+                eye,
+                size: *size,
+                occluders: &occluders,
+                boxes: &boxes,
+                culling: &args.culling,
+            };
+            let measured = case
+                .measure(&workers, args.repetitions, args.check)
+                .with_context(|| format!("the camera '{}' of '{}'", eye.name, scene.name))?;
+            rows.extend(measured);
+            progress.inc(1);
+        }
+        progress.finish_and_clear();
+    }
+    Ok(rows)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    fn args(words: &[&str]) -> Args {
+        let line = ["culling", "--quiet", "--repetitions", "1"]
+            .iter()
+            .chain(words);
+        Line::try_parse_from(line).unwrap().args
+    }
+
+    #[test]
+    fn there_is_a_row_per_camera_size_and_number_of_threads() {
+        let rows = measure(&args(&[
+            "cornell",
+            "--sizes",
+            "64x32,32x64",
+            "--boxes",
+            "100",
+        ]))
+        .unwrap();
+        let scene = scene_source::load("cornell").unwrap();
+        let cameras = foveal_host::culling::own_cameras(&scene).len() + 8;
+        assert_eq!(rows.len(), cameras * 2 * 2);
+        let json = serde_json::to_value(&rows[0]).unwrap();
+        for key in [
+            "scene",
+            "camera",
+            "width",
+            "height",
+            "threads",
+            "occluder_triangles",
+            "raster_ms",
+            "query_boxes",
+            "query_ms",
+            "query_ns_per_box",
+            "culled",
+            "visible",
+            "false_occluded",
+            "false_occluded_4x",
+            "missed",
+        ] {
+            assert!(json.get(key).is_some(), "{key}");
+        }
+        assert!(json["missed"].is_null());
+    }
+
+    #[test]
+    fn cameras_inside_come_besides_the_others_or_are_refused() {
+        let words = ["--cameras", "inside", "--sizes", "64x32", "--threads", "1"];
+        let with = |scene: &str, words: &[&str]| measure(&args(&[&[scene], words].concat()));
+        let all = with("demo:1000", &words).unwrap();
+        let others = with("demo:1000", &words[2..]).unwrap();
+        let inside = all.len() - others.len();
+        assert!(inside > 0 && inside.is_multiple_of(4), "{inside}");
+        let scene = scene_source::load("cornell").unwrap();
+        let choice = Some(&cameras::Choice::Inside);
+        let refused = Cameras::new(&scene, &Occluders::default(), choice);
+        let refused = refused.err().unwrap().to_string();
+        assert!(refused.contains("no floor"), "{refused}");
+    }
+
+    #[test]
+    fn checked_rows_have_no_visible_box_culled() {
+        let rows = measure(&args(&[
+            "demo:1000",
+            "--sizes",
+            "96x54",
+            "--boxes",
+            "500",
+            "--check",
+        ]))
+        .unwrap();
+        assert!(!rows.is_empty() && !rows.iter().any(Row::is_wrong));
+        assert!(rows.iter().all(|r| r.check.missed.is_some()));
+    }
+}

@@ -1,0 +1,76 @@
+//! `foveal bench`: what each technique costs and gains against its plain reference. One file per technique.
+//!
+//! Modes are measured in turn, round after round, and compared within each round, so that a machine that is
+//! busy with something else slows all of them alike.
+
+mod antialiasing;
+mod changes;
+mod coarse;
+mod culling;
+mod eye;
+mod figures;
+mod report;
+mod stereo;
+mod subject;
+mod table;
+mod variable;
+mod verdict;
+
+pub use report::planned_commands;
+
+use clap::Subcommand;
+
+/// What to measure.
+#[derive(Debug, Subcommand)]
+pub enum BenchCommand {
+    /// Which settings make this scene faster on this machine, and at what error
+    Verdict(Box<verdict::Args>),
+    /// Rasterizing occluders and testing boxes on the CPU
+    Culling(Box<culling::Args>),
+    /// Coarse shading against shading every pixel
+    Coarse(coarse::Args),
+    /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
+    Antialiasing(antialiasing::Args),
+    /// What an eye sees of each way of shading, on displays: JOD, lit samples, time, flicker
+    Eye(eye::Args),
+    /// Shading at a rate that the content decides against shading every pixel
+    Variable(variable::Args),
+    /// Two eyes by each way of submission, against one eye and against two passes
+    Stereo(stereo::Args),
+    /// The verdict and all benches as one report: a page with pictures and plots, JSON, CSV
+    All(report::Args),
+    /// What became slower between two reports
+    Diff(report::diff::Args),
+}
+
+impl BenchCommand {
+    /// The words after `foveal` that lead to this command's help.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Verdict(_) => "bench verdict",
+            Self::Culling(_) => "bench culling",
+            Self::Coarse(_) => "bench coarse",
+            Self::Eye(_) => "bench eye",
+            Self::Antialiasing(_) => "bench antialiasing",
+            Self::Variable(_) => "bench variable",
+            Self::Stereo(_) => "bench stereo",
+            Self::All(_) => "bench all",
+            Self::Diff(_) => "bench diff",
+        }
+    }
+
+    /// Measures, and prints or writes the figures.
+    pub fn run(&self) -> anyhow::Result<()> {
+        match self {
+            Self::Verdict(args) => verdict::run(args),
+            Self::Culling(args) => culling::run(args),
+            Self::Coarse(args) => coarse::run(args),
+            Self::Eye(args) => eye::run(args),
+            Self::Antialiasing(args) => antialiasing::run(args),
+            Self::Variable(args) => variable::run(args),
+            Self::Stereo(args) => stereo::run(args),
+            Self::All(args) => report::run(args),
+            Self::Diff(args) => report::diff::run(args),
+        }
+    }
+}

@@ -1,0 +1,284 @@
+//! `foveal bench all`: every bench in turn, and one page: what to adopt for this scene, then each technique beside its
+//! source.
+//!
+//! Each bench runs in a process of its own, several passes over, so that one that fails takes nothing else down
+//! and the passes tell how steady the figures are. All figures go into one JSON value; page and CSV are made from it
+//! and from nothing else.
+
+mod bench;
+mod csv;
+pub(crate) mod diff;
+mod html;
+mod merge;
+mod page;
+mod pictures;
+mod plan;
+mod plots;
+mod published;
+mod tables;
+#[cfg(test)]
+mod tests;
+mod verdict;
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use anyhow::{Context, bail};
+use clap::builder::PossibleValuesParser;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use serde_json::{Value, json};
+
+use bench::Bench;
+use foveal_host::{atomic_file, console, scene_source, values};
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 2;
+
+/// Arguments of `foveal bench all`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// A glTF 2.0 file or a generated scene
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
+    scene: String,
+
+    /// The folder for report.html, report.json and report.csv; made if it is not there
+    #[arg(long, value_name = "DIR")]
+    report: PathBuf,
+
+    /// Small pictures and few repetitions: about five minutes on a machine without a graphics card
+    #[arg(long)]
+    quick: bool,
+
+    /// Width and height in pixels [default: 1280x720; with --quick 480x270]
+    #[arg(long, value_name = "WxH", value_parser = values::size)]
+    size: Option<(u32, u32)>,
+
+    /// Only these benches; the others are listed as skipped
+    #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
+    #[arg(value_parser = PossibleValuesParser::new(plan::BENCHES.iter().map(|bench| bench.name)))]
+    only: Vec<String>,
+
+    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    #[arg(long, value_name = "NAME|NUMBER")]
+    adapter: Option<String>,
+
+    /// Show no progress
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+/// Runs everything and writes the report.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    std::fs::create_dir_all(&args.report)
+        .with_context(|| format!("cannot make the folder '{}'", args.report.display()))?;
+    for name in ["report.html", "report.json", "report.csv"] {
+        atomic_file::check_writable(&args.report.join(name))?;
+    }
+    let size = args
+        .size
+        .unwrap_or(if args.quick { (480, 270) } else { (1280, 720) });
+    let start = Instant::now();
+    let passes = if args.quick { 2 } else { 3 };
+    let steps: usize = plan::BENCHES.iter().map(|b| b.passes(passes) + 1).sum();
+    let progress = progress(args.quiet, steps as u64);
+    let mut benches = Vec::new();
+    let mut failures = Vec::new();
+    for bench in plan::BENCHES {
+        progress.set_message(bench.title);
+        let measured = measure(args, bench, size, bench.passes(passes), &progress);
+        if let (Some("failed"), Some(cause)) =
+            (measured["status"].as_str(), measured["cause"].as_str())
+        {
+            failures.push(format!("{}: {cause}", bench.name));
+        }
+        benches.push(measured);
+    }
+    progress.finish_and_clear();
+    let adapter = match foveal_host::gpu::open(args.adapter.as_deref()) {
+        Ok(gpu) => serde_json::to_value(gpu.adapter_stats())?,
+        Err(error) => json!({ "name": format!("{error:#}") }),
+    };
+    let report = json!({
+        "schema": "foveal-report",
+        "schema_version": SCHEMA_VERSION,
+        "program_version": env!("CARGO_PKG_VERSION"),
+        "scene": args.scene,
+        "quick": args.quick,
+        "width": size.0,
+        "height": size.1,
+        "passes": passes,
+        "minutes": start.elapsed().as_secs_f64() / 60.0,
+        "machine": machine(),
+        "adapter": adapter,
+        "benches": benches,
+    });
+    let write =
+        |name: &str, text: &str| atomic_file::write(&args.report.join(name), text.as_bytes());
+    // The pictures are in the page; the JSON names them.
+    let mut figures = report.clone();
+    pictures::strip(&mut figures);
+    write(
+        "report.json",
+        &(serde_json::to_string_pretty(&figures)? + "\n"),
+    )?;
+    write("report.csv", &csv::of(&figures))?;
+    write("report.html", &page::of(&report))?;
+    console::print_result(&format!("{}\n", args.report.join("report.html").display()))?;
+    if failures.is_empty() {
+        Ok(())
+    } else {
+        bail!(
+            "the report is written, but not every bench ran: {}",
+            failures.join("; ")
+        )
+    }
+}
+
+/// On a terminal only.
+fn progress(quiet: bool, steps: u64) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::with_draw_target(Some(steps), ProgressDrawTarget::stderr());
+    match ProgressStyle::with_template("{wide_bar} {pos}/{len} {msg}, {eta} left") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// The words of all commands that a report of this scene runs, so that the program can hold them to its own arguments.
+#[must_use]
+pub fn planned_commands(scene: &str) -> Vec<Vec<String>> {
+    let place = Path::new("figures");
+    let words = |bench: &Bench| {
+        let mut command = Command::new("foveal");
+        command.args(bench.words(scene, (480, 270), true, Some("0")));
+        bench.output(&mut command, place, &place.join("figures.json"));
+        let words = command.get_args().map(|word| word.to_string_lossy());
+        words.map(std::borrow::Cow::into_owned).collect()
+    };
+    plan::BENCHES.iter().map(words).collect()
+}
+
+/// One bench as the JSON shows it, whatever became of it.
+fn measure(
+    args: &Args,
+    bench: &Bench,
+    size: (u32, u32),
+    passes: usize,
+    progress: &ProgressBar,
+) -> Value {
+    let start = Instant::now();
+    let words = bench.words(&args.scene, size, args.quick, args.adapter.as_deref());
+    let mut result = json!({
+        "name": bench.name,
+        "title": bench.title,
+        "about": bench.about,
+        "commands": bench.command_lines(&words),
+        "published": published::of(bench.name),
+        "status": "measured",
+        "cause": null,
+        "rows": [],
+        "pictures": [],
+    });
+    if !args.only.is_empty() && !args.only.iter().any(|name| name == bench.name) {
+        result["status"] = "skipped".into();
+        result["cause"] = "not asked for".into();
+        progress.inc(passes as u64 + 1);
+        return result;
+    }
+    let mut all = Vec::new();
+    for _ in 0..passes {
+        match pass(bench, &words) {
+            Ok(rows) => all.push(rows),
+            Err(error) => {
+                result["status"] = "failed".into();
+                result["cause"] = format!("{error:#}").into();
+            }
+        }
+        progress.inc(1);
+        if result["status"] == "failed" {
+            progress.inc((passes - all.len()) as u64);
+            return result;
+        }
+    }
+    result["rows"] = merge::passes(bench, &all);
+    if !bench.pairs.is_empty() {
+        match pictures::draw(bench, &args.scene, size, args.adapter.as_deref()) {
+            Ok(pictures) => result["pictures"] = pictures.into(),
+            Err(error) => {
+                result["status"] = "failed".into();
+                result["cause"] = format!("its pictures: {error:#}").into();
+            }
+        }
+    }
+    progress.inc(1);
+    result["seconds"] = start.elapsed().as_secs_f64().into();
+    result
+}
+
+/// One pass: the rows of each variant, or of the bench itself where it has none.
+fn pass(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
+    if bench.variants.is_empty() {
+        return once(bench, words);
+    }
+    let mut rows: Vec<Value> = Vec::new();
+    for variant in bench.variants {
+        let words: Vec<String> = (words.iter().cloned())
+            .chain(variant.iter().map(|&word| word.to_owned()))
+            .collect();
+        for mut row in once(bench, &words)? {
+            row["variant"] = variant.join(" ").into();
+            rows.push(row);
+        }
+    }
+    let first_ms = rows.first().and_then(|row| row[bench.cost].as_f64());
+    for row in &mut rows {
+        if let (Some(first), Some(ms)) = (first_ms, row[bench.cost].as_f64()) {
+            row["ratio_to_first"] = (first / ms).into();
+        }
+    }
+    Ok(rows)
+}
+
+/// Runs the bench in a process of its own; the rows it wrote.
+fn once(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
+    let folder = tempfile::tempdir()?;
+    let file = folder.path().join("figures.json");
+    let mut command = Command::new(std::env::current_exe()?);
+    command.args(words);
+    bench.output(&mut command, folder.path(), &file);
+    let output = command.stdin(Stdio::null()).output()?;
+    if !output.status.success() {
+        let said = String::from_utf8_lossy(&output.stderr);
+        let said = said.lines().rev().find(|line| !line.trim().is_empty());
+        bail!("{}", said.unwrap_or("it ended without a word"));
+    }
+    rows(bench, &file)
+}
+
+fn rows(bench: &Bench, file: &Path) -> anyhow::Result<Vec<Value>> {
+    let text = std::fs::read_to_string(file).context("it wrote no figures")?;
+    let figures: Value = serde_json::from_str(&text).context("its figures are no JSON")?;
+    let rows = match (bench.rows)(&figures) {
+        Some(rows) if !rows.is_empty() => rows,
+        _ => bail!("its figures have no rows"),
+    };
+    Ok(rows)
+}
+
+/// What the figures were measured on.
+fn machine() -> Value {
+    let processor = std::fs::read_to_string("/proc/cpuinfo")
+        .ok()
+        .and_then(|text| {
+            let line = text.lines().find(|line| line.starts_with("model name"))?;
+            Some(line.split_once(':')?.1.trim().to_owned())
+        });
+    json!({
+        "processor": processor.unwrap_or_else(|| std::env::consts::ARCH.to_owned()),
+        "threads": std::thread::available_parallelism().map_or(1, usize::from),
+        "system": std::env::consts::OS,
+    })
+}

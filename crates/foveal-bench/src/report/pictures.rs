@@ -1,0 +1,173 @@
+//! Before and after, as the page shows them.
+
+use anyhow::Context;
+use foveal::{Frame, Gpu, Renderer, Settings};
+use foveal_host::command_line::quoted;
+use foveal_scene::{Camera, Scene};
+use image::codecs::jpeg::JpegEncoder;
+use image::{ExtendedColorType, ImageEncoder};
+use pollster::block_on;
+use serde_json::{Value, json};
+
+use super::bench::Bench;
+use crate::changes::{Changes, changed};
+use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::difference::{BENCH_DISPLAY, ErrorMap, jod};
+use foveal_host::picture::Picture;
+use foveal_host::settings::flags;
+use foveal_host::{gpu, scene_source};
+
+/// Frames until a rate that follows the last picture has settled.
+const FRAMES: u32 = 3;
+
+/// How well the page's pictures keep what they show.
+const JPEG_QUALITY: u8 = 88;
+
+/// The pairs of a bench.
+pub(super) fn draw(
+    bench: &Bench,
+    scene_name: &str,
+    size: (u32, u32),
+    adapter: Option<&str>,
+) -> anyhow::Result<Vec<Value>> {
+    let gpu = gpu::open(adapter)?;
+    let mut scene = scene_source::load(scene_name)?;
+    scene.light_by_default();
+    let camera = Viewpoint::choose(&CameraArgs::default(), &scene, scene_name)?.at(&scene, 0.0);
+    let flag = adapter.map_or_else(String::new, |name| format!(" --adapter {}", quoted(name)));
+    let mut pictures = Vec::new();
+    for pair in bench.pairs {
+        let (before, before_settings) = one(&gpu, &scene, &camera, size, pair.before)?;
+        let (after, after_settings) = one(&gpu, &scene, &camera, size, pair.after)?;
+        let map = ErrorMap::between(&before, &after);
+        let shown = before_settings.picture_size();
+        pictures.push(json!({
+            "title": pair.title,
+            "before_flags": spelled(scene_name, "before.png", &before_settings, &flag),
+            "after_flags": spelled(scene_name, "after.png", &after_settings, &flag),
+            "compare": format!("foveal compare before.png after.png --display {BENCH_DISPLAY}"),
+            "flip_mean": map.mean(),
+            "jod": jod(&before, &after),
+            "before": jpeg(&before.rgb_bytes(), shown)?,
+            "after": jpeg(&after.rgb_bytes(), shown)?,
+            "difference": jpeg(&map.heat_rgb(), shown)?,
+        }));
+    }
+    Ok(pictures)
+}
+
+/// Takes the pictures themselves out of a report.
+pub(super) fn strip(report: &mut Value) {
+    for bench in report["benches"].as_array_mut().into_iter().flatten() {
+        for picture in bench["pictures"].as_array_mut().into_iter().flatten() {
+            if let Some(picture) = picture.as_object_mut() {
+                for key in ["before", "after", "difference"] {
+                    picture.remove(key);
+                }
+            }
+        }
+    }
+}
+
+/// The command that draws it.
+fn spelled(scene: &str, output: &str, settings: &Settings, adapter: &str) -> String {
+    let (scene, flags) = (quoted(scene), flags(settings).join(" "));
+    let warmup = FRAMES - 1;
+    format!("foveal render {scene} --output {output} --warmup {warmup} {flags}{adapter}")
+}
+
+fn one(
+    gpu: &Gpu,
+    scene: &Scene,
+    camera: &Camera,
+    size: (u32, u32),
+    changes: Changes,
+) -> anyhow::Result<(Picture, Settings)> {
+    let settings = settings(size, changes)?;
+    let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
+    block_on(renderer.set_scene(scene))?;
+    let frame = Frame {
+        camera,
+        previous_camera: Some(camera),
+    };
+    for _ in 0..FRAMES {
+        block_on(renderer.render(&frame))?;
+    }
+    let bytes = block_on(renderer.read_picture())?;
+    let (width, height) = settings.picture_size();
+    Ok((Picture::from_rgba(width, height, &bytes)?, settings))
+}
+
+/// Settings that differ from the defaults by these.
+fn settings(size: (u32, u32), changes: Changes) -> anyhow::Result<Settings> {
+    let plain = Settings {
+        width: size.0,
+        height: size.1,
+        ..Settings::default()
+    };
+    changed(&plain, changes)
+}
+
+/// A data URL.
+fn jpeg(rgb: &[u8], (width, height): (u32, u32)) -> anyhow::Result<String> {
+    let mut bytes = Vec::new();
+    JpegEncoder::new_with_quality(&mut bytes, JPEG_QUALITY)
+        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
+        .context("cannot encode a picture")?;
+    Ok(format!("data:image/jpeg;base64,{}", base64(&bytes)))
+}
+
+/// RFC 4648, section 4.
+fn base64(bytes: &[u8]) -> String {
+    const LETTERS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
+    for chunk in bytes.chunks(3) {
+        let byte = |i: usize| u32::from(chunk.get(i).copied().unwrap_or(0));
+        let word = byte(0) << 16 | byte(1) << 8 | byte(2);
+        for i in 0..4 {
+            if i <= chunk.len() {
+                let letter = LETTERS[(word >> (18 - 6 * i) & 63) as usize];
+                text.push(char::from(letter));
+            } else {
+                text.push('=');
+            }
+        }
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::plan::BENCHES;
+    use super::{base64, settings};
+
+    #[test]
+    fn every_pair_differs_in_settings_that_are_there() {
+        for pair in BENCHES.iter().flat_map(|bench| bench.pairs) {
+            let [before, after] = [pair.before, pair.after].map(|changes| {
+                let settings = settings((64, 48), changes).expect(pair.title);
+                settings
+                    .validate(&wgpu::Limits::default())
+                    .expect(pair.title);
+                settings
+            });
+            assert_ne!(before, after, "{}", pair.title);
+        }
+    }
+
+    /// The examples of RFC 4648, section 10.
+    #[test]
+    fn base64_is_that_of_the_standard() {
+        for (bytes, text) in [
+            ("", ""),
+            ("f", "Zg=="),
+            ("fo", "Zm8="),
+            ("foo", "Zm9v"),
+            ("foob", "Zm9vYg=="),
+            ("fooba", "Zm9vYmE="),
+            ("foobar", "Zm9vYmFy"),
+        ] {
+            assert_eq!(base64(bytes.as_bytes()), text);
+        }
+    }
+}

@@ -1,0 +1,124 @@
+//! What a bench on a graphics adapter is about, and where its figures go: the same arguments for each.
+
+use foveal::{AdapterStats, Gpu};
+use foveal_host::command_line::quoted;
+use foveal_scene::{Camera, Scene};
+use serde::Serialize;
+
+use super::figures::FigureArgs;
+use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::scene_source;
+
+/// Frames that compile shaders, and in which what adapts from frame to frame adapts.
+pub(super) const WARM_UP: u32 = 8;
+
+/// A scene, where it is seen from, and what draws it.
+#[derive(Debug, Clone, clap::Args)]
+pub(super) struct SubjectArgs {
+    /// A glTF 2.0 file or a generated scene
+    #[arg(default_value = scene_source::DEFAULT_SCENE)]
+    pub(super) scene: String,
+
+    #[command(flatten)]
+    pub(super) camera: CameraArgs,
+
+    #[command(flatten)]
+    pub(super) figures: FigureArgs,
+}
+
+/// What a bench's JSON begins with.
+#[derive(Debug, Serialize)]
+pub(super) struct Header {
+    schema: &'static str,
+    schema_version: u32,
+    pub(super) adapter: AdapterStats,
+    pub(super) scene: String,
+    camera: String,
+}
+
+impl Header {
+    pub(super) fn new(
+        (schema, schema_version): (&'static str, u32),
+        gpu: &Gpu,
+        scene: &Scene,
+        camera: &Camera,
+    ) -> Self {
+        Self {
+            schema,
+            schema_version,
+            adapter: gpu.adapter_stats(),
+            scene: scene.name.clone(),
+            camera: camera.name.clone(),
+        }
+    }
+}
+
+/// The device and the scene, lit, with the first view of it.
+pub(super) struct Subject {
+    pub(super) gpu: Gpu,
+    pub(super) scene: Scene,
+    pub(super) camera: Camera,
+}
+
+impl SubjectArgs {
+    /// Opens the device; fails before that where the figures could not be written.
+    pub(super) fn begin(&self) -> anyhow::Result<Gpu> {
+        self.figures.begin()
+    }
+
+    /// The scene as `foveal render` draws it with so many lights added.
+    pub(super) fn scene(&self, point_lights: u32) -> anyhow::Result<Scene> {
+        let mut scene = scene_source::load(&self.scene)?;
+        scene_source::add_point_lights(&mut scene, point_lights, 0);
+        scene.light_by_default();
+        Ok(scene)
+    }
+
+    /// Where the scene is seen from.
+    pub(super) fn viewpoint(&self, scene: &Scene) -> anyhow::Result<Viewpoint> {
+        Viewpoint::choose(&self.camera, scene, &self.scene)
+    }
+
+    /// Where the scene is seen from along another path.
+    pub(super) fn along(&self, path: &CameraArgs, scene: &Scene) -> anyhow::Result<Viewpoint> {
+        Viewpoint::choose(path, scene, &self.scene)
+    }
+
+    /// Device, scene and first view.
+    pub(super) fn open(&self, point_lights: u32) -> anyhow::Result<Subject> {
+        let gpu = self.begin()?;
+        let scene = self.scene(point_lights)?;
+        let camera = self.viewpoint(&scene)?.at(&scene, 0.0);
+        Ok(Subject { gpu, scene, camera })
+    }
+
+    /// What `foveal render` is told to draw the subject as a bench does that has warmed up, but for settings.
+    pub(super) fn words(&self, point_lights: u32, output: &str) -> String {
+        let mut words = vec![self.scene.clone(), "--output".to_owned(), output.to_owned()];
+        words.extend(["--warmup".to_owned(), WARM_UP.to_string()]);
+        if point_lights > 0 {
+            words.extend(["--point-lights".to_owned(), point_lights.to_string()]);
+        }
+        words.extend(self.camera.flags());
+        words.extend(self.figures.adapter_flags());
+        let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+        words.join(" ")
+    }
+
+    /// Writes the report where it was asked for, and prints it or the table.
+    pub(super) fn give(&self, report: &impl Serialize, table: &str) -> anyhow::Result<()> {
+        self.figures.give(report, table)
+    }
+}
+
+impl Subject {
+    /// What the bench's JSON begins with.
+    pub(super) fn header(&self, schema: &'static str, schema_version: u32) -> Header {
+        Header::new(
+            (schema, schema_version),
+            &self.gpu,
+            &self.scene,
+            &self.camera,
+        )
+    }
+}

@@ -1,0 +1,223 @@
+//! `foveal bench verdict`: which settings make this scene faster on this machine, and at what error.
+//!
+//! Each candidate draws the same frames as the plain settings, in turn with all others, in an order that is drawn by lot.
+//! Those that are faster and near enough are then put together and compared once more, as one.
+
+mod candidates;
+mod decision;
+mod sides;
+
+use foveal::Settings;
+use foveal_host::difference::BENCH_DISPLAY;
+use foveal_host::settings::flags;
+use foveal_host::values;
+use foveal_measure::{Comparison, Finding, Spread};
+use serde::Serialize;
+
+use super::subject::{Header, SubjectArgs};
+use super::table::{jod_text, text};
+use candidates::{ALL, Aim, Candidate, together};
+use decision::{Decision, Measured, decide};
+use sides::measure;
+
+/// Version of the JSON's shape.
+const SCHEMA_VERSION: u32 = 1;
+
+/// Arguments of `foveal bench verdict`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    subject: SubjectArgs,
+
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1280x720")]
+    size: (u32, u32),
+
+    /// Add N coloured point lights to the scene
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    point_lights: u32,
+
+    /// Frames of each candidate that count, after eight that warm up; below 10 there is no verdict
+    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=200))]
+    rounds: u32,
+}
+
+/// All figures of a run; docs/program.md describes the fields.
+#[derive(Debug, Serialize)]
+struct Report {
+    #[serde(flatten)]
+    header: Header,
+    width: u32,
+    height: u32,
+    rounds: u32,
+    rows: Vec<Row>,
+}
+
+/// A candidate against the plain settings; times in milliseconds.
+#[derive(Debug, Serialize)]
+struct Row {
+    name: &'static str,
+    decision: Decision,
+    /// The decision in a sentence.
+    why: String,
+    /// Reference / candidate with its interval, in few words.
+    gain: String,
+    finding: Option<Finding>,
+    ratio: Option<f64>,
+    low: Option<f64>,
+    high: Option<f64>,
+    pairs: usize,
+    /// The same by the processor's time; `null` where a graphics card draws.
+    work_gain: Option<String>,
+    work_ratio: Option<f64>,
+    reference_ms: Option<f64>,
+    reference_low_ms: Option<f64>,
+    reference_high_ms: Option<f64>,
+    chosen_ms: Option<f64>,
+    chosen_low_ms: Option<f64>,
+    chosen_high_ms: Option<f64>,
+    flip_mean: Option<f64>,
+    /// At 60 degrees across, gaze in the middle: 10 is no visible difference.
+    jod: Option<f32>,
+    /// The flags that differ from the defaults.
+    flags: String,
+    /// The command that draws it.
+    command: String,
+    /// The commands that draw the plain picture and this one, and compare both.
+    made_by: [String; 3],
+}
+
+/// Runs the benchmark.
+pub(super) fn run(args: &Args) -> anyhow::Result<()> {
+    let subject = args.subject.open(args.point_lights)?;
+    let plain = Settings {
+        width: args.size.0,
+        height: args.size.1,
+        ..Settings::default()
+    };
+    let candidates: Vec<(&Candidate, Settings)> = ALL
+        .iter()
+        .map(|candidate| Ok((candidate, candidate.settings(&plain)?)))
+        .collect::<anyhow::Result<_>>()?;
+    let chosen: Vec<&Settings> = candidates.iter().map(|(_, settings)| settings).collect();
+    let measured = measure(&subject, &plain, &chosen, args.rounds)?;
+    let mut rows: Vec<Row> = candidates
+        .iter()
+        .zip(measured)
+        .map(|((candidate, settings), measured)| {
+            row(args, candidate.name, candidate.aim, settings, measured)
+        })
+        .collect();
+    let adopted: Vec<(&Candidate, f64)> = ALL
+        .iter()
+        .zip(&rows)
+        .filter(|(_, row)| row.decision == Decision::Adopt)
+        .map(|(candidate, row)| (candidate, row.ratio.unwrap_or(1.0)))
+        .collect();
+    if adopted.len() > 1 {
+        let settings = together(&plain, &adopted)?;
+        let mut measured = measure(&subject, &plain, &[&settings], args.rounds)?;
+        if let Some(measured) = measured.pop() {
+            let row = row(args, "These together", Aim::Faster, &settings, measured);
+            rows.push(row);
+        }
+    }
+    let report = Report {
+        header: subject.header("foveal-bench-verdict", SCHEMA_VERSION),
+        width: args.size.0,
+        height: args.size.1,
+        rounds: args.rounds,
+        rows,
+    };
+    args.subject.give(&report, &summary(&report))
+}
+
+fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured: Measured) -> Row {
+    let size = Settings {
+        width: settings.width,
+        height: settings.height,
+        ..Settings::default()
+    };
+    let of_size = flags(&size).len();
+    let all = flags(settings);
+    let command = |output: &str, flags: &[String]| {
+        let words = args.subject.words(args.point_lights, output);
+        format!("foveal render {words} {}", flags.join(" "))
+            .trim_end()
+            .to_owned()
+    };
+    let made_by = [
+        command("plain.png", &flags(&size)),
+        command("this.png", &all),
+        format!("foveal compare plain.png this.png --display {BENCH_DISPLAY}"),
+    ];
+    let found = measured.as_ref().ok().map(|found| &found.frame);
+    let work = measured.as_ref().ok().and_then(|found| found.work.as_ref());
+    let time = |side: fn(&Comparison) -> &Spread, part: fn(&Spread) -> f64| {
+        found.map(|found| part(side(found)))
+    };
+    let (decision, why) = decide(aim, &measured);
+    Row {
+        name,
+        decision,
+        why,
+        gain: found.map_or_else(String::new, Comparison::text),
+        finding: found.map(|found| found.finding),
+        ratio: found.map(|found| found.ratio),
+        low: found.and_then(|found| Some(found.interval?[0])),
+        high: found.and_then(|found| Some(found.interval?[1])),
+        pairs: found.map_or(0, |found| found.pairs),
+        work_gain: work.map(Comparison::text),
+        work_ratio: work.map(|work| work.ratio),
+        reference_ms: time(|c| &c.reference, |s| s.median),
+        reference_low_ms: time(|c| &c.reference, |s| s.low),
+        reference_high_ms: time(|c| &c.reference, |s| s.high),
+        chosen_ms: time(|c| &c.chosen, |s| s.median),
+        chosen_low_ms: time(|c| &c.chosen, |s| s.low),
+        chosen_high_ms: time(|c| &c.chosen, |s| s.high),
+        flip_mean: measured.as_ref().ok().map(|found| found.nearness.flip),
+        jod: (measured.as_ref().ok()).and_then(|found| found.nearness.jod),
+        flags: all[of_size.min(all.len())..].join(" "),
+        command: command("picture.png", &all),
+        made_by,
+    }
+}
+
+fn summary(report: &Report) -> String {
+    let head = [
+        "candidate",
+        "",
+        "plain ms",
+        "ms",
+        "plain / this",
+        "by processor time",
+        "FLIP",
+        "JOD",
+    ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
+    let number = |number: Option<f64>, digits: usize| {
+        number.map_or_else(|| "-".to_owned(), |n| format!("{n:.digits$}"))
+    };
+    for row in &report.rows {
+        lines.push(vec![
+            row.name.to_owned(),
+            format!("{:?}", row.decision).to_lowercase(),
+            number(row.reference_ms, 1),
+            number(row.chosen_ms, 1),
+            row.gain.clone(),
+            row.work_gain.clone().unwrap_or_default(),
+            number(row.flip_mean, 4),
+            jod_text(row.jod),
+        ]);
+    }
+    let mut said = format!(
+        "{} at {}x{}, {}, whole frames, medians of {} pairs, drawn in turn by lot\n",
+        report.header.scene, report.width, report.height, report.header.adapter.name, report.rounds
+    ) + &text(&lines);
+    for row in &report.rows {
+        if matches!(row.decision, Decision::Adopt | Decision::Look) {
+            said += &format!("{}: {}\n", row.name, row.flags);
+        }
+    }
+    said
+}

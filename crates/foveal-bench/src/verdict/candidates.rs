@@ -1,0 +1,137 @@
+//! Which settings are tried, and how those that help are put together.
+
+use foveal::Settings;
+
+use crate::changes::{Changes, changed};
+use foveal_host::difference::BENCH_DISPLAY;
+
+/// What a candidate is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Aim {
+    /// Less time.
+    Faster,
+    /// A better picture.
+    Better,
+}
+
+/// Settings that are tried.
+#[derive(Debug)]
+pub(super) struct Candidate {
+    pub(super) name: &'static str,
+    pub(super) aim: Aim,
+    /// What they change in the defaults.
+    changes: Changes,
+    /// Of candidates with the same of this only the fastest is taken.
+    family: &'static str,
+}
+
+const fn faster(name: &'static str, family: &'static str, changes: Changes) -> Candidate {
+    Candidate {
+        name,
+        aim: Aim::Faster,
+        changes,
+        family,
+    }
+}
+
+/// In the order of the frame.
+pub(super) const ALL: &[Candidate] = &[
+    faster("Occlusion culling", "culling", &[("culling", "occlusion")]),
+    faster(
+        "Visibility buffer",
+        "geometry",
+        &[("geometry", "visibility")],
+    ),
+    faster(
+        "Variable shading by content",
+        "shading",
+        &[("shading", "variable"), ("rate", "content")],
+    ),
+    faster(
+        "Coarse shading around the gaze",
+        "shading",
+        // At the display where JOD is measured.
+        &[
+            ("shading", "coarse"),
+            ("display", BENCH_DISPLAY),
+            ("quality", "9.3"),
+        ],
+    ),
+    faster(
+        "Coarse shading over a visibility buffer",
+        "shading",
+        &[
+            ("geometry", "visibility"),
+            ("shading", "coarse"),
+            ("composite", "smooth"),
+            ("display", BENCH_DISPLAY),
+        ],
+    ),
+    faster(
+        "Three quarters of the size",
+        "size",
+        &[("render-scale", "0.75")],
+    ),
+    Candidate {
+        name: "Anti-aliasing by MSAA",
+        aim: Aim::Better,
+        changes: &[("aa", "msaa")],
+        family: "antialiasing",
+    },
+];
+
+impl Candidate {
+    /// The settings that are tried.
+    pub(super) fn settings(&self, plain: &Settings) -> anyhow::Result<Settings> {
+        changed(plain, self.changes)
+    }
+}
+
+/// The settings of these candidates as one: of each family the one with the largest ratio.
+pub(super) fn together(
+    plain: &Settings,
+    adopted: &[(&Candidate, f64)],
+) -> anyhow::Result<Settings> {
+    let mut settings = plain.clone();
+    for (candidate, ratio) in adopted {
+        let mut family = adopted.iter().filter(|(c, _)| c.family == candidate.family);
+        if family.all(|(_, other)| other <= ratio) {
+            settings = candidate.settings(&settings)?;
+        }
+    }
+    Ok(settings)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use foveal::{Culling, Geometry, Shading};
+
+    #[test]
+    fn each_candidate_changes_something_that_is_possible() {
+        let plain = Settings::default();
+        for candidate in ALL {
+            let settings = candidate.settings(&plain).unwrap();
+            assert_ne!(settings, plain, "{}", candidate.name);
+            let checked = settings.validate(&wgpu::Limits::default());
+            assert!(checked.is_ok(), "{}: {checked:?}", candidate.name);
+        }
+    }
+
+    #[test]
+    fn the_fastest_of_a_family_is_taken() {
+        let named = |name: &str| ALL.iter().find(|c| c.name.starts_with(name)).unwrap();
+        let adopted = [
+            (named("Occlusion"), 1.2),
+            (named("Variable"), 1.3),
+            (named("Coarse shading over"), 3.0),
+            (named("Coarse shading around"), 2.0),
+        ];
+        let settings = together(&Settings::default(), &adopted).unwrap();
+        assert_eq!(settings.culling, Culling::Occlusion);
+        assert_eq!(settings.shading, Shading::Coarse);
+        assert_eq!(settings.geometry, Geometry::Visibility);
+        let checked = settings.validate(&wgpu::Limits::default());
+        assert!(checked.is_ok(), "{checked:?}");
+    }
+}

@@ -1,0 +1,156 @@
+//! The sides of a verdict, drawn in turn.
+
+use foveal::{Frame, FrameStats, Gpu, Renderer, Settings};
+use foveal_host::clock::now_ms;
+use foveal_host::difference::Nearness;
+use foveal_host::picture::Picture;
+use foveal_measure::{Comparison, turn};
+use foveal_scene::{Camera, Scene};
+use pollster::block_on;
+
+use super::decision::{Found, Measured};
+use crate::subject::{Subject, WARM_UP};
+
+/// One of those that are drawn in turn.
+struct Side {
+    renderer: Renderer,
+    settings: Settings,
+    frame_ms: Vec<f64>,
+    work_ms: Vec<f64>,
+}
+
+/// Draws the plain settings and the others in turn; what each of the others turned out to be.
+pub(super) fn measure(
+    Subject { gpu, scene, camera }: &Subject,
+    plain: &Settings,
+    chosen: &[&Settings],
+    rounds: u32,
+) -> anyhow::Result<Vec<Measured>> {
+    let mut plain = Side::new(gpu, scene, plain)?;
+    let mut sides: Vec<Result<Side, String>> = Vec::new();
+    for settings in chosen {
+        sides.push(match Side::new(gpu, scene, settings) {
+            Ok(side) => Ok(side),
+            Err(error) => match error.downcast_ref() {
+                Some(foveal::Error::Setting { .. }) => Err(error.to_string()),
+                _ => return Err(error),
+            },
+        });
+    }
+    let count = sides.iter().flatten().count() + 1;
+    // The camera sways, as a head does: what is kept from frame to frame costs nothing at rest.
+    let at = |frame: u32| swayed(camera, frame);
+    for frame in 1..=WARM_UP {
+        plain.draw(&at(frame), &at(frame - 1))?;
+        for side in sides.iter_mut().flatten() {
+            side.draw(&at(frame), &at(frame - 1))?;
+        }
+    }
+    for side in std::iter::once(&mut plain).chain(sides.iter_mut().flatten()) {
+        side.frame_ms.clear();
+        side.work_ms.clear();
+    }
+    let processor_draws = gpu.adapter_stats().kind == "cpu";
+    for round in 0..rounds {
+        let frame = WARM_UP + 1 + round;
+        let [now, before] = [at(frame), at(frame - 1)];
+        for number in turn(u64::from(round), count) {
+            match number.checked_sub(1) {
+                None => plain.draw(&now, &before)?,
+                Some(number) => {
+                    if let Some(side) = sides.iter_mut().flatten().nth(number) {
+                        side.draw(&now, &before)?;
+                    }
+                }
+            };
+        }
+    }
+    let reference = plain.picture(camera)?;
+    let mut number = 0;
+    sides
+        .into_iter()
+        .map(|side| {
+            let mut side = match side {
+                Ok(side) => side,
+                Err(cause) => return Ok(Err(cause)),
+            };
+            number += 1;
+            let compared = |plain_ms: &[f64], side_ms: &[f64]| {
+                Comparison::of_rounds(count, (0, plain_ms), (number, side_ms))
+            };
+            let Some(frame) = compared(&plain.frame_ms, &side.frame_ms) else {
+                return Ok(Err("no time could be taken".to_owned()));
+            };
+            let work = processor_draws.then(|| compared(&plain.work_ms, &side.work_ms));
+            Ok(Ok(Found {
+                frame,
+                work: work.flatten(),
+                nearness: Nearness::of(&reference, &side.picture(camera)?),
+            }))
+        })
+        .collect()
+}
+
+impl Side {
+    fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
+        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        block_on(renderer.set_scene(scene))?;
+        Ok(Self {
+            renderer,
+            settings: settings.clone(),
+            frame_ms: Vec::new(),
+            work_ms: Vec::new(),
+        })
+    }
+
+    fn draw(&mut self, camera: &Camera, before: &Camera) -> anyhow::Result<()> {
+        let frame = Frame {
+            camera,
+            previous_camera: Some(before),
+        };
+        let before_ms = process_ms();
+        let stats: FrameStats = block_on(self.renderer.render(&frame))?;
+        self.work_ms.push(process_ms() - before_ms);
+        self.frame_ms.push(stats.frame_ms);
+        Ok(())
+    }
+
+    /// The picture of the camera at rest, as the row's command makes it.
+    fn picture(&mut self, camera: &Camera) -> anyhow::Result<Picture> {
+        // A frame that follows none: nothing of the frames before is in it.
+        let none = Camera {
+            name: format!("before {}", camera.name),
+            ..camera.clone()
+        };
+        self.draw(camera, &none)?;
+        for _ in 0..WARM_UP {
+            self.draw(camera, camera)?;
+        }
+        let bytes = block_on(self.renderer.read_picture())?;
+        let (width, height) = self.settings.picture_size();
+        Picture::from_rgba(width, height, &bytes)
+    }
+}
+
+/// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within half a metre.
+fn swayed(camera: &Camera, frame: u32) -> Camera {
+    const STEP_M: f32 = 0.02;
+    const STEPS: u32 = 24;
+    let turn = frame % (2 * STEPS);
+    let away = turn.min(2 * STEPS - turn) as f32 * STEP_M;
+    let mut camera = camera.clone();
+    let right = camera.world_from_view.x_axis;
+    camera.world_from_view.w_axis += right * away;
+    camera
+}
+
+/// Milliseconds that this process has had of the processor, all threads together; 0 where nobody says.
+fn process_ms() -> f64 {
+    #[cfg(unix)]
+    {
+        let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+        time.tv_sec as f64 * 1e3 + time.tv_nsec as f64 * 1e-6
+    }
+    #[cfg(not(unix))]
+    0.0
+}

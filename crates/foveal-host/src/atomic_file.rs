@@ -1,0 +1,170 @@
+//! Files that are there whole or not at all.
+//!
+//! Bytes go to a temporary name in the destination's folder, are synchronised to the disk and then renamed.
+//! Nobody ever sees half a file under the final name: not after Ctrl-C, not after a power cut, and not another
+//! process that works in the same folder.
+
+use std::fs::{self, File};
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, bail};
+
+/// Checks that a file can be written at `path`, without touching one that is there.
+///
+/// # Errors
+/// Names the folder or the file and what is in the way.
+pub fn check_writable(path: &Path) -> anyhow::Result<()> {
+    let destination = destination(path)?;
+    let folder = folder_of(&destination);
+    if !folder.is_dir() {
+        let what = if folder.exists() {
+            "is not a folder"
+        } else {
+            "does not exist"
+        };
+        bail!(
+            "cannot write '{}': the folder '{}' {what}",
+            path.display(),
+            folder.display()
+        );
+    }
+    temporary(&destination)
+        .map(drop)
+        .with_context(|| format!("cannot write '{}'", path.display()))
+}
+
+/// Writes `bytes` to `path`, replacing a regular file that is there.
+///
+/// # Errors
+/// Names the file and the system's reason; `path` is then as it was before.
+pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    let destination = destination(path)?;
+    let written = || -> std::io::Result<()> {
+        let mut file = temporary(&destination)?;
+        file.write_all(bytes)?;
+        file.as_file().sync_all()?;
+        file.persist(&destination).map_err(|e| e.error)?;
+        sync_folder(folder_of(&destination));
+        Ok(())
+    };
+    written().with_context(|| format!("cannot write '{}'", path.display()))
+}
+
+/// True when a finished file is there.
+pub fn is_finished(path: &Path) -> bool {
+    fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() > 0)
+}
+
+/// Where the bytes really go: behind links, so that a link stays a link; never over a device or a folder.
+fn destination(path: &Path) -> anyhow::Result<PathBuf> {
+    match fs::metadata(path) {
+        Ok(found) if found.is_dir() => bail!("cannot write '{}': it is a folder", path.display()),
+        Ok(found) if !found.is_file() => {
+            bail!(
+                "cannot write '{}': it is not a regular file",
+                path.display()
+            )
+        }
+        Ok(_) => {
+            fs::canonicalize(path).with_context(|| format!("cannot write '{}'", path.display()))
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(path.to_owned()),
+        Err(error) => Err(error).with_context(|| format!("cannot write '{}'", path.display())),
+    }
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    }
+}
+
+fn temporary(destination: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    let name = destination
+        .file_name()
+        .unwrap_or_default()
+        .to_string_lossy();
+    let prefix = format!(".{name}.");
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(&prefix).suffix(".tmp");
+    // Temporary files are private by default; this one becomes an ordinary file, which the umask governs.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder_of(destination))
+}
+
+/// Makes the rename itself durable where the system can; the file is whole either way.
+fn sync_folder(folder: &Path) {
+    if cfg!(unix) {
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<String> = fs::read_dir(folder)
+            .unwrap()
+            .map(|e| e.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn a_written_file_is_whole_and_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.bin");
+        write(&path, b"first").unwrap();
+        write(&path, b"second").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"second");
+        assert_eq!(names(folder.path()), ["a.bin"]);
+    }
+
+    #[test]
+    fn checking_leaves_nothing_behind() {
+        let folder = tempfile::tempdir().unwrap();
+        check_writable(&folder.path().join("a.png")).unwrap();
+        assert!(names(folder.path()).is_empty());
+    }
+
+    #[test]
+    fn a_folder_and_a_missing_folder_are_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = check_writable(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("is a folder"), "{error}");
+        let error = check_writable(&folder.path().join("no/a.png"))
+            .unwrap_err()
+            .to_string();
+        assert!(error.contains("does not exist"), "{error}");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_device_is_never_replaced_and_a_link_stays_a_link() {
+        assert!(check_writable(Path::new("/dev/null")).is_err());
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write(&link, b"new").unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read(&file).unwrap(), b"new");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_written_file_can_be_read_by_others_as_the_umask_says() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (ours, plain) = (folder.path().join("ours"), folder.path().join("plain"));
+        write(&ours, b"x").unwrap();
+        fs::write(&plain, b"x").unwrap();
+        let mode = |p: &Path| fs::metadata(p).unwrap().permissions().mode();
+        assert_eq!(mode(&ours), mode(&plain));
+    }
+}

@@ -1,0 +1,100 @@
+//! The flags that say where a frame is seen from.
+
+use foveal_scene::Camera;
+use glam::Vec3;
+
+use crate::failure::usage;
+use crate::{command_line, scene_source, values};
+
+/// Where the frame is seen from.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Camera")]
+pub struct CameraArgs {
+    /// A camera of the scene, by name or by number from 0; or `overview`: the whole scene from outside; or
+    /// `inside`: the longest view within it. Without: the scene's first camera, else whichever of the two fits
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
+    pub(super) camera: Option<String>,
+
+    /// The eye's position in metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    #[arg(requires = "target")]
+    pub(super) eye: Option<Vec3>,
+
+    /// The point to look at in metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    #[arg(requires = "eye")]
+    pub(super) target: Option<Vec3>,
+
+    /// The direction that is up in the picture [default: 0,1,0]
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
+    pub(super) up: Option<Vec3>,
+
+    /// The vertical field of view in degrees [default: the camera's own, else 60]
+    #[arg(long, value_name = "DEG", value_parser = values::fov_deg)]
+    pub(super) fov: Option<f32>,
+
+    /// A camera to the last bit, as the window copies it: perspective,FOV_RAD,NEAR_M or
+    /// orthographic,HEIGHT_M,NEAR_M,FAR_M, then twelve numbers: right, up, back, eye
+    #[arg(long, value_name = "NUMBERS", value_parser = values::exact_camera, allow_hyphen_values = true)]
+    #[arg(conflicts_with_all = ["camera", "eye", "target", "fov"])]
+    pub(super) exact_camera: Option<Camera>,
+
+    /// Move along the keyframes in a JSON file (see docs/program.md), or along the demo scene's own path: demo; or to and
+    /// fro around another camera, sideways by 5 cm at up to 5 cm a second, as a head does: sway
+    #[arg(long, value_name = "FILE.json|demo|sway")]
+    pub(super) path: Option<String>,
+}
+
+/// Refuses a place to look at where the eye itself is.
+pub(crate) fn check_direction(eye: Option<Vec3>, target: Option<Vec3>) -> anyhow::Result<()> {
+    if eye.is_some() && eye == target {
+        return usage("--eye and --target are the same point: there is no direction to look in");
+    }
+    Ok(())
+}
+
+impl CameraArgs {
+    /// Finds what clap cannot: contradictions between the values of several arguments.
+    pub fn check(&self) -> anyhow::Result<()> {
+        check_direction(self.eye, self.target)?;
+        if self.eye.is_some() && self.up == Some(Vec3::ZERO) {
+            return usage("--up is 0,0,0: there is no direction that is up");
+        }
+        Ok(())
+    }
+
+    /// The same along a path; one that is asked for already stays. Where the scene has a path of its own and no other place
+    /// is asked for it is that one, else swaying.
+    pub fn along_a_path(&self, scene_name: &str) -> Self {
+        let is_placed = self.camera.is_some() || self.eye.is_some() || self.exact_camera.is_some();
+        let has_own = scene_source::camera_path(scene_name).is_some();
+        let path = if has_own && !is_placed {
+            "demo"
+        } else {
+            "sway"
+        };
+        Self {
+            path: self.path.clone().or_else(|| Some(path.to_owned())),
+            ..self.clone()
+        }
+    }
+
+    /// The flags that say the same.
+    pub fn flags(&self) -> Vec<String> {
+        let place = |p: Vec3| format!("{},{},{}", p.x, p.y, p.z);
+        let exact = self.exact_camera.as_ref();
+        [
+            ("--camera", self.camera.clone()),
+            ("--eye", self.eye.map(place)),
+            ("--target", self.target.map(place)),
+            ("--up", self.up.map(place)),
+            ("--fov", self.fov.map(|fov| fov.to_string())),
+            ("--exact-camera", exact.map(command_line::exact_camera)),
+            ("--path", self.path.clone()),
+        ]
+        .into_iter()
+        .filter_map(|(flag, value)| Some([flag.to_owned(), value?]))
+        .flatten()
+        .collect()
+    }
+}

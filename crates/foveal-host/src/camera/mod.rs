@@ -1,0 +1,10 @@
+//! Where each frame is seen from: flags, paths in files, and views from within buildings.
+
+mod args;
+mod inside;
+mod path;
+mod viewpoint;
+
+pub use args::CameraArgs;
+pub(crate) use args::check_direction;
+pub use viewpoint::Viewpoint;

@@ -1,0 +1,285 @@
+//! Where each frame is seen from: a camera of the scene, a place on the command line, or a path.
+
+use std::path::Path;
+
+use anyhow::bail;
+use foveal_scene::{Camera, Projection, Scene};
+use glam::Vec3;
+
+use super::args::CameraArgs;
+use super::inside;
+use super::path::CameraPath;
+use crate::failure::usage;
+use crate::scene_source::{self, TimedCamera};
+
+const DEFAULT_FOV_DEG: f32 = 60.0;
+
+/// A camera for every moment.
+pub struct Viewpoint {
+    kind: Kind,
+    /// Takes the place of the camera's own field of view.
+    fov_y_rad: Option<f32>,
+}
+
+enum Kind {
+    /// Index into the scene's cameras, which animation may move.
+    OfScene(usize),
+    Still(Camera),
+    Path(CameraPath, f32),
+    Generated(TimedCamera),
+    /// To and fro, sideways.
+    Sway(Box<Kind>),
+}
+
+/// How far [`Kind::Sway`] moves to either side in metres; in a radian per second, so that it is the speed too.
+const SWAY_M: f32 = 0.05;
+
+impl Viewpoint {
+    /// Follows the arguments; `scene` is posed at time 0, so that the choice does not depend on the frame.
+    pub fn choose(args: &CameraArgs, scene: &Scene, scene_name: &str) -> anyhow::Result<Self> {
+        let fov_y_deg = args.fov.unwrap_or(DEFAULT_FOV_DEG);
+        let fov_y_rad = args.fov.map(f32::to_radians);
+        let sways = args.path.as_deref() == Some("sway");
+        let is_placed = args.camera.is_some() || args.eye.is_some() || args.exact_camera.is_some();
+        if args.path.is_some() && !sways && is_placed {
+            return usage(
+                "--path says where the camera is, as --camera, --eye and --exact-camera do: only --path sway goes with one \
+                 of them",
+            );
+        }
+        let kind = if let Some(camera) = &args.exact_camera {
+            Kind::Still(camera.clone())
+        } else if let (Some(eye), Some(target)) = (args.eye, args.target) {
+            let up = args.up.unwrap_or(Vec3::Y);
+            let camera = Camera::look_at(eye, target, up, fov_y_deg.to_radians());
+            Kind::Still(with_near_plane(camera, near_m(scene)))
+        } else if let Some(path) = args.path.as_ref().filter(|_| !sways) {
+            Self::path(path, fov_y_deg, scene, scene_name)?
+        } else if let Some(name) = &args.camera {
+            by_name(name, scene)?
+        } else if !scene.cameras.is_empty() {
+            Kind::OfScene(0)
+        } else {
+            Kind::Still(inside_camera(scene).unwrap_or_else(|| scene.overview_camera()))
+        };
+        let kind = if sways {
+            Kind::Sway(Box::new(kind))
+        } else {
+            kind
+        };
+        let viewpoint = Self { kind, fov_y_rad };
+        let camera = viewpoint.at(scene, 0.0);
+        if fov_y_rad.is_some() && matches!(camera.projection, Projection::Orthographic { .. }) {
+            bail!(
+                "the camera '{}' is orthographic: it has no field of view that --fov could change",
+                camera.name
+            );
+        }
+        Ok(viewpoint)
+    }
+
+    fn path(path: &str, fov_y_deg: f32, scene: &Scene, scene_name: &str) -> anyhow::Result<Kind> {
+        if path != "demo" {
+            return Ok(Kind::Path(
+                CameraPath::read(Path::new(path), fov_y_deg)?,
+                near_m(scene),
+            ));
+        }
+        match scene_source::camera_path(scene_name) {
+            Some(path) => Ok(Kind::Generated(path)),
+            None => usage(format!(
+                "--path demo leads through the demo scene; '{scene_name}' is another one"
+            )),
+        }
+    }
+
+    /// The camera at `time_s`, to which `scene` is posed.
+    pub fn at(&self, scene: &Scene, time_s: f32) -> Camera {
+        let mut camera = self.kind.at(scene, time_s);
+        if let (Some(fov), Projection::Perspective { fov_y_rad, .. }) =
+            (self.fov_y_rad, &mut camera.projection)
+            && !matches!(self.kind, Kind::Path(..))
+        {
+            *fov_y_rad = fov;
+        }
+        camera
+    }
+}
+
+impl Kind {
+    fn at(&self, scene: &Scene, time_s: f32) -> Camera {
+        match self {
+            Self::OfScene(index) => scene.cameras[*index].clone(),
+            Self::Still(camera) => camera.clone(),
+            Self::Path(path, near_m) => with_near_plane(path.at(time_s), *near_m),
+            Self::Generated(path) => path(time_s),
+            Self::Sway(around) => {
+                let mut camera = around.at(scene, time_s);
+                let sideways = camera.world_from_view.x_axis * (SWAY_M * time_s.sin());
+                camera.world_from_view.w_axis += sideways;
+                camera
+            }
+        }
+    }
+}
+
+/// A camera of the scene by name or number, or one of the two that every scene has.
+fn by_name(name: &str, scene: &Scene) -> anyhow::Result<Kind> {
+    if let Some(index) = scene.cameras.iter().position(|camera| camera.name == name) {
+        return Ok(Kind::OfScene(index));
+    }
+    if let Ok(index) = name.parse::<usize>()
+        && index < scene.cameras.len()
+    {
+        return Ok(Kind::OfScene(index));
+    }
+    match name {
+        "overview" => Ok(Kind::Still(scene.overview_camera())),
+        "inside" => match inside_camera(scene) {
+            Some(camera) => Ok(Kind::Still(camera)),
+            None => bail!(
+                "the scene '{}' has no inside: no place in it is walled in",
+                scene.name
+            ),
+        },
+        _ => {
+            let names: Vec<String> = scene
+                .cameras
+                .iter()
+                .map(|camera| format!("'{}'", camera.name))
+                .collect();
+            let there = if names.is_empty() {
+                "none".to_owned()
+            } else {
+                names.join(", ")
+            };
+            bail!(
+                "the scene '{}' has no camera '{name}'; its cameras are: {there}; every scene has 'overview'",
+                scene.name
+            )
+        }
+    }
+}
+
+fn inside_camera(scene: &Scene) -> Option<Camera> {
+    let camera = inside::camera(scene, DEFAULT_FOV_DEG.to_radians())?;
+    Some(with_near_plane(camera, near_m(scene)))
+}
+
+/// 5 cm, and less in scenes that are small themselves; depth is reversed and loses nothing by it.
+fn near_m(scene: &Scene) -> f32 {
+    let diagonal = scene.bounds().size().length();
+    if diagonal > 0.0 {
+        (1e-3 * diagonal).clamp(1e-6, 0.05)
+    } else {
+        0.05
+    }
+}
+
+fn with_near_plane(mut camera: Camera, near: f32) -> Camera {
+    if let Projection::Perspective { near_m, .. } = &mut camera.projection {
+        *near_m = near;
+    }
+    camera
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn args() -> CameraArgs {
+        CameraArgs {
+            camera: None,
+            eye: None,
+            exact_camera: None,
+            target: None,
+            up: None,
+            fov: None,
+            path: None,
+        }
+    }
+
+    fn scene() -> Scene {
+        let camera = |name: &str, eye| Camera {
+            name: name.to_owned(),
+            ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0)
+        };
+        Scene {
+            cameras: vec![camera("door", Vec3::X), camera("roof", Vec3::Y * 9.0)],
+            ..Scene::default()
+        }
+    }
+
+    fn chosen(args: &CameraArgs, scene: &Scene) -> anyhow::Result<Camera> {
+        Viewpoint::choose(args, scene, "x.glb").map(|viewpoint| viewpoint.at(scene, 0.0))
+    }
+
+    #[test]
+    fn cameras_are_found_by_name_and_by_number() {
+        let scene = scene();
+        assert_eq!(chosen(&args(), &scene).unwrap().name, "door");
+        for name in ["roof", "1"] {
+            let args = CameraArgs {
+                camera: Some(name.to_owned()),
+                ..args()
+            };
+            assert_eq!(chosen(&args, &scene).unwrap().eye(), Vec3::Y * 9.0);
+        }
+    }
+
+    #[test]
+    fn swaying_begins_at_the_camera_and_moves_sideways() {
+        let scene = scene();
+        let args = CameraArgs {
+            camera: Some("roof".to_owned()),
+            path: Some("sway".to_owned()),
+            ..args()
+        };
+        let viewpoint = Viewpoint::choose(&args, &scene, "x.glb").unwrap();
+        let start = viewpoint.at(&scene, 0.0);
+        assert_eq!(start.eye(), Vec3::Y * 9.0);
+        let moved = viewpoint.at(&scene, 0.5).eye() - start.eye();
+        let sideways = start.world_from_view.x_axis.truncate();
+        assert!((moved - sideways * 0.05 * 0.5f32.sin()).length() < 1e-6);
+        // Another path says where the camera is by itself.
+        let args = CameraArgs {
+            path: Some("demo".to_owned()),
+            ..args
+        };
+        let error = chosen(&args, &scene).unwrap_err().to_string();
+        assert!(error.contains("--path"), "{error}");
+    }
+
+    #[test]
+    fn an_unknown_name_lists_those_that_there_are() {
+        let args = CameraArgs {
+            camera: Some("cellar".to_owned()),
+            ..args()
+        };
+        let error = chosen(&args, &scene()).unwrap_err().to_string();
+        assert!(
+            error.contains("'cellar'") && error.contains("'door', 'roof'"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn the_field_of_view_can_be_changed_where_there_is_one() {
+        let mut scene = scene();
+        let args = CameraArgs {
+            fov: Some(30.0),
+            ..args()
+        };
+        let camera = chosen(&args, &scene).unwrap();
+        assert!(
+            matches!(camera.projection, Projection::Perspective { fov_y_rad, .. }
+            if (fov_y_rad.to_degrees() - 30.0).abs() < 1e-4)
+        );
+        scene.cameras[0].projection = Projection::Orthographic {
+            height_m: 1.0,
+            near_m: 0.0,
+            far_m: 9.0,
+        };
+        assert!(chosen(&args, &scene).is_err());
+    }
+}

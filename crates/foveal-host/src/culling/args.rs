@@ -1,0 +1,84 @@
+//! The flags of culling: what occludes, and where it is seen from.
+
+use std::path::PathBuf;
+
+use glam::Vec3;
+
+use super::occluders::Choice;
+use crate::camera::check_direction;
+use crate::values;
+
+/// What occludes, and what is too small to count.
+#[derive(Debug, Clone, clap::Args)]
+#[command(next_help_heading = "Culling")]
+pub struct CullingArgs {
+    /// What occludes: `auto` (what the file marks, else everything), `marked` (nodes with extras.occluder),
+    /// `all`, or names of sets (extras.set) with commas between. Only opaque surfaces occlude
+    #[arg(long, value_name = "auto|marked|all|SET,…", default_value = "auto")]
+    pub occluders: Choice,
+
+    /// Leave out occluders that look smaller than this (Intel's sample: 1.5)
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
+    pub occluder_size_threshold: f32,
+
+    /// Leave out parts of occluders that can cover fewer pixels of the depth buffer than this per quadrilateral
+    #[arg(long, value_name = "PX", default_value_t = 6.0, value_parser = values::non_negative)]
+    pub occluder_pixels_per_quad: f32,
+
+    /// Cull objects that look smaller than this (Intel's sample: 0.01)
+    #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
+    pub occludee_size_threshold: f32,
+
+    /// Cull for two eyes so many metres apart, with the camera between them: what is culled is hidden from both
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
+    pub eyes_apart: f32,
+
+    /// The result shall hold while each eye moves by less than this, metres
+    #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
+    pub validity_radius: f32,
+
+    /// Begin no occluder later than this in a frame, milliseconds: near ones come first, and what is left out
+    /// only makes more visible
+    #[arg(long, value_name = "MS", value_parser = values::non_negative)]
+    pub budget_ms: Option<f32>,
+}
+
+/// Where the scene is seen from.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Camera")]
+pub struct ViewArgs {
+    /// One camera of the scene, by name or by number from 0, or `overview`. Without: all of the scene's cameras
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "cameras"])]
+    pub(super) camera: Option<String>,
+
+    /// The eye's position in metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
+    #[arg(requires = "target", conflicts_with = "cameras")]
+    pub(super) eye: Option<Vec3>,
+
+    /// The point to look at in metres
+    #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
+    pub(super) target: Option<Vec3>,
+
+    /// The vertical field of view in degrees [default: the camera's own, else 60]
+    #[arg(long, value_name = "DEG", value_parser = values::fov_deg, conflicts_with = "cameras")]
+    pub(super) fov: Option<f32>,
+
+    /// Cameras from a JSON list of {eye, target, up, fov_y_deg or ortho_height, aspect, near, far}; see
+    /// docs/cull-schema.md
+    #[arg(long, value_name = "FILE.json")]
+    pub(super) cameras: Option<PathBuf>,
+}
+
+impl ViewArgs {
+    /// Whether any place is asked for.
+    pub fn is_given(&self) -> bool {
+        let is_placed = self.camera.is_some() || self.eye.is_some();
+        is_placed || self.fov.is_some() || self.cameras.is_some()
+    }
+
+    /// Finds what clap cannot: contradictions between the values of several arguments.
+    pub fn check(&self) -> anyhow::Result<()> {
+        check_direction(self.eye, self.target)
+    }
+}

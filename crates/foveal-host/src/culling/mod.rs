@@ -1,0 +1,20 @@
+//! A scene as the culler takes it: occluders, eyes, threads, and the comparison with the reference.
+
+mod args;
+mod around;
+pub mod camera_file;
+mod check;
+mod eye;
+mod frustum;
+mod occluders;
+mod views;
+mod workers;
+
+pub use args::{CullingArgs, ViewArgs};
+pub use around::Clock;
+pub use check::Check;
+pub use eye::NamedEye;
+pub use frustum::{clip_position, corners};
+pub use occluders::{Choice, Occluders, Shape};
+pub use views::{defaults, named_eye, near_m, own_cameras};
+pub use workers::Workers;

@@ -1,0 +1,78 @@
+//! A scene on a device, drawn moment by moment.
+
+use std::rc::Rc;
+
+use foveal::{Frame, FrameStats, Renderer};
+use foveal_scene::Scene;
+use pollster::block_on;
+
+use crate::camera::Viewpoint;
+use crate::picture::Picture;
+
+/// When a frame is, in seconds.
+pub fn moment(frame: u32, fps: f32) -> f32 {
+    // In f64: exact for every frame number, so that the moment does not depend on how it was reached.
+    (f64::from(frame) / f64::from(fps)) as f32
+}
+
+/// Everything that one frame needs, ready.
+pub struct Drawing {
+    /// The renderer, which holds the scene.
+    pub renderer: Renderer,
+    /// What is drawn.
+    pub scene: Scene,
+    /// Where it is seen from.
+    pub viewpoint: Rc<Viewpoint>,
+    /// Time of the renderer's current pose; `None` where it is not known, or does not matter.
+    posed_s: Option<f32>,
+    /// Whether the pose before was the same: nothing moves.
+    is_at_rest: bool,
+}
+
+impl Drawing {
+    /// `renderer` holds `scene`, posed at time 0.
+    pub fn new(renderer: Renderer, scene: Scene, viewpoint: Rc<Viewpoint>) -> Self {
+        Self {
+            renderer,
+            scene,
+            viewpoint,
+            posed_s: Some(0.0),
+            is_at_rest: false,
+        }
+    }
+
+    /// Draws a moment, with motion since another. Its picture depends on the two alone, not on the frames drawn before.
+    pub fn draw_moment(&mut self, time_s: f32, previous_time_s: f32) -> anyhow::Result<FrameStats> {
+        if self.posed_s != Some(previous_time_s) {
+            self.pose(previous_time_s)?;
+        }
+        let previous_camera = self.viewpoint.at(&self.scene, previous_time_s);
+        // What is at rest is left there: another pose, though the same, would be taken for a movement.
+        if !(self.is_at_rest && self.posed_s == Some(time_s)) {
+            self.pose(time_s)?;
+        }
+        let camera = self.viewpoint.at(&self.scene, time_s);
+        let frame = Frame {
+            camera: &camera,
+            previous_camera: Some(&previous_camera),
+        };
+        Ok(block_on(self.renderer.render(&frame))?)
+    }
+
+    /// The last frame.
+    pub fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
+        let bytes = block_on(self.renderer.read_picture())?;
+        Picture::from_rgba(stats.width, stats.height, &bytes)
+    }
+
+    fn pose(&mut self, time_s: f32) -> anyhow::Result<()> {
+        if self.scene.is_animated() {
+            let before_s = self.posed_s.take();
+            self.scene.pose(time_s);
+            block_on(self.renderer.update_pose(&self.scene))?;
+            self.is_at_rest = before_s == Some(time_s);
+            self.posed_s = Some(time_s);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,162 @@
+//! Flags for reading scene files: how much a file may ask for, and what it may reach.
+
+use foveal_scene::{Clip, Limit, LoadOptions, SceneError};
+
+use crate::values;
+
+/// How scene files are read.
+#[derive(Debug, Clone, Default, clap::Args)]
+#[command(next_help_heading = "Scene files")]
+pub struct ImportArgs {
+    /// The animation that plays, by name or by number from 0 (`foveal scene info` lists them); or all at once: all
+    /// [default: 0]
+    #[arg(long, value_name = "NAME|NUMBER|all")]
+    clip: Option<Clip>,
+
+    /// The variant of materials that is shown, by name or by number from 0 [default: none]
+    #[arg(long, value_name = "NAME|NUMBER")]
+    variant: Option<String>,
+
+    /// Most memory for textures while they are loaded; larger pictures are reduced to fit [default: 4.3GB]
+    #[arg(long, value_name = "SIZE", value_parser = values::bytes)]
+    max_texture_memory: Option<u64>,
+
+    /// Largest side of a texture in texels; larger pictures are halved until they fit [default: 8192]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    max_texture_size: Option<u32>,
+
+    /// Most vertices of all meshes together, morph targets included [default: 67108864]
+    #[arg(long, value_name = "N")]
+    max_vertices: Option<u64>,
+
+    /// Most instances: primitives times nodes times elements of GPU instancing [default: 4194304]
+    #[arg(long, value_name = "N")]
+    max_instances: Option<u64>,
+
+    /// Most triangles, each counted once per instance [default: 4294967296]
+    #[arg(long, value_name = "N")]
+    max_triangles: Option<u64>,
+
+    /// Most bytes of the scene file and the files that it names, together [default: 4.3GB]
+    #[arg(long, value_name = "SIZE", value_parser = values::bytes)]
+    max_file_size: Option<u64>,
+
+    /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB [default: 256]
+    #[arg(long, value_name = "N")]
+    max_expansion: Option<u64>,
+
+    /// Read files outside the scene's own folder where the scene names them, also through symbolic links
+    #[arg(long)]
+    outside_files: bool,
+}
+
+impl ImportArgs {
+    /// The flags that decide what of a scene is shown, as a command has them.
+    pub fn shown_flags(&self) -> Vec<String> {
+        let clip = self.clip.as_ref().map(ToString::to_string);
+        let mut flags = Vec::new();
+        for (flag, value) in [("--clip", clip), ("--variant", self.variant.clone())] {
+            if let Some(value) = value {
+                flags.extend([flag.to_owned(), value]);
+            }
+        }
+        flags
+    }
+
+    /// The importer's options.
+    pub fn options(&self) -> LoadOptions {
+        let d = LoadOptions::default();
+        LoadOptions {
+            clip: self.clip.clone().unwrap_or_default(),
+            variant: self.variant.clone(),
+            outside_files: self.outside_files,
+            max_file_bytes: self.max_file_size.unwrap_or(d.max_file_bytes),
+            max_texture_size: self.max_texture_size.unwrap_or(d.max_texture_size),
+            max_texture_bytes: self.max_texture_memory.unwrap_or(d.max_texture_bytes),
+            max_vertices: self.max_vertices.unwrap_or(d.max_vertices),
+            max_instances: self.max_instances.unwrap_or(d.max_instances),
+            max_triangles: self.max_triangles.unwrap_or(d.max_triangles),
+            max_expansion: self.max_expansion.unwrap_or(d.max_expansion),
+            ..d
+        }
+    }
+}
+
+/// The importer's error, with the flag that allows more where a limit is exceeded.
+pub fn with_flag(error: SceneError) -> anyhow::Error {
+    let flag = match error.limit() {
+        Some(Limit::FileBytes) => "--max-file-size",
+        Some(Limit::TextureBytes) => "--max-texture-memory",
+        Some(Limit::Vertices) => "--max-vertices",
+        Some(Limit::Instances) => "--max-instances",
+        Some(Limit::Triangles) => "--max-triangles",
+        Some(Limit::Expansion) => "--max-expansion",
+        _ => return error.into(),
+    };
+    anyhow::anyhow!("{error}: {flag}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        import: ImportArgs,
+    }
+
+    #[test]
+    fn flags_change_the_limits_and_nothing_else() {
+        let none = Line::try_parse_from(["foveal"]).unwrap().import.options();
+        assert_eq!(none, LoadOptions::default());
+        let words = [
+            "foveal",
+            "--max-texture-memory",
+            "1.5GB",
+            "--max-vertices",
+            "7",
+            "--outside-files",
+            "--clip",
+            "Run",
+            "--variant",
+            "red",
+        ];
+        let some = Line::try_parse_from(words).unwrap().import.options();
+        let expected = LoadOptions {
+            max_texture_bytes: 1_500_000_000,
+            max_vertices: 7,
+            outside_files: true,
+            clip: Clip::Named("Run".to_owned()),
+            variant: Some("red".to_owned()),
+            ..LoadOptions::default()
+        };
+        assert_eq!(some, expected);
+    }
+
+    #[test]
+    fn every_flag_that_an_error_names_exists() {
+        let error = |limit| SceneError::TooLarge {
+            file: "a.glb".to_owned(),
+            place: "images[0]".to_owned(),
+            cause: "wants 10.5 GB for textures; the limit is 1 GB".to_owned(),
+            limit: Some(limit),
+        };
+        for limit in [
+            Limit::FileBytes,
+            Limit::TextureBytes,
+            Limit::Vertices,
+            Limit::Instances,
+            Limit::Triangles,
+            Limit::Expansion,
+        ] {
+            let text = with_flag(error(limit)).to_string();
+            let (_, flag) = text.rsplit_once(": ").unwrap();
+            assert!(
+                Line::try_parse_from(["foveal", flag, "1"]).is_ok(),
+                "{text}"
+            );
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! From the word on the command line to a scene: the name of a generated scene, or a file's path.
+
+use std::path::Path;
+use std::time::Instant;
+
+use anyhow::bail;
+use foveal::Timing;
+use foveal_generate as generate;
+use foveal_generate::{DemoOptions, GenerateError};
+use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene};
+
+use crate::import_args;
+
+/// What is drawn without SCENE.
+pub const DEFAULT_SCENE: &str = "demo";
+
+/// A camera for every moment, in seconds.
+pub type TimedCamera = Box<dyn Fn(f32) -> Camera>;
+
+/// Loads or generates the scene called `name`, posed at time 0, and adds the time of each stage to `load_ms`.
+///
+/// A generated scene's name wins over a file of the same name; `./demo` means the file.
+pub fn load_timed(
+    name: &str,
+    options: &LoadOptions,
+    load_ms: &mut Vec<Timing>,
+) -> anyhow::Result<Scene> {
+    let start = Instant::now();
+    match generate::by_name(name) {
+        Ok(_) if options.variant.is_some() || matches!(options.clip, Clip::Named(_)) => {
+            bail!("the generated scene '{name}' has neither clips nor variants")
+        }
+        Ok(scene) => {
+            load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
+            Ok(scene)
+        }
+        Err(GenerateError::UnknownScene { .. }) => from_file(name, options, load_ms),
+        Err(error) => Err(error.into()),
+    }
+}
+
+/// As [`load_timed`], for commands to which the time is all one.
+pub fn load_with(name: &str, options: &LoadOptions) -> anyhow::Result<Scene> {
+    load_timed(name, options, &mut Vec::new())
+}
+
+/// As [`load_with`] by the importer's default options.
+pub fn load(name: &str) -> anyhow::Result<Scene> {
+    load_with(name, &LoadOptions::default())
+}
+
+fn from_file(
+    name: &str,
+    options: &LoadOptions,
+    load_ms: &mut Vec<Timing>,
+) -> anyhow::Result<Scene> {
+    let path = Path::new(name);
+    if !path.exists() {
+        bail!(
+            "there is no scene '{name}': neither a file of that name nor a generated scene; generated are {}",
+            generate::NAMES.join(", ")
+        );
+    }
+    let scene = foveal_scene::load(path, options).map_err(import_args::with_flag)?;
+    let LoadTimings {
+        read_ms,
+        parse_ms,
+        geometry_ms,
+        decode_ms,
+        bounds_ms,
+    } = scene.timings;
+    let stages = [
+        ("read", read_ms),
+        ("parse", parse_ms),
+        ("geometry", geometry_ms),
+        ("decode", decode_ms),
+        ("bounds", bounds_ms),
+    ];
+    load_ms.extend(stages.map(|(name, ms)| timing(name, f64::from(ms))));
+    Ok(scene)
+}
+
+/// Seconds that the walk through the demo scene takes.
+const DEMO_WALK_S: f32 = 30.0;
+
+/// The camera path that belongs to a generated scene.
+pub fn camera_path(name: &str) -> Option<TimedCamera> {
+    let options = demo_options(name)?;
+    Some(Box::new(move |time_s| {
+        let mut camera = generate::demo_path(&options, (time_s / DEMO_WALK_S).clamp(0.0, 1.0));
+        camera.name = "demo path".to_owned();
+        camera
+    }))
+}
+
+/// The options behind `demo` and `demo:INSTANCES`.
+fn demo_options(name: &str) -> Option<DemoOptions> {
+    let options = DemoOptions::default();
+    match name.split_once(':') {
+        None if name == "demo" => Some(options),
+        Some(("demo", instances)) => Some(DemoOptions {
+            instances: instances.parse().ok()?,
+            ..options
+        }),
+        _ => None,
+    }
+}
+
+/// Adds coloured point lights, the same ones for the same scene and seed.
+pub fn add_point_lights(scene: &mut Scene, count: u32, seed: u64) {
+    generate::add_point_lights(scene, count, seed);
+}
+
+fn timing(name: &str, ms: f64) -> Timing {
+    Timing {
+        name: name.to_owned(),
+        ms,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_unknown_scene_lists_those_that_can_be_generated() {
+        let error = load("castle.glb").unwrap_err().to_string();
+        assert!(
+            error.contains("'castle.glb'") && error.contains("cornell"),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn a_generated_scene_has_no_clips_to_name() {
+        let options = LoadOptions {
+            clip: Clip::Named("Run".to_owned()),
+            ..LoadOptions::default()
+        };
+        let error = load_with("cornell", &options).unwrap_err().to_string();
+        assert!(error.contains("'cornell'"), "{error}");
+    }
+
+    #[test]
+    fn only_the_demo_scene_has_a_path() {
+        assert!(camera_path("demo").is_some() && camera_path("demo:2000").is_some());
+        assert!(camera_path("cornell").is_none() && camera_path("demo.glb").is_none());
+    }
+}

@@ -1,0 +1,229 @@
+//! The settings as flags, made from their table: `--tone-map aces` for the key `tone-map`.
+//!
+//! Two flags are spelled otherwise: `--size WxH` is width and height, and `--rate FILE.png` names the image source
+//! and its file at once.
+
+use std::path::PathBuf;
+
+use clap::builder::{
+    BoolValueParser, PossibleValuesParser, RangedI64ValueParser, TypedValueParser, ValueParser,
+};
+use clap::{Arg, ArgMatches, Command, value_parser};
+use foveal::{Kind, LensProfile, Setting, Settings};
+use toml::{Table, Value};
+
+use crate::values;
+
+/// A flag for each of [`Settings::ALL`]; what is not given stays as the file or the default says.
+#[derive(Debug, Clone, Default)]
+pub struct SettingsArgs {
+    /// `--settings`
+    pub(super) file: Option<PathBuf>,
+    /// What the flags say, under the keys of a settings file.
+    pub(super) given: Table,
+}
+
+/// Whether `--size` stands for this setting.
+fn is_part_of_size(key: &str) -> bool {
+    matches!(key, "width" | "height")
+}
+
+impl clap::Args for SettingsArgs {
+    fn augment_args(command: Command) -> Command {
+        let defaults = Table::try_from(Settings::default()).unwrap_or_default();
+        let general = [
+            Arg::new("settings")
+                .long("settings")
+                .value_name("FILE.toml")
+                .value_parser(value_parser!(PathBuf))
+                .help("Read settings from a TOML file; flags win over it")
+                .help_heading("Settings"),
+            Arg::new("size")
+                .long("size")
+                .value_name("WxH")
+                .value_parser(values::size)
+                .help("Width and height in pixels [default: 1280x720]")
+                .help_heading("Picture"),
+        ];
+        let settings = Settings::ALL
+            .iter()
+            .filter(|setting| !is_part_of_size(setting.key));
+        command
+            .args(general)
+            .args(settings.map(|setting| flag(setting, defaults.get(setting.key))))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
+    let default = match default.map(spelled) {
+        Some(default) if !default.is_empty() => format!(" [default: {default}]"),
+        _ => String::new(),
+    };
+    let (value_name, parser) = match setting.kind {
+        _ if setting.key == "rate" => ("SOURCE|FILE.png", source_parser(setting.kind)),
+        Kind::Switch => (
+            "BOOL",
+            ValueParser::new(BoolValueParser::new().map(Value::from)),
+        ),
+        Kind::Choice(names) => (
+            "WHICH",
+            ValueParser::new(PossibleValuesParser::new(names()).map(Value::from)),
+        ),
+        Kind::Integer { least, most } => {
+            let range = RangedI64ValueParser::<i64>::new().range(least..=most);
+            ("N", ValueParser::new(range.map(Value::from)))
+        }
+        Kind::Number { least, .. } if least > 0.0 => (
+            "X",
+            ValueParser::new(|text: &str| values::positive(text).map(Value::from)),
+        ),
+        Kind::Number { .. } => (
+            "X",
+            ValueParser::new(|text: &str| values::finite(text).map(Value::from)),
+        ),
+        Kind::Place => (
+            "X,Y",
+            ValueParser::new(|text: &str| values::vec2(text).map(|at| Value::from(at.to_vec()))),
+        ),
+        Kind::Text if setting.key == "lens" => ("NAME|FILE.toml", ValueParser::new(lens)),
+        Kind::Text => (
+            "TEXT",
+            ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
+        ),
+        Kind::File => (
+            "FILE.png",
+            ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
+        ),
+    };
+    Arg::new(setting.key)
+        .long(setting.key)
+        .value_name(value_name)
+        .value_parser(parser)
+        .allow_negative_numbers(matches!(setting.kind, Kind::Number { .. }))
+        .allow_hyphen_values(matches!(
+            setting.kind,
+            Kind::Number { .. } | Kind::Place | Kind::Text
+        ))
+        .help(format!("{}{default}", setting.help))
+        .help_heading(setting.stage)
+}
+
+/// What `--lens` names; a file's coefficients go into the settings themselves.
+fn lens(text: &str) -> Result<Value, String> {
+    if !text.to_lowercase().ends_with(".toml") {
+        return Ok(Value::from(text));
+    }
+    let wrong = |cause: &dyn std::fmt::Display| format!("the lens file '{text}': {cause}");
+    let file = std::fs::read_to_string(text).map_err(|e| wrong(&e))?;
+    let LensProfile {
+        distortion,
+        red,
+        blue,
+    } = toml::from_str(&file).map_err(|e: toml::de::Error| wrong(&e))?;
+    let numbers = distortion.iter().chain(&red).chain(&blue);
+    let numbers: Vec<String> = numbers.map(ToString::to_string).collect();
+    Ok(Value::from(numbers.join(",")))
+}
+
+/// What `--rate` names.
+fn source_parser(kind: Kind) -> ValueParser {
+    let names = match kind {
+        Kind::Choice(names) => names(),
+        _ => &[],
+    };
+    ValueParser::new(move |text: &str| {
+        if names.contains(&text) || text.to_lowercase().ends_with(".png") {
+            Ok(Value::from(text))
+        } else {
+            Err(format!("neither {}, nor a .png file", names.join(", ")))
+        }
+    })
+}
+
+/// A value as its flag spells it.
+fn spelled(value: &Value) -> String {
+    match value {
+        Value::String(text) => text.clone(),
+        Value::Float(number) => (*number as f32).to_string(),
+        Value::Array(parts) => parts.iter().map(spelled).collect::<Vec<_>>().join(","),
+        other => other.to_string(),
+    }
+}
+
+impl clap::FromArgMatches for SettingsArgs {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut args = Self::default();
+        args.update_from_arg_matches(matches)?;
+        Ok(args)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        if let Some(file) = matches.get_one::<PathBuf>("settings") {
+            self.file = Some(file.clone());
+        }
+        if let Some(&(width, height)) = matches.get_one::<(u32, u32)>("size") {
+            self.given.insert("width".to_owned(), width.into());
+            self.given.insert("height".to_owned(), height.into());
+        }
+        for setting in Settings::ALL {
+            if is_part_of_size(setting.key) {
+                continue;
+            }
+            if let Some(value) = matches.get_one::<Value>(setting.key) {
+                self.given.insert(setting.key.to_owned(), value.clone());
+            }
+        }
+        self.split_rate();
+        Ok(())
+    }
+}
+
+impl SettingsArgs {
+    /// Whether flags or file say how large the picture is.
+    pub fn gives_size(&self) -> bool {
+        self.file.is_some() || self.given.keys().any(|key| is_part_of_size(key))
+    }
+
+    /// As the flag `--key value` does.
+    pub fn set(&mut self, key: &str, value: &str) {
+        self.given.insert(key.to_owned(), value.into());
+    }
+
+    /// A file's name given for `rate` goes where it belongs, unless that is given too.
+    fn split_rate(&mut self) {
+        let Some(Value::String(rate)) = self.given.get("rate") else {
+            return;
+        };
+        if rate.to_lowercase().ends_with(".png") {
+            let file = Value::from(rate.as_str());
+            self.given.insert("rate".to_owned(), Value::from("image"));
+            self.given.entry("rate-image").or_insert(file);
+        }
+    }
+}
+
+/// The flags that make `settings` out of the defaults, in the order of the table.
+pub fn flags(settings: &Settings) -> Vec<String> {
+    let of = |settings: &Settings| Table::try_from(settings).unwrap_or_default();
+    let (chosen, default) = (of(settings), of(&Settings::default()));
+    let mut flags = Vec::new();
+    let sizes = [settings, &Settings::default()].map(|s| (s.width, s.height));
+    if sizes[0] != sizes[1] {
+        flags.push("--size".to_owned());
+        flags.push(format!("{}x{}", settings.width, settings.height));
+    }
+    for setting in Settings::ALL {
+        if is_part_of_size(setting.key) || chosen.get(setting.key) == default.get(setting.key) {
+            continue;
+        }
+        if let Some(value) = chosen.get(setting.key) {
+            flags.push(format!("--{}", setting.key));
+            flags.push(spelled(value));
+        }
+    }
+    flags
+}

@@ -1,0 +1,208 @@
+//! Settings from files and flags, and the table behind both.
+
+use clap::Parser;
+use foveal::{Kind, Setting, DebugView};
+use toml::Value;
+
+use super::super::args::flags;
+use super::*;
+use crate::mutate::{self, mutate};
+
+#[derive(Parser)]
+struct Line {
+    #[command(flatten)]
+    settings: SettingsArgs,
+}
+
+fn from_flags(flags: &[&str]) -> Settings {
+    let line = Line::try_parse_from([&["x"], flags].concat()).unwrap();
+    line.settings.resolve().unwrap()
+}
+
+/// As the flags say, be it sensible or not.
+fn unchecked(flags: &[String]) -> Settings {
+    let words = std::iter::once("x").chain(flags.iter().map(String::as_str));
+    let line = Line::try_parse_from(words).unwrap();
+    with(&Settings::default(), &line.settings.given).unwrap()
+}
+
+/// Settings that differ from the defaults under each key, as far as they can, by the table alone.
+fn changed(setting: &Setting, default: &Value) -> Value {
+    match (setting.kind, default) {
+        (Kind::Switch, Value::Boolean(on)) => Value::from(!on),
+        (Kind::Choice(names), Value::String(default)) => {
+            let other = names().iter().find(|name| *name != default);
+            Value::from(*other.expect("a choice"))
+        }
+        (Kind::Integer { least, most }, Value::Integer(default)) => {
+            Value::from(if *default == least { most } else { least })
+        }
+        (Kind::Number { least, most }, Value::Float(default)) => {
+            let middle = f64::from((0.25 * least + 0.75 * most) as f32);
+            assert_ne!(middle, *default);
+            Value::from(middle)
+        }
+        (Kind::Place, Value::Array(_)) => Value::from(vec![0.25, -0.5]),
+        (Kind::Text, Value::String(_)) if setting.key == "lens" => Value::from("dk1"),
+        (Kind::Text, Value::String(_)) => Value::from("-1,0.5,-1,1,-0.5,1,-1,1"),
+        (Kind::File, Value::String(_)) => Value::from("a b.png"),
+        (kind, value) => panic!("{}: {value} is no {kind:?}", setting.key),
+    }
+}
+
+#[test]
+fn no_setting_is_missing_from_file_flags_or_table() {
+    let defaults = Table::try_from(Settings::default()).unwrap();
+    let mut in_file: Vec<&str> = defaults.keys().map(String::as_str).collect();
+    let mut in_table: Vec<&str> = Settings::ALL.iter().map(|s| s.key).collect();
+    in_file.sort_unstable();
+    in_table.sort_unstable();
+    assert_eq!(in_file, in_table, "what panels and flags are made from");
+    let command = <Line as clap::CommandFactory>::command();
+    let mut in_flags: Vec<&str> = command
+        .get_arguments()
+        .filter_map(|a| a.get_long())
+        .collect();
+    in_flags.retain(|flag| *flag != "settings");
+    let size = in_flags.iter().position(|flag| *flag == "size").unwrap();
+    in_flags.splice(size..=size, ["width", "height"]);
+    in_flags.sort_unstable();
+    assert_eq!(in_flags, in_table);
+}
+
+#[test]
+fn every_setting_goes_through_file_flags_and_table_unchanged() {
+    let defaults = Table::try_from(Settings::default()).unwrap();
+    let mut all = Table::new();
+    for setting in Settings::ALL {
+        let key = setting.key;
+        let value = changed(setting, &defaults[key]);
+        let by_table = with(
+            &Settings::default(),
+            &Table::from_iter([(key.to_owned(), value.clone())]),
+        )
+        .unwrap();
+        assert_ne!(by_table, Settings::default(), "{key}");
+        let by_file = parse(&format!("{key} = {value}")).unwrap();
+        assert_eq!(by_file, by_table, "{key}");
+        assert_eq!(unchecked(&flags(&by_table)), by_table, "{key}");
+        all.insert(key.to_owned(), value);
+    }
+    let all = with(&Settings::default(), &all).unwrap();
+    assert_eq!(unchecked(&flags(&all)), all);
+    assert_eq!(parse(&toml::to_string(&all).unwrap()).unwrap(), all);
+}
+
+/// What no slider can be set to shall not be what the renderer refuses.
+#[test]
+fn the_ends_of_every_range_are_valid() {
+    for setting in Settings::ALL {
+        let ends: [Value; 2] = match setting.kind {
+            Kind::Integer { least, most } => [least.into(), most.into()],
+            Kind::Number { least, most } => [least.into(), most.into()],
+            _ => continue,
+        };
+        for end in ends {
+            let one = Table::from_iter([(setting.key.to_owned(), end.clone())]);
+            let settings = with(&Settings::default(), &one).unwrap();
+            check(&settings).unwrap_or_else(|e| panic!("{} = {end}: {e}", setting.key));
+        }
+    }
+}
+
+#[test]
+fn a_rate_may_be_a_file() {
+    for flags in [
+        &["--rate", "a.PNG"][..],
+        &["--rate", "image", "--rate-image", "a.PNG"],
+    ] {
+        let settings = from_flags(flags);
+        assert_eq!(settings.rate, foveal::RateSource::Image);
+        assert_eq!(settings.rate_image, "a.PNG");
+    }
+    assert!(Line::try_parse_from(["x", "--rate", "sideways"]).is_err());
+}
+
+#[test]
+fn settings_survive_the_file_format() {
+    let settings = Settings {
+        exposure: -0.1,
+        view: DebugView::BaseColor,
+        ..Settings::default()
+    };
+    assert_eq!(
+        parse(&toml::to_string(&settings).unwrap()).unwrap(),
+        settings
+    );
+}
+
+#[test]
+fn flags_win_over_the_file_and_the_file_over_the_defaults() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    std::fs::write(&path, "width = 10\nheight = 20\nexposure = 3.0\n").unwrap();
+    let settings = from_flags(&["--settings", path.to_str().unwrap(), "--exposure", "1"]);
+    assert_eq!(
+        (settings.width, settings.height, settings.exposure),
+        (10, 20, 1.0)
+    );
+    assert_eq!(settings.anisotropy, Settings::default().anisotropy);
+}
+
+#[test]
+fn a_wrong_settings_file_is_named_with_line_and_key() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.toml");
+    for (text, line, key) in [
+        ("width = 10\nexposure = \"bright\"\n", 2, "exposure"),
+        ("\n\ngamma = 2.2\n", 3, "gamma"),
+        ("view = \"sideways\"", 1, "view"),
+        ("width = -3", 1, "width"),
+        ("width = ", 1, "width"),
+    ] {
+        std::fs::write(&path, text).unwrap();
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("s.toml"), "{error}");
+        assert!(
+            error.contains(&format!("line {line}, key '{key}'")),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn senseless_values_are_refused() {
+    for text in [
+        "width = 0",
+        "exposure = nan",
+        "exposure = inf",
+        "anisotropy = 0",
+        "anisotropy = 17",
+        "coarsest-level = 9",
+        "fovea-curve = 0.0",
+        "fovea-inner = -1.0",
+        "gaze = [nan, 0.0]",
+        "view = \"rate\"",
+    ] {
+        assert!(check(&parse(text).unwrap()).is_err(), "{text}");
+    }
+}
+
+#[test]
+fn fuzz_settings() {
+    let all = toml::to_string(&Settings::default()).unwrap();
+    let seeds = [
+        all.into_bytes(),
+        b"width = 64\nlighting = \"blinn-phong\"\n".to_vec(),
+    ];
+    mutate::run("settings", &seeds, mutate, |bytes| {
+        let text = String::from_utf8_lossy(bytes);
+        match parse(&text) {
+            Ok(settings) => drop(check(&settings)),
+            Err(error) => {
+                let start = error.span().map_or(0, |span| span.start);
+                assert!(place(&text, start).contains("line"));
+            }
+        }
+    });
+}

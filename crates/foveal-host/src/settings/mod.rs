@@ -1,0 +1,7 @@
+//! Settings on the command line and in files.
+
+mod args;
+mod file;
+
+pub use args::{SettingsArgs, flags};
+pub use file::read;
