@@ -157,13 +157,14 @@ fn modes(base: &Settings) -> Vec<Settings> {
         (Gbuffer, Msaa, Surface, Rotated, 4),
         (Gbuffer, Msaa, Surface, Rotated, 8),
     ]
-    .map(|(geometry, aa, edge_test, pattern, samples)| Settings {
-        geometry,
-        aa,
-        edge_test,
-        pattern,
-        samples,
-        ..base.clone()
+    .map(|(geometry, aa, edge_test, pattern, samples)| {
+        base.clone().with(|s| {
+            s.geometry.path = geometry;
+            s.antialiasing.mode = aa;
+            s.antialiasing.edge_test = edge_test;
+            s.antialiasing.pattern = pattern;
+            s.antialiasing.samples = samples;
+        })
     })
     .to_vec()
 }
@@ -171,19 +172,18 @@ fn modes(base: &Settings) -> Vec<Settings> {
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
-    let base = Settings {
-        width: args.size.0,
-        height: args.size.1,
-        lights: args.lights.unwrap_or_default(),
-        lighting: args.lighting.unwrap_or_default(),
-        ..Settings::default()
-    };
+    let base = Settings::default().with(|s| {
+        s.picture.width = args.size.0;
+        s.picture.height = args.size.1;
+        s.lighting.assignment = args.lights.unwrap_or_default();
+        s.lighting.model = args.lighting.unwrap_or_default();
+    });
     let report = Report {
         header: subject.header("foveal-bench-antialiasing", SCHEMA_VERSION),
         rows: rows(args, &subject, &base)?,
         point_lights: args.point_lights,
-        lights: base.lights,
-        lighting: base.lighting,
+        lights: base.lighting.assignment,
+        lighting: base.lighting.model,
         rounds: args.rounds,
     };
     args.subject.give(&report, &summary(&report))
@@ -207,11 +207,10 @@ fn rows(
         }
     }
     let reference = if args.reference > 0 {
-        let settings = Settings {
-            aa: Antialiasing::Ssaa,
-            samples: args.reference,
-            ..base.clone()
-        };
+        let settings = base.clone().with(|s| {
+            s.antialiasing.mode = Antialiasing::Ssaa;
+            s.antialiasing.samples = args.reference;
+        });
         let mut mode = Mode::new(gpu, scene, &settings)?;
         mode.draw(camera, false)?;
         mode.picture
@@ -224,8 +223,8 @@ fn rows(
             let near = |truth: &Picture| Nearness::of(truth, picture);
             let reference = reference.as_ref().map(near);
             // Each is compared with none by the same geometry.
-            let geometry = mode.renderer.settings().geometry;
-            let same = |m: &Mode| m.renderer.settings().geometry == geometry;
+            let geometry = mode.renderer.settings().geometry.path;
+            let same = |m: &Mode| m.renderer.settings().geometry.path == geometry;
             let none = modes.iter().position(same).unwrap_or(number);
             let compared = |figure: fn(&Times) -> f64| {
                 let (none_ms, ms) = (modes[none].times(figure), mode.times(figure));
@@ -285,15 +284,15 @@ impl Mode {
         Row {
             name: called(settings),
             scene: scene.to_owned(),
-            width: settings.width,
-            height: settings.height,
-            geometry: settings.geometry,
-            mode: settings.aa,
-            edge_test: settings.edge_test,
-            pattern: settings.pattern,
-            samples: match settings.aa {
+            width: settings.picture.width,
+            height: settings.picture.height,
+            geometry: settings.geometry.path,
+            mode: settings.antialiasing.mode,
+            edge_test: settings.antialiasing.edge_test,
+            pattern: settings.antialiasing.pattern,
+            samples: match settings.antialiasing.mode {
                 Antialiasing::None => 1,
-                _ => settings.samples,
+                _ => settings.antialiasing.samples,
             },
             edge_fraction: self.last.edge_fraction,
             shaded_samples: self.last.shaded_samples,
@@ -316,14 +315,17 @@ impl Mode {
 
 /// What tells a mode from the others.
 fn called(settings: &Settings) -> String {
-    let (mode, pattern) = (name_of(settings.aa), name_of(settings.pattern));
-    match settings.aa {
-        _ if settings.geometry == Geometry::Visibility => format!("{mode}, visibility"),
+    let (mode, pattern) = (
+        name_of(settings.antialiasing.mode),
+        name_of(settings.antialiasing.pattern),
+    );
+    match settings.antialiasing.mode {
+        _ if settings.geometry.path == Geometry::Visibility => format!("{mode}, visibility"),
         Antialiasing::None => mode,
-        Antialiasing::Ssaa => format!("{mode} {pattern} {}", settings.samples),
+        Antialiasing::Ssaa => format!("{mode} {pattern} {}", settings.antialiasing.samples),
         Antialiasing::Msaa => {
-            let test = name_of(settings.edge_test);
-            format!("{mode} {pattern} {} {test}", settings.samples)
+            let test = name_of(settings.antialiasing.edge_test);
+            format!("{mode} {pattern} {} {test}", settings.antialiasing.samples)
         }
     }
 }

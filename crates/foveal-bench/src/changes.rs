@@ -33,8 +33,11 @@ mod tests {
             ("force-rate", "true"),
         ];
         let settings = changed(&Settings::default(), &changes).unwrap();
-        assert_eq!(settings.shading, foveal::Shading::Coarse);
-        assert_eq!((settings.quality, settings.force_rate), (9.0, true));
+        assert_eq!(settings.shading.mode, foveal::Shading::Coarse);
+        assert_eq!(
+            (settings.eye.quality_jod, settings.variable.force),
+            (9.0, true)
+        );
         assert!(changed(&Settings::default(), &[("shade", "coarse")]).is_err());
     }
 }

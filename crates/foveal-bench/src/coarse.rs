@@ -68,8 +68,8 @@ pub struct Args {
     rate_stage: Vec<RateStage>,
 
     /// Backends; may be given several times [default: stencil and compute]
-    #[arg(long, value_name = "HOW", value_parser = VariantParser::<Backend>::new())]
-    backend: Vec<Backend>,
+    #[arg(long, value_name = "HOW", value_parser = VariantParser::<CoarseBackend>::new())]
+    backend: Vec<CoarseBackend>,
 
     /// Besides, rows over 10 to 2,000 lights and over fovea radii, at the last size by the last backend
     #[arg(long)]
@@ -101,7 +101,7 @@ struct Row {
     refine_edges: RefineEdges,
     geometry: Geometry,
     rate_stage: RateStage,
-    backend: Backend,
+    backend: CoarseBackend,
     composite: Composite,
     levels: u32,
     shaded_fraction: f64,
@@ -149,7 +149,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let mut scene = scene_source::load(&args.subject.scene)?;
     let camera = args.subject.viewpoint(&scene)?.at(&scene, 0.0);
     let mut rows = Vec::new();
-    let mut measure = |case: Case, backends: &[Backend]| -> anyhow::Result<()> {
+    let mut measure = |case: Case, backends: &[CoarseBackend]| -> anyhow::Result<()> {
         light(&mut scene, case.lights, args.light_range);
         for row in measure(args, &gpu, &scene, &camera, case, backends)? {
             print(&row);
@@ -213,20 +213,19 @@ fn measure(
     scene: &Scene,
     camera: &Camera,
     case: Case,
-    backends: &[Backend],
+    backends: &[CoarseBackend],
 ) -> anyhow::Result<Vec<Row>> {
-    let full_settings = Settings {
-        width: case.size.0,
-        height: case.size.1,
-        lights: LightAssignment::Brute,
-        lighting: args.lighting.unwrap_or_default(),
-        refine_edges: args.refine_edges.unwrap_or_default(),
+    let full_settings = Settings::default().with(|s| {
+        s.picture.width = case.size.0;
+        s.picture.height = case.size.1;
+        s.lighting.assignment = LightAssignment::Brute;
+        s.lighting.model = args.lighting.unwrap_or_default();
+        s.coarse.refine_edges = args.refine_edges.unwrap_or_default();
         // The map of the technique's source.
-        rate: RateSource::Radii,
-        fovea_inner: case.fovea_inner,
-        geometry: args.geometry.unwrap_or_default(),
-        ..Settings::default()
-    };
+        s.coarse.source = RateSource::Radii;
+        s.coarse.fovea_inner = case.fovea_inner;
+        s.geometry.path = args.geometry.unwrap_or_default();
+    });
     let mut full = Side::new(gpu, scene, camera, &full_settings)?;
     let mut sides = Vec::new();
     let rate_stages = match args.rate_stage.as_slice() {
@@ -236,13 +235,12 @@ fn measure(
     for &rate_stage in rate_stages {
         for &backend in backends {
             for composite in [Composite::Nearest, Composite::Paper, Composite::Smooth] {
-                let settings = Settings {
-                    shading: Shading::Coarse,
-                    backend,
-                    composite,
-                    rate_stage,
-                    ..full_settings.clone()
-                };
+                let settings = full_settings.clone().with(|s| {
+                    s.shading.mode = Shading::Coarse;
+                    s.coarse.backend = backend;
+                    s.coarse.composite = composite;
+                    s.shading.stage = rate_stage;
+                });
                 sides.push(Side::new(gpu, scene, camera, &settings)?);
             }
         }
@@ -269,18 +267,18 @@ fn measure(
             let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
             Ok(Row {
                 scene: args.subject.scene.clone(),
-                width: settings.width,
-                height: settings.height,
+                width: settings.picture.width,
+                height: settings.picture.height,
                 lights: case.lights,
                 light_range_m: args.light_range,
-                lighting: settings.lighting,
-                fovea_inner: settings.fovea_inner,
-                refine_edges: settings.refine_edges,
-                geometry: settings.geometry,
-                rate_stage: settings.rate_stage,
-                backend: settings.backend,
-                composite: settings.composite,
-                levels: u32::from(settings.coarsest_level) + 1,
+                lighting: settings.lighting.model,
+                fovea_inner: settings.coarse.fovea_inner,
+                refine_edges: settings.coarse.refine_edges,
+                geometry: settings.geometry.path,
+                rate_stage: settings.shading.stage,
+                backend: settings.coarse.backend,
+                composite: settings.coarse.composite,
+                levels: u32::from(settings.coarse.coarsest_level) + 1,
                 shaded_fraction: coarse.shaded_fraction,
                 frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
                 frame_ratio_low: interval.map(|ends| ends[0]),

@@ -112,7 +112,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         frames: args.frames(),
         fps: args.fps,
         rounds: args.rounds(),
-        gaze: Settings::default().gaze,
+        gaze: Settings::default().eye.gaze,
         off_gaze: OFF_GAZE,
         rows,
     };
@@ -130,7 +130,7 @@ fn measure(
     let (width, height) = (shown.width as usize, shown.height as usize);
     studio.forget_other_sizes((shown.width, shown.height));
     let metric = |[x, y]: [f32; 2]| Metric::new(&shown.display, width, height, Gaze { x, y });
-    let middle = Settings::default().gaze;
+    let middle = Settings::default().eye.gaze;
     let (at_middle, at_off) = (metric(middle)?, metric(OFF_GAZE)?);
     let full = shown.settings(&WAYS[0], middle)?;
     if args.rounds() > 0 {

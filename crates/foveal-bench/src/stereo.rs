@@ -4,8 +4,8 @@
 //! the whole frame with all deferred stages.
 
 use foveal::{
-    AdapterStats, Culling, EyeClipping, Frame, FrameStats, Gpu, Renderer, Settings, Stereo, Timing,
-    DebugView,
+    AdapterStats, Culling, DebugView, EyeClipping, Frame, FrameStats, Gpu, Renderer, Settings,
+    Stereo, Timing,
 };
 use foveal_measure::{Comparison, median, turn};
 use foveal_scene::{Camera, Scene};
@@ -173,7 +173,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         let mut scene = scene_source::load(name)?;
         scene.light_by_default();
         let camera = Viewpoint::choose(&args.camera, &scene, name)?.at(&scene, 0.0);
-        for (stages, view) in [("geometry", DebugView::BaseColor), ("frame", DebugView::Final)] {
+        for (stages, view) in [
+            ("geometry", DebugView::BaseColor),
+            ("frame", DebugView::Final),
+        ] {
             let subject = (name.as_str(), &scene, &camera);
             rows.extend(measure(args, &gpu, &ways, subject, stages, view)?);
         }
@@ -195,12 +198,11 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
 fn usable(gpu: &Gpu) -> anyhow::Result<(Vec<Named>, Vec<Skipped>)> {
     let (mut ways, mut skipped) = (Vec::new(), Vec::new());
     for (mode, stereo, eye_clipping) in WAYS {
-        let settings = Settings {
-            width: 16,
-            height: 16,
-            stereo,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 16;
+            s.picture.height = 16;
+            s.stereo.mode = stereo;
+        });
         match block_on(Renderer::new(gpu, &settings, None)) {
             Ok(_) => ways.push((mode, stereo, eye_clipping)),
             Err(error @ foveal::Error::Setting { .. }) => skipped.push(Skipped {
@@ -219,25 +221,24 @@ fn measure(
     usable: &[Named],
     (name, scene, camera): (&str, &Scene, &Camera),
     stages: &'static str,
-    view: View,
+    view: DebugView,
 ) -> anyhow::Result<Vec<Row>> {
     let of_source = SOURCE_SCENES.contains(&name);
     let mut ways = Vec::new();
     for &(mode, stereo, eye_clipping) in usable {
-        let settings = Settings {
-            width: args.size.0,
-            height: args.size.1,
-            view,
-            stereo,
-            eye_clipping,
-            culling: if of_source {
+        let settings = Settings::default().with(|s| {
+            s.picture.width = args.size.0;
+            s.picture.height = args.size.1;
+            s.picture.view = view;
+            s.stereo.mode = stereo;
+            s.stereo.clipping = eye_clipping;
+            s.culling.mode = if of_source {
                 Culling::Off
             } else {
                 Culling::Occlusion
-            },
-            merge_draws: !of_source,
-            ..Settings::default()
-        };
+            };
+            s.geometry.merge_draws = !of_source;
+        });
         let mut renderer = block_on(Renderer::new(gpu, &settings, Some(now_ms)))?;
         block_on(renderer.set_scene(scene))?;
         ways.push(Way {

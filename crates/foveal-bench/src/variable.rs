@@ -182,7 +182,7 @@ impl Film {
     fn picture(&self) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
         let s = self.renderer.settings();
-        Picture::from_rgba(s.width, s.height, &bytes)
+        Picture::from_rgba(s.picture.width, s.picture.height, &bytes)
     }
 }
 
@@ -214,20 +214,18 @@ fn measure(
     material_cost: &'static str,
     contrast_threshold: f32,
 ) -> anyhow::Result<Row> {
-    let full_settings = Settings {
-        width: args.size.0,
-        height: args.size.1,
-        geometry: Geometry::Visibility,
-        ..Settings::default()
-    };
-    let variable_settings = Settings {
-        shading: Shading::Variable,
-        rate: RateSource::Content,
-        rate_stage: stage,
-        contrast_threshold,
-        force_rate: true,
-        ..full_settings.clone()
-    };
+    let full_settings = Settings::default().with(|s| {
+        s.picture.width = args.size.0;
+        s.picture.height = args.size.1;
+        s.geometry.path = Geometry::Visibility;
+    });
+    let variable_settings = full_settings.clone().with(|s| {
+        s.shading.mode = Shading::Variable;
+        s.coarse.source = RateSource::Content;
+        s.shading.stage = stage;
+        s.variable.threshold = contrast_threshold;
+        s.variable.force = true;
+    });
     let mut full = Film::new(gpu, scene, &full_settings)?;
     let mut variable = Film::new(gpu, scene, &variable_settings)?;
     let (mut frames, mut fraction) = (Vec::new(), 1.0);

@@ -90,11 +90,10 @@ struct Row {
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
-    let plain = Settings {
-        width: args.size.0,
-        height: args.size.1,
-        ..Settings::default()
-    };
+    let plain = Settings::default().with(|s| {
+        s.picture.width = args.size.0;
+        s.picture.height = args.size.1;
+    });
     let candidates: Vec<(&Candidate, Settings)> = ALL
         .iter()
         .map(|candidate| Ok((candidate, candidate.settings(&plain)?)))
@@ -133,11 +132,10 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured: Measured) -> Row {
-    let size = Settings {
-        width: settings.width,
-        height: settings.height,
-        ..Settings::default()
-    };
+    let size = Settings::default().with(|s| {
+        s.picture.width = settings.picture.width;
+        s.picture.height = settings.picture.height;
+    });
     let of_size = flags(&size).len();
     let all = flags(settings);
     let command = |output: &str, flags: &[String]| {

@@ -9,18 +9,18 @@ use crate::picture::Picture;
 
 /// The picture that the rate map comes from, where it comes from one.
 pub fn rate_image(settings: &Settings) -> anyhow::Result<Option<RateImage>> {
-    let second = settings.rate_combine != RateCombine::First;
-    let used =
-        settings.rate == RateSource::Image || second && settings.rate_other == RateSource::Image;
-    if settings.shading == Shading::Full || !used {
+    let second = settings.coarse.combine != RateCombine::First;
+    let used = settings.coarse.source == RateSource::Image
+        || second && settings.coarse.other_source == RateSource::Image;
+    if settings.shading.mode == Shading::Full || !used {
         return Ok(None);
     }
-    if settings.rate_image.is_empty() {
+    if settings.coarse.image.is_empty() {
         bail!(
             "the rate map shall come from a picture, but none is named: add --rate-image FILE.png"
         );
     }
-    let picture = Picture::read(Path::new(&settings.rate_image))?;
+    let picture = Picture::read(Path::new(&settings.coarse.image))?;
     // Rec. 601 luma, as the grey of a grey picture.
     let luma = picture
         .rgb_bytes()

@@ -322,11 +322,10 @@ impl App {
 
     /// The reference as it is drawn: with this picture's size and exposure.
     fn sized_reference(&self) -> Settings {
-        Settings {
-            width: self.settings.width,
-            height: self.settings.height,
-            ..self.reference.clone()
-        }
+        self.reference.clone().with(|s| {
+            s.picture.width = self.settings.picture.width;
+            s.picture.height = self.settings.picture.height;
+        })
     }
 
     /// Asks for a picture where a new one is wanted.
@@ -364,10 +363,10 @@ impl App {
     /// Whether a stage does anything with these settings.
     pub(crate) fn is_in_use(&self, stage: &str) -> bool {
         match stage {
-            "Shading at a rate" => self.settings.shading != Shading::Full,
-            "Eye" => self.settings.shading != Shading::Full,
-            "Coarse shading" => self.settings.shading == Shading::Coarse,
-            "Variable shading" => self.settings.shading == Shading::Variable,
+            "Shading at a rate" => self.settings.shading.mode != Shading::Full,
+            "Eye" => self.settings.shading.mode != Shading::Full,
+            "Coarse shading" => self.settings.shading.mode == Shading::Coarse,
+            "Variable shading" => self.settings.shading.mode == Shading::Variable,
             _ => true,
         }
     }

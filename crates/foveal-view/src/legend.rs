@@ -1,7 +1,7 @@
 //! What the colours of a view mean.
 
 use egui::{Color32, CornerRadius, RichText, Sense, Vec2};
-use foveal::View;
+use foveal::DebugView;
 
 use crate::look;
 
@@ -21,7 +21,7 @@ fn level_color(level: u8) -> Color32 {
 /// Squares of colour with their meaning.
 type Entries = Vec<(Color32, String)>;
 
-fn entries(view: View, coarsest: u8) -> Entries {
+fn entries(view: DebugView, coarsest: u8) -> Entries {
     let gray = Color32::from_gray;
     let named = |list: &[(Color32, &str)]| {
         let own = |&(color, text): &(Color32, &str)| (color, text.to_owned());
@@ -65,7 +65,7 @@ fn entries(view: View, coarsest: u8) -> Entries {
 }
 
 /// Of the picture's view.
-pub(crate) fn of_view(ui: &mut egui::Ui, view: View, coarsest: u8) {
+pub(crate) fn of_view(ui: &mut egui::Ui, view: DebugView, coarsest: u8) {
     show(ui, &entries(view, coarsest));
 }
 

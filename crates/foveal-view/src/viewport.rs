@@ -4,7 +4,7 @@ use egui::{
     Align2, CentralPanel, Color32, CornerRadius, CursorIcon, PointerButton, Pos2, Rect, RichText,
     Sense, Stroke, StrokeKind, Vec2,
 };
-use foveal::{RateSource, DebugView};
+use foveal::{DebugView, RateSource};
 
 use crate::app::App;
 use crate::navigator::Hands;
@@ -164,10 +164,10 @@ fn split(app: &mut App, ui: &egui::Ui, rect: Rect) -> bool {
 }
 
 fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
-    let [x, y] = app.settings.gaze;
+    let [x, y] = app.settings.eye.gaze;
     let at = rect.min + rect.size() * Vec2::new(x, y);
-    let radius = match app.settings.rate {
-        RateSource::Radii => app.settings.fovea_inner * rect.height(),
+    let radius = match app.settings.coarse.source {
+        RateSource::Radii => app.settings.coarse.fovea_inner * rect.height(),
         _ => 0.0,
     };
     let painter = ui.painter_at(rect);
@@ -176,7 +176,7 @@ fn gaze(app: &App, ui: &egui::Ui, rect: Rect) {
 
 /// What the colours mean, at the lower left.
 fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
-    let view = app.settings.view;
+    let view = app.settings.picture.view;
     if view == DebugView::Final && !app.display.boxes && !app.display.frozen {
         return;
     }
@@ -195,7 +195,7 @@ fn legends(app: &App, ui: &mut egui::Ui, place: Rect) {
             if app.display.boxes {
                 legend::of_boxes(ui);
             }
-            legend::of_view(ui, view, app.settings.coarsest_level);
+            legend::of_view(ui, view, app.settings.coarse.coarsest_level);
         });
 }
 

@@ -36,11 +36,10 @@ impl Side {
         self.previous = None;
         // What is baked into the upload; settings that cannot be met are the next frame's to report.
         let Settings { width, height, .. } = *self.renderer.settings();
-        let settings = Settings {
-            width,
-            height,
-            ..self.wished.clone()
-        };
+        let settings = self.wished.clone().with(|s| {
+            s.picture.width = width;
+            s.picture.height = height;
+        });
         let _ = self.renderer.set_settings(&settings).await;
         self.renderer
             .set_scene(scene)
@@ -56,11 +55,10 @@ impl Side {
         camera: &Camera,
         (width, height): (u32, u32),
     ) -> Result<FrameStats, String> {
-        let mut settings = Settings {
-            width,
-            height,
-            ..self.wished.clone()
-        };
+        let mut settings = self.wished.clone().with(|s| {
+            s.picture.width = width;
+            s.picture.height = height;
+        });
         // Some outputs show both eyes in full, side by side.
         settings.width = (width * width / settings.picture_size().0).max(1);
         let before = self.renderer.settings();

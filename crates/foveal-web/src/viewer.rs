@@ -139,11 +139,10 @@ impl Viewer {
         let pump = crate::pump::Pump::start(&gpu.device)?;
         let present = Present::new(&gpu, surface, &adapter)?;
         let scene = Scene::default();
-        let settings = Settings {
-            width: 64,
-            height: 64,
-            ..Settings::default()
-        };
+        let settings = Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 64;
+        });
         let reference = Side::new(&gpu, &settings, &scene).await?;
         let chosen = Side::new(&gpu, &settings, &scene).await?;
         Ok(Viewer {

@@ -25,10 +25,7 @@ impl<'a> Side<'a> {
         settings: &Settings,
     ) -> anyhow::Result<Self> {
         // What the technique itself costs: each frame shades all of its samples.
-        let settings = &Settings {
-            history: false,
-            ..settings.clone()
-        };
+        let settings = &settings.clone().with(|s| s.coarse.history = false);
         let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
         block_on(renderer.set_scene(scene))?;
         let mut side = Self {
@@ -67,7 +64,7 @@ impl<'a> Side<'a> {
     pub(super) fn picture(&self) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
         let s = self.renderer.settings();
-        Picture::from_rgba(s.width, s.height, &bytes)
+        Picture::from_rgba(s.picture.width, s.picture.height, &bytes)
     }
 }
 
@@ -92,8 +89,11 @@ fn sum_ms(stats: &FrameStats, counts: impl Fn(&str) -> bool) -> f64 {
 }
 
 pub(super) fn fovea_differing(a: &Picture, b: &Picture, s: &Settings) -> f64 {
-    let (gx, gy) = (s.gaze[0] * a.width as f32, s.gaze[1] * a.height as f32);
-    let radius = s.fovea_inner * a.height as f32;
+    let (gx, gy) = (
+        s.eye.gaze[0] * a.width as f32,
+        s.eye.gaze[1] * a.height as f32,
+    );
+    let radius = s.coarse.fovea_inner * a.height as f32;
     let mut pixels = (0u64, 0u64);
     for (i, (a_pixel, b_pixel)) in a.pixels.iter().zip(&b.pixels).enumerate() {
         let x = (i % a.width as usize) as f32 + 0.5 - gx;

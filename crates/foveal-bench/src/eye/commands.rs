@@ -69,7 +69,7 @@ impl Commands {
             words.extend(["--fps".to_owned(), self.fps.to_string()]);
             self.render(words, settings)
         };
-        let middle = Settings::default().gaze;
+        let middle = Settings::default().eye.gaze;
         MadeBy {
             picture: [
                 still("full.png", full, 0),

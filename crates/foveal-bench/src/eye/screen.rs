@@ -105,18 +105,17 @@ impl Screen {
 impl Shown {
     /// The settings of a way for an eye that looks at `gaze`.
     pub(super) fn settings(&self, way: &Way, gaze: [f32; 2]) -> anyhow::Result<Settings> {
-        let plain = Settings {
-            width: self.width,
-            height: self.height,
-            ..Settings::default()
-        };
+        let plain = Settings::default().with(|s| {
+            s.picture.width = self.width;
+            s.picture.height = self.height;
+        });
         let mut settings = changed(&plain, way.changes)?;
         // What a way does not follow stays as it is, so that equal settings are equal pictures.
         if way.follows != Follows::Nothing {
-            settings.gaze = gaze;
+            settings.eye.gaze = gaze;
         }
         if way.follows == Follows::GazeAndDisplay {
-            settings.display.clone_from(&self.spelled);
+            settings.eye.display = self.spelled.parse()?;
         }
         Ok(settings)
     }
@@ -136,8 +135,8 @@ mod tests {
             let [a, b] = [&whole, &part].map(|s| s.display.pixels_per_degree(s.width as usize));
             assert!((a / b - 1.0).abs() < 1e-3, "{}: {a} {b}", screen.name);
             assert_eq!(whole.display.peak, part.display.peak);
-            let drawn = foveal::Display::parse(&part.spelled);
-            assert!(drawn.is_some(), "{}", part.spelled);
+            let drawn = part.spelled.parse::<foveal::Display>();
+            assert!(drawn.is_ok(), "{}", part.spelled);
         }
         assert!(fit("8x9").is_err() && named("sofa").is_err());
     }

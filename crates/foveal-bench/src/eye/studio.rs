@@ -45,7 +45,7 @@ impl<'a> Studio<'a> {
     /// Drops what no picture of this size needs.
     pub(super) fn forget_other_sizes(&mut self, size: (u32, u32)) {
         for shots in [&mut self.stills, &mut self.videos] {
-            shots.retain(|(settings, _)| (settings.width, settings.height) == size);
+            shots.retain(|(settings, _)| (settings.picture.width, settings.picture.height) == size);
         }
     }
 

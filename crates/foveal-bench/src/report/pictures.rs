@@ -100,11 +100,10 @@ fn one(
 
 /// Settings that differ from the defaults by these.
 fn settings(size: (u32, u32), changes: Changes) -> anyhow::Result<Settings> {
-    let plain = Settings {
-        width: size.0,
-        height: size.1,
-        ..Settings::default()
-    };
+    let plain = Settings::default().with(|s| {
+        s.picture.width = size.0;
+        s.picture.height = size.1;
+    });
     changed(&plain, changes)
 }
 

@@ -128,9 +128,9 @@ mod tests {
             (named("Coarse shading around"), 2.0),
         ];
         let settings = together(&Settings::default(), &adopted).unwrap();
-        assert_eq!(settings.culling, Culling::Occlusion);
-        assert_eq!(settings.shading, Shading::Coarse);
-        assert_eq!(settings.geometry, Geometry::Visibility);
+        assert_eq!(settings.culling.mode, Culling::Occlusion);
+        assert_eq!(settings.shading.mode, Shading::Coarse);
+        assert_eq!(settings.geometry.path, Geometry::Visibility);
         let checked = settings.validate(&wgpu::Limits::default());
         assert!(checked.is_ok(), "{checked:?}");
     }

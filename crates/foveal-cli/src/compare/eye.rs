@@ -144,9 +144,8 @@ mod tests {
     #[test]
     fn what_is_drawn_for_a_display_is_compared_at_the_same_one() {
         for (name, display) in Display::NAMED {
-            let Some(foveal::Display::Across(radians)) = foveal::Display::parse(name) else {
-                panic!("{name}");
-            };
+            let drawn: foveal::Display = name.parse().expect(name);
+            let radians = drawn.across().expect(name);
             let degrees = display.degrees_across();
             assert!((radians.to_degrees() - degrees).abs() < 0.2, "{name}");
         }

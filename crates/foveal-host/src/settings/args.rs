@@ -4,12 +4,13 @@
 //! and its file at once.
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use clap::builder::{
     BoolValueParser, PossibleValuesParser, RangedI64ValueParser, TypedValueParser, ValueParser,
 };
 use clap::{Arg, ArgMatches, Command, value_parser};
-use foveal::{Kind, LensProfile, Setting, Settings};
+use foveal::{Display, EyeFrusta, Kind, Lens, LensProfile, Setting, Settings};
 use toml::{Table, Value};
 
 use crate::values;
@@ -90,6 +91,8 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
             ValueParser::new(|text: &str| values::vec2(text).map(|at| Value::from(at.to_vec()))),
         ),
         Kind::Text if setting.key == "lens" => ("NAME|FILE.toml", ValueParser::new(lens)),
+        Kind::Text if setting.key == "display" => ("DISPLAY", text_of::<Display>()),
+        Kind::Text if setting.key == "eye-tangents" => ("TANGENTS", text_of::<EyeFrusta>()),
         Kind::Text => (
             "TEXT",
             ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
@@ -112,9 +115,18 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
         .help_heading(setting.stage)
 }
 
+/// A text that a setting's type can read.
+fn text_of<T: FromStr<Err = foveal::Error>>() -> ValueParser {
+    ValueParser::new(|text: &str| match text.parse::<T>() {
+        Ok(_) => Ok(Value::from(text)),
+        Err(cause) => Err(cause),
+    })
+}
+
 /// What `--lens` names; a file's coefficients go into the settings themselves.
 fn lens(text: &str) -> Result<Value, String> {
     if !text.to_lowercase().ends_with(".toml") {
+        text.parse::<Lens>().map_err(|cause| cause.to_string())?;
         return Ok(Value::from(text));
     }
     let wrong = |cause: &dyn std::fmt::Display| format!("the lens file '{text}': {cause}");
@@ -211,10 +223,13 @@ pub fn flags(settings: &Settings) -> Vec<String> {
     let of = |settings: &Settings| Table::try_from(settings).unwrap_or_default();
     let (chosen, default) = (of(settings), of(&Settings::default()));
     let mut flags = Vec::new();
-    let sizes = [settings, &Settings::default()].map(|s| (s.width, s.height));
+    let sizes = [settings, &Settings::default()].map(|s| (s.picture.width, s.picture.height));
     if sizes[0] != sizes[1] {
         flags.push("--size".to_owned());
-        flags.push(format!("{}x{}", settings.width, settings.height));
+        flags.push(format!(
+            "{}x{}",
+            settings.picture.width, settings.picture.height
+        ));
     }
     for setting in Settings::ALL {
         if is_part_of_size(setting.key) || chosen.get(setting.key) == default.get(setting.key) {

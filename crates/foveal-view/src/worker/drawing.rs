@@ -224,10 +224,11 @@ impl Side {
         settings: &Settings,
     ) -> anyhow::Result<&'s mut Self> {
         let new_image = |before: Option<&Settings>| {
-            let uses =
-                |s: &Settings| s.rate == RateSource::Image || s.rate_other == RateSource::Image;
+            let uses = |s: &Settings| {
+                s.coarse.source == RateSource::Image || s.coarse.other_source == RateSource::Image
+            };
             uses(settings)
-                && !before.is_some_and(|b| uses(b) && b.rate_image == settings.rate_image)
+                && !before.is_some_and(|b| uses(b) && b.coarse.image == settings.coarse.image)
         };
         let before = slot.as_ref().map(|side| side.renderer.settings().clone());
         let image = if new_image(before.as_ref()) {
@@ -254,8 +255,8 @@ impl Side {
             side.renderer.set_rate_image(image);
         }
         let rebaked = |before: &Settings| {
-            before.anisotropy != settings.anisotropy
-                || before.culling != settings.culling && settings.culling == Culling::Occlusion
+            before.lighting.anisotropy != settings.lighting.anisotropy
+                || before.culling != settings.culling && settings.culling.mode == Culling::Occlusion
         };
         if before.as_ref().is_none_or(rebaked) {
             block_on(side.renderer.set_scene(scene))?;

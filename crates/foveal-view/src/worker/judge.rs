@@ -116,7 +116,7 @@ fn quality(pair: Pair) -> Option<Quality> {
         chosen,
     } = pair;
     let (width, height) = (chosen.width as usize, chosen.height as usize);
-    let [x, y] = request.settings.gaze;
+    let [x, y] = request.settings.eye.gaze;
     let (display, name) = display(&request.settings, &request.camera, (width, height))?;
     let metric = Metric::new(&display, width, height, Gaze { x, y }).ok()?;
     let found = metric.compare(pixels(&reference), pixels(&chosen)).ok()?;
@@ -137,9 +137,9 @@ fn display(
     camera: &Camera,
     (width, height): (usize, usize),
 ) -> Option<(Display, String)> {
-    if settings.display != "camera" {
-        let display = Display::parse(&settings.display)?;
-        return Some((display, settings.display.clone()));
+    if settings.eye.display != foveal::Display::Camera {
+        let name = settings.eye.display.to_string();
+        return Some((Display::parse(&name)?, name));
     }
     let degrees = match camera.projection {
         Projection::Perspective { fov_y_rad, .. } => {
@@ -172,7 +172,7 @@ mod tests {
         // tan 45° times two.
         assert!((found.degrees_across() - 126.87).abs() < 0.01);
         assert_eq!(name, "camera, 127°");
-        settings.display = "fhd-24".to_owned();
+        settings.eye.display = foveal::Display::Fhd24;
         let (found, name) = display(&settings, &camera, (200, 100)).unwrap();
         assert_eq!(
             (Some(found), name.as_str()),

@@ -40,12 +40,11 @@ fn worker() -> Worker {
 
 fn request() -> Request {
     Request {
-        settings: Settings {
-            width: 64,
-            height: 40,
-            culling: Culling::Occlusion,
-            ..Settings::default()
-        },
+        settings: Settings::default().with(|s| {
+            s.picture.width = 64;
+            s.picture.height = 40;
+            s.culling.mode = Culling::Occlusion;
+        }),
         reference: None,
         camera: generate::cornell().cameras[0].clone(),
         frozen: false,
@@ -100,10 +99,7 @@ fn errors_are_news_and_work_goes_on() {
     worker.load("bad".to_owned());
     assert!(failure(&worker).contains("'bad'"));
     // What no device can do is an error too, after which there is a new device with the old scene.
-    let too_large = Settings {
-        width: 1 << 20,
-        ..request().settings
-    };
+    let too_large = request().settings.with(|s| s.picture.width = 1 << 20);
     worker.draw(Request {
         settings: too_large,
         ..request()
@@ -130,12 +126,11 @@ fn the_reference_is_drawn_beside_and_flip_tells_them_apart() {
         })
     };
     assert_eq!(compared(request().settings), (0.0, true));
-    let coarse = Settings {
-        shading: Shading::Coarse,
-        rate: RateSource::Radii,
-        fovea_inner: 0.0,
-        ..request().settings
-    };
+    let coarse = request().settings.with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.source = RateSource::Radii;
+        s.coarse.fovea_inner = 0.0;
+    });
     let (flip, _) = compared(coarse);
     assert!(flip > 0.0, "{flip}");
 }
@@ -198,11 +193,10 @@ fn compared(worker: &Worker, chosen: Settings, reference: Settings) -> Compared 
 
 #[test]
 fn equal_settings_are_no_difference_after_twenty_frames() {
-    let settings = Settings {
-        width: 320,
-        height: 200,
-        ..request().settings
-    };
+    let settings = request().settings.with(|s| {
+        s.picture.width = 320;
+        s.picture.height = 200;
+    });
     let compared = compared(&worker(), settings.clone(), settings);
     assert_eq!(compared.pairs, 20);
     let frame = compared.frame.expect("twenty pairs are enough to tell");
@@ -211,16 +205,14 @@ fn equal_settings_are_no_difference_after_twenty_frames() {
 
 #[test]
 fn a_picture_of_nine_times_the_samples_is_slower() {
-    let settings = Settings {
-        width: 320,
-        height: 200,
-        ..request().settings
-    };
-    let supersampled = Settings {
-        aa: Antialiasing::Ssaa,
-        samples: 9,
-        ..settings.clone()
-    };
+    let settings = request().settings.with(|s| {
+        s.picture.width = 320;
+        s.picture.height = 200;
+    });
+    let supersampled = settings.clone().with(|s| {
+        s.antialiasing.mode = Antialiasing::Ssaa;
+        s.antialiasing.samples = 9;
+    });
     let worker = worker();
     worker.load("cornell".to_owned());
     worker.draw(Request {
@@ -238,18 +230,16 @@ fn a_picture_of_nine_times_the_samples_is_slower() {
 
 #[test]
 fn the_eye_judges_both_sides_at_the_display_of_the_settings() {
-    let reference = Settings {
-        width: 320,
-        height: 200,
-        ..request().settings
-    };
-    let coarse = Settings {
-        shading: Shading::Coarse,
-        rate: RateSource::Constant,
-        rate_level: 4,
-        display: "fhd-24".to_owned(),
-        ..reference.clone()
-    };
+    let reference = request().settings.with(|s| {
+        s.picture.width = 320;
+        s.picture.height = 200;
+    });
+    let coarse = reference.clone().with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.source = RateSource::Constant;
+        s.coarse.constant_level = 4;
+        s.eye.display = foveal::Display::Fhd24;
+    });
     let worker = worker();
     worker.load("cornell".to_owned());
     let judged = |chosen: &Settings| {

@@ -8,9 +8,7 @@ use crate::gpu::read_level;
 use crate::shading::sample_texel;
 use crate::shading::twin::{normal_of_depth, position_at, unit_from_octahedral};
 use crate::testing::{f32_of_half, gpu, rendered, small, texels};
-use crate::{
-    CoarseSample, Composite, Frame, Geometry, RateSource, RefineEdges, Renderer, Shading,
-};
+use crate::{CoarseSample, Composite, Frame, Geometry, RateSource, RefineEdges, Renderer, Shading};
 
 /// Bits of a rate map's cell.
 const CELL_LEVEL: u8 = 15;

@@ -4,9 +4,9 @@ use foveal_generate as generate;
 use foveal_scene::ProceduralLayers;
 use glam::{IVec3, UVec3, Vec2, Vec3, Vec4};
 
+use crate::Geometry;
 use crate::shading::twin::{position_at, unpack_surface};
 use crate::testing::{rendered, small, texels};
-use crate::Geometry;
 
 fn lattice_hash(cell: UVec3, seed: u32) -> u32 {
     let mixed = cell.x.wrapping_mul(0x8da6_b343)

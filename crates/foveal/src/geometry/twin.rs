@@ -7,10 +7,10 @@ use foveal_scene::{
 };
 use glam::{Mat3, Vec2, Vec3};
 
+use crate::Geometry;
 use crate::forward::twin::{front, quads};
 use crate::shading::twin::{position_at, unpack_surface};
 use crate::testing::{rendered, small, texels};
-use crate::Geometry;
 
 struct Hit {
     distance: f32,

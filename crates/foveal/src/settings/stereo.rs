@@ -65,13 +65,16 @@ pub enum Output {
 /// A headset's lens as a radial polynomial. Radii are tangents of the angle to the lens's axis. A
 /// point that the screen shows at radius `p` appears to the eye at `p (1 + k1 p² + k2 p⁴ + k3 p⁶)`,
 /// times a factor per colour.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields, rename_all = "kebab-case")]
 pub struct LensProfile {
     /// Coefficients k1, k2, k3.
     pub distortion: [f32; 3],
     /// Factors c0, c1 of red: it is seen at c0 + c1 p² times the radius of green.
+    #[serde(default = "no_fringe")]
     pub red: [f32; 2],
     /// Factors c0, c1 of blue.
+    #[serde(default = "no_fringe")]
     pub blue: [f32; 2],
 }
 
@@ -88,6 +91,10 @@ impl LensProfile {
 }
 
 const NO_FRINGE: [f32; 2] = [1.0, 0.0];
+
+fn no_fringe() -> [f32; 2] {
+    NO_FRINGE
+}
 
 /// Lens of the headset output. As text a name, or coefficients with commas between: k1, k2, k3,
 /// optionally followed by c0 and c1 of red and of blue.

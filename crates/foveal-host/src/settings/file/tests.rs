@@ -1,7 +1,7 @@
 //! Settings from files and flags, and the table behind both.
 
 use clap::Parser;
-use foveal::{Kind, Setting, DebugView};
+use foveal::{DebugView, Kind, Setting};
 use toml::Value;
 
 use super::super::args::flags;
@@ -117,19 +117,18 @@ fn a_rate_may_be_a_file() {
         &["--rate", "image", "--rate-image", "a.PNG"],
     ] {
         let settings = from_flags(flags);
-        assert_eq!(settings.rate, foveal::RateSource::Image);
-        assert_eq!(settings.rate_image, "a.PNG");
+        assert_eq!(settings.coarse.source, foveal::RateSource::Image);
+        assert_eq!(settings.coarse.image, "a.PNG");
     }
     assert!(Line::try_parse_from(["x", "--rate", "sideways"]).is_err());
 }
 
 #[test]
 fn settings_survive_the_file_format() {
-    let settings = Settings {
-        exposure: -0.1,
-        view: DebugView::BaseColor,
-        ..Settings::default()
-    };
+    let settings = Settings::default().with(|s| {
+        s.picture.exposure_stops = -0.1;
+        s.picture.view = DebugView::BaseColor;
+    });
     assert_eq!(
         parse(&toml::to_string(&settings).unwrap()).unwrap(),
         settings
@@ -143,10 +142,17 @@ fn flags_win_over_the_file_and_the_file_over_the_defaults() {
     std::fs::write(&path, "width = 10\nheight = 20\nexposure = 3.0\n").unwrap();
     let settings = from_flags(&["--settings", path.to_str().unwrap(), "--exposure", "1"]);
     assert_eq!(
-        (settings.width, settings.height, settings.exposure),
+        (
+            settings.picture.width,
+            settings.picture.height,
+            settings.picture.exposure_stops
+        ),
         (10, 20, 1.0)
     );
-    assert_eq!(settings.anisotropy, Settings::default().anisotropy);
+    assert_eq!(
+        settings.lighting.anisotropy,
+        Settings::default().lighting.anisotropy
+    );
 }
 
 #[test]
