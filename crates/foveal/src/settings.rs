@@ -209,8 +209,7 @@ settings! {
             culling: Culling = Culling::default(), "Culling", Kind::choice::<Culling>();
             /// Smallest apparent size of an occluder. Smaller objects hide nothing: culling is then
             /// faster and finds less. An object is too small if radius^2 < distance * size^2 *
-            /// tan(fov / 2), the measure of Intel's sample, which uses 1.5. 0 leaves out no
-            /// occluder for its size.
+            /// tan(fov / 2), the measure of Intel's sample, which uses 1.5. 0 uses every occluder.
             occluder_size: f32 = 0.0, "Occluder size", Kind::Number { least: 0.0, most: 5.0 };
             /// Smallest apparent size of an object that is drawn, by the same measure as
             /// occluder-size. Above 0 small objects disappear from the picture; Intel's sample uses
@@ -268,8 +267,8 @@ settings! {
             /// Placement of the sub-samples: grid is regular, rotated has no two in one row or
             /// column.
             pattern: SamplePattern = SamplePattern::default(), "Pattern", Kind::choice::<SamplePattern>();
-            /// Pixels that msaa treats as edges: surface takes those with several surfaces, paper
-            /// those that differ in depth (as the technique's source does), never takes none.
+            /// Pixels that msaa treats as edges: surface takes pixels with several surfaces, paper
+            /// those that differ in depth (as the technique's source does), never none.
             edge_test: EdgeTest = EdgeTest::default(), "Edge test", Kind::choice::<EdgeTest>();
         }
         "Shading rate" {
@@ -334,9 +333,8 @@ settings! {
             /// the most typical of five.
             coarse_sample: CoarseSample = CoarseSample::default(), "Sample", Kind::choice::<CoarseSample>();
             /// Reconstruction of pixels from samples: light puts each pixel's own surface into the
-            /// samples' light. The others use the samples' colours: smooth joins them by continuous
-            /// patches, paper by the four taps of the technique's source, nearest leaves blocks of
-            /// one colour.
+            /// samples' light; the others join colours, smooth by continuous patches, paper by the
+            /// four taps of the technique's source, nearest not at all.
             composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
             /// Light history: light is kept per pixel from frame to frame, reprojected by motion
             /// and reshaded step by step. Off: every sample is reshaded in every frame. Works with
