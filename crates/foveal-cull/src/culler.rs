@@ -1,89 +1,30 @@
 //! The culler: one depth buffer, one frame at a time.
 
-use crate::depth::{DepthBuffer, EMPTY, SAMPLES, decode};
-use crate::query::answer::{Frame, Query};
+use crate::bounds::Aabb;
+use crate::camera::Camera;
+use crate::depth::band::Band;
+use crate::depth::buffer::DepthBuffer;
+use crate::depth::hiz_build::Summarize;
+use crate::error::CullError;
+use crate::format::{EMPTY, SAMPLES, decode};
+use crate::occluder::set::OccluderSet;
+use crate::options::{Budget, FrameOptions};
+use crate::query::classify::{Frame, Query};
 use crate::query::flat::Flat;
 use crate::query::tree::OccludeeTree;
 use crate::query::walk::Walk;
-use crate::raster::frame::{Draw, FrameScratch};
+use crate::raster::candidates::FrameScratch;
+use crate::raster::draw::Draw;
+use crate::raster::facing::Radius;
+use crate::raster::scratch::Scratch;
 use crate::raster::select::Choice;
-use crate::raster::setup::{Radius, Scratch};
-use crate::summary::Summarize;
-use crate::view::Camera;
-use crate::{Aabb, CullError, CullStats, InstructionSet, OccluderSet, Threads, View};
+use crate::simd::InstructionSet;
+use crate::stats::CullStats;
+use crate::threads::Threads;
+use crate::view::View;
+use crate::visibility::Visibility;
 use glam::DVec3;
 use std::sync::Mutex;
-
-/// What became of a box.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[repr(u8)]
-pub enum Visibility {
-    /// May be seen: draw it.
-    Visible = 0,
-    /// Outside the view frustum (or beyond the far plane, or nearer than the near plane).
-    Outside = 1,
-    /// Below the size threshold.
-    Small = 2,
-    /// Hidden behind occluders.
-    Occluded = 3,
-}
-
-impl Visibility {
-    /// Whether it must be drawn.
-    #[must_use]
-    pub fn is_visible(self) -> bool {
-        self == Self::Visible
-    }
-}
-
-/// A time limit for rasterizing, by the caller's own clock (this crate reads none).
-#[derive(Clone, Copy)]
-pub struct Budget<'a> {
-    /// Reads the clock, nanoseconds from any fixed start.
-    pub clock: &'a (dyn Fn() -> u64 + Sync),
-    /// No occluder is begun at or after this reading. Nearer occluders come first, so the most useful ones
-    /// are there; results stay safe, only more is reported visible.
-    pub deadline_ns: u64,
-}
-
-impl core::fmt::Debug for Budget<'_> {
-    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
-        f.debug_struct("Budget")
-            .field("deadline_ns", &self.deadline_ns)
-            .finish_non_exhaustive()
-    }
-}
-
-/// Switches and thresholds of a frame.
-#[derive(Clone, Copy, Debug)]
-pub struct FrameOptions<'a> {
-    /// Occluder models with `radius² < distance * threshold² * tan(fov_y / 2)` (distance above 1 m) are left
-    /// out, as in Intel's sample (1.5 there). 0 takes all.
-    pub occluder_size_threshold: f32,
-    /// Clusters (up to 64 quads) that cannot cover more pixels than this per quad, by their rectangle on the screen and
-    /// how much of it their triangles fill in the mean, are left out: fine detail costs much and hides little that what
-    /// lies behind it does not. 0 takes all, but for two eyes or a validity radius: there clusters that would lose most of
-    /// themselves at their borders are left out in any case.
-    pub occluder_pixels_per_quad: f32,
-    /// The same as the first for occludees ([`Visibility::Small`]; 0.01 in the sample). 0 culls none by size.
-    pub occludee_size_threshold: f32,
-    /// Whether occluders are drawn; off, only frustum and size are tested.
-    pub occlusion: bool,
-    /// Time limit for rasterizing.
-    pub budget: Option<Budget<'a>>,
-}
-
-impl Default for FrameOptions<'_> {
-    fn default() -> Self {
-        Self {
-            occluder_size_threshold: 0.0,
-            occluder_pixels_per_quad: 6.0,
-            occludee_size_threshold: 0.0,
-            occlusion: true,
-            budget: None,
-        }
-    }
-}
 
 /// Most bands a frame is split into.
 const MAX_BANDS: usize = 64;
@@ -230,11 +171,7 @@ impl Culler {
             .resize_with(self.scratch.len().max(bands), Scratch::default);
         self.drawn
             .resize_with(self.drawn.len().max(bands), Vec::new);
-        type Job<'a> = Option<(
-            crate::raster::band::Band<'a>,
-            &'a mut Scratch,
-            &'a mut Vec<u32>,
-        )>;
+        type Job<'a> = Option<(Band<'a>, &'a mut Scratch, &'a mut Vec<u32>)>;
         let mut jobs: [Mutex<Job<'_>>; MAX_BANDS] = [const { Mutex::new(None) }; MAX_BANDS];
         let mut rest = self.buffer.band();
         let mut first = 0;

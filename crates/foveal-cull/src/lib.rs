@@ -38,28 +38,34 @@
 #![deny(unsafe_code)]
 
 mod bounds;
+mod camera;
 mod culler;
 mod depth;
 mod error;
+mod format;
 mod occluder;
+mod options;
+mod projection;
 mod query;
 mod raster;
+#[cfg(any(test, feature = "reference"))]
+pub mod reference;
 mod simd;
 mod stats;
-mod summary;
 mod threads;
-#[cfg(any(test, feature = "truth"))]
-pub mod truth;
 mod view;
+mod visibility;
 
 pub use bounds::Aabb;
-pub use culler::{Budget, Culler, FrameOptions, Visibility};
+pub use culler::Culler;
 pub use error::CullError;
 pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet};
+pub use options::{Budget, FrameOptions};
 pub use query::tree::OccludeeTree;
 pub use simd::InstructionSet;
 pub use stats::CullStats;
 #[cfg(feature = "rayon")]
 pub use threads::Rayon;
-pub use threads::{Pool, SingleThread, Threads};
+pub use threads::{SingleThread, Threads, WorkerThreads};
 pub use view::{Eye, Projection, View};
+pub use visibility::Visibility;

@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use foveal_cull::{
-    BakeOptions, CullStats, Culler, FrameOptions, OccluderMesh, OccluderSet, Pool, SingleThread,
-    Threads, View,
+    BakeOptions, CullStats, Culler, FrameOptions, OccluderMesh, OccluderSet, SingleThread, Threads,
+    View, WorkerThreads,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
@@ -71,7 +71,7 @@ fn large_occluders_cut_into_parts_are_drawn_as_by_one_thread() {
     assert!(depth.iter().filter(|d| **d > 0.0).count() > 20_000);
     assert!(stats.clusters > 8 * 32 * 4, "{stats:?}");
     for threads in [2, 3, 16] {
-        let (other, counted) = frame(&set, &Pool::new(threads));
+        let (other, counted) = frame(&set, &WorkerThreads::new(threads));
         assert_eq!(counted, stats, "{threads} threads");
         assert!(other == depth, "{threads} threads");
     }

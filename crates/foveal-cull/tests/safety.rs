@@ -5,7 +5,8 @@ mod common;
 
 use common::{Random, Scene, answers, eye, farthest_in_pixels, occluders, scene, wrongly_culled};
 use foveal_cull::{
-    Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, Pool, SingleThread, View, Visibility,
+    Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, SingleThread, View, Visibility,
+    WorkerThreads,
 };
 use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
@@ -193,7 +194,7 @@ proptest! {
         let reversed = occluders(&scene, &order);
         prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
         prop_assert_eq!(&image, &depth(&culler));
-        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &Pool::new(2)));
+        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &WorkerThreads::new(2)));
         prop_assert_eq!(&image, &depth(&culler));
         let tree = OccludeeTree::build(&scene.boxes, scene.origin);
         let mut by_tree = vec![Visibility::Outside; scene.boxes.len()];

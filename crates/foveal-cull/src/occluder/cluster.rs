@@ -3,10 +3,10 @@
 //! A recursive split by the surface-area heuristic over six coordinates, position and normal, so that clusters are compact,
 //! large quads lie apart from small ones, and normal cones are narrow. Each cluster gets its own vertex list (numbers fit a byte).
 
+use super::mesh::{Cluster, OccluderMesh, hash_words};
+use super::neighbors::{self, Neighbours};
 use super::quads::Quad;
-use super::ring::{self, Neighbours};
-use super::{Cluster, OccluderMesh, hash_words};
-use crate::query::project::Boxes8;
+use crate::projection::boxes::Boxes8;
 use glam::Vec3;
 
 const MAX_QUADS: usize = 64;
@@ -339,7 +339,7 @@ fn emit(
         ),
     });
     if let Some(near) = near {
-        ring::build(mesh, near, &used, items.iter().map(|i| i.quad));
+        neighbors::build(mesh, near, &used, items.iter().map(|i| i.quad));
     }
     true
 }

@@ -1,7 +1,7 @@
 //! The occluders of a scene: meshes placed in the world, static or moving.
 
-use super::{OccluderMesh, hash_words};
-use crate::CullError;
+use super::mesh::{OccluderMesh, hash_words};
+use crate::error::CullError;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 

@@ -8,112 +8,16 @@
 //! All this is done for the planes of one box at once, a lane each, so that nothing depends on which of them face the
 //! eye.
 
-use super::planes::{Affine, Planes, ROUNDING};
-use crate::depth::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, decode};
-use crate::simd::Lanes;
-use crate::simd::wide::Wide;
-use crate::simd::{four, three, two};
+use super::axis_planes::Planes;
+use super::plane_lanes::{FRONTS, GAPS, NEARER, OF_AXIS, PlaneLanes, ROUNDING};
+use crate::format::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, decode};
+use crate::simd::{Lanes, Wide, four, three, two};
 use glam::Vec3;
 
 /// Rays up to one sample beside a sample count as its own, as for rectangles; from the centre of a pixel and of
 /// a block to there, samples.
 const PIXEL_REACH: f32 = 2.5;
 const BLOCK_REACH: f32 = 16.5;
-
-/// Lanes of gaps: front minus back planes, above zero where a ray may meet the box. Number `4 a + 2 b + near` is from the
-/// front across axis `a` to a back across axis `a + 1 + b`: the farther of its two planes, or the nearer one (`near`),
-/// which is a back too where neither faces the eye.
-const GAPS: u32 = 0xfff;
-/// Gaps to nearer planes.
-const NEARER: u32 = 0xaaa;
-/// Lanes of the front planes themselves, by axis.
-const FRONTS: u32 = 7 << FIRST_FRONT;
-const FIRST_FRONT: usize = 12;
-
-/// The axis of a lane's front plane, and of its back plane; three for none.
-const AXES: [[usize; 16]; 2] = {
-    let mut axes = [[3; 16]; 2];
-    let mut lane = 0;
-    while lane < FIRST_FRONT {
-        axes[0][lane] = lane / 4;
-        axes[1][lane] = (lane / 4 + 1 + lane / 2 % 2) % 3;
-        lane += 1;
-    }
-    while lane < FIRST_FRONT + 3 {
-        axes[0][lane] = lane - FIRST_FRONT;
-        lane += 1;
-    }
-    axes
-};
-
-/// By front or back and axis: one in the lanes that have it.
-const OF_AXIS: [[[f32; 16]; 3]; 2] = {
-    let mut of = [[[0.0; 16]; 3]; 2];
-    let mut n = 0;
-    while n < 2 * 16 {
-        let axis = AXES[n / 16][n % 16];
-        if axis < 3 {
-            of[n / 16][axis][n % 16] = 1.0;
-        }
-        n += 1;
-    }
-    of
-};
-
-/// What the planes of all boxes of a query have in common, by lane.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PlaneLanes {
-    /// Of front and back: change to the right and downwards, depth at zero, and error.
-    affine: [[[f32; 16]; 4]; 2],
-    parallel: Option<Parallel>,
-}
-
-/// The same for orthographic views, where the way to the box does not say which of its planes face the eye.
-#[derive(Clone, Copy, Debug)]
-struct Parallel {
-    /// Change of depth per metre, of front and back.
-    per_metre: [[f32; 16]; 2],
-    /// Bit per lane: of the front's and of the back's axis, the upper plane faces the eye.
-    down: [u32; 2],
-    /// Bit per lane: its planes are known.
-    known: u32,
-}
-
-impl PlaneLanes {
-    pub(super) fn new(axes: &[Affine; 3], per_metre: Option<[f32; 3]>) -> Self {
-        let mut affine = [[[0.0; 16]; 4]; 2];
-        for (affine, of) in affine.iter_mut().zip(&AXES) {
-            for (lane, &axis) in of.iter().enumerate() {
-                if let Some(a) = axes.get(axis) {
-                    affine[0][lane] = a.x;
-                    affine[1][lane] = a.y;
-                    affine[2][lane] = a.at_zero;
-                    affine[3][lane] = a.error;
-                }
-            }
-        }
-        let parallel = per_metre.map(|per_metre| {
-            let per_metre =
-                AXES.map(|of| of.map(|axis| per_metre.get(axis).copied().unwrap_or(0.0)));
-            let bits = |of: &[f32; 16], is: fn(f32) -> bool| {
-                (0..16).fold(0, |bits, n| bits | u32::from(is(of[n])) << n)
-            };
-            Parallel {
-                // Depth falls with distance.
-                down: per_metre
-                    .each_ref()
-                    .map(|of| bits(of, f32::is_sign_positive)),
-                known: !per_metre
-                    .each_ref()
-                    .map(|of| bits(of, f32::is_nan))
-                    .into_iter()
-                    .fold(0, |a, b| a | b),
-                per_metre,
-            }
-        });
-        Self { affine, parallel }
-    }
-}
 
 /// The planes of one box.
 pub(crate) struct Faces<W: Wide> {
@@ -290,8 +194,8 @@ fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) ->
 mod tests {
     use super::*;
     use crate::InstructionSet;
+    use crate::camera::Camera;
     use crate::simd::Kernel;
-    use crate::view::Camera;
     use crate::{Eye, Projection, View};
     use glam::DVec3;
 

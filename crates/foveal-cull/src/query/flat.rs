@@ -4,13 +4,15 @@
 //! and a wrong guess throws away what was begun. So at each step those that are left are put into a list without a
 //! branch, and the list is gone through by itself.
 
-use super::answer::Query;
-use super::list::List;
-use super::points::Corners8;
-use super::project::{Boxes8, Projected8, outline, project};
-use super::sift::{Middles16, Sieve, Sifted16};
+use super::classify::Query;
+use super::coarse::{Middles16, Sieve, Sifted16};
+use super::compaction::List;
+use crate::bounds::Aabb;
+use crate::projection::boxes::Boxes8;
+use crate::projection::points::Corners8;
+use crate::projection::project::{Projected8, outline, project};
 use crate::simd::{Kernel, Lanes};
-use crate::{Aabb, Visibility};
+use crate::visibility::Visibility;
 
 /// Boxes against a frame.
 pub(crate) struct Flat<'a> {

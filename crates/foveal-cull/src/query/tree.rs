@@ -3,8 +3,9 @@
 //! Nodes have eight children whose boxes lie side by side, so that one pass of the projection kernel tests
 //! all of them. Every child covers one run of the tree's own order of objects.
 
-use super::project::{Boxes8, ROUNDING};
-use crate::{Aabb, CullError};
+use crate::bounds::Aabb;
+use crate::error::CullError;
+use crate::projection::boxes::{Boxes8, ROUNDING};
 use glam::{DVec3, Vec3};
 
 /// Occludees that are tested together, again and again.

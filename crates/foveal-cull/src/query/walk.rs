@@ -4,14 +4,15 @@
 //! chance, and a wrong guess costs as much as a box. So many nodes are taken from the stack at once, and their children
 //! go through the same steps as boxes that are asked one after the other (see [`super::flat`]), from list to list.
 
-use super::answer::Query;
-use super::list::List;
-use super::points::Corners8;
-use super::project::{Boxes8, Projected8, outline, project};
-use super::sift::{Looked16, Sieve};
+use super::classify::Query;
+use super::coarse::{Looked16, Sieve};
+use super::compaction::List;
 use super::tree::{Node, OccludeeTree};
-use crate::Visibility;
+use crate::projection::boxes::Boxes8;
+use crate::projection::points::Corners8;
+use crate::projection::project::{Projected8, outline, project};
 use crate::simd::{Kernel, Lanes};
+use crate::visibility::Visibility;
 
 /// A tree against a frame.
 pub(crate) struct Walk<'a> {

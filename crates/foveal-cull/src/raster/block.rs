@@ -6,13 +6,13 @@
 //!
 //! Depth: the polygon's plane at its farthest point within each pixel, no farther than its farthest vertex.
 
-use super::band::{Band, Here};
+use super::edges::Edges;
 use super::layers::{self, APART, Layer};
-use super::polygon::{Edges, Polygon};
-use crate::depth::{
-    BLOCK, BLOCK_SAMPLES, EMPTY, Held, PartialBlock, STATE_DEPTH, STATE_EMPTY, STATE_LAYERS,
-    STATE_PARTIAL, encode,
+use crate::depth::band::{Band, Here};
+use crate::depth::block::{
+    Held, PartialBlock, STATE_DEPTH, STATE_EMPTY, STATE_LAYERS, STATE_PARTIAL,
 };
+use crate::format::{BLOCK, BLOCK_SAMPLES, EMPTY, encode};
 use crate::simd::{Lanes, larger, smaller};
 
 /// Depth of a polygon as an affine function of pixels, lowered to hold for whole pixels.
@@ -40,10 +40,10 @@ pub(crate) struct Borders<L: Lanes> {
 
 impl<L: Lanes> Borders<L> {
     #[inline(always)]
-    pub(crate) fn new(l: L, polygon: &Polygon<L>) -> Self {
+    pub(crate) fn new(l: L, edges: &Edges<L>) -> Self {
         Self {
-            edges: polygon.borders,
-            rows: l.borders(polygon.borders.slope),
+            edges: *edges,
+            rows: l.borders(edges.slope),
         }
     }
 

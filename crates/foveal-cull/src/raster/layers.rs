@@ -5,8 +5,8 @@
 //! never complete them. So the near parts are kept apart, as in masked occlusion culling (Hasselgren, Andersson and
 //! Akenine-Moeller 2016, section 3.2), but exactly: nothing is thrown away before it is hidden.
 
-use super::band::Here;
-use crate::depth::{Held, PartialBlock, STATE_LAYERS, STATE_PARTIAL};
+use crate::depth::band::Here;
+use crate::depth::block::{Held, PartialBlock, STATE_LAYERS, STATE_PARTIAL};
 use crate::simd::Lanes;
 
 /// Codes further apart than this (half of them are a factor of two in distance) are kept apart.

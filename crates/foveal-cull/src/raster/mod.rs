@@ -6,15 +6,20 @@
 //! a thread draws into, and `pool` where its partly covered pixels wait for the rest; `select` chooses and orders
 //! clusters; `frame` draws them.
 
-pub(crate) mod band;
-pub(crate) mod block;
-mod border;
-pub(crate) mod clip;
-pub(crate) mod frame;
+mod block;
+pub(crate) mod candidates;
+mod clip;
+mod cluster;
+pub(crate) mod draw;
+mod edges;
+mod extent;
+pub(crate) mod facing;
 mod layers;
+mod margin;
 mod open;
-pub(crate) mod polygon;
-pub(crate) mod pool;
+mod patch;
+mod points;
+mod polygon;
+pub(crate) mod scratch;
 pub(crate) mod select;
-pub(crate) mod setup;
-pub(crate) mod sheet;
+mod setup;

@@ -4,10 +4,11 @@
 //! is not behind what is drawn already. What a cluster needs as a whole (the sheet of a result that holds around the
 //! eye) is for those that have one, and only where these lie.
 
-use super::band::Band;
-use super::setup::{Points, area, blocks_of, highest, lowest, out, steps_of};
-use crate::depth::encode;
-use crate::occluder::{Cluster, OccluderMesh};
+use super::extent::{area, blocks_of, highest, lowest, out, steps_of};
+use super::points::Points;
+use crate::depth::band::Band;
+use crate::format::encode;
+use crate::occluder::mesh::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
 
 /// Eight quads on the screen, corner by corner: samples, and depths.
@@ -114,7 +115,8 @@ impl Open {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::depth::{BLOCK_SAMPLES, DepthBuffer};
+    use crate::depth::buffer::DepthBuffer;
+    use crate::format::BLOCK_SAMPLES;
     use crate::simd::portable::Portable;
     use crate::{BakeOptions, OccluderMesh};
     use glam::Vec3;

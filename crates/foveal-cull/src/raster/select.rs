@@ -5,25 +5,19 @@
 //! does not depend on the order in which occluders were added. Several threads look at clusters in parts, a few for each,
 //! and take the next one when they are done.
 
-use super::frame::{Candidate, FrameScratch};
-use crate::depth::{BLOCK_SAMPLES, SAMPLES, encode};
-use crate::occluder::{Cluster, Instance, OccluderSet};
-use crate::query::near::{Clipped, clip_box};
-use crate::query::project::{Screen, project};
-use crate::simd::{Kernel, Lanes};
-use crate::view::Camera;
-use crate::{CullStats, InstructionSet, Threads};
+use super::candidates::{Candidate, FrameScratch, Part};
+use crate::camera::Camera;
+use crate::format::{BLOCK_SAMPLES, SAMPLES, encode};
+use crate::occluder::mesh::Cluster;
+use crate::occluder::set::{Instance, OccluderSet};
+use crate::projection::near::{Clipped, clip_box};
+use crate::projection::project::project;
+use crate::projection::screen::Screen;
+use crate::simd::{InstructionSet, Kernel, Lanes};
+use crate::stats::CullStats;
+use crate::threads::Threads;
 use glam::DVec4;
 use std::sync::Mutex;
-
-/// Candidates from some of the clusters.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Part {
-    candidates: Vec<Candidate>,
-    order: Vec<u64>,
-    /// Counts of what was looked at.
-    stats: CullStats,
-}
 
 /// Most parts that clusters are looked at in, and how many for each thread: how long one takes cannot be foreseen.
 const MAX_PARTS: usize = 64;

@@ -1,10 +1,11 @@
 //! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods sound.
 
+use super::arrays::{four, two};
+use super::lanes::{Kernel, Lanes};
 use super::portable::{FAR, PIXELS_FROM, ROWS};
-use super::wide::Twice;
-use super::{Kernel, Lanes, four, two};
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use super::twice::Twice;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// Proof that the CPU has AVX2.

@@ -1,11 +1,13 @@
 //! AVX-512 lanes: whole blocks in two registers, and masks of 64 pixels as they are. Eight-lane work is AVX2's.
 //! An [`Avx512`] exists only where the CPU has all that it needs, which is what makes its methods sound.
 
-use super::avx2::Avx2;
+use super::arrays::{four, two};
+use super::avx512proof::Avx512;
+use super::avx512x16::Wide512;
+use super::lanes::{Kernel, Lanes};
 use super::portable::{FAR, ROWS};
-use super::{Kernel, Lanes, four, two};
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// The rows of a part, in an order that brings pixels into theirs at last.
@@ -28,20 +30,7 @@ const HALF_ROWS: [[f32; 16]; 2] = {
     rows
 };
 
-/// Proof that the CPU has AVX-512 F, BW, DQ and VL, and AVX2.
-#[derive(Clone, Copy)]
-pub(crate) struct Avx512(Avx2);
-
 impl Avx512 {
-    /// The proof, where it holds.
-    pub(crate) fn detect() -> Option<Self> {
-        let all = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        Avx2::detect().filter(|_| all).map(Self)
-    }
-
     /// Runs `kernel` compiled with AVX-512 enabled.
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
@@ -85,7 +74,7 @@ macro_rules! as_avx2 {
         $(
             #[inline(always)]
             fn $name(self, $($arg: $type),*) $(-> $out)? {
-                self.0.$name($($arg),*)
+                self.avx2().$name($($arg),*)
             }
         )*
     };
@@ -99,7 +88,7 @@ impl Lanes for Avx512 {
     type S = [Side512; 2];
     type B = [[__m512d; 5]; 4];
     type P = [__m512i; 2];
-    type W = super::avx512x16::Wide512;
+    type W = Wide512;
 
     fn apart<K: Kernel>(self, kernel: K) -> K::Output {
         #[inline(never)]
@@ -113,7 +102,7 @@ impl Lanes for Avx512 {
 
     #[inline(always)]
     fn wide(self) -> Self::W {
-        super::avx512x16::Wide512(self)
+        Wide512(self)
     }
     #[inline(always)]
     fn prefetch<T>(self, soon: &T) {

@@ -1,10 +1,10 @@
 //! Sixteen lanes of AVX-512.
 
-use super::avx512::Avx512;
-use super::four;
+use super::arrays::four;
+use super::avx512proof::Avx512;
 use super::wide::Wide;
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// An [`Avx512`] proves the features.

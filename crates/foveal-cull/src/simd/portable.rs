@@ -1,9 +1,10 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
-use super::wide::Twice;
-use super::{Lanes, larger, smaller};
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use super::arrays::{larger, smaller};
+use super::lanes::Lanes;
+use super::twice::Twice;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::array::from_fn;
 
 /// Rows of samples, those that are first, second and so on in their pixel together; then the rows through pixel centres.

@@ -1,7 +1,6 @@
 //! Every method of every instruction set that this machine has, against the portable one, lane by lane.
 
-use super::wide::Wide;
-use super::{InstructionSet, Kernel, Lanes};
+use super::{InstructionSet, Kernel, Lanes, Wide};
 use crate::Aabb;
 use glam::Vec3;
 

@@ -6,7 +6,7 @@
     reason = "shared by several test programs, each using a part"
 )]
 
-use foveal_cull::truth::{Seen, Truth};
+use foveal_cull::reference::{Reference, Seen};
 use foveal_cull::{
     Aabb, BakeOptions, Culler, Eye, FrameOptions, OccluderMesh, OccluderSet, Projection, Threads,
     View, Visibility,
@@ -273,8 +273,8 @@ pub fn answers(
     results
 }
 
-fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Truth {
-    let mut truth = Truth::new(eye, w, h).unwrap();
+fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Reference {
+    let mut truth = Reference::new(eye, w, h).unwrap();
     for o in &scene.objects {
         truth.add(&o.positions, &o.indices, &o.transform, o.two_sided);
     }

@@ -2,10 +2,11 @@
 //! [`Registers`].
 
 use super::portable::{FAR, ROWS};
-use super::wide::Twice;
-use super::{Lanes, four, two};
-use crate::Aabb;
-use crate::depth::{BLOCK, BLOCK_SAMPLES, CODE_OFFSET};
+use super::twice::Twice;
+use crate::bounds::Aabb;
+use crate::format::{BLOCK, BLOCK_SAMPLES, CODE_OFFSET};
+use crate::simd::arrays::{four, two};
+use crate::simd::lanes::Lanes;
 use registers::Registers;
 
 mod registers;

@@ -1,8 +1,8 @@
 //! NEON, which every 64-bit ARM CPU for applications has.
 
-use super::Registers;
+use super::registers::Registers;
+use crate::simd::arrays::{four, two};
 use crate::simd::portable::PIXELS_FROM;
-use crate::simd::{four, two};
 use core::arch::aarch64::*;
 use core::arch::asm;
 

@@ -1,7 +1,7 @@
 //! SSE2, which every x86-64 CPU has.
 
-use super::Registers;
-use crate::simd::four;
+use super::registers::Registers;
+use crate::simd::arrays::four;
 use core::arch::x86_64::*;
 
 #[derive(Clone, Copy, Default)]

@@ -10,7 +10,7 @@
     reason = "helpers outlive the borrow of a task; see the SAFETY line"
 )]
 
-use super::Threads;
+use super::run::Threads;
 use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -19,7 +19,7 @@ use std::thread::JoinHandle;
 /// Its own threads, made once. One [`Threads::run`] at a time; a second one from another thread waits its
 /// turn. A task must not call `run` on the pool that runs it.
 #[derive(Debug)]
-pub struct Pool {
+pub struct WorkerThreads {
     shared: Arc<Shared>,
     helpers: Vec<JoinHandle<()>>,
     turn: Mutex<()>,
@@ -124,7 +124,7 @@ impl Shared {
             self.active.store(state.active, Ordering::Relaxed);
             drop(state);
             let ended = catch_unwind(AssertUnwindSafe(|| {
-                // SAFETY: `active` was raised under the lock while the task was posted, and `Pool::run` keeps
+                // SAFETY: `active` was raised under the lock while the task was posted, and `WorkerThreads::run` keeps
                 // the task alive until it is zero again.
                 let task = unsafe { &*task.0 };
                 self.work(tasks, task);
@@ -162,7 +162,7 @@ impl Drop for Posted<'_> {
     }
 }
 
-impl Pool {
+impl WorkerThreads {
     /// A pool of `threads` threads, the caller's included.
     #[must_use]
     pub fn new(threads: usize) -> Self {
@@ -184,7 +184,7 @@ impl Pool {
     }
 }
 
-impl Threads for Pool {
+impl Threads for WorkerThreads {
     fn count(&self) -> usize {
         self.helpers.len() + 1
     }
@@ -221,7 +221,7 @@ impl Threads for Pool {
     }
 }
 
-impl Drop for Pool {
+impl Drop for WorkerThreads {
     fn drop(&mut self) {
         let mut state = self.shared.lock();
         state.stop = true;

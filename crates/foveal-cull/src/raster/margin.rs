@@ -3,11 +3,14 @@
 //! A border erases only what lies as deep as the sheet can be where that border is within reach of it; where the cluster folds,
 //! its farther part stays.
 
-use super::band::Band;
-use super::setup::{Points, out};
-use super::sheet::AROUND_SAMPLE;
-use crate::depth::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
+use super::extent::out;
+use super::points::Points;
+use crate::depth::band::Band;
+use crate::format::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
 use crate::simd::{Lanes, four, larger, smaller};
+
+/// From a sample to all points that are nearer to it than to others, and more than all rounding, samples.
+pub(super) const AROUND_SAMPLE: f32 = 0.8;
 
 /// More than all rounding, samples.
 const MARGIN: f32 = 0.0625;
@@ -201,7 +204,7 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::depth::DepthBuffer;
+    use crate::depth::buffer::DepthBuffer;
     use crate::simd::portable::Portable;
 
     /// Whether a segment meets a rectangle (least x and y, greatest), by cutting it at each side.

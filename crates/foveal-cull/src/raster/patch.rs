@@ -20,11 +20,14 @@
 //! Between samples the sheet may be another triangle than at the nearest of them, half a sample away in each axis;
 //! depths are lowered by what the steepest triangle of the sheet changes there.
 
-use super::band::Band;
-use super::border::{self, Reach};
+use super::extent::{area, highest, lowest};
+use super::facing::Radius;
+use super::margin::{self, AROUND_SAMPLE, Reach};
 use super::open::{Corners, Open};
-use super::setup::{Points, Radius, Scratch, area, highest, lowest, transform};
-use crate::occluder::{Cluster, NUMBERS, OccluderMesh, RING, Ring, SECOND};
+use super::points::{Points, transform};
+use crate::depth::band::Band;
+use crate::occluder::mesh::{Cluster, OccluderMesh};
+use crate::occluder::one_ring::{NUMBERS, RING, Ring, SECOND};
 use crate::simd::{Kernel, Lanes, four, larger, smaller};
 
 /// A triangle surely faces the eye if it is higher than this over the sum of its quad's sides, samples: corners are
@@ -33,9 +36,6 @@ const LEAST_HEIGHT: f32 = 0.125;
 /// Steeper triangles, by their nearest depth per sample, do not count: they lie within 32 samples of the line where their
 /// plane is seen from its side.
 const STEEPEST: f32 = 32.0;
-/// From a sample to all points that are nearer to it than to others, and more than all rounding, samples.
-pub(super) const AROUND_SAMPLE: f32 = 0.8;
-
 /// What belongs to the sheet of the cluster that is being drawn.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sheet {
@@ -65,7 +65,8 @@ impl Sheet {
 /// seen, and if there are any, its sheet, and erases what is too near to the sheet's border within their blocks.
 pub(super) struct Prepare<'a, 'b, 'c> {
     pub(super) band: &'a mut Band<'b>,
-    pub(super) scratch: &'a mut Scratch,
+    pub(super) points: &'a mut Points,
+    pub(super) sheet: &'a mut Sheet,
     pub(super) mesh: &'c OccluderMesh,
     pub(super) cluster: &'c Cluster,
     pub(super) ring: &'c Ring,
@@ -82,7 +83,8 @@ impl Kernel for Prepare<'_, '_, '_> {
     fn run<L: Lanes>(self, l: L) -> Open {
         let Self {
             band,
-            scratch,
+            points,
+            sheet,
             mesh,
             cluster,
             ring,
@@ -90,15 +92,7 @@ impl Kernel for Prepare<'_, '_, '_> {
             mirrored,
             radius,
         } = self;
-        let open = Open::of(
-            l,
-            band,
-            &scratch.points,
-            mesh,
-            cluster,
-            mirrored,
-            &mut scratch.sheet.corners,
-        );
+        let open = Open::of(l, band, points, mesh, cluster, mirrored, &mut sheet.corners);
         if !open.is_empty() {
             let own = usize::from(cluster.vertex_count).next_multiple_of(8);
             let around = (
@@ -106,12 +100,12 @@ impl Kernel for Prepare<'_, '_, '_> {
                 ring.first_vertex as usize,
                 usize::from(ring.vertex_count),
             );
-            transform(&mut scratch.points, own, around, rows);
+            transform(points, own, around, rows);
             prepare(
                 l,
                 band,
-                &mut scratch.sheet,
-                &scratch.points,
+                sheet,
+                points,
                 mesh,
                 (cluster, ring),
                 (mirrored, open.blocks, radius),
@@ -222,7 +216,7 @@ fn prepare<L: Lanes>(
         }
         let [from, to] = &ends;
         let erased = &mut sheet.erased;
-        border::erase_eight(l, band, erased, points, [from, to], eight.len(), &reach);
+        margin::erase_eight(l, band, erased, points, [from, to], eight.len(), &reach);
     }
 }
 

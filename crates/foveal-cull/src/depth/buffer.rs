@@ -8,106 +8,11 @@
 //! Depth is `near / distance` (or linear, for orthographic views), stored as a shortened float with five
 //! bits of exponent and eleven of mantissa, always rounded away from the eye. Larger is nearer.
 
-use crate::raster::band::Band;
-use crate::raster::pool::Pool;
-
-/// Grid points per pixel and axis.
-pub(crate) const SAMPLES: u32 = 4;
-/// Pixels per block side.
-pub(crate) const BLOCK: u32 = 8;
-/// Samples per block side.
-pub(crate) const BLOCK_SAMPLES: u32 = BLOCK * SAMPLES;
-/// Pixels per block.
-pub(crate) const BLOCK_PIXELS: u32 = BLOCK * BLOCK;
-/// Nothing known: infinitely far.
-pub(crate) const EMPTY: i16 = i16::MIN;
-/// `to_bits(1.0) >> 12`, which becomes the largest code.
-const ONE_BITS: i32 = 0x3f800;
-/// What is subtracted from the shifted bits.
-pub(crate) const CODE_OFFSET: i32 = ONE_BITS - i16::MAX as i32;
-
-/// The code of a depth, rounded down (away from the eye).
-#[inline]
-pub(crate) fn encode(depth: f32) -> i16 {
-    ((depth.max(0.0).to_bits() >> 12) as i32 - CODE_OFFSET).clamp(-32768, 32767) as i16
-}
-
-/// The depth of a code.
-#[inline]
-pub(crate) fn decode(code: i16) -> f32 {
-    if code == EMPTY {
-        0.0
-    } else {
-        f32::from_bits(((i32::from(code) + CODE_OFFSET) << 12) as u32)
-    }
-}
-
-/// Depth of 64 pixels, row by row.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct DepthBlock(pub(crate) [i16; 64]);
-
-/// What partly covered pixels of a block have so far. Bit `8 * row + column` of a number is a pixel.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(64))]
-pub(crate) struct PartialBlock {
-    /// All samples, in an order that only the instruction set knows which wrote them.
-    pub(crate) planes: [u64; 16],
-    /// Farthest depth so far, of pixels that have anything.
-    pub(crate) depth: [i16; 64],
-    /// Pixel centres.
-    pub(crate) center: u64,
-    /// Pixels that have anything.
-    pub(crate) any: u64,
-}
-
-impl DepthBlock {
-    /// A block that holds nothing.
-    pub(crate) const EMPTY: Self = Self([EMPTY; 64]);
-}
-
-impl PartialBlock {
-    /// Nothing is covered in part.
-    pub(crate) const NONE: Self = Self {
-        planes: [0; 16],
-        depth: [i16::MAX; 64],
-        center: 0,
-        any: 0,
-    };
-}
-
-/// Block holds nothing; its memory is stale until the frame is complete.
-pub(crate) const STATE_EMPTY: u32 = 0;
-/// Block has depth.
-pub(crate) const STATE_DEPTH: u32 = 1;
-/// Block has depth and partly covered pixels.
-pub(crate) const STATE_PARTIAL: u32 = 2;
-/// And these in two layers.
-pub(crate) const STATE_LAYERS: u32 = 3;
-
-/// What a block holds: one of the states, and above its two bits the slot of its partly covered pixels, if it has any.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Held(u32);
-
-impl Held {
-    pub(crate) const NOTHING: Self = Self(STATE_EMPTY);
-    pub(crate) const DEPTH: Self = Self(STATE_DEPTH);
-
-    #[inline(always)]
-    pub(crate) fn partial(state: u32, slot: u32) -> Self {
-        Self(slot << 2 | state)
-    }
-
-    #[inline(always)]
-    pub(crate) fn state(self) -> u32 {
-        self.0 & 3
-    }
-
-    #[inline(always)]
-    pub(crate) fn slot(self) -> u32 {
-        self.0 >> 2
-    }
-}
+use super::band::Band;
+use super::block::{DepthBlock, Held, PartialBlock, STATE_EMPTY};
+use super::hiz_layout;
+use super::slots::Pool;
+use crate::format::{BLOCK, BLOCK_PIXELS, EMPTY};
 
 /// The buffer. See the module.
 #[derive(Clone, Debug)]
@@ -154,7 +59,7 @@ impl DepthBuffer {
             erased: vec![0; n],
             border: vec![[0; 2]; n],
             work: vec![0; blocks_y as usize],
-            coarse: vec![EMPTY; crate::summary::len(blocks_x, blocks_y)],
+            coarse: vec![EMPTY; hiz_layout::len(blocks_x, blocks_y)],
             used: vec![0; n],
         }
     }

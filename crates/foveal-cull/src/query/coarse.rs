@@ -4,13 +4,14 @@
 //! distances of its nearest and its farthest point: two divisions, and most boxes are told from that. What it hides,
 //! the exact rectangle would be hidden by too; the others are projected anew.
 
-use super::points::pixel_of;
-use super::project::{Boxes8, Coarse, ROUNDING, Screen, known};
-use crate::Aabb;
-use crate::depth::{BLOCK, BLOCK_SAMPLES};
-use crate::simd::wide::Wide;
-use crate::simd::{four, three, two};
-use crate::summary::place_of;
+use crate::bounds::Aabb;
+use crate::depth::hiz::{Coarse, known};
+use crate::depth::hiz_layout::place_of;
+use crate::format::{BLOCK, BLOCK_SAMPLES};
+use crate::projection::boxes::{Boxes8, ROUNDING};
+use crate::projection::points::pixel_of;
+use crate::projection::screen::Screen;
+use crate::simd::{Wide, four, three, two};
 
 /// What boxes are sifted with.
 #[derive(Clone, Copy, Debug)]

@@ -1,8 +1,9 @@
 //! A rectangle with a depth against the buffer.
 
-use crate::depth::{BLOCK, DepthBuffer, SAMPLES};
-use crate::query::faces::Faces;
-use crate::query::planes::Planes;
+use super::axis_planes::Planes;
+use super::faces::Faces;
+use crate::depth::buffer::DepthBuffer;
+use crate::format::{BLOCK, SAMPLES};
 use crate::simd::Lanes;
 use glam::Vec3;
 

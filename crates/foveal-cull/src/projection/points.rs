@@ -3,13 +3,11 @@
 //! Most boxes that can be seen are seen in their middle, and of the others most at a corner. Pixels are looked up one
 //! by one, since gathers take longer, and by a number that is found for many boxes at once.
 
-use super::answer::Query;
-
 /// Numbers of pixels (right, down; on the screen) of a buffer, block by block, for as many lanes as `$l` has: as
-/// [`DepthBuffer::known`](crate::depth::DepthBuffer::known) takes them. A macro, as `place_of`.
+/// [`DepthBuffer::known`](crate::depth::buffer::DepthBuffer::known) takes them. A macro, as `place_of`.
 macro_rules! pixel_of {
     ($l:ident, $buffer:expr, $x:expr, $y:expr) => {{
-        use crate::depth::{BLOCK, BLOCK_PIXELS};
+        use crate::format::{BLOCK, BLOCK_PIXELS};
         let (x, y) = ($x, $y);
         let bits = $l.isplat(BLOCK.trailing_zeros() as i32);
         let (column, row) = ($l.ishr(x, bits), $l.ishr(y, bits));
@@ -21,49 +19,36 @@ macro_rules! pixel_of {
         $l.iadd(within, across)
     }};
 }
-pub(super) use pixel_of;
+pub(crate) use pixel_of;
 
 /// Corners of eight boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
-pub(super) struct Corners8 {
+pub(crate) struct Corners8 {
     /// By corner: the number of its pixel.
-    pub(super) at: [[i32; 8]; 8],
+    pub(crate) at: [[i32; 8]; 8],
     /// The code of its depth; a very low one beside the screen.
-    pub(super) code: [[i32; 8]; 8],
+    pub(crate) code: [[i32; 8]; 8],
 }
 
 impl Corners8 {
-    pub(super) const NONE: Self = Self {
+    pub(crate) const NONE: Self = Self {
         at: [[0; 8]; 8],
         code: [[0; 8]; 8],
     };
-}
-
-impl Query<'_> {
-    /// Whether a code lies before all that is known in a pixel.
-    #[inline(always)]
-    pub(super) fn before(&self, at: i32, code: i32) -> bool {
-        code > i32::from(self.buffer.known(at as usize))
-    }
-
-    /// Whether any corner of a box that is all beyond the near plane lies before all that is known in its pixel.
-    #[inline(always)]
-    pub(super) fn corner_seen(&self, corners: &Corners8, i: usize) -> bool {
-        let mut seen = false;
-        for (at, code) in corners.at.iter().zip(&corners.code) {
-            seen |= self.before(at[i], code[i]);
-        }
-        seen
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::InstructionSet;
-    use crate::depth::DepthBuffer;
-    use crate::query::project::{Boxes8, Coarse, Screen, outline};
+    use crate::depth::block::Held;
+    use crate::depth::buffer::DepthBuffer;
+    use crate::depth::hiz::Coarse;
+    use crate::format::{EMPTY, encode};
+    use crate::projection::boxes::Boxes8;
+    use crate::projection::project::outline;
+    use crate::projection::screen::Screen;
     use crate::simd::{Kernel, Lanes};
     use glam::Vec3;
 
@@ -85,7 +70,7 @@ mod tests {
         let (width, height) = (72, 40);
         let mut buffer = DepthBuffer::new(width, height);
         // Every pixel of a number has the code that says which one it is.
-        buffer.held.fill(crate::depth::Held::DEPTH);
+        buffer.held.fill(Held::DEPTH);
         for (b, block) in (0u32..).zip(&mut buffer.depth) {
             for (i, code) in (0u32..).zip(&mut block.0) {
                 let (x, y) = (
@@ -135,7 +120,7 @@ mod tests {
                     let x = (0.5 * w * (p.x / -p.z + 1.0) / 4.0).floor();
                     let y = ((-0.5 * w * p.y / -p.z + 0.5 * h) / 4.0).floor();
                     let inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
-                    let code = crate::depth::encode(0.1 / -p.z);
+                    let code = encode(0.1 / -p.z);
                     inside.then_some((y as i32 * width as i32 + x as i32, i32::from(code)))
                 })
                 .collect();
@@ -143,8 +128,7 @@ mod tests {
                 .map(|k| {
                     let (at, code) = (corners.at[k][i], corners.code[k][i]);
                     assert_eq!((at, code), (portable.at[k][i], portable.code[k][i]));
-                    (code > i32::from(crate::depth::EMPTY))
-                        .then(|| (i32::from(buffer.known(at as usize)), code))
+                    (code > i32::from(EMPTY)).then(|| (i32::from(buffer.known(at as usize)), code))
                 })
                 .collect();
             expected.sort_unstable();

@@ -3,11 +3,13 @@
 //! Just before a cluster is drawn, its rectangle is tested against the depth so far; one that is hidden there could
 //! not have changed anything.
 
-use super::band::Band;
-use super::select::Part;
-use super::setup::{Facing, Radius, Scratch, draw_cluster};
-use crate::Budget;
-use crate::occluder::OccluderSet;
+use super::candidates::FrameScratch;
+use super::cluster::draw_cluster;
+use super::facing::{Facing, Radius};
+use super::scratch::Scratch;
+use crate::depth::band::Band;
+use crate::occluder::set::OccluderSet;
+use crate::options::Budget;
 use crate::simd::{Kernel, Lanes};
 
 /// Larger rectangles of blocks are not fetched before they are drawn into.
@@ -16,32 +18,6 @@ const MOST_FETCHED: u32 = 64;
 /// What the set-up of a cluster takes, besides one for each quad, in the unit of
 /// [`WORK_OF_FULL`](super::block::WORK_OF_FULL).
 const WORK_OF_CLUSTER: u32 = 16;
-
-/// A cluster that may be drawn.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Candidate {
-    /// Content hash: decides between equal distances.
-    pub(super) hash: u32,
-    pub(super) instance: u32,
-    pub(super) cluster: u32,
-    /// First and last block, inclusive.
-    pub(super) blocks: [u16; 4],
-    pub(super) code: i16,
-    /// Its box crosses the near plane.
-    pub(super) crossing: bool,
-}
-
-/// What the frame keeps between its two steps, and from frame to frame (so nothing is allocated).
-#[derive(Clone, Debug, Default)]
-pub(crate) struct FrameScratch {
-    pub(crate) candidates: Vec<Candidate>,
-    /// The order of drawing: the bits of the nearest distance, then the number of the candidate.
-    pub(super) order: Vec<u64>,
-    /// Clip rows per instance.
-    pub(crate) rows: Vec<[[f64; 4]; 4]>,
-    /// What each thread finds.
-    pub(crate) parts: Vec<Part>,
-}
 
 /// Draws the candidates into one band.
 pub(crate) struct Draw<'a, 'b> {
@@ -118,11 +94,5 @@ impl Kernel for Draw<'_, '_> {
             );
         }
         0
-    }
-}
-
-impl Candidate {
-    pub(crate) fn place(&self) -> (u32, u32) {
-        (self.instance, self.cluster)
     }
 }

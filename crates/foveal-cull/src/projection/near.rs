@@ -4,8 +4,8 @@
 //! are those of its corners, and the corners come from clipping the six faces, with those of the near
 //! rectangle where the box contains them (then it covers a part of the near plane and is visible).
 
-use super::project::Screen;
-use crate::raster::clip::{ClipPolygon, NEAR};
+use super::clip::{ClipPolygon, NEAR};
+use super::screen::Screen;
 use glam::{DVec4, Vec3};
 
 /// Where the part of a box inside the frustum lies.

@@ -4,9 +4,11 @@
 //! order, no quantized depth. A box is visible if, at any sample, the ray through it enters the box before
 //! it meets an occluder. Run it at the culler's own size, or at several times that size per axis.
 
-use crate::raster::clip::{ClipPolygon, NEAR};
-use crate::view::Camera;
-use crate::{Aabb, CullError, Eye, View};
+use crate::bounds::Aabb;
+use crate::camera::Camera;
+use crate::error::CullError;
+use crate::projection::clip::{ClipPolygon, NEAR};
+use crate::view::{Eye, View};
 use glam::{DAffine3, DVec3, DVec4, Vec3};
 
 /// What the reference says about a box.
@@ -22,7 +24,7 @@ pub enum Seen {
 
 /// Exact depth of one eye.
 #[derive(Clone, Debug)]
-pub struct Truth {
+pub struct Reference {
     width: usize,
     height: usize,
     /// Nearest occluder depth per sample (near / distance, or linear), 0 where there is none.
@@ -34,7 +36,7 @@ pub struct Truth {
 
 const TILE: usize = 16;
 
-impl Truth {
+impl Reference {
     /// An empty reference of `width` x `height` samples. For "n times the resolution" of a culler, pass n
     /// times its size.
     ///
@@ -168,7 +170,7 @@ impl Truth {
         }
     }
 
-    /// Makes the tile summary; call after the last [`Truth::add`] and before queries (queries are right
+    /// Makes the tile summary; call after the last [`Reference::add`] and before queries (queries are right
     /// without it, only slower).
     pub fn finish(&mut self) {
         let tw = self.width.div_ceil(TILE);

@@ -1,7 +1,7 @@
 //! The part of the buffer that one thread draws into.
 
-use super::pool::Pool;
-use crate::depth::{DepthBlock, Held};
+use super::block::{DepthBlock, Held};
+use super::slots::Pool;
 use crate::simd::Lanes;
 
 /// Some block rows of the buffer, exclusively.

@@ -1,72 +1,10 @@
 //! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
 
+use super::boxes::Boxes8;
 use super::points::{Corners8, pixel_of};
-use crate::Aabb;
-use crate::depth::{BLOCK, DepthBuffer, EMPTY, SAMPLES};
+use super::screen::Screen;
+use crate::format::SAMPLES;
 use crate::simd::{Lanes, four};
-use crate::summary::place_of;
-use glam::Vec3;
-
-/// Relative growth of boxes against rounding.
-pub(crate) const ROUNDING: f32 = 6e-7;
-
-/// Eight boxes by coordinate.
-#[derive(Clone, Copy, Debug)]
-#[repr(C, align(32))]
-pub(crate) struct Boxes8 {
-    pub(crate) center: [[f32; 8]; 3],
-    pub(crate) half: [[f32; 8]; 3],
-}
-
-impl Boxes8 {
-    /// NaN boxes: never culled.
-    pub(crate) const NONE: Self = Self {
-        center: [[f32::NAN; 8]; 3],
-        half: [[f32::NAN; 8]; 3],
-    };
-
-    /// Centres and half extents of eight boxes, grown against rounding; NaN for what is not a volume.
-    #[inline(always)]
-    pub(crate) fn of<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Self {
-        let v = l.turn(boxes);
-        let half = l.splat(0.5);
-        let (mut eight, mut reach) = (Self::NONE, [l.splat(0.0); 2]);
-        let mut valid = l.isplat(-1);
-        let (mut center, mut extent) = ([half; 3], [half; 3]);
-        for k in 0..3 {
-            let (lo, hi) = (l.mul(v[k], half), l.mul(v[k + 3], half));
-            (center[k], extent[k]) = (l.add(lo, hi), l.sub(hi, lo));
-            valid = l.iandnot(l.lt(v[k + 3], v[k]), valid);
-            reach = [
-                l.max(reach[0], l.abs(center[k])),
-                l.max(reach[1], extent[k]),
-            ];
-        }
-        let grow = l.mul(l.add(reach[0], reach[1]), l.splat(ROUNDING));
-        for k in 0..3 {
-            l.store(center[k], &mut eight.center[k]);
-            let grown = l.select(valid, l.add(extent[k], grow), l.splat(f32::NAN));
-            l.store(grown, &mut eight.half[k]);
-        }
-        eight
-    }
-
-    /// Box `lane` becomes box `from` of `boxes`.
-    #[inline(always)]
-    pub(super) fn copy(&mut self, lane: usize, boxes: &Self, from: usize) {
-        for axis in 0..3 {
-            self.center[axis][lane] = boxes.center[axis][from];
-            self.half[axis][lane] = boxes.half[axis][from];
-        }
-    }
-
-    pub(crate) fn set(&mut self, lane: usize, center: Vec3, half: Vec3) {
-        for axis in 0..3 {
-            self.center[axis][lane] = center[axis];
-            self.half[axis][lane] = half[axis];
-        }
-    }
-}
 
 /// What is known of eight boxes on the screen. Rectangles are samples, already dilated.
 #[derive(Clone, Copy, Debug)]
@@ -109,96 +47,6 @@ impl Projected8 {
     };
 }
 
-/// What boxes are projected with.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Screen<'a> {
-    /// Clip rows in the space of the boxes.
-    pub(crate) rows: [[f32; 4]; 4],
-    /// Samples.
-    pub(crate) width: f32,
-    pub(crate) height: f32,
-    /// Depth of the far plane, lowered a little; 0 when infinite.
-    pub(crate) far_depth: f32,
-    /// By how much rectangles grow on each side, samples.
-    pub(crate) dilate: f32,
-    /// By how much boxes grow on each side, metres.
-    pub(crate) grow: f32,
-    /// Boxes are tested against it at once.
-    pub(crate) coarse: Option<Coarse<'a>>,
-}
-
-impl Screen<'_> {
-    /// Whether all of a box, grown for rounding, lies beyond one border of the screen, wherever the near plane is.
-    #[inline(always)]
-    pub(crate) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
-        let [x, y, _, w] = self.rows;
-        // Sums over the axes, for the borders left, right, above and below; by rows that are above zero within.
-        let (mut most, mut terms) = ([0.0; 4], [0.0; 4]);
-        for k in 0..4 {
-            let rows = [
-                x[k] + self.dilate * w[k],
-                (self.width + self.dilate) * w[k] - x[k],
-                y[k] + self.dilate * w[k],
-                (self.height + self.dilate) * w[k] - y[k],
-            ];
-            let (c, h) = if k < 3 {
-                (center[k], half[k])
-            } else {
-                (1.0, 0.0)
-            };
-            for (border, row) in rows.into_iter().enumerate() {
-                most[border] += row * c + row.abs() * h;
-                terms[border] += row.abs() * (c.abs() + h);
-            }
-        }
-        let mut beside = false;
-        for (most, terms) in most.into_iter().zip(terms) {
-            beside |= most < -ROUNDING * terms;
-        }
-        beside
-    }
-}
-
-/// The summary of a finished depth buffer.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Coarse<'a> {
-    pub(super) buffer: &'a DepthBuffer,
-}
-
-impl<'a> Coarse<'a> {
-    /// `None` where the summary is too large to be numbered by its kernel.
-    pub(crate) fn new(buffer: &'a DepthBuffer) -> Option<Self> {
-        (buffer.coarse.len() < 1 << 24).then_some(Self { buffer })
-    }
-
-    /// A bit per code that is farther than all that is known in its rectangle of pixels (left, top, right, bottom,
-    /// inclusive) or somewhat farther, as [`crate::summary`] tells.
-    #[inline(always)]
-    fn hides<L: Lanes>(self, l: L, pixels: [L::I; 4], codes: &[i32; 8]) -> u32 {
-        let block = l.isplat(BLOCK.trailing_zeros() as i32);
-        let buffer = self.buffer;
-        let index = place_of!(l, buffer, four!(i => l.ishr(pixels[i], block)));
-        let mut at = [0; 8];
-        l.istore(index, &mut at);
-        let (table, mut bits) = (self.table(), 0);
-        for i in 0..8 {
-            bits |= u32::from(codes[i] < known(table, at[i])) << i;
-        }
-        bits
-    }
-
-    #[inline(always)]
-    pub(super) fn table(self) -> &'a [i16] {
-        &self.buffer.coarse
-    }
-}
-
-/// The farthest code at a place of the summary. One by one: a gather takes several times as long.
-#[inline(always)]
-pub(super) fn known(table: &[i16], at: i32) -> i32 {
-    i32::from(table.get(at as usize).copied().unwrap_or(EMPTY))
-}
-
 /// With the middle.
 #[inline(always)]
 pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Projected8 {
@@ -211,7 +59,7 @@ pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Project
 
 /// All but the middle; and where the screen knows its depths, corners if they are asked for.
 #[inline(always)]
-pub(super) fn outline<L: Lanes>(
+pub(crate) fn outline<L: Lanes>(
     l: L,
     s: &Screen<'_>,
     boxes: &Boxes8,

@@ -1,14 +1,20 @@
 //! From a projected box to an answer: frustum, size, then the depth buffer; for one eye, two, or a radius.
 
-use super::near::{Clipped, clip_box};
-use super::planes::Planes;
-use super::project::{Boxes8, Coarse, Projected8, ROUNDING, Screen};
-use super::sift::Sieve;
-use super::test::{PixelRect, hidden};
-use crate::depth::{DepthBuffer, SAMPLES, encode};
+use super::axis_planes::Planes;
+use super::coarse::Sieve;
+use super::rect::{PixelRect, hidden};
+use crate::camera::{Camera, frustum_planes};
+use crate::depth::buffer::DepthBuffer;
+use crate::depth::hiz::Coarse;
+use crate::format::{SAMPLES, encode};
+use crate::projection::boxes::{Boxes8, ROUNDING};
+use crate::projection::near::{Clipped, clip_box};
+use crate::projection::points::Corners8;
+use crate::projection::project::Projected8;
+use crate::projection::screen::Screen;
 use crate::simd::Lanes;
-use crate::view::{Camera, frustum_planes};
-use crate::{View, Visibility};
+use crate::view::View;
+use crate::visibility::Visibility;
 use glam::{DVec3, Vec3};
 
 /// Boxes grow by this on the screen before they are tested, samples: their rectangles then touch every pixel
@@ -279,6 +285,24 @@ impl<'a> Query<'a> {
         }
         let rect = self.pixels([p.x0[i], p.y0[i], p.x1[i], p.y1[i]]);
         self.answer_rect(l, rect, encode(p.depth[i]), None)
+    }
+}
+
+impl Query<'_> {
+    /// Whether a code lies before all that is known in a pixel.
+    #[inline(always)]
+    pub(super) fn before(&self, at: i32, code: i32) -> bool {
+        code > i32::from(self.buffer.known(at as usize))
+    }
+
+    /// Whether any corner of a box that is all beyond the near plane lies before all that is known in its pixel.
+    #[inline(always)]
+    pub(super) fn corner_seen(&self, corners: &Corners8, i: usize) -> bool {
+        let mut seen = false;
+        for (at, code) in corners.at.iter().zip(&corners.code) {
+            seen |= self.before(at[i], code[i]);
+        }
+        seen
     }
 }
 

@@ -1,21 +1,9 @@
 //! Planes across the world's axes on the screen, and rays that enter boxes between such planes.
 
-use super::faces::PlaneLanes;
-use crate::depth::{EMPTY, encode};
-use crate::view::Camera;
+use super::plane_lanes::{Affine, PlaneLanes, ROUNDING};
+use crate::camera::Camera;
+use crate::format::{EMPTY, encode};
 use glam::{DMat3, DVec3, Vec3};
-
-/// Relative error of a plane's depth, of the largest term; generous.
-pub(super) const ROUNDING: f32 = 4e-6;
-
-/// A value that is affine over the screen, in samples, and more than its rounding.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Affine {
-    pub(super) x: f32,
-    pub(super) y: f32,
-    pub(super) at_zero: f32,
-    pub(super) error: f32,
-}
 
 /// How planes across the world's axes lie on the screen.
 #[derive(Clone, Copy, Debug)]

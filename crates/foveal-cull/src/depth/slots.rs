@@ -6,7 +6,7 @@
 //! Whoever takes a slot gets the one that was given back longest ago: its number has been known for long, and does not
 //! wait for the block before.
 
-use crate::depth::PartialBlock;
+use super::block::PartialBlock;
 
 /// Slots that are begun at once when none is left.
 const BEGUN_AT_ONCE: u32 = 64;
@@ -93,7 +93,7 @@ impl<'a> Pool<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::depth::PartialBlock;
+    use crate::depth::block::PartialBlock;
 
     #[test]
     fn no_slot_is_held_twice_and_few_go_round() {
