@@ -1,42 +1,41 @@
-//! Camera
+//! The camera: a checked view, reduced to one centre, one frustum and one radius.
 
-use crate::error::CullError;
+use crate::error::{CullError, Quantity, ViewError};
 use crate::view::{Eye, Projection, View};
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
-/// A checked view, reduced to what the kernels need: one centre, one frustum, one radius.
+/// A checked view, reduced to one centre, one frustum and one radius.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera {
     pub(crate) eye: DVec3,
-    /// Rows X, Y, Z, W of clip space in *sample units*: `X / W` in `0..4 * width`, `Y / W` downwards,
-    /// `Z / W` the depth (1 at near). Relative to `eye`: columns multiply (world - eye, 1).
+    /// Rows X, Y, Z, W of clip space in *sample units*: `X / W` in `0..4 * width`, `Y / W`
+    /// downwards, `Z / W` the depth (1 at near). They multiply `(world - eye, 1)`.
     pub(crate) rows: [DVec4; 4],
     pub(crate) orthographic: bool,
-    /// Direction that the eye looks along, world.
+    /// View direction, world.
     pub(crate) forward: DVec3,
-    /// Depth of the far plane (0 when infinite).
+    /// Depth of the far plane; 0 if it is infinite.
     pub(crate) far_depth: f64,
-    /// Radius around `eye` for which the result must hold, metres.
+    /// Radius around `eye` that the results hold for, metres.
     pub(crate) radius: f64,
-    /// A box that is nowhere nearer than this depth may be cut at the borders of the buffer: what lies
-    /// beyond them no eye within the radius can see.
+    /// A box that is nowhere nearer than this depth may be cut at the edges of the buffer: no eye
+    /// within the radius can see what lies beyond them.
     pub(crate) clamp_depth: f64,
-    /// Samples per unit of `1 / distance` and metre: how far a point at depth 1 shifts for one metre of eye
-    /// movement, samples.
+    /// Shift of a point at depth 1 for one metre of eye movement, samples.
     pub(crate) shift_per_metre: f64,
-    /// By how much a point at depth 1 can shift along x and y within the radius, or from eye to eye, samples.
+    /// Largest shift of a point at depth 1 within the view region along x and y, samples.
     pub(crate) shift: [f64; 2],
-    /// Tangent of half the vertical field of view, or half the height for orthographic views.
+    /// Tangent of half the vertical field of view, or half the height of an orthographic view.
     pub(crate) tan_half_fov_y: f64,
     pub(crate) near: f64,
 }
 
 impl Camera {
-    /// `width` and `height` are samples.
+    /// Checks a view and reduces it; `width` and `height` in samples.
     pub(crate) fn new(view: &View, width: f64, height: f64) -> Result<Self, CullError> {
         view.eye.check()?;
         if !(view.validity_radius_m.is_finite() && view.validity_radius_m >= 0.0) {
-            return Err(CullError::NotFinite);
+            return Err(CullError::NotFinite(Quantity::ValidityRadius));
         }
         let (eye, to_eye) = match view.second_eye {
             None => (view.eye, DVec3::ZERO),
@@ -52,10 +51,10 @@ impl Camera {
             (eye.projection, f64::INFINITY)
         };
         let [l, r, b, t] = projection.extents();
-        let [near, far] = projection.near_far();
+        let [near, far] = projection.near_far_m();
         let m = eye.world_from_eye.matrix3;
         let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
-        // Screen x in 0..width: perspective ((x/d) - l) / (r - l) * width.
+        // Screen x in 0..width; perspective: ((x/d) - l) / (r - l) * width.
         let (sx, sy) = (width / (r - l), height / (t - b));
         let (rows, far_depth) = if projection.is_orthographic() {
             let k = 1.0 / (far - near);
@@ -86,8 +85,8 @@ impl Camera {
             forward,
             far_depth,
             radius,
-            // Moving sideways by e shifts a point at tangent x and distance z against infinity by e / z, moving
-            // forward by e x / z; together at most e / z * sqrt(1 + x² + y²).
+            // Moving sideways by e shifts a point at tangent x and distance z by e / z against
+            // infinity, moving forward by e x / z; together at most e / z * sqrt(1 + x² + y²).
             shift_per_metre: if projection.is_orthographic() {
                 0.0
             } else {
@@ -97,8 +96,8 @@ impl Camera {
             shift: if projection.is_orthographic() {
                 [0.0; 2]
             } else {
-                // The same along each axis: a step (sx, sy, sz) of the eye shifts a point at tangent x and distance z by
-                // (sx - x sz) / z.
+                // The same along each axis: a step (sx, sy, sz) of the eye shifts a point at
+                // tangent x and distance z by (sx - x sz) / z.
                 let along = forward.dot(to_eye).abs();
                 let axis = |scale: f64, side: DVec3, reach: f64| {
                     let step = side.dot(to_eye).abs() + reach * along;
@@ -116,8 +115,8 @@ impl Camera {
         })
     }
 
-    /// Clip rows in the space of an object placed by `world_from_object`, with the object's points given
-    /// relative to `center` (object space).
+    /// Clip rows in the space of an object placed by `world_from_object`, for points relative to
+    /// `center` (object space).
     pub(crate) fn object_rows(&self, world_from_object: &DAffine3, center: DVec3) -> [[f32; 4]; 4] {
         let m = DMat4::from(*world_from_object);
         let c = world_from_object.transform_point3(center) - self.eye;
@@ -132,7 +131,7 @@ impl Camera {
         })
     }
 
-    /// Clip rows in the space of an object placed by `world_from_object`, not rounded.
+    /// Clip rows in the space of an object placed by `world_from_object`, in `f64`.
     pub(crate) fn exact_rows(&self, world_from_object: &DAffine3) -> [[f64; 4]; 4] {
         let m = world_from_object.matrix3;
         let origin = world_from_object.translation - self.eye;
@@ -148,24 +147,25 @@ impl Camera {
     }
 }
 
-/// One eye in the middle that sees at least what both see, and the way from there to the second (to the first it is the
-/// opposite).
+/// The centre eye, which sees at least what both eyes see, and the way from it to the second eye.
+/// The way to the first is the opposite.
 fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
     if a.projection.is_orthographic() || b.projection.is_orthographic() {
-        return Err(CullError::BadProjection);
+        return Err(CullError::BadView(ViewError::StereoNotPerspective));
     }
+    let too_far_apart = CullError::BadView(ViewError::EyesTooFarApart);
     let position = (a.position() + b.position()) * 0.5;
     let to_second = (b.position() - a.position()) * 0.5;
-    // Middle orientation: the mean of the axes, made orthonormal again (eyes of a headset are canted by
-    // some degrees at most).
+    // The orientation is the mean of both, made orthonormal again. (The eyes of a headset are
+    // canted by some degrees at most.)
     let (ma, mb) = (a.world_from_eye.matrix3, b.world_from_eye.matrix3);
     let back = (ma.z_axis + mb.z_axis)
         .try_normalize()
-        .ok_or(CullError::BadProjection)?;
+        .ok_or(too_far_apart)?;
     let right = (ma.y_axis + mb.y_axis)
         .cross(back)
         .try_normalize()
-        .ok_or(CullError::BadProjection)?;
+        .ok_or(too_far_apart)?;
     let rotation = DMat3::from_cols(right, back.cross(right), back);
     let mut extents = [
         f64::INFINITY,
@@ -176,11 +176,11 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
     let (mut near, mut far) = (0.0f64, 0.0f64);
     for eye in [a, b] {
         let [l, r, bottom, top] = eye.projection.extents();
-        let [n, f] = eye.projection.near_far();
+        let [n, f] = eye.projection.near_far_m();
         for (x, y) in [(l, bottom), (r, bottom), (l, top), (r, top)] {
             let ray = rotation.transpose() * (eye.world_from_eye.matrix3 * DVec3::new(x, y, -1.0));
             if ray.z > -0.05 {
-                return Err(CullError::BadProjection);
+                return Err(too_far_apart);
             }
             let (tx, ty) = (ray.x / -ray.z, ray.y / -ray.z);
             extents = [
@@ -189,7 +189,8 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
                 extents[2].min(ty),
                 extents[3].max(ty),
             ];
-            // Beyond every eye's near plane, and no nearer than any far plane, along the middle axis.
+            // Beyond every eye's near plane, and no nearer than any far plane, along the centre
+            // eye's axis.
             near = near.max(n * -ray.z).max(n);
             far = far.max(f * -ray.z).max(f);
         }
@@ -199,8 +200,8 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
         right: extents[1],
         bottom: extents[2],
         top: extents[3],
-        near,
-        far,
+        near_m: near,
+        far_m: far,
     };
     Ok((
         Eye {
@@ -211,11 +212,11 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
     ))
 }
 
-/// The frustum of the middle for all eyes within `radius`: somewhat wider, and with a near plane beyond every
-/// eye's own (an occluder that one eye's near plane cuts must not count). Second, the depth up to which the
-/// wider borders hold.
+/// The centre eye's frustum for all eyes within `radius`, and the depth up to which it holds. It is
+/// somewhat wider, and its near plane lies beyond every eye's own, since an occluder that one eye's
+/// near plane cuts must not count.
 fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
-    /// Tangents.
+    /// Growth on each side, as a tangent.
     const MARGIN: f64 = 0.04;
     match projection {
         Projection::Perspective {
@@ -223,8 +224,8 @@ fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
             right,
             bottom,
             top,
-            near,
-            far,
+            near_m: near,
+            far_m: far,
         } => {
             let (x, y) = (left.abs().max(right.abs()), bottom.abs().max(top.abs()));
             let tilt = (1.0 + x * x + y * y).sqrt();
@@ -236,8 +237,8 @@ fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
                     right: right + MARGIN,
                     bottom: bottom - MARGIN,
                     top: top + MARGIN,
-                    near,
-                    far: f64::INFINITY.min(far + radius),
+                    near_m: near,
+                    far_m: f64::INFINITY.min(far + radius),
                 },
                 near / holds_from,
             )
@@ -247,27 +248,28 @@ fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
             right,
             bottom,
             top,
-            near,
-            far,
+            near_m: near,
+            far_m: far,
         } => (
             Projection::Orthographic {
                 left: left - radius,
                 right: right + radius,
                 bottom: bottom - radius,
                 top: top + radius,
-                near: near + radius,
-                far: far + 2.0 * radius,
+                near_m: near + radius,
+                far_m: far + 2.0 * radius,
             },
             f64::INFINITY,
         ),
     }
 }
 
-/// The six planes of one eye's frustum, pushed outwards by `radius` (and by the rounding of boxes): a box that
-/// is wholly behind one of them is outside. World space relative to `origin`: `n . p + d >= 0` is inside.
+/// The six frustum planes of one eye, relative to `origin` (world), pushed outwards by `radius` and
+/// by the rounding of boxes. `n . p + d >= 0` is inside; a box wholly behind one of them is
+/// outside.
 pub(crate) fn frustum_planes(eye: &Eye, radius: f64, origin: DVec3) -> [[f32; 4]; 6] {
     let [l, r, b, t] = eye.projection.extents();
-    let [near, far] = eye.projection.near_far();
+    let [near, far] = eye.projection.near_far_m();
     let m = eye.world_from_eye.matrix3;
     let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
     let far_plane = if far.is_finite() {

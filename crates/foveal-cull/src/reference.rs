@@ -1,8 +1,11 @@
-//! The slow, exact reference: what is really visible, sample by sample.
+//! The reference: what is really visible, sample by sample. Slow and exact, for tests and checks.
 //!
-//! Occluders are rasterized in `f64` with one sample per grid point and no tricks: no welding, no quads, no
-//! order, no quantized depth. A box is visible if, at any sample, the ray through it enters the box before
-//! it meets an occluder. Run it at the culler's own size, or at several times that size per axis.
+//! Occluders are rasterized in `f64` with one sample per point and without any shortcut: no
+//! welding, no quads, no order, no quantized depth. A box is visible if at any sample the ray
+//! through it enters the box before it meets an occluder. Use the culler's own size, or several
+//! times that size per axis.
+//!
+//! Needs the feature `reference`. Rasterizing takes seconds for large scenes.
 
 use crate::bounds::Aabb;
 use crate::camera::Camera;
@@ -11,14 +14,14 @@ use crate::projection::clip::{ClipPolygon, NEAR};
 use crate::view::{Eye, View};
 use glam::{DAffine3, DVec3, DVec4, Vec3};
 
-/// What the reference says about a box.
+/// The reference's result for a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Seen {
     /// No sample's ray meets the box between the near and the far plane.
     Outside,
-    /// Rays meet it, all behind occluders.
+    /// Rays meet the box, all behind occluders.
     Hidden,
-    /// At least one sample sees it.
+    /// At least one sample sees the box.
     Visible,
 }
 
@@ -27,7 +30,7 @@ pub enum Seen {
 pub struct Reference {
     width: usize,
     height: usize,
-    /// Nearest occluder depth per sample (near / distance, or linear), 0 where there is none.
+    /// Nearest occluder depth per sample (near / distance, or linear); 0 where there is none.
     depth: Vec<f32>,
     /// Farthest depth per tile.
     tiles: Vec<f32>,
@@ -37,11 +40,11 @@ pub struct Reference {
 const TILE: usize = 16;
 
 impl Reference {
-    /// An empty reference of `width` x `height` samples. For "n times the resolution" of a culler, pass n
-    /// times its size.
+    /// An empty reference of `width` x `height` samples. For n times the resolution of a culler,
+    /// pass n times its size.
     ///
     /// # Errors
-    /// As for a bad view.
+    /// [`CullError::BadView`] or [`CullError::NotFinite`] for a bad view.
     pub fn new(eye: &Eye, width: u32, height: u32) -> Result<Self, CullError> {
         let (w, h) = (width as usize, height as usize);
         let camera = Camera::new(&View::mono(*eye), f64::from(width), f64::from(height))?;
@@ -54,7 +57,9 @@ impl Reference {
         })
     }
 
-    /// Adds occluder triangles (counter-clockwise from outside, as placed; both sides when `two_sided`).
+    /// Adds occluder triangles: positions in mesh space (metres), counter-clockwise from outside,
+    /// and their placement in the world. Both sides occlude if `two_sided`. Triangles with an index
+    /// out of range are left out.
     pub fn add(
         &mut self,
         positions: &[Vec3],
@@ -95,7 +100,7 @@ impl Reference {
         if p.len() < 3 {
             return;
         }
-        // Twice the area, positive when facing (y down).
+        // Twice the area, positive where it faces the eye (y points down).
         let area: f64 = (0..p.len())
             .map(|i| {
                 let (a, b) = (p[i], p[(i + 1) % p.len()]);
@@ -106,7 +111,7 @@ impl Reference {
         if area == 0.0 || !(front || two_sided) {
             return;
         }
-        // The plane from the largest fan triangle.
+        // The plane of the largest triangle of the fan.
         let mut best = (0.0f64, 1);
         for i in 1..p.len() - 1 {
             let e = (p[i][0] - p[0][0]) * (p[i + 1][1] - p[0][1])
@@ -140,7 +145,7 @@ impl Reference {
         }
         for row in first..=last as usize {
             let y = row as f64 + 0.5;
-            // The convex polygon's span on this row, from the edges that meet it.
+            // The polygon's span on this row, from the edges that meet it.
             let (mut x0, mut x1) = (f64::INFINITY, f64::NEG_INFINITY);
             for k in 0..p.len() {
                 let (a, b) = (p[k], p[(k + 1) % p.len()]);
@@ -170,8 +175,8 @@ impl Reference {
         }
     }
 
-    /// Makes the tile summary; call after the last [`Reference::add`] and before queries (queries are right
-    /// without it, only slower).
+    /// Finishes the depth after the last [`Reference::add`]. Queries are right without it, only
+    /// slower.
     pub fn finish(&mut self) {
         let tw = self.width.div_ceil(TILE);
         let mut tiles = vec![f32::INFINITY; tw * self.height.div_ceil(TILE)];
@@ -184,13 +189,15 @@ impl Reference {
         self.tiles = tiles;
     }
 
-    /// Depth of the nearest occluder per sample, row by row from the top left.
+    /// Depth of the nearest occluder per sample, row by row from the top left; 0 where there is
+    /// none.
     #[must_use]
     pub fn depth(&self) -> &[f32] {
         &self.depth
     }
 
-    /// Whether a box (relative to `origin`) is seen.
+    /// Classifies one box, in metres relative to `origin` (world). O(samples of its screen
+    /// rectangle).
     #[must_use]
     pub fn seen(&self, bounds: &Aabb, origin: DVec3) -> Seen {
         if !bounds.is_valid() {
@@ -208,7 +215,7 @@ impl Reference {
             .extend(1.0);
             DVec4::from_array(self.camera.rows.map(|r| r.dot(p)))
         });
-        // Wholly behind one of the planes of the frustum (all are linear, so the corners decide).
+        // Wholly behind one frustum plane. All are linear, so the corners decide.
         let (w, h) = (self.width as f64, self.height as f64);
         if corners.iter().all(|c| c.z > c.w)
             || corners.iter().all(|c| c.x < 0.0)
@@ -257,7 +264,7 @@ impl Reference {
                     .get(ty * tw + tx)
                     .is_some_and(|&t| f64::from(t) > nearest);
                 if closed {
-                    // Hidden here if it is here at all; whether it is matters only for the name.
+                    // Whether the box meets this tile decides between hidden and outside only.
                     met = true;
                     continue;
                 }
@@ -283,17 +290,19 @@ impl Reference {
         if met { Seen::Hidden } else { Seen::Outside }
     }
 
-    /// Depth at which the ray through a sample enters the box (relative to the eye), within near and far.
+    /// Depth at which the ray through a sample enters the box (relative to the eye), between near
+    /// and far.
     fn entry(&self, x: usize, y: usize, lo: DVec3, hi: DVec3) -> Option<f64> {
         let [rx, ry, rz, rw] = self.camera.rows;
         let (sx, sy) = (x as f64 + 0.5, y as f64 + 0.5);
-        // Points with X = sx W and Y = sy W, as start + t * direction, where t grows away from the eye.
+        // Points with X = sx W and Y = sy W, as start + t * direction, where t grows away from the
+        // eye.
         let a = rx - rw * sx;
         let b = ry - rw * sy;
         let direction = a.truncate().cross(b.truncate());
         let direction = direction * direction.dot(self.camera.forward).signum();
         let start = if self.camera.orthographic {
-            // The point of the line nearest to the eye.
+            // The point of the line that is nearest to the eye.
             let (n0, n1) = (a.truncate(), b.truncate());
             let (g00, g01, g11) = (n0.dot(n0), n0.dot(n1), n1.dot(n1));
             let det = g00 * g11 - g01 * g01;
@@ -301,7 +310,7 @@ impl Reference {
         } else {
             DVec3::ZERO
         };
-        // Slabs.
+        // The slab test.
         let (mut t0, mut t1) = (f64::NEG_INFINITY, f64::INFINITY);
         for axis in 0..3 {
             let (s, d) = (start[axis], direction[axis]);
@@ -315,7 +324,7 @@ impl Reference {
             t0 = t0.max(u.min(v));
             t1 = t1.min(u.max(v));
         }
-        // Distance along the view direction at t is linear; cut at near and far.
+        // Distance along the view direction is linear in t; cut at near and far.
         let depth = |t: f64| {
             let p = (start + direction * t).extend(1.0);
             rz.dot(p) / rw.dot(p)

@@ -1,53 +1,58 @@
-//! Views: where the eye is and what it sees.
+//! Views: where the eyes are and what they see.
 //!
-//! Right-handed, y up, the eye looks along its own -z (as glTF cameras do). Poses and frusta are `f64`;
-//! the rasterizer gets `f32` matrices that are relative to each object, so that positions thousands of
-//! kilometres from the origin lose nothing. Depth inside the crate is `near / distance` for perspective
-//! views and linear for orthographic ones: both are 1 at the near plane, fall with distance, and are
-//! affine over the screen, which is what interpolation needs.
+//! Coordinates are right-handed with y up, and an eye looks along its own -z, as glTF cameras do.
+//! Poses and frusta are `f64`; the rasterizer gets matrices relative to each object, so that
+//! positions thousands of kilometres from the origin lose nothing. Depth inside the crate is `near
+//! / distance` for perspective views and linear for orthographic ones. Both are 1 at the near
+//! plane, fall with distance, and are affine over the screen, so that they can be interpolated.
 
-use crate::error::CullError;
+use crate::error::{CullError, Quantity, ViewError};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// The shape of what one eye sees. Extents are `left < right` and `bottom < top`; asymmetric is fine.
+/// The frustum of one eye, in its own space (x right, y up, -z forward).
+///
+/// `left < right` and `bottom < top`; frusta need not be symmetric. A headset's four tangents go in
+/// as they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Projection {
-    /// Rays through the eye. Extents are tangents (metres at one metre distance).
+    /// Rays that meet in the eye. Extents are tangents: metres at a distance of one metre.
     Perspective {
-        /// Tangent of the left border.
+        /// Tangent of the left edge.
         left: f64,
-        /// Tangent of the right border.
+        /// Tangent of the right edge.
         right: f64,
-        /// Tangent of the bottom border.
+        /// Tangent of the bottom edge.
         bottom: f64,
-        /// Tangent of the top border.
+        /// Tangent of the top edge.
         top: f64,
         /// Near distance, metres, above zero.
-        near: f64,
+        near_m: f64,
         /// Far distance, metres; may be infinite.
-        far: f64,
+        far_m: f64,
     },
     /// Parallel rays. Extents are metres.
     Orthographic {
-        /// Left border.
+        /// Left edge.
         left: f64,
-        /// Right border.
+        /// Right edge.
         right: f64,
-        /// Bottom border.
+        /// Bottom edge.
         bottom: f64,
-        /// Top border.
+        /// Top edge.
         top: f64,
         /// Near distance along the view direction, metres; may be negative.
-        near: f64,
+        near_m: f64,
         /// Far distance, metres, finite.
-        far: f64,
+        far_m: f64,
     },
 }
 
 impl Projection {
-    /// A symmetric perspective projection.
+    /// A symmetric perspective projection: vertical field of view in radians, width over height,
+    /// and the near and far distances in metres (far may be infinite).
     #[must_use]
-    pub fn perspective(fov_y_rad: f64, aspect: f64, near: f64, far: f64) -> Self {
+    pub fn perspective(fov_y_rad: f64, aspect: f64, near_m: f64, far_m: f64) -> Self {
         let top = (fov_y_rad * 0.5).tan();
         let right = top * aspect;
         Self::Perspective {
@@ -55,26 +60,27 @@ impl Projection {
             right,
             bottom: -top,
             top,
-            near,
-            far,
+            near_m,
+            far_m,
         }
     }
 
-    /// A symmetric orthographic projection that shows `height` metres from bottom to top.
+    /// A symmetric orthographic projection that shows `height_m` metres from bottom to top, with
+    /// width over height and the near and far distances in metres.
     #[must_use]
-    pub fn orthographic(height: f64, aspect: f64, near: f64, far: f64) -> Self {
-        let (top, right) = (height * 0.5, height * 0.5 * aspect);
+    pub fn orthographic(height_m: f64, aspect: f64, near_m: f64, far_m: f64) -> Self {
+        let (top, right) = (height_m * 0.5, height_m * 0.5 * aspect);
         Self::Orthographic {
             left: -right,
             right,
             bottom: -top,
             top,
-            near,
-            far,
+            near_m,
+            far_m,
         }
     }
 
-    /// Left, right, bottom, top.
+    /// Left, right, bottom and top: tangents, or metres if orthographic.
     #[must_use]
     pub fn extents(&self) -> [f64; 4] {
         match *self {
@@ -97,10 +103,10 @@ impl Projection {
 
     /// Near and far distance, metres.
     #[must_use]
-    pub fn near_far(&self) -> [f64; 2] {
+    pub fn near_far_m(&self) -> [f64; 2] {
         match *self {
-            Self::Perspective { near, far, .. } | Self::Orthographic { near, far, .. } => {
-                [near, far]
+            Self::Perspective { near_m, far_m, .. } | Self::Orthographic { near_m, far_m, .. } => {
+                [near_m, far_m]
             }
         }
     }
@@ -113,36 +119,38 @@ impl Projection {
 
     pub(crate) fn check(&self) -> Result<(), CullError> {
         let [l, r, b, t] = self.extents();
-        let [near, far] = self.near_far();
+        let [near, far] = self.near_far_m();
         if ![l, r, b, t, near].iter().all(|v| v.is_finite()) || far.is_nan() {
-            return Err(CullError::NotFinite);
+            return Err(CullError::NotFinite(Quantity::Projection));
         }
-        let near_ok = if self.is_orthographic() {
-            far.is_finite()
+        let cause = if !(l < r && b < t) {
+            ViewError::EmptyExtents
+        } else if self.is_orthographic() && !far.is_finite() {
+            ViewError::FarNotFinite
+        } else if !self.is_orthographic() && near <= 0.0 {
+            ViewError::NearNotPositive
+        } else if near >= far {
+            ViewError::FarNotBeyondNear
         } else {
-            near > 0.0
+            return Ok(());
         };
-        if l < r && b < t && near < far && near_ok {
-            Ok(())
-        } else {
-            Err(CullError::BadProjection)
-        }
+        Err(CullError::BadView(cause))
     }
 }
 
 /// One eye: a rigid pose and a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
-    /// Pose: columns are the eye's right, up and backward axes and its position (world, metres). Must be
-    /// rigid (rotation and translation only).
+    /// Pose: the columns are the eye's right, up and backward axes and its position (world,
+    /// metres). It must be rigid, a rotation and a translation only.
     pub world_from_eye: DAffine3,
-    /// What it sees.
+    /// Frustum.
     pub projection: Projection,
 }
 
 impl Eye {
-    /// An eye at `position` that looks at `target`; `up` need not be perpendicular, and where it is
-    /// parallel to the view direction another axis is taken.
+    /// An eye at `position` that looks at `target`, both world metres. `up` need not be
+    /// perpendicular to the view direction; if it is parallel to it, another axis is taken.
     #[must_use]
     pub fn look_at(position: DVec3, target: DVec3, up: DVec3, projection: Projection) -> Self {
         let back = (position - target).try_normalize().unwrap_or(DVec3::Z);
@@ -167,7 +175,7 @@ impl Eye {
     pub(crate) fn check(&self) -> Result<(), CullError> {
         self.projection.check()?;
         if !self.world_from_eye.is_finite() {
-            return Err(CullError::NotFinite);
+            return Err(CullError::NotFinite(Quantity::Pose));
         }
         let m = self.world_from_eye.matrix3;
         let off = (m.transpose() * m) - DMat3::IDENTITY;
@@ -175,25 +183,32 @@ impl Eye {
         if rigid {
             Ok(())
         } else {
-            Err(CullError::BadProjection)
+            Err(CullError::BadView(ViewError::PoseNotRigid))
         }
     }
 }
 
-/// What a frame is culled for: one eye or two, and for how large a movement the result shall hold.
+/// The camera view of a frame: one eye or two, and how far they may move while the results hold.
+///
+/// Two eyes, or a validity radius above zero, make a *view region*: a box is culled only if it is
+/// hidden from every eye position in the region. Such results are conservative and hide less than
+/// those of one eye at its exact position. They are best with meshes baked with
+/// [`BakeOptions::adjacency`](crate::BakeOptions::adjacency). Source: Wonka, Wimmer and Schmalstieg
+/// 2000, *Visibility preprocessing with occluder fusion*, extended to connected surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct View {
     /// The eye, or the left one of two.
     pub eye: Eye,
-    /// The other eye, if there are two. Both must be perspective.
+    /// The other eye, if there are two. Then both must be perspective.
     pub second_eye: Option<Eye>,
-    /// The result holds while each eye moves less than this, metres (turning is not covered: the frustum
-    /// test is for the given directions). 0 for the given positions only.
+    /// Distance that each eye may move while the results hold, metres; 0 for the given positions
+    /// only. Rotation is not covered: the frustum test is for the given directions.
     pub validity_radius_m: f64,
 }
 
 impl View {
-    /// One eye, valid for its exact position.
+    /// One eye at its exact position.
     #[must_use]
     pub fn mono(eye: Eye) -> Self {
         Self {
@@ -203,7 +218,9 @@ impl View {
         }
     }
 
-    /// Two eyes, one conservative result: hidden means hidden from both.
+    /// Two eyes with one conservative result: hidden means hidden from both.
+    ///
+    /// Rasterizing takes 0.7 to 1.4 of the time for one eye.
     #[must_use]
     pub fn stereo(left: Eye, right: Eye) -> Self {
         Self {
@@ -213,7 +230,7 @@ impl View {
         }
     }
 
-    /// The same view, whose result stays valid while each eye moves less than `radius_m` metres.
+    /// The same view with results that hold while each eye moves less than `radius_m` metres.
     #[must_use]
     pub fn with_validity_radius(self, radius_m: f64) -> Self {
         Self {
@@ -222,7 +239,9 @@ impl View {
         }
     }
 
-    /// Shorthand for one perspective eye.
+    /// One symmetric perspective eye without a far plane: [`Eye::look_at`] with
+    /// [`Projection::perspective`]. Positions are world metres, `fov_y_rad` is the vertical field
+    /// of view in radians, `aspect` width over height, and `near_m` the near distance in metres.
     #[must_use]
     pub fn perspective(
         position: DVec3,
@@ -230,13 +249,13 @@ impl View {
         up: DVec3,
         fov_y_rad: f64,
         aspect: f64,
-        near: f64,
+        near_m: f64,
     ) -> Self {
         Self::mono(Eye::look_at(
             position,
             target,
             up,
-            Projection::perspective(fov_y_rad, aspect, near, f64::INFINITY),
+            Projection::perspective(fov_y_rad, aspect, near_m, f64::INFINITY),
         ))
     }
 }

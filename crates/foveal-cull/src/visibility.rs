@@ -1,21 +1,28 @@
-//! Visibility
+//! The result of a query.
 
-/// What became of a box.
+/// The classification of one box.
+///
+/// Results are conservative: [`Visible`](Self::Visible) means "may be seen", and every other value
+/// means that no sample of the picture shows the box. The enum is exhaustive on purpose: a renderer
+/// decides about every class, and a new class is a new major version.
+/// [`is_visible`](Self::is_visible) is all that drawing needs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u8)]
 pub enum Visibility {
-    /// May be seen: draw it.
+    /// The box may be seen: draw it. Also for boxes that are not volumes, and after a frame that
+    /// failed.
     Visible = 0,
-    /// Outside the view frustum (or beyond the far plane, or nearer than the near plane).
+    /// The box is outside the view frustum: beside it, beyond the far plane, or nearer than the
+    /// near plane.
     Outside = 1,
-    /// Below the size threshold.
+    /// The box is below the size threshold of [`FrameOptions`](crate::FrameOptions).
     Small = 2,
-    /// Hidden behind occluders.
+    /// The box is hidden behind occluders.
     Occluded = 3,
 }
 
 impl Visibility {
-    /// Whether it must be drawn.
+    /// Whether the box must be drawn.
     #[must_use]
     pub fn is_visible(self) -> bool {
         self == Self::Visible

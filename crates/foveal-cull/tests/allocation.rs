@@ -1,4 +1,5 @@
-//! After warm-up a frame allocates nothing. Without the test harness, whose own thread allocates too.
+//! After warm-up a frame allocates nothing. Without the test harness, whose own thread allocates
+//! too.
 #![allow(
     unsafe_code,
     clippy::unwrap_used,

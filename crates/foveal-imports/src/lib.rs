@@ -1,9 +1,10 @@
 //! Circles among the source files of a crate.
 //!
-//! A file imports another one if a path in it (`crate::`, `super::`, `self::` or a child module's name) leads to an item
-//! of that file. Paths are followed through re-exports to the file that declares the item, so a `mod.rs` that only
-//! re-exports is a façade and joins nothing. Code under `#[cfg(test)]` does not count. Methods that are called on a value
-//! leave no path and are not seen.
+//! A file imports another one if a path in it (`crate::`, `super::`, `self::` or a child module's
+//! name) leads to an item of that file. Paths are followed through re-exports to the file that
+//! declares the item, so a `mod.rs` that only re-exports is a façade and joins nothing. Code under
+//! `#[cfg(test)]` does not count. Methods that are called on a value leave no path and are not
+//! seen.
 //!
 //! ```
 //! let folder = env!("CARGO_MANIFEST_DIR");
@@ -20,7 +21,8 @@ pub use graph::Circle;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Finds all circles among the files of the crate in `folder` (which holds `src`), in the order of their first file.
+/// Finds all circles among the files of the crate in `folder` (which holds `src`), in the order of
+/// their first file.
 ///
 /// # Errors
 /// An I/O error if a source file cannot be read.

@@ -1,4 +1,5 @@
-//! The modules of a crate: their files, their names for other modules' items, and the paths that they use.
+//! The modules of a crate: their files, their names for other modules' items, and the paths that
+//! they use.
 
 use crate::graph::Imports;
 use crate::tokens::{Token, tokens};
@@ -81,7 +82,8 @@ impl<'a> Modules<'a> {
         Some(at)
     }
 
-    /// The module that declares an item which is not brought in by name: this one, or one that it takes everything from.
+    /// The module that declares an item which is not brought in by name: this one, or one that it
+    /// takes everything from.
     fn declares(&self, at: usize, name: &str, depth: usize) -> usize {
         let Some(depth) = depth.checked_sub(1) else {
             return at;

@@ -1,4 +1,5 @@
-//! Source text as tokens: identifiers and single punctuation characters. Comments, strings and lifetimes are left out.
+//! Source text as tokens: identifiers and single punctuation characters. Comments, strings and
+//! lifetimes are left out.
 
 /// One token.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,57 +1,59 @@
-//! What one block of 8x8 pixels stores.
+//! The content of one block of 8x8 pixels.
 
 use crate::format::EMPTY;
 
-/// Depth of 64 pixels, row by row.
+/// Depth codes of 64 pixels, row by row.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct DepthBlock(pub(crate) [i16; 64]);
 
-/// What partly covered pixels of a block have so far. Bit `8 * row + column` of a number is a pixel.
+/// The partial coverage of a block. Bit `8 * row + column` of a number stands for a pixel.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(crate) struct PartialBlock {
-    /// All samples, in an order that only the instruction set knows which wrote them.
-    pub(crate) planes: [u64; 16],
-    /// Farthest depth so far, of pixels that have anything.
+    /// Covered samples as bit planes, in an order that only the instruction set knows that wrote
+    /// them.
+    pub(crate) bits: [u64; 16],
+    /// Farthest depth code so far, for pixels in `any`.
     pub(crate) depth: [i16; 64],
-    /// Pixel centres.
+    /// Covered pixel centres.
     pub(crate) center: u64,
-    /// Pixels that have anything.
+    /// Pixels with partial coverage.
     pub(crate) any: u64,
 }
 
 impl DepthBlock {
-    /// A block that holds nothing.
+    /// A block without depth.
     pub(crate) const EMPTY: Self = Self([EMPTY; 64]);
 }
 
 impl PartialBlock {
-    /// Nothing is covered in part.
+    /// No partial coverage.
     pub(crate) const NONE: Self = Self {
-        planes: [0; 16],
+        bits: [0; 16],
         depth: [i16::MAX; 64],
         center: 0,
         any: 0,
     };
 }
 
-/// Block holds nothing; its memory is stale until the frame is complete.
-pub(crate) const STATE_EMPTY: u32 = 0;
-/// Block has depth.
-pub(crate) const STATE_DEPTH: u32 = 1;
-/// Block has depth and partly covered pixels.
-pub(crate) const STATE_PARTIAL: u32 = 2;
-/// And these in two layers.
-pub(crate) const STATE_LAYERS: u32 = 3;
+/// The block holds nothing. Its memory is stale until the frame is complete.
+pub(crate) const KIND_EMPTY: u32 = 0;
+/// The block has depth.
+pub(crate) const KIND_DEPTH: u32 = 1;
+/// The block has depth, and pixels with partial coverage.
+pub(crate) const KIND_PARTIAL: u32 = 2;
+/// The block has depth, and pixels with partial coverage in two layers.
+pub(crate) const KIND_LAYERS: u32 = 3;
 
-/// What a block holds: one of the states, and above its two bits the slot of its partly covered pixels, if it has any.
+/// The state of a block: its kind in the two lowest bits, and above them the slot of its partial
+/// coverage, if it has any.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Held(u32);
+pub(crate) struct BlockState(u32);
 
-impl Held {
-    pub(crate) const NOTHING: Self = Self(STATE_EMPTY);
-    pub(crate) const DEPTH: Self = Self(STATE_DEPTH);
+impl BlockState {
+    pub(crate) const EMPTY: Self = Self(KIND_EMPTY);
+    pub(crate) const DEPTH: Self = Self(KIND_DEPTH);
 
     #[inline(always)]
     pub(crate) fn partial(state: u32, slot: u32) -> Self {
@@ -59,7 +61,7 @@ impl Held {
     }
 
     #[inline(always)]
-    pub(crate) fn state(self) -> u32 {
+    pub(crate) fn kind(self) -> u32 {
         self.0 & 3
     }
 

@@ -1,18 +1,13 @@
-//! The summary of a finished depth buffer: the farthest depth of any rectangle of blocks, or of one that is hardly larger,
-//! by one look-up.
-//!
-//! Level 0 has the blocks, level k squares of 2^k x 2^k blocks, whose farthest depths are its places. A level has them
-//! nine times over, in parts: in part `right + 3 below` each is joined with as many as that to its right and below it.
-//! So a rectangle is found on the finest level where it touches at most three places in a row.
+//! Building the HiZ of a complete frame.
 
-use super::buffer::DepthBuffer;
-use super::hiz_layout::{PARTS, PLACES, part_len, rows};
+use super::buffer::OcclusionBuffer;
+use super::hiz_layout::{MAX_JOINED, PARTS, part_len, rows};
 use crate::simd::{Kernel, Lanes};
 
-/// Fits the summary to the blocks, and empties what is stale.
-pub(crate) struct Summarize<'a>(pub(crate) &'a mut DepthBuffer);
+/// The kernel that clears stale blocks and fills the HiZ table.
+pub(crate) struct BuildHiz<'a>(pub(crate) &'a mut OcclusionBuffer);
 
-impl Kernel for Summarize<'_> {
+impl Kernel for BuildHiz<'_> {
     type Output = ();
 
     #[inline(always)]
@@ -25,22 +20,22 @@ impl Kernel for Summarize<'_> {
             part_len(buffer.blocks_x, buffer.blocks_y),
         );
         let (mut w, mut h) = (stride, buffer.blocks_y as usize);
-        let coarse = &mut buffer.coarse;
-        coarse[..buffer.min.len()].copy_from_slice(&buffer.min);
+        let hiz = &mut buffer.hiz;
+        hiz[..buffer.min.len()].copy_from_slice(&buffer.min);
         for level in 0.. {
             let first = (rows - (rows >> level)) * stride;
-            // With one more to the right than before, then with one more below. At the borders that is something else, which
-            // nobody asks for.
+            // Join one more cell to the right, then one more row below. Values past the right and
+            // lower edge are meaningless, and no look-up reads them.
             let n = h * stride;
-            for right in 1..PLACES {
-                let (done, to) = coarse.split_at_mut(right * part);
+            for right in 1..MAX_JOINED {
+                let (done, to) = hiz.split_at_mut(right * part);
                 let before = &done[(right - 1) * part + first..];
                 farther(&mut to[first..][..n], before, &done[first + right..]);
             }
-            for p in PLACES..PARTS {
-                let (below, right) = (p / PLACES, p % PLACES);
-                let (done, to) = coarse.split_at_mut(p * part);
-                let before = &done[(p - PLACES) * part + first..];
+            for p in MAX_JOINED..PARTS {
+                let (below, right) = (p / MAX_JOINED, p % MAX_JOINED);
+                let (done, to) = hiz.split_at_mut(p * part);
+                let before = &done[(p - MAX_JOINED) * part + first..];
                 let lower = &done[right * part + first + below * stride..];
                 farther(&mut to[first..][..n], before, lower);
             }
@@ -50,12 +45,12 @@ impl Kernel for Summarize<'_> {
             let next = (w.div_ceil(2), h.div_ceil(2));
             let next_first = (rows - (rows >> (level + 1))) * stride;
             for y in 0..next.1 {
-                // The last ones may have no neighbours.
-                let below = usize::from(2 * y + 1 < h) * PLACES;
+                // The last column and row may have no neighbours.
+                let below = usize::from(2 * y + 1 < h) * MAX_JOINED;
                 let row = first + 2 * y * stride;
                 let last = (below + usize::from(w % 2 == 0)) * part + row + 2 * (next.0 - 1);
-                let last = coarse[last];
-                let (single, fours) = coarse.split_at_mut((below + 1) * part);
+                let last = hiz[last];
+                let (single, fours) = hiz.split_at_mut((below + 1) * part);
                 let above = &mut single[next_first + y * stride..][..next.0];
                 for (out, v) in above.iter_mut().zip(fours[row..].iter().step_by(2)) {
                     *out = *v;
@@ -82,18 +77,18 @@ mod tests {
     #[test]
     fn the_summary_is_the_farthest_of_the_blocks_below() {
         for (width, height) in [(72, 40), (8, 8), (8, 130), (300, 16)] {
-            let mut buffer = DepthBuffer::new(width, height);
+            let mut buffer = OcclusionBuffer::new(width, height);
             for (i, min) in (0i16..).zip(&mut buffer.min) {
                 *min = (i * 37) % 101;
             }
-            InstructionSet::detect().run(Summarize(&mut buffer));
+            InstructionSet::detect().run(BuildHiz(&mut buffer));
             let (w, h) = (buffer.blocks_x, buffer.blocks_y);
             let rows = rows(w, h);
             for level in 0..=w.max(h).next_power_of_two().trailing_zeros() {
                 for y in 0..h.div_ceil(1 << level) {
                     for x in 0..w.div_ceil(1 << level) {
                         let inside = |p: &u32| {
-                            let (x, y) = (x + p % PLACES as u32, y + p / PLACES as u32);
+                            let (x, y) = (x + p % MAX_JOINED as u32, y + p / MAX_JOINED as u32);
                             x << level < w && y << level < h
                         };
                         for p in (0..PARTS as u32).filter(inside) {
@@ -103,14 +98,14 @@ mod tests {
                             let below = (0..h)
                                 .flat_map(|v| (0..w).map(move |u| (u, v)))
                                 .filter(|&(u, v)| {
-                                    within(u, x, p % PLACES as u32)
-                                        && within(v, y, p / PLACES as u32)
+                                    within(u, x, p % MAX_JOINED as u32)
+                                        && within(v, y, p / MAX_JOINED as u32)
                                 })
                                 .map(|(u, v)| buffer.min[(v * w + u) as usize])
                                 .min();
                             let at = (rows - (rows >> level) + y) * w + x;
                             let at = p as usize * part_len(w, h) + at as usize;
-                            assert_eq!(Some(buffer.coarse[at]), below, "{level} {x} {y} {p}");
+                            assert_eq!(Some(buffer.hiz[at]), below, "{level} {x} {y} {p}");
                         }
                     }
                 }

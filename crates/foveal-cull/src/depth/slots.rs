@@ -1,22 +1,22 @@
-//! Where partly covered pixels keep what they have so far: slots that blocks take and give back.
+//! Slots: memory for the partial coverage of blocks.
 //!
-//! Most blocks are covered in part for a short while, until the neighbours of the first polygon come. So a few slots
-//! go round and stay in the nearest caches, where a place for every block would be most of what a frame touches. (There is
-//! room for all, since all may be held at once.)
-//! Whoever takes a slot gets the one that was given back longest ago: its number has been known for long, and does not
-//! wait for the block before.
+//! Most blocks are covered in part only for a short time, until the neighbours of the first polygon
+//! come. A few slots therefore circulate and stay in the nearest caches; memory for every block
+//! would be most of what a frame touches. There are as many slots as blocks, since all may be taken
+//! at once. A taken slot is the one that was given back longest ago: its number is known early and
+//! does not wait for the block before.
 
 use super::block::PartialBlock;
 
-/// Slots that are begun at once when none is left.
+/// Slots that are put into circulation at once when none is free.
 const BEGUN_AT_ONCE: u32 = 64;
 
-/// The slots of a band. Not more than its blocks are ever taken.
-pub(crate) struct Pool<'a> {
+/// The slots of a band. At most as many as it has blocks are taken.
+pub(crate) struct Slots<'a> {
     pub(crate) partial: &'a mut [PartialBlock],
-    /// All parts together, where those in `partial` are only the near ones.
+    /// The far layer: all parts together, where those in `partial` are the near ones.
     pub(crate) all: &'a mut [PartialBlock],
-    /// Slots that are free, from `taken` to `given`, which go round in a power of two.
+    /// Ring buffer of free slots, from `taken` to `given`. Its length is a power of two.
     free: &'a mut [u32],
     around: u32,
     taken: u32,
@@ -24,8 +24,8 @@ pub(crate) struct Pool<'a> {
     begun: u32,
 }
 
-impl<'a> Pool<'a> {
-    /// `free` is twice as long as the others.
+impl<'a> Slots<'a> {
+    /// `free` is twice as long as the other slices.
     pub(crate) fn new(
         partial: &'a mut [PartialBlock],
         all: &'a mut [PartialBlock],
@@ -43,7 +43,7 @@ impl<'a> Pool<'a> {
         }
     }
 
-    /// A pool for the first `blocks`, and one for the rest.
+    /// The slots of the first `blocks` blocks, and those of the rest.
     pub(crate) fn split(self, blocks: usize) -> (Self, Self) {
         let (p0, p1) = self.partial.split_at_mut(blocks);
         let (a0, a1) = self.all.split_at_mut(blocks);
@@ -51,7 +51,7 @@ impl<'a> Pool<'a> {
         (Self::new(p0, a0, f0), Self::new(p1, a1, f1))
     }
 
-    /// The free slot that is next.
+    /// The next free slot.
     #[inline(always)]
     pub(crate) fn next(&mut self) -> u32 {
         if self.taken == self.given {
@@ -60,7 +60,7 @@ impl<'a> Pool<'a> {
         self.free[self.place(self.taken)]
     }
 
-    /// Takes that slot, if `wanted`.
+    /// Takes the next free slot, if `wanted`.
     #[inline(always)]
     pub(crate) fn take(&mut self, wanted: bool) {
         self.taken = self.taken.wrapping_add(u32::from(wanted));
@@ -69,7 +69,7 @@ impl<'a> Pool<'a> {
     /// Gives a taken slot back, if `unwanted`.
     #[inline(always)]
     pub(crate) fn give(&mut self, slot: u32, unwanted: bool) {
-        // It is taken, so there is room for one more.
+        // The slot is taken, so the ring buffer has room for it.
         let place = self.place(self.given);
         self.free[place] = slot;
         self.given = self.given.wrapping_add(u32::from(unwanted));
@@ -101,28 +101,31 @@ mod tests {
             let mut partial = vec![PartialBlock::NONE; blocks];
             let mut all = partial.clone();
             let mut free = vec![0; 2 * blocks];
-            let mut pool = Pool::new(&mut partial, &mut all, &mut free);
-            let mut slots: Vec<Option<u32>> = vec![None; blocks];
+            let mut slots = Slots::new(&mut partial, &mut all, &mut free);
+            let mut held_by: Vec<Option<u32>> = vec![None; blocks];
             let (mut used, mut held) = (vec![false; blocks], 0);
             let mut seed = 1u32;
             for _ in 0..20_000 {
                 seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 let block = (seed >> 8) as usize % blocks;
-                let begins = slots[block].is_none();
+                let begins = held_by[block].is_none();
                 if begins && held == held_at_most {
                     continue;
                 }
-                // As a block does: takes a slot if it has none, and gives it back if it is done.
-                let next = pool.next();
-                pool.take(begins);
-                let slot = slots[block].unwrap_or(next);
-                assert!(!begins || !slots.contains(&Some(slot)), "{blocks}: {slot}");
+                // A block takes a slot if it has none, and gives it back when it is done.
+                let next = slots.next();
+                slots.take(begins);
+                let slot = held_by[block].unwrap_or(next);
+                assert!(
+                    !begins || !held_by.contains(&Some(slot)),
+                    "{blocks}: {slot}"
+                );
                 used[slot as usize] = true;
                 let done = seed >> 30 == 0;
-                pool.give(slot, done);
+                slots.give(slot, done);
                 held += usize::from(begins);
                 held -= usize::from(done);
-                slots[block] = (!done).then_some(slot);
+                held_by[block] = (!done).then_some(slot);
             }
             let used = used.iter().filter(|u| **u).count();
             assert!(used < held_at_most + 2 * BEGUN_AT_ONCE as usize, "{used}");

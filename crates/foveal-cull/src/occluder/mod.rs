@@ -1,9 +1,7 @@
-//! Baked occluders: any triangle mesh, turned into clusters that can be rejected whole.
+//! Occluders: baked meshes, and the set of placed ones.
 //!
-//! Baking welds equal positions, joins neighbouring triangles to nearly flat quads (half the set-up work),
-//! and groups them into clusters of at most 64 quads with a bounding box and a normal cone. Positions are
-//! kept as they are; bounds are relative to the mesh's own centre, so that large local coordinates keep their
-//! precision.
+//! `weld`, `quads`, `neighbors` and `cluster` are the steps of `bake`; `mesh`, `vertices` and
+//! `one_ring` hold its result; `set` places meshes in the world.
 
 mod bake;
 mod cluster;

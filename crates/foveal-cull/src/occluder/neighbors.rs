@@ -1,31 +1,32 @@
-//! Neighbors
+//! Adjacency of a welded mesh, and the one-ring of each cluster that is built from it.
 
 use super::mesh::OccluderMesh;
-use super::one_ring::{Edge, NONE, RING, Ring, SECOND};
+use super::one_ring::{Edge, FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
 use super::quads::Quad;
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Most triangles of a ring, so that their numbers, from [`RING`] on, stay below [`NONE`].
+/// Most triangles of a one-ring, so that their numbers, from [`FIRST_OF_RING`] on, stay below
+/// [`NO_TRIANGLE`].
 const MAX_TRIANGLES: usize = 255;
-/// Vertices of a cluster and its ring, so that a number fits a byte.
+/// Most vertices of a cluster and its one-ring: numbers fit a byte.
 const MAX_VERTICES: usize = 256;
 
-/// The cosine of 20 degrees: edges that bend less are seldom a silhouette.
+/// The cosine of 20 degrees. Edges that bend less are seldom a silhouette.
 const SMOOTH: f64 = 0.94;
 
-/// Which triangles meet where, by welded vertices.
-pub(super) struct Neighbours<'a> {
+/// Adjacency of a welded mesh.
+pub(super) struct Neighbors<'a> {
     points: &'a [Vec3],
     triangles: &'a [[u32; 3]],
-    /// Per directed edge its triangle; `None` where several have it.
+    /// The triangle of each directed edge; `None` where several have it.
     edges: HashMap<(u32, u32), Option<u32>>,
-    /// Triangles by vertex: where each vertex's begin, and they.
+    /// Triangles by vertex: where each vertex's list begins, and the lists.
     starts: Vec<u32>,
     around: Vec<u32>,
 }
 
-impl<'a> Neighbours<'a> {
+impl<'a> Neighbors<'a> {
     pub(super) fn new(points: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
         let mut edges = HashMap::with_capacity(triangles.len() * 3);
         let mut starts = vec![0u32; points.len() + 1];
@@ -66,14 +67,15 @@ impl<'a> Neighbours<'a> {
         &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
-    /// The triangle of which `a` to `b` is an edge, if it and its reverse have one triangle at most.
+    /// The triangle beyond the edge from `a` to `b`, if the edge and its reverse have at most one
+    /// triangle each.
     fn beyond(&self, a: u32, b: u32) -> Option<u32> {
         let here = self.edges.get(&(a, b)).copied().flatten();
         here?;
         self.edges.get(&(b, a)).copied().flatten()
     }
 
-    /// Whether the mesh goes on beyond an edge and hardly bends there.
+    /// Whether the mesh continues beyond an edge and hardly bends there.
     pub(super) fn is_smooth(&self, a: u32, b: u32) -> bool {
         let normal = |triangle: Option<u32>| {
             let t = self.triangles[triangle? as usize];
@@ -85,7 +87,7 @@ impl<'a> Neighbours<'a> {
     }
 }
 
-/// A triangle's corners from the smallest on: what names it.
+/// A name for a triangle: its vertices from the smallest on.
 fn name([a, b, c]: [u32; 3]) -> [u32; 3] {
     if a < b && a < c {
         [a, b, c]
@@ -96,14 +98,15 @@ fn name([a, b, c]: [u32; 3]) -> [u32; 3] {
     }
 }
 
-/// Appends the ring of the cluster that was appended last; `own` are its vertices in their order.
+/// Appends the one-ring of the cluster that was appended last. `own` are its vertices in their
+/// order.
 pub(super) fn build(
     mesh: &mut OccluderMesh,
-    near: &Neighbours<'_>,
+    near: &Neighbors<'_>,
     own: &[u32],
     quads: impl Iterator<Item = Quad>,
 ) {
-    let rings = &mut mesh.rings;
+    let rings = &mut mesh.one_rings;
     let (first_vertex, first_group, first_edge) = (
         rings.vertices.x.len() as u32,
         rings.triangles.len() as u32,
@@ -114,14 +117,17 @@ pub(super) fn build(
     for (n, [a, b, c, d]) in (0u16..).zip(quads) {
         twice |= numbers.insert(name([a, b, c]), n).is_some();
         if c != d {
-            twice |= numbers.insert(name([a, c, d]), n + SECOND as u16).is_some();
+            twice |= numbers
+                .insert(name([a, c, d]), n + FIRST_OF_SECOND as u16)
+                .is_some();
         }
     }
     let base = own.len().next_multiple_of(8);
     let mut others: Vec<u32> = Vec::new();
     let mut around: Vec<[u32; 3]> = Vec::new();
     let is_own = |v: u32| own.binary_search(&v).is_ok();
-    // Equal triangles have no edge of their own; without a number they only make borders.
+    // Triangles that occur twice have no edge of their own. Without a number their edges only
+    // become silhouette edges.
     if !twice {
         for &t in own.iter().flat_map(|&v| near.around(v)) {
             let corners = near.triangles[t as usize];
@@ -136,7 +142,7 @@ pub(super) fn build(
                 continue;
             }
             others.extend(new);
-            numbers.insert(name(corners), (RING + around.len()) as u16);
+            numbers.insert(name(corners), (FIRST_OF_RING + around.len()) as u16);
             around.push(corners);
         }
     }
@@ -156,7 +162,7 @@ pub(super) fn build(
             let beyond = near
                 .beyond(a, b)
                 .and_then(|i| numbers.get(&name(near.triangles[i as usize])));
-            let other = beyond.copied().unwrap_or(NONE);
+            let other = beyond.copied().unwrap_or(NO_TRIANGLE);
             if n < other {
                 edges.push(Edge {
                     triangles: [n, other],
@@ -190,7 +196,7 @@ pub(super) fn build(
         rings.vertices.y.push(p.y);
         rings.vertices.z.push(p.z);
     }
-    rings.rings.push(Ring {
+    rings.clusters.push(OneRing {
         first_vertex,
         vertex_count: (others.len() + padding) as u16,
         first_group,

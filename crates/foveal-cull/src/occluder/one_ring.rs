@@ -1,24 +1,27 @@
-//! Around every cluster: the triangles that touch it, and which edges join which triangles.
+//! The one-ring of a cluster: the triangles that touch it, and which edge joins which triangles.
 //!
-//! Results that hold around the eye treat a cluster and its ring as one sheet (see [`crate::raster::sheet`]): the
-//! sheet's border must stay clear of what it hides, and without the ring every cluster would end in a border.
+//! For view regions a cluster and its one-ring are one surface (see `raster::patch`). Without the
+//! one-ring every cluster would end in silhouette edges all around.
 
 use super::vertices::Vertices;
 
-/// No triangle: beyond an edge that ends a mesh. Numbers are less than 384.
-pub(crate) const NONE: u16 = 383;
-/// Where a ring's numbers begin; before it come the first triangles of the cluster's quads, then their second ones.
-pub(crate) const RING: usize = 128;
-pub(crate) const SECOND: usize = 64;
+/// The number of no triangle: beyond an edge where the mesh ends. All numbers are below 384.
+pub(crate) const NO_TRIANGLE: u16 = 383;
+/// First number of the one-ring's triangles. Before them come the first triangles of the cluster's
+/// quads, then the second ones.
+pub(crate) const FIRST_OF_RING: usize = 128;
+pub(crate) const FIRST_OF_SECOND: usize = 64;
 /// A power of two above all numbers.
-pub(crate) const NUMBERS: usize = 512;
-/// What surrounds one cluster.
+pub(crate) const MAX_NUMBERS: usize = 512;
+/// The one-ring of one cluster.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ring {
-    /// In [`Rings::vertices`]; the numbers go on after the cluster's own, padded ones.
+pub(crate) struct OneRing {
+    /// Index in [`OneRings::vertices`]. Vertex numbers continue after the cluster's own, padded
+    /// ones.
     pub(crate) first_vertex: u32,
     pub(crate) vertex_count: u16,
-    /// Groups of eight triangles; the first corner is the one alone on its side (on the cluster, or off it).
+    /// Groups of eight triangles. The first corner is the one that is alone on its side (on the
+    /// cluster, or off it).
     pub(crate) first_group: u32,
     pub(crate) triangle_count: u16,
     /// Edges with a vertex of the cluster.
@@ -26,18 +29,18 @@ pub(crate) struct Ring {
     pub(crate) edges: u16,
 }
 
-/// An edge of a cluster or its ring.
+/// An edge of a cluster or its one-ring.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edge {
-    /// On either side; [`NONE`] where there is no triangle.
+    /// The triangles on either side; [`NO_TRIANGLE`] where the mesh ends.
     pub(crate) triangles: [u16; 2],
     pub(crate) vertices: [u8; 2],
 }
 
-/// The rings of a mesh, one per cluster.
+/// The one-rings of a mesh, one per cluster.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Rings {
-    pub(crate) rings: Vec<Ring>,
+pub(crate) struct OneRings {
+    pub(crate) clusters: Vec<OneRing>,
     pub(crate) vertices: Vertices,
     pub(crate) triangles: Vec<[[u8; 8]; 3]>,
     pub(crate) edges: Vec<Edge>,

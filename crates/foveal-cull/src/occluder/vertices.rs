@@ -1,6 +1,6 @@
 //! Vertex positions in the layout that the transform reads.
 
-/// Positions by coordinate, mesh space; every cluster's part is padded to a multiple of eight.
+/// Positions by coordinate, mesh space. Each cluster's part is padded to a multiple of eight.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Vertices {
     pub(crate) x: Vec<f32>,

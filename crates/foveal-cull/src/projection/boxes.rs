@@ -1,10 +1,10 @@
-//! Boxes
+//! Boxes as centres and half extents, eight at a time.
 
 use crate::bounds::Aabb;
 use crate::simd::Lanes;
 use glam::Vec3;
 
-/// Relative growth of boxes against rounding.
+/// Relative growth of boxes, more than all rounding.
 pub(crate) const ROUNDING: f32 = 6e-7;
 
 /// Eight boxes by coordinate.
@@ -16,16 +16,17 @@ pub(crate) struct Boxes8 {
 }
 
 impl Boxes8 {
-    /// NaN boxes: never culled.
+    /// Eight boxes of NaN, which are never culled.
     pub(crate) const NONE: Self = Self {
         center: [[f32::NAN; 8]; 3],
         half: [[f32::NAN; 8]; 3],
     };
 
-    /// Centres and half extents of eight boxes, grown against rounding; NaN for what is not a volume.
+    /// Centres and half extents of eight boxes, grown for rounding; NaN for boxes that are not
+    /// volumes.
     #[inline(always)]
     pub(crate) fn of<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Self {
-        let v = l.turn(boxes);
+        let v = l.transpose(boxes);
         let half = l.splat(0.5);
         let (mut eight, mut reach) = (Self::NONE, [l.splat(0.0); 2]);
         let mut valid = l.isplat(-1);
@@ -48,7 +49,7 @@ impl Boxes8 {
         eight
     }
 
-    /// Box `lane` becomes box `from` of `boxes`.
+    /// Copies box `from` of `boxes` to box `lane`.
     #[inline(always)]
     pub(crate) fn copy(&mut self, lane: usize, boxes: &Self, from: usize) {
         for axis in 0..3 {

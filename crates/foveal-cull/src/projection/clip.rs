@@ -1,8 +1,8 @@
-//! Clip
+//! Clipping of convex polygons in homogeneous coordinates (Sutherland and Hodgman 1974), in `f64`.
 
 use glam::DVec4;
 
-/// A convex polygon of up to nine corners (three, and one per plane), in clip space.
+/// A convex polygon of up to twelve corners in clip space.
 #[derive(Clone, Copy)]
 pub(crate) struct ClipPolygon {
     pub(crate) corners: [DVec4; 12],
@@ -37,7 +37,8 @@ impl ClipPolygon {
                 self.push(a);
             }
             if (da >= 0.0) != (db >= 0.0) {
-                // From the inner to the outer end, so that both neighbours of an edge cut it alike.
+                // From the inner to the outer end, so that both neighbours of an edge cut it at the
+                // same point.
                 let (p, q, dp, dq) = if da >= 0.0 {
                     (a, b, da, db)
                 } else {
@@ -49,5 +50,5 @@ impl ClipPolygon {
     }
 }
 
-/// Near plane (`W - Z >= 0`).
+/// The near plane, `W - Z >= 0`.
 pub(crate) const NEAR: DVec4 = DVec4::new(0.0, 0.0, -1.0, 1.0);

@@ -1,4 +1,4 @@
-//! Boxes and points on the screen: what the rasterizer and the queries share.
+//! Projection of boxes to the screen, and clipping: what the rasterizer and the queries share.
 
 pub(crate) mod boxes;
 pub(crate) mod clip;

@@ -1,20 +1,20 @@
-//! Boxes that cross the near plane: clipped to the frustum, not simply called visible.
+//! Boxes that cross the near plane, clipped to the frustum.
 //!
-//! The part of the box inside the frustum is a convex polytope; its nearest point and its screen rectangle
-//! are those of its corners, and the corners come from clipping the six faces, with those of the near
-//! rectangle where the box contains them (then it covers a part of the near plane and is visible).
+//! The part of such a box inside the frustum is a convex polytope. Its screen rectangle and nearest
+//! depth are those of its corners, and the corners come from clipping the six faces. A box that
+//! contains the near rectangle covers a part of the near plane and is visible.
 
 use super::clip::{ClipPolygon, NEAR};
 use super::screen::Screen;
 use glam::{DVec4, Vec3};
 
-/// Where the part of a box inside the frustum lies.
+/// The part of a box inside the frustum.
 pub(crate) enum Clipped {
-    /// Outside the frustum.
+    /// Empty: the box is outside the frustum.
     Outside,
-    /// It meets the near plane on the screen, or nothing can be said.
+    /// Meets the near plane on the screen, or is not known.
     Visible,
-    /// Rectangle (x0, y0, x1, y1) in samples, dilated, and nearest depth.
+    /// Its rectangle (x0, y0, x1, y1) in samples, dilated, and its nearest depth.
     Rect([f32; 4], f32),
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn clip_box(s: &Screen<'_>, center: Vec3, half: Vec3) -> Clipped {
     let corners: [DVec4; 8] = core::array::from_fn(corner);
     let m = f64::from(s.dilate);
     let (w, h) = (f64::from(s.width), f64::from(s.height));
-    // Dilated screen borders, near and far.
+    // The dilated edges of the screen, the near plane and the far plane.
     let planes = [
         NEAR,
         DVec4::new(1.0, 0.0, 0.0, m),
@@ -93,7 +93,7 @@ pub(crate) fn clip_box(s: &Screen<'_>, center: Vec3, half: Vec3) -> Clipped {
     if depth == f64::NEG_INFINITY {
         return Clipped::Outside;
     }
-    // At the near plane nothing can be in front.
+    // Nothing can be in front of the near plane.
     if depth >= 1.0 - 1e-5 {
         return Clipped::Visible;
     }
@@ -108,8 +108,7 @@ pub(crate) fn clip_box(s: &Screen<'_>, center: Vec3, half: Vec3) -> Clipped {
     )
 }
 
-/// Whether the middle of the near rectangle is inside the box. Solved in clip space: the point with X/W, Y/W
-/// in the middle of the screen and Z = W is a combination of the box's axes with factors of at most one.
+/// Whether the centre of the near rectangle is inside the box.
 fn contains_near_center(s: &Screen<'_>, rows: &[DVec4; 4], center: Vec3, half: Vec3) -> bool {
     let m = glam::DMat4::from_cols(rows[0], rows[1], rows[2], rows[3]).transpose();
     let inverse = m.inverse();

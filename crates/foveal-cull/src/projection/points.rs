@@ -1,17 +1,18 @@
-//! Points of boxes that are seen: a box that lies before all that is known in a pixel, in a point of it, is seen.
+//! Single points of boxes on the screen: a box with a point in front of the buffer is visible.
 //!
-//! Most boxes that can be seen are seen in their middle, and of the others most at a corner. Pixels are looked up one
-//! by one, since gathers take longer, and by a number that is found for many boxes at once.
+//! Most visible boxes are visible at their centre, and most of the others at a corner. Pixel
+//! indices are found for many boxes at once; the look-ups are scalar, since gathers take longer.
 
-/// Numbers of pixels (right, down; on the screen) of a buffer, block by block, for as many lanes as `$l` has: as
-/// [`DepthBuffer::known`](crate::depth::buffer::DepthBuffer::known) takes them. A macro, as `place_of`.
-macro_rules! pixel_of {
+/// Index of a pixel (right, down; on the screen) for
+/// [`OcclusionBuffer::code_at`](crate::depth::buffer::OcclusionBuffer::code_at), one per lane of
+/// `$l`. A macro, since lanes of eight and of sixteen are different traits.
+macro_rules! pixel_index {
     ($l:ident, $buffer:expr, $x:expr, $y:expr) => {{
         use crate::format::{BLOCK, BLOCK_PIXELS};
         let (x, y) = ($x, $y);
         let bits = $l.isplat(BLOCK.trailing_zeros() as i32);
         let (column, row) = ($l.ishr(x, bits), $l.ishr(y, bits));
-        // What a step to the next block is more than steps within a block.
+        // A step to the next block, less the steps within a block.
         let right = $l.isplat((BLOCK_PIXELS - BLOCK) as i32);
         let down = $l.isplat(((($buffer).blocks_x - 1) * BLOCK_PIXELS) as i32);
         let within = $l.iadd(x, $l.imul(y, $l.isplat(BLOCK as i32)));
@@ -19,15 +20,15 @@ macro_rules! pixel_of {
         $l.iadd(within, across)
     }};
 }
-pub(crate) use pixel_of;
+pub(crate) use pixel_index;
 
-/// Corners of eight boxes.
+/// The corners of eight boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(crate) struct Corners8 {
-    /// By corner: the number of its pixel.
+    /// By corner: the index of its pixel.
     pub(crate) at: [[i32; 8]; 8],
-    /// The code of its depth; a very low one beside the screen.
+    /// By corner: its depth code; a very low one beside the screen.
     pub(crate) code: [[i32; 8]; 8],
 }
 
@@ -42,9 +43,9 @@ impl Corners8 {
 mod tests {
     use super::*;
     use crate::InstructionSet;
-    use crate::depth::block::Held;
-    use crate::depth::buffer::DepthBuffer;
-    use crate::depth::hiz::Coarse;
+    use crate::depth::block::BlockState;
+    use crate::depth::buffer::OcclusionBuffer;
+    use crate::depth::hiz::Hiz;
     use crate::format::{EMPTY, encode};
     use crate::projection::boxes::Boxes8;
     use crate::projection::project::outline;
@@ -68,9 +69,9 @@ mod tests {
     #[test]
     fn corners_lie_in_their_pixels() {
         let (width, height) = (72, 40);
-        let mut buffer = DepthBuffer::new(width, height);
-        // Every pixel of a number has the code that says which one it is.
-        buffer.held.fill(Held::DEPTH);
+        let mut buffer = OcclusionBuffer::new(width, height);
+        // Each pixel has a code that names it.
+        buffer.states.fill(BlockState::DEPTH);
         for (b, block) in (0u32..).zip(&mut buffer.depth) {
             for (i, code) in (0u32..).zip(&mut block.0) {
                 let (x, y) = (
@@ -80,7 +81,7 @@ mod tests {
                 *code = (y * width + x) as i16;
             }
         }
-        // The eye looks along -z, with 45 degrees to the right; samples.
+        // The eye looks along -z, with 45 degrees to either side.
         let (w, h) = (4.0 * width as f32, 4.0 * height as f32);
         let screen = Screen {
             rows: [
@@ -94,7 +95,7 @@ mod tests {
             far_depth: 0.0,
             dilate: 0.5,
             grow: 0.0,
-            coarse: Coarse::new(&buffer),
+            hiz: Hiz::new(&buffer),
         };
         let mut boxes = Boxes8::NONE;
         let at = |i: usize| {
@@ -128,7 +129,8 @@ mod tests {
                 .map(|k| {
                     let (at, code) = (corners.at[k][i], corners.code[k][i]);
                     assert_eq!((at, code), (portable.at[k][i], portable.code[k][i]));
-                    (code > i32::from(EMPTY)).then(|| (i32::from(buffer.known(at as usize)), code))
+                    (code > i32::from(EMPTY))
+                        .then(|| (i32::from(buffer.code_at(at as usize)), code))
                 })
                 .collect();
             expected.sort_unstable();

@@ -1,12 +1,12 @@
-//! Boxes to the screen, eight at a time: the rectangle they can touch and their nearest depth.
+//! Projection of boxes to the screen, eight at a time.
 
 use super::boxes::Boxes8;
-use super::points::{Corners8, pixel_of};
+use super::points::{Corners8, pixel_index};
 use super::screen::Screen;
 use crate::format::SAMPLES;
 use crate::simd::{Lanes, four};
 
-/// What is known of eight boxes on the screen. Rectangles are samples, already dilated.
+/// Eight boxes on the screen. Rectangles are in samples, already dilated.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(32))]
 pub(crate) struct Projected8 {
@@ -18,16 +18,17 @@ pub(crate) struct Projected8 {
     pub(crate) depth: [f32; 8],
     /// Pixels of the rectangle on the screen, inclusive: left, top, right, bottom.
     pub(crate) pixels: [[i32; 8]; 4],
-    /// Code of the nearest depth.
+    /// Depth code of the nearest depth.
     pub(crate) code: [i32; 8],
-    /// The pixel that the box's middle lies in, and the code of its depth; a very low one beside the screen. Only
-    /// where the screen knows its depths.
-    pub(crate) middle: [[i32; 8]; 3],
+    /// Pixel of the box's centre (right, down) and its depth code; a very low code beside the
+    /// screen. Only set where the screen has a HiZ.
+    pub(crate) center: [[i32; 8]; 3],
     /// Bit per box: certainly outside the frustum.
     pub(crate) outside: u32,
-    /// Bit per box: in front of the near plane in part, or not a volume; the other fields mean nothing.
+    /// Bit per box: in part nearer than the near plane, or not a volume. The other fields are then
+    /// meaningless.
     pub(crate) crossing: u32,
-    /// Bit per box: certainly behind what covers its rectangle, where the screen knows that.
+    /// Bit per box: certainly occluded, by the HiZ. Only set where the screen has one.
     pub(crate) hidden: u32,
 }
 
@@ -40,24 +41,25 @@ impl Projected8 {
         depth: [0.0; 8],
         pixels: [[0; 8]; 4],
         code: [0; 8],
-        middle: [[0; 8]; 3],
+        center: [[0; 8]; 3],
         outside: 0,
         crossing: 0,
         hidden: 0,
     };
 }
 
-/// With the middle.
+/// Projects eight boxes, with their centres.
 #[inline(always)]
 pub(crate) fn project<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> Projected8 {
     let mut p = outline(l, s, boxes, None);
-    if s.coarse.is_some() {
-        p.middle = middles(l, s, boxes);
+    if s.hiz.is_some() {
+        p.center = centers(l, s, boxes);
     }
     p
 }
 
-/// All but the middle; and where the screen knows its depths, corners if they are asked for.
+/// Projects eight boxes without their centres; with their corners if asked for, where the screen
+/// has a HiZ.
 #[inline(always)]
 pub(crate) fn outline<L: Lanes>(
     l: L,
@@ -81,7 +83,7 @@ pub(crate) fn outline<L: Lanes>(
     let (zr, wr) = (reach(l, &ze), reach(l, &we));
     let (w_near, w_far) = (l.sub(wc, wr), l.add(wc, wr));
     let z_near = l.add(zc, zr);
-    // Wholly nearer than the near plane, or not certainly beyond it.
+    // Wholly nearer than the near plane; and certainly beyond it.
     let behind = l.lt(w_far, l.sub(zc, zr));
     let beyond = l.lt(z_near, w_near);
     let depth = l.mul(l.div(z_near, w_near), l.splat(1.0 + 1e-6));
@@ -128,10 +130,10 @@ pub(crate) fn outline<L: Lanes>(
     }
     let code = l.codes(l.max(depth, zero));
     l.istore(code, &mut p.code);
-    let Some(coarse) = s.coarse else {
+    let Some(hiz) = s.hiz else {
         return p;
     };
-    p.hidden = coarse.hides(l, clamped, &p.code) & l.movemask(beyond) & !p.outside;
+    p.hidden = hiz.occluded(l, clamped, &p.code) & l.movemask(beyond) & !p.outside;
     if let Some(corners_of) = corners_of {
         let (zq, zz) = corners(l, &c, &h, &s.rows[2]);
         let z_low = four!(k => l.mul(l.sub(zq[k], zz), low[k]));
@@ -147,7 +149,7 @@ pub(crate) fn outline<L: Lanes>(
                 let z = l.select(beside, zero, l.max(z[k], zero));
                 let x = l.trunc(l.min(l.max(x, zero), right));
                 let y = l.trunc(l.min(l.max(y, zero), bottom));
-                let at = pixel_of!(l, coarse.buffer, x, y);
+                let at = pixel_index!(l, hiz.buffer, x, y);
                 l.istore(at, &mut corners_of.at[4 * side + k]);
                 l.istore(l.codes(z), &mut corners_of.code[4 * side + k]);
             }
@@ -156,9 +158,10 @@ pub(crate) fn outline<L: Lanes>(
     p
 }
 
-/// The pixel that each box's middle lies in, and the code of its depth; a very low one where that is not on the screen.
+/// Pixel of each box's centre (right, down) and its depth code; a very low code if it is not on the
+/// screen.
 #[inline(always)]
-fn middles<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
+fn centers<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
     let c = [
         l.load(&boxes.center[0]),
         l.load(&boxes.center[1]),
@@ -177,11 +180,11 @@ fn middles<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
         l.ior(l.lt(y, zero), l.lt(l.add(bottom, one), y)),
     );
     let z = l.select(l.ior(behind, beside), zero, l.max(z, zero));
-    let mut middle = [[0; 8]; 3];
-    l.istore(l.trunc(l.min(l.max(x, zero), right)), &mut middle[0]);
-    l.istore(l.trunc(l.min(l.max(y, zero), bottom)), &mut middle[1]);
-    l.istore(l.codes(z), &mut middle[2]);
-    middle
+    let mut center = [[0; 8]; 3];
+    l.istore(l.trunc(l.min(l.max(x, zero), right)), &mut center[0]);
+    l.istore(l.trunc(l.min(l.max(y, zero), bottom)), &mut center[1]);
+    l.istore(l.codes(z), &mut center[2]);
+    center
 }
 
 #[inline(always)]
@@ -206,7 +209,8 @@ fn reach<L: Lanes>(l: L, e: &[L::F; 3]) -> L::F {
     l.add(l.add(l.abs(e[0]), l.abs(e[1])), l.abs(e[2]))
 }
 
-/// A row at the four corners of the middle section, and its change to the upper ones.
+/// A clip row at the four corners of the box's central section, and its change to the upper
+/// corners.
 #[inline(always)]
 fn corners<L: Lanes>(l: L, c: &[L::F; 3], h: &[L::F; 3], r: &[f32; 4]) -> ([L::F; 4], L::F) {
     let (m, e) = (dot(l, c, r), edges(l, h, r));

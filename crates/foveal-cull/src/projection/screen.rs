@@ -1,33 +1,35 @@
-//! Screen
+//! The screen that boxes are projected to.
 
 use super::boxes::ROUNDING;
-use crate::depth::hiz::Coarse;
+use crate::depth::hiz::Hiz;
 use glam::Vec3;
 
-/// What boxes are projected with.
+/// The screen that boxes are projected to.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Screen<'a> {
     /// Clip rows in the space of the boxes.
     pub(crate) rows: [[f32; 4]; 4],
-    /// Samples.
+    /// Size, samples.
     pub(crate) width: f32,
     pub(crate) height: f32,
-    /// Depth of the far plane, lowered a little; 0 when infinite.
+    /// Depth of the far plane, lowered for rounding; 0 if it is infinite.
     pub(crate) far_depth: f32,
-    /// By how much rectangles grow on each side, samples.
+    /// Growth of rectangles on each side, samples.
     pub(crate) dilate: f32,
-    /// By how much boxes grow on each side, metres.
+    /// Growth of boxes on each side, metres.
     pub(crate) grow: f32,
-    /// Boxes are tested against it at once.
-    pub(crate) coarse: Option<Coarse<'a>>,
+    /// HiZ that boxes are tested against while they are projected.
+    pub(crate) hiz: Option<Hiz<'a>>,
 }
 
 impl Screen<'_> {
-    /// Whether all of a box, grown for rounding, lies beyond one border of the screen, wherever the near plane is.
+    /// Whether a box, grown for rounding, lies wholly beyond one edge of the screen. Right for
+    /// boxes that cross the near plane too.
     #[inline(always)]
     pub(crate) fn is_beside(&self, center: Vec3, half: Vec3) -> bool {
         let [x, y, _, w] = self.rows;
-        // Sums over the axes, for the borders left, right, above and below; by rows that are above zero within.
+        // Sums over the axes for the left, right, upper and lower edge, by rows that are above zero
+        // inside.
         let (mut most, mut terms) = ([0.0; 4], [0.0; 4]);
         for k in 0..4 {
             let rows = [

@@ -1,26 +1,26 @@
 //! Planes across the world's axes on the screen, and rays that enter boxes between such planes.
 
-use super::plane_lanes::{Affine, PlaneLanes, ROUNDING};
+use super::plane_lanes::{Affine, AxisPlaneLanes, ROUNDING};
 use crate::camera::Camera;
 use crate::format::{EMPTY, encode};
 use glam::{DMat3, DVec3, Vec3};
 
-/// How planes across the world's axes lie on the screen.
+/// Planes across the world's axes on the screen.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Planes {
-    /// Per axis: depth of the plane at 1 m (perspective), or at 0 m from the eye.
+pub(crate) struct AxisPlanes {
+    /// Per axis: depth of the plane at 1 m (perspective) or at 0 m (orthographic) from the eye.
     axes: [Affine; 3],
-    /// Orthographic: change of depth per metre, NaN across an axis that hardly leads away from the eye; perspective
-    /// views divide by the metres.
+    /// Orthographic: change of depth per metre, NaN for an axis that is almost perpendicular to the
+    /// view direction. Perspective views divide by the metres instead.
     per_metre: Option<[f32; 3]>,
     /// From the eye to the boxes' origin, metres.
     pub(super) from_eye: Vec3,
-    /// For the planes of one box at once.
-    pub(super) lanes: PlaneLanes,
+    /// The same by lane, for all planes of one box at once.
+    pub(super) lanes: AxisPlaneLanes,
 }
 
-impl Planes {
-    /// `None` for a view that cannot be turned round.
+impl AxisPlanes {
+    /// `None` for a view that cannot be inverted.
     pub(crate) fn new(camera: &Camera, origin: DVec3, width: f32, height: f32) -> Option<Self> {
         let [x, y, z, w] = camera.rows;
         let last = if camera.orthographic {
@@ -28,7 +28,8 @@ impl Planes {
         } else {
             w.truncate()
         };
-        // Rows X, Y, and distance; the inverse takes (x, y, distance) to a point relative to the eye.
+        // Rows X, Y, and distance. The inverse takes (x, y, distance) to a point relative to the
+        // eye.
         let inverse = DMat3::from_cols(x.truncate(), y.truncate(), last)
             .transpose()
             .inverse();
@@ -53,8 +54,9 @@ impl Planes {
                 from_eye,
             ));
         }
-        // A point is at (x - X.w, y - Y.w) on the screen and at distance t: p = a (x - X.w) + b (y - Y.w) + f t.
-        // At p = k, t = (k - a (x - X.w) - b (y - Y.w)) / f, and the depth falls by `fall` per metre of t.
+        // A point is at (x - X.w, y - Y.w) on the screen and at distance t: p = a (x - X.w) + b (y
+        // - Y.w) + f t. At p = k, t = (k - a (x - X.w) - b (y - Y.w)) / f, and the depth falls by
+        // `fall` per metre of t.
         let fall = z.truncate().dot(camera.forward);
         let per_metre = rows.map(|r| {
             if r.z.abs() < 1e-5 {
@@ -76,16 +78,17 @@ impl Planes {
             axes,
             per_metre,
             from_eye,
-            lanes: PlaneLanes::new(&axes, per_metre),
+            lanes: AxisPlaneLanes::new(&axes, per_metre),
         }
     }
 
-    /// Code of the depth where the ray through (x, y) enters a box; the lowest where it does not. Neither rounded up
-    /// nor down: enough to call a box visible, which is never wrong.
+    /// Depth code at which the ray through (x, y) enters a box; the lowest code where it misses.
+    /// Rounded neither up nor down: enough to call a box visible, which is always safe.
     #[inline(always)]
     pub(crate) fn entry(&self, x: f32, y: f32, center: Vec3, half: Vec3) -> i16 {
         let center = center + self.from_eye;
-        // Distances along the ray in units that grow with distance, from the last front to the first back plane.
+        // Distances along the ray in units that grow with distance: from the last front plane to
+        // the first back plane.
         let (mut enter, mut leave) = (0.0f32, f32::INFINITY);
         for axis in 0..3 {
             let a = &self.axes[axis];

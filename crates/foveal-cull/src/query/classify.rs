@@ -1,11 +1,11 @@
-//! From a projected box to an answer: frustum, size, then the depth buffer; for one eye, two, or a radius.
+//! Classification of one projected box: by frustum, by size, then by the occlusion buffer.
 
-use super::axis_planes::Planes;
-use super::coarse::Sieve;
+use super::axis_planes::AxisPlanes;
+use super::coarse::CoarseTest;
 use super::rect::{PixelRect, hidden};
 use crate::camera::{Camera, frustum_planes};
-use crate::depth::buffer::DepthBuffer;
-use crate::depth::hiz::Coarse;
+use crate::depth::buffer::OcclusionBuffer;
+use crate::depth::hiz::Hiz;
 use crate::format::{SAMPLES, encode};
 use crate::projection::boxes::{Boxes8, ROUNDING};
 use crate::projection::near::{Clipped, clip_box};
@@ -17,17 +17,17 @@ use crate::view::View;
 use crate::visibility::Visibility;
 use glam::{DVec3, Vec3};
 
-/// Boxes grow by this on the screen before they are tested, samples: their rectangles then touch every pixel
-/// that has a sample within one sample of them. That is more than all rounding, and enough that a box which
-/// reaches an occluder's border also asks what is behind it.
+/// Growth of boxes on the screen, samples. Their rectangles then touch every pixel that has a
+/// sample within one sample of them. That is more than all rounding, and a box that reaches the
+/// edge of an occluder also tests what is beside it.
 const DILATE: f32 = 0.5;
-/// The same where not only samples count but all that lies between them.
-const DILATE_AROUND: f32 = 1.0;
+/// Growth where not only samples count but everything between them.
+const DILATE_REGION: f32 = 1.0;
 
-/// Groups are tested block by block up to this many blocks.
+/// Groups over more blocks than this are opened, not tested block by block.
 const GROUP_BLOCKS: u32 = 64;
 
-/// What queries need to know of the frame that was rasterized.
+/// State of the frame that was rasterized.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Frame {
     pub(crate) camera: Camera,
@@ -36,21 +36,22 @@ pub(crate) struct Frame {
     pub(crate) occlusion: bool,
 }
 
-/// A frame, as queries see it.
+/// A frame, prepared for queries with boxes relative to one origin.
 pub(crate) struct Query<'a> {
-    pub(crate) buffer: &'a DepthBuffer,
+    pub(crate) buffer: &'a OcclusionBuffer,
     pub(crate) screen: Screen<'a>,
     pub(crate) occlusion: bool,
     /// `threshold² * tan(fov / 2)`.
     pub(crate) small: f32,
-    /// For a result that holds around the eye.
-    around: Option<Around>,
-    /// For boxes whose rectangle does not say enough; only for one eye at its exact place.
-    pub(super) planes: Option<Planes>,
+    /// Set for view regions.
+    region: Option<Region>,
+    /// Planes of boxes, for boxes that their rectangle leaves undecided. Only for one eye at its
+    /// exact position.
+    pub(super) axis_planes: Option<AxisPlanes>,
 }
 
 impl<'a> Query<'a> {
-    pub(crate) fn new(buffer: &'a DepthBuffer, frame: &Frame, origin: DVec3) -> Self {
+    pub(crate) fn new(buffer: &'a OcclusionBuffer, frame: &Frame, origin: DVec3) -> Self {
         let camera = &frame.camera;
         let from_origin = origin - camera.eye;
         let rows = camera.rows.map(|r| {
@@ -68,25 +69,25 @@ impl<'a> Query<'a> {
             height: (buffer.height * SAMPLES) as f32,
             far_depth: (camera.far_depth * (1.0 - 1e-5)) as f32,
             dilate: if camera.radius > 0.0 {
-                DILATE_AROUND
+                DILATE_REGION
             } else {
                 DILATE
             },
             grow: ROUNDING * from_origin.length() as f32,
-            coarse: frame.occlusion.then(|| Coarse::new(buffer)).flatten(),
+            hiz: frame.occlusion.then(|| Hiz::new(buffer)).flatten(),
         };
         let t = f64::from(frame.occludee_size_threshold);
-        let planes = (camera.radius == 0.0)
-            .then(|| Planes::new(camera, origin, screen.width, screen.height))
+        let axis_planes = (camera.radius == 0.0)
+            .then(|| AxisPlanes::new(camera, origin, screen.width, screen.height))
             .flatten();
         Self {
-            planes,
+            axis_planes,
             buffer,
             screen,
             occlusion: frame.occlusion,
             small: (t * t * camera.tan_half_fov_y) as f32,
-            around: (camera.radius > 0.0).then(|| Around {
-                planes: [Some(frame.view.eye), frame.view.second_eye].map(|eye| {
+            region: (camera.radius > 0.0).then(|| Region {
+                frusta: [Some(frame.view.eye), frame.view.second_eye].map(|eye| {
                     eye.map(|e| frustum_planes(&e, frame.view.validity_radius_m, origin))
                 }),
                 clamp_depth: camera.clamp_depth as f32,
@@ -94,10 +95,10 @@ impl<'a> Query<'a> {
         }
     }
 
-    /// Answers for one of eight projected boxes. `object`: a single one, which may be too small, and whose
-    /// faces are looked at where its rectangle does not say enough.
+    /// Classifies one of eight projected boxes. `object`: not a group, so that it may be too small,
+    /// and its faces decide if its rectangle does not.
     #[inline(always)]
-    pub(crate) fn answer<L: Lanes>(
+    pub(crate) fn classify<L: Lanes>(
         &self,
         l: L,
         p: &Projected8,
@@ -105,8 +106,8 @@ impl<'a> Query<'a> {
         boxes: &Boxes8,
         object: bool,
     ) -> Visibility {
-        if self.around.is_some() {
-            return self.answer_around(l, p, i, boxes, object);
+        if self.region.is_some() {
+            return self.classify_region(l, p, i, boxes, object);
         }
         if p.outside >> i & 1 != 0 {
             return Visibility::Outside;
@@ -115,7 +116,7 @@ impl<'a> Query<'a> {
             return Visibility::Small;
         }
         if p.crossing >> i & 1 != 0 {
-            return self.answer_crossing(l, i, boxes);
+            return self.classify_crossing(l, i, boxes);
         }
         if p.hidden >> i & 1 != 0 {
             return Visibility::Occluded;
@@ -124,38 +125,39 @@ impl<'a> Query<'a> {
             return Visibility::Visible;
         }
         let (rect, code) = rectangle(p, i);
-        // Of a large group the members had better be asked.
+        // The members of a large group are better tested themselves.
         if !object && rect.block_count() > GROUP_BLOCKS {
             return Visibility::Visible;
         }
-        // Where even the middle lies before all that is known, nothing closer will hide the box.
-        let [x, y, middle] = [0, 1, 2].map(|k| p.middle[k][i]);
-        let known = self.buffer.pixel(x as u32, y as u32);
-        if middle > i32::from(known) {
+        // If the centre is in front of the buffer, the box is visible.
+        let [x, y, center_code] = [0, 1, 2].map(|k| p.center[k][i]);
+        let known = self.buffer.code_of_pixel(x as u32, y as u32);
+        if center_code > i32::from(known) {
             return Visibility::Visible;
         }
         let place = object.then(|| place(boxes, i));
-        // Or where the ray through that pixel enters it.
-        if let (Some(planes), Some((center, half))) = (&self.planes, place) {
+        // So it is where the ray through the centre's pixel enters it.
+        if let (Some(planes), Some((center, half))) = (&self.axis_planes, place) {
             let sample = |v: i32| (v as f32 + 0.5) * SAMPLES as f32;
             if planes.entry(sample(x), sample(y), center, half) > known {
                 return Visibility::Visible;
             }
         }
-        self.answer_rect(l, rect, code, place)
+        self.classify_rect(l, rect, code, place)
     }
 
-    /// What a first look is taken with, where frustum and summary alone tell what most boxes are.
+    /// The coarse test, for frames in which frustum and HiZ alone decide most boxes.
     #[inline(always)]
-    pub(super) fn sieve(&self) -> Option<Sieve<'a>> {
-        (self.occlusion && self.around.is_none())
-            .then(|| Sieve::new(&self.screen))
+    pub(super) fn coarse_test(&self) -> Option<CoarseTest<'a>> {
+        (self.occlusion && self.region.is_none())
+            .then(|| CoarseTest::new(&self.screen))
             .flatten()
     }
 
-    /// Answers for a box of which looks at its middle and its corners say nothing, in plain frames.
+    /// Classifies a box that neither its centre nor its corners decided, in frames of one exact
+    /// eye.
     #[inline(always)]
-    pub(super) fn answer_open<L: Lanes>(
+    pub(super) fn classify_remaining<L: Lanes>(
         &self,
         l: L,
         p: &Projected8,
@@ -163,15 +165,15 @@ impl<'a> Query<'a> {
         boxes: &Boxes8,
     ) -> Visibility {
         if p.crossing >> i & 1 != 0 {
-            return self.answer_crossing(l, i, boxes);
+            return self.classify_crossing(l, i, boxes);
         }
         let (rect, code) = rectangle(p, i);
-        self.answer_rect(l, rect, code, Some(place(boxes, i)))
+        self.classify_rect(l, rect, code, Some(place(boxes, i)))
     }
 
-    /// The same for a group, which is to be opened where that is the better way.
+    /// Classifies a group: visible means that it must be opened.
     #[inline(always)]
-    pub(super) fn answer_group<L: Lanes>(
+    pub(super) fn classify_group<L: Lanes>(
         &self,
         l: L,
         p: &Projected8,
@@ -192,7 +194,7 @@ impl<'a> Query<'a> {
         if rect.block_count() > GROUP_BLOCKS {
             return Visibility::Visible;
         }
-        self.answer_rect(l, rect, code, None)
+        self.classify_rect(l, rect, code, None)
     }
 
     #[inline(always)]
@@ -202,13 +204,13 @@ impl<'a> Query<'a> {
         }
         let (c, h) = place(boxes, i);
         let [x, y, z, w] = self.screen.rows[3];
-        // In the order in which lanes are added.
+        // The sum has the order in which lanes are added.
         let distance = (c.x * x + c.y * y) + (c.z * z + w);
         distance > 1.0 && h.length_squared() < distance * self.small
     }
 
     #[inline(always)]
-    fn answer_rect<L: Lanes>(
+    fn classify_rect<L: Lanes>(
         &self,
         l: L,
         rect: PixelRect,
@@ -219,7 +221,7 @@ impl<'a> Query<'a> {
             return Visibility::Visible;
         }
         let place = place.map(|(center, half)| (center, half + self.screen.grow));
-        let faces = self.planes.as_ref().zip(place);
+        let faces = self.axis_planes.as_ref().zip(place);
         if hidden(l, self.buffer, rect, code, faces) {
             Visibility::Occluded
         } else {
@@ -228,7 +230,7 @@ impl<'a> Query<'a> {
     }
 
     #[inline(always)]
-    fn answer_crossing<L: Lanes>(&self, l: L, i: usize, boxes: &Boxes8) -> Visibility {
+    fn classify_crossing<L: Lanes>(&self, l: L, i: usize, boxes: &Boxes8) -> Visibility {
         let (center, half) = place(boxes, i);
         if self.screen.is_beside(center, half + self.screen.grow) {
             return Visibility::Outside;
@@ -237,7 +239,7 @@ impl<'a> Query<'a> {
             Clipped::Outside => Visibility::Outside,
             Clipped::Visible => Visibility::Visible,
             Clipped::Rect(rect, depth) => {
-                self.answer_rect(l, self.pixels(rect), encode(depth), Some((center, half)))
+                self.classify_rect(l, self.pixels(rect), encode(depth), Some((center, half)))
             }
         }
     }
@@ -247,10 +249,10 @@ impl<'a> Query<'a> {
         PixelRect::from_samples(samples, self.buffer.width, self.buffer.height)
     }
 
-    /// The same for two eyes or a validity radius: the frusta are tested one by one, and what the buffer of
-    /// the middle cannot answer for all of them is visible.
+    /// Classifies a box for a view region. Frusta are tested one by one, and what the centre eye's
+    /// buffer cannot decide for all eyes is visible.
     #[inline(always)]
-    fn answer_around<L: Lanes>(
+    fn classify_region<L: Lanes>(
         &self,
         l: L,
         p: &Projected8,
@@ -258,7 +260,7 @@ impl<'a> Query<'a> {
         boxes: &Boxes8,
         object: bool,
     ) -> Visibility {
-        let Some(around) = &self.around else {
+        let Some(region) = &self.region else {
             return Visibility::Visible;
         };
         let (center, half) = place(boxes, i);
@@ -269,7 +271,7 @@ impl<'a> Query<'a> {
                 n.dot(center) + n.abs().dot(half) + w + 1e-6 * n.abs().dot(center.abs()) < 0.0
             })
         };
-        if around.planes.iter().flatten().all(outside) {
+        if region.frusta.iter().flatten().all(outside) {
             return Visibility::Outside;
         }
         if self.is_small(i, boxes, object) {
@@ -280,41 +282,41 @@ impl<'a> Query<'a> {
         }
         let (w, h) = (self.screen.width, self.screen.height);
         let cut = p.x0[i] < 0.0 || p.y0[i] < 0.0 || p.x1[i] > w || p.y1[i] > h;
-        if cut && p.depth[i] >= around.clamp_depth {
+        if cut && p.depth[i] >= region.clamp_depth {
             return Visibility::Visible;
         }
         let rect = self.pixels([p.x0[i], p.y0[i], p.x1[i], p.y1[i]]);
-        self.answer_rect(l, rect, encode(p.depth[i]), None)
+        self.classify_rect(l, rect, encode(p.depth[i]), None)
     }
 }
 
 impl Query<'_> {
-    /// Whether a code lies before all that is known in a pixel.
+    /// Whether a depth code is in front of a pixel.
     #[inline(always)]
-    pub(super) fn before(&self, at: i32, code: i32) -> bool {
-        code > i32::from(self.buffer.known(at as usize))
+    pub(super) fn is_in_front(&self, at: i32, code: i32) -> bool {
+        code > i32::from(self.buffer.code_at(at as usize))
     }
 
-    /// Whether any corner of a box that is all beyond the near plane lies before all that is known in its pixel.
+    /// Whether any corner of a box that lies wholly beyond the near plane is in front of its pixel.
     #[inline(always)]
     pub(super) fn corner_seen(&self, corners: &Corners8, i: usize) -> bool {
         let mut seen = false;
         for (at, code) in corners.at.iter().zip(&corners.code) {
-            seen |= self.before(at[i], code[i]);
+            seen |= self.is_in_front(at[i], code[i]);
         }
         seen
     }
 }
 
-/// What a result that holds around the eye needs.
+/// Data of a view region.
 #[derive(Clone, Copy, Debug)]
-struct Around {
-    /// Of one or two eyes.
-    planes: [Option<[[f32; 4]; 6]>; 2],
+struct Region {
+    /// Frustum planes of one or two eyes.
+    frusta: [Option<[[f32; 4]; 6]>; 2],
     clamp_depth: f32,
 }
 
-/// The rectangle of one of eight, and the code of its depth.
+/// Rectangle of one of eight boxes, and its depth code.
 #[inline(always)]
 fn rectangle(p: &Projected8, i: usize) -> (PixelRect, i16) {
     let [x0, y0, x1, y1] = p.pixels.map(|v| v[i] as u32);
@@ -322,7 +324,7 @@ fn rectangle(p: &Projected8, i: usize) -> (PixelRect, i16) {
     (PixelRect { x0, y0, x1, y1 }, code)
 }
 
-/// Centre and half extent of one of eight.
+/// Centre and half extent of one of eight boxes.
 #[inline(always)]
 fn place(boxes: &Boxes8, i: usize) -> (Vec3, Vec3) {
     let [cx, cy, cz] = boxes.center;

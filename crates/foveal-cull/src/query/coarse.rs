@@ -1,38 +1,40 @@
-//! A first look at sixteen boxes: a rectangle on the screen that holds theirs, against the summary of the buffer.
+//! The coarse test: sixteen boxes at once against the HiZ, by rectangles that enclose the exact
+//! ones.
 //!
-//! Exact rectangles need eight divisions a box. Here a box is taken for its reach along each axis of the screen, at the
-//! distances of its nearest and its farthest point: two divisions, and most boxes are told from that. What it hides,
-//! the exact rectangle would be hidden by too; the others are projected anew.
+//! Exact rectangles take eight divisions per box. Here a box is bounded by its reach along each
+//! axis of the screen, at the distances of its nearest and its farthest point: two divisions, and
+//! most boxes are decided. Whatever this test culls, the exact one would cull too; the others are
+//! projected again.
 
 use crate::bounds::Aabb;
-use crate::depth::hiz::{Coarse, known};
-use crate::depth::hiz_layout::place_of;
+use crate::depth::hiz::{Hiz, farthest_code};
+use crate::depth::hiz_layout::hiz_index;
 use crate::format::{BLOCK, BLOCK_SAMPLES};
 use crate::projection::boxes::{Boxes8, ROUNDING};
-use crate::projection::points::pixel_of;
+use crate::projection::points::pixel_index;
 use crate::projection::screen::Screen;
 use crate::simd::{Wide, four, three, two};
 
-/// What boxes are sifted with.
+/// The coarse test, prepared for a frame.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Sieve<'a> {
-    /// As those of the screen, but X and Y are blocks from its middle.
+pub(crate) struct CoarseTest<'a> {
+    /// Rows of the screen, with X and Y in blocks from its centre.
     rows: [[f32; 4]; 4],
     /// Half the screen, blocks.
-    middle: [f32; 2],
+    half_screen: [f32; 2],
     dilate: f32,
     grow: f32,
     far_depth: f32,
-    pub(super) coarse: Coarse<'a>,
+    pub(super) hiz: Hiz<'a>,
 }
 
-/// What is known of sixteen boxes.
+/// Coarse results of sixteen boxes.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Sifted16 {
-    /// Code of a depth in front of which there is nothing of the box.
+pub(crate) struct Coarse16 {
+    /// Depth code that nothing of the box is in front of.
     code: [i32; 16],
-    /// Its place in the summary, and what is known there.
+    /// Index in the HiZ; after `fetch`, the depth code there.
     at: [i32; 16],
     /// Bit per box: certainly outside the frustum.
     pub(crate) outside: u32,
@@ -40,19 +42,19 @@ pub(crate) struct Sifted16 {
     beyond: u32,
 }
 
-/// The middles of sixteen boxes.
+/// The centres of sixteen boxes on the screen.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub(crate) struct Middles16 {
-    /// The number of the pixel that a middle lies in.
+pub(crate) struct Centers16 {
+    /// Index of the centre's pixel.
     pub(crate) at: [i32; 16],
-    /// The code of its depth; a very low one beside the screen.
+    /// Its depth code; a very low one beside the screen.
     pub(crate) code: [i32; 16],
-    /// Bit per box: its middle is on the screen.
+    /// Bit per box: the centre is on the screen.
     pub(crate) on: u32,
 }
 
-impl Middles16 {
+impl Centers16 {
     pub(crate) const NONE: Self = Self {
         at: [0; 16],
         code: [0; 16],
@@ -60,24 +62,24 @@ impl Middles16 {
     };
 }
 
-/// What is known of the children of two nodes.
+/// Coarse results of the children of two nodes.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Looked16 {
-    pub(crate) sifted: Sifted16,
-    pub(crate) middle: Middles16,
+pub(crate) struct CoarseNode16 {
+    pub(crate) coarse: Coarse16,
+    pub(crate) centers: Centers16,
     /// Bit per box: below the size threshold.
     pub(crate) small: u32,
 }
 
-impl Looked16 {
+impl CoarseNode16 {
     pub(crate) const NONE: Self = Self {
-        sifted: Sifted16::NONE,
-        middle: Middles16::NONE,
+        coarse: Coarse16::NONE,
+        centers: Centers16::NONE,
         small: 0,
     };
 }
 
-impl Sifted16 {
+impl Coarse16 {
     pub(crate) const NONE: Self = Self {
         code: [0; 16],
         at: [0; 16],
@@ -85,16 +87,16 @@ impl Sifted16 {
         beyond: 0,
     };
 
-    /// Looks up what is known at the places.
+    /// Replaces the indices by the depth codes there.
     #[inline(always)]
-    pub(crate) fn look_up(&mut self, coarse: Coarse<'_>) {
-        let table = coarse.table();
+    pub(crate) fn fetch(&mut self, hiz: Hiz<'_>) {
+        let table = hiz.table();
         for at in &mut self.at {
-            *at = known(table, *at);
+            *at = farthest_code(table, *at);
         }
     }
 
-    /// Bit per box: certainly behind what is known, which has been looked up.
+    /// Bit per box: certainly occluded. Call `fetch` before.
     #[inline(always)]
     pub(crate) fn hidden<W: Wide>(&self, w: W) -> u32 {
         let farther = w.isub(w.iload(&self.code), w.iload(&self.at));
@@ -102,31 +104,31 @@ impl Sifted16 {
     }
 }
 
-impl<'a> Sieve<'a> {
-    /// None where the screen has no summary.
+impl<'a> CoarseTest<'a> {
+    /// None where the screen has no HiZ.
     pub(crate) fn new(screen: &Screen<'a>) -> Option<Self> {
         let size = BLOCK_SAMPLES as f32;
-        let middle = [screen.width * 0.5, screen.height * 0.5];
+        let half_screen = [screen.width * 0.5, screen.height * 0.5];
         let mut rows = screen.rows;
         let distance = rows[3];
-        for (row, middle) in rows.iter_mut().zip(middle) {
+        for (row, half) in rows.iter_mut().zip(half_screen) {
             for (v, w) in row.iter_mut().zip(distance) {
-                *v = (*v - middle * w) / size;
+                *v = (*v - half * w) / size;
             }
         }
         Some(Self {
             rows,
-            middle: middle.map(|m| m / size),
+            half_screen: half_screen.map(|m| m / size),
             dilate: screen.dilate / size,
             grow: screen.grow,
             far_depth: screen.far_depth,
-            coarse: screen.coarse?,
+            hiz: screen.hiz?,
         })
     }
 
     #[inline(always)]
-    pub(crate) fn sift<W: Wide>(&self, w: W, boxes: &[Aabb; 16]) -> (Sifted16, Middles16) {
-        let v = w.turn(boxes);
+    pub(crate) fn classify<W: Wide>(&self, w: W, boxes: &[Aabb; 16]) -> (Coarse16, Centers16) {
+        let v = w.transpose(boxes);
         // Centres and half extents, grown as for exact rectangles.
         let half = w.splat(0.5);
         let [lo, hi] = [[v[0], v[1], v[2]], [v[3], v[4], v[5]]];
@@ -142,39 +144,46 @@ impl<'a> Sieve<'a> {
         for h in &mut h {
             *h = w.add(*h, grow);
         }
-        let (sifted, center) = self.told(w, c, h, volume);
-        (sifted, self.middles(w, center))
+        let (coarse, center) = self.classify_extents(w, c, h, volume);
+        (coarse, self.centers(w, center))
     }
 
-    /// The middles of boxes whose centres are there, by rows.
+    /// Pixels of the centres, from their clip rows.
     #[inline(always)]
-    fn middles<W: Wide>(&self, w: W, [x, y, z, distance]: [W::F; 4]) -> Middles16 {
+    fn centers<W: Wide>(&self, w: W, [x, y, z, distance]: [W::F; 4]) -> Centers16 {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
         let per = w.div(one, distance);
         let size = BLOCK as f32;
-        let x = w.mul(w.add(w.mul(x, per), w.splat(self.middle[0])), w.splat(size));
-        let y = w.mul(w.add(w.mul(y, per), w.splat(self.middle[1])), w.splat(size));
-        let [right, bottom] = self.middle.map(|m| 2.0 * m * size);
+        let x = w.mul(
+            w.add(w.mul(x, per), w.splat(self.half_screen[0])),
+            w.splat(size),
+        );
+        let y = w.mul(
+            w.add(w.mul(y, per), w.splat(self.half_screen[1])),
+            w.splat(size),
+        );
+        let [right, bottom] = self.half_screen.map(|m| 2.0 * m * size);
         let (below_right, below_bottom) = (w.lt(x, w.splat(right)), w.lt(y, w.splat(bottom)));
         let on = w.lt(z, distance) & !w.lt(x, zero) & !w.lt(y, zero) & below_right & below_bottom;
         let [x, y] = two!(k => w.trunc(w.select(on, [x, y][k], zero)));
         let depth = w.select(on, w.max(w.mul(z, per), zero), zero);
-        let mut middles = Middles16::NONE;
-        w.istore(pixel_of!(w, self.coarse.buffer, x, y), &mut middles.at);
-        w.istore(w.codes(depth), &mut middles.code);
-        middles.on = on;
-        middles
+        let mut centers = Centers16::NONE;
+        w.istore(pixel_index!(w, self.hiz.buffer, x, y), &mut centers.at);
+        w.istore(w.codes(depth), &mut centers.code);
+        centers.on = on;
+        centers
     }
 
-    /// The same from centres and half extents, with a bit for each that is a volume; and where the centres are, by rows.
+    /// Classifies boxes by centres and half extents, with a bit for each that is a volume; also
+    /// returns the centres' clip rows.
     #[inline(always)]
-    fn told<W: Wide>(
+    fn classify_extents<W: Wide>(
         &self,
         w: W,
         c: [W::F; 3],
         h: [W::F; 3],
         volume: u32,
-    ) -> (Sifted16, [W::F; 4]) {
+    ) -> (Coarse16, [W::F; 4]) {
         let center = four!(i => dot(w, &c, &self.rows[i]));
         let reach = four!(i => reach(w, &h, &self.rows[i]));
         let lo = four!(i => w.sub(center[i], reach[i]));
@@ -184,35 +193,40 @@ impl<'a> Sieve<'a> {
         let behind = w.lt(hi[3], lo[2]) & volume;
         let beyond = w.lt(hi[2], lo[3]) & volume;
         let depth = w.mul(w.mul(hi[2], near), w.splat(1.0 + 2e-6));
-        let [x0, y0] = [0, 1].map(|i| self.middle[i] - self.dilate);
-        let [x1, y1] = [0, 1].map(|i| self.middle[i] + self.dilate);
+        let [x0, y0] = [0, 1].map(|i| self.half_screen[i] - self.dilate);
+        let [x1, y1] = [0, 1].map(|i| self.half_screen[i] + self.dilate);
         let x0 = w.add(w.min(w.mul(lo[0], near), w.mul(lo[0], far)), w.splat(x0));
         let y0 = w.add(w.min(w.mul(lo[1], near), w.mul(lo[1], far)), w.splat(y0));
         let x1 = w.add(w.max(w.mul(hi[0], near), w.mul(hi[0], far)), w.splat(x1));
         let y1 = w.add(w.max(w.mul(hi[1], near), w.mul(hi[1], far)), w.splat(y1));
         let zero = w.splat(0.0);
-        let [right, bottom] = [0, 1].map(|i| w.splat(2.0 * self.middle[i]));
+        let [right, bottom] = [0, 1].map(|i| w.splat(2.0 * self.half_screen[i]));
         let off = w.lt(x1, zero) | w.lt(right, x0) | w.lt(y1, zero) | w.lt(bottom, y0);
         let off = beyond & (off | w.lt(depth, w.splat(self.far_depth)));
         let last = [
-            self.coarse.buffer.blocks_x as f32 - 1.0,
-            self.coarse.buffer.blocks_y as f32 - 1.0,
+            self.hiz.buffer.blocks_x as f32 - 1.0,
+            self.hiz.buffer.blocks_y as f32 - 1.0,
         ];
         let blocks = four!(i => {
             let v = [x0, y0, x1, y1][i];
             w.trunc(w.min(w.max(v, zero), w.splat(last[i % 2])))
         });
-        let mut sifted = Sifted16::NONE;
-        w.istore(self.place(w, blocks), &mut sifted.at);
-        w.istore(w.codes(w.max(depth, zero)), &mut sifted.code);
-        sifted.outside = behind | off;
-        sifted.beyond = beyond;
-        (sifted, center)
+        let mut coarse = Coarse16::NONE;
+        w.istore(self.place(w, blocks), &mut coarse.at);
+        w.istore(w.codes(w.max(depth, zero)), &mut coarse.code);
+        coarse.outside = behind | off;
+        coarse.beyond = beyond;
+        (coarse, center)
     }
 
-    /// The same for two nodes of a hierarchy, whose boxes are grown already; and where their middles are.
+    /// Classifies the children of two nodes, whose boxes are grown already.
     #[inline(always)]
-    pub(crate) fn look<W: Wide>(&self, w: W, pair: [&Boxes8; 2], small: f32) -> Looked16 {
+    pub(crate) fn classify_nodes<W: Wide>(
+        &self,
+        w: W,
+        pair: [&Boxes8; 2],
+        small: f32,
+    ) -> CoarseNode16 {
         let [a, b] = pair;
         let c = three!(k => w.pair(&a.center[k], &b.center[k]));
         let own = three!(k => w.pair(&a.half[k], &b.half[k]));
@@ -222,25 +236,25 @@ impl<'a> Sieve<'a> {
         }
         let grow = w.add(w.mul(largest, w.splat(ROUNDING)), w.splat(self.grow));
         let h = three!(k => w.add(own[k], grow));
-        // NaN where it is no volume, which is neither less nor more than anything.
-        let (sifted, center) = self.told(w, c, h, !0);
+        // Boxes that are not volumes have NaN, for which every comparison is false.
+        let (coarse, center) = self.classify_extents(w, c, h, !0);
         let distance = center[3];
         let squares = three!(k => w.mul(own[k], own[k]));
         let squared = w.add(w.add(squares[0], squares[1]), squares[2]);
         let far_enough = w.lt(w.splat(1.0), distance);
-        Looked16 {
-            sifted,
-            middle: self.middles(w, center),
+        CoarseNode16 {
+            coarse,
+            centers: self.centers(w, center),
             small: far_enough & w.lt(squared, w.mul(distance, w.splat(small))),
         }
     }
 }
 
-impl Sieve<'_> {
-    /// Where the summary tells of rectangles of blocks (left, top, right, bottom, inclusive), as [`Coarse::hides`].
+impl CoarseTest<'_> {
+    /// Index in the HiZ for rectangles of blocks (left, top, right, bottom, inclusive).
     #[inline(always)]
     fn place<W: Wide>(&self, w: W, blocks: [W::I; 4]) -> W::I {
-        place_of!(w, self.coarse.buffer, blocks)
+        hiz_index!(w, self.hiz.buffer, blocks)
     }
 }
 

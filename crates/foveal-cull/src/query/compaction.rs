@@ -1,7 +1,9 @@
-//! Lists of boxes that are left to be looked at: what belongs into one is put there without a branch, since it cannot be
-//! foreseen.
+//! Compaction: dense lists of the boxes that a test left undecided.
+//!
+//! Which boxes remain is unpredictable, so a list is filled without branches: every candidate is
+//! written, and the length grows only for those that remain.
 
-/// The numbers of the bits that are set in a byte, a byte each.
+/// For each byte, the positions of its set bits, one byte per position.
 const BITS: [u64; 256] = {
     let mut bits = [0; 256];
     let mut n = 0;
@@ -19,54 +21,54 @@ const BITS: [u64; 256] = {
     bits
 };
 
-/// Most boxes that are gone through together.
-const MOST: usize = 256;
+/// Most boxes in a list.
+const CAPACITY: usize = 256;
 
-/// Boxes that are left: their numbers.
-pub(super) struct List {
-    numbers: [u8; MOST + 8],
+/// A dense list of box indices.
+pub(super) struct Compacted {
+    indices: [u8; CAPACITY + 8],
     pub(super) count: usize,
 }
 
-impl List {
-    pub(super) const NONE: Self = Self {
-        numbers: [0; MOST + 8],
+impl Compacted {
+    pub(super) const EMPTY: Self = Self {
+        indices: [0; CAPACITY + 8],
         count: 0,
     };
 
     #[inline(always)]
-    pub(super) fn numbers(&self) -> &[u8] {
-        &self.numbers[..self.count]
+    pub(super) fn indices(&self) -> &[u8] {
+        &self.indices[..self.count]
     }
 
-    /// Number `n`, which may have been dropped since.
+    /// Entry `n`. Entries past the end keep their value until they are overwritten.
     #[inline(always)]
-    pub(super) fn number(&self, n: usize) -> u8 {
-        self.numbers[n]
+    pub(super) fn index(&self, n: usize) -> u8 {
+        self.indices[n]
     }
 
-    /// Adds those of group `g` whose bit is set.
+    /// Appends the members of group `g` (eight boxes) whose bit in `wanted` is set.
     #[inline(always)]
-    pub(super) fn add_eight(&mut self, g: usize, wanted: usize) {
-        let numbers = BITS[wanted] + g as u64 * 0x0808_0808_0808_0808;
-        if let Some(to) = self.numbers[self.count..].first_chunk_mut() {
-            *to = numbers.to_le_bytes();
+    pub(super) fn push_eight(&mut self, g: usize, wanted: usize) {
+        let indices = BITS[wanted] + g as u64 * 0x0808_0808_0808_0808;
+        if let Some(to) = self.indices[self.count..].first_chunk_mut() {
+            *to = indices.to_le_bytes();
         }
         self.count += wanted.count_ones() as usize;
     }
 
-    /// Drops numbers from `end` on, which come last.
+    /// Drops the entries from box `end` on, which are the last ones.
     #[inline(always)]
-    pub(super) fn end(&mut self, end: usize) {
-        while self.count > 0 && usize::from(self.numbers[self.count - 1]) >= end {
+    pub(super) fn truncate_at(&mut self, end: usize) {
+        while self.count > 0 && usize::from(self.indices[self.count - 1]) >= end {
             self.count -= 1;
         }
     }
 
-    /// Adds a box if `wanted`.
+    /// Appends box `n` if `wanted`, without a branch.
     #[inline(always)]
-    pub(super) fn add(&mut self, n: usize, wanted: bool) {
-        self.numbers[self.count] = n as u8;
+    pub(super) fn push_if(&mut self, n: usize, wanted: bool) {
+        self.indices[self.count] = n as u8;
         self.count += usize::from(wanted);
     }
 }

@@ -1,9 +1,9 @@
-//! Plane lanes
+//! The planes of boxes by lane: what all boxes of a query have in common.
 
-/// Relative error of a plane's depth, of the largest term; generous.
+/// Relative error of a plane's depth, of the largest term. Generous.
 pub(super) const ROUNDING: f32 = 4e-6;
 
-/// A value that is affine over the screen, in samples, and more than its rounding.
+/// A value that is affine over the screen (samples), and a bound on its rounding.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Affine {
     pub(super) x: f32,
@@ -12,17 +12,18 @@ pub(super) struct Affine {
     pub(super) error: f32,
 }
 
-/// Lanes of gaps: front minus back planes, above zero where a ray may meet the box. Number `4 a + 2 b + near` is from the
-/// front across axis `a` to a back across axis `a + 1 + b`: the farther of its two planes, or the nearer one (`near`),
-/// which is a back too where neither faces the eye.
+/// Lanes of gaps: front minus back planes, above zero where a ray may meet the box. Lane
+/// `4 a + 2 b + near` is from the front plane across axis `a` to a back plane across axis
+/// `a + 1 + b`: the farther of its two planes, or the nearer one (`near`), which is a back plane
+/// too where neither faces the eye.
 pub(super) const GAPS: u32 = 0xfff;
-/// Gaps to nearer planes.
+/// Lanes of gaps to nearer planes.
 pub(super) const NEARER: u32 = 0xaaa;
 /// Lanes of the front planes themselves, by axis.
 pub(super) const FRONTS: u32 = 7 << FIRST_FRONT;
 const FIRST_FRONT: usize = 12;
 
-/// The axis of a lane's front plane, and of its back plane; three for none.
+/// Axis of each lane's front plane, and of its back plane; three for none.
 const AXES: [[usize; 16]; 2] = {
     let mut axes = [[3; 16]; 2];
     let mut lane = 0;
@@ -38,7 +39,7 @@ const AXES: [[usize; 16]; 2] = {
     axes
 };
 
-/// By front or back and axis: one in the lanes that have it.
+/// By front or back and by axis: one in the lanes that have the axis.
 pub(super) const OF_AXIS: [[[f32; 16]; 3]; 2] = {
     let mut of = [[[0.0; 16]; 3]; 2];
     let mut n = 0;
@@ -52,26 +53,27 @@ pub(super) const OF_AXIS: [[[f32; 16]; 3]; 2] = {
     of
 };
 
-/// What the planes of all boxes of a query have in common, by lane.
+/// The planes of all boxes of a query, by lane.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct PlaneLanes {
-    /// Of front and back: change to the right and downwards, depth at zero, and error.
+pub(crate) struct AxisPlaneLanes {
+    /// Front and back: change to the right and downwards, depth at zero, and error.
     pub(super) affine: [[[f32; 16]; 4]; 2],
     pub(super) parallel: Option<Parallel>,
 }
 
-/// The same for orthographic views, where the way to the box does not say which of its planes face the eye.
+/// Further data of orthographic views, where the direction to the box does not say which of its
+/// planes face the eye.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parallel {
-    /// Change of depth per metre, of front and back.
+    /// Change of depth per metre, front and back.
     pub(super) per_metre: [[f32; 16]; 2],
-    /// Bit per lane: of the front's and of the back's axis, the upper plane faces the eye.
+    /// Bit per lane: the upper plane across the front's (the back's) axis faces the eye.
     pub(super) down: [u32; 2],
     /// Bit per lane: its planes are known.
     pub(super) known: u32,
 }
 
-impl PlaneLanes {
+impl AxisPlaneLanes {
     pub(super) fn new(axes: &[Affine; 3], per_metre: Option<[f32; 3]>) -> Self {
         let mut affine = [[[0.0; 16]; 4]; 2];
         for (affine, of) in affine.iter_mut().zip(&AXES) {

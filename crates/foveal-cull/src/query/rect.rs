@@ -1,8 +1,8 @@
-//! A rectangle with a depth against the buffer.
+//! The block-by-block test of a rectangle with a depth.
 
-use super::axis_planes::Planes;
+use super::axis_planes::AxisPlanes;
 use super::faces::Faces;
-use crate::depth::buffer::DepthBuffer;
+use crate::depth::buffer::OcclusionBuffer;
 use crate::format::{BLOCK, SAMPLES};
 use crate::simd::Lanes;
 use glam::Vec3;
@@ -47,7 +47,7 @@ impl PixelRect {
         (x1 - x0 + 1) * (y1 - y0 + 1)
     }
 
-    /// The part in one block, a bit per pixel.
+    /// The part in one block, one bit per pixel.
     #[inline(always)]
     fn bits(self, bx: u32, by: u32) -> u64 {
         let x0 = self.x0.max(bx * BLOCK) - bx * BLOCK;
@@ -60,15 +60,15 @@ impl PixelRect {
     }
 }
 
-/// Whether everything at `code` or farther is hidden in the rectangle; and, where it is not, whether a box is
-/// that lies there (centre and half extent).
+/// Whether everything at `code` or farther is occluded in the rectangle; and if not, whether the
+/// box in it is (by its centre and half extent).
 #[inline(always)]
 pub(crate) fn hidden<L: Lanes>(
     l: L,
-    buffer: &DepthBuffer,
+    buffer: &OcclusionBuffer,
     rect: PixelRect,
     code: i16,
-    place: Option<(&Planes, (Vec3, Vec3))>,
+    place: Option<(&AxisPlanes, (Vec3, Vec3))>,
 ) -> bool {
     let mut faces: Option<Faces<L::W>> = None;
     let [bx0, by0, bx1, by1] = rect.blocks();

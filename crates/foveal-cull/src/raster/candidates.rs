@@ -1,4 +1,4 @@
-//! Candidates
+//! Clusters that may be drawn in a frame, and the lists that hold them.
 
 use crate::stats::CullStats;
 
@@ -16,24 +16,24 @@ pub(crate) struct Candidate {
     pub(super) crossing: bool,
 }
 
-/// What the frame keeps between its two steps, and from frame to frame (so nothing is allocated).
+/// Lists of a frame. They keep their memory from frame to frame, so that nothing is allocated.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct FrameScratch {
     pub(crate) candidates: Vec<Candidate>,
-    /// The order of drawing: the bits of the nearest distance, then the number of the candidate.
+    /// Drawing order: the bits of the nearest distance, then the index of the candidate.
     pub(super) order: Vec<u64>,
     /// Clip rows per instance.
     pub(crate) rows: Vec<[[f64; 4]; 4]>,
-    /// What each thread finds.
+    /// Candidates found by each part of the selection.
     pub(crate) parts: Vec<Part>,
 }
 
-/// Candidates from some of the clusters.
+/// Candidates among some of the clusters.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Part {
     pub(super) candidates: Vec<Candidate>,
     pub(super) order: Vec<u64>,
-    /// Counts of what was looked at.
+    /// Stats of the clusters looked at.
     pub(super) stats: CullStats,
 }
 

@@ -1,7 +1,7 @@
 //! The slow path: triangles that cross the near plane or leave the guard band.
 //!
-//! Sutherland-Hodgman in homogeneous coordinates and `f64`, then the ordinary set-up. What is nearer than
-//! the near plane is not drawn by a renderer and so occludes nothing.
+//! They are clipped and then set up as usual. A renderer does not draw what is nearer than the near
+//! plane, so it occludes nothing.
 
 use super::facing::Facing;
 use super::points::GUARD;
@@ -14,8 +14,8 @@ use crate::projection::clip::{ClipPolygon, NEAR};
 use crate::simd::Lanes;
 use glam::DVec4;
 
-/// Near plane and guard band.
-const PLANES: [DVec4; 5] = {
+/// The near plane and the guard band.
+const CLIP_PLANES: [DVec4; 5] = {
     let g = GUARD * 0.999;
     [
         NEAR,
@@ -26,7 +26,7 @@ const PLANES: [DVec4; 5] = {
     ]
 };
 
-/// Draws the triangles of a cluster that have a vertex which [`super::setup`] refused.
+/// Draws the triangles of a cluster with a vertex that `transform` refused.
 #[inline(always)]
 pub(crate) fn draw_clipped<L: Lanes>(
     l: L,
@@ -53,7 +53,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
             rows[3].dot(p),
         )
     };
-    // Borders that a corner lies beyond: near, left, right, top, bottom.
+    // Screen edges that a corner lies beyond: near, left, right, top, bottom.
     let right = f64::from(band.blocks_x * BLOCK_SAMPLES);
     let (top, bottom) = (
         f64::from(band.first_row * BLOCK_SAMPLES),
@@ -96,7 +96,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
                 continue;
             }
             let mut polygon = ClipPolygon::new(&[corner(a), corner(b), corner(c)]);
-            for plane in PLANES {
+            for plane in CLIP_PLANES {
                 polygon.clip(plane);
             }
             draw_fan(l, band, scratch, &polygon, facing);
@@ -121,7 +121,7 @@ fn draw_fan<L: Lanes>(
         let d = (c.z * inv) as f32;
         points.set(i, c.x * inv, c.y * inv, d.min(1.0));
     }
-    // A fan; lanes that are not used repeat one point and have no area.
+    // A fan. Unused lanes repeat one point and have no area.
     let mut index = [[0u8; 8]; 4];
     for i in 1..polygon.count - 1 {
         for (corner, point) in index.iter_mut().zip([0, i, i + 1, i + 1]) {

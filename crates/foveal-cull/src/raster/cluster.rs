@@ -1,12 +1,13 @@
-//! Cluster
+//! Drawing one cluster: transform, silhouette margins if needed, set-up of its quads, and the
+//! clipper for the rest.
 
 use super::clip;
 use super::facing::Facing;
-use super::open::Open;
-use super::patch::Prepare;
+use super::patch::PreparePatch;
 use super::points::transform;
 use super::scratch::Scratch;
 use super::setup::draw_eight;
+use super::visible_quads::VisibleQuads;
 use crate::depth::band::Band;
 use crate::occluder::mesh::{Cluster, OccluderMesh};
 use crate::simd::{Lanes, four};
@@ -25,17 +26,17 @@ pub(crate) fn draw_cluster<L: Lanes>(
     let n = usize::from(cluster.vertex_count).next_multiple_of(8);
     let own = (&mesh.vertices, cluster.first_vertex as usize, n);
     let clipped = transform(&mut scratch.points, 0, own, rows);
-    // Without a ring every polygon shrinks by itself.
-    let sheet = facing
+    // Without a one-ring every polygon shrinks by itself.
+    let patch = facing
         .radius
         .filter(|_| !facing.two_sided)
-        .zip(mesh.rings.rings.get(facing.cluster));
-    let mut open = Open::all();
-    if let Some((radius, ring)) = sheet {
-        open = l.apart(Prepare {
+        .zip(mesh.one_rings.clusters.get(facing.cluster));
+    let mut visible = VisibleQuads::all();
+    if let Some((radius, ring)) = patch {
+        visible = l.outlined(PreparePatch {
             band,
             points: &mut scratch.points,
-            sheet: &mut scratch.sheet,
+            patch: &mut scratch.patch,
             mesh,
             cluster,
             ring,
@@ -48,17 +49,17 @@ pub(crate) fn draw_cluster<L: Lanes>(
     let first = cluster.first_group as usize;
     for ((group, kept), _) in mesh.quads[first..first + groups]
         .iter()
-        .zip(&scratch.sheet.kept)
-        .zip(open.quads)
-        .filter(|(_, open)| *open != 0)
+        .zip(&scratch.patch.kept)
+        .zip(visible.quads)
+        .filter(|(_, visible)| *visible != 0)
     {
         let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
         let order = [0, i1, 2, i3];
         let index = four!(c => &group[order[c]]);
-        let kept = sheet.is_some().then_some((kept, scratch.sheet.slack));
+        let kept = patch.is_some().then_some((kept, scratch.patch.slack));
         scratch.polygons += draw_eight(l, band, &scratch.points, index, kept, facing);
     }
-    scratch.sheet.restore(band);
+    scratch.patch.restore(band);
     if clipped {
         clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
     }

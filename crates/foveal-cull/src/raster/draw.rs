@@ -1,25 +1,25 @@
-//! One frame: the chosen clusters, drawn in their order.
+//! Drawing the selected clusters in their order.
 //!
-//! Just before a cluster is drawn, its rectangle is tested against the depth so far; one that is hidden there could
-//! not have changed anything.
+//! Just before a cluster is drawn, its rectangle is tested against the depth so far. A cluster
+//! hidden there would have changed nothing.
 
 use super::candidates::FrameScratch;
 use super::cluster::draw_cluster;
-use super::facing::{Facing, Radius};
+use super::facing::{Facing, ValidityRadius};
 use super::scratch::Scratch;
 use crate::depth::band::Band;
 use crate::occluder::set::OccluderSet;
 use crate::options::Budget;
 use crate::simd::{Kernel, Lanes};
 
-/// Larger rectangles of blocks are not fetched before they are drawn into.
+/// Larger rectangles of blocks are not prefetched.
 const MOST_FETCHED: u32 = 64;
 
-/// What the set-up of a cluster takes, besides one for each quad, in the unit of
+/// Work of setting up a cluster, besides one unit for each quad, in the unit of
 /// [`WORK_OF_FULL`](super::block::WORK_OF_FULL).
 const WORK_OF_CLUSTER: u32 = 16;
 
-/// Draws the candidates into one band.
+/// The kernel that draws the candidates into one band.
 pub(crate) struct Draw<'a, 'b> {
     pub(crate) set: &'a OccluderSet,
     pub(crate) frame: &'a FrameScratch,
@@ -27,13 +27,13 @@ pub(crate) struct Draw<'a, 'b> {
     pub(crate) scratch: &'a mut Scratch,
     pub(crate) drawn: Option<&'a mut Vec<u32>>,
     pub(crate) budget: Option<Budget<'a>>,
-    pub(crate) radius: Option<Radius>,
+    pub(crate) radius: Option<ValidityRadius>,
 }
 
 impl Kernel for Draw<'_, '_> {
     type Output = u64;
 
-    /// Gives the number of clusters that the budget left out.
+    /// Returns the number of clusters that the budget left out.
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> u64 {
         let Self {

@@ -1,9 +1,9 @@
-//! Edges
+//! The edges of a convex polygon.
 
 use crate::simd::{Lanes, four};
 
-/// Four borders, left two and right two (the same twice where there is one): lines through (x, y), samples,
-/// with dx/dy `slope`.
+/// Four edges, two left and two right ones (the same twice where there is one): lines through (x,
+/// y), samples, with dx/dy `slope`.
 #[derive(Clone, Copy)]
 pub(crate) struct Edges<L: Lanes> {
     pub(crate) x: L::Q,
@@ -11,12 +11,14 @@ pub(crate) struct Edges<L: Lanes> {
     pub(crate) slope: L::Q,
 }
 
-/// Edges with a larger slope are taken for horizontal, and moved inwards by more than they bend away from it.
+/// Edges with a larger slope count as horizontal and move inwards by more than they bend away from
+/// it.
 const FLAT: f64 = 1e9;
 const FLAT_MARGIN: f64 = 1e-4;
 
-/// The edges that are left, left, right, right borders, and the corners where these are highest: by a bit per edge
-/// that leads down (corner k to k + 1), then one per edge that leads up. None where a side has no border, or three.
+/// Which edges are the two left and the two right ones, and their upper corners: by a bit per edge
+/// that leads down (corner k to k + 1), then one per edge that leads up. None where a side has no
+/// edge, or three.
 const ORDER: [Option<([u8; 4], [u8; 4])>; 256] = {
     let mut order = [None; 256];
     let mut bits = 0;
@@ -43,9 +45,9 @@ const ORDER: [Option<([u8; 4], [u8; 4])>; 256] = {
 };
 
 impl<L: Lanes> Edges<L> {
-    /// The borders of a polygon of three (the first again as the fourth) or four corners, and the rows that
-    /// horizontal edges leave. None where it has no area, or three borders on one side: such a quadrilateral
-    /// must be drawn as two triangles.
+    /// The edges of a polygon of three corners (the first again as the fourth) or four, and the
+    /// rows that horizontal edges leave. None without area, or with three edges on one side: such a
+    /// quadrilateral must be drawn as two triangles.
     #[inline(always)]
     pub(crate) fn of(l: L, x: L::Q, y: L::Q) -> Option<(Self, Option<(f32, f32)>)> {
         const NEXT: [u8; 4] = [1, 2, 3, 0];
@@ -62,7 +64,7 @@ impl<L: Lanes> Edges<L> {
             y: l.qpick(y, upper),
             slope: l.qpick(slope, edge),
         };
-        // NaN, where both ends are the same, is not among them.
+        // Edges without length have a slope of NaN and are not among them.
         let flat = l.qlt(l.qsplat(FLAT * 0.999), size) & !steep;
         let rows = (flat != 0).then(|| {
             let (mut xs, mut ys) = ([0.0; 4], [0.0; 4]);
@@ -73,7 +75,7 @@ impl<L: Lanes> Edges<L> {
         Some((edges, rows))
     }
 
-    /// Moves every border inwards by `by` samples.
+    /// Moves every edge inwards by `by` samples.
     #[inline(always)]
     pub(crate) fn shrink(&mut self, l: L, by: f64) {
         let mut slope = [0.0; 4];
@@ -86,7 +88,7 @@ impl<L: Lanes> Edges<L> {
 
 #[cold]
 fn flat_rows(x: [f64; 4], y: [f64; 4], flat: u32) -> (f32, f32) {
-    // Samples lie on half steps, so both limits can be rounded down to one.
+    // Samples lie on half steps, so both limits may be rounded down to one.
     let step = |y: f64| ((2.0 * y).floor() * 0.5) as f32;
     let (mut after, mut last) = (f32::NEG_INFINITY, f32::INFINITY);
     for k in (0..4).filter(|&k| flat >> k & 1 != 0) {

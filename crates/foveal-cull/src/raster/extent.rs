@@ -1,10 +1,10 @@
-//! Extent
+//! Areas, extents and blocks of eight quads on the screen.
 
 use crate::depth::band::Band;
 use crate::format::BLOCK_SAMPLES;
 use crate::simd::{Lanes, four};
 
-/// Twice the signed area, positive when facing the eye (y points down).
+/// Twice the signed area; positive if it faces the eye (y points down).
 #[inline(always)]
 pub(super) fn area<L: Lanes>(
     l: L,
@@ -30,8 +30,8 @@ pub(super) fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
     l.max(l.max(v[0], v[1]), l.max(v[2], v[3]))
 }
 
-/// Half-sample steps strictly above the least x and y and up to the greatest: every sample and pixel centre lies
-/// on one. Clamping to the band drops what is outside.
+/// Half-sample steps strictly above the least x and y and up to the greatest. Every sample and
+/// pixel centre lies on a step. Clamped to the band.
 #[inline(always)]
 pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[L::F; 2]; 2]) -> [L::I; 4] {
     let size = BLOCK_SAMPLES as f32;
@@ -48,7 +48,7 @@ pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[L::F; 2]; 2]
     ]
 }
 
-/// First and last block that hold these half-sample steps.
+/// First and last block that hold these steps.
 #[inline(always)]
 pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [L::I; 4]) -> [[i32; 8]; 4] {
     let per_block = l.isplat((2 * BLOCK_SAMPLES).trailing_zeros() as i32);

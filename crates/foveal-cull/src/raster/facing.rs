@@ -1,21 +1,21 @@
-//! Facing
+//! How the clusters of an instance face the eye, and the view region they are drawn for.
 
 /// How an instance is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Facing {
-    /// The transform mirrors, so winding is reversed.
+    /// The transform mirrors, so that winding is reversed.
     pub(crate) mirrored: bool,
     pub(crate) two_sided: bool,
     /// Number of the cluster in its mesh.
     pub(crate) cluster: usize,
-    /// For a result that holds around the eye.
-    pub(crate) radius: Option<Radius>,
+    /// The view region, if there is one.
+    pub(crate) radius: Option<ValidityRadius>,
 }
 
-/// A validity radius, in units of the set-up.
+/// The radius of a view region, in the units of set-up.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Radius {
-    /// Samples that a point at depth 1 shifts by.
+pub(crate) struct ValidityRadius {
+    /// Shift of a point at depth 1, samples.
     pub(crate) shift: f32,
     /// The same along x and y.
     pub(crate) shifts: [f32; 2],

@@ -1,7 +1,7 @@
-//! Erasing: the pixels that the border of a sheet comes too near to.
+//! Silhouette margins: the pixels that a silhouette edge comes too near to.
 //!
-//! A border erases only what lies as deep as the sheet can be where that border is within reach of it; where the cluster folds,
-//! its farther part stays.
+//! A margin only affects surfaces as deep as the patch can be within reach of the edge. Where the
+//! cluster folds, its farther part stays.
 
 use super::extent::out;
 use super::points::Points;
@@ -9,52 +9,55 @@ use crate::depth::band::Band;
 use crate::format::{BLOCK, BLOCK_SAMPLES, SAMPLES, encode};
 use crate::simd::{Lanes, four, larger, smaller};
 
-/// From a sample to all points that are nearer to it than to others, and more than all rounding, samples.
+/// Distance from a sample to the farthest point that is nearer to it than to other samples, and
+/// more than all rounding.
 pub(super) const AROUND_SAMPLE: f32 = 0.8;
 
 /// More than all rounding, samples.
 const MARGIN: f32 = 0.0625;
 
-/// How far borders reach.
+/// The reach of silhouette edges.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
-    /// Of a point at depth 1, along x and y, samples.
+    /// Shift of a point at depth 1 along x and y, samples.
     pub(super) shifts: [f32; 2],
-    /// Most change of depth per sample on the sheet, along x plus along y.
+    /// Largest change of depth per sample on the patch, along x plus along y.
     pub(super) steepness: f32,
-    /// Where the cluster is drawn: first and last block, inclusive.
+    /// Blocks in which the cluster is drawn: first and last, inclusive.
     pub(super) blocks: [u32; 4],
 }
 
-/// One border: where it may erase, and by what.
+/// One silhouette edge, and the place and depth of its margin.
 #[derive(Clone, Copy)]
-struct Border {
-    /// An end of it, samples.
+struct SilhouetteEdge {
+    /// One of its ends, samples.
     x: f32,
     y: f32,
-    /// Change of x per y. Of a border that is all but level (NaN where both ends are the same) every row has the whole.
+    /// Change of x per y. Edges that are all but horizontal (NaN where both ends are the same) span
+    /// their whole width in every row.
     slope: f32,
     /// Least x and y, and greatest.
     ends: [f32; 4],
-    /// How far it reaches, along x and y, samples.
+    /// Reach along x and y, samples.
     reach: [f32; 2],
-    /// First and last block that it comes near to.
+    /// First and last block within reach.
     blocks: [u32; 4],
-    /// What is not nearer is hidden whatever this border does.
+    /// Depth code: what is not nearer is hidden whatever this edge does.
     code: i16,
-    /// As deep as the sheet can be where the border is within reach of it.
+    /// Farthest and nearest depth code that the patch can have within reach.
     depths: [i16; 2],
 }
 
-/// Steeper is level.
+/// Edges with a larger slope count as horizontal.
 const LEVEL: f32 = 1e4;
 
-/// Erases the pixels to which any of the first `count` of eight edges (their two ends by vertex) comes within its shift.
+/// Marks the margins of the first `count` of eight silhouette edges, given by the vertices of their
+/// ends.
 #[inline(always)]
-pub(super) fn erase_eight<L: Lanes>(
+pub(super) fn mark_margins<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
-    erased: &mut Vec<u32>,
+    margin_blocks: &mut Vec<u32>,
     points: &Points,
     [from, to]: [&[u8; 8]; 2],
     count: usize,
@@ -75,7 +78,7 @@ pub(super) fn erase_eight<L: Lanes>(
         l.add(ends[2], reach_x),
         l.add(ends[3], reach_y),
     ];
-    // The blocks, where it is beside none of them.
+    // Only edges that come near to the blocks of the cluster.
     let size = BLOCK_SAMPLES as f32;
     let edge = four!(k => l.splat((reach.blocks[k] + k as u32 / 2) as f32 * size));
     let meets = l.iand(
@@ -109,7 +112,7 @@ pub(super) fn erase_eight<L: Lanes>(
     while live != 0 {
         let i = live.trailing_zeros() as usize;
         live &= live - 1;
-        let border = Border {
+        let edge = SilhouetteEdge {
             x: x[i],
             y: y[i],
             slope: slope[i],
@@ -119,15 +122,20 @@ pub(super) fn erase_eight<L: Lanes>(
             code: encode(near_codes[i]).saturating_add(1),
             depths: [encode(far[i]), encode(near[i]).saturating_add(1)],
         };
-        erase(l, band, erased, &border);
+        mark_margin(l, band, margin_blocks, &edge);
     }
 }
 
-/// Erases the pixels that a border is within reach of.
+/// Marks the margin of one silhouette edge.
 #[inline(always)]
-fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Border) {
+fn mark_margin<L: Lanes>(
+    l: L,
+    band: &mut Band<'_>,
+    margin_blocks: &mut Vec<u32>,
+    edge: &SilhouetteEdge,
+) {
     const PIXELS: [f32; 8] = [0.0, 4.0, 8.0, 12.0, 16.0, 20.0, 24.0, 28.0];
-    let Border {
+    let SilhouetteEdge {
         x,
         y,
         slope,
@@ -136,10 +144,10 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
         blocks: [first, by0, last, by1],
         code,
         depths,
-    } = *border;
-    // What lies behind all that is known there is hidden whatever this edge does; what lies before it, the edge is
-    // behind.
-    if band.hides(border.blocks, code) {
+    } = *edge;
+    // A cluster behind everything there is hidden whatever this edge does; in front of it, the edge
+    // is behind.
+    if band.hides(edge.blocks, code) {
         return;
     }
     let size = BLOCK_SAMPLES as f32;
@@ -149,7 +157,8 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
         let top = (by * BLOCK_SAMPLES) as f32;
         let (mut bx0, mut bx1) = (first, last);
         if bx0 != bx1 && !level {
-            // It is straight: no farther to the sides than where it enters and leaves what is near to the row of blocks.
+            // The edge is straight: no farther to the sides than where it enters and leaves the
+            // reach of this row of blocks.
             let at = |row: f32| x + (smaller(larger(row, y_lo), y_hi) - y) * slope;
             let (p, q) = (at(top - reach_y), at(top + (size + reach_y)));
             let (p, q) = (smaller(p, q), larger(p, q));
@@ -176,7 +185,7 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
         }
         let from = l.select(beside, l.splat(1e9), l.sub(from, l.splat(reach_x)));
         let to = l.select(beside, l.splat(-1e9), l.add(to, l.splat(reach_x)));
-        // The first pixel of each row that is within reach, and the first after.
+        // The first pixel of each row within reach, and the first after.
         let pixel = l.splat(1.0 / SAMPLES as f32);
         let from = l.trunc(l.mul(from, pixel));
         let to = l.trunc(l.add(l.mul(to, pixel), l.splat(1.0)));
@@ -186,16 +195,16 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
                 continue;
             }
             let left = l.isplat((bx * BLOCK) as i32);
-            let bits = l.plane(l.isub(from, left), l.isub(to, left));
+            let bits = l.bit_rows(l.isub(from, left), l.isub(to, left));
             if bits != 0 {
-                band.erases = true;
-                let (pixels, border) = (&mut band.erased[i], &mut band.border[i]);
+                band.has_margins = true;
+                let (pixels, edge) = (&mut band.margin[i], &mut band.margin_depths[i]);
                 if *pixels == 0 {
-                    erased.push(i as u32);
-                    *border = [i16::MAX, i16::MIN];
+                    margin_blocks.push(i as u32);
+                    *edge = [i16::MAX, i16::MIN];
                 }
                 *pixels |= bits;
-                *border = [border[0].min(depths[0]), border[1].max(depths[1])];
+                *edge = [edge[0].min(depths[0]), edge[1].max(depths[1])];
             }
         }
     }
@@ -204,7 +213,7 @@ fn erase<L: Lanes>(l: L, band: &mut Band<'_>, erased: &mut Vec<u32>, border: &Bo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::depth::buffer::DepthBuffer;
+    use crate::depth::buffer::OcclusionBuffer;
     use crate::simd::portable::Portable;
 
     /// Whether a segment meets a rectangle (least x and y, greatest), by cutting it at each side.
@@ -236,12 +245,12 @@ mod tests {
         };
         let mut counts = [0; 2];
         for round in 0..300 {
-            let mut buffer = DepthBuffer::new(width, height);
+            let mut buffer = OcclusionBuffer::new(width, height);
             let mut points = Points::default();
             let mut ends = [[0u8; 8]; 2];
             let size = SAMPLES as f32;
             for v in 0..16u8 {
-                // Some level, some upright, some short, some partly outside.
+                // Some are horizontal, some upright, some short, some partly outside.
                 let short = if round % 3 == 0 { 9.0 } else { 400.0 };
                 let (x, y) = match v {
                     9 => (f64::from(points.x[8]), f64::from(random(short))),
@@ -260,13 +269,13 @@ mod tests {
                 blocks: [1, 0, 8, 5],
             };
             let count = 1 + round % 8;
-            let mut erased = Vec::new();
+            let mut margin_blocks = Vec::new();
             let [from, to] = &ends;
             let mut band = buffer.band();
-            erase_eight(
+            mark_margins(
                 Portable,
                 &mut band,
-                &mut erased,
+                &mut margin_blocks,
                 &points,
                 [from, to],
                 count,
@@ -275,8 +284,8 @@ mod tests {
             for by in 0..height / BLOCK {
                 for bx in 0..width / BLOCK {
                     let i = by * (width / BLOCK) + bx;
-                    let pixels = band.erased[i as usize];
-                    assert_eq!(pixels != 0, erased.contains(&i));
+                    let pixels = band.margin[i as usize];
+                    assert_eq!(pixels != 0, margin_blocks.contains(&i));
                     if !(1..=8).contains(&bx) || by > 5 {
                         assert_eq!(pixels, 0);
                         continue;

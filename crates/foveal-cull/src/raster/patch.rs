@@ -1,90 +1,95 @@
-//! Results that hold around the eye: a cluster and its ring as one sheet.
+//! Surface patches: what a cluster hides from every eye of a view region (two eyes, or a validity
+//! radius).
 //!
-//! Take all triangles of a cluster, and of the ring around it, that surely face the eye in the middle, m. Let a
-//! point q lie behind one of them as seen from m, and let another eye e be near. In the plane through m, e and q
-//! the sheet is a line that begins between m and q, and as every triangle faces m it never turns back: seen from m, it
-//! goes on in the direction in which e lies, until it crosses the ray from e to q, and q is hidden there too, or ends at
-//! the sheet's border. From m that part of the plane appears as a piece of a straight line that begins at q and, for
-//! what lies at depth d, is no longer than the shift of depth d. So a pixel is safe unless a border comes
-//! within its own shift of it; such pixels are erased: the cluster covers nothing there. (Wonka et
-//! al. 2000 shrink occluders by as much; that inner edges need none of it is what keeps tessellated surfaces closed.)
+//! A patch is a cluster with its one-ring, as far as its triangles surely face the centre eye. An
+//! edge with the patch on one side only is a *silhouette edge*: an edge of the mesh, of the
+//! outline, or of triangles that are too thin or too steep. The *silhouette margin* is the strip
+//! along these edges that another eye may see past; the cluster covers nothing there.
 //!
-//! A border is an edge with the sheet on one side only: of the mesh, of a silhouette, of triangles too thin or too steep
-//! to say anything about. The ring's outer border needs no look: of the ring, only triangles count that are higher than
-//! the shift, from their corner on the cluster to the opposite edge (or the other way round). A function that is 0 on
-//! the cluster and 1 on the outer border changes by at most one per height, so that no way within the sheet
-//! from the one to the other is shorter.
+//! Proof. Let q lie behind the patch as seen from the centre eye m, and let e be another eye. In
+//! the plane through m, e and q the patch is a line that begins between m and q. Every triangle
+//! faces m, so the line never turns back: seen from m it continues in the direction of e until it
+//! crosses the ray from e to q, and q is hidden from e too, or until it ends at a silhouette edge.
+//! From m, that piece of the plane is a straight line that begins at q and is no longer than the
+//! shift of the depth of q. A pixel is therefore safe unless a silhouette edge comes within its own
+//! shift of it. (Wonka, Wimmer and Schmalstieg 2000 shrink every occluder by as much; tessellated
+//! surfaces stay closed only because inner edges need none of it.)
 //!
-//! How a border erases is in [`super::border`].
+//! The outer edges of the one-ring need no test: of the one-ring, only triangles count that are
+//! higher than the shift, from their corner on the cluster to the opposite edge (or the other way
+//! round). A function that is 0 on the cluster and 1 on the outer edges changes by at most one per
+//! height, so that no path within the patch from one to the other is shorter.
 //!
-//! Between samples the sheet may be another triangle than at the nearest of them, half a sample away in each axis;
-//! depths are lowered by what the steepest triangle of the sheet changes there.
+//! Between samples the patch may be another triangle than at the nearest sample, which is half a
+//! sample away in each axis. Depths are lowered by what the steepest triangle of the patch changes
+//! there.
 
 use super::extent::{area, highest, lowest};
-use super::facing::Radius;
+use super::facing::ValidityRadius;
 use super::margin::{self, AROUND_SAMPLE, Reach};
-use super::open::{Corners, Open};
 use super::points::{Points, transform};
+use super::visible_quads::{QuadCorners, VisibleQuads};
 use crate::depth::band::Band;
 use crate::occluder::mesh::{Cluster, OccluderMesh};
-use crate::occluder::one_ring::{NUMBERS, RING, Ring, SECOND};
+use crate::occluder::one_ring::{FIRST_OF_RING, FIRST_OF_SECOND, MAX_NUMBERS, OneRing};
 use crate::simd::{Kernel, Lanes, four, larger, smaller};
 
-/// A triangle surely faces the eye if it is higher than this over the sum of its quad's sides, samples: corners are
-/// rounded by 1/512 at most.
+/// A triangle surely faces the eye if its height exceeds this over the sum of its quad's sides,
+/// samples. Vertices are rounded by 1/512 at most.
 const LEAST_HEIGHT: f32 = 0.125;
-/// Steeper triangles, by their nearest depth per sample, do not count: they lie within 32 samples of the line where their
-/// plane is seen from its side.
+/// Triangles that change more than this part of their nearest depth per sample are too steep: they
+/// lie within 32 samples of the line where their plane is seen edge-on.
 const STEEPEST: f32 = 32.0;
-/// What belongs to the sheet of the cluster that is being drawn.
+/// The patch of the cluster that is being drawn.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Sheet {
-    /// Above zero for triangles that belong to it and may be seen: by group the first and the second of each quad.
+pub(crate) struct Patch {
+    /// Above zero for triangles of the patch that may be visible: by group, the first and the
+    /// second of each quad.
     pub(crate) kept: [[[f32; 8]; 2]; 8],
-    /// Its corners, by group.
-    corners: [Corners; 8],
-    /// By how much depths are lowered.
+    /// Vertices of the quads, by group.
+    corners: [QuadCorners; 8],
+    /// Distance that depths are lowered by.
     pub(crate) slack: f32,
-    /// Edges that are its borders, by their vertices, and room for all.
-    borders: Vec<[u8; 2]>,
-    /// Blocks with erased pixels.
-    erased: Vec<u32>,
+    /// Silhouette edges, by their vertices, with room for all edges.
+    silhouette: Vec<[u8; 2]>,
+    /// Blocks with margin pixels.
+    margin_blocks: Vec<u32>,
 }
 
-impl Sheet {
-    /// Forgets what was erased.
+impl Patch {
+    /// Clears the margins.
     pub(super) fn restore(&mut self, band: &mut Band<'_>) {
-        for i in self.erased.drain(..) {
-            band.erased[i as usize] = 0;
+        for i in self.margin_blocks.drain(..) {
+            band.margin[i as usize] = 0;
         }
-        band.erases = false;
+        band.has_margins = false;
     }
 }
 
-/// What has to be done before a cluster is drawn for a result that holds around the eye: finds its quads that may be
-/// seen, and if there are any, its sheet, and erases what is too near to the sheet's border within their blocks.
-pub(super) struct Prepare<'a, 'b, 'c> {
+/// The kernel that prepares a cluster for a view region: finds its quads that may be visible and,
+/// if there are any, its patch, and marks the silhouette margins within their blocks.
+pub(super) struct PreparePatch<'a, 'b, 'c> {
     pub(super) band: &'a mut Band<'b>,
     pub(super) points: &'a mut Points,
-    pub(super) sheet: &'a mut Sheet,
+    pub(super) patch: &'a mut Patch,
     pub(super) mesh: &'c OccluderMesh,
     pub(super) cluster: &'c Cluster,
-    pub(super) ring: &'c Ring,
+    pub(super) ring: &'c OneRing,
     /// Clip rows of the instance.
     pub(super) rows: &'c [[f64; 4]; 4],
     pub(super) mirrored: bool,
-    pub(super) radius: Radius,
+    pub(super) radius: ValidityRadius,
 }
 
-impl Kernel for Prepare<'_, '_, '_> {
-    type Output = Open;
+impl Kernel for PreparePatch<'_, '_, '_> {
+    type Output = VisibleQuads;
 
     #[inline(always)]
-    fn run<L: Lanes>(self, l: L) -> Open {
+    fn run<L: Lanes>(self, l: L) -> VisibleQuads {
         let Self {
             band,
             points,
-            sheet,
+            patch,
             mesh,
             cluster,
             ring,
@@ -92,11 +97,12 @@ impl Kernel for Prepare<'_, '_, '_> {
             mirrored,
             radius,
         } = self;
-        let open = Open::of(l, band, points, mesh, cluster, mirrored, &mut sheet.corners);
-        if !open.is_empty() {
+        let visible =
+            VisibleQuads::of(l, band, points, mesh, cluster, mirrored, &mut patch.corners);
+        if !visible.is_empty() {
             let own = usize::from(cluster.vertex_count).next_multiple_of(8);
             let around = (
-                &mesh.rings.vertices,
+                &mesh.one_rings.vertices,
                 ring.first_vertex as usize,
                 usize::from(ring.vertex_count),
             );
@@ -104,14 +110,14 @@ impl Kernel for Prepare<'_, '_, '_> {
             prepare(
                 l,
                 band,
-                sheet,
+                patch,
                 points,
                 mesh,
                 (cluster, ring),
-                (mirrored, open.blocks, radius),
+                (mirrored, visible.blocks, radius),
             );
         }
-        open
+        visible
     }
 }
 
@@ -119,21 +125,21 @@ impl Kernel for Prepare<'_, '_, '_> {
 fn prepare<L: Lanes>(
     l: L,
     band: &mut Band<'_>,
-    sheet: &mut Sheet,
+    patch: &mut Patch,
     points: &Points,
     mesh: &OccluderMesh,
-    (cluster, ring): (&Cluster, &Ring),
-    (mirrored, blocks, radius): (bool, [u32; 4], Radius),
+    (cluster, ring): (&Cluster, &OneRing),
+    (mirrored, blocks, radius): (bool, [u32; 4], ValidityRadius),
 ) {
     let quads = usize::from(cluster.quad_count);
     let around = usize::from(ring.triangle_count);
-    let groups = &mesh.rings.triangles[ring.first_group as usize..][..around.div_ceil(8)];
+    let groups = &mesh.one_rings.triangles[ring.first_group as usize..][..around.div_ceil(8)];
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
     let mut steepest = zero;
     let mut nearest = zero;
-    // By number: all ones for triangles of the sheet. That of no triangle is none.
-    let mut members = [[0; 8]; NUMBERS / 8];
-    let own = sheet.corners.iter().zip(&mut sheet.kept);
+    // By number: all ones for triangles of the patch. The number of no triangle has none.
+    let mut members = [[0; 8]; MAX_NUMBERS / 8];
+    let own = patch.corners.iter().zip(&mut patch.kept);
     for (g, (corners, kept)) in own.take(quads.div_ceil(8)).enumerate() {
         let x = four!(c => l.load(&corners.x[c]));
         let y = four!(c => l.load(&corners.y[c]));
@@ -142,7 +148,7 @@ fn prepare<L: Lanes>(
         let h = l.sub(highest(l, &y), lowest(l, &y));
         let (sides, z_hi) = (l.add(w, h), highest(l, &z));
         let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
-        // Without corners for the clipper.
+        // Quads without a vertex for the clipper.
         let whole = l.lt(l.sub(sum, sum), one);
         nearest = l.select(whole, l.max(nearest, z_hi), nearest);
         for (second, kept) in kept.iter_mut().enumerate() {
@@ -151,11 +157,11 @@ fn prepare<L: Lanes>(
             let (steepness, member) = judge(l, triangle, sides, z_hi);
             let member = l.iand(member, whole);
             steepest = l.max(steepest, l.select(member, steepness, zero));
-            let open = l.iand(member, l.iload(&corners.open));
-            l.store(l.select(open, one, zero), kept);
+            let visible = l.iand(member, l.iload(&corners.visible));
+            l.store(l.select(visible, one, zero), kept);
             // Numbers are those of triangles that are not mirrored.
             let second = second ^ usize::from(mirrored);
-            l.istore(member, &mut members[g % 8 + second * (SECOND / 8)]);
+            l.istore(member, &mut members[g % 8 + second * (FIRST_OF_SECOND / 8)]);
         }
     }
     let base = usize::from(cluster.vertex_count).next_multiple_of(8);
@@ -186,37 +192,51 @@ fn prepare<L: Lanes>(
         let high = l.lt(l.mul(l.mul(height, height), base), l.mul(f, f));
         let member = l.iand(member, high);
         steepest = l.max(steepest, l.select(member, steepness, zero));
-        l.istore(member, &mut members[(RING / 8 + g) % (NUMBERS / 8)]);
+        l.istore(
+            member,
+            &mut members[(FIRST_OF_RING / 8 + g) % (MAX_NUMBERS / 8)],
+        );
     }
     // Lanes after the last triangle have no area.
     l.store(steepest, &mut at);
     let steepest = greatest(at);
     // Half a sample along each axis, and the rounding of gradients.
-    sheet.slack = steepest * 0.6;
+    patch.slack = steepest * 0.6;
     let reach = Reach {
         shifts: radius.shifts,
         steepness: steepest * 1.2,
         blocks,
     };
-    let edges = &mesh.rings.edges[ring.first_edge as usize..][..usize::from(ring.edges)];
-    let most = edges.len().max(sheet.borders.len());
-    sheet.borders.resize(most, [0; 2]);
-    // Few edges are borders, and which ones cannot be foreseen: each is written, and the next one over it if it is none.
+    let edges = &mesh.one_rings.edges[ring.first_edge as usize..][..usize::from(ring.edges)];
+    let most = edges.len().max(patch.silhouette.len());
+    patch.silhouette.resize(most, [0; 2]);
+    // Branch-free: few edges are silhouette edges, and which ones is unpredictable. Each is
+    // written, and overwritten by the next if it is none.
     let members = members.as_flattened();
     let mut count = 0;
     for edge in edges {
-        sheet.borders[count] = edge.vertices;
-        let [a, b] = edge.triangles.map(|t| members[usize::from(t) % NUMBERS]);
+        patch.silhouette[count] = edge.vertices;
+        let [a, b] = edge
+            .triangles
+            .map(|t| members[usize::from(t) % MAX_NUMBERS]);
         count += usize::from(a != b);
     }
-    for eight in sheet.borders[..count].chunks(8) {
+    for eight in patch.silhouette[..count].chunks(8) {
         let mut ends = [[0; 8]; 2];
         for (i, [a, b]) in eight.iter().enumerate() {
             (ends[0][i], ends[1][i]) = (*a, *b);
         }
         let [from, to] = &ends;
-        let erased = &mut sheet.erased;
-        margin::erase_eight(l, band, erased, points, [from, to], eight.len(), &reach);
+        let margin_blocks = &mut patch.margin_blocks;
+        margin::mark_margins(
+            l,
+            band,
+            margin_blocks,
+            points,
+            [from, to],
+            eight.len(),
+            &reach,
+        );
     }
 }
 
@@ -229,7 +249,8 @@ fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (L::F, L::F, L::F
     )
 }
 
-/// How steep a triangle is (change of depth per sample along x plus along y), and whether it may belong to a sheet.
+/// Steepness of a triangle (change of depth per sample along x plus along y), and whether it may
+/// belong to a patch.
 #[inline(always)]
 fn judge<L: Lanes>(
     l: L,

@@ -1,18 +1,18 @@
-//! Points
+//! Vertices on the screen, and the transform that puts them there.
 
 use crate::occluder::vertices::Vertices;
 
-/// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
+/// Vertices beyond this many samples go to the clipper. Below it `f32` keeps 1/256 of a sample.
 pub(crate) const GUARD: f64 = 32768.0;
 
-/// Corners on the screen, samples.
+/// Vertices on the screen, samples.
 #[derive(Clone, Debug)]
 pub(crate) struct Points {
-    /// Rounded, for all but coverage; NaN in x for what the clipper must see.
+    /// Rounded, for everything but coverage; NaN in x for vertices that the clipper must see.
     pub(crate) x: [f32; 256],
     pub(crate) y: [f32; 256],
     pub(crate) depth: [f32; 256],
-    /// What coverage is decided by.
+    /// Exact, for coverage.
     pub(super) exact_x: [f64; 256],
     pub(super) exact_y: [f64; 256],
 }
@@ -36,7 +36,8 @@ impl Default for Points {
     }
 }
 
-/// Fills `points` from `at` on; vertices for the clipper get NaN, which no test accepts. True if there are any.
+/// Fills `points` from `at` on. Vertices for the clipper get NaN, which no test accepts; returns
+/// whether there are any.
 #[inline(always)]
 pub(super) fn transform(
     points: &mut Points,
@@ -65,7 +66,7 @@ pub(super) fn transform(
         let cw = (x * rw[0] + y * rw[1]) + (z * rw[2] + rw[3]);
         let inv = 1.0 / cw;
         let (sx, sy) = (cx * inv, cy * inv);
-        // Beyond the near plane (Z < W, W above zero with it) and within the guard band.
+        // Beyond the near plane (Z < W, where W is above zero too) and within the guard band.
         let inside = (cz < cw) & (sx.abs() < GUARD) & (sy.abs() < GUARD);
         beyond |= i32::from(!inside);
         *ox = if inside { sx as f32 } else { f32::NAN };

@@ -1,20 +1,20 @@
-//! Scratch
+//! Working memory of one thread.
 
-use super::patch::Sheet;
+use super::patch::Patch;
 use super::points::Points;
 
 /// Working memory of one thread.
 #[derive(Clone, Debug)]
 pub(crate) struct Scratch {
-    /// Corners of a cluster.
+    /// Vertices of a cluster.
     pub(crate) points: Points,
-    /// Corners of a clipped polygon.
+    /// Vertices of a clipped polygon.
     pub(crate) clipped: Points,
-    /// Screen borders that vertices lie beyond, for the clipper.
+    /// Screen edges that vertices lie beyond, for the clipper.
     pub(crate) beyond: [u8; 256],
-    /// What belongs together, for a result that holds around the eye.
-    pub(crate) sheet: Sheet,
-    /// Polygons that were set up, for the statistics.
+    /// The surface patch of a cluster, for view regions.
+    pub(crate) patch: Patch,
+    /// Polygons set up, for the stats.
     pub(crate) polygons: u64,
     /// Clusters drawn.
     pub(crate) clusters: u64,
@@ -26,7 +26,7 @@ impl Default for Scratch {
             points: Points::default(),
             clipped: Points::default(),
             beyond: [0; 256],
-            sheet: Sheet::default(),
+            patch: Patch::default(),
             polygons: 0,
             clusters: 0,
         }

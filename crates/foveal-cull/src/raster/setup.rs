@@ -1,13 +1,15 @@
-//! Set-up: a cluster's vertices to the screen, then eight quads at once.
+//! Set-up of eight quads at once.
 //!
-//! A quad is drawn whole where both triangles face the eye and the outline is convex on the screen;
-//! otherwise triangle by triangle. Its depth is the plane of its larger triangle, lowered by how far the
-//! fourth vertex lies behind it, by half a pixel of slope, and by a bound on the rounding of the gradient.
+//! A quad is drawn whole where both triangles face the eye and its outline is convex on the screen,
+//! otherwise triangle by triangle. Its depth is the plane of its larger triangle, lowered by how
+//! far the fourth vertex lies behind it, by half a pixel of slope, and by a bound on the rounding
+//! of the gradient.
 //!
-//! Corners are transformed in `f64`, and borders made of that: a sample is covered if the reference says so too.
-//! All else (bounds, facing, depth) is rounded to float and judged with slack.
+//! Vertices are transformed in `f64`, and edges are made of that: a sample is covered if the
+//! reference says so too. Everything else (bounds, facing, depth) is rounded to `f32` and judged
+//! with slack.
 
-use super::block::Plane;
+use super::block::DepthPlane;
 use super::edges::Edges;
 use super::extent::{area, blocks_of, highest, lowest, out, steps_of};
 use super::facing::Facing;
@@ -17,16 +19,16 @@ use crate::depth::band::Band;
 use crate::format::encode;
 use crate::simd::{Lanes, four};
 
-/// No point of a pixel is farther from the nearest of its grid points (half the diagonal of a sample, and a
-/// bit): polygons that shrink by this cover every point between the samples that they cover.
+/// Largest distance from a point of a pixel to its nearest sample (half the diagonal of a sample,
+/// and a bit). Polygons that shrink by this cover every point between the samples that they cover.
 const BETWEEN_SAMPLES: f32 = 0.72;
 
-/// From a pixel's centre, in each axis: its border, and (for the exact place of an eye, whose rays go through
-/// samples only) its outermost samples.
+/// Distance from a pixel's centre along each axis: to its side, and to its outermost samples, which
+/// is enough for one exact eye, whose rays go through samples only.
 const WHOLE_PIXEL: f32 = 2.0;
 const SAMPLES_ONLY: f32 = 1.5 + 1.0 / 64.0;
 
-/// Sets up and draws eight quads from screen positions; gives the number of polygons drawn.
+/// Sets up and draws eight quads from screen positions; returns the number of polygons drawn.
 #[inline(always)]
 pub(crate) fn draw_eight<L: Lanes>(
     l: L,
@@ -44,7 +46,7 @@ pub(crate) fn draw_eight<L: Lanes>(
     let mut f1 = area(l, &x, &y, 0, 2, 3);
     let mut reversed = l.isplat(0);
     if two_sided {
-        // The larger triangle decides the side; its partner on the other side, if any, is dropped.
+        // The larger triangle decides the side. Its partner, if it faces the other way, is dropped.
         reversed = l.lt(l.add(f0, f1), zero);
         x = swap(l, reversed, x);
         y = swap(l, reversed, y);
@@ -103,8 +105,8 @@ pub(crate) fn draw_eight<L: Lanes>(
     let fold = l.select(both, l.max(l.sub(at_other, oz), zero), zero);
     let (w, h) = (l.sub(x_hi, x_lo), l.sub(y_hi, y_lo));
     if let Some(radius) = radius {
-        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at least sqrt(2) (w + h),
-        // times by how much.
+        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at
+        // least sqrt(2) (w + h), times the distance that it shrinks by.
         let by = l.add(l.mul(z_hi, l.splat(radius.shift)), l.splat(BETWEEN_SAMPLES));
         let least = l.mul(l.mul(by, l.splat(1.414)), l.add(w, h));
         let twice_area = l.add(l.max(f0, zero), l.max(f1, zero));
@@ -138,7 +140,7 @@ pub(crate) fn draw_eight<L: Lanes>(
     );
     let base = l.sub(z[0], slack);
 
-    // One at a time from here.
+    // One quad at a time from here.
     let reversed = if two_sided { l.movemask(reversed) } else { 0 };
     let (x0, y0) = (out(l, x[0]), out(l, y[0]));
     let (base, gx, gy, z_lo, z_hi) = (
@@ -155,7 +157,7 @@ pub(crate) fn draw_eight<L: Lanes>(
         let i = live.trailing_zeros() as usize;
         live &= live - 1;
         let bit = 1u32 << i;
-        let plane = Plane {
+        let plane = DepthPlane {
             x: x0[i],
             y: y0[i],
             depth: base[i],
@@ -166,7 +168,7 @@ pub(crate) fn draw_eight<L: Lanes>(
             max_code: encode(z_hi[i]),
         };
         let blocks = [bx0[i] as u32, by0[i] as u32, bx1[i] as u32, by1[i] as u32];
-        // What is behind all that is known changes nothing.
+        // Hidden behind everything that is there: changes nothing.
         if band.hides(blocks, plane.max_code) {
             continue;
         }
@@ -184,18 +186,19 @@ pub(crate) fn draw_eight<L: Lanes>(
         };
         for (n, shape) in SHAPES[first..last].iter().enumerate() {
             let (x, y) = (l.qpick(x, *shape), l.qpick(y, *shape));
-            let Some((borders, rows)) = Edges::of(l, x, y) else {
+            let Some((edges, rows)) = Edges::of(l, x, y) else {
                 continue;
             };
             let mut polygon = Polygon {
-                borders,
+                edges,
                 rows,
                 plane,
                 blocks,
             };
             if let Some(radius) = radius {
-                // Every point that stays is hidden for all eyes within the radius: their rays to what lies
-                // behind it cross this very polygon (Wonka et al. 2000, with a polygon for the occluder).
+                // Every point that stays is hidden from all eyes within the radius: their rays to
+                // what lies behind it cross this very polygon (Wonka, Wimmer and Schmalstieg 2000,
+                // with a polygon for the occluder).
                 let near = z_hi[i] * radius.per_depth;
                 if near > 0.5 {
                     continue;
@@ -215,8 +218,8 @@ pub(crate) fn draw_eight<L: Lanes>(
     drawn
 }
 
-/// Parts of a quad, by corners. The triangles alone; then the whole, and the triangles
-/// again for a whole with three borders on one side.
+/// Parts of a quad, by corners: the triangles alone; then the whole, and the triangles again for a
+/// whole with three edges on one side.
 const SHAPES: [[u8; 4]; 5] = {
     let (first, second) = ([0, 1, 2, 0], [0, 2, 3, 0]);
     [first, second, [0, 1, 2, 3], first, second]

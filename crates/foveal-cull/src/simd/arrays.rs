@@ -1,7 +1,7 @@
-//! Small arrays
+//! Arrays of two to four equal expressions, and minimum and maximum without NaN.
 
-/// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of closures: what
-/// is not inlined loses the instruction set.
+/// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of
+/// closures: code that is not inlined loses the instruction set.
 macro_rules! four {
     ($k:ident => $e:expr) => {
         [
@@ -47,7 +47,7 @@ macro_rules! three {
 }
 pub(crate) use three;
 
-/// The smaller of two numbers: one instruction, where `f64::min` takes three to ask for NaN.
+/// The smaller of two numbers: one instruction, where `f64::min` takes three to handle NaN.
 #[inline(always)]
 pub(crate) fn smaller<T: PartialOrd>(a: T, b: T) -> T {
     if a < b { a } else { b }

@@ -1,22 +1,23 @@
-//! Instruction sets
+//! The instruction sets, and the dispatch of kernels to them.
 
 use super::lanes::Kernel;
 use super::portable;
 #[cfg(target_arch = "x86_64")]
 use super::{avx2, avx512proof as avx512};
 
-/// A set of instructions to run with; all give the same results.
+/// An instruction set that kernels run with. All give the same results, to the bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum InstructionSet {
-    /// Plain arrays as the compiler vectorizes them for the target.
+    /// Plain arrays, as the compiler vectorizes them for the target.
     Portable,
     /// 128-bit SSE2, which every x86-64 CPU has.
     Sse2,
-    /// 128-bit NEON, which every 64-bit ARM CPU has (little-endian; other targets are [`Portable`](Self::Portable)).
+    /// 128-bit NEON, which every 64-bit ARM CPU has (little-endian; other targets are
+    /// [`Portable`](Self::Portable)).
     Neon,
-    /// WebAssembly's 128-bit registers, in modules that are compiled with `-C target-feature=+simd128`. There is no way to
-    /// ask for them at run time, so modules without it are [`Portable`](Self::Portable).
+    /// WebAssembly's 128-bit registers, in modules compiled with `-C target-feature=+simd128`. They
+    /// cannot be detected at run time, so modules without it are [`Portable`](Self::Portable).
     Simd128,
     /// 256-bit AVX2.
     Avx2,
@@ -25,7 +26,7 @@ pub enum InstructionSet {
 }
 
 impl InstructionSet {
-    /// What there is besides the portable one and what a CPU may have, by the target alone.
+    /// The 128-bit instruction set that the target always has, if any.
     const NARROW: Option<Self> = if cfg!(target_arch = "x86_64") {
         Some(Self::Sse2)
     } else if cfg!(all(
@@ -40,7 +41,7 @@ impl InstructionSet {
         None
     };
 
-    /// Those that this machine has, the fastest last.
+    /// The instruction sets of this machine, the fastest last.
     pub fn available() -> impl Iterator<Item = Self> {
         let detected = [
             #[cfg(target_arch = "x86_64")]
@@ -54,7 +55,7 @@ impl InstructionSet {
             .flatten()
     }
 
-    /// The fastest one that this machine has.
+    /// The fastest instruction set of this machine.
     #[must_use]
     pub fn detect() -> Self {
         Self::available().last().unwrap_or(Self::Portable)
@@ -86,7 +87,7 @@ impl InstructionSet {
             all(target_arch = "wasm32", target_feature = "simd128"),
         ))]
         if self != Self::Portable {
-            return kernel.run(super::narrow::Narrow::here());
+            return kernel.run(super::narrow::Narrow::of_target());
         }
         kernel.run(portable::Portable)
     }

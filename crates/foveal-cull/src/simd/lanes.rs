@@ -1,44 +1,48 @@
-//! Lanes
+//! Lanes: the operations that kernels are written in.
 
 use super::wide::Wide;
 use crate::bounds::Aabb;
 
 /// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.
 pub(crate) trait Kernel {
-    /// What it gives back.
+    /// Result of the kernel.
     type Output;
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
-/// Eight lanes for set-up and projection, and the parts of a block: pixels, sample rows, sample planes.
+/// Eight lanes for set-up and projection, and the parts of a block: pixels, sample rows, bit
+/// planes.
 pub(crate) trait Lanes: Copy {
     /// 8 x f32.
     type F: Copy;
     /// 8 x i32.
     type I: Copy;
-    /// 4 x f64: the corners or borders of a polygon.
+    /// 4 x f64: the corners or edges of a polygon.
     type Q: Copy;
     /// 64 x i16: a block's pixels, row by row.
     type D: Copy;
-    /// 2 x 40 whole numbers: the first sample (or pixel, by its centre) of each of a block's 32 sample rows and 8 rows through
-    /// pixel centres that is covered, and the first after. No fewer than 16 bits.
+    /// 2 x 40 whole numbers: the first covered sample (or pixel, by its centre) of each of a
+    /// block's 32 sample rows and 8 rows through pixel centres, and the first one after. At least
+    /// 16 bits.
     type S: Copy;
-    /// 4 x 40 x f64: the borders of a polygon in a block's 32 sample rows, and in 8 through pixel centres.
+    /// 4 x 40 x f64: the edges of a polygon in a block's 32 sample rows, and in 8 rows through
+    /// pixel centres.
     type B: Copy;
-    /// 64 x 16 bits: a block's samples, in any order.
+    /// 64 x 16 bits: a block's samples as bit planes, in any order.
     type P: Copy;
     /// Sixteen lanes.
     type W: Wide;
 
     fn wide(self) -> Self::W;
 
-    /// Runs a kernel as a function of its own, so that what is not for every cluster leaves the rest as it is.
+    /// Runs a kernel in a function of its own. Rare work is kept out of line, so that it does not
+    /// spoil the code around it.
     #[inline(never)]
-    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+    fn outlined<K: Kernel>(self, kernel: K) -> K::Output {
         kernel.run(self)
     }
 
-    /// Asks for memory that will be needed soon; changes nothing.
+    /// Prefetches memory. Changes nothing.
     #[inline(always)]
     fn prefetch<T>(self, _soon: &T) {}
 
@@ -65,7 +69,7 @@ pub(crate) trait Lanes: Copy {
     fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F;
 
     /// Eight boxes by coordinate: smallest x, y and z, largest x, y and z.
-    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6];
+    fn transpose(self, v: &[Aabb; 8]) -> [Self::F; 6];
 
     fn isplat(self, v: i32) -> Self::I;
     fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
@@ -74,7 +78,7 @@ pub(crate) trait Lanes: Copy {
     fn imul(self, a: Self::I, b: Self::I) -> Self::I;
     /// `a >> by`, `by` from 0 to 31.
     fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
-    /// How many bits a number from 0 to 2^24 has.
+    /// Number of bits of a number from 0 to 2^24.
     fn ibits(self, a: Self::I) -> Self::I;
     fn iload(self, v: &[i32; 8]) -> Self::I;
     fn istore(self, v: Self::I, to: &mut [i32; 8]);
@@ -116,16 +120,18 @@ pub(crate) trait Lanes: Copy {
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D;
     fn dreduce_min(self, a: Self::D) -> i16;
 
-    /// How far four borders move from the first row of samples to every other, and to the rows through pixel centres.
-    fn borders(self, slope: Self::Q) -> Self::B;
-    /// What lies right of the first two borders and left of the last two, in `f64`, row by row as
-    /// [`Portable`](super::portable::Portable) has it. `at`: where they cross the first row; sample n is right of what is less than
-    /// n + 1. `limits`: only rows after the first one and not after the second count.
+    /// Distances that four edges move from the first row of samples to every other, and to the rows
+    /// through pixel centres.
+    fn edge_rows(self, slope: Self::Q) -> Self::B;
+    /// Spans right of the first two edges and left of the last two, in `f64`, row by row as
+    /// [`Portable`](super::portable::Portable) has it. `at`: where they cross the first row; sample
+    /// n is right of what is less than n + 1. `limits`: only rows after the first one and not after
+    /// the second count.
     fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
-    /// Of these the samples and the pixel centres of the block that begins at sample `left`.
+    /// The samples and the pixel centres of the spans in the block that begins at sample `left`.
     fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64);
-    /// A row of eight pixels each: those from one number to before another.
-    fn plane(self, from: Self::I, to: Self::I) -> u64;
+    /// Eight rows of eight pixels: those from one number to before another.
+    fn bit_rows(self, from: Self::I, to: Self::I) -> u64;
     fn pload(self, v: &[u64; 16]) -> Self::P;
     fn pstore(self, v: Self::P, to: &mut [u64; 16]);
     /// Only the pixels whose bit is set.

@@ -1,8 +1,9 @@
 //! Lanes: the one seam between the kernels and instruction sets.
 //!
-//! Kernels are written once, generic over [`Lanes`], and instantiated for the portable implementation
-//! (plain arrays), for 128-bit registers (SSE2, NEON and wasm's simd128), for AVX2 and for AVX-512. There is no fused
-//! multiply-add and no approximate reciprocal anywhere, so that every instruction set gives the same bits.
+//! Kernels are written once, generic over [`Lanes`], and instantiated for the portable
+//! implementation (plain arrays), for 128-bit registers (SSE2, NEON and wasm's simd128), for AVX2
+//! and for AVX-512. There is no fused multiply-add and no approximate reciprocal anywhere, so that
+//! every instruction set gives the same bits.
 
 mod arrays;
 mod instruction_set;

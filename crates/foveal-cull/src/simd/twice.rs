@@ -1,4 +1,4 @@
-//! Twice
+//! Sixteen lanes as twice eight.
 
 use super::arrays::two;
 use super::lanes::Lanes;
@@ -103,9 +103,9 @@ impl<L: Lanes> Wide for Twice<L> {
         two!(k => self.0.istore(v[k], &mut halves[k]));
     }
     #[inline(always)]
-    fn turn(self, v: &[Aabb; 16]) -> [Self::F; 6] {
+    fn transpose(self, v: &[Aabb; 16]) -> [Self::F; 6] {
         let (halves, _) = v.as_chunks::<8>();
-        let [low, high] = two!(k => self.0.turn(&halves[k]));
+        let [low, high] = two!(k => self.0.transpose(&halves[k]));
         let [a, b, c, d, e, f] = low;
         let [p, q, r, s, t, u] = high;
         [[a, p], [b, q], [c, r], [d, s], [e, t], [f, u]]

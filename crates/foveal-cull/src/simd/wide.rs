@@ -1,9 +1,10 @@
-//! Sixteen lanes, for what is done to every box: in one register each where the instruction set has such, else as twice
-//! eight.
+//! Sixteen lanes, for work that is done to every box: one register where the instruction set has
+//! such, else twice eight.
 
 use crate::bounds::Aabb;
 
-/// Sixteen lanes. What a method does is as in [`Lanes`](super::lanes::Lanes); masks are a bit per lane, lane 0 lowest.
+/// Sixteen lanes. What a method does is as in [`Lanes`](super::lanes::Lanes); masks are a bit per
+/// lane, lane 0 lowest.
 pub(crate) trait Wide: Copy {
     /// 16 x f32.
     type F: Copy;
@@ -39,5 +40,5 @@ pub(crate) trait Wide: Copy {
     fn ibits(self, a: Self::I) -> Self::I;
     /// Whether a number is below zero.
     fn negative(self, a: Self::I) -> u32;
-    fn turn(self, v: &[Aabb; 16]) -> [Self::F; 6];
+    fn transpose(self, v: &[Aabb; 16]) -> [Self::F; 6];
 }

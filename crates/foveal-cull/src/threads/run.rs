@@ -1,18 +1,22 @@
-//! Threads
+//! Threads that a frame runs on.
 
-/// Runs tasks on several threads. Implement it for your own pool; the crate never starts threads itself
-/// unless you make a [`WorkerThreads`](super::WorkerThreads).
+/// Runs the tasks of a frame on several threads.
+///
+/// Implement it for your own job system. The crate starts threads only in
+/// [`WorkerThreads`](super::WorkerThreads). [`Culler::rasterize`](crate::Culler::rasterize) calls
+/// `run` twice per frame.
 pub trait Threads: Sync {
-    /// How many tasks can run at once (at least 1).
+    /// Number of tasks that can run at once, at least 1.
     fn count(&self) -> usize;
-    /// Calls `task(i)` once for every `i` below `tasks`, in any order, on any threads, and returns when all
-    /// are done.
+    /// Calls `task(i)` once for every `i` below `tasks`, in any order and on any threads, and
+    /// returns when all are done.
     fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync));
-    /// Says that there will be work soon, for pools whose threads sleep. Returns at once; nothing need be done.
+    /// Announces that there will be work soon, for threads that sleep. Returns at once, and may do
+    /// nothing.
     fn wake(&self) {}
 }
 
-/// Everything on the calling thread.
+/// The calling thread alone.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SingleThread;
 
@@ -26,7 +30,7 @@ impl Threads for SingleThread {
     }
 }
 
-/// The current rayon pool.
+/// The current rayon thread pool. Needs the feature `rayon`.
 #[cfg(feature = "rayon")]
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rayon;

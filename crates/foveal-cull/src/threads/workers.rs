@@ -1,10 +1,11 @@
-//! A small pool: the calling thread and helpers that wait for work.
+//! Worker threads: the calling thread and helpers that wait for work.
 //!
-//! Sleeping and waking take as long as a part of a frame's culling, so whoever waits first looks again and again for
-//! about 40 microseconds; nobody is woken who does not sleep. Who knows that there will be work can wake all beforehand.
+//! Sleeping and waking take as long as a part of a frame's culling. A waiting thread therefore
+//! spins for about 40 microseconds before it sleeps, and only sleeping threads are woken. A caller
+//! that knows that there will be work can wake them beforehand.
 //!
-//! A task lives on the caller's stack, so helpers reach it through a pointer; the caller does not return
-//! before the last helper has let go of it.
+//! A task lives on the caller's stack, so helpers reach it through a pointer. The caller does not
+//! return before the last helper has let go of it.
 #![allow(
     unsafe_code,
     reason = "helpers outlive the borrow of a task; see the SAFETY line"
@@ -16,8 +17,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
 
-/// Its own threads, made once. One [`Threads::run`] at a time; a second one from another thread waits its
-/// turn. A task must not call `run` on the pool that runs it.
+/// Threads of the culler's own, started once and joined when dropped.
+///
+/// One [`Threads::run`] at a time: a second one from another thread waits its turn. A task must not
+/// call `run` on the worker threads that run it.
 #[derive(Debug)]
 pub struct WorkerThreads {
     shared: Arc<Shared>,
@@ -25,10 +28,11 @@ pub struct WorkerThreads {
     turn: Mutex<()>,
 }
 
-/// How often one looks before going to sleep; a look takes some ten nanoseconds.
+/// Times that a waiting thread looks for work before it sleeps, about ten nanoseconds each.
 const LOOKS: u32 = 4000;
 
-/// After so many looks another thread of the same core may run: it may be the one that is waited for.
+/// After this many looks another thread of the same core may run: it may be the one that is waited
+/// for.
 const LOOKS_IN_A_ROW: u32 = 64;
 
 #[derive(Debug, Default)]
@@ -36,7 +40,7 @@ struct Shared {
     state: Mutex<State>,
     changed: Condvar,
     next: AtomicUsize,
-    /// `State::round` and `State::active`, to be looked at without the lock.
+    /// `State::round` and `State::active`, to be read without the lock.
     round: AtomicU64,
     active: AtomicUsize,
 }
@@ -50,7 +54,7 @@ struct State {
     active: usize,
     panicked: bool,
     stop: bool,
-    /// Threads that wait for `changed`.
+    /// Threads that sleep.
     sleepers: usize,
 }
 
@@ -81,7 +85,7 @@ impl Shared {
         state
     }
 
-    /// Lets go of the lock and wakes those who sleep.
+    /// Releases the lock and wakes the threads that sleep.
     fn announce(&self, state: MutexGuard<'_, State>) {
         let sleepers = state.sleepers;
         drop(state);
@@ -90,7 +94,7 @@ impl Shared {
         }
     }
 
-    /// Looks for a while whether something has happened.
+    /// Spins for a while until something has happened.
     fn watch(&self, happened: impl Fn(&Self) -> bool) {
         for look in 1..=LOOKS {
             if happened(self) {
@@ -116,7 +120,7 @@ impl Shared {
                 return;
             }
             seen = state.round;
-            // None where all was done before this thread came, or where it was only woken.
+            // None if all was done before this thread came, or if it was only woken.
             let (Some(task), tasks) = (state.task, state.tasks) else {
                 continue;
             };
@@ -124,8 +128,8 @@ impl Shared {
             self.active.store(state.active, Ordering::Relaxed);
             drop(state);
             let ended = catch_unwind(AssertUnwindSafe(|| {
-                // SAFETY: `active` was raised under the lock while the task was posted, and `WorkerThreads::run` keeps
-                // the task alive until it is zero again.
+                // SAFETY: `active` was raised under the lock while the task was posted, and
+                // `WorkerThreads::run` keeps the task alive until it is zero again.
                 let task = unsafe { &*task.0 };
                 self.work(tasks, task);
             }));
@@ -163,7 +167,8 @@ impl Drop for Posted<'_> {
 }
 
 impl WorkerThreads {
-    /// A pool of `threads` threads, the caller's included.
+    /// Starts `threads - 1` threads; the caller's is the last one. Threads that the system refuses
+    /// are left out.
     #[must_use]
     pub fn new(threads: usize) -> Self {
         let shared = Arc::new(Shared::default());
@@ -210,7 +215,7 @@ impl Threads for WorkerThreads {
         assert!(!panicked, "a task panicked");
     }
 
-    /// Wakes the threads; they look for work for about 40 microseconds before they sleep again.
+    /// Wakes the threads. They look for work for about 40 microseconds before they sleep again.
     fn wake(&self) {
         let mut state = self.shared.lock();
         if state.sleepers > 0 && state.task.is_none() {

@@ -12,8 +12,8 @@ pub(crate) struct Neon;
 /// Wraps intrinsics.
 macro_rules! neon {
     ($e:expr) => {
-        // SAFETY: this is compiled only where NEON is there; loads and stores go through references to arrays of the
-        // same size.
+        // SAFETY: this is compiled only where NEON is there; loads and stores go through references
+        // to arrays of the same size.
         unsafe { $e }
     };
 }

@@ -1,8 +1,8 @@
-//! Which quads of a cluster may still be seen, before anything is done for the cluster as a whole.
+//! The quads of a cluster that may still be visible.
 //!
-//! A cluster is drawn where its box may be seen; in the castle, two of five have no quad then that faces the eye and
-//! is not behind what is drawn already. What a cluster needs as a whole (the sheet of a result that holds around the
-//! eye) is for those that have one, and only where these lie.
+//! A cluster is drawn where its box may be visible, but in a typical scene two of five then have no
+//! quad that faces the eye and is not hidden. The patch of a view region is prepared only for
+//! clusters that have one, and only in the blocks of such quads.
 
 use super::extent::{area, blocks_of, highest, lowest, out, steps_of};
 use super::points::Points;
@@ -13,24 +13,25 @@ use crate::simd::{Lanes, four};
 
 /// Eight quads on the screen, corner by corner: samples, and depths.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Corners {
+pub(super) struct QuadCorners {
     pub(super) x: [[f32; 8]; 4],
     pub(super) y: [[f32; 8]; 4],
     pub(super) depth: [[f32; 8]; 4],
-    /// All ones for those that may be seen.
-    pub(super) open: [i32; 8],
+    /// All ones for quads that may be visible.
+    pub(super) visible: [i32; 8],
 }
 
-/// The quads of a cluster that may be seen.
+/// The quads of a cluster that may be visible.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Open {
-    /// By group of eight, a bit for each.
+pub(super) struct VisibleQuads {
+    /// One bit per quad, by group of eight.
     pub(super) quads: [u8; 8],
-    /// The first and last block of all of them, inclusive; the first behind the last where there are none.
+    /// First and last block of all of them, inclusive; the first lies behind the last if there are
+    /// none.
     pub(super) blocks: [u32; 4],
 }
 
-impl Open {
+impl VisibleQuads {
     /// Every quad of a cluster, wherever it lies.
     pub(super) fn all() -> Self {
         Self {
@@ -43,7 +44,8 @@ impl Open {
         self.quads == [0; 8]
     }
 
-    /// Looks at a one-sided cluster, and keeps the corners. What has one for the clipper is not among its quads.
+    /// Tests the quads of a one-sided cluster, and keeps their corners. Quads with a vertex for the
+    /// clipper are not among the result.
     #[inline(always)]
     pub(super) fn of<L: Lanes>(
         l: L,
@@ -52,9 +54,9 @@ impl Open {
         mesh: &OccluderMesh,
         cluster: &Cluster,
         mirrored: bool,
-        corners: &mut [Corners; 8],
+        corners: &mut [QuadCorners; 8],
     ) -> Self {
-        let mut open = Self {
+        let mut visible = Self {
             quads: [0; 8],
             blocks: [u32::MAX, u32::MAX, 0, 0],
         };
@@ -62,15 +64,15 @@ impl Open {
         let groups = &mesh.quads[cluster.first_group as usize..][..groups];
         let order = if mirrored { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
         let (zero, one) = (l.splat(0.0), l.splat(1.0));
-        for ((group, quads), corners) in groups.iter().zip(&mut open.quads).zip(corners) {
+        for ((group, quads), corners) in groups.iter().zip(&mut visible.quads).zip(corners) {
             let x = four!(c => l.gather(&points.x, &group[order[c]]));
             let y = four!(c => l.gather(&points.y, &group[order[c]]));
             let z = four!(c => l.gather(&points.depth, &group[order[c]]));
-            *corners = Corners {
+            *corners = QuadCorners {
                 x: four!(c => out(l, x[c])),
                 y: four!(c => out(l, y[c])),
                 depth: four!(c => out(l, z[c])),
-                open: [0; 8],
+                visible: [0; 8],
             };
             let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
             let whole = l.lt(l.sub(sum, sum), one);
@@ -98,9 +100,9 @@ impl Open {
                     continue;
                 }
                 *quads |= 1 << i;
-                corners.open[i] = -1;
-                let [x0, y0, x1, y1] = open.blocks;
-                open.blocks = [
+                corners.visible[i] = -1;
+                let [x0, y0, x1, y1] = visible.blocks;
+                visible.blocks = [
                     x0.min(blocks[0]),
                     y0.min(blocks[1]),
                     x1.max(blocks[2]),
@@ -108,20 +110,20 @@ impl Open {
                 ];
             }
         }
-        open
+        visible
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::depth::buffer::DepthBuffer;
+    use crate::depth::buffer::OcclusionBuffer;
     use crate::format::BLOCK_SAMPLES;
     use crate::simd::portable::Portable;
     use crate::{BakeOptions, OccluderMesh};
     use glam::Vec3;
 
-    /// A ball of quads around the middle of a buffer of 64 x 48 pixels, seen from far away.
+    /// A ball of quads around the centre of a buffer of 64 x 48 pixels, seen from far away.
     fn ball() -> (OccluderMesh, Vec<[f32; 3]>) {
         let (rings, around) = (5, 9);
         let point = |i: u32, j: u32| {
@@ -165,15 +167,15 @@ mod tests {
             points.set(i, f64::from(p[0]), f64::from(p[1]), p[2]);
         }
         let cluster = &mesh.clusters[0];
-        let mut buffer = DepthBuffer::new(64, 48);
-        // Blocks to the left of the middle hide what is farther than 0.58.
+        let mut buffer = OcclusionBuffer::new(64, 48);
+        // Blocks to the left of the centre hide what is farther than 0.58.
         for (i, min) in buffer.min.iter_mut().enumerate() {
             *min = encode(if i % 8 < 4 { 0.58 } else { 0.0 });
         }
-        let mut corners = [Corners::default(); 8];
+        let mut corners = [QuadCorners::default(); 8];
         for mirrored in [false, true] {
             let band = buffer.band();
-            let open = Open::of(
+            let visible = VisibleQuads::of(
                 Portable,
                 &band,
                 &points,
@@ -205,7 +207,7 @@ mod tests {
                 ];
                 let nearest = corners.iter().map(|c| c[2]).fold(0.0, f32::max);
                 let seen = mine[2] >= 4 || encode(nearest) > encode(0.58);
-                let is_open = open.quads[q / 8] >> (q % 8) & 1 != 0;
+                let is_open = visible.quads[q / 8] >> (q % 8) & 1 != 0;
                 assert_eq!(is_open, front && seen, "quad {q}, mirrored {mirrored}");
                 here += u32::from(is_open);
                 hidden += u32::from(front && !seen);
@@ -219,11 +221,11 @@ mod tests {
                 }
             }
             assert!(here > 5 && hidden > 0, "{here} {hidden}");
-            assert_eq!(open.blocks, blocks);
+            assert_eq!(visible.blocks, blocks);
         }
         buffer.min.fill(encode(0.7));
         let band = buffer.band();
-        let open = Open::of(
+        let visible = VisibleQuads::of(
             Portable,
             &band,
             &points,
@@ -232,6 +234,6 @@ mod tests {
             false,
             &mut corners,
         );
-        assert!(open.is_empty());
+        assert!(visible.is_empty());
     }
 }
