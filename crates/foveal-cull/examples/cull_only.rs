@@ -12,12 +12,10 @@ use std::sync::Arc;
 
 fn main() -> Result<(), CullError> {
     // One mesh, placed many times.
-    let Some(house) = OccluderMesh::from_box(Aabb::new(
+    let house = OccluderMesh::from_box(Aabb::new(
         Vec3::new(-4.0, 0.0, -3.0),
         Vec3::new(4.0, 6.0, 3.0),
-    )) else {
-        return Ok(());
-    };
+    ))?;
     let house = Arc::new(house);
     let mut occluders = OccluderSet::new();
     let mut things = Vec::new();

@@ -1,14 +1,14 @@
 //! Axis-aligned boxes: what occludees are tested as and what occluders are bounded by.
 //!
-//! Coordinates are metres in `f32`, relative to an origin that the owner of the boxes names in `f64`
-//! (a world far from zero loses nothing that way).
+//! Coordinates are metres in `f32`, relative to an origin that the owner of the boxes names in
+//! `f64` (a world far from zero loses nothing that way).
 
 use glam::Vec3;
 
 /// An axis-aligned box, `min` to `max` inclusive.
 ///
-/// A box with a NaN or with `min > max` in some axis is *not a volume*: queries report it as visible,
-/// because nothing can be proved about it.
+/// A box with a NaN or with `min > max` in some axis is *not a volume*: queries report it as
+/// visible, because nothing can be proved about it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Aabb {

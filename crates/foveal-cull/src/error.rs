@@ -1,57 +1,109 @@
-//! What can be wrong with the input.
+//! Errors: what is wrong with an input, and why.
 
 use core::fmt;
 
-/// Everything that this crate refuses. Nothing here panics on input.
+/// The reason why a call was refused.
+///
+/// This crate does not panic on input. A call that fails leaves the object as it was, except for
+/// [`Culler::rasterize`](crate::Culler::rasterize), after which everything counts as visible.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum CullError {
-    /// A buffer size of zero or above 16,384 pixels in one axis.
+    /// A buffer side of 0 pixels, or of more than [`MAX_SIDE_PX`](crate::MAX_SIDE_PX).
+    #[non_exhaustive]
     BadSize {
         /// Requested width, pixels.
-        width: u32,
+        width_px: u32,
         /// Requested height, pixels.
-        height: u32,
+        height_px: u32,
     },
-    /// A view, transform or position holds NaN or infinity.
-    NotFinite,
-    /// A projection is empty or inside out, or its near plane is not in front of the eye.
-    BadProjection,
+    /// A number is NaN or infinite where it must be finite.
+    NotFinite(Quantity),
+    /// A view cannot be culled for.
+    BadView(ViewError),
     /// The length of an index list is not a multiple of three.
+    #[non_exhaustive]
     NotTriangles {
-        /// The length given.
+        /// Length of the list.
         indices: usize,
     },
     /// An index is past the end of the positions.
+    #[non_exhaustive]
     IndexOutOfRange {
-        /// The offending index.
+        /// The first such index.
         index: u32,
-        /// How many positions there are.
+        /// Number of positions.
         positions: usize,
     },
-    /// A slice for results is not as long as the list of things asked about.
+    /// Two slices that belong together differ in length.
+    #[non_exhaustive]
     LengthMismatch {
-        /// What was needed.
+        /// Length that was needed.
         expected: usize,
-        /// What was given.
+        /// Length that was given.
         found: usize,
     },
-    /// An occluder id that this set never gave out, or that was removed.
+    /// The set has no occluder with this id: it was removed, or another set gave it out.
     UnknownOccluder,
-    /// A mesh has more triangles than fit into 32-bit offsets.
-    TooLarge,
+    /// A mesh has too many triangles for the 32-bit offsets of a baked mesh.
+    #[non_exhaustive]
+    TooManyTriangles {
+        /// Number of triangles.
+        triangles: usize,
+        /// Largest number that can be baked.
+        most: usize,
+    },
+}
+
+/// An input that must be finite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Quantity {
+    /// A vertex position of a mesh.
+    Position,
+    /// The transform of an occluder.
+    Transform,
+    /// The pose of an eye.
+    Pose,
+    /// An extent or a distance of a projection. (A perspective far distance may be infinite.)
+    Projection,
+    /// The validity radius of a view. It must not be negative either.
+    ValidityRadius,
+}
+
+/// The reason why a view is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ViewError {
+    /// `left` is not less than `right`, or `bottom` not less than `top`.
+    EmptyExtents,
+    /// The near distance of a perspective projection is not above zero.
+    NearNotPositive,
+    /// The far distance is not larger than the near distance.
+    FarNotBeyondNear,
+    /// The far distance of an orthographic projection is infinite.
+    FarNotFinite,
+    /// A pose scales, shears or mirrors.
+    PoseNotRigid,
+    /// One of two eyes is orthographic.
+    StereoNotPerspective,
+    /// The two eyes look in directions that no common view covers.
+    EyesTooFarApart,
 }
 
 impl fmt::Display for CullError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::BadSize { width, height } => write!(
+            Self::BadSize {
+                width_px,
+                height_px,
+            } => write!(
                 f,
-                "depth buffer of {width} x {height} pixels: each side must be 1 to 16384"
+                "occlusion buffer of {width_px} x {height_px} pixels: each side must be 1 to {} pixels",
+                crate::limits::MAX_SIDE_PX
             ),
-            Self::NotFinite => f.write_str("a position, transform or view holds NaN or infinity"),
-            Self::BadProjection => {
-                f.write_str("the projection is empty, inside out, or has no positive near distance")
-            }
+            Self::NotFinite(quantity) => write!(f, "{quantity} must be finite"),
+            Self::BadView(_) => f.write_str("the view cannot be culled for"),
             Self::NotTriangles { indices } => {
                 write!(f, "{indices} indices are not a whole number of triangles")
             }
@@ -59,12 +111,54 @@ impl fmt::Display for CullError {
                 write!(f, "index {index} is past the end of {positions} positions")
             }
             Self::LengthMismatch { expected, found } => {
-                write!(f, "result slice has length {found}, needed {expected}")
+                write!(f, "a slice has length {found} where {expected} is needed")
             }
-            Self::UnknownOccluder => f.write_str("no occluder has this id"),
-            Self::TooLarge => f.write_str("the mesh has too many triangles for 32-bit offsets"),
+            Self::UnknownOccluder => f.write_str("the set has no occluder with this id"),
+            Self::TooManyTriangles { triangles, most } => {
+                write!(
+                    f,
+                    "a mesh of {triangles} triangles: at most {most} can be baked"
+                )
+            }
         }
     }
 }
 
-impl core::error::Error for CullError {}
+impl fmt::Display for Quantity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Position => "a vertex position",
+            Self::Transform => "the transform of an occluder",
+            Self::Pose => "the pose of an eye",
+            Self::Projection => "a projection's extents and distances",
+            Self::ValidityRadius => "the validity radius (which must not be negative)",
+        })
+    }
+}
+
+impl fmt::Display for ViewError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::EmptyExtents => "left must be less than right, and bottom less than top",
+            Self::NearNotPositive => {
+                "the near distance of a perspective projection must be above zero"
+            }
+            Self::FarNotBeyondNear => "the far distance must be larger than the near distance",
+            Self::FarNotFinite => "the far distance of an orthographic projection must be finite",
+            Self::PoseNotRigid => "the pose must be a rotation and a translation only",
+            Self::StereoNotPerspective => "both of two eyes must have perspective projections",
+            Self::EyesTooFarApart => "two eyes look in directions that no common view covers",
+        })
+    }
+}
+
+impl core::error::Error for ViewError {}
+
+impl core::error::Error for CullError {
+    fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
+        match self {
+            Self::BadView(cause) => Some(cause),
+            _ => None,
+        }
+    }
+}

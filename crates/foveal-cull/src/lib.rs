@@ -1,65 +1,223 @@
 //! Software occlusion culling on the CPU: safe first, then fast.
 //!
-//! Occluders are rasterized into a small depth buffer; boxes are then tested against it. What is reported as
-//! hidden *is* hidden: coverage is sampled on a 4x4 grid in every pixel, a pixel counts only when every
-//! sample is covered, and its depth is the farthest one, so neither gaps thinner than a pixel nor grazing
-//! surfaces let a visible thing vanish. No GPU, no scene format, no threads of its own, no clock.
+//! Occluders are rasterized into a small occlusion buffer, and boxes are then tested against it. It
+//! needs no GPU, no scene format and no clock, and starts no threads unless you ask for them.
 //!
+//! # The promise
+//! What is reported as hidden *is* hidden. Coverage is sampled on a 4x4 grid in every pixel. A
+//! pixel counts only when every sample is covered, and its depth is the farthest of them, so that
+//! neither gaps thinner than a pixel nor grazing surfaces let a visible thing vanish. Precisely:
+//! nothing is culled that the pixel centres of a picture of the buffer's size, or of four times its
+//! size per axis, would show. What shows only between these samples may be culled. A buffer of a
+//! quarter of the picture's size per axis therefore fits a picture exactly.
+//!
+//! The reverse is approximate: some hidden boxes are reported as visible (0.4 % of them in a castle
+//! at 640x360 pixels).
+//!
+//! The same scene and view give the same results on every instruction set, with any number of
+//! threads, and in whatever order occluders were added.
+//!
+//! # Conventions
+//! Lengths are metres. Space is right-handed with y up, and eyes look along their own -z. World
+//! positions are `f64`. Boxes are `f32`, relative to an origin that the caller names in `f64`, so
+//! that worlds far from zero lose nothing. Triangles are counter-clockwise from outside. Pixels
+//! count from the top left. Depth is `near / distance`: 1 at the near plane, 0 at infinity. The
+//! types of [`glam`], which is re-exported, are part of the interface.
+//!
+//! # A static level
 //! ```
+//! use foveal_cull::glam::{DAffine3, DVec3, Vec3};
 //! use foveal_cull::*;
-//! use glam::{DAffine3, DVec3, Vec3};
 //! use std::sync::Arc;
 //!
-//! // A wall, 4 m wide and 3 m high, 5 m in front of the eye.
-//! let wall = OccluderMesh::from_box(Aabb::new(Vec3::new(-2.0, -1.5, -5.2), Vec3::new(2.0, 1.5, -5.0))).unwrap();
+//! // When the level loads: bake each mesh once and place it.
+//! // Here a wall, 4 m wide and 3 m high, 5 m in front of the eye.
+//! let wall = Aabb::new(Vec3::new(-2.0, -1.5, -5.2), Vec3::new(2.0, 1.5, -5.0));
 //! let mut occluders = OccluderSet::new();
-//! occluders.add(Arc::new(wall), DAffine3::IDENTITY)?;
-//!
-//! let view = View::perspective(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0, 16.0 / 9.0, 0.1);
-//! let mut culler = Culler::new(640, 360)?;
-//! culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
-//!
+//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), DAffine3::IDENTITY)?;
 //! let boxes = [
-//!     Aabb::new(Vec3::new(-0.5, -0.5, -9.0), Vec3::new(0.5, 0.5, -8.0)), // behind the wall
-//!     Aabb::new(Vec3::new(-0.5, -0.5, -4.0), Vec3::new(0.5, 0.5, -3.0)), // before it
-//!     Aabb::new(Vec3::new(-0.5, -0.5, 8.0), Vec3::new(0.5, 0.5, 9.0)),   // behind the eye
+//!     // Behind the wall, in front of it, and behind the eye.
+//!     Aabb::new(Vec3::new(-0.5, -0.5, -9.0), Vec3::new(0.5, 0.5, -8.0)),
+//!     Aabb::new(Vec3::new(-0.5, -0.5, -4.0), Vec3::new(0.5, 0.5, -3.0)),
+//!     Aabb::new(Vec3::new(-0.5, -0.5, 8.0), Vec3::new(0.5, 0.5, 9.0)),
 //! ];
+//! let tree = OccludeeTree::build(&boxes, DVec3::ZERO);
+//! let mut culler = Culler::new(640, 360)?;
 //! let mut results = [Visibility::Visible; 3];
-//! culler.query(&boxes, DVec3::ZERO, &mut results)?;
-//! assert_eq!(results, [Visibility::Occluded, Visibility::Visible, Visibility::Outside]);
+//!
+//! // In each frame: rasterize, then query.
+//! let view = View::perspective(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0, 16.0 / 9.0, 0.1);
+//! culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
+//! culler.query_tree(&tree, &mut results)?;
+//! let expected = [Visibility::Occluded, Visibility::Visible, Visibility::Outside];
+//! assert_eq!(results, expected);
+//!
+//! // Boxes without a tree, for instance of things that move.
+//! culler.query(&boxes[..1], DVec3::ZERO, &mut results[..1])?;
+//! assert_eq!(results[0], Visibility::Occluded);
 //! # Ok::<(), CullError>(())
 //! ```
 //!
+//! # Two eyes
+//! One conservative test serves both eyes of a headset, and head movement until the picture is
+//! shown. The results hold for every eye position in the view region, and hide somewhat less than
+//! two exact tests.
+//! ```
+//! use foveal_cull::glam::{DAffine3, DVec3, Vec3};
+//! use foveal_cull::*;
+//! use std::sync::Arc;
+//!
+//! let wall = Aabb::new(Vec3::new(-2.0, -1.5, -5.2), Vec3::new(2.0, 1.5, -5.0));
+//! let mut occluders = OccluderSet::new();
+//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), DAffine3::IDENTITY)?;
+//!
+//! // The tangents of each eye's frustum, as the headset's runtime gives them.
+//! let eye = |x: f64, left: f64, right: f64| {
+//!     let frustum = Projection::Perspective {
+//!         left,
+//!         right,
+//!         bottom: -1.0,
+//!         top: 1.0,
+//!         near_m: 0.1,
+//!         far_m: f64::INFINITY,
+//!     };
+//!     Eye::look_at(DVec3::X * x, DVec3::new(x, 0.0, -1.0), DVec3::Y, frustum)
+//! };
+//! let (left, right) = (eye(-0.032, -1.2, 0.9), eye(0.032, -0.9, 1.2));
+//! let view = View::stereo(left, right).with_validity_radius(0.01);
+//! let mut culler = Culler::new(480, 480)?;
+//! culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
+//!
+//! let behind = [Aabb::new(Vec3::new(-0.5, -0.5, -9.0), Vec3::new(0.5, 0.5, -8.0))];
+//! let mut results = [Visibility::Visible];
+//! culler.query(&behind, DVec3::ZERO, &mut results)?;
+//! assert_eq!(results, [Visibility::Occluded]);
+//! # Ok::<(), CullError>(())
+//! ```
+//!
+//! # Your own threads
+//! [`WorkerThreads`] are the crate's own, `Rayon` comes with the feature `rayon`, and any job
+//! system fits behind [`Threads`].
+//! ```
+//! use foveal_cull::glam::{DAffine3, DVec3, Vec3};
+//! use foveal_cull::*;
+//! use std::sync::Arc;
+//!
+//! /// Threads for each run: simple, but slower than threads that stay.
+//! struct Scoped(usize);
+//!
+//! impl Threads for Scoped {
+//!     fn count(&self) -> usize {
+//!         self.0
+//!     }
+//!
+//!     fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync)) {
+//!         std::thread::scope(|scope| {
+//!             for i in 0..tasks {
+//!                 scope.spawn(move || task(i));
+//!             }
+//!         });
+//!     }
+//! }
+//!
+//! let pillar = Aabb::new(Vec3::new(-1.0, -9.0, -6.0), Vec3::new(1.0, 9.0, -5.0));
+//! let mut occluders = OccluderSet::new();
+//! occluders.add(Arc::new(OccluderMesh::from_box(pillar)?), DAffine3::IDENTITY)?;
+//! let view = View::perspective(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0, 1.0, 0.1);
+//! let options = FrameOptions::default();
+//! let mut culler = Culler::new(256, 256)?;
+//! let mut depths = [vec![0.0; 256 * 256], vec![0.0; 256 * 256]];
+//!
+//! culler.rasterize(&view, &occluders, &options, &SingleThread)?;
+//! culler.read_depth(&mut depths[0])?;
+//! culler.rasterize(&view, &occluders, &options, &Scoped(4))?;
+//! culler.read_depth(&mut depths[1])?;
+//! assert_eq!(depths[0], depths[1]);
+//! # Ok::<(), CullError>(())
+//! ```
+//!
+//! # Cost
+//! Baking is O(n log n) in triangles and belongs to load time. A frame costs the clusters that may
+//! be visible and the blocks of 8x8 pixels that they touch, and each query some nanoseconds. On one
+//! core of an AMD EPYC (Zen 5, AVX-512) at 640x360 pixels: 0.22 ms for 48,700 occluder triangles of
+//! a castle seen from around it, and 5 ns for a random box. A tree of 26,894 objects takes 0.06 ms
+//! at 1280x720. `cargo bench -p foveal-cull` measures the kernels on your machine.
+//!
 //! # Instruction sets
-//! There are kernels for AVX-512, AVX2 and SSE2 on x86-64, for NEON on 64-bit ARM, and for WebAssembly's simd128; all give
-//! the same bits as plain arrays, which serve everything else. On x86-64 the CPU is asked at run time. A WebAssembly module
-//! cannot ask: compile it with `RUSTFLAGS="-C target-feature=+simd128"`, which all current browsers run; without that it has
-//! plain arrays, at up to ten times the time.
+//! There are kernels for AVX-512, AVX2 and SSE2 on x86-64, for NEON on 64-bit ARM, and for
+//! WebAssembly's simd128. All give the same bits as plain arrays, which serve every other target.
+//! On x86-64 the CPU is asked at run time. A WebAssembly module cannot ask: compile it with
+//! `RUSTFLAGS="-C target-feature=+simd128"`, which all current browsers run. Without it the module
+//! uses plain arrays, which take up to ten times as long.
+//!
+//! # Features
+//! - `rayon`: [`Threads`] on the current rayon thread pool. Off by default.
+//! - `reference`: the slow, exact reference that results are compared with. Off by default.
+//!
+//! # Sources
+//! Greene, Kass and Miller 1993, *Hierarchical Z-buffer visibility*; Hasselgren, Andersson and
+//! Akenine-Möller 2016, *Masked software occlusion culling*; Wonka, Wimmer and Schmalstieg 2000,
+//! *Visibility preprocessing with occluder fusion for urban walkthroughs*; Intel's software
+//! occlusion culling sample (thresholds and stats).
 #![deny(unsafe_code)]
 
 mod bounds;
+mod camera;
 mod culler;
 mod depth;
 mod error;
+mod format;
+mod limits;
 mod occluder;
+mod options;
+mod projection;
 mod query;
 mod raster;
+#[cfg(any(test, feature = "reference"))]
+pub mod reference;
 mod simd;
 mod stats;
-mod summary;
 mod threads;
-#[cfg(any(test, feature = "truth"))]
-pub mod truth;
 mod view;
+mod visibility;
 
 pub use bounds::Aabb;
-pub use culler::{Budget, Culler, FrameOptions, Visibility};
-pub use error::CullError;
+pub use culler::Culler;
+pub use error::{CullError, Quantity, ViewError};
+pub use glam;
+pub use limits::MAX_SIDE_PX;
 pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet};
+pub use options::{Budget, FrameOptions};
 pub use query::tree::OccludeeTree;
 pub use simd::InstructionSet;
 pub use stats::CullStats;
 #[cfg(feature = "rayon")]
 pub use threads::Rayon;
-pub use threads::{Pool, SingleThread, Threads};
+pub use threads::{SingleThread, Threads, WorkerThreads};
 pub use view::{Eye, Projection, View};
+pub use visibility::Visibility;
+
+/// The public types cross threads.
+const _: () = {
+    const fn send_and_sync<T: Send + Sync>() {}
+    send_and_sync::<Aabb>();
+    send_and_sync::<BakeOptions>();
+    send_and_sync::<Budget<'_>>();
+    send_and_sync::<CullError>();
+    send_and_sync::<CullStats>();
+    send_and_sync::<Culler>();
+    send_and_sync::<Eye>();
+    send_and_sync::<FrameOptions<'_>>();
+    send_and_sync::<InstructionSet>();
+    send_and_sync::<OccludeeTree>();
+    send_and_sync::<OccluderId>();
+    send_and_sync::<OccluderMesh>();
+    send_and_sync::<OccluderSet>();
+    send_and_sync::<Projection>();
+    send_and_sync::<Quantity>();
+    send_and_sync::<SingleThread>();
+    send_and_sync::<View>();
+    send_and_sync::<ViewError>();
+    send_and_sync::<Visibility>();
+    send_and_sync::<WorkerThreads>();
+};

@@ -1,4 +1,5 @@
-//! After warm-up a frame allocates nothing. Without the test harness, whose own thread allocates too.
+//! After warm-up a frame allocates nothing. Without the test harness, whose own thread allocates
+//! too.
 #![allow(
     unsafe_code,
     clippy::unwrap_used,
@@ -9,7 +10,7 @@ mod common;
 
 use common::{Random, eye, occluders, scene};
 use foveal_cull::{
-    Culler, FrameOptions, OccludeeTree, Pool, SingleThread, Threads, View, Visibility,
+    Culler, FrameOptions, OccludeeTree, SingleThread, Threads, View, Visibility, WorkerThreads,
 };
 use glam::DVec3;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -44,7 +45,7 @@ fn main() {
     let mut tree = OccludeeTree::build(&scene.boxes, DVec3::ZERO);
     let mut culler = Culler::new(160, 90).unwrap();
     let mut results = vec![Visibility::Visible; scene.boxes.len()];
-    let pool = Pool::new(2);
+    let pool = WorkerThreads::new(2);
     for threads in [&SingleThread as &dyn Threads, &pool] {
         let mut frame = || {
             culler

@@ -1,4 +1,5 @@
-//! Occluders whose box crosses the near plane: drawn in their place in the order, and not at all where they are hidden.
+//! Occluders whose box crosses the near plane: drawn in their place in the order, and not at all
+//! where they are hidden.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use foveal_cull::{
@@ -34,7 +35,8 @@ fn wall(distance: f32) -> Arc<OccluderMesh> {
     ])
 }
 
-/// What is drawn from the origin, looking along -z with 60 degrees in height, and how many pixels are covered.
+/// What is drawn from the origin, looking along -z with 60 degrees in height, and how many pixels
+/// are covered.
 fn drawn(
     meshes: &[Arc<OccluderMesh>],
     instruction_set: InstructionSet,

@@ -52,32 +52,30 @@ fn boxes_that_are_no_volumes_are_visible() {
 fn bad_input_is_an_error() {
     let p = [Vec3::ZERO, Vec3::X, Vec3::Y];
     let bake = |p: &[Vec3], i: &[u32]| OccluderMesh::bake(p, i, BakeOptions::default()).err();
-    assert_eq!(
+    let corner = [Vec3::ZERO, Vec3::X, Vec3::NAN];
+    assert!(matches!(
         bake(&p, &[0, 1]),
-        Some(CullError::NotTriangles { indices: 2 })
-    );
-    assert_eq!(
+        Some(CullError::NotTriangles { indices: 2, .. })
+    ));
+    assert!(matches!(
         bake(&p, &[0, 1, 3]),
         Some(CullError::IndexOutOfRange {
             index: 3,
-            positions: 3
+            positions: 3,
+            ..
         })
-    );
+    ));
     assert_eq!(
-        bake(&[Vec3::ZERO, Vec3::X, Vec3::NAN], &[0, 1, 2]),
-        Some(CullError::NotFinite)
+        bake(&corner, &[0, 1, 2]),
+        Some(CullError::NotFinite(Quantity::Position))
     );
     assert_eq!(bake(&p, &[]), None);
-    assert_eq!(
-        Culler::new(0, 8).err(),
-        Some(CullError::BadSize {
-            width: 0,
-            height: 8
-        })
-    );
     let mut set = OccluderSet::new();
     let nan = DAffine3::from_translation(DVec3::NAN);
-    assert_eq!(set.add(wall(), nan).err(), Some(CullError::NotFinite));
+    assert_eq!(
+        set.add(wall(), nan).err(),
+        Some(CullError::NotFinite(Quantity::Transform))
+    );
     let id = set.add(wall(), DAffine3::IDENTITY).unwrap();
     set.remove(id).unwrap();
     assert_eq!(set.remove(id).err(), Some(CullError::UnknownOccluder));
@@ -111,6 +109,83 @@ fn bad_input_is_an_error() {
         [Visibility::Visible],
         "after a bad view everything is visible"
     );
+}
+
+#[test]
+fn the_limit_of_a_side_is_the_one_that_messages_name() {
+    for side in [0, MAX_SIDE_PX + 1, u32::MAX] {
+        for (width, height) in [(side, 8), (8, side)] {
+            let error = Culler::new(width, height).err().unwrap();
+            let bad = matches!(error, CullError::BadSize { width_px, height_px, .. }
+                if (width_px, height_px) == (width, height));
+            assert!(bad, "{error:?}");
+            let limit = format!("1 to {MAX_SIDE_PX} pixels");
+            assert!(error.to_string().contains(&limit), "{error}");
+        }
+    }
+    for (width, height) in [(MAX_SIDE_PX, 1), (1, MAX_SIDE_PX)] {
+        assert_eq!(Culler::new(width, height).unwrap().size(), (width, height));
+    }
+}
+
+#[test]
+fn a_view_that_is_refused_says_why() {
+    let error = |view: View| {
+        let mut culler = Culler::new(8, 8).unwrap();
+        let set = OccluderSet::new();
+        let frame = culler.rasterize(&view, &set, &FrameOptions::default(), &SingleThread);
+        frame.err().unwrap()
+    };
+    let eye = |projection| Eye::look_at(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, projection);
+    let perspective = |near_m, far_m| eye(Projection::perspective(1.0, 1.0, near_m, far_m));
+    let flat = |near_m, far_m| eye(Projection::orthographic(2.0, 1.0, near_m, far_m));
+    let good = perspective(0.1, 9.0);
+    let mut scaled = good;
+    scaled.world_from_eye.matrix3 *= 2.0;
+    let mut back = good;
+    back.world_from_eye = DAffine3::from_rotation_y(core::f64::consts::PI);
+    for (view, cause) in [
+        (
+            View::mono(perspective(0.0, 9.0)),
+            ViewError::NearNotPositive,
+        ),
+        (
+            View::mono(perspective(3.0, 2.0)),
+            ViewError::FarNotBeyondNear,
+        ),
+        (
+            View::mono(flat(0.0, f64::INFINITY)),
+            ViewError::FarNotFinite,
+        ),
+        (
+            View::mono(eye(Projection::perspective(1.0, -1.0, 0.1, 9.0))),
+            ViewError::EmptyExtents,
+        ),
+        (View::mono(scaled), ViewError::PoseNotRigid),
+        (
+            View::stereo(good, flat(0.1, 9.0)),
+            ViewError::StereoNotPerspective,
+        ),
+        (View::stereo(good, back), ViewError::EyesTooFarApart),
+    ] {
+        let error = error(view);
+        assert_eq!(error, CullError::BadView(cause));
+        let source = std::error::Error::source(&error).unwrap();
+        assert_eq!(source.to_string(), cause.to_string());
+    }
+    for (view, quantity) in [
+        (View::mono(perspective(f64::NAN, 9.0)), Quantity::Projection),
+        (
+            View::mono(good).with_validity_radius(-1.0),
+            Quantity::ValidityRadius,
+        ),
+        (
+            View::perspective(DVec3::NAN, DVec3::NEG_Z, DVec3::Y, 1.0, 1.0, 0.1),
+            Quantity::Pose,
+        ),
+    ] {
+        assert_eq!(error(view), CullError::NotFinite(quantity));
+    }
 }
 
 #[test]
@@ -157,10 +232,7 @@ fn size_thresholds_and_statistics_add_up() {
     let mut set = OccluderSet::new();
     let id = set.add(wall(), DAffine3::IDENTITY).unwrap();
     let mut culler = Culler::new(64, 64).unwrap();
-    let options = FrameOptions {
-        occludee_size_threshold: 0.01,
-        ..FrameOptions::default()
-    };
+    let options = FrameOptions::default().with_occludee_size_threshold(0.01);
     culler
         .rasterize(&view(), &set, &options, &SingleThread)
         .unwrap();
@@ -213,10 +285,7 @@ fn size_thresholds_and_statistics_add_up() {
         .rasterize(
             &view(),
             &set,
-            &FrameOptions {
-                occluder_size_threshold: 100.0,
-                ..options
-            },
+            &options.with_occluder_size_threshold(100.0),
             &SingleThread,
         )
         .unwrap();
@@ -243,11 +312,8 @@ fn what_is_baked_around_clusters_matters_to_two_eyes_only() {
         let projection = Projection::perspective(1.0, 1.0, 0.1, f64::INFINITY);
         Eye::look_at(at, at + DVec3::NEG_Z, DVec3::Y, projection)
     };
-    let covered = |around_the_eye: bool, view: &View| {
-        let options = BakeOptions {
-            around_the_eye,
-            ..BakeOptions::default()
-        };
+    let covered = |adjacency: bool, view: &View| {
+        let options = BakeOptions::default().with_adjacency(adjacency);
         let mesh = OccluderMesh::bake(&points, &indices, options).unwrap();
         let mut set = OccluderSet::new();
         set.add(Arc::new(mesh), DAffine3::IDENTITY).unwrap();

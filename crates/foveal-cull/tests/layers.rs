@@ -22,10 +22,7 @@ fn depths(quads: &[[Vec3; 4]], set: InstructionSet) -> Vec<f32> {
     let mut culler = Culler::new(8, 8).unwrap();
     culler.set_instruction_set(set);
     let view = View::perspective(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0, 1.0, 0.1);
-    let options = FrameOptions {
-        occluder_pixels_per_quad: 0.0,
-        ..FrameOptions::default()
-    };
+    let options = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
     culler
         .rasterize(&view, &occluders, &options, &SingleThread)
         .unwrap();

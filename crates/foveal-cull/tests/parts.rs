@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use foveal_cull::{
-    BakeOptions, CullStats, Culler, FrameOptions, OccluderMesh, OccluderSet, Pool, SingleThread,
-    Threads, View,
+    BakeOptions, CullStats, Culler, FrameOptions, OccluderMesh, OccluderSet, SingleThread, Threads,
+    View, WorkerThreads,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
@@ -38,19 +38,14 @@ fn frame(set: &OccluderSet, threads: &dyn Threads) -> (Vec<f32>, CullStats) {
         16.0 / 9.0,
         0.1,
     );
-    let options = FrameOptions {
-        occluder_pixels_per_quad: 0.0,
-        ..FrameOptions::default()
-    };
+    let options = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
     let mut culler = Culler::new(320, 180).unwrap();
     culler.rasterize(&view, set, &options, threads).unwrap();
     let mut depth = vec![0.0; 320 * 180];
     culler.read_depth(&mut depth).unwrap();
     // Polygons on a cut between threads are set up on both sides.
-    let stats = CullStats {
-        polygons_rasterized: 0,
-        ..culler.stats()
-    };
+    let mut stats = culler.stats();
+    stats.polygons_rasterized = 0;
     (depth, stats)
 }
 
@@ -71,7 +66,7 @@ fn large_occluders_cut_into_parts_are_drawn_as_by_one_thread() {
     assert!(depth.iter().filter(|d| **d > 0.0).count() > 20_000);
     assert!(stats.clusters > 8 * 32 * 4, "{stats:?}");
     for threads in [2, 3, 16] {
-        let (other, counted) = frame(&set, &Pool::new(threads));
+        let (other, counted) = frame(&set, &WorkerThreads::new(threads));
         assert_eq!(counted, stats, "{threads} threads");
         assert!(other == depth, "{threads} threads");
     }

@@ -5,7 +5,8 @@ mod common;
 
 use common::{Random, Scene, answers, eye, farthest_in_pixels, occluders, scene, wrongly_culled};
 use foveal_cull::{
-    Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, Pool, SingleThread, View, Visibility,
+    Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, SingleThread, View, Visibility,
+    WorkerThreads,
 };
 use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
@@ -38,10 +39,7 @@ fn culls_nothing_visible_in(
     let (w, h) = buffer.unwrap_or(of_any);
     let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
     let mut culler = Culler::new(w, h).unwrap();
-    let all = FrameOptions {
-        occluder_pixels_per_quad: 0.0,
-        ..FrameOptions::default()
-    };
+    let all = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
     culler
         .rasterize(&View::mono(eye), &set, &all, &SingleThread)
         .unwrap();
@@ -144,10 +142,7 @@ fn culls_nothing_that_either_eye_sees(seed: u64) -> Result<[usize; 2], TestCaseE
 
 /// Answers where fine detail is not left out.
 fn answers_to_all(scene: &Scene, view: &View, (w, h): (u32, u32)) -> Vec<Visibility> {
-    let all = FrameOptions {
-        occluder_pixels_per_quad: 0.0,
-        ..FrameOptions::default()
-    };
+    let all = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
     let set = occluders(scene, &(0..scene.objects.len()).collect::<Vec<_>>());
     let mut culler = Culler::new(w, h).unwrap();
     culler.rasterize(view, &set, &all, &SingleThread).unwrap();
@@ -193,7 +188,7 @@ proptest! {
         let reversed = occluders(&scene, &order);
         prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &SingleThread));
         prop_assert_eq!(&image, &depth(&culler));
-        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &Pool::new(2)));
+        prop_assert_eq!(&reference, &answers(&mut culler, &view, &reversed, &scene, &WorkerThreads::new(2)));
         prop_assert_eq!(&image, &depth(&culler));
         let tree = OccludeeTree::build(&scene.boxes, scene.origin);
         let mut by_tree = vec![Visibility::Outside; scene.boxes.len()];
@@ -227,13 +222,13 @@ proptest! {
         let mut by_tree = vec![Visibility::Outside; scene.boxes.len()];
         let mut flat = by_tree.clone();
         for threshold in [0.1, 0.5] {
-            let options = FrameOptions { occludee_size_threshold: threshold, ..FrameOptions::default() };
+            let options = FrameOptions::default().with_occludee_size_threshold(threshold);
             culler.rasterize(&View::mono(eye), &set, &options, &SingleThread).unwrap();
             culler.query_tree(&tree, &mut by_tree).unwrap();
             culler.query(&scene.boxes, scene.origin, &mut flat).unwrap();
             for (n, (flat, tree)) in flat.iter().zip(&by_tree).enumerate() {
-                // A group that is hidden answers for members that lie beside the screen or are small, and of a small
-                // box there is no knowing which comes first.
+                // A group that is hidden answers for members that lie beside the screen or are
+                // small, and of a small box there is no knowing which comes first.
                 let same = flat == tree || *tree == Visibility::Occluded;
                 let either = |v: &Visibility| matches!(v, Visibility::Outside | Visibility::Small);
                 prop_assert!(same || (either(flat) && either(tree)), "{n}: {flat:?} {tree:?}");
@@ -261,8 +256,8 @@ proptest! {
         let all = answers(&mut culler, &view, &set, &scene, &SingleThread);
         let ticks = core::sync::atomic::AtomicU64::new(0);
         let clock = || ticks.fetch_add(1, core::sync::atomic::Ordering::Relaxed);
-        let budget = Some(foveal_cull::Budget { clock: &clock, deadline_ns: seed % 3 });
-        culler.rasterize(&view, &set, &FrameOptions { budget, ..FrameOptions::default() }, &SingleThread).unwrap();
+        let budget = Some(foveal_cull::Budget::new(&clock, seed % 3));
+        culler.rasterize(&view, &set, &FrameOptions::default().with_budget(budget), &SingleThread).unwrap();
         let mut some = vec![Visibility::Visible; scene.boxes.len()];
         culler.query(&scene.boxes, scene.origin, &mut some).unwrap();
         for (all, some) in all.iter().zip(&some) {
@@ -271,7 +266,8 @@ proptest! {
     }
 }
 
-/// What a sample decides that lies within float rounding of a border, in whose place `f64` has to decide.
+/// What a sample decides that lies within float rounding of a border, in whose place `f64` has to
+/// decide.
 #[test]
 fn samples_beside_a_border_are_not_covered() {
     for seed in [
@@ -291,7 +287,8 @@ fn samples_beside_a_border_are_not_covered() {
     }
 }
 
-/// `SCENES=100000 FIRST=0 cargo test -p foveal-cull --test safety soak -- --ignored`: about 2 ms each.
+/// `SCENES=100000 FIRST=0 cargo test -p foveal-cull --test safety soak -- --ignored`: about 2 ms
+/// each.
 #[test]
 #[ignore = "as long as one likes"]
 fn soak() {

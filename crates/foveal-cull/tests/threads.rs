@@ -1,12 +1,12 @@
 //! The pool of threads.
 
 use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use foveal_cull::{Pool, SingleThread, Threads};
+use foveal_cull::{SingleThread, Threads, WorkerThreads};
 
 #[test]
 fn whoever_is_woken_and_when_every_task_runs_once() {
     for threads in [1, 2, 5] {
-        let pool = Pool::new(threads);
+        let pool = WorkerThreads::new(threads);
         let stop = AtomicBool::new(false);
         std::thread::scope(|scope| {
             scope.spawn(|| {

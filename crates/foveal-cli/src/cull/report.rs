@@ -107,7 +107,7 @@ impl CameraReport {
 impl ViewReport {
     fn new(eye: &Eye) -> Self {
         let axes = eye.world_from_eye.matrix3;
-        let [near, far] = eye.projection.near_far();
+        let [near, far] = eye.projection.near_far_m();
         // No "-0.0" in the file.
         let point = |p: DVec3| (p + DVec3::ZERO).to_array();
         Self {

@@ -1,12 +1,13 @@
-//! Clusters: quads that lie together and look the same way.
+//! Clusters: quads that lie together and face the same way.
 //!
-//! A recursive split by the surface-area heuristic over six coordinates, position and normal, so that clusters are compact,
-//! large quads lie apart from small ones, and normal cones are narrow. Each cluster gets its own vertex list (numbers fit a byte).
+//! Quads are split recursively by the surface-area heuristic over six coordinates, position and
+//! normal, so that clusters are compact, large quads lie apart from small ones, and normal cones
+//! are narrow. Each cluster has its own vertex list, whose numbers fit a byte.
 
+use super::mesh::{Cluster, OccluderMesh, hash_words};
+use super::neighbors::{self, Neighbors};
 use super::quads::Quad;
-use super::ring::{self, Neighbours};
-use super::{Cluster, OccluderMesh, hash_words};
-use crate::query::project::Boxes8;
+use crate::projection::boxes::Boxes8;
 use glam::Vec3;
 
 const MAX_QUADS: usize = 64;
@@ -31,7 +32,7 @@ impl Item {
 pub(crate) fn build(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
-    near: Option<&Neighbours<'_>>,
+    near: Option<&Neighbors<'_>>,
     quads: Vec<Quad>,
 ) {
     let mut items: Vec<Item> = quads
@@ -77,7 +78,7 @@ pub(crate) fn build(
     );
 }
 
-/// Unit normals of the one or two triangles.
+/// Unit normals of the quad's one or two triangles.
 fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
     let n = |a: Vec3, b: Vec3, c: Vec3| {
         let (a, b, c) = (a.as_dvec3(), b.as_dvec3(), c.as_dvec3());
@@ -89,7 +90,7 @@ fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
 fn split(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
-    near: Option<&Neighbours<'_>>,
+    near: Option<&Neighbors<'_>>,
     items: &mut [Item],
 ) {
     if items.is_empty() {
@@ -108,7 +109,7 @@ fn split(
     split(mesh, points, near, right);
 }
 
-/// Where quads are split: the first `at` of them in the order of an axis (three of position, three of the normal).
+/// A split: the first `at` quads in the order of an axis (three of position, three of the normal).
 #[derive(Clone, Copy)]
 struct Cut {
     cost: f32,
@@ -116,14 +117,15 @@ struct Cut {
     at: usize,
 }
 
-/// What the set-up of a cluster takes, in quads.
+/// Cost of setting up a cluster, in quads.
 const COST_OF_CLUSTER: f32 = 32.0;
-/// What fits a cluster is cut only where that costs less than this part of it: mostly where large quads leave small ones.
+/// Quads that fit one cluster are split only if that costs less than this part of it: mostly where
+/// large quads leave small ones.
 const WORTH_A_CUT: f32 = 0.5;
-/// So many places at most are looked at along an axis.
-const PLACES: usize = 32;
+/// Bins per axis.
+const BINS: usize = 32;
 
-/// The cheapest of the cuts between bins along six axes, by the surface-area heuristic.
+/// The cheapest split between bins along the six axes, by the surface-area heuristic.
 fn cut(items: &[Item]) -> Cut {
     let mut best = Cut {
         cost: f32::INFINITY,
@@ -137,21 +139,21 @@ fn cut(items: &[Item]) -> Cut {
             .fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), v| {
                 (lo.min(v), hi.max(v))
             });
-        let scale = PLACES as f32 / (hi - lo);
+        let scale = BINS as f32 / (hi - lo);
         if !scale.is_finite() {
             continue;
         }
-        let mut bins = [Part::NONE; PLACES];
+        let mut bins = [Part::NONE; BINS];
         for item in items {
             let bin = ((item.key(axis) - lo) * scale) as usize;
-            bins[bin.min(PLACES - 1)].add(item);
+            bins[bin.min(BINS - 1)].add(item);
         }
-        let mut after = [Part::NONE; PLACES + 1];
-        for k in (0..PLACES).rev() {
+        let mut after = [Part::NONE; BINS + 1];
+        for k in (0..BINS).rev() {
             after[k] = after[k + 1].with(&bins[k]);
         }
         let mut before = Part::NONE;
-        for k in 1..PLACES {
+        for k in 1..BINS {
             before = before.with(&bins[k - 1]);
             if before.count == 0 || after[k].count == 0 {
                 continue;
@@ -165,7 +167,7 @@ fn cut(items: &[Item]) -> Cut {
     best
 }
 
-/// Some quads: how many, their bounds, and those of their normals.
+/// Bounds of some quads and of their normals.
 #[derive(Clone, Copy)]
 struct Part {
     count: usize,
@@ -210,20 +212,22 @@ impl Part {
         }
     }
 
-    /// What it costs in the mean: how often it is seen, by the surface of its box and the part of all directions from which
-    /// any of its quads faces the eye, times what it takes then.
+    /// The mean cost of drawing the quads: how often they are seen (the surface of their box, times
+    /// the part of all directions from which any of them faces the eye), times what set-up then
+    /// takes.
     fn cost(&self) -> f32 {
         let size = self.hi - self.lo;
         let surface = size.dot(Vec3::new(size.y, size.z, size.x));
-        // The sine of the angle to the middle of a cone of normals, or more.
+        // At least the sine of the half angle of the cone of normals.
         let spread = ((self.normal_hi - self.normal_lo).length() * 0.5).min(1.0);
         surface * (0.5 + 0.5 * spread) * (self.count.next_multiple_of(8) as f32 + COST_OF_CLUSTER)
     }
 }
 
-/// How much of its box's outline a cluster can fill. The outline of a convex body is a fourth of its surface in the mean
-/// over all directions (Cauchy's formula), and triangles that face one way fill up to half their area: a flat wall and a
-/// closed body fill all, what is made of bars or leaves next to nothing.
+/// The part of its box's outline that a cluster can fill. The outline of a convex body is a fourth
+/// of its surface in the mean over all directions (Cauchy's formula), and triangles that face one
+/// way fill up to half their area. A flat wall and a closed body fill everything, bars and leaves
+/// next to nothing.
 fn fill(quads: impl Iterator<Item = [Vec3; 4]>, size: Vec3) -> f32 {
     let surface: f32 = quads
         .map(|[a, b, c, d]| {
@@ -232,15 +236,15 @@ fn fill(quads: impl Iterator<Item = [Vec3; 4]>, size: Vec3) -> f32 {
         })
         .sum();
     let fill = surface / size.dot(Vec3::new(size.y, size.z, size.x));
-    // Too small or too large for float: nothing is known.
+    // Too small or too large for `f32`: not known.
     if fill.is_finite() { fill.min(1.0) } else { 1.0 }
 }
 
-/// Of all the edges of a cluster's quads, the part by length where the mesh ends or bends; all, where nothing is known of
-/// what lies around.
+/// The part of all edges of a cluster's quads, by length, where the mesh ends or bends. 1 without
+/// adjacency.
 fn creased(
     points: &[Vec3],
-    near: Option<&Neighbours<'_>>,
+    near: Option<&Neighbors<'_>>,
     quads: impl Iterator<Item = Quad>,
 ) -> f32 {
     let Some(near) = near else {
@@ -260,11 +264,11 @@ fn creased(
     if part.is_finite() { part } else { 1.0 }
 }
 
-/// Appends one cluster; false when its vertices do not fit a byte.
+/// Appends one cluster; false if it has more than 256 vertices.
 fn emit(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
-    near: Option<&Neighbours<'_>>,
+    near: Option<&Neighbors<'_>>,
     items: &[Item],
 ) -> bool {
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
@@ -294,7 +298,7 @@ fn emit(
     }
     let mut triangles = 0u8;
     let mut normals = Vec::with_capacity(items.len() * 2);
-    // Whole groups of eight for the set-up; padding repeats a vertex and has no area.
+    // Whole groups of eight for the set-up. Padding repeats a vertex and has no area.
     mesh.quads
         .extend(core::iter::repeat_n([[0u8; 8]; 4], items.len().div_ceil(8)));
     for (i, item) in items.iter().enumerate() {
@@ -339,7 +343,7 @@ fn emit(
         ),
     });
     if let Some(near) = near {
-        ring::build(mesh, near, &used, items.iter().map(|i| i.quad));
+        neighbors::build(mesh, near, &used, items.iter().map(|i| i.quad));
     }
     true
 }
@@ -399,7 +403,7 @@ mod tests {
         } else {
             (rest, one)
         };
-        // Eight are set up at once, so that up to seven may go with the large one.
+        // Eight quads are set up at once, so up to seven small ones may go with the large one.
         assert!(large.quad_count <= 8, "{}", large.quad_count);
         assert_eq!(large.quad_count + small.quad_count, 57);
         assert!(small.half.x < 5.0 && small.half.z < 5.0, "{:?}", small.half);
@@ -421,8 +425,9 @@ mod tests {
         let solid = OccluderMesh::from_box(Aabb::new(Vec3::ZERO, Vec3::new(1.0, 2.0, 3.0)));
         assert_eq!(creased(&solid.unwrap()), 1.0);
         assert_eq!(creased(&strips(0.1)), 1.0);
-        // A bent sheet of 6 x 6 quads of 1 m: of 144 edges, each counted from its quads, 24 are its border.
-        let sheet = |bend: f32, around_the_eye: bool| {
+        // A bent surface of 6 x 6 quads of 1 m. Of 144 edges, each counted from its quads, 24 are
+        // on its boundary.
+        let sheet = |bend: f32, adjacency: bool| {
             let point = |i: usize| {
                 let (x, y) = ((i % 7) as f32, (i / 7) as f32);
                 Vec3::new(x, y, bend * (x - 3.0) * (x - 3.0))
@@ -432,10 +437,7 @@ mod tests {
             let indices: Vec<u32> = quads
                 .flat_map(|a| [a, a + 1, a + 8, a, a + 8, a + 7])
                 .collect();
-            let options = BakeOptions {
-                around_the_eye,
-                ..BakeOptions::default()
-            };
+            let options = BakeOptions::default().with_adjacency(adjacency);
             creased(&OccluderMesh::bake(&points, &indices, options).unwrap())
         };
         assert!((sheet(0.0, true) - 24.0 / 144.0).abs() < 1e-6);

@@ -1,15 +1,15 @@
-//! Joining triangles to quads: one set-up for two triangles.
+//! Joining triangles to quads, so that two triangles share one set-up.
 //!
-//! Two triangles over a shared edge are joined where they are nearly flat together and form a convex
-//! quadrilateral. The rasterizer stays exact for any such pair (it measures the fold in every view and
-//! lowers the depth by it), so the tolerance is a matter of thrift, not of safety. Candidates are taken
-//! best first, preferring triangles with few other partners.
+//! Two triangles over a shared edge are joined where they are nearly flat together and form a
+//! convex quadrilateral. The rasterizer is right for any such pair, since it measures the fold in
+//! every view and lowers the depth by it; the tolerance is about cost, not safety. Candidates are
+//! taken best first, and triangles with few other partners before those with many.
 
 use super::weld::Welded;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Vertices of a quad; a single triangle repeats its third.
+/// Vertices of a quad. A single triangle repeats its third.
 pub(crate) type Quad = [u32; 4];
 
 /// Largest height of the fold, as a part of the shared edge's length.
@@ -91,16 +91,16 @@ pub(crate) fn pair(mesh: &Welded) -> Vec<Quad> {
     quads
 }
 
-/// How far from flat the pair (a, b, c) and (b, a, d) is, 0 being flat; `None` where it cannot be joined.
+/// Fold of the pair (a, b, c) and (b, a, d), 0 if flat; `None` if the two cannot be joined.
 fn fold(mesh: &Welded, [a, b, c, d]: [u32; 4]) -> Option<f64> {
     let [a, b, c, d] = [a, b, c, d].map(|i| mesh.points[i as usize].as_dvec3());
     let n0 = (b - a).cross(c - a);
     let n1 = (d - a).cross(b - a);
     let n = (n0 + n1).try_normalize()?;
     // Convex around the corners a and b, seen along the mean normal.
-    let turn = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - q).dot(n);
+    let orientation = |p: DVec3, q: DVec3, r: DVec3| (q - p).cross(r - q).dot(n);
     let scale = (b - a).length_squared().max((c - d).length_squared());
-    if turn(c, a, d) < 1e-4 * scale || turn(d, b, c) < 1e-4 * scale {
+    if orientation(c, a, d) < 1e-4 * scale || orientation(d, b, c) < 1e-4 * scale {
         return None;
     }
     let height = (d - a)

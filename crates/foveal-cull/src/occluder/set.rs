@@ -1,33 +1,50 @@
-//! The occluders of a scene: meshes placed in the world, static or moving.
+//! The occluders of a scene.
 
-use super::{OccluderMesh, hash_words};
-use crate::CullError;
+use super::mesh::{OccluderMesh, hash_words};
+use crate::error::{CullError, Quantity};
+use core::num::NonZeroU32;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
-/// Names one occluder of an [`OccluderSet`].
+/// The id of one occluder of an [`OccluderSet`].
+///
+/// Ids are generational: the id of a removed occluder never names another one, even if its slot is
+/// used again. An id is valid only in the set that gave it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct OccluderId(pub(crate) u32);
+pub struct OccluderId {
+    slot: u32,
+    generation: NonZeroU32,
+}
 
-/// Placed occluders. Moving one costs nothing beyond the new transform: there is no structure to refit.
+/// The occluders of a scene: baked meshes placed in the world.
+///
+/// There is no hierarchy over occluders: moving one costs its new transform and nothing else, and
+/// every frame looks at each enabled occluder once.
 #[derive(Clone, Debug, Default)]
 pub struct OccluderSet {
     pub(crate) instances: Vec<Instance>,
+    /// Slots that can be used again.
     free: Vec<u32>,
+    len: usize,
 }
 
+/// A slot of the set: an occluder, or free.
 #[derive(Clone, Debug)]
 pub(crate) struct Instance {
+    /// None in a free slot.
     pub(crate) mesh: Option<Arc<OccluderMesh>>,
     pub(crate) world_from_mesh: DAffine3,
-    /// Bounding sphere in the world.
+    /// Bounding sphere, world.
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
     pub(crate) mirrored: bool,
-    /// Takes the eye to the mesh, where cones are tested; NaN for a singular transform.
+    /// Takes the eye to mesh space, where normal cones are tested; NaN for a singular transform.
     pub(crate) mesh_from_world: DAffine3,
+    /// Content hash.
     pub(crate) hash: u32,
     pub(crate) enabled: bool,
+    /// Rises with every occluder that leaves this slot.
+    generation: NonZeroU32,
 }
 
 impl OccluderSet {
@@ -37,7 +54,8 @@ impl OccluderSet {
         Self::default()
     }
 
-    /// Places a mesh. Any affine transform will do: non-uniform or mirroring scales too.
+    /// Places a mesh in the world (metres). Any affine transform will do, non-uniform and mirroring
+    /// scales too. O(1).
     ///
     /// # Errors
     /// [`CullError::NotFinite`] for a transform with NaN or infinity.
@@ -47,18 +65,29 @@ impl OccluderSet {
         world_from_mesh: DAffine3,
     ) -> Result<OccluderId, CullError> {
         let instance = Instance::new(mesh, world_from_mesh)?;
+        self.len += 1;
         if let Some(slot) = self.free.pop() {
-            self.instances[slot as usize] = instance;
-            return Ok(OccluderId(slot));
+            let to = &mut self.instances[slot as usize];
+            let generation = to.generation;
+            *to = Instance {
+                generation,
+                ..instance
+            };
+            return Ok(OccluderId { slot, generation });
         }
+        let id = OccluderId {
+            slot: self.instances.len() as u32,
+            generation: instance.generation,
+        };
         self.instances.push(instance);
-        Ok(OccluderId((self.instances.len() - 1) as u32))
+        Ok(id)
     }
 
-    /// Moves an occluder.
+    /// Moves an occluder. O(1).
     ///
     /// # Errors
-    /// [`CullError::UnknownOccluder`], [`CullError::NotFinite`].
+    /// [`CullError::UnknownOccluder`], or [`CullError::NotFinite`] for a transform with NaN or
+    /// infinity.
     pub fn set_transform(
         &mut self,
         id: OccluderId,
@@ -66,15 +95,16 @@ impl OccluderSet {
     ) -> Result<(), CullError> {
         let slot = self.slot(id)?;
         let mesh = slot.mesh.clone().ok_or(CullError::UnknownOccluder)?;
-        let enabled = slot.enabled;
+        let (enabled, generation) = (slot.enabled, slot.generation);
         *slot = Instance {
             enabled,
+            generation,
             ..Instance::new(mesh, world_from_mesh)?
         };
         Ok(())
     }
 
-    /// Switches an occluder off or on again.
+    /// Switches an occluder off, or on again. A new one is on. O(1).
     ///
     /// # Errors
     /// [`CullError::UnknownOccluder`].
@@ -83,30 +113,42 @@ impl OccluderSet {
         Ok(())
     }
 
-    /// Takes an occluder out; its id may be given out again.
+    /// Removes an occluder. Its id names nothing from then on. O(1).
     ///
     /// # Errors
     /// [`CullError::UnknownOccluder`].
     pub fn remove(&mut self, id: OccluderId) -> Result<(), CullError> {
         let slot = self.slot(id)?;
         slot.mesh = None;
-        self.free.push(id.0);
+        // A slot that has used up all generations stays empty.
+        if let Some(next) = slot.generation.checked_add(1) {
+            slot.generation = next;
+            self.free.push(id.slot);
+        }
+        self.len -= 1;
         Ok(())
     }
 
-    /// How many occluders there are.
+    /// Whether an id names an occluder of this set. O(1).
+    #[must_use]
+    pub fn contains(&self, id: OccluderId) -> bool {
+        let slot = self.instances.get(id.slot as usize);
+        slot.is_some_and(|i| i.mesh.is_some() && i.generation == id.generation)
+    }
+
+    /// Number of occluders, whether on or off.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.instances.len() - self.free.len()
+        self.len
     }
 
-    /// Whether there are none.
+    /// Whether there are no occluders.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.len() == 0
+        self.len == 0
     }
 
-    /// Triangles of all occluders together.
+    /// Triangles of all occluders together. O(n).
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.instances
@@ -117,9 +159,11 @@ impl OccluderSet {
     }
 
     fn slot(&mut self, id: OccluderId) -> Result<&mut Instance, CullError> {
+        if !self.contains(id) {
+            return Err(CullError::UnknownOccluder);
+        }
         self.instances
-            .get_mut(id.0 as usize)
-            .filter(|i| i.mesh.is_some())
+            .get_mut(id.slot as usize)
             .ok_or(CullError::UnknownOccluder)
     }
 }
@@ -127,7 +171,7 @@ impl OccluderSet {
 impl Instance {
     fn new(mesh: Arc<OccluderMesh>, world_from_mesh: DAffine3) -> Result<Self, CullError> {
         if !world_from_mesh.is_finite() {
-            return Err(CullError::NotFinite);
+            return Err(CullError::NotFinite(Quantity::Transform));
         }
         let m = world_from_mesh.matrix3;
         let center = world_from_mesh.transform_point3(mesh.center);
@@ -149,6 +193,51 @@ impl Instance {
             mesh: Some(mesh),
             world_from_mesh,
             enabled: true,
+            generation: NonZeroU32::MIN,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::Aabb;
+    use glam::Vec3;
+
+    fn mesh() -> Arc<OccluderMesh> {
+        Arc::new(OccluderMesh::from_box(Aabb::new(Vec3::ZERO, Vec3::ONE)).unwrap())
+    }
+
+    #[test]
+    fn the_id_of_a_removed_occluder_names_no_other() {
+        let mut set = OccluderSet::new();
+        let first = set.add(mesh(), DAffine3::IDENTITY).unwrap();
+        set.remove(first).unwrap();
+        let second = set.add(mesh(), DAffine3::IDENTITY).unwrap();
+        assert_eq!(first.slot, second.slot, "the slot is used again");
+        assert_ne!(first, second);
+        assert!(!set.contains(first) && set.contains(second));
+        let unknown = Err(CullError::UnknownOccluder);
+        let moved = DAffine3::from_translation(DVec3::ONE);
+        assert_eq!(set.remove(first), unknown);
+        assert_eq!(set.set_enabled(first, false), unknown);
+        assert_eq!(set.set_transform(first, moved), unknown);
+        // Moving keeps the id.
+        set.set_transform(second, moved).unwrap();
+        assert!(set.contains(second));
+        assert_eq!((set.len(), set.triangle_count()), (1, 12));
+    }
+
+    #[test]
+    fn a_slot_that_has_used_up_all_generations_stays_empty() {
+        let mut set = OccluderSet::new();
+        let mut id = set.add(mesh(), DAffine3::IDENTITY).unwrap();
+        id.generation = NonZeroU32::MAX;
+        set.instances[0].generation = NonZeroU32::MAX;
+        set.remove(id).unwrap();
+        assert!(set.is_empty());
+        let next = set.add(mesh(), DAffine3::IDENTITY).unwrap();
+        assert_eq!((next.slot, set.len()), (1, 1));
+        assert!(!set.contains(id) && set.contains(next));
     }
 }

@@ -1,10 +1,10 @@
-//! Welding: positions that are bit-equal become one vertex, so that neighbours are found however a mesh
-//! was exported.
+//! Welding: positions that are bit-equal become one vertex, so that neighbours are found however a
+//! mesh was exported.
 
 use glam::Vec3;
 use std::collections::HashMap;
 
-/// Points and triangles that index them.
+/// Points, and triangles that index them.
 pub(crate) struct Welded {
     pub(crate) points: Vec<Vec3>,
     pub(crate) triangles: Vec<[u32; 3]>,

@@ -1,119 +1,23 @@
-//! A box where it really is: its faces on the screen, for boxes whose rectangle says too little.
+//! The faces of a box on the screen, for boxes that their rectangle leaves undecided.
 //!
-//! A ray enters a box where it crosses the last of the (at most three) planes that face the eye, and leaves it
-//! at the first of the others. The depth of a plane is affine over the screen, so a bound for all rays through
-//! a pixel, or a whole block, takes a few multiplications; and where a front plane lies behind a back plane
-//! the ray misses the box.
+//! A ray enters a box where it crosses the last of the (at most three) planes that face the eye,
+//! and leaves it at the first of the others. The depth of a plane is affine over the screen, so
+//! that a bound for all rays through a pixel or a whole block takes a few multiplications. Where a
+//! front plane lies behind a back plane, the ray misses the box.
 //!
-//! All this is done for the planes of one box at once, a lane each, so that nothing depends on which of them face the
-//! eye.
+//! All planes of one box are evaluated at once, one lane each, so that nothing branches on which of
+//! them face the eye.
 
-use super::planes::{Affine, Planes, ROUNDING};
-use crate::depth::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, decode};
-use crate::simd::Lanes;
-use crate::simd::wide::Wide;
-use crate::simd::{four, three, two};
+use super::axis_planes::AxisPlanes;
+use super::plane_lanes::{AxisPlaneLanes, FRONTS, GAPS, NEARER, OF_AXIS, ROUNDING};
+use crate::format::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, decode};
+use crate::simd::{Lanes, Wide, four, three, two};
 use glam::Vec3;
 
-/// Rays up to one sample beside a sample count as its own, as for rectangles; from the centre of a pixel and of
-/// a block to there, samples.
+/// Distance from the centre of a pixel, or of a block, to rays that count as its own, samples: up
+/// to one sample beside a sample, as for rectangles.
 const PIXEL_REACH: f32 = 2.5;
 const BLOCK_REACH: f32 = 16.5;
-
-/// Lanes of gaps: front minus back planes, above zero where a ray may meet the box. Number `4 a + 2 b + near` is from the
-/// front across axis `a` to a back across axis `a + 1 + b`: the farther of its two planes, or the nearer one (`near`),
-/// which is a back too where neither faces the eye.
-const GAPS: u32 = 0xfff;
-/// Gaps to nearer planes.
-const NEARER: u32 = 0xaaa;
-/// Lanes of the front planes themselves, by axis.
-const FRONTS: u32 = 7 << FIRST_FRONT;
-const FIRST_FRONT: usize = 12;
-
-/// The axis of a lane's front plane, and of its back plane; three for none.
-const AXES: [[usize; 16]; 2] = {
-    let mut axes = [[3; 16]; 2];
-    let mut lane = 0;
-    while lane < FIRST_FRONT {
-        axes[0][lane] = lane / 4;
-        axes[1][lane] = (lane / 4 + 1 + lane / 2 % 2) % 3;
-        lane += 1;
-    }
-    while lane < FIRST_FRONT + 3 {
-        axes[0][lane] = lane - FIRST_FRONT;
-        lane += 1;
-    }
-    axes
-};
-
-/// By front or back and axis: one in the lanes that have it.
-const OF_AXIS: [[[f32; 16]; 3]; 2] = {
-    let mut of = [[[0.0; 16]; 3]; 2];
-    let mut n = 0;
-    while n < 2 * 16 {
-        let axis = AXES[n / 16][n % 16];
-        if axis < 3 {
-            of[n / 16][axis][n % 16] = 1.0;
-        }
-        n += 1;
-    }
-    of
-};
-
-/// What the planes of all boxes of a query have in common, by lane.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct PlaneLanes {
-    /// Of front and back: change to the right and downwards, depth at zero, and error.
-    affine: [[[f32; 16]; 4]; 2],
-    parallel: Option<Parallel>,
-}
-
-/// The same for orthographic views, where the way to the box does not say which of its planes face the eye.
-#[derive(Clone, Copy, Debug)]
-struct Parallel {
-    /// Change of depth per metre, of front and back.
-    per_metre: [[f32; 16]; 2],
-    /// Bit per lane: of the front's and of the back's axis, the upper plane faces the eye.
-    down: [u32; 2],
-    /// Bit per lane: its planes are known.
-    known: u32,
-}
-
-impl PlaneLanes {
-    pub(super) fn new(axes: &[Affine; 3], per_metre: Option<[f32; 3]>) -> Self {
-        let mut affine = [[[0.0; 16]; 4]; 2];
-        for (affine, of) in affine.iter_mut().zip(&AXES) {
-            for (lane, &axis) in of.iter().enumerate() {
-                if let Some(a) = axes.get(axis) {
-                    affine[0][lane] = a.x;
-                    affine[1][lane] = a.y;
-                    affine[2][lane] = a.at_zero;
-                    affine[3][lane] = a.error;
-                }
-            }
-        }
-        let parallel = per_metre.map(|per_metre| {
-            let per_metre =
-                AXES.map(|of| of.map(|axis| per_metre.get(axis).copied().unwrap_or(0.0)));
-            let bits = |of: &[f32; 16], is: fn(f32) -> bool| {
-                (0..16).fold(0, |bits, n| bits | u32::from(is(of[n])) << n)
-            };
-            Parallel {
-                // Depth falls with distance.
-                down: per_metre
-                    .each_ref()
-                    .map(|of| bits(of, f32::is_sign_positive)),
-                known: !per_metre
-                    .each_ref()
-                    .map(|of| bits(of, f32::is_nan))
-                    .into_iter()
-                    .fold(0, |a, b| a | b),
-                per_metre,
-            }
-        });
-        Self { affine, parallel }
-    }
-}
 
 /// The planes of one box.
 pub(crate) struct Faces<W: Wide> {
@@ -122,20 +26,21 @@ pub(crate) struct Faces<W: Wide> {
     y: W::F,
     at_zero: W::F,
     error: W::F,
-    /// Change to the right and downwards together, without signs.
+    /// Absolute change to the right plus downwards.
     slope: W::F,
-    /// Bit per lane of a front plane.
+    /// Bit per lane with a front plane.
     fronts: u32,
 }
 
 impl<W: Wide> Faces<W> {
-    /// `None` if the eye may be inside. `center` and `half` relative to the boxes' origin, grown for rounding.
+    /// `None` if the eye may be inside the box. `center` and `half` are relative to the boxes'
+    /// origin, grown for rounding.
     #[inline(always)]
-    pub(crate) fn new(w: W, planes: &Planes, center: Vec3, half: Vec3) -> Option<Self> {
+    pub(crate) fn new(w: W, planes: &AxisPlanes, center: Vec3, half: Vec3) -> Option<Self> {
         let center = center + planes.from_eye;
         let ends = [center - half, center + half];
         let [[lo, hi], [back_lo, back_hi]] = two!(n => two!(k => by_axis(w, ends[k], &OF_AXIS[n])));
-        let PlaneLanes { affine, parallel } = &planes.lanes;
+        let AxisPlaneLanes { affine, parallel } = &planes.lanes;
         let [front, back] = two!(n => four!(k => w.load(&affine[n][k])));
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
         let (down, facing, known) = match parallel {
@@ -172,13 +77,13 @@ impl<W: Wide> Faces<W> {
         };
         let endless = w.splat(f32::INFINITY);
         let slope = w.add(w.abs(at[0]), w.abs(at[1]));
-        // Of planes through the eye, or nearly so, nothing is known.
+        // Planes through the eye, or nearly so, decide nothing.
         let finite = w.lt(w.add(w.abs(at[2]), slope), endless);
         let (gaps, fronts) = (gaps & finite, fronts & finite);
         (fronts != 0).then_some(Self {
             x: at[0],
             y: at[1],
-            // What is no plane of this box is never in the way.
+            // Lanes without a plane of this box never decide.
             at_zero: w.select(gaps | fronts, at[2], endless),
             error: w.add(errors[0], errors[1]),
             slope,
@@ -186,7 +91,7 @@ impl<W: Wide> Faces<W> {
         })
     }
 
-    /// Whether the box cannot be seen in a block, whose farthest depth is `min`, whatever its pixels are.
+    /// Whether the box is invisible in a block with farthest depth `min`, whatever its pixels are.
     #[inline(always)]
     pub(crate) fn miss(&self, w: W, bx: u32, by: u32, min: i16) -> bool {
         let [most, _] = self.over_block(w, bx, by);
@@ -196,7 +101,7 @@ impl<W: Wide> Faces<W> {
     /// The same from the largest values in the block.
     #[inline(always)]
     fn misses(&self, w: W, most: W::F, min: i16) -> bool {
-        // Before a block that is open somewhere no depth is too far.
+        // In a block with empty pixels no depth is too far.
         let nearer = if min == EMPTY {
             f32::NEG_INFINITY
         } else {
@@ -209,13 +114,13 @@ impl<W: Wide> Faces<W> {
     /// Largest and smallest values in a block.
     #[inline(always)]
     fn over_block(&self, w: W, bx: u32, by: u32) -> [W::F; 2] {
-        let middle = |v: u32| (v * BLOCK_SAMPLES) as f32 + BLOCK_SAMPLES as f32 * 0.5;
-        let value = self.at(w, middle(bx), middle(by));
+        let center = |v: u32| (v * BLOCK_SAMPLES) as f32 + BLOCK_SAMPLES as f32 * 0.5;
+        let value = self.at(w, center(bx), center(by));
         let reach = w.add(w.mul(self.slope, w.splat(BLOCK_REACH)), self.error);
         [w.add(value, reach), w.sub(value, reach)]
     }
 
-    /// Whether the box may be seen in any of the pixels `seen` of a block.
+    /// Whether the box may be visible in any of the pixels `seen` of a block.
     #[inline(always)]
     pub(crate) fn seen<L: Lanes<W = W>>(
         &self,
@@ -231,7 +136,8 @@ impl<W: Wide> Faces<W> {
         if self.misses(w, most, min) {
             return false;
         }
-        // Pixel by pixel, from the middle of the first one; only with gaps that may close in this block.
+        // Pixel by pixel, from the centre of the first one; only with gaps that may close in this
+        // block.
         let mut open = w.lt(least, w.splat(0.0)) & GAPS;
         let mut fronts = self.fronts;
         let pixel = SAMPLES as f32;
@@ -252,7 +158,7 @@ impl<W: Wide> Faces<W> {
         while open != 0 && seen != 0 {
             let i = open.trailing_zeros() as usize % 16;
             open &= open - 1;
-            // Only the sign counts; scaled, so that nothing above zero becomes the lowest code.
+            // Only the sign counts. Scaled, so that nothing above zero becomes the lowest code.
             let codes = block_codes(l, values[i], right[i], down[i], 1e6);
             seen &= l.dgt(codes, l.dsplat(i16::MIN));
         }
@@ -267,15 +173,15 @@ impl<W: Wide> Faces<W> {
     }
 }
 
-/// By lane, the component of the axis that it has.
+/// The coordinate along each lane's axis.
 #[inline(always)]
 fn by_axis<W: Wide>(w: W, v: Vec3, of: &[[f32; 16]; 3]) -> W::F {
     let [x, y, z] = three!(k => w.mul(w.splat(v[k]), w.load(&of[k])));
     w.add(w.add(x, y), z)
 }
 
-/// Codes of the pixels of a block, from the largest value in the first one and its change from pixel to pixel, times
-/// `scale`.
+/// Depth codes of the pixels of a block, from the largest value in the first one and its change
+/// from pixel to pixel, times `scale`.
 #[inline(always)]
 fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) -> L::D {
     const COLUMNS: [f32; BLOCK as usize] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
@@ -290,13 +196,13 @@ fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) ->
 mod tests {
     use super::*;
     use crate::InstructionSet;
+    use crate::camera::Camera;
     use crate::simd::Kernel;
-    use crate::view::Camera;
     use crate::{Eye, Projection, View};
     use glam::DVec3;
 
-    /// One pixel, of a block of the same depth everywhere.
-    struct Seen<'a>(&'a Planes, (Vec3, Vec3), [u32; 2], i16);
+    /// One pixel, in a block of the same depth everywhere.
+    struct Seen<'a>(&'a AxisPlanes, (Vec3, Vec3), [u32; 2], i16);
 
     impl Kernel for Seen<'_> {
         type Output = Option<bool>;
@@ -327,7 +233,7 @@ mod tests {
             let samples = f64::from(SAMPLES);
             let camera = Camera::new(&View::mono(eye), width * samples, height * samples).unwrap();
             let [w, h] = [width, height].map(|v| (v * samples) as f32);
-            let planes = Planes::new(&camera, DVec3::ZERO, w, h).unwrap();
+            let planes = AxisPlanes::new(&camera, DVec3::ZERO, w, h).unwrap();
             let (mut entered, mut loose) = (0, 0);
             for _ in 0..6000 {
                 let center = Vec3::from_array([0; 3].map(|_| random(-3.0, 3.0)));
@@ -347,7 +253,7 @@ mod tests {
                 else {
                     continue;
                 };
-                // Just hidden by it, were it not for the rays.
+                // Just hidden, were it not for the rays.
                 let code = if inside == EMPTY { EMPTY } else { inside - 1 };
                 let ask =
                     |set: InstructionSet, code| set.run(Seen(&planes, (center, half), pixel, code));
@@ -360,7 +266,7 @@ mod tests {
                     entered += 1;
                     assert_eq!(seen, Some(true), "{center} {half} {pixel:?}");
                 }
-                // Nearer than all of it, or beside it.
+                // Nearer than all of the box, or beside it.
                 let nearer = if around == EMPTY { EMPTY } else { around + 6 };
                 if ask(InstructionSet::detect(), nearer) == Some(true) {
                     loose += 1;

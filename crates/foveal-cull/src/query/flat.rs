@@ -1,48 +1,52 @@
-//! All boxes one after the other.
+//! Classification of a list of boxes.
 //!
-//! A first look at sixteen at a time tells what most of them are. What is to be done with the others cannot be foreseen,
-//! and a wrong guess throws away what was begun. So at each step those that are left are put into a list without a
-//! branch, and the list is gone through by itself.
+//! Boxes go through tests of rising cost: a coarse HiZ test of sixteen at once, the depth at their
+//! centres, their exact screen rectangles against the HiZ, the depth at their corners, and last
+//! block by block. Branch-free between the steps: the outcomes are unpredictable, so each step
+//! compacts the boxes that remain into a list for the next one.
 
-use super::answer::Query;
-use super::list::List;
-use super::points::Corners8;
-use super::project::{Boxes8, Projected8, outline, project};
-use super::sift::{Middles16, Sieve, Sifted16};
+use super::classify::Query;
+use super::coarse::{Centers16, Coarse16, CoarseTest};
+use super::compaction::Compacted;
+use crate::bounds::Aabb;
+use crate::projection::boxes::Boxes8;
+use crate::projection::points::Corners8;
+use crate::projection::project::{Projected8, outline, project};
 use crate::simd::{Kernel, Lanes};
-use crate::{Aabb, Visibility};
+use crate::visibility::Visibility;
 
-/// Boxes against a frame.
+/// The kernel that classifies a list of boxes.
 pub(crate) struct Flat<'a> {
     pub(crate) query: &'a Query<'a>,
     pub(crate) boxes: &'a [Aabb],
     pub(crate) results: &'a mut [Visibility],
 }
 
-/// Groups of eight that are looked at together.
+/// Groups of eight boxes per round.
 const GROUPS: usize = 16;
 const BOXES: usize = 8 * GROUPS;
 
-/// Answers for eight boxes of which none is seen: by a bit for each that is outside.
-const TOLD: [[Visibility; 8]; 256] = {
-    let mut told = [[Visibility::Occluded; 8]; 256];
+/// Results of eight culled boxes, by a bit for each that is outside the frustum; the others are
+/// occluded.
+const CULLED: [[Visibility; 8]; 256] = {
+    let mut culled = [[Visibility::Occluded; 8]; 256];
     let mut n = 0;
     while n < 256 * 8 {
         if (n / 8) >> (n % 8) & 1 != 0 {
-            told[n / 8][n % 8] = Visibility::Outside;
+            culled[n / 8][n % 8] = Visibility::Outside;
         }
         n += 1;
     }
-    told
+    culled
 };
 
-/// Working memory for some boxes.
+/// Working memory of one round.
 struct Work {
     results: [Visibility; BOXES],
-    sifted: [Sifted16; BOXES / 16],
-    middles: [Middles16; BOXES / 16],
-    left: List,
-    open: List,
+    coarse: [Coarse16; BOXES / 16],
+    centers: [Centers16; BOXES / 16],
+    remaining: Compacted,
+    undecided: Compacted,
     copies: [[Aabb; 8]; GROUPS],
     eights: [Boxes8; GROUPS],
     corners: [Corners8; GROUPS],
@@ -52,10 +56,10 @@ struct Work {
 impl Work {
     const NEW: Self = Self {
         results: [Visibility::Visible; BOXES],
-        sifted: [Sifted16::NONE; BOXES / 16],
-        middles: [Middles16::NONE; BOXES / 16],
-        left: List::NONE,
-        open: List::NONE,
+        coarse: [Coarse16::NONE; BOXES / 16],
+        centers: [Centers16::NONE; BOXES / 16],
+        remaining: Compacted::EMPTY,
+        undecided: Compacted::EMPTY,
         copies: [[Aabb::EMPTY; 8]; GROUPS],
         eights: [Boxes8::NONE; GROUPS],
         corners: [Corners8::NONE; GROUPS],
@@ -69,7 +73,7 @@ impl Kernel for Flat<'_> {
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) {
         let query = self.query;
-        let sieve = query.sieve().filter(|_| query.small <= 0.0);
+        let coarse = query.coarse_test().filter(|_| query.small <= 0.0);
         let mut work = Work::NEW;
         let mut last = [Aabb::EMPTY; BOXES];
         for (some, results) in self.boxes.chunks(BOXES).zip(self.results.chunks_mut(BOXES)) {
@@ -80,33 +84,33 @@ impl Kernel for Flat<'_> {
                 last[..count].copy_from_slice(some);
                 &last
             };
-            query.answer_all(l, sieve.as_ref(), boxes, count, &mut work);
+            query.classify_all(l, coarse.as_ref(), boxes, count, &mut work);
             results.copy_from_slice(&work.results[..count]);
         }
     }
 }
 
 impl Query<'_> {
-    /// Answers for the first `count` boxes.
+    /// Classifies the first `count` boxes.
     #[inline(always)]
-    fn answer_all<L: Lanes>(
+    fn classify_all<L: Lanes>(
         &self,
         l: L,
-        sieve: Option<&Sieve<'_>>,
+        coarse: Option<&CoarseTest<'_>>,
         boxes: &[Aabb; BOXES],
         count: usize,
         work: &mut Work,
     ) {
-        work.left.count = 0;
-        if let Some(sieve) = sieve {
-            sift_all(l, sieve, boxes, count, work);
-            work.left.end(count);
-            self.keep_open(work);
+        work.remaining.count = 0;
+        if let Some(coarse) = coarse {
+            classify_coarse(l, coarse, boxes, count, work);
+            work.remaining.truncate_at(count);
+            self.keep_uncertain_centers(work);
         } else {
-            (0..count).for_each(|n| work.left.add(n, true));
+            (0..count).for_each(|n| work.remaining.push_if(n, true));
         }
-        // The others exactly.
-        let list = work.left.numbers();
+        // The remaining ones by exact rectangles.
+        let list = work.remaining.indices();
         let groups = copy(l, boxes, list, &mut work.copies, &mut work.eights);
         let projected = &mut work.projected[..groups];
         for ((p, eight), corners) in projected
@@ -114,77 +118,80 @@ impl Query<'_> {
             .zip(&work.eights)
             .zip(&mut work.corners)
         {
-            *p = if sieve.is_some() {
+            *p = if coarse.is_some() {
                 outline(l, &self.screen, eight, Some(corners))
             } else {
                 project(l, &self.screen, eight)
             };
         }
-        work.open.count = 0;
+        work.undecided.count = 0;
         for (g, p) in projected.iter().enumerate() {
-            let told = p.outside | p.hidden;
+            let culled = p.outside | p.hidden;
             for (i, n) in list[8 * g..].iter().take(8).enumerate() {
                 let outside = p.outside >> i & 1 != 0;
-                let told = told >> i & 1 != 0;
+                let culled = culled >> i & 1 != 0;
                 work.results[usize::from(*n)] = if outside {
                     Visibility::Outside
-                } else if told {
+                } else if culled {
                     Visibility::Occluded
                 } else {
                     Visibility::Visible
                 };
-                work.open.add(8 * g + i, sieve.is_none() | !told);
+                work.undecided
+                    .push_if(8 * g + i, coarse.is_none() | !culled);
             }
         }
-        if sieve.is_some() {
-            self.keep_cornerless(&mut work.open, projected, &work.corners);
+        if coarse.is_some() {
+            self.keep_uncertain_corners(&mut work.undecided, projected, &work.corners);
         }
-        for &k in work.open.numbers() {
+        for &k in work.undecided.indices() {
             let (g, i) = (usize::from(k) / 8, usize::from(k) % 8);
             let n = usize::from(list[usize::from(k)]);
             let (p, eight) = (&projected[g], &work.eights[g]);
-            work.results[n] = if sieve.is_some() {
-                self.answer_open(l, p, i, eight)
+            work.results[n] = if coarse.is_some() {
+                self.classify_remaining(l, p, i, eight)
             } else {
-                self.answer(l, p, i, eight, true)
+                self.classify(l, p, i, eight, true)
             };
         }
     }
 
-    /// Of the boxes that are open then, most that can be seen are seen at a corner. Lists the others.
+    /// Keeps the undecided boxes of which no corner is in front of the buffer. Most visible boxes
+    /// that get here are visible at a corner.
     #[inline(always)]
-    pub(super) fn keep_cornerless(
+    pub(super) fn keep_uncertain_corners(
         &self,
-        open: &mut List,
+        undecided: &mut Compacted,
         projected: &[Projected8],
         corners: &[Corners8],
     ) {
-        for n in 0..core::mem::take(&mut open.count) {
-            // What is kept goes no further back than where it was read.
-            let k = usize::from(open.number(n));
+        for n in 0..core::mem::take(&mut undecided.count) {
+            // Entries are read before the compacted list, which is never longer, overwrites them.
+            let k = usize::from(undecided.index(n));
             let (g, i) = (k / 8, k % 8);
             let beyond = projected[g].crossing >> i & 1 == 0;
             let seen = beyond & self.corner_seen(&corners[g], i);
-            open.add(k, !seen);
+            undecided.push_if(k, !seen);
         }
     }
 
-    /// Of the boxes that are left most are simply seen, in the middle. Lists the others.
+    /// Marks the remaining boxes visible whose centre is in front of the buffer, and keeps the
+    /// others. Most visible boxes are visible at their centre.
     #[inline(always)]
-    fn keep_open(&self, work: &mut Work) {
-        work.open.count = 0;
-        for &n in work.left.numbers() {
+    fn keep_uncertain_centers(&self, work: &mut Work) {
+        work.undecided.count = 0;
+        for &n in work.remaining.indices() {
             let n = usize::from(n);
-            let (middles, i) = (&work.middles[n / 16], n % 16);
+            let (centers, i) = (&work.centers[n / 16], n % 16);
             work.results[n] = Visibility::Visible;
-            work.open
-                .add(n, !self.before(middles.at[i], middles.code[i]));
+            work.undecided
+                .push_if(n, !self.is_in_front(centers.at[i], centers.code[i]));
         }
-        core::mem::swap(&mut work.left, &mut work.open);
+        core::mem::swap(&mut work.remaining, &mut work.undecided);
     }
 }
 
-/// Groups of eight from the boxes of a list; gives how many.
+/// Gathers the listed boxes into groups of eight; returns how many groups.
 #[inline(always)]
 fn copy<L: Lanes>(
     l: L,
@@ -203,11 +210,12 @@ fn copy<L: Lanes>(
     groups
 }
 
-/// Answers for what a first look at the first `count` boxes tells, and lists the others.
+/// Classifies the first `count` boxes by the coarse test. Culled ones get their result; the others
+/// are listed.
 #[inline(always)]
-fn sift_all<L: Lanes>(
+fn classify_coarse<L: Lanes>(
     l: L,
-    sieve: &Sieve<'_>,
+    test: &CoarseTest<'_>,
     boxes: &[Aabb; BOXES],
     count: usize,
     work: &mut Work,
@@ -216,19 +224,19 @@ fn sift_all<L: Lanes>(
     let (boxes, _) = boxes.as_chunks::<16>();
     let (results, _) = work.results.as_chunks_mut::<8>();
     let (results, _) = results.as_chunks_mut::<2>();
-    let sifted = &mut work.sifted[..count.div_ceil(16)];
-    for ((sifted, middles), boxes) in sifted.iter_mut().zip(&mut work.middles).zip(boxes) {
-        (*sifted, *middles) = sieve.sift(w, boxes);
+    let coarse = &mut work.coarse[..count.div_ceil(16)];
+    for ((coarse, centers), boxes) in coarse.iter_mut().zip(&mut work.centers).zip(boxes) {
+        (*coarse, *centers) = test.classify(w, boxes);
     }
-    for sifted in &mut *sifted {
-        sifted.look_up(sieve.coarse);
+    for coarse in &mut *coarse {
+        coarse.fetch(test.hiz);
     }
-    for ((g, sifted), results) in sifted.iter().enumerate().zip(results) {
-        let told = sifted.outside | sifted.hidden(w);
+    for ((g, coarse), results) in coarse.iter().enumerate().zip(results) {
+        let culled = coarse.outside | coarse.hidden(w);
         for (half, results) in results.iter_mut().enumerate() {
             let bits = |mask: u32| (mask >> (8 * half)) as usize % 256;
-            *results = TOLD[bits(sifted.outside)];
-            work.left.add_eight(2 * g + half, bits(!told));
+            *results = CULLED[bits(coarse.outside)];
+            work.remaining.push_eight(2 * g + half, bits(!culled));
         }
     }
 }

@@ -1,13 +1,29 @@
-//! A hierarchy over occludees: what is hidden or outside as a whole costs one test.
+//! The hierarchy over occludees.
 //!
-//! Nodes have eight children whose boxes lie side by side, so that one pass of the projection kernel tests
-//! all of them. Every child covers one run of the tree's own order of objects.
+//! Nodes have eight children whose boxes lie side by side in memory, so that one pass of the
+//! projection kernel tests all of them. Every child covers one run of the tree's own order of
+//! objects.
 
-use super::project::{Boxes8, ROUNDING};
-use crate::{Aabb, CullError};
+use crate::bounds::Aabb;
+use crate::error::CullError;
+use crate::projection::boxes::{Boxes8, ROUNDING};
 use glam::{DVec3, Vec3};
 
-/// Occludees that are tested together, again and again.
+/// A hierarchy over occludees that are tested in many frames.
+///
+/// Groups that are hidden or outside as a whole cost one test. Building is O(n log n), by median
+/// splits of the widest axis; [`refit`](Self::refit) is O(n). Up to 2^32 - 1 boxes.
+///
+/// ```
+/// use foveal_cull::{Aabb, OccludeeTree};
+/// use foveal_cull::glam::{DVec3, Vec3};
+///
+/// let boxes = [Aabb::new(Vec3::ZERO, Vec3::ONE), Aabb::new(Vec3::splat(4.0), Vec3::splat(5.0))];
+/// let mut tree = OccludeeTree::build(&boxes, DVec3::ZERO);
+/// let moved = boxes.map(|b| Aabb::new(b.min + 1.0, b.max + 1.0));
+/// tree.refit(&moved)?;
+/// # Ok::<(), foveal_cull::CullError>(())
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct OccludeeTree {
     nodes: Vec<Node>,
@@ -17,23 +33,24 @@ pub struct OccludeeTree {
     len: usize,
 }
 
-/// Four cache lines: a walk waits for memory more than for anything else.
+/// A node of four cache lines. A walk waits for memory more than for anything else.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
 pub(super) struct Node {
     pub(super) boxes: Boxes8,
     /// Child `i` covers `order[first[i]..first[i + 1]]`.
     first: [u32; 9],
-    /// The first of the children that are nodes; the others follow it.
+    /// The first child that is a node. The others follow it.
     below: u32,
-    /// Bit per lane: there is a child.
+    /// Bit per lane: it has a child.
     pub(super) lanes: u8,
-    /// Bit per lane: it is an object.
+    /// Bit per lane: the child is an object.
     pub(super) objects: u8,
 }
 
 impl Node {
-    /// A node whose children cover the given runs, which lie side by side; one of a single object is that object.
+    /// A node whose children cover the given runs, which follow each other. A run of a single
+    /// object is that object.
     fn over(runs: &[core::ops::Range<usize>]) -> Self {
         let end = runs.last().map_or(0, |run| run.end as u32);
         let mut node = Self {
@@ -51,7 +68,7 @@ impl Node {
         node
     }
 
-    /// The node that a child is.
+    /// The number of the node that a child is.
     #[inline(always)]
     pub(super) fn child(&self, lane: usize) -> u32 {
         let before = (1u32 << lane) - 1;
@@ -66,8 +83,8 @@ impl Node {
 }
 
 impl OccludeeTree {
-    /// Builds a tree over boxes in metres relative to `origin` (world). A box that is not a volume is always
-    /// visible.
+    /// Builds a tree over boxes in metres relative to `origin` (world). A box that is not a volume
+    /// is always visible.
     #[must_use]
     pub fn build(boxes: &[Aabb], origin: DVec3) -> Self {
         let mut tree = Self {
@@ -77,7 +94,8 @@ impl OccludeeTree {
             len: boxes.len(),
         };
         let mut order = core::mem::take(&mut tree.order);
-        // Boxes that are no volumes go to the end, into nodes of their own, so that they spoil no other.
+        // Boxes that are not volumes go to the end, into nodes of their own, so that they do not
+        // spoil others.
         order.sort_by_key(|&i| !boxes[i as usize].is_valid());
         let valid = order.partition_point(|&i| boxes[i as usize].is_valid());
         let runs: Vec<_> = [0..valid, valid..order.len()]
@@ -107,7 +125,7 @@ impl OccludeeTree {
         self.origin
     }
 
-    /// The first one is the root, where there is any.
+    /// All nodes. The first one is the root.
     #[inline(always)]
     pub(super) fn nodes(&self) -> &[Node] {
         &self.nodes
@@ -119,23 +137,24 @@ impl OccludeeTree {
         &self.order
     }
 
-    /// How many occludees there are.
+    /// Number of occludees.
     #[must_use]
     pub fn len(&self) -> usize {
         self.len
     }
 
-    /// Whether there are none.
+    /// Whether there are no occludees.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.len == 0
     }
 
-    /// Takes new boxes for the same objects (moved or resized) and fits the hierarchy to them. The structure
-    /// stays; build a new tree when objects have moved far from their neighbours.
+    /// Takes new boxes for the same objects (moved or resized), and fits the hierarchy to them. Its
+    /// structure stays: build a new tree when objects have moved far from their neighbours. O(n),
+    /// without allocation.
     ///
     /// # Errors
-    /// [`CullError::LengthMismatch`] when there are not as many boxes as occludees.
+    /// [`CullError::LengthMismatch`] if there are not as many boxes as occludees.
     pub fn refit(&mut self, boxes: &[Aabb]) -> Result<(), CullError> {
         if boxes.len() != self.len {
             return Err(CullError::LengthMismatch {
@@ -162,7 +181,8 @@ impl OccludeeTree {
                                 Vec3::from_array(below.boxes.center.map(|v| v[i])),
                                 Vec3::from_array(below.boxes.half.map(|v| v[i])),
                             );
-                            // NaN spreads upwards: a node with a box that is no volume is never culled whole.
+                            // NaN spreads upwards: a node with a box that is not a volume is never
+                            // culled as a whole.
                             Some(match all {
                                 None => (c, h),
                                 Some((ac, ah)) => {
@@ -196,7 +216,7 @@ fn grown(b: &Aabb) -> (Vec3, Vec3) {
     )
 }
 
-/// Cuts a run into eight, or into as many as it has members.
+/// Splits a run into eight, or into as many as it has members.
 fn eight_of(
     boxes: &[Aabb],
     order: &mut [u32],
@@ -212,14 +232,14 @@ fn eight_of(
             break;
         };
         let (start, end) = (runs[at].start, runs[at].end);
-        let middle = start + split(boxes, &mut order[start..end]);
-        runs[at] = start..middle;
-        runs.insert(at + 1, middle..end);
+        let half = start + split(boxes, &mut order[start..end]);
+        runs[at] = start..half;
+        runs.insert(at + 1, half..end);
     }
     runs
 }
 
-/// Orders a run by the median of its widest axis; gives the number in the first part.
+/// Orders a run by the median of its widest axis; returns the length of the first half.
 fn split(boxes: &[Aabb], run: &mut [u32]) -> usize {
     let (lo, hi) = run
         .iter()
@@ -235,11 +255,11 @@ fn split(boxes: &[Aabb], run: &mut [u32]) -> usize {
     } else {
         2
     };
-    let middle = run.len() / 2;
-    run.select_nth_unstable_by(middle, |&a, &b| {
+    let half = run.len() / 2;
+    run.select_nth_unstable_by(half, |&a, &b| {
         boxes[a as usize].center()[axis]
             .total_cmp(&boxes[b as usize].center()[axis])
             .then(a.cmp(&b))
     });
-    middle
+    half
 }

@@ -1,32 +1,34 @@
-//! Answers for a whole tree.
+//! Classification of a whole tree.
 //!
-//! What comes next in a walk cannot be foreseen: whether a child is hidden, seen, too small or to be opened is as good as
-//! chance, and a wrong guess costs as much as a box. So many nodes are taken from the stack at once, and their children
-//! go through the same steps as boxes that are asked one after the other (see [`super::flat`]), from list to list.
+//! The outcome at each child (occluded, visible, too small, to be opened) is unpredictable, and a
+//! mispredicted branch costs as much as a box. Many nodes are therefore taken from the stack at
+//! once, and their children go through the same steps as a list of boxes (see [`super::flat`]),
+//! from one compacted list to the next.
 
-use super::answer::Query;
-use super::list::List;
-use super::points::Corners8;
-use super::project::{Boxes8, Projected8, outline, project};
-use super::sift::{Looked16, Sieve};
+use super::classify::Query;
+use super::coarse::{CoarseNode16, CoarseTest};
+use super::compaction::Compacted;
 use super::tree::{Node, OccludeeTree};
-use crate::Visibility;
+use crate::projection::boxes::Boxes8;
+use crate::projection::points::Corners8;
+use crate::projection::project::{Projected8, outline, project};
 use crate::simd::{Kernel, Lanes};
+use crate::visibility::Visibility;
 
-/// A tree against a frame.
+/// The kernel that classifies a tree.
 pub(crate) struct Walk<'a> {
     pub(crate) query: &'a Query<'a>,
     pub(crate) tree: &'a OccludeeTree,
     pub(crate) results: &'a mut [Visibility],
 }
 
-/// Nodes that are looked at together; two by two.
+/// Nodes per round. They are classified two by two.
 const NODES: usize = 32;
 /// Groups of eight that are projected together.
 const GROUPS: usize = 8;
-/// Room for nodes that are to be opened. A node in place of its at most eight children is one less, and runs become
-/// half as long at least from each level to the next: below [`FEW`] there is room for many nodes at once, and above
-/// it for one and all below it.
+/// Room for nodes to be opened. Opening a node replaces it by at most eight children, and runs
+/// become at least half as long from each level to the next. Below [`FEW`] there is room for many
+/// nodes at once, and above it for one and everything below it.
 const STACK: usize = 1024;
 const FEW: usize = 512;
 
@@ -35,11 +37,11 @@ struct Work {
     stack: [u32; STACK],
     top: usize,
     nodes: [u32; NODES],
-    looked: [Looked16; NODES / 2],
-    objects: List,
-    groups: List,
-    open: List,
-    rest: List,
+    nodes16: [CoarseNode16; NODES / 2],
+    objects: Compacted,
+    groups: Compacted,
+    undecided: Compacted,
+    rest: Compacted,
     eights: [Boxes8; GROUPS],
     projected: [Projected8; GROUPS],
     corners: [Corners8; GROUPS],
@@ -50,17 +52,17 @@ impl Work {
         stack: [0; STACK],
         top: 1,
         nodes: [0; NODES],
-        looked: [Looked16::NONE; NODES / 2],
-        objects: List::NONE,
-        groups: List::NONE,
-        open: List::NONE,
-        rest: List::NONE,
+        nodes16: [CoarseNode16::NONE; NODES / 2],
+        objects: Compacted::EMPTY,
+        groups: Compacted::EMPTY,
+        undecided: Compacted::EMPTY,
+        rest: Compacted::EMPTY,
         eights: [Boxes8::NONE; GROUPS],
         projected: [Projected8::NONE; GROUPS],
         corners: [Corners8::NONE; GROUPS],
     };
 
-    /// Takes nodes from the stack; gives how many.
+    /// Takes nodes from the stack; returns how many.
     #[inline(always)]
     fn take(&mut self) -> usize {
         let count = if self.top > FEW {
@@ -73,7 +75,7 @@ impl Work {
         count
     }
 
-    /// Puts a node onto the stack if `wanted`.
+    /// Puts a node onto the stack if `wanted`, without a branch.
     #[inline(always)]
     fn push(&mut self, node: u32, wanted: bool) {
         self.stack[self.top] = node;
@@ -90,17 +92,17 @@ impl Kernel for Walk<'_> {
             return;
         }
         let mut work = Work::NEW;
-        let Some(sieve) = self.query.sieve() else {
+        let Some(coarse) = self.query.coarse_test() else {
             return self.one_by_one(l, &mut work);
         };
-        // Most of what is not seen is hidden, and the runs of what is hidden are long.
+        // Most objects that are not visible are occluded, in long runs.
         self.results.fill(Visibility::Occluded);
         while work.top > 0 {
             let count = work.take();
-            self.look(l, &sieve, count, &mut work);
-            self.middles_of_objects(&mut work);
+            self.classify_children(l, &coarse, count, &mut work);
+            self.test_object_centers(&mut work);
             self.exact::<L, true>(l, &mut work);
-            self.middles_of_groups(l, &mut work);
+            self.test_group_centers(l, &mut work);
             self.exact::<L, false>(l, &mut work);
         }
     }
@@ -112,105 +114,115 @@ impl<'a> Walk<'a> {
         &self.tree.nodes()[n as usize]
     }
 
-    /// The same answer for all of a run.
+    /// Gives all objects of a run the same result.
     #[inline(always)]
-    fn tell(&mut self, node: &Node, lane: usize, answer: Visibility) {
+    fn assign(&mut self, node: &Node, lane: usize, result: Visibility) {
         for &object in &self.tree.order()[node.run(lane)] {
-            self.results[object as usize] = answer;
+            self.results[object as usize] = result;
         }
     }
 
-    /// A first look at the children of `count` nodes: what lies outside is told, and what is not hidden is listed.
+    /// Classifies the children of `count` nodes by the coarse test. Those outside get their result,
+    /// and those that are not occluded are listed.
     #[inline(always)]
-    fn look<L: Lanes>(&mut self, l: L, sieve: &Sieve<'_>, count: usize, work: &mut Work) {
+    fn classify_children<L: Lanes>(
+        &mut self,
+        l: L,
+        coarse: &CoarseTest<'_>,
+        count: usize,
+        work: &mut Work,
+    ) {
         let w = l.wide();
-        // An odd one is looked at twice.
+        // An odd node is classified twice.
         let last = work.nodes[count - 1];
         if let Some(next) = work.nodes.get_mut(count) {
             *next = last;
         }
         let (pairs, _) = work.nodes.as_chunks::<2>();
-        let looked = &mut work.looked[..count.div_ceil(2)];
-        for (looked, pair) in looked.iter_mut().zip(pairs) {
+        let nodes16 = &mut work.nodes16[..count.div_ceil(2)];
+        for (nodes16, pair) in nodes16.iter_mut().zip(pairs) {
             let pair = pair.map(|n| &self.node(n).boxes);
-            *looked = sieve.look(w, pair, self.query.small);
+            *nodes16 = coarse.classify_nodes(w, pair, self.query.small);
         }
-        for looked in &mut *looked {
-            looked.sifted.look_up(sieve.coarse);
+        for nodes16 in &mut *nodes16 {
+            nodes16.coarse.fetch(coarse.hiz);
         }
         (work.objects.count, work.groups.count) = (0, 0);
         for (g, &n) in work.nodes[..count].iter().enumerate() {
-            let (node, looked) = (self.node(n), &work.looked[g / 2]);
+            let (node, nodes16) = (self.node(n), &work.nodes16[g / 2]);
             let of_node = |mask: u32| (mask >> (8 * (g % 2))) as u8 & node.lanes;
-            let outside = looked.sifted.outside;
-            let told = of_node(outside | looked.sifted.hidden(w));
-            // What is too small is called so, hidden or not.
-            let rest = node.lanes & !told;
-            let small = of_node(looked.small & !outside);
+            let outside = nodes16.coarse.outside;
+            let culled = of_node(outside | nodes16.coarse.hidden(w));
+            // Too small takes precedence over occluded.
+            let rest = node.lanes & !culled;
+            let small = of_node(nodes16.small & !outside);
             work.objects
-                .add_eight(g, ((rest | small) & node.objects).into());
-            work.groups.add_eight(g, (rest & !node.objects).into());
+                .push_eight(g, ((rest | small) & node.objects).into());
+            work.groups.push_eight(g, (rest & !node.objects).into());
             let mut outside = of_node(outside);
             while outside != 0 {
-                self.tell(node, outside.trailing_zeros() as usize, Visibility::Outside);
+                self.assign(node, outside.trailing_zeros() as usize, Visibility::Outside);
                 outside &= outside - 1;
             }
         }
     }
 
-    /// Of the objects that are left most are simply seen, in the middle, or too small. Lists the others.
+    /// Decides the remaining objects that are visible at their centre, or too small, and lists the
+    /// others.
     #[inline(always)]
-    fn middles_of_objects(&mut self, work: &mut Work) {
-        work.open.count = 0;
-        for &k in work.objects.numbers() {
+    fn test_object_centers(&mut self, work: &mut Work) {
+        work.undecided.count = 0;
+        for &k in work.objects.indices() {
             let (g, lane) = (usize::from(k) / 8, usize::from(k) % 8);
             let node = self.node(work.nodes[g]);
-            let looked = &work.looked[g / 2];
+            let nodes16 = &work.nodes16[g / 2];
             let i = usize::from(k) % 16;
-            let small = looked.small >> i & 1 != 0;
-            let on = looked.middle.on >> i & 1 != 0;
+            let small = nodes16.small >> i & 1 != 0;
+            let on = nodes16.centers.on >> i & 1 != 0;
             let seen = self
                 .query
-                .before(looked.middle.at[i], looked.middle.code[i]);
-            // What is small and beside the screen counts as outside.
-            let told = if small { on } else { seen };
-            let answer = if small {
+                .is_in_front(nodes16.centers.at[i], nodes16.centers.code[i]);
+            // A small object whose centre is beside the screen may be outside.
+            let culled = if small { on } else { seen };
+            let result = if small {
                 Visibility::Small
             } else {
                 Visibility::Visible
             };
             let object = self.tree.order()[node.run(lane).start];
-            self.results[object as usize] = if told { answer } else { Visibility::Occluded };
-            work.open.add(k.into(), !told);
+            self.results[object as usize] = if culled { result } else { Visibility::Occluded };
+            work.undecided.push_if(k.into(), !culled);
         }
     }
 
-    /// Groups that are seen in the middle are opened. Lists the others.
+    /// Opens the groups that are visible at their centre, and lists the others.
     #[inline(always)]
-    fn middles_of_groups<L: Lanes>(&mut self, l: L, work: &mut Work) {
-        work.open.count = 0;
+    fn test_group_centers<L: Lanes>(&mut self, l: L, work: &mut Work) {
+        work.undecided.count = 0;
         for n in 0..work.groups.count {
-            let k = usize::from(work.groups.numbers()[n]);
+            let k = usize::from(work.groups.indices()[n]);
             let node = self.node(work.nodes[k / 8]);
-            let middle = &work.looked[k / 16].middle;
-            let seen = self.query.before(middle.at[k % 16], middle.code[k % 16]);
+            let centers = &work.nodes16[k / 16].centers;
+            let seen = self
+                .query
+                .is_in_front(centers.at[k % 16], centers.code[k % 16]);
             let child = node.child(k % 8);
             l.prefetch(self.node(child));
             work.push(child, seen);
-            work.open.add(k, !seen);
+            work.undecided.push_if(k, !seen);
         }
     }
 
-    /// Answers for the list by exact rectangles, and for objects by their corners and faces.
+    /// Classifies the listed children by exact rectangles; objects by their corners and faces too.
     #[inline(always)]
     fn exact<L: Lanes, const OBJECTS: bool>(&mut self, l: L, work: &mut Work) {
-        for first in (0..work.open.count).step_by(8 * GROUPS) {
-            let count = (work.open.count - first).min(8 * GROUPS);
+        for first in (0..work.undecided.count).step_by(8 * GROUPS) {
+            let count = (work.undecided.count - first).min(8 * GROUPS);
             self.exact_part::<L, OBJECTS>(l, first, count, work);
         }
     }
 
-    /// The same for a part of the list.
+    /// Classifies a part of the list.
     #[inline(always)]
     fn exact_part<L: Lanes, const OBJECTS: bool>(
         &mut self,
@@ -219,7 +231,7 @@ impl<'a> Walk<'a> {
         count: usize,
         work: &mut Work,
     ) {
-        let list = &work.open.numbers()[first..first + count];
+        let list = &work.undecided.indices()[first..first + count];
         for (k, &n) in list.iter().enumerate() {
             let n = usize::from(n);
             let boxes = &self.node(work.nodes[n / 8]).boxes;
@@ -239,42 +251,42 @@ impl<'a> Walk<'a> {
                 let n = usize::from(n);
                 let node = self.node(work.nodes[n / 8]);
                 let outside = p.outside >> i & 1 != 0;
-                let mut told = outside | (p.hidden >> i & 1 != 0);
+                let mut culled = outside | (p.hidden >> i & 1 != 0);
                 if OBJECTS {
-                    let small = work.looked[n / 16].small >> (n % 16) & 1 != 0;
+                    let small = work.nodes16[n / 16].small >> (n % 16) & 1 != 0;
                     let object = self.tree.order()[node.run(n % 8).start];
                     self.results[object as usize] = if outside {
                         Visibility::Outside
                     } else if small {
                         Visibility::Small
-                    } else if told {
+                    } else if culled {
                         Visibility::Occluded
                     } else {
                         Visibility::Visible
                     };
-                    told |= small;
+                    culled |= small;
                 } else if outside {
-                    self.tell(node, n % 8, Visibility::Outside);
+                    self.assign(node, n % 8, Visibility::Outside);
                 }
-                work.rest.add(8 * g + i, !told);
+                work.rest.push_if(8 * g + i, !culled);
             }
         }
         if OBJECTS {
             self.query
-                .keep_cornerless(&mut work.rest, projected, &work.corners);
+                .keep_uncertain_corners(&mut work.rest, projected, &work.corners);
         }
         for k in 0..work.rest.count {
-            let k = usize::from(work.rest.numbers()[k]);
-            let n = usize::from(work.open.numbers()[first + k]);
+            let k = usize::from(work.rest.indices()[k]);
+            let n = usize::from(work.undecided.indices()[first + k]);
             let node = self.node(work.nodes[n / 8]);
             let (p, eight, i) = (&work.projected[k / 8], &work.eights[k / 8], k % 8);
-            let answer = if OBJECTS {
-                self.query.answer_open(l, p, i, eight)
+            let result = if OBJECTS {
+                self.query.classify_remaining(l, p, i, eight)
             } else {
-                self.query.answer_group(l, p, i, eight)
+                self.query.classify_group(l, p, i, eight)
             };
-            if OBJECTS || answer != Visibility::Visible {
-                self.tell(node, n % 8, answer);
+            if OBJECTS || result != Visibility::Visible {
+                self.assign(node, n % 8, result);
             } else {
                 let child = node.child(n % 8);
                 l.prefetch(self.node(child));
@@ -283,7 +295,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Where there is nothing to take a first look with.
+    /// Classifies node by node, without a coarse test.
     #[inline(always)]
     fn one_by_one<L: Lanes>(&mut self, l: L, work: &mut Work) {
         while work.top > 0 {
@@ -292,9 +304,9 @@ impl<'a> Walk<'a> {
             let p = project(l, &self.query.screen, &node.boxes);
             for lane in 0..node.lanes.count_ones() as usize {
                 let object = node.objects >> lane & 1 != 0;
-                let answer = self.query.answer(l, &p, lane, &node.boxes, object);
-                if object || answer != Visibility::Visible {
-                    self.tell(node, lane, answer);
+                let result = self.query.classify(l, &p, lane, &node.boxes, object);
+                if object || result != Visibility::Visible {
+                    self.assign(node, lane, result);
                 } else {
                     work.push(node.child(lane), true);
                 }

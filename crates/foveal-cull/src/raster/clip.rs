@@ -1,65 +1,21 @@
 //! The slow path: triangles that cross the near plane or leave the guard band.
 //!
-//! Sutherland-Hodgman in homogeneous coordinates and `f64`, then the ordinary set-up. What is nearer than
-//! the near plane is not drawn by a renderer and so occludes nothing.
+//! They are clipped and then set up as usual. A renderer does not draw what is nearer than the near
+//! plane, so it occludes nothing.
 
-use super::band::Band;
-use super::setup::{Facing, GUARD, Scratch, draw_eight};
-use crate::depth::BLOCK_SAMPLES;
-use crate::occluder::{Cluster, OccluderMesh};
+use super::facing::Facing;
+use super::points::GUARD;
+use super::scratch::Scratch;
+use super::setup::draw_eight;
+use crate::depth::band::Band;
+use crate::format::BLOCK_SAMPLES;
+use crate::occluder::mesh::{Cluster, OccluderMesh};
+use crate::projection::clip::{ClipPolygon, NEAR};
 use crate::simd::Lanes;
 use glam::DVec4;
 
-/// A convex polygon of up to nine corners (three, and one per plane), in clip space.
-#[derive(Clone, Copy)]
-pub(crate) struct ClipPolygon {
-    pub(crate) corners: [DVec4; 12],
-    pub(crate) count: usize,
-}
-
-impl ClipPolygon {
-    pub(crate) fn new(corners: &[DVec4]) -> Self {
-        let mut p = Self {
-            corners: [DVec4::ZERO; 12],
-            count: 0,
-        };
-        corners.iter().for_each(|&c| p.push(c));
-        p
-    }
-
-    fn push(&mut self, c: DVec4) {
-        if let Some(slot) = self.corners.get_mut(self.count) {
-            *slot = c;
-            self.count += 1;
-        }
-    }
-
-    /// Keeps the side where `plane . corner >= 0`.
-    pub(crate) fn clip(&mut self, plane: DVec4) {
-        let input = *self;
-        self.count = 0;
-        for i in 0..input.count {
-            let (a, b) = (input.corners[i], input.corners[(i + 1) % input.count]);
-            let (da, db) = (plane.dot(a), plane.dot(b));
-            if da >= 0.0 {
-                self.push(a);
-            }
-            if (da >= 0.0) != (db >= 0.0) {
-                // From the inner to the outer end, so that both neighbours of an edge cut it alike.
-                let (p, q, dp, dq) = if da >= 0.0 {
-                    (a, b, da, db)
-                } else {
-                    (b, a, db, da)
-                };
-                self.push(p + (q - p) * (dp / (dp - dq)));
-            }
-        }
-    }
-}
-
-/// Near plane (`W - Z >= 0`) and guard band.
-pub(crate) const NEAR: DVec4 = DVec4::new(0.0, 0.0, -1.0, 1.0);
-const PLANES: [DVec4; 5] = {
+/// The near plane and the guard band.
+const CLIP_PLANES: [DVec4; 5] = {
     let g = GUARD * 0.999;
     [
         NEAR,
@@ -70,7 +26,7 @@ const PLANES: [DVec4; 5] = {
     ]
 };
 
-/// Draws the triangles of a cluster that have a vertex which [`super::setup`] refused.
+/// Draws the triangles of a cluster with a vertex that `transform` refused.
 #[inline(always)]
 pub(crate) fn draw_clipped<L: Lanes>(
     l: L,
@@ -97,7 +53,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
             rows[3].dot(p),
         )
     };
-    // Borders that a corner lies beyond: near, left, right, top, bottom.
+    // Screen edges that a corner lies beyond: near, left, right, top, bottom.
     let right = f64::from(band.blocks_x * BLOCK_SAMPLES);
     let (top, bottom) = (
         f64::from(band.first_row * BLOCK_SAMPLES),
@@ -140,7 +96,7 @@ pub(crate) fn draw_clipped<L: Lanes>(
                 continue;
             }
             let mut polygon = ClipPolygon::new(&[corner(a), corner(b), corner(c)]);
-            for plane in PLANES {
+            for plane in CLIP_PLANES {
                 polygon.clip(plane);
             }
             draw_fan(l, band, scratch, &polygon, facing);
@@ -165,7 +121,7 @@ fn draw_fan<L: Lanes>(
         let d = (c.z * inv) as f32;
         points.set(i, c.x * inv, c.y * inv, d.min(1.0));
     }
-    // A fan; lanes that are not used repeat one point and have no area.
+    // A fan. Unused lanes repeat one point and have no area.
     let mut index = [[0u8; 8]; 4];
     for i in 1..polygon.count - 1 {
         for (corner, point) in index.iter_mut().zip([0, i, i + 1, i + 1]) {

@@ -1,20 +1,26 @@
 //! The rasterizer: clusters in, proven depth out.
 //!
-//! `setup` transforms a cluster and sets up eight quads at once; `polygon` walks the blocks of one convex
-//! polygon; `block` computes coverage and merges it, `layers` where parts lie far apart; `clip` is the slow path for what crosses the near plane
-//! or leaves the guard band; `open`, `sheet` and `border` find what a result around the eye must leave open; `band` is what
-//! a thread draws into, and `pool` where its partly covered pixels wait for the rest; `select` chooses and orders
-//! clusters; `frame` draws them.
+//! In the order of a frame: `select` chooses and orders clusters (`candidates`); `draw` draws them
+//! into a thread's rows of blocks, one `cluster` after the other: `points` transforms its vertices,
+//! `visible_quads`, `patch` and `margin` find what a view region must leave open, `setup` sets up
+//! eight quads at once (`extent`, `edges`), `polygon` walks the blocks of one polygon, `block`
+//! updates one block, and `layers` does so where parts lie far apart. `clip` is the slow path for
+//! what crosses the near plane or leaves the guard band.
 
-pub(crate) mod band;
-pub(crate) mod block;
-mod border;
-pub(crate) mod clip;
-pub(crate) mod frame;
+mod block;
+pub(crate) mod candidates;
+mod clip;
+mod cluster;
+pub(crate) mod draw;
+mod edges;
+mod extent;
+pub(crate) mod facing;
 mod layers;
-mod open;
-pub(crate) mod polygon;
-pub(crate) mod pool;
+mod margin;
+mod patch;
+mod points;
+mod polygon;
+pub(crate) mod scratch;
 pub(crate) mod select;
-pub(crate) mod setup;
-pub(crate) mod sheet;
+mod setup;
+mod visible_quads;

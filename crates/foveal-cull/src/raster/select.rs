@@ -1,56 +1,52 @@
-//! The first step of a frame: which clusters may be drawn, and in which order.
+//! Selection: which clusters may be drawn in a frame, and in which order.
 //!
-//! Clusters are rejected by frustum, normal cone, size and detail before any vertex is transformed, then sorted
-//! front to back by a key that belongs to their content (nearest distance, then a hash), so that the result
-//! does not depend on the order in which occluders were added. Several threads look at clusters in parts, a few for each,
-//! and take the next one when they are done.
+//! Clusters are rejected by frustum, normal cone, size and detail before any vertex is transformed.
+//! The others are sorted front to back by their content (nearest distance, then a hash), so that
+//! the result does not depend on the order in which occluders were added. Several threads share the
+//! work in more parts than there are threads, and take the next part when they are done.
 
-use super::frame::{Candidate, FrameScratch};
-use crate::depth::{BLOCK_SAMPLES, SAMPLES, encode};
-use crate::occluder::{Cluster, Instance, OccluderSet};
-use crate::query::near::{Clipped, clip_box};
-use crate::query::project::{Screen, project};
-use crate::simd::{Kernel, Lanes};
-use crate::view::Camera;
-use crate::{CullStats, InstructionSet, Threads};
+use super::candidates::{Candidate, FrameScratch, Part};
+use crate::camera::Camera;
+use crate::format::{BLOCK_SAMPLES, SAMPLES, encode};
+use crate::occluder::mesh::Cluster;
+use crate::occluder::set::{Instance, OccluderSet};
+use crate::projection::near::{Clipped, clip_box};
+use crate::projection::project::project;
+use crate::projection::screen::Screen;
+use crate::simd::{InstructionSet, Kernel, Lanes};
+use crate::stats::CullStats;
+use crate::threads::Threads;
 use glam::DVec4;
 use std::sync::Mutex;
 
-/// Candidates from some of the clusters.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Part {
-    candidates: Vec<Candidate>,
-    order: Vec<u64>,
-    /// Counts of what was looked at.
-    stats: CullStats,
-}
-
-/// Most parts that clusters are looked at in, and how many for each thread: how long one takes cannot be foreseen.
+/// Most parts, and parts per thread. There are several per thread because their cost is
+/// unpredictable.
 const MAX_PARTS: usize = 64;
 const PARTS_PER_THREAD: usize = 4;
-/// Fewer groups of eight clusters than this are not worth a part.
+/// Fewest groups of eight clusters that are worth a part.
 const LEAST_GROUPS: usize = 32;
-/// Clusters whose quads are shorter than so many of their shifts in the mean hide next to nothing around the eye: where
-/// the surface goes on at every edge, and that much more where it ends or bends at all of them.
+/// With a view region, clusters hide next to nothing if their quads are in the mean shorter than
+/// this many shifts: where the surface continues at every edge, and that much more where it ends or
+/// bends at all of them.
 const SHIFTS: f32 = 4.0;
 const SHIFTS_OF_CREASES: f32 = 8.0;
 
-/// What is chosen by.
+/// Input of the selection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice<'a> {
     pub(crate) camera: &'a Camera,
     pub(crate) set: &'a OccluderSet,
-    /// Samples.
+    /// Size of the screen, samples.
     pub(crate) width: f32,
     pub(crate) height: f32,
     pub(crate) size_threshold: f32,
     pub(crate) pixels_per_quad: f32,
-    /// Samples that a point at depth 1 shifts by within the validity radius.
+    /// Shift of a point at depth 1 within the view region, samples.
     pub(crate) shift: f32,
 }
 
 impl FrameScratch {
-    /// Finds what may be drawn, and its order; gives the counts of what was looked at.
+    /// Finds the clusters that may be drawn, and their order; returns the stats.
     pub(crate) fn select(
         &mut self,
         choice: &Choice<'_>,
@@ -72,14 +68,15 @@ impl FrameScratch {
             [const { Mutex::new(None) }; MAX_PARTS];
         let (mut rows, mut first, mut first_group, mut done) = (&mut self.rows[..], 0, 0, 0);
         for (k, (job, part)) in jobs.iter_mut().zip(&mut self.parts[..parts]).enumerate() {
-            // As many groups for each; `done` of them lie before instance `end`.
+            // Every part has as many groups; `done` of them lie before instance `end`.
             let wanted = all * (k + 1) / parts;
             let mut end = first;
             while end < instances.len() && done + groups(&instances[end]) <= wanted {
                 done += groups(&instances[end]);
                 end += 1;
             }
-            // The part after goes on with an instance that is cut; its clip rows are for whoever begins it.
+            // The next part continues with an instance that is cut. Its clip rows belong to the
+            // part that begins it.
             let (last_groups, begun) = (wanted - done, usize::from(first_group > 0));
             let cut = usize::from(last_groups > 0);
             let (here, after) = rows.split_at_mut(end + cut - first - begun);
@@ -115,7 +112,7 @@ impl FrameScratch {
         stats
     }
 
-    /// Joins the first `parts`.
+    /// Joins the lists of the first `parts` parts.
     fn join(&mut self, parts: usize) {
         self.candidates.clear();
         self.order.clear();
@@ -125,7 +122,7 @@ impl FrameScratch {
             self.order.extend(part.order.iter().map(|o| o + offset));
         }
         self.order.sort_unstable();
-        // Equal distances by content, not by the order in which occluders were added.
+        // Equal distances are ordered by content, not by the order in which occluders were added.
         let candidates = &self.candidates;
         for run in self.order.chunk_by_mut(|a, b| a >> 32 == b >> 32) {
             if run.len() > 1 {
@@ -135,16 +132,16 @@ impl FrameScratch {
     }
 }
 
-/// Finds the candidates among the clusters of some instances.
+/// The kernel that finds the candidates among the clusters of some instances.
 struct Select<'a> {
     choice: Choice<'a>,
     instances: &'a [Instance],
-    /// The number of the first of them.
+    /// Number of the first of these instances.
     first: usize,
-    /// The first group of eight clusters of the first instance, and the end of those of the last.
+    /// First group of eight clusters in the first instance, and the end of the groups in the last.
     first_group: usize,
     end_group: usize,
-    /// Clip rows of the instances, but for the first one if another part begins it.
+    /// Clip rows of the instances, except for the first one if another part begins it.
     rows: &'a mut [[[f64; 4]; 4]],
     part: &'a mut Part,
 }
@@ -204,7 +201,7 @@ impl Kernel for Select<'_> {
                 far_depth: camera.far_depth as f32 * 0.999_99,
                 dilate: 0.0,
                 grow: 0.0,
-                coarse: None,
+                hiz: None,
             };
             let eye = instance.mesh_from_world.transform_point3(camera.eye) - mesh.center;
             let forward = instance.mesh_from_world.transform_vector3(camera.forward);
@@ -241,14 +238,15 @@ impl Kernel for Select<'_> {
                         continue;
                     };
                     let area = (p.x1[i] - p.x0[i]) * (p.y1[i] - p.y0[i]) * cluster.fill;
-                    // Around the eye, quads must be larger than what they lose on all sides.
+                    // With a view region, quads must be larger than their silhouette margins.
                     let shifts = SHIFTS + SHIFTS_OF_CREASES * cluster.creased;
                     let lost = shifts * shift * p.depth[i];
                     let least = samples_per_quad.max(lost * lost);
                     if !c.crossing && area < least * f32::from(cluster.quad_count) {
                         continue;
                     }
-                    // Perspective: nearest distance; orthographic W is 1, so that the depth decides.
+                    // Perspective: the nearest distance. In orthographic views W is 1, so that
+                    // depth decides.
                     let near = (1.0 / place.depth).max(0.0);
                     let number = part.candidates.len() as u64;
                     part.order.push((u64::from(near.to_bits()) << 32) | number);
@@ -264,21 +262,21 @@ impl Kernel for Select<'_> {
     }
 }
 
-/// Where a cluster lies on the screen.
+/// The place of a cluster on the screen.
 struct Place {
     /// Left, top, right, bottom, samples.
     rect: [f32; 4],
-    /// Nearest.
+    /// Nearest depth.
     depth: f32,
-    /// Its box crosses the near plane: this is the place of what is beyond.
+    /// Its box crosses the near plane, and this is the place of the part beyond.
     crossing: bool,
 }
 
-/// Rectangles of what is left of a box grow by so many samples, against rounding.
+/// Growth of the rectangles of clipped boxes, samples, against rounding.
 const GROWN: f32 = 1.0;
 
-/// The place of a cluster whose box crosses the near plane: of the part of the box that lies within the frustum.
-/// None where nothing does.
+/// The place of a cluster whose box crosses the near plane: of the part of the box within the
+/// frustum. None if there is no such part.
 #[inline(never)]
 fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
     let screen = Screen {
@@ -300,7 +298,7 @@ fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
     })
 }
 
-/// None where it covers no sample.
+/// The candidate at a place; none if it covers no sample.
 #[inline(always)]
 fn candidate(place: &Place, width: f32, height: f32) -> Option<Candidate> {
     let [x0, y0, x1, y1] = place.rect;
@@ -327,7 +325,7 @@ fn candidate(place: &Place, width: f32, height: f32) -> Option<Candidate> {
     })
 }
 
-/// The six planes of the frustum for spheres relative to the eye: inside is `n . p + d >= 0`, with unit normals.
+/// The six frustum planes relative to the eye, with unit normals: inside is `n . p + d >= 0`.
 fn instance_planes(camera: &Camera, width: f64, height: f64) -> [DVec4; 6] {
     let [x, y, z, w] = camera.rows;
     [
@@ -335,7 +333,7 @@ fn instance_planes(camera: &Camera, width: f64, height: f64) -> [DVec4; 6] {
         w * width - x,
         y,
         w * height - y,
-        // In front of the near plane, or beyond the far plane.
+        // Beyond the near plane, and not beyond the far plane.
         w - z,
         z - w * camera.far_depth,
     ]
@@ -350,7 +348,7 @@ fn instance_planes(camera: &Camera, width: f64, height: f64) -> [DVec4; 6] {
     })
 }
 
-/// Whole-instance test: sphere against the frustum, and size.
+/// Whether a whole instance is outside the frustum or too small, by its bounding sphere.
 fn outside(camera: &Camera, planes: &[DVec4; 6], instance: &Instance, small: f64) -> bool {
     let c = instance.center - camera.eye;
     let r = instance.radius;

@@ -1,211 +1,34 @@
-//! Set-up: a cluster's vertices to the screen, then eight quads at once.
+//! Set-up of eight quads at once.
 //!
-//! A quad is drawn whole where both triangles face the eye and the outline is convex on the screen;
-//! otherwise triangle by triangle. Its depth is the plane of its larger triangle, lowered by how far the
-//! fourth vertex lies behind it, by half a pixel of slope, and by a bound on the rounding of the gradient.
+//! A quad is drawn whole where both triangles face the eye and its outline is convex on the screen,
+//! otherwise triangle by triangle. Its depth is the plane of its larger triangle, lowered by how
+//! far the fourth vertex lies behind it, by half a pixel of slope, and by a bound on the rounding
+//! of the gradient.
 //!
-//! Corners are transformed in `f64`, and borders made of that: a sample is covered if the reference says so too.
-//! All else (bounds, facing, depth) is rounded to float and judged with slack.
+//! Vertices are transformed in `f64`, and edges are made of that: a sample is covered if the
+//! reference says so too. Everything else (bounds, facing, depth) is rounded to `f32` and judged
+//! with slack.
 
-use super::band::Band;
-use super::block::Plane;
-use super::clip;
-use super::open::Open;
-use super::polygon::{self, Edges, Polygon};
-use super::sheet::{Prepare, Sheet};
-use crate::depth::{BLOCK_SAMPLES, encode};
-use crate::occluder::{Cluster, OccluderMesh, Vertices};
+use super::block::DepthPlane;
+use super::edges::Edges;
+use super::extent::{area, blocks_of, highest, lowest, out, steps_of};
+use super::facing::Facing;
+use super::points::Points;
+use super::polygon::{self, Polygon};
+use crate::depth::band::Band;
+use crate::format::encode;
 use crate::simd::{Lanes, four};
 
-/// Coordinates beyond this many samples go to the clipper: float keeps 1/256 of a sample below it.
-pub(crate) const GUARD: f64 = 32768.0;
-
-/// No point of a pixel is farther from the nearest of its grid points (half the diagonal of a sample, and a
-/// bit): polygons that shrink by this cover every point between the samples that they cover.
+/// Largest distance from a point of a pixel to its nearest sample (half the diagonal of a sample,
+/// and a bit). Polygons that shrink by this cover every point between the samples that they cover.
 const BETWEEN_SAMPLES: f32 = 0.72;
 
-/// From a pixel's centre, in each axis: its border, and (for the exact place of an eye, whose rays go through
-/// samples only) its outermost samples.
+/// Distance from a pixel's centre along each axis: to its side, and to its outermost samples, which
+/// is enough for one exact eye, whose rays go through samples only.
 const WHOLE_PIXEL: f32 = 2.0;
 const SAMPLES_ONLY: f32 = 1.5 + 1.0 / 64.0;
 
-/// Working memory of one thread.
-#[derive(Clone, Debug)]
-pub(crate) struct Scratch {
-    /// Corners of a cluster.
-    pub(crate) points: Points,
-    /// Corners of a clipped polygon.
-    pub(crate) clipped: Points,
-    /// Screen borders that vertices lie beyond, for the clipper.
-    pub(crate) beyond: [u8; 256],
-    /// What belongs together, for a result that holds around the eye.
-    pub(crate) sheet: Sheet,
-    /// Polygons that were set up, for the statistics.
-    pub(crate) polygons: u64,
-    /// Clusters drawn.
-    pub(crate) clusters: u64,
-}
-
-impl Default for Scratch {
-    fn default() -> Self {
-        Self {
-            points: Points::default(),
-            clipped: Points::default(),
-            beyond: [0; 256],
-            sheet: Sheet::default(),
-            polygons: 0,
-            clusters: 0,
-        }
-    }
-}
-
-/// Corners on the screen, samples.
-#[derive(Clone, Debug)]
-pub(crate) struct Points {
-    /// Rounded, for all but coverage; NaN in x for what the clipper must see.
-    pub(crate) x: [f32; 256],
-    pub(crate) y: [f32; 256],
-    pub(crate) depth: [f32; 256],
-    /// What coverage is decided by.
-    exact_x: [f64; 256],
-    exact_y: [f64; 256],
-}
-
-impl Points {
-    pub(crate) fn set(&mut self, i: usize, x: f64, y: f64, depth: f32) {
-        (self.x[i], self.y[i], self.depth[i]) = (x as f32, y as f32, depth);
-        (self.exact_x[i], self.exact_y[i]) = (x, y);
-    }
-}
-
-impl Default for Points {
-    fn default() -> Self {
-        Self {
-            x: [0.0; 256],
-            y: [0.0; 256],
-            depth: [0.0; 256],
-            exact_x: [0.0; 256],
-            exact_y: [0.0; 256],
-        }
-    }
-}
-
-/// How an instance is drawn.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Facing {
-    /// The transform mirrors, so winding is reversed.
-    pub(crate) mirrored: bool,
-    pub(crate) two_sided: bool,
-    /// Number of the cluster in its mesh.
-    pub(crate) cluster: usize,
-    /// For a result that holds around the eye.
-    pub(crate) radius: Option<Radius>,
-}
-
-/// A validity radius, in units of the set-up.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Radius {
-    /// Samples that a point at depth 1 shifts by.
-    pub(crate) shift: f32,
-    /// The same along x and y.
-    pub(crate) shifts: [f32; 2],
-    /// The radius as a part of the near distance.
-    pub(crate) per_depth: f32,
-}
-
-#[inline(always)]
-pub(crate) fn draw_cluster<L: Lanes>(
-    l: L,
-    band: &mut Band<'_>,
-    scratch: &mut Scratch,
-    mesh: &OccluderMesh,
-    cluster: &Cluster,
-    rows: &[[f64; 4]; 4],
-    facing: Facing,
-) {
-    scratch.clusters += 1;
-    let n = usize::from(cluster.vertex_count).next_multiple_of(8);
-    let own = (&mesh.vertices, cluster.first_vertex as usize, n);
-    let clipped = transform(&mut scratch.points, 0, own, rows);
-    // Without a ring every polygon shrinks by itself.
-    let sheet = facing
-        .radius
-        .filter(|_| !facing.two_sided)
-        .zip(mesh.rings.rings.get(facing.cluster));
-    let mut open = Open::all();
-    if let Some((radius, ring)) = sheet {
-        open = l.apart(Prepare {
-            band,
-            scratch,
-            mesh,
-            cluster,
-            ring,
-            rows,
-            mirrored: facing.mirrored,
-            radius,
-        });
-    }
-    let groups = usize::from(cluster.quad_count).div_ceil(8);
-    let first = cluster.first_group as usize;
-    for ((group, kept), _) in mesh.quads[first..first + groups]
-        .iter()
-        .zip(&scratch.sheet.kept)
-        .zip(open.quads)
-        .filter(|(_, open)| *open != 0)
-    {
-        let (i1, i3) = if facing.mirrored { (3, 1) } else { (1, 3) };
-        let order = [0, i1, 2, i3];
-        let index = four!(c => &group[order[c]]);
-        let kept = sheet.is_some().then_some((kept, scratch.sheet.slack));
-        scratch.polygons += draw_eight(l, band, &scratch.points, index, kept, facing);
-    }
-    scratch.sheet.restore(band);
-    if clipped {
-        clip::draw_clipped(l, band, scratch, mesh, cluster, rows, facing);
-    }
-}
-
-/// Fills `points` from `at` on; vertices for the clipper get NaN, which no test accepts. True if there are any.
-#[inline(always)]
-pub(super) fn transform(
-    points: &mut Points,
-    at: usize,
-    (v, first, n): (&Vertices, usize, usize),
-    rows: &[[f64; 4]; 4],
-) -> bool {
-    let xyz = v.x[first..first + n]
-        .iter()
-        .zip(&v.y[first..first + n])
-        .zip(&v.z[first..first + n]);
-    let rounded = points.x[at..]
-        .iter_mut()
-        .zip(&mut points.y[at..])
-        .zip(&mut points.depth[at..]);
-    let exact = points.exact_x[at..]
-        .iter_mut()
-        .zip(&mut points.exact_y[at..]);
-    let [rx, ry, rz, rw] = rows;
-    let mut beyond = 0;
-    for ((((x, y), z), ((ox, oy), od)), (ex, ey)) in xyz.zip(rounded).zip(exact) {
-        let (x, y, z) = (f64::from(*x), f64::from(*y), f64::from(*z));
-        let cx = (x * rx[0] + y * rx[1]) + (z * rx[2] + rx[3]);
-        let cy = (x * ry[0] + y * ry[1]) + (z * ry[2] + ry[3]);
-        let cz = (x * rz[0] + y * rz[1]) + (z * rz[2] + rz[3]);
-        let cw = (x * rw[0] + y * rw[1]) + (z * rw[2] + rw[3]);
-        let inv = 1.0 / cw;
-        let (sx, sy) = (cx * inv, cy * inv);
-        // Beyond the near plane (Z < W, W above zero with it) and within the guard band.
-        let inside = (cz < cw) & (sx.abs() < GUARD) & (sy.abs() < GUARD);
-        beyond |= i32::from(!inside);
-        *ox = if inside { sx as f32 } else { f32::NAN };
-        *oy = sy as f32;
-        *od = (cz * inv) as f32;
-        (*ex, *ey) = (sx, sy);
-    }
-    beyond != 0
-}
-
-/// Sets up and draws eight quads from screen positions; gives the number of polygons drawn.
+/// Sets up and draws eight quads from screen positions; returns the number of polygons drawn.
 #[inline(always)]
 pub(crate) fn draw_eight<L: Lanes>(
     l: L,
@@ -223,7 +46,7 @@ pub(crate) fn draw_eight<L: Lanes>(
     let mut f1 = area(l, &x, &y, 0, 2, 3);
     let mut reversed = l.isplat(0);
     if two_sided {
-        // The larger triangle decides the side; its partner on the other side, if any, is dropped.
+        // The larger triangle decides the side. Its partner, if it faces the other way, is dropped.
         reversed = l.lt(l.add(f0, f1), zero);
         x = swap(l, reversed, x);
         y = swap(l, reversed, y);
@@ -282,8 +105,8 @@ pub(crate) fn draw_eight<L: Lanes>(
     let fold = l.select(both, l.max(l.sub(at_other, oz), zero), zero);
     let (w, h) = (l.sub(x_hi, x_lo), l.sub(y_hi, y_lo));
     if let Some(radius) = radius {
-        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at least sqrt(2) (w + h),
-        // times by how much.
+        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at
+        // least sqrt(2) (w + h), times the distance that it shrinks by.
         let by = l.add(l.mul(z_hi, l.splat(radius.shift)), l.splat(BETWEEN_SAMPLES));
         let least = l.mul(l.mul(by, l.splat(1.414)), l.add(w, h));
         let twice_area = l.add(l.max(f0, zero), l.max(f1, zero));
@@ -317,7 +140,7 @@ pub(crate) fn draw_eight<L: Lanes>(
     );
     let base = l.sub(z[0], slack);
 
-    // One at a time from here.
+    // One quad at a time from here.
     let reversed = if two_sided { l.movemask(reversed) } else { 0 };
     let (x0, y0) = (out(l, x[0]), out(l, y[0]));
     let (base, gx, gy, z_lo, z_hi) = (
@@ -334,7 +157,7 @@ pub(crate) fn draw_eight<L: Lanes>(
         let i = live.trailing_zeros() as usize;
         live &= live - 1;
         let bit = 1u32 << i;
-        let plane = Plane {
+        let plane = DepthPlane {
             x: x0[i],
             y: y0[i],
             depth: base[i],
@@ -345,7 +168,7 @@ pub(crate) fn draw_eight<L: Lanes>(
             max_code: encode(z_hi[i]),
         };
         let blocks = [bx0[i] as u32, by0[i] as u32, bx1[i] as u32, by1[i] as u32];
-        // What is behind all that is known changes nothing.
+        // Hidden behind everything that is there: changes nothing.
         if band.hides(blocks, plane.max_code) {
             continue;
         }
@@ -363,18 +186,19 @@ pub(crate) fn draw_eight<L: Lanes>(
         };
         for (n, shape) in SHAPES[first..last].iter().enumerate() {
             let (x, y) = (l.qpick(x, *shape), l.qpick(y, *shape));
-            let Some((borders, rows)) = Edges::of(l, x, y) else {
+            let Some((edges, rows)) = Edges::of(l, x, y) else {
                 continue;
             };
             let mut polygon = Polygon {
-                borders,
+                edges,
                 rows,
                 plane,
                 blocks,
             };
             if let Some(radius) = radius {
-                // Every point that stays is hidden for all eyes within the radius: their rays to what lies
-                // behind it cross this very polygon (Wonka et al. 2000, with a polygon for the occluder).
+                // Every point that stays is hidden from all eyes within the radius: their rays to
+                // what lies behind it cross this very polygon (Wonka, Wimmer and Schmalstieg 2000,
+                // with a polygon for the occluder).
                 let near = z_hi[i] * radius.per_depth;
                 if near > 0.5 {
                     continue;
@@ -394,28 +218,12 @@ pub(crate) fn draw_eight<L: Lanes>(
     drawn
 }
 
-/// Parts of a quad, by corners. The triangles alone; then the whole, and the triangles
-/// again for a whole with three borders on one side.
+/// Parts of a quad, by corners: the triangles alone; then the whole, and the triangles again for a
+/// whole with three edges on one side.
 const SHAPES: [[u8; 4]; 5] = {
     let (first, second) = ([0, 1, 2, 0], [0, 2, 3, 0]);
     [first, second, [0, 1, 2, 3], first, second]
 };
-
-/// Twice the signed area, positive when facing the eye (y points down).
-#[inline(always)]
-pub(super) fn area<L: Lanes>(
-    l: L,
-    x: &[L::F; 4],
-    y: &[L::F; 4],
-    a: usize,
-    b: usize,
-    c: usize,
-) -> L::F {
-    l.sub(
-        l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])),
-        l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])),
-    )
-}
 
 #[inline(always)]
 fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
@@ -427,54 +235,6 @@ fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
     ]
 }
 
-#[inline(always)]
-pub(super) fn lowest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
-    l.min(l.min(v[0], v[1]), l.min(v[2], v[3]))
-}
-
-#[inline(always)]
-pub(super) fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
-    l.max(l.max(v[0], v[1]), l.max(v[2], v[3]))
-}
-
-/// Half-sample steps strictly above the least x and y and up to the greatest: every sample and pixel centre lies
-/// on one. Clamping to the band drops what is outside.
-#[inline(always)]
-pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[L::F; 2]; 2]) -> [L::I; 4] {
-    let size = BLOCK_SAMPLES as f32;
-    let right = band.blocks_x as f32 * size;
-    let (top, bottom) = (
-        band.first_row as f32 * size,
-        (band.first_row + band.rows) as f32 * size,
-    );
-    [
-        steps(l, lo[0], 0.0, right),
-        steps(l, lo[1], top, bottom),
-        steps(l, hi[0], 0.0, right),
-        steps(l, hi[1], top, bottom),
-    ]
-}
-
-/// First and last block that hold these half-sample steps.
-#[inline(always)]
-pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [L::I; 4]) -> [[i32; 8]; 4] {
-    let per_block = l.isplat((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
-    let ends = [band.blocks_x, band.first_row + band.rows];
-    four!(k => {
-        let last = l.isplat(ends[k % 2] as i32 - 1);
-        let mut blocks = [0; 8];
-        l.istore(l.imin(l.ishr(steps[k], per_block), last), &mut blocks);
-        blocks
-    })
-}
-
-/// Half-sample steps up to `v`, clamped.
-#[inline(always)]
-fn steps<L: Lanes>(l: L, v: L::F, lo: f32, hi: f32) -> L::I {
-    let c = l.min(l.max(v, l.splat(lo)), l.splat(hi));
-    l.trunc(l.add(c, c))
-}
-
 /// Second, third and left-over corner of the triangle that gives the plane.
 #[inline(always)]
 fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
@@ -483,11 +243,4 @@ fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
         l.select(second, v[3], v[2]),
         l.select(second, v[1], v[3]),
     )
-}
-
-#[inline(always)]
-pub(super) fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
-    let mut a = [0.0; 8];
-    l.store(v, &mut a);
-    a
 }

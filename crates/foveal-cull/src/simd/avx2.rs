@@ -1,10 +1,12 @@
-//! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods sound.
+//! AVX2 lanes. An [`Avx2`] exists only where the CPU has AVX2, which is what makes its methods
+//! sound.
 
+use super::arrays::{four, two};
+use super::lanes::{Kernel, Lanes};
 use super::portable::{FAR, PIXELS_FROM, ROWS};
-use super::wide::Twice;
-use super::{Kernel, Lanes, four, two};
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use super::twice::Twice;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// Proof that the CPU has AVX2.
@@ -35,7 +37,8 @@ impl Avx2 {
 /// One side of the spans of a row of blocks.
 #[derive(Clone, Copy)]
 pub(crate) struct Side256 {
-    /// Words: four rows of pixels of the first and second, the other four; and the same of the third and fourth.
+    /// Words: four rows of pixels of the first and second, the other four; and the same of the
+    /// third and fourth.
     rows: [__m256i; 2],
     centers: __m256i,
 }
@@ -43,7 +46,8 @@ pub(crate) struct Side256 {
 /// Wraps intrinsics.
 macro_rules! avx2 {
     ($e:expr) => {
-        // SAFETY: `self` proves AVX2; loads and stores go through references to arrays of the same size.
+        // SAFETY: `self` proves AVX2; loads and stores go through references to arrays of the same
+        // size.
         unsafe { $e }
     };
 }
@@ -58,7 +62,7 @@ impl Lanes for Avx2 {
     type P = [__m256i; 4];
     type W = Twice<Self>;
 
-    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+    fn outlined<K: Kernel>(self, kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt")]
         fn inner<K: Kernel>(lanes: Avx2, kernel: K) -> K::Output {
@@ -138,8 +142,8 @@ impl Lanes for Avx2 {
     }
     #[inline(always)]
     fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> __m256 {
-        // SAFETY: AVX2 is proved by `self`; eight bytes are read from an array of eight, and a byte is
-        // always a valid index into 256 floats.
+        // SAFETY: AVX2 is proved by `self`; eight bytes are read from an array of eight, and a byte
+        // is always a valid index into 256 floats.
         unsafe {
             let i = _mm256_cvtepu8_epi32(_mm_loadl_epi64(index.as_ptr().cast()));
             _mm256_i32gather_ps::<4>(table.as_ptr(), i)
@@ -151,12 +155,13 @@ impl Lanes for Avx2 {
         avx2!(_mm256_set1_epi32(v))
     }
     #[inline(always)]
-    fn turn(self, v: &[Aabb; 8]) -> [__m256; 6] {
+    fn transpose(self, v: &[Aabb; 8]) -> [__m256; 6] {
         // A box is six numbers in a row, nothing else.
         const { assert!(size_of::<Aabb>() == 24 && core::mem::offset_of!(Aabb, max) == 12) };
         let p: *const f32 = v.as_ptr().cast();
         avx2!({
-            // Four rows in a half of each register: rows 0 and 1 are twelve numbers, a; rows 2 and 3 are b.
+            // Four rows in a half of each register: rows 0 and 1 are twelve numbers, a; rows 2 and
+            // 3 are b.
             let [a0, b0] = two!(i => half_rows(self, p, 12 * i));
             let [a1, b1] = two!(i => half_rows(self, p, 12 * i + 4));
             let [a2, b2] = two!(i => half_rows(self, p, 12 * i + 8));
@@ -302,7 +307,8 @@ impl Lanes for Avx2 {
         avx2!({
             let (floor, cap) = (_mm256_set1_ps(floor), _mm256_set1_epi16(cap));
             let offset = _mm256_set1_epi32(CODE_OFFSET);
-            // Half a register is half a row, so that packing two of them gives whole rows in their order.
+            // Half a register is half a row, so that packing two of them gives whole rows in their
+            // order.
             let sides = [
                 _mm256_permute2f128_ps::<0x00>(columns, columns),
                 _mm256_permute2f128_ps::<0x11>(columns, columns),
@@ -386,7 +392,7 @@ impl Lanes for Avx2 {
     }
 
     #[inline(always)]
-    fn borders(self, slope: __m256d) -> Self::B {
+    fn edge_rows(self, slope: __m256d) -> Self::B {
         let mut borders = [[slope; 10]; 4];
         for (e, border) in borders.iter_mut().enumerate() {
             let slope = self.qpick(slope, [e as u8; 4]);
@@ -454,11 +460,11 @@ impl Lanes for Avx2 {
             });
             let first = _mm256_set1_epi32(left as i32 / 4);
             let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
-            (planes, self.plane(from, to))
+            (planes, self.bit_rows(from, to))
         })
     }
     #[inline(always)]
-    fn plane(self, from: __m256i, to: __m256i) -> u64 {
+    fn bit_rows(self, from: __m256i, to: __m256i) -> u64 {
         avx2!({
             let n = [from, to];
             let sides = two!(side => {
@@ -518,7 +524,8 @@ impl Lanes for Avx2 {
 #[inline(always)]
 fn half_rows(_: Avx2, table: *const f32, at: usize) -> __m256 {
     debug_assert!(at + 28 <= 48);
-    // SAFETY: the caller holds an `Avx2` and a table of 48, of which this reads no further than `at + 28`.
+    // SAFETY: the caller holds an `Avx2` and a table of 48, of which this reads no further than `at
+    // + 28`.
     unsafe { _mm256_loadu2_m128(table.add(at + 24), table.add(at)) }
 }
 

@@ -1,11 +1,14 @@
-//! AVX-512 lanes: whole blocks in two registers, and masks of 64 pixels as they are. Eight-lane work is AVX2's.
-//! An [`Avx512`] exists only where the CPU has all that it needs, which is what makes its methods sound.
+//! AVX-512 lanes: whole blocks in two registers, and masks of 64 pixels as they are. Eight-lane
+//! work is AVX2's. An [`Avx512`] exists only where the CPU has all that it needs, which is what
+//! makes its methods sound.
 
-use super::avx2::Avx2;
+use super::arrays::{four, two};
+use super::avx512proof::Avx512;
+use super::avx512x16::Wide512;
+use super::lanes::{Kernel, Lanes};
 use super::portable::{FAR, ROWS};
-use super::{Kernel, Lanes, four, two};
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// The rows of a part, in an order that brings pixels into theirs at last.
@@ -28,20 +31,7 @@ const HALF_ROWS: [[f32; 16]; 2] = {
     rows
 };
 
-/// Proof that the CPU has AVX-512 F, BW, DQ and VL, and AVX2.
-#[derive(Clone, Copy)]
-pub(crate) struct Avx512(Avx2);
-
 impl Avx512 {
-    /// The proof, where it holds.
-    pub(crate) fn detect() -> Option<Self> {
-        let all = is_x86_feature_detected!("avx512f")
-            && is_x86_feature_detected!("avx512bw")
-            && is_x86_feature_detected!("avx512dq")
-            && is_x86_feature_detected!("avx512vl");
-        Avx2::detect().filter(|_| all).map(Self)
-    }
-
     /// Runs `kernel` compiled with AVX-512 enabled.
     pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
         #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
@@ -73,8 +63,8 @@ macro_rules! five {
 /// Wraps intrinsics.
 macro_rules! avx512 {
     ($e:expr) => {
-        // SAFETY: an `Avx512` proves the features; loads and stores go through references to arrays of the
-        // same size.
+        // SAFETY: an `Avx512` proves the features; loads and stores go through references to arrays
+        // of the same size.
         unsafe { $e }
     };
 }
@@ -85,7 +75,7 @@ macro_rules! as_avx2 {
         $(
             #[inline(always)]
             fn $name(self, $($arg: $type),*) $(-> $out)? {
-                self.0.$name($($arg),*)
+                self.avx2().$name($($arg),*)
             }
         )*
     };
@@ -99,9 +89,9 @@ impl Lanes for Avx512 {
     type S = [Side512; 2];
     type B = [[__m512d; 5]; 4];
     type P = [__m512i; 2];
-    type W = super::avx512x16::Wide512;
+    type W = Wide512;
 
-    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
+    fn outlined<K: Kernel>(self, kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
         fn inner<K: Kernel>(lanes: Avx512, kernel: K) -> K::Output {
@@ -113,7 +103,7 @@ impl Lanes for Avx512 {
 
     #[inline(always)]
     fn wide(self) -> Self::W {
-        super::avx512x16::Wide512(self)
+        Wide512(self)
     }
     #[inline(always)]
     fn prefetch<T>(self, soon: &T) {
@@ -150,7 +140,7 @@ impl Lanes for Avx512 {
     qpick(v: __m256d, from: [u8; 4]) -> __m256d;
     iload(v: &[i32; 8]) -> __m256i;
     istore(v: __m256i, to: &mut [i32; 8]);
-    turn(v: &[Aabb; 8]) -> [__m256; 6];
+    transpose(v: &[Aabb; 8]) -> [__m256; 6];
     iadd(a: __m256i, b: __m256i) -> __m256i;
     imin(a: __m256i, b: __m256i) -> __m256i;
     imax(a: __m256i, b: __m256i) -> __m256i;
@@ -167,7 +157,8 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
         avx512!({
-            // A quarter of a register is half a row, so that packing two of them gives whole rows in their order.
+            // A quarter of a register is half a row, so that packing two of them gives whole rows
+            // in their order.
             let sides = [
                 _mm512_broadcast_f32x4(_mm256_castps256_ps128(columns)),
                 _mm512_broadcast_f32x4(_mm256_extractf128_ps::<1>(columns)),
@@ -241,7 +232,7 @@ impl Lanes for Avx512 {
     }
 
     #[inline(always)]
-    fn borders(self, slope: __m256d) -> Self::B {
+    fn edge_rows(self, slope: __m256d) -> Self::B {
         let rows = ORDERED.as_ptr();
         avx512!({
             four!(e => {
@@ -283,7 +274,8 @@ impl Lanes for Avx512 {
     #[inline(always)]
     fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
         avx512!({
-            // A number a row, 32 samples: the first and third rows of pixels, and the second and fourth.
+            // A number a row, 32 samples: the first and third rows of pixels, and the second and
+            // fourth.
             let first = _mm512_set1_epi32(left as i32);
             let rows = two!(k => {
                 let [from, to] = two!(side => {
@@ -293,7 +285,8 @@ impl Lanes for Avx512 {
                 });
                 _mm512_andnot_si512(to, from)
             });
-            // A word a row and pair of pixels: their samples in the first two rows, and in the others.
+            // A word a row and pair of pixels: their samples in the first two rows, and in the
+            // others.
             let (low, high) = (
                 _mm512_unpacklo_epi8(rows[0], rows[1]),
                 _mm512_unpackhi_epi8(rows[0], rows[1]),
@@ -310,11 +303,11 @@ impl Lanes for Avx512 {
             ];
             let first = _mm256_set1_epi32(left as i32 / 4);
             let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
-            (planes, self.plane(from, to))
+            (planes, self.bit_rows(from, to))
         })
     }
     #[inline(always)]
-    fn plane(self, from: __m256i, to: __m256i) -> u64 {
+    fn bit_rows(self, from: __m256i, to: __m256i) -> u64 {
         avx512!({
             let n = [from, to];
             let [from, to] = two!(side => {

@@ -1,10 +1,10 @@
 //! Sixteen lanes of AVX-512.
 
-use super::avx512::Avx512;
-use super::four;
+use super::arrays::four;
+use super::avx512proof::Avx512;
 use super::wide::Wide;
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
 
 /// An [`Avx512`] proves the features.
@@ -14,7 +14,8 @@ pub(crate) struct Wide512(pub(super) Avx512);
 /// Wraps intrinsics.
 macro_rules! avx512 {
     ($e:expr) => {
-        // SAFETY: `self` proves the features; loads and stores go through references to arrays of the same size.
+        // SAFETY: `self` proves the features; loads and stores go through references to arrays of
+        // the same size.
         unsafe { $e }
     };
 }
@@ -139,13 +140,13 @@ impl Wide for Wide512 {
         })
     }
     #[inline(always)]
-    fn turn(self, v: &[Aabb; 16]) -> [__m512; 6] {
+    fn transpose(self, v: &[Aabb; 16]) -> [__m512; 6] {
         // A box is six numbers in a row, nothing else.
         const { assert!(size_of::<Aabb>() == 24 && core::mem::offset_of!(Aabb, max) == 12) };
         let p: *const f32 = v.as_ptr().cast();
         avx512!({
-            // Two boxes are twelve numbers: a row of three pieces of four. A register holds the same piece of every
-            // fourth row: rows 0, 2, 4, 6 (a) and 1, 3, 5, 7 (b).
+            // Two boxes are twelve numbers: a row of three pieces of four. A register holds the
+            // same piece of every fourth row: rows 0, 2, 4, 6 (a) and 1, 3, 5, 7 (b).
             let [a0, a1, a2, _] = four!(i => pieces(self, p, 4 * (i % 3)));
             let [b0, b1, b2, _] = four!(i => pieces(self, p, 12 + 4 * (i % 3)));
             let (xy_a, xy_b) = (
@@ -176,7 +177,8 @@ impl Wide for Wide512 {
 #[inline(always)]
 fn pieces(_: Wide512, table: *const f32, at: usize) -> __m512 {
     debug_assert!(at + 76 <= 96);
-    // SAFETY: the caller holds a `Wide512` and a table of 96, of which this reads no further than `at + 76`.
+    // SAFETY: the caller holds a `Wide512` and a table of 96, of which this reads no further than
+    // `at + 76`.
     unsafe {
         let [a, b, c, d] = four!(k => _mm_loadu_ps(table.add(at + 24 * k)));
         let low = _mm512_insertf32x4::<1>(_mm512_castps128_ps512(a), b);

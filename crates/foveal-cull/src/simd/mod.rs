@@ -1,15 +1,18 @@
 //! Lanes: the one seam between the kernels and instruction sets.
 //!
-//! Kernels are written once, generic over [`Lanes`], and instantiated for the portable implementation
-//! (plain arrays), for 128-bit registers (SSE2, NEON and wasm's simd128), for AVX2 and for AVX-512. There is no fused
-//! multiply-add and no approximate reciprocal anywhere, so that every instruction set gives the same bits.
+//! Kernels are written once, generic over [`Lanes`], and instantiated for the portable
+//! implementation (plain arrays), for 128-bit registers (SSE2, NEON and wasm's simd128), for AVX2
+//! and for AVX-512. There is no fused multiply-add and no approximate reciprocal anywhere, so that
+//! every instruction set gives the same bits.
 
-use crate::Aabb;
-
+mod arrays;
+mod instruction_set;
+mod lanes;
 pub(crate) mod portable;
+mod twice;
 #[cfg(test)]
 mod twins;
-pub(crate) mod wide;
+mod wide;
 
 #[cfg(target_arch = "x86_64")]
 #[allow(
@@ -23,6 +26,8 @@ pub(crate) mod avx2;
     reason = "as for AVX2; held to the portable twin by the same tests"
 )]
 pub(crate) mod avx512;
+#[cfg(target_arch = "x86_64")]
+mod avx512proof;
 #[cfg(target_arch = "x86_64")]
 #[allow(
     unsafe_code,
@@ -44,299 +49,7 @@ mod avx512x16;
 )]
 mod narrow;
 
-/// `[e(0), e(1), e(2), e(3)]`. Kernels use this and `#[inline(always)]` functions in place of closures: what
-/// is not inlined loses the instruction set.
-macro_rules! four {
-    ($k:ident => $e:expr) => {
-        [
-            {
-                let $k = 0usize;
-                $e
-            },
-            {
-                let $k = 1usize;
-                $e
-            },
-            {
-                let $k = 2usize;
-                $e
-            },
-            {
-                let $k = 3usize;
-                $e
-            },
-        ]
-    };
-}
-pub(crate) use four;
-
-/// `[e(0), e(1), e(2)]`, as [`four!`].
-macro_rules! three {
-    ($k:ident => $e:expr) => {
-        [
-            {
-                let $k = 0usize;
-                $e
-            },
-            {
-                let $k = 1usize;
-                $e
-            },
-            {
-                let $k = 2usize;
-                $e
-            },
-        ]
-    };
-}
-pub(crate) use three;
-
-/// The smaller of two numbers: one instruction, where `f64::min` takes three to ask for NaN.
-#[inline(always)]
-pub(crate) fn smaller<T: PartialOrd>(a: T, b: T) -> T {
-    if a < b { a } else { b }
-}
-
-/// The larger of two numbers, in the same way.
-#[inline(always)]
-pub(crate) fn larger<T: PartialOrd>(a: T, b: T) -> T {
-    if a > b { a } else { b }
-}
-
-/// `[e(0), e(1)]`, as [`four!`].
-macro_rules! two {
-    ($k:ident => $e:expr) => {
-        [
-            {
-                let $k = 0usize;
-                $e
-            },
-            {
-                let $k = 1usize;
-                $e
-            },
-        ]
-    };
-}
-pub(crate) use two;
-
-/// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.
-pub(crate) trait Kernel {
-    /// What it gives back.
-    type Output;
-    fn run<L: Lanes>(self, lanes: L) -> Self::Output;
-}
-
-/// A set of instructions to run with; all give the same results.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum InstructionSet {
-    /// Plain arrays as the compiler vectorizes them for the target.
-    Portable,
-    /// 128-bit SSE2, which every x86-64 CPU has.
-    Sse2,
-    /// 128-bit NEON, which every 64-bit ARM CPU has (little-endian; other targets are [`Portable`](Self::Portable)).
-    Neon,
-    /// WebAssembly's 128-bit registers, in modules that are compiled with `-C target-feature=+simd128`. There is no way to
-    /// ask for them at run time, so modules without it are [`Portable`](Self::Portable).
-    Simd128,
-    /// 256-bit AVX2.
-    Avx2,
-    /// AVX-512 (F, BW, DQ, VL): 512-bit registers for whole blocks.
-    Avx512,
-}
-
-impl InstructionSet {
-    /// What there is besides the portable one and what a CPU may have, by the target alone.
-    const NARROW: Option<Self> = if cfg!(target_arch = "x86_64") {
-        Some(Self::Sse2)
-    } else if cfg!(all(
-        target_arch = "aarch64",
-        target_feature = "neon",
-        target_endian = "little"
-    )) {
-        Some(Self::Neon)
-    } else if cfg!(all(target_arch = "wasm32", target_feature = "simd128")) {
-        Some(Self::Simd128)
-    } else {
-        None
-    };
-
-    /// Those that this machine has, the fastest last.
-    pub fn available() -> impl Iterator<Item = Self> {
-        let detected = [
-            #[cfg(target_arch = "x86_64")]
-            avx2::Avx2::detect().map(|_| Self::Avx2),
-            #[cfg(target_arch = "x86_64")]
-            avx512::Avx512::detect().map(|_| Self::Avx512),
-        ];
-        [Some(Self::Portable), Self::NARROW]
-            .into_iter()
-            .chain(detected)
-            .flatten()
-    }
-
-    /// The fastest one that this machine has.
-    #[must_use]
-    pub fn detect() -> Self {
-        Self::available().last().unwrap_or(Self::Portable)
-    }
-
-    /// Runs a kernel with this instruction set, or with the next smaller one that the machine has.
-    #[inline]
-    pub(crate) fn run<K: Kernel>(self, kernel: K) -> K::Output {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if self == Self::Avx512
-                && let Some(lanes) = avx512::Avx512::detect()
-            {
-                return lanes.run(kernel);
-            }
-            if matches!(self, Self::Avx2 | Self::Avx512)
-                && let Some(lanes) = avx2::Avx2::detect()
-            {
-                return lanes.run(kernel);
-            }
-        }
-        #[cfg(any(
-            target_arch = "x86_64",
-            all(
-                target_arch = "aarch64",
-                target_feature = "neon",
-                target_endian = "little"
-            ),
-            all(target_arch = "wasm32", target_feature = "simd128"),
-        ))]
-        if self != Self::Portable {
-            return kernel.run(narrow::Narrow::here());
-        }
-        kernel.run(portable::Portable)
-    }
-}
-
-/// Eight lanes for set-up and projection, and the parts of a block: pixels, sample rows, sample planes.
-pub(crate) trait Lanes: Copy {
-    /// 8 x f32.
-    type F: Copy;
-    /// 8 x i32.
-    type I: Copy;
-    /// 4 x f64: the corners or borders of a polygon.
-    type Q: Copy;
-    /// 64 x i16: a block's pixels, row by row.
-    type D: Copy;
-    /// 2 x 40 whole numbers: the first sample (or pixel, by its centre) of each of a block's 32 sample rows and 8 rows through
-    /// pixel centres that is covered, and the first after. No fewer than 16 bits.
-    type S: Copy;
-    /// 4 x 40 x f64: the borders of a polygon in a block's 32 sample rows, and in 8 through pixel centres.
-    type B: Copy;
-    /// 64 x 16 bits: a block's samples, in any order.
-    type P: Copy;
-    /// Sixteen lanes.
-    type W: wide::Wide;
-
-    fn wide(self) -> Self::W;
-
-    /// Runs a kernel as a function of its own, so that what is not for every cluster leaves the rest as it is.
-    #[inline(never)]
-    fn apart<K: Kernel>(self, kernel: K) -> K::Output {
-        kernel.run(self)
-    }
-
-    /// Asks for memory that will be needed soon; changes nothing.
-    #[inline(always)]
-    fn prefetch<T>(self, _soon: &T) {}
-
-    fn splat(self, v: f32) -> Self::F;
-    fn load(self, v: &[f32; 8]) -> Self::F;
-    fn store(self, v: Self::F, to: &mut [f32; 8]);
-    fn add(self, a: Self::F, b: Self::F) -> Self::F;
-    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
-    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
-    fn div(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `if a < b { a } else { b }` (the second on NaN).
-    fn min(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `if a > b { a } else { b }` (the second on NaN).
-    fn max(self, a: Self::F, b: Self::F) -> Self::F;
-    fn abs(self, a: Self::F) -> Self::F;
-    /// All ones where `a < b`.
-    fn lt(self, a: Self::F, b: Self::F) -> Self::I;
-    /// `mask` lanes from `a`, others from `b`; masks are all ones or all zeroes.
-    fn select(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
-    /// Towards zero; lanes out of range give `i32::MIN`.
-    fn trunc(self, a: Self::F) -> Self::I;
-    /// Depth codes before they are clamped (see [`crate::depth::encode`]), of depths above zero.
-    fn codes(self, a: Self::F) -> Self::I;
-    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F;
-
-    /// Eight boxes by coordinate: smallest x, y and z, largest x, y and z.
-    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6];
-
-    fn isplat(self, v: i32) -> Self::I;
-    fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
-    fn imin(self, a: Self::I, b: Self::I) -> Self::I;
-    fn imax(self, a: Self::I, b: Self::I) -> Self::I;
-    fn imul(self, a: Self::I, b: Self::I) -> Self::I;
-    /// `a >> by`, `by` from 0 to 31.
-    fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
-    /// How many bits a number from 0 to 2^24 has.
-    fn ibits(self, a: Self::I) -> Self::I;
-    fn iload(self, v: &[i32; 8]) -> Self::I;
-    fn istore(self, v: Self::I, to: &mut [i32; 8]);
-    fn isub(self, a: Self::I, b: Self::I) -> Self::I;
-    fn iand(self, a: Self::I, b: Self::I) -> Self::I;
-    fn ior(self, a: Self::I, b: Self::I) -> Self::I;
-    /// `!a & b`.
-    fn iandnot(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Sign bits, lane 0 lowest.
-    fn movemask(self, a: Self::I) -> u32;
-
-    fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q;
-    fn qload(self, v: &[f64; 4]) -> Self::Q;
-    fn qstore(self, v: Self::Q, to: &mut [f64; 4]);
-    fn qsplat(self, v: f64) -> Self::Q;
-    fn qadd(self, a: Self::Q, b: Self::Q) -> Self::Q;
-    fn qsub(self, a: Self::Q, b: Self::Q) -> Self::Q;
-    fn qmul(self, a: Self::Q, b: Self::Q) -> Self::Q;
-    fn qdiv(self, a: Self::Q, b: Self::Q) -> Self::Q;
-    fn qabs(self, a: Self::Q) -> Self::Q;
-    /// A bit per lane where `a < b`, lane 0 lowest.
-    fn qlt(self, a: Self::Q, b: Self::Q) -> u32;
-    /// Number `i` of the result is number `from[i]`, of which the two lowest bits count.
-    fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q;
-
-    /// Pixels from a value for each column at the top, and its change per row: as depth codes (see
-    /// [`crate::depth`]), no value below `floor` and no code above `cap`.
-    fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D;
-    fn dload(self, v: &[i16; 64]) -> Self::D;
-    fn dstore(self, v: Self::D, to: &mut [i16; 64]);
-    fn dsplat(self, v: i16) -> Self::D;
-    fn dmin(self, a: Self::D, b: Self::D) -> Self::D;
-    fn dmax(self, a: Self::D, b: Self::D) -> Self::D;
-    /// A bit per pixel where `a > b`.
-    fn dgt(self, a: Self::D, b: Self::D) -> u64;
-    /// A bit per pixel where `a` and `b` are further apart than `by`.
-    fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64;
-    /// `a` where the bit is set, else `b`.
-    fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D;
-    fn dreduce_min(self, a: Self::D) -> i16;
-
-    /// How far four borders move from the first row of samples to every other, and to the rows through pixel centres.
-    fn borders(self, slope: Self::Q) -> Self::B;
-    /// What lies right of the first two borders and left of the last two, in `f64`, row by row as
-    /// [`Portable`](portable::Portable) has it. `at`: where they cross the first row; sample n is right of what is less than
-    /// n + 1. `limits`: only rows after the first one and not after the second count.
-    fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
-    /// Of these the samples and the pixel centres of the block that begins at sample `left`.
-    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64);
-    /// A row of eight pixels each: those from one number to before another.
-    fn plane(self, from: Self::I, to: Self::I) -> u64;
-    fn pload(self, v: &[u64; 16]) -> Self::P;
-    fn pstore(self, v: Self::P, to: &mut [u64; 16]);
-    /// Only the pixels whose bit is set.
-    fn pkeep(self, v: Self::P, bits: u64) -> Self::P;
-    fn por(self, a: Self::P, b: Self::P) -> Self::P;
-    /// Pixels of which every sample is set.
-    fn pall(self, v: Self::P) -> u64;
-    /// Pixels of which any sample is set.
-    fn pany(self, v: Self::P) -> u64;
-}
+pub(crate) use arrays::{four, larger, smaller, three, two};
+pub use instruction_set::InstructionSet;
+pub(crate) use lanes::{Kernel, Lanes};
+pub(crate) use wide::Wide;

@@ -1,12 +1,14 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
-use super::wide::Twice;
-use super::{Lanes, larger, smaller};
-use crate::Aabb;
-use crate::depth::CODE_OFFSET;
+use super::arrays::{larger, smaller};
+use super::lanes::Lanes;
+use super::twice::Twice;
+use crate::bounds::Aabb;
+use crate::format::CODE_OFFSET;
 use core::array::from_fn;
 
-/// Rows of samples, those that are first, second and so on in their pixel together; then the rows through pixel centres.
+/// Rows of samples, those that are first, second and so on in their pixel together; then the rows
+/// through pixel centres.
 pub(super) const ROWS: [f64; 40] = {
     let mut rows = [0.0; 40];
     let mut i = 0;
@@ -49,7 +51,7 @@ pub(super) const FROM: [u32; 64] = {
 /// Beyond all that is on the screen, either way.
 pub(super) const FAR: f64 = (1 << 28) as f64;
 
-/// The first sample, or pixel by its centre, of row `i` that is right of a border.
+/// The first sample, or pixel by its centre, of row `i` that is right of an edge.
 #[inline(always)]
 fn number(v: f64, i: usize) -> i32 {
     // The centre of pixel n is at sample 4 n + 1.5 of the row.
@@ -144,7 +146,7 @@ impl Lanes for Portable {
         [v; 8]
     }
     #[inline(always)]
-    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6] {
+    fn transpose(self, v: &[Aabb; 8]) -> [Self::F; 6] {
         from_fn(|k| from_fn(|i| if k < 3 { v[i].min[k] } else { v[i].max[k - 3] }))
     }
     #[inline(always)]
@@ -311,7 +313,7 @@ impl Lanes for Portable {
     }
 
     #[inline(always)]
-    fn borders(self, slope: [f64; 4]) -> Self::B {
+    fn edge_rows(self, slope: [f64; 4]) -> Self::B {
         slope.map(|slope| ROWS.map(|row| row * slope))
     }
     #[inline(always)]
@@ -341,10 +343,10 @@ impl Lanes for Portable {
             }
         }
         let pixel = |side: &[i32; 40]| from_fn(|i| side[32 + i] - left / 4);
-        (planes, self.plane(pixel(from), pixel(to)))
+        (planes, self.bit_rows(pixel(from), pixel(to)))
     }
     #[inline(always)]
-    fn plane(self, from: [i32; 8], to: [i32; 8]) -> u64 {
+    fn bit_rows(self, from: [i32; 8], to: [i32; 8]) -> u64 {
         let pixels = |n: i32| (0xff_u32 << n.clamp(0, 8)) as u8;
         u64::from_le_bytes(from_fn(|i| pixels(from[i]) & !pixels(to[i])))
     }

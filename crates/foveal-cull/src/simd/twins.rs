@@ -1,7 +1,7 @@
-//! Every method of every instruction set that this machine has, against the portable one, lane by lane.
+//! Every method of every instruction set that this machine has, against the portable one, lane by
+//! lane.
 
-use super::wide::Wide;
-use super::{InstructionSet, Kernel, Lanes};
+use super::{InstructionSet, Kernel, Lanes, Wide};
 use crate::Aabb;
 use glam::Vec3;
 
@@ -91,7 +91,7 @@ impl Inputs {
         let vec = |r: &mut Random| Vec3::from_array(array(|| r.between(-9.0, 9.0)));
         // Whether pixels are alike decides what a comparison is worth.
         let shift = r.below(15);
-        // Here, or at the right border of the widest buffer.
+        // Here, or at the right edge of the widest buffer.
         let right = 32 * [0, 507][r.below(2) as usize];
         Self {
             floats: array(|| array(|| r.float())),
@@ -101,7 +101,8 @@ impl Inputs {
             counts: array(|| (r.below(1 << 24) >> r.below(25)) as i32),
             doubles: array(|| array(|| f64::from(r.float()) + f64::from(r.float()) * 1e-8)),
             pixels: array(|| array(|| (r.bits() as i16) >> shift)),
-            // Left borders to the left of right ones in most rows; some far off, and some right at a sample.
+            // Left edges to the left of right ones in most rows; some far off, and some right at a
+            // sample.
             at: array(|| {
                 core::array::from_fn(|e| {
                     let at = f64::from(right)
@@ -194,7 +195,7 @@ impl Kernel for Eight<'_> {
         let [s, t] = n.doubles.each_ref().map(|v| l.qload(v));
         let [g, h] = n.pixels.each_ref().map(|v| l.dload(v));
         let [j, k] = [0, 1].map(|k| {
-            let borders = l.borders(l.qload(&n.slopes[k]));
+            let borders = l.edge_rows(l.qload(&n.slopes[k]));
             let limits = n.bits.is_multiple_of(3).then_some(n.limits);
             let spans = l.spans(l.qload(&n.at[k]), &borders, limits);
             l.within(&spans, n.left)
@@ -254,7 +255,7 @@ impl Kernel for Eight<'_> {
             ("dreduce_min", vec![l.dreduce_min(g) as u64]),
             ("within", p(l, j.0)),
             ("within, centers", vec![j.1, k.1]),
-            ("plane", vec![l.plane(l.ishr(x, by), l.ishr(y, by))]),
+            ("bit_rows", vec![l.bit_rows(l.ishr(x, by), l.ishr(y, by))]),
             ("pkeep", p(l, l.pkeep(j.0, n.bits))),
             ("por", p(l, l.por(j.0, k.0))),
             (
@@ -262,8 +263,8 @@ impl Kernel for Eight<'_> {
                 p(l, l.por(l.pkeep(j.0, n.bits), l.pkeep(k.0, !n.bits))),
             ),
         ];
-        let boxes = l.turn(n.boxes.first_chunk().unwrap());
-        out.extend(boxes.map(|v| ("turn", f(l, v))));
+        let boxes = l.transpose(n.boxes.first_chunk().unwrap());
+        out.extend(boxes.map(|v| ("transpose", f(l, v))));
         // What these choose has to come from numbers that are known only at run time.
         let from = n.places.first_chunk::<4>().unwrap();
         out.push(("qpick", q(l, l.qpick(s, *from))));
@@ -322,7 +323,7 @@ impl Kernel for Sixteen<'_> {
             ("wide ibits", i(w.ibits(w.iload(&n.counts)))),
             ("wide negative", vec![u64::from(w.negative(x))]),
         ];
-        out.extend(w.turn(&n.boxes).map(|v| ("wide turn", f(v))));
+        out.extend(w.transpose(&n.boxes).map(|v| ("wide transpose", f(v))));
         out
     }
 }

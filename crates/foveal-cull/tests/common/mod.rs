@@ -6,7 +6,7 @@
     reason = "shared by several test programs, each using a part"
 )]
 
-use foveal_cull::truth::{Seen, Truth};
+use foveal_cull::reference::{Reference, Seen};
 use foveal_cull::{
     Aabb, BakeOptions, Culler, Eye, FrameOptions, OccluderMesh, OccluderSet, Projection, Threads,
     View, Visibility,
@@ -221,8 +221,8 @@ pub fn eye(r: &mut Random, origin: DVec3, orthographic: bool) -> Eye {
             right: w,
             bottom: -h * r.next(),
             top: h,
-            near: r.range(-2.0, 0.5),
-            far: 30.0,
+            near_m: r.range(-2.0, 0.5),
+            far_m: 30.0,
         }
     } else {
         let (w, h) = (r.range(0.2, 1.3), r.range(0.2, 1.3));
@@ -231,8 +231,8 @@ pub fn eye(r: &mut Random, origin: DVec3, orthographic: bool) -> Eye {
             right: w,
             bottom: -h * r.range(0.2, 1.0),
             top: h,
-            near,
-            far,
+            near_m: near,
+            far_m: far,
         }
     };
     Eye::look_at(position, target, DVec3::Y, projection)
@@ -245,10 +245,9 @@ pub fn occluders(scene: &Scene, order: &[usize]) -> OccluderSet {
         let mesh = OccluderMesh::bake(
             &o.positions,
             &o.indices,
-            BakeOptions {
-                two_sided: o.two_sided,
-                around_the_eye: i % 3 != 2,
-            },
+            BakeOptions::default()
+                .with_two_sided(o.two_sided)
+                .with_adjacency(i % 3 != 2),
         )
         .unwrap();
         set.add(Arc::new(mesh), o.transform).unwrap();
@@ -273,8 +272,8 @@ pub fn answers(
     results
 }
 
-fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Truth {
-    let mut truth = Truth::new(eye, w, h).unwrap();
+fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Reference {
+    let mut truth = Reference::new(eye, w, h).unwrap();
     for o in &scene.objects {
         truth.add(&o.positions, &o.indices, &o.transform, o.two_sided);
     }
@@ -282,7 +281,8 @@ fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Truth {
     truth
 }
 
-/// Per pixel, the farthest depth that the reference has at `n` times `n` samples; 0 where one is not covered.
+/// Per pixel, the farthest depth that the reference has at `n` times `n` samples; 0 where one is
+/// not covered.
 pub fn farthest_in_pixels(scene: &Scene, eye: &Eye, (w, h): (u32, u32), n: u32) -> Vec<f32> {
     let truth = reference(scene, eye, (w * n, h * n));
     let at = |x: u32, y: u32| truth.depth()[(y * w * n + x) as usize];

@@ -46,16 +46,12 @@ impl CullingArgs {
 
     /// Switches of a frame that begins now by `clock`, which reads nanoseconds.
     pub fn options<'a>(&self, clock: &'a (dyn Fn() -> u64 + Sync)) -> FrameOptions<'a> {
-        FrameOptions {
-            occluder_size_threshold: self.occluder_size_threshold,
-            occluder_pixels_per_quad: self.occluder_pixels_per_quad,
-            occludee_size_threshold: self.occludee_size_threshold,
-            budget: self.budget_ms.map(|ms| Budget {
-                clock,
-                deadline_ns: clock() + (f64::from(ms) * 1e6) as u64,
-            }),
-            ..FrameOptions::default()
-        }
+        let deadline = |ms: f32| clock() + (f64::from(ms) * 1e6) as u64;
+        FrameOptions::default()
+            .with_occluder_size_threshold(self.occluder_size_threshold)
+            .with_occluder_pixels_per_quad(self.occluder_pixels_per_quad)
+            .with_occludee_size_threshold(self.occludee_size_threshold)
+            .with_budget(self.budget_ms.map(|ms| Budget::new(clock, deadline(ms))))
     }
 }
 

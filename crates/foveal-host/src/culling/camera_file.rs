@@ -170,7 +170,7 @@ mod tests {
         let cameras = parse(text, DEFAULTS).unwrap();
         assert_eq!(cameras[0].name, "camera 0");
         assert_eq!(cameras[0].eye.position(), DVec3::new(0.0, 1.0, 5.0));
-        assert_eq!(cameras[0].eye.projection.near_far(), [0.1, 100.0]);
+        assert_eq!(cameras[0].eye.projection.near_far_m(), [0.1, 100.0]);
         assert_eq!(cameras[1].name, "plan");
         assert!(cameras[1].eye.projection.is_orthographic());
     }

@@ -1,7 +1,7 @@
 //! Comparison with the exact reference: was anything culled that can be seen, was anything kept that cannot.
 
 use anyhow::Context;
-use foveal_cull::truth::{Seen, Truth};
+use foveal_cull::reference::{Reference, Seen};
 use foveal_cull::{Aabb, Eye, View, Visibility};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -62,8 +62,13 @@ impl Check {
     }
 }
 
-fn reference(occluders: &Occluders, eye: &Eye, width: u32, height: u32) -> anyhow::Result<Truth> {
-    let mut truth = Truth::new(eye, width, height).context("the exact reference")?;
+fn reference(
+    occluders: &Occluders,
+    eye: &Eye,
+    width: u32,
+    height: u32,
+) -> anyhow::Result<Reference> {
+    let mut truth = Reference::new(eye, width, height).context("the exact reference")?;
     for &(shape, world_from_mesh) in &occluders.placed {
         let shape = &occluders.shapes[shape];
         truth.add(
@@ -85,7 +90,7 @@ struct Counts {
 }
 
 /// Adds what one eye sees: visible to one is visible, hidden from all that it is before is hidden.
-fn look(truth: &Truth, eye: &Eye, boxes: &[Aabb], seen: &mut [Seen]) {
+fn look(truth: &Reference, eye: &Eye, boxes: &[Aabb], seen: &mut [Seen]) {
     boxes.par_iter().zip(seen).for_each(|(bounds, seen)| {
         // The reference would follow rays through the whole screen for a box behind the eye.
         if *seen == Seen::Visible || is_outside(eye, bounds) {

@@ -8,7 +8,7 @@ pub fn clip_position(eye: &Eye, world: DVec3) -> DVec4 {
     let m = eye.world_from_eye.matrix3;
     let p = m.transpose() * (world - eye.position());
     let [l, r, b, t] = eye.projection.extents();
-    let [near, _] = eye.projection.near_far();
+    let [near, _] = eye.projection.near_far_m();
     let w = if eye.projection.is_orthographic() {
         1.0
     } else {
@@ -25,7 +25,7 @@ pub fn clip_position(eye: &Eye, world: DVec3) -> DVec4 {
 /// Whether one plane of the frustum has the whole box behind it. Such a box is certainly not seen; others may
 /// still miss the frustum.
 pub(super) fn is_outside(eye: &Eye, bounds: &Aabb) -> bool {
-    let [near, far] = eye.projection.near_far();
+    let [near, far] = eye.projection.near_far_m();
     let behind = corners(bounds).map(|corner| {
         let p = clip_position(eye, corner);
         [

@@ -98,10 +98,7 @@ impl Occluders {
         let meshes: Arc<[Arc<OccluderMesh>]> = shapes
             .par_iter()
             .map(|shape| {
-                let options = BakeOptions {
-                    two_sided: shape.two_sided,
-                    ..BakeOptions::default()
-                };
+                let options = BakeOptions::default().with_two_sided(shape.two_sided);
                 OccluderMesh::bake(&shape.positions, &shape.indices, options).map(Arc::new)
             })
             .collect::<Result<_, _>>()?;

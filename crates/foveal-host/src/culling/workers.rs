@@ -3,22 +3,22 @@
 use std::sync::Mutex;
 
 use foveal_cull::{
-    Aabb, CullError, Culler, FrameOptions, OccluderSet, Pool, SingleThread, Threads, View,
-    Visibility,
+    Aabb, CullError, Culler, FrameOptions, OccluderSet, SingleThread, Threads, View, Visibility,
+    WorkerThreads,
 };
 use glam::DVec3;
 
 /// Who works.
 #[derive(Debug)]
 pub struct Workers {
-    pool: Option<Pool>,
+    pool: Option<WorkerThreads>,
 }
 
 impl Workers {
     /// `count` threads; one is the calling thread itself.
     pub fn new(count: u32) -> Self {
         Self {
-            pool: (count > 1).then(|| Pool::new(count as usize)),
+            pool: (count > 1).then(|| WorkerThreads::new(count as usize)),
         }
     }
 

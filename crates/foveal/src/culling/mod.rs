@@ -187,16 +187,13 @@ impl CullingStage {
         let view = view.with_validity_radius(self.radius_m);
         let clock_ns = clock.map(|clock| move || (clock() * 1e6) as u64);
         let budget = clock_ns.as_ref().filter(|_| self.budget_ms > 0.0);
-        let options = FrameOptions {
-            occlusion: self.occlusion,
-            occluder_size_threshold: self.occluder_size,
-            occludee_size_threshold: self.occludee_size,
-            budget: budget.map(|clock| Budget {
-                clock,
-                deadline_ns: clock() + (self.budget_ms * 1e6) as u64,
-            }),
-            ..FrameOptions::default()
-        };
+        let budget =
+            budget.map(|clock| Budget::new(clock, clock() + (self.budget_ms * 1e6) as u64));
+        let options = FrameOptions::default()
+            .with_occlusion(self.occlusion)
+            .with_occluder_size_threshold(self.occluder_size)
+            .with_occludee_size_threshold(self.occludee_size)
+            .with_budget(budget);
         self.of_eye.clear();
         self.of_eye.resize(scene.boxes.len(), Visibility::Visible);
         let now = || clock.map_or(0.0, |clock| clock());
@@ -300,8 +297,8 @@ fn eye_projection(
         right: left + (right - left) * right_over_width,
         bottom: top - (top - bottom) * down_over_height,
         top,
-        near: near_m.into(),
-        far: f64::INFINITY,
+        near_m: near_m.into(),
+        far_m: f64::INFINITY,
     }
 }
 
@@ -323,8 +320,8 @@ fn projection(camera: &Camera, size: (u32, u32), scale: u32) -> Projection {
                 right,
                 bottom,
                 top,
-                near: near_m.into(),
-                far: f64::INFINITY,
+                near_m: near_m.into(),
+                far_m: f64::INFINITY,
             }
         }
         foveal_scene::Projection::Orthographic {
@@ -338,8 +335,8 @@ fn projection(camera: &Camera, size: (u32, u32), scale: u32) -> Projection {
                 right,
                 bottom,
                 top,
-                near: near_m.into(),
-                far: far_m.into(),
+                near_m: near_m.into(),
+                far_m: far_m.into(),
             }
         }
     }

@@ -68,10 +68,7 @@ impl CullingScene {
                 let positions: Vec<Vec3> =
                     mesh.vertices.iter().map(|v| v.position.into()).collect();
                 // A mesh that cannot be baked only hides nothing.
-                let options = BakeOptions {
-                    two_sided,
-                    ..BakeOptions::default()
-                };
+                let options = BakeOptions::default().with_two_sided(two_sided);
                 OccluderMesh::bake(&positions, &mesh.indices, options)
                     .ok()
                     .map(Arc::new)

@@ -1,6 +1,6 @@
 //! Who rasterizes.
 
-use foveal_cull::{Pool, SingleThread, Threads};
+use foveal_cull::{SingleThread, Threads, WorkerThreads};
 
 /// Who rasterizes: everybody, this thread alone, or a pool of so many.
 #[derive(Debug)]
@@ -8,7 +8,7 @@ pub(super) enum Workers {
     #[cfg(not(target_arch = "wasm32"))]
     All,
     One,
-    Some(Pool),
+    Some(WorkerThreads),
 }
 
 impl Workers {
@@ -19,7 +19,7 @@ impl Workers {
             #[cfg(target_arch = "wasm32")]
             0 => Self::One,
             1 => Self::One,
-            n => Self::Some(Pool::new(n.into())),
+            n => Self::Some(WorkerThreads::new(n.into())),
         }
     }
 

@@ -139,8 +139,8 @@ fn eye(near: f64) -> Eye {
             right: 1.0,
             bottom: -1.0,
             top: 1.0,
-            near,
-            far: f64::INFINITY,
+            near_m: near,
+            far_m: f64::INFINITY,
         },
     }
 }

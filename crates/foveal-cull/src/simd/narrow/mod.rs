@@ -1,11 +1,12 @@
-//! Lanes in 128-bit registers, for x86-64 (SSE2), 64-bit ARM (NEON) and WebAssembly with simd128: written once, over
-//! [`Registers`].
+//! Lanes in 128-bit registers, for x86-64 (SSE2), 64-bit ARM (NEON) and WebAssembly with simd128:
+//! written once, over [`Registers`].
 
 use super::portable::{FAR, ROWS};
-use super::wide::Twice;
-use super::{Lanes, four, two};
-use crate::Aabb;
-use crate::depth::{BLOCK, BLOCK_SAMPLES, CODE_OFFSET};
+use super::twice::Twice;
+use crate::bounds::Aabb;
+use crate::format::{BLOCK, BLOCK_SAMPLES, CODE_OFFSET};
+use crate::simd::arrays::{four, two};
+use crate::simd::lanes::Lanes;
 use registers::Registers;
 
 mod registers;
@@ -18,20 +19,20 @@ mod simd128;
 pub(super) mod sse2;
 
 #[cfg(target_arch = "aarch64")]
-type Here = neon::Neon;
+type Target = neon::Neon;
 #[cfg(target_arch = "wasm32")]
-type Here = simd128::Simd128;
+type Target = simd128::Simd128;
 #[cfg(target_arch = "x86_64")]
-type Here = sse2::Sse2;
+type Target = sse2::Sse2;
 
 /// Two or more registers in place of each wider one.
 #[derive(Clone, Copy)]
 pub(crate) struct Narrow<R>(R);
 
-impl Narrow<Here> {
+impl Narrow<Target> {
     /// With the registers of what this is compiled for.
-    pub(super) fn here() -> Self {
-        Self(Here::default())
+    pub(super) fn of_target() -> Self {
+        Self(Target::default())
     }
 }
 
@@ -139,7 +140,7 @@ impl<R: Registers> Lanes for Narrow<R> {
         two!(k => self.0.load(&four!(i => table[usize::from(index[4 * k + i])])))
     }
     #[inline(always)]
-    fn turn(self, v: &[Aabb; 8]) -> [Self::F; 6] {
+    fn transpose(self, v: &[Aabb; 8]) -> [Self::F; 6] {
         let (v, _) = v.as_chunks();
         let [low, high] = two!(k => self.turn_four(&v[k]));
         let [a, b, c, d, e, f] = low;
@@ -248,7 +249,7 @@ impl<R: Registers> Lanes for Narrow<R> {
     }
 
     #[inline(always)]
-    fn borders(self, slope: Self::Q) -> Self::B {
+    fn edge_rows(self, slope: Self::Q) -> Self::B {
         let slope = self.each(slope);
         let (rows, _) = ROWS.as_chunks();
         let mut borders = [[slope[0]; 20]; 4];
@@ -309,7 +310,7 @@ impl<R: Registers> Lanes for Narrow<R> {
         (eight!(k => [low, high][k % 2][k / 2]), self.pixels(n))
     }
     #[inline(always)]
-    fn plane(self, from: Self::I, to: Self::I) -> u64 {
+    fn bit_rows(self, from: Self::I, to: Self::I) -> u64 {
         self.pixels([self.0.hpack(from), self.0.hpack(to)])
     }
     #[inline(always)]
@@ -350,7 +351,7 @@ impl<R: Registers> Narrow<R> {
         self.0.isub(bits, self.0.isplat(CODE_OFFSET))
     }
 
-    /// [`Lanes::turn`] of four.
+    /// [`Lanes::transpose`] of four.
     #[inline(always)]
     fn turn_four(self, v: &[Aabb; 4]) -> [R::F; 6] {
         // Six registers of four numbers in a row hold four boxes: two boxes are three of these.
@@ -363,7 +364,8 @@ impl<R: Registers> Narrow<R> {
         });
         let pair = |k: usize| {
             let [a, b, c] = [0, 1, 2].map(|i| self.0.load(&numbers[3 * k + i]));
-            // x and y of the smallest corners, z of these and x of the largest, y and z of the largest.
+            // x and y of the smallest corners, z of these and x of the largest, y and z of the
+            // largest.
             [
                 self.0.low_high(a, b),
                 self.0.high_low(a, c),
@@ -384,7 +386,8 @@ impl<R: Registers> Narrow<R> {
     /// Rows of eight pixels, from numbers to before others.
     #[inline(always)]
     fn pixels(self, n: [R::H; 2]) -> u64 {
-        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before is not.
+        // The last sample of the n-th pixel is at or right of sample 4 n, that of the pixel before
+        // is not.
         let n = two!(side => {
             let n = self.0.hmin(n[side], self.0.hsplat(BLOCK as i16));
             let less = self.0.hsub(self.0.hsplat(0), n);

@@ -1,8 +1,8 @@
 //! NEON, which every 64-bit ARM CPU for applications has.
 
-use super::Registers;
+use super::registers::Registers;
+use crate::simd::arrays::{four, two};
 use crate::simd::portable::PIXELS_FROM;
-use crate::simd::{four, two};
 use core::arch::aarch64::*;
 use core::arch::asm;
 
@@ -12,8 +12,8 @@ pub(crate) struct Neon;
 /// Wraps intrinsics.
 macro_rules! neon {
     ($e:expr) => {
-        // SAFETY: this is compiled only where NEON is there; loads and stores go through references to arrays of the
-        // same size.
+        // SAFETY: this is compiled only where NEON is there; loads and stores go through references
+        // to arrays of the same size.
         unsafe { $e }
     };
 }

@@ -1,8 +1,9 @@
-//! What an instruction set with 128-bit registers must do: the seam between [`Narrow`](super::Narrow) and SSE2, NEON
-//! and wasm's simd128. As there is no rounding that one of them lacks and no fused multiply-add, all give the same bits.
+//! What an instruction set with 128-bit registers must do: the seam between
+//! [`Narrow`](super::Narrow) and SSE2, NEON and wasm's simd128. As there is no rounding that one of
+//! them lacks and no fused multiply-add, all give the same bits.
 
-/// Registers of 128 bits. Names without a letter before them are of `f32`; what is not said is as in
-/// [`Lanes`](crate::simd::Lanes).
+/// Registers of 128 bits. Names without a letter before them are of `f32`; what is not said is as
+/// in [`Lanes`](crate::simd::Lanes).
 pub(crate) trait Registers: Copy {
     /// 4 x f32.
     type F: Copy;
@@ -105,7 +106,7 @@ pub(crate) trait Registers: Copy {
     fn bhalves(self, a: Self::B) -> [u64; 2];
     /// A bit per lane of masks, lane 0 of the first lowest.
     fn hbits(self, masks: [Self::H; 8]) -> u64;
-    /// From numbers 0 to 32, one per row of eight pixels with four samples each: for every column of samples, the pixels
-    /// whose sample is at or right of the n-th of the row.
+    /// From numbers 0 to 32, one per row of eight pixels with four samples each: for every column
+    /// of samples, the pixels whose sample is at or right of the n-th of the row.
     fn right_of(self, n: Self::B) -> [Self::B; 4];
 }

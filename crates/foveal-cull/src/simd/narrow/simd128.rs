@@ -1,8 +1,8 @@
 //! WebAssembly's 128-bit registers, where the module is compiled with `-C target-feature=+simd128`.
 
-use super::Registers;
+use super::registers::Registers;
+use crate::simd::arrays::{four, two};
 use crate::simd::portable::PIXELS_FROM;
-use crate::simd::{four, two};
 use core::arch::wasm32::*;
 
 #[derive(Clone, Copy, Default)]

@@ -1,7 +1,7 @@
 //! SSE2, which every x86-64 CPU has.
 
-use super::Registers;
-use crate::simd::four;
+use super::registers::Registers;
+use crate::simd::arrays::four;
 use core::arch::x86_64::*;
 
 #[derive(Clone, Copy, Default)]
@@ -10,7 +10,8 @@ pub(crate) struct Sse2;
 /// Wraps intrinsics.
 macro_rules! sse2 {
     ($e:expr) => {
-        // SAFETY: every x86-64 CPU has SSE2; loads and stores go through references to arrays of the same size.
+        // SAFETY: every x86-64 CPU has SSE2; loads and stores go through references to arrays of
+        // the same size.
         unsafe { $e }
     };
 }
@@ -212,7 +213,8 @@ impl Registers for Sse2 {
     }
     #[inline(always)]
     fn right_of(self, n: __m128i) -> [__m128i; 4] {
-        // There is no shift byte by byte and no table. Sample n is in pixel n / 4: its bit is doubled step by step.
+        // There is no shift byte by byte and no table. Sample n is in pixel n / 4: its bit is
+        // doubled step by step.
         sse2!({
             let of = |v: __m128i, bit: i8| _mm_and_si128(v, _mm_set1_epi8(bit));
             let has = |bit: i8| _mm_cmpeq_epi8(of(n, bit), _mm_set1_epi8(bit));

@@ -1,0 +1,310 @@
+//! The camera: a checked view, reduced to one centre, one frustum and one radius.
+
+use crate::error::{CullError, Quantity, ViewError};
+use crate::view::{Eye, Projection, View};
+use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
+
+/// A checked view, reduced to one centre, one frustum and one radius.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Camera {
+    pub(crate) eye: DVec3,
+    /// Rows X, Y, Z, W of clip space in *sample units*: `X / W` in `0..4 * width`, `Y / W`
+    /// downwards, `Z / W` the depth (1 at near). They multiply `(world - eye, 1)`.
+    pub(crate) rows: [DVec4; 4],
+    pub(crate) orthographic: bool,
+    /// View direction, world.
+    pub(crate) forward: DVec3,
+    /// Depth of the far plane; 0 if it is infinite.
+    pub(crate) far_depth: f64,
+    /// Radius around `eye` that the results hold for, metres.
+    pub(crate) radius: f64,
+    /// A box that is nowhere nearer than this depth may be cut at the edges of the buffer: no eye
+    /// within the radius can see what lies beyond them.
+    pub(crate) clamp_depth: f64,
+    /// Shift of a point at depth 1 for one metre of eye movement, samples.
+    pub(crate) shift_per_metre: f64,
+    /// Largest shift of a point at depth 1 within the view region along x and y, samples.
+    pub(crate) shift: [f64; 2],
+    /// Tangent of half the vertical field of view, or half the height of an orthographic view.
+    pub(crate) tan_half_fov_y: f64,
+    pub(crate) near: f64,
+}
+
+impl Camera {
+    /// Checks a view and reduces it; `width` and `height` in samples.
+    pub(crate) fn new(view: &View, width: f64, height: f64) -> Result<Self, CullError> {
+        view.eye.check()?;
+        if !(view.validity_radius_m.is_finite() && view.validity_radius_m >= 0.0) {
+            return Err(CullError::NotFinite(Quantity::ValidityRadius));
+        }
+        let (eye, to_eye) = match view.second_eye {
+            None => (view.eye, DVec3::ZERO),
+            Some(second) => {
+                second.check()?;
+                join_eyes(&view.eye, &second)?
+            }
+        };
+        let radius = to_eye.length() + view.validity_radius_m;
+        let (projection, clamp_depth) = if radius > 0.0 {
+            widen(eye.projection, radius)
+        } else {
+            (eye.projection, f64::INFINITY)
+        };
+        let [l, r, b, t] = projection.extents();
+        let [near, far] = projection.near_far_m();
+        let m = eye.world_from_eye.matrix3;
+        let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
+        // Screen x in 0..width; perspective: ((x/d) - l) / (r - l) * width.
+        let (sx, sy) = (width / (r - l), height / (t - b));
+        let (rows, far_depth) = if projection.is_orthographic() {
+            let k = 1.0 / (far - near);
+            (
+                [
+                    (right * sx).extend(-l * sx),
+                    (-up * sy).extend(t * sy),
+                    (forward * -k).extend(far * k),
+                    DVec4::new(0.0, 0.0, 0.0, 1.0),
+                ],
+                0.0,
+            )
+        } else {
+            (
+                [
+                    (right * sx - forward * (l * sx)).extend(0.0),
+                    (-up * sy + forward * (t * sy)).extend(0.0),
+                    DVec4::new(0.0, 0.0, 0.0, near),
+                    forward.extend(0.0),
+                ],
+                if far.is_finite() { near / far } else { 0.0 },
+            )
+        };
+        Ok(Self {
+            eye: eye.world_from_eye.translation,
+            rows,
+            orthographic: projection.is_orthographic(),
+            forward,
+            far_depth,
+            radius,
+            // Moving sideways by e shifts a point at tangent x and distance z by e / z against
+            // infinity, moving forward by e x / z; together at most e / z * sqrt(1 + x² + y²).
+            shift_per_metre: if projection.is_orthographic() {
+                0.0
+            } else {
+                let (x, y) = (l.abs().max(r.abs()), b.abs().max(t.abs()));
+                sx.max(sy) * (1.0 + x * x + y * y).sqrt() / near
+            },
+            shift: if projection.is_orthographic() {
+                [0.0; 2]
+            } else {
+                // The same along each axis: a step (sx, sy, sz) of the eye shifts a point at
+                // tangent x and distance z by (sx - x sz) / z.
+                let along = forward.dot(to_eye).abs();
+                let axis = |scale: f64, side: DVec3, reach: f64| {
+                    let step = side.dot(to_eye).abs() + reach * along;
+                    let around = view.validity_radius_m * (1.0 + reach * reach).sqrt();
+                    scale * (step + around) / near
+                };
+                [
+                    axis(sx, right, l.abs().max(r.abs())),
+                    axis(sy, up, b.abs().max(t.abs())),
+                ]
+            },
+            clamp_depth,
+            tan_half_fov_y: (t - b) * 0.5,
+            near,
+        })
+    }
+
+    /// Clip rows in the space of an object placed by `world_from_object`, for points relative to
+    /// `center` (object space).
+    pub(crate) fn object_rows(&self, world_from_object: &DAffine3, center: DVec3) -> [[f32; 4]; 4] {
+        let m = DMat4::from(*world_from_object);
+        let c = world_from_object.transform_point3(center) - self.eye;
+        self.rows.map(|row| {
+            let v = DVec3::new(
+                row.truncate().dot(m.x_axis.truncate()),
+                row.truncate().dot(m.y_axis.truncate()),
+                row.truncate().dot(m.z_axis.truncate()),
+            );
+            let w = row.truncate().dot(c) + row.w;
+            [v.x as f32, v.y as f32, v.z as f32, w as f32]
+        })
+    }
+
+    /// Clip rows in the space of an object placed by `world_from_object`, in `f64`.
+    pub(crate) fn exact_rows(&self, world_from_object: &DAffine3) -> [[f64; 4]; 4] {
+        let m = world_from_object.matrix3;
+        let origin = world_from_object.translation - self.eye;
+        self.rows.map(|row| {
+            let r = row.truncate();
+            [
+                r.dot(m.x_axis),
+                r.dot(m.y_axis),
+                r.dot(m.z_axis),
+                r.dot(origin) + row.w,
+            ]
+        })
+    }
+}
+
+/// The centre eye, which sees at least what both eyes see, and the way from it to the second eye.
+/// The way to the first is the opposite.
+fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
+    if a.projection.is_orthographic() || b.projection.is_orthographic() {
+        return Err(CullError::BadView(ViewError::StereoNotPerspective));
+    }
+    let too_far_apart = CullError::BadView(ViewError::EyesTooFarApart);
+    let position = (a.position() + b.position()) * 0.5;
+    let to_second = (b.position() - a.position()) * 0.5;
+    // The orientation is the mean of both, made orthonormal again. (The eyes of a headset are
+    // canted by some degrees at most.)
+    let (ma, mb) = (a.world_from_eye.matrix3, b.world_from_eye.matrix3);
+    let back = (ma.z_axis + mb.z_axis)
+        .try_normalize()
+        .ok_or(too_far_apart)?;
+    let right = (ma.y_axis + mb.y_axis)
+        .cross(back)
+        .try_normalize()
+        .ok_or(too_far_apart)?;
+    let rotation = DMat3::from_cols(right, back.cross(right), back);
+    let mut extents = [
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+    ];
+    let (mut near, mut far) = (0.0f64, 0.0f64);
+    for eye in [a, b] {
+        let [l, r, bottom, top] = eye.projection.extents();
+        let [n, f] = eye.projection.near_far_m();
+        for (x, y) in [(l, bottom), (r, bottom), (l, top), (r, top)] {
+            let ray = rotation.transpose() * (eye.world_from_eye.matrix3 * DVec3::new(x, y, -1.0));
+            if ray.z > -0.05 {
+                return Err(too_far_apart);
+            }
+            let (tx, ty) = (ray.x / -ray.z, ray.y / -ray.z);
+            extents = [
+                extents[0].min(tx),
+                extents[1].max(tx),
+                extents[2].min(ty),
+                extents[3].max(ty),
+            ];
+            // Beyond every eye's near plane, and no nearer than any far plane, along the centre
+            // eye's axis.
+            near = near.max(n * -ray.z).max(n);
+            far = far.max(f * -ray.z).max(f);
+        }
+    }
+    let projection = Projection::Perspective {
+        left: extents[0],
+        right: extents[1],
+        bottom: extents[2],
+        top: extents[3],
+        near_m: near,
+        far_m: far,
+    };
+    Ok((
+        Eye {
+            world_from_eye: DAffine3::from_mat3_translation(rotation, position),
+            projection,
+        },
+        to_second,
+    ))
+}
+
+/// The centre eye's frustum for all eyes within `radius`, and the depth up to which it holds. It is
+/// somewhat wider, and its near plane lies beyond every eye's own, since an occluder that one eye's
+/// near plane cuts must not count.
+fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
+    /// Growth on each side, as a tangent.
+    const MARGIN: f64 = 0.04;
+    match projection {
+        Projection::Perspective {
+            left,
+            right,
+            bottom,
+            top,
+            near_m: near,
+            far_m: far,
+        } => {
+            let (x, y) = (left.abs().max(right.abs()), bottom.abs().max(top.abs()));
+            let tilt = (1.0 + x * x + y * y).sqrt();
+            let near = near + radius;
+            let holds_from = radius * tilt / MARGIN + radius;
+            (
+                Projection::Perspective {
+                    left: left - MARGIN,
+                    right: right + MARGIN,
+                    bottom: bottom - MARGIN,
+                    top: top + MARGIN,
+                    near_m: near,
+                    far_m: f64::INFINITY.min(far + radius),
+                },
+                near / holds_from,
+            )
+        }
+        Projection::Orthographic {
+            left,
+            right,
+            bottom,
+            top,
+            near_m: near,
+            far_m: far,
+        } => (
+            Projection::Orthographic {
+                left: left - radius,
+                right: right + radius,
+                bottom: bottom - radius,
+                top: top + radius,
+                near_m: near + radius,
+                far_m: far + 2.0 * radius,
+            },
+            f64::INFINITY,
+        ),
+    }
+}
+
+/// The six frustum planes of one eye, relative to `origin` (world), pushed outwards by `radius` and
+/// by the rounding of boxes. `n . p + d >= 0` is inside; a box wholly behind one of them is
+/// outside.
+pub(crate) fn frustum_planes(eye: &Eye, radius: f64, origin: DVec3) -> [[f32; 4]; 6] {
+    let [l, r, b, t] = eye.projection.extents();
+    let [near, far] = eye.projection.near_far_m();
+    let m = eye.world_from_eye.matrix3;
+    let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
+    let far_plane = if far.is_finite() {
+        (-forward, far)
+    } else {
+        (DVec3::ZERO, 1.0)
+    };
+    let planes = if eye.projection.is_orthographic() {
+        [
+            (right, -l),
+            (-right, r),
+            (up, -b),
+            (-up, t),
+            (forward, -near),
+            far_plane,
+        ]
+    } else {
+        [
+            (right - forward * l, 0.0),
+            (forward * r - right, 0.0),
+            (up - forward * b, 0.0),
+            (forward * t - up, 0.0),
+            (forward, -near),
+            far_plane,
+        ]
+    };
+    planes.map(|(n, d)| {
+        let from_eye = origin - eye.position();
+        let push = n.length() * (radius + 1e-6 * from_eye.length());
+        let d = d + n.dot(from_eye) + push;
+        [
+            n.x as f32,
+            n.y as f32,
+            n.z as f32,
+            (d + d.abs() * 1e-6) as f32,
+        ]
+    })
+}

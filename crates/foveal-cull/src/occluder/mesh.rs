@@ -1,0 +1,111 @@
+//! The baked mesh.
+
+use super::one_ring::OneRings;
+use super::vertices::Vertices;
+use crate::bounds::Aabb;
+use crate::projection::boxes::Boxes8;
+use glam::{DVec3, Vec3};
+
+/// A baked occluder mesh.
+///
+/// Immutable; share it between occluders by `Arc`. [`BakeOptions`](crate::BakeOptions) decide its size.
+#[derive(Clone, Debug)]
+pub struct OccluderMesh {
+    pub(crate) vertices: Vertices,
+    /// Groups of eight quads, corner by corner: vertex numbers within the cluster. A triangle
+    /// repeats its third vertex.
+    pub(crate) quads: Vec<[[u8; 8]; 4]>,
+    pub(crate) clusters: Vec<Cluster>,
+    /// Adjacency of each cluster, if it was baked.
+    pub(crate) one_rings: OneRings,
+    /// Boxes of the clusters, eight at a time; NaN after the last.
+    pub(crate) bounds8: Vec<Boxes8>,
+    /// Centre that bounds are relative to, mesh space.
+    pub(crate) center: DVec3,
+    /// Half extent around `center`.
+    pub(crate) half: Vec3,
+    pub(crate) two_sided: bool,
+    pub(crate) hash: u32,
+    pub(super) triangles: u32,
+}
+
+/// A cluster: up to 64 quads over up to 256 vertices.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Cluster {
+    /// Bounds relative to the mesh's centre.
+    pub(crate) center: Vec3,
+    pub(crate) half: Vec3,
+    /// Mean normal, and sine and cosine of the largest angle to it. `cone_cos <= 0` where the
+    /// normals span a half-space or more and the cone proves nothing.
+    pub(crate) cone_axis: Vec3,
+    pub(crate) cone_sin: f32,
+    pub(crate) cone_cos: f32,
+    pub(crate) first_vertex: u32,
+    pub(crate) first_group: u32,
+    pub(crate) vertex_count: u16,
+    pub(crate) quad_count: u8,
+    pub(crate) triangle_count: u8,
+    /// The part of its box's outline that its triangles can fill, 0 to 1, in the mean over all
+    /// directions.
+    pub(crate) fill: f32,
+    /// The part of its quads' edges, by length, that is a silhouette from many directions, 0 to 1.
+    pub(crate) creased: f32,
+    /// Content hash. It breaks ties in the drawing order, so that results do not depend on the
+    /// order of submission.
+    pub(crate) hash: u32,
+}
+
+impl Cluster {
+    /// Whether every triangle certainly faces away from the eye (mesh space, relative to the
+    /// centre).
+    #[inline(always)]
+    pub(crate) fn faces_away(&self, eye: Vec3, forward: Vec3, orthographic: bool) -> bool {
+        if self.cone_cos <= 0.0 {
+            return false;
+        }
+        let (v, reach) = if orthographic {
+            (forward, 0.0)
+        } else {
+            (self.center - eye, self.half.length())
+        };
+        let along = v.dot(self.cone_axis);
+        let across = (v.length_squared() - along * along).max(0.0).sqrt();
+        along > 0.0 && along * self.cone_cos - across * self.cone_sin > reach
+    }
+}
+
+impl OccluderMesh {
+    /// Bounds in mesh space, metres.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        let c = self.center;
+        Aabb::new(
+            (c - self.half.as_dvec3()).as_vec3(),
+            (c + self.half.as_dvec3()).as_vec3(),
+        )
+    }
+
+    /// Number of triangles, without degenerate ones.
+    #[must_use]
+    pub fn triangle_count(&self) -> usize {
+        self.triangles as usize
+    }
+
+    /// Number of clusters.
+    #[must_use]
+    pub fn cluster_count(&self) -> usize {
+        self.clusters.len()
+    }
+}
+
+/// FNV-1a over 32-bit words, folded to 32 bits.
+pub(crate) fn hash_words(seed: u32, words: impl IntoIterator<Item = u32>) -> u32 {
+    let h = words
+        .into_iter()
+        .fold(0xcbf2_9ce4_8422_2325u64 ^ u64::from(seed), |h, w| {
+            (h ^ u64::from(w))
+                .wrapping_mul(0x0000_0100_0000_01b3)
+                .rotate_left(23)
+        });
+    (h ^ (h >> 32)) as u32
+}

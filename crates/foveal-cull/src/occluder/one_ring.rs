@@ -1,0 +1,47 @@
+//! The one-ring of a cluster: the triangles that touch it, and which edge joins which triangles.
+//!
+//! For view regions a cluster and its one-ring are one surface (see `raster::patch`). Without the
+//! one-ring every cluster would end in silhouette edges all around.
+
+use super::vertices::Vertices;
+
+/// The number of no triangle: beyond an edge where the mesh ends. All numbers are below 384.
+pub(crate) const NO_TRIANGLE: u16 = 383;
+/// First number of the one-ring's triangles. Before them come the first triangles of the cluster's
+/// quads, then the second ones.
+pub(crate) const FIRST_OF_RING: usize = 128;
+pub(crate) const FIRST_OF_SECOND: usize = 64;
+/// A power of two above all numbers.
+pub(crate) const MAX_NUMBERS: usize = 512;
+/// The one-ring of one cluster.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct OneRing {
+    /// Index in [`OneRings::vertices`]. Vertex numbers continue after the cluster's own, padded
+    /// ones.
+    pub(crate) first_vertex: u32,
+    pub(crate) vertex_count: u16,
+    /// Groups of eight triangles. The first corner is the one that is alone on its side (on the
+    /// cluster, or off it).
+    pub(crate) first_group: u32,
+    pub(crate) triangle_count: u16,
+    /// Edges with a vertex of the cluster.
+    pub(crate) first_edge: u32,
+    pub(crate) edges: u16,
+}
+
+/// An edge of a cluster or its one-ring.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Edge {
+    /// The triangles on either side; [`NO_TRIANGLE`] where the mesh ends.
+    pub(crate) triangles: [u16; 2],
+    pub(crate) vertices: [u8; 2],
+}
+
+/// The one-rings of a mesh, one per cluster.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct OneRings {
+    pub(crate) clusters: Vec<OneRing>,
+    pub(crate) vertices: Vertices,
+    pub(crate) triangles: Vec<[[u8; 8]; 3]>,
+    pub(crate) edges: Vec<Edge>,
+}
