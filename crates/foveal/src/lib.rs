@@ -9,9 +9,11 @@
 pub mod gpu;
 
 mod antialias;
+mod clock;
 mod composite;
 mod culling;
 mod error;
+mod formats;
 mod forward;
 mod frame;
 mod geometry;
@@ -32,12 +34,14 @@ mod targets;
 #[cfg(test)]
 mod testing;
 
+pub use clock::Clock;
 pub use culling::CullingFigures;
 pub use error::Error;
 pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
+pub use output::Target;
 pub use rate::{MinPyramid, RateImage};
-pub use renderer::{Clock, Frame, Renderer, Target};
+pub use renderer::{Frame, Renderer};
 pub use settings::{
     Antialiasing, AntialiasingSettings, COARSEST_LEVEL, CoarseBackend, CoarseSample,
     CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,

@@ -1,5 +1,6 @@
 //! The renderer as its host sees it; `submit.rs` tells the frame.
 
+use crate::{Clock, Target};
 use foveal_cull::Visibility;
 use foveal_scene::{Camera, Scene};
 
@@ -19,17 +20,15 @@ use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
 use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings};
-use figures::{Counts, InFlight};
+use in_flight::{Counts, InFlight};
 
 mod figures;
+mod in_flight;
 mod plan;
 mod stages;
 mod submit;
 #[cfg(test)]
 mod testing;
-
-/// The caller's clock: milliseconds since any fixed moment.
-pub type Clock = fn() -> f64;
 
 /// What changes from frame to frame besides the scene's pose.
 #[derive(Clone, Copy, Debug)]
@@ -39,16 +38,6 @@ pub struct Frame<'a> {
     /// Where the frame before it was seen from, for motion vectors and for what is kept from frame to frame, which is given up where
     /// this is not the camera that was drawn last; `None`: from the same place.
     pub previous_camera: Option<&'a Camera>,
-}
-
-/// A texture of the host's, drawn to with the format of the view: an sRGB one encodes by itself, into any other the
-/// renderer writes sRGB values.
-#[derive(Clone, Copy, Debug)]
-pub struct Target<'a> {
-    /// One layer of one mip of a texture with [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
-    pub view: &'a wgpu::TextureView,
-    /// The format of the view.
-    pub format: wgpu::TextureFormat,
 }
 
 /// Draws scenes.

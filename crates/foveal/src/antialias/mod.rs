@@ -6,6 +6,8 @@
 //! anti-aliasing, and only the further surfaces are shaded besides, weighted by their coverage.
 
 mod blended;
+mod choice;
+mod further;
 mod limits;
 mod pattern;
 mod pipelines;
@@ -17,6 +19,7 @@ mod triangles;
 #[cfg(test)]
 mod twin;
 
+pub(crate) use choice::{by_triangles, footprint};
 pub(crate) use limits::validate;
 #[cfg(test)]
 pub(crate) use pattern::BandUniform;
@@ -24,4 +27,3 @@ pub(crate) use stage::{AntialiasStage, Shadings};
 #[cfg(test)]
 pub(crate) use targets::QueueUniform;
 pub(crate) use targets::SampleTargets;
-pub(crate) use triangles::{by_triangles, footprint};

@@ -10,10 +10,11 @@ use crate::targets::Targets;
 use crate::{Antialiasing, DebugView, Settings, shader};
 
 use super::blended::{BlendedStage, BlendedTargets};
+use super::choice::by_triangles;
 use super::pattern::{Band, Pattern};
 use super::pipelines::{AntialiasPipelines, Edges};
 use super::targets::{ALL_GROUPS, QueueUniform, SampleTargets};
-use super::triangles::{TriangleStage, by_triangles};
+use super::triangles::TriangleStage;
 
 /// Where the queue holds the workgroups of a band.
 const BAND_GROUPS: u64 = std::mem::offset_of!(QueueUniform, band_groups) as u64;

@@ -9,8 +9,9 @@ use crate::gpu::{Gpu, target};
 use crate::stereo::EyeLayout;
 
 use super::blended::{self, BlendedTargets};
+use super::choice::by_triangles;
+use super::further::{FurtherTargets, band_of_triangles};
 use super::pattern::{Band, BandUniform, Pattern};
-use super::triangles::{FurtherTargets, band_of_triangles, by_triangles};
 
 /// How often each pixel is shaded, and how many sub-samples its G-buffer texel stands for.
 pub(super) const TALLY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg8Uint;

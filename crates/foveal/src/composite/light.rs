@@ -2,75 +2,18 @@
 //!
 //! Pixels that no sample speaks for are listed; the caller shades them.
 
+use super::LightTargets;
 use crate::gpu::{
-    Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
-    storage_write, written,
+    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
+    written,
 };
 use crate::recorder::Recorder;
-use crate::shading::{CoarseTargets, RADIANCE_FORMAT, SampleList};
-use crate::stereo::EyeLayout;
+use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
 use crate::targets::Targets;
 use crate::{CoarseSample, Settings, shader};
 
-/// A sample's light: `pack_light` in `shading/coarse/light.wgsl`.
-pub(crate) const LIGHT_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-
 /// Pixels a side of a workgroup.
 const TILE: u32 = 8;
-
-/// The samples' light, and the pixels without, of one frame size.
-#[derive(Debug)]
-pub(crate) struct LightTargets {
-    /// Mip l holds the light of the samples of level l.
-    pub(crate) samples: MipChain,
-    /// Pixels that no sample speaks for.
-    pub(crate) unlit: SampleList,
-    /// Their number, with room for the counts of nine levels, as the pass that sizes dispatches has them.
-    pub(crate) unlit_count: wgpu::Buffer,
-}
-
-impl LightTargets {
-    /// Bytes of everything.
-    pub(crate) fn bytes(&self) -> u64 {
-        let buffers = [&self.unlit.texels, &self.unlit.dispatch, &self.unlit_count];
-        self.samples.bytes() + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
-    }
-
-    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = EyeLayout::of(settings).target_size();
-        let buffer = |label, size, usage| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size,
-                usage: usage | wgpu::BufferUsages::STORAGE,
-                mapped_at_creation: false,
-            })
-        };
-        let pixels = u64::from(size.0) * u64::from(size.1);
-        let levels = u64::from(crate::shading::LEVELS);
-        Self {
-            samples: MipChain::new(
-                gpu,
-                "coarse light",
-                size,
-                0..=u32::from(settings.coarse.coarsest_level),
-                LIGHT_FORMAT,
-                wgpu::TextureUsages::TEXTURE_BINDING
-                    | wgpu::TextureUsages::STORAGE_BINDING
-                    | wgpu::TextureUsages::COPY_SRC,
-            ),
-            unlit: SampleList {
-                texels: buffer("unlit pixels", pixels * 4, wgpu::BufferUsages::empty()),
-                dispatch: buffer("unlit dispatch", levels * 16, wgpu::BufferUsages::INDIRECT),
-            },
-            unlit_count: buffer(
-                "unlit count",
-                levels * 4,
-                wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
-            ),
-        }
-    }
-}
 
 /// Puts surfaces into the samples' light.
 #[derive(Debug)]

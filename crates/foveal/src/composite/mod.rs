@@ -6,12 +6,15 @@
 //! of the position, and reads the G-buffer so as not to mix surfaces.
 
 mod light;
+mod light_targets;
+mod patch_targets;
 mod patches;
 mod smooth;
 mod taps;
 
-pub(crate) use light::{LIGHT_FORMAT, LightTargets};
-pub(crate) use patches::{PatchTargets, check_limits};
+pub(crate) use crate::formats::LIGHT_FORMAT;
+pub(crate) use light_targets::LightTargets;
+pub(crate) use patch_targets::{PatchTargets, check_limits};
 
 #[cfg(test)]
 mod light_twin;

@@ -4,7 +4,8 @@
 //! of small tiles look up theirs. What only some pixels need runs behind a stencil, since not all devices skip the
 //! branch that no pixel takes.
 
-use super::patches::{DRAW_BYTES, PatchPass, PatchTargets};
+use super::patch_targets::{DRAW_BYTES, PatchTargets};
+use super::patches::PatchPass;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
 use crate::recorder::{Recorder, overwritten};
 use crate::shader::Screen;

@@ -1,125 +1,17 @@
 //! The G-buffer and the pass that fills it.
 
+use super::FaceNormals;
 use super::{
     DrawList, Draws, Evaluation, PipelineKey, PipelineRecipe, Pipelines, Rates, VertexSource,
-    VisibilityPass, VisibilityTargets,
+    VisibilityPass,
 };
-use crate::gpu::{self, Gpu};
+use super::{GBuffer, Window};
+use crate::formats::{IDENTITY_FORMAT, SURFACE_FORMAT};
+use crate::gpu::Gpu;
 use crate::recorder::{Recorder, overwritten};
 use crate::scene::{MaterialDispatch, SceneOnGpu};
 use crate::stereo::{EyeLayout, Submission};
-use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, shader};
-
-/// Reversed: 1 at the near plane, 0 where nothing is.
-pub(crate) const DEPTH_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
-pub(crate) const SURFACE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba32Uint;
-pub(crate) const IDENTITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Uint;
-
-/// What is seen at each pixel; 28 bytes a pixel. The eyes' pictures lie side by side in one layer, or where geometry is drawn
-/// by multiview each in its own; passes draw into the views, and shaders read the layers (`shared/layers.wgsl`).
-#[derive(Debug)]
-pub(crate) struct GBuffer {
-    /// Base colour and occlusion, normal, emissive, metallic and roughness: `pack_surface` in
-    /// `shared/surface.wgsl`.
-    pub(crate) surface_view: wgpu::TextureView,
-    /// Instance number + 1, and motion in pixels as two halves.
-    pub(crate) identity_view: wgpu::TextureView,
-    /// Reversed depth.
-    pub(crate) depth_view: wgpu::TextureView,
-    pub(crate) surface_layers: wgpu::TextureView,
-    pub(crate) identity_layers: wgpu::TextureView,
-    pub(crate) depth_layers: wgpu::TextureView,
-    /// Where surfaces are evaluated after the rasterizer.
-    pub(crate) visibility: Option<VisibilityTargets>,
-}
-
-impl GBuffer {
-    /// `layers` of this size each.
-    pub(crate) fn new(gpu: &Gpu, geometry: Geometry, size: (u32, u32), layers: u32) -> Self {
-        let by_triangles = geometry == Geometry::Visibility;
-        let drawn = wgpu::TextureUsages::empty();
-        let written = if by_triangles {
-            wgpu::TextureUsages::STORAGE_BINDING
-        } else {
-            drawn
-        };
-        let target =
-            |label, format, usage| gpu::layered_target(gpu, label, size, layers, format, usage);
-        Self::of(
-            target("G-buffer surface", SURFACE_FORMAT, written),
-            target("G-buffer identity", IDENTITY_FORMAT, drawn),
-            target("G-buffer depth", DEPTH_FORMAT, drawn),
-            by_triangles.then(|| VisibilityTargets::new(gpu, size, layers)),
-        )
-    }
-
-    /// One of these targets.
-    pub(crate) fn of(
-        surface_view: wgpu::TextureView,
-        identity_view: wgpu::TextureView,
-        depth_view: wgpu::TextureView,
-        visibility: Option<VisibilityTargets>,
-    ) -> Self {
-        let [surface_layers, identity_layers, depth_layers] =
-            [&surface_view, &identity_view, &depth_view].map(gpu::layers_of);
-        Self {
-            surface_view,
-            identity_view,
-            depth_view,
-            surface_layers,
-            identity_layers,
-            depth_layers,
-            visibility,
-        }
-    }
-}
-
-/// A part of a G-buffer, and where the frame lies relative to it; all in texels.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Window {
-    /// Left, top, width, height of the whole frame; it may reach beyond the G-buffer, and fractions of a
-    /// texel move the sample positions.
-    pub(crate) frame: [f32; 4],
-    /// Left, top, width, height of what is drawn.
-    pub(crate) part: [u32; 4],
-}
-
-impl Window {
-    /// The whole of a target of this size.
-    pub(crate) fn sized(width: u32, height: u32) -> Self {
-        Self {
-            frame: [0.0, 0.0, width as f32, height as f32],
-            part: [0, 0, width, height],
-        }
-    }
-
-    /// Restricts a pass to it.
-    pub(crate) fn set(&self, pass: &mut wgpu::RenderPass<'_>) {
-        let Self { frame, part } = self;
-        pass.set_viewport(frame[0], frame[1], frame[2], frame[3], 0.0, 1.0);
-        pass.set_scissor_rect(part[0], part[1], part[2], part[3]);
-    }
-}
-
-/// What the geometry pass writes besides the surfaces as they are shaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum FaceNormals {
-    Omitted,
-    /// The triangles' own normals, for telling planes apart.
-    Written,
-}
-
-impl FaceNormals {
-    /// What these settings need.
-    pub(crate) fn wanted_by(settings: &Settings) -> Self {
-        match (settings.antialiasing.mode, settings.antialiasing.edge_test) {
-            // Triangles are asked for theirs where they matter.
-            _ if crate::antialias::by_triangles(settings) => Self::Omitted,
-            (Antialiasing::Msaa, EdgeTest::Surface) => Self::Written,
-            _ => Self::Omitted,
-        }
-    }
-}
+use crate::{Antialiasing, Geometry, SamplePattern, Settings, shader};
 
 /// Fills the G-buffer with opaque and masked surfaces.
 #[derive(Debug)]

@@ -1,22 +1,25 @@
 //! Geometry: what is seen at each pixel, into a compact G-buffer.
 
 mod draw_list;
+mod face_normals;
 mod gbuffer;
 mod pipelines;
 #[cfg(test)]
 mod procedural;
+mod target;
 #[cfg(test)]
 mod twin;
 mod visibility;
+mod window;
 
+pub(crate) use crate::formats::{DEPTH_FORMAT, IDENTITY_FORMAT, SURFACE_FORMAT, TRIANGLE_FORMAT};
 pub(crate) use crate::scene::geometry_layout;
 pub(crate) use draw_list::{DrawList, Draws};
-pub(crate) use gbuffer::{
-    DEPTH_FORMAT, FaceNormals, GBuffer, GeometryPass, IDENTITY_FORMAT, SURFACE_FORMAT, Window,
-};
+pub(crate) use face_normals::FaceNormals;
+pub(crate) use gbuffer::GeometryPass;
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
-pub(crate) use visibility::{
-    Evaluation, Rates, TRIANGLE_FORMAT, VisibilityPass, VisibilityTargets,
-};
+pub(crate) use target::GBuffer;
+pub(crate) use visibility::{Evaluation, Rates, VisibilityPass, VisibilityTargets};
 #[cfg(test)]
 pub(crate) use visibility::{WindowsUniform, level_scene};
+pub(crate) use window::Window;

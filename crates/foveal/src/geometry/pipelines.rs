@@ -120,7 +120,7 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
                 ..Default::default()
             },
             depth_stencil: Some(wgpu::DepthStencilState {
-                format: super::gbuffer::DEPTH_FORMAT,
+                format: crate::formats::DEPTH_FORMAT,
                 depth_write_enabled: Some(recipe.writes_depth),
                 depth_compare: Some(wgpu::CompareFunction::Greater),
                 stencil: wgpu::StencilState::default(),

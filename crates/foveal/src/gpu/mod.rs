@@ -1,6 +1,7 @@
 //! The device: choosing an adapter, opening it, turning its failures into our errors, reading back.
 
 mod adapter;
+mod device;
 mod layout;
 mod mips;
 mod readback;
@@ -9,6 +10,8 @@ mod target;
 mod timing;
 mod trap;
 
+pub use device::Gpu;
+pub(crate) use device::is_reduced;
 pub(crate) use layout::{
     bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write, uniform,
     written, written_layers,
@@ -23,191 +26,3 @@ pub(crate) use table::Table;
 pub(crate) use target::{layer_of, layered_target, layers_of, target};
 pub(crate) use timing::{CpuTimer, GpuTimer};
 pub(crate) use trap::ErrorTrap;
-
-use std::sync::{Arc, Mutex};
-
-use crate::{AdapterStats, Error};
-
-/// An open graphics device.
-#[derive(Clone, Debug)]
-pub struct Gpu {
-    /// The device.
-    pub device: wgpu::Device,
-    /// Its queue.
-    pub queue: wgpu::Queue,
-    lost: Arc<Mutex<Option<String>>>,
-}
-
-/// Without storage buffers there is nothing that the full renderer could do.
-pub(crate) fn is_reduced(limits: &wgpu::Limits) -> bool {
-    limits.max_storage_buffers_per_shader_stage == 0
-}
-
-fn note(lost: &Mutex<Option<String>>, reason: String) {
-    if let Ok(mut slot) = lost.lock() {
-        *slot = Some(reason);
-    }
-}
-
-impl Gpu {
-    /// Opens the adapter whose name, driver or backend contains `wanted` (case-insensitive), or whose number
-    /// in [`Gpu::adapters`] it is; without `wanted`, the most capable one.
-    ///
-    /// # Errors
-    /// [`Error::NoAdapter`] and [`Error::NoDevice`].
-    pub async fn open(wanted: Option<&str>) -> Result<Self, Error> {
-        Self::from_adapter(&adapter::choose(wanted).await?).await
-    }
-
-    /// Opens a device of the host's adapter, with what [`Gpu::wanted_features`] and [`Gpu::wanted_limits`] say.
-    ///
-    /// # Errors
-    /// [`Error::NoDevice`].
-    pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, Error> {
-        let (device, queue) = adapter
-            .request_device(&wgpu::DeviceDescriptor {
-                label: Some("foveal"),
-                required_features: Self::wanted_features() & adapter.features(),
-                required_limits: Self::wanted_limits(&adapter.limits()),
-                ..Default::default()
-            })
-            .await
-            .map_err(|cause| Error::NoDevice {
-                adapter: adapter.get_info().name,
-                cause: cause.to_string(),
-            })?;
-        let gpu = Self::from_device(device, queue);
-        // Not the device itself, which would never end while its own callback holds it.
-        let lost = Arc::clone(&gpu.lost);
-        gpu.device
-            .set_device_lost_callback(move |reason, message| match message.as_str() {
-                "" => note(&lost, format!("{reason:?}")),
-                message => note(&lost, message.to_owned()),
-            });
-        Ok(gpu)
-    }
-
-    /// Takes the host's device and leaves all that is the host's alone: its error handler, its device-lost callback,
-    /// its other submissions. The device must offer [`Gpu::required_limits`]; a callback of the host's that hears of its
-    /// loss should call [`Gpu::note_loss`].
-    #[must_use]
-    pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
-        Self {
-            device,
-            queue,
-            lost: Arc::new(Mutex::new(None)),
-        }
-    }
-
-    /// Takes down that the device is gone: from now on the renderer answers with [`Error::DeviceLost`].
-    pub fn note_loss(&self, reason: impl Into<String>) {
-        note(&self.lost, reason.into());
-    }
-
-    /// The limits that every device must offer; no feature is required.
-    #[must_use]
-    pub fn required_limits() -> wgpu::Limits {
-        wgpu::Limits::default()
-    }
-
-    /// The limits that suffice for the reduced renderer, which needs neither storage buffers nor compute shaders: what
-    /// WebGL 2 has. It draws every pixel, of one eye or two, culled or not; [`Settings::validate`](crate::Settings::validate)
-    /// refuses all else.
-    #[must_use]
-    pub fn reduced_limits() -> wgpu::Limits {
-        wgpu::Limits::downlevel_webgl2_defaults()
-    }
-
-    /// Whether the device has only what [`Gpu::reduced_limits`] say.
-    #[must_use]
-    pub fn is_reduced(&self) -> bool {
-        is_reduced(&self.device.limits())
-    }
-
-    /// [`Error::Limit`] for the first of [`Gpu::required_limits`] that the device does not offer.
-    pub(crate) fn check_limits(&self) -> Result<(), Error> {
-        let mut missing = Ok(());
-        let offered = self.device.limits();
-        let required = if self.is_reduced() {
-            Self::reduced_limits()
-        } else {
-            Self::required_limits()
-        };
-        required.check_limits_with_fail_fn(&offered, true, |name, value, limit| {
-            missing = Err(Error::Limit {
-                what: format!("the device limit {name} that the renderer needs"),
-                value,
-                limit,
-                hint: ": open the device with Gpu::required_limits".to_owned(),
-            });
-        });
-        missing
-    }
-
-    /// Features that the renderer uses where they are there; none is required.
-    #[must_use]
-    pub fn wanted_features() -> wgpu::Features {
-        wgpu::Features::TIMESTAMP_QUERY
-            | wgpu::Features::PRIMITIVE_INDEX
-            | wgpu::Features::CLIP_DISTANCES
-            | wgpu::Features::MULTIVIEW
-            | wgpu::Features::SUBGROUP
-    }
-
-    /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.
-    #[must_use]
-    pub fn wanted_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
-        let least = if is_reduced(adapter) {
-            Self::reduced_limits()
-        } else {
-            Self::required_limits()
-        };
-        wgpu::Limits {
-            max_texture_dimension_2d: adapter.max_texture_dimension_2d,
-            max_multiview_view_count: adapter.max_multiview_view_count.min(2),
-            max_buffer_size: adapter.max_buffer_size,
-            max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
-            ..least
-        }
-    }
-
-    /// All adapters of this machine, in the order in which numbers choose them.
-    pub async fn adapters() -> Vec<AdapterStats> {
-        adapter::all()
-            .await
-            .iter()
-            .map(|a| adapter::describe(&a.get_info()))
-            .collect()
-    }
-
-    /// What this device is.
-    #[must_use]
-    pub fn adapter_stats(&self) -> AdapterStats {
-        adapter::describe(&self.device.adapter_info())
-    }
-
-    /// Whether the device is Mesa's processor.
-    pub(crate) fn is_lavapipe(&self) -> bool {
-        self.adapter_stats().driver.starts_with("llvmpipe")
-    }
-
-    /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.
-    pub(crate) fn has_multiview(&self) -> bool {
-        !self.is_reduced()
-            && self.device.features().contains(wgpu::Features::MULTIVIEW)
-            && self.device.limits().max_multiview_view_count >= 2
-    }
-
-    /// [`Error::DeviceLost`] once the device is gone.
-    pub(crate) fn check_alive(&self) -> Result<(), Error> {
-        match self.lost.lock() {
-            Ok(slot) => match slot.as_ref() {
-                Some(reason) => Err(Error::DeviceLost {
-                    reason: reason.clone(),
-                }),
-                None => Ok(()),
-            },
-            Err(_) => Ok(()),
-        }
-    }
-}

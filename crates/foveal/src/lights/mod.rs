@@ -5,12 +5,14 @@
 //! nothing overflows, and lights come out in ascending order.
 
 mod clusters;
+mod grid;
 mod tables;
 #[cfg(test)]
 mod twin;
 mod upload;
 
-pub(crate) use clusters::{ClusterGrid, LightAssigner, SceneLights};
+pub(crate) use clusters::{LightAssigner, SceneLights};
+pub(crate) use grid::ClusterGrid;
 pub(crate) use tables::LightTables;
 #[cfg(test)]
 pub(crate) use tables::cluster_bits;

@@ -9,14 +9,13 @@ mod twin;
 mod upscale;
 mod view;
 
+pub(crate) use crate::formats::PICTURE_FORMAT;
 pub(crate) use eyes::EyesPass;
 #[cfg(test)]
 pub(crate) use eyes::ShownUniform;
 pub(crate) use overlay::OverlayPass;
 pub(crate) use present::PresentPass;
+pub use present::Target;
 pub(crate) use tone_map::ToneMapPass;
 pub(crate) use upscale::Upscale;
 pub(crate) use view::ViewPass;
-
-/// sRGB values, encoded by the shaders, so that every adapter rounds alike.
-pub(crate) const PICTURE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8Unorm;

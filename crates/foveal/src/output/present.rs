@@ -2,7 +2,7 @@
 
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
-use crate::{Target, shader};
+use crate::shader;
 
 /// Draws the picture into targets of any size and of any format that can be drawn to.
 #[derive(Debug)]
@@ -75,4 +75,14 @@ impl PresentPass {
         pass.set_bind_group(1, &group, &[]);
         pass.draw(0..3, 0..1);
     }
+}
+
+/// A texture of the host's, drawn to with the format of the view: an sRGB one encodes by itself, into any other the
+/// renderer writes sRGB values.
+#[derive(Clone, Copy, Debug)]
+pub struct Target<'a> {
+    /// One layer of one mip of a texture with [`wgpu::TextureUsages::RENDER_ATTACHMENT`].
+    pub view: &'a wgpu::TextureView,
+    /// The format of the view.
+    pub format: wgpu::TextureFormat,
 }

@@ -1,43 +1,13 @@
 //! The rate map's passes and targets.
 
+use super::targets::{CELL_FORMAT, RateTargets};
 use super::{RateImage, WishUniform};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
 use crate::recorder::{Recorder, overwritten};
 use crate::shader::Screen;
-use crate::stereo::{Eye, EyeLayout, LensFit};
+use crate::stereo::{Eye, LensFit};
 use crate::{Settings, shader};
-
-/// A level, and whether a geometric edge lies in the block.
-const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
-
-/// The rate map of one frame size.
-#[derive(Debug)]
-pub(crate) struct RateTargets {
-    /// Minimum of the wishes per block, from level 1 on.
-    pub(crate) pyramid: MipChain,
-    /// Owner level of 2 x 2 pixels each: a single level, 1.
-    pub(crate) owner: MipChain,
-}
-
-impl RateTargets {
-    /// Bytes of both.
-    pub(crate) fn bytes(&self) -> u64 {
-        self.pyramid.bytes() + self.owner.bytes()
-    }
-
-    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Self {
-        let size = EyeLayout::of(settings).target_size();
-        // Level 0 tiles are found by their parent, so there is always one.
-        let coarsest = u32::from(settings.coarse.coarsest_level).max(1);
-        let usage = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_SRC;
-        let chain = |label, last| MipChain::new(gpu, label, size, 1..=last, CELL_FORMAT, usage);
-        Self {
-            pyramid: chain("rate pyramid", coarsest),
-            owner: chain("owner levels", 1),
-        }
-    }
-}
 
 /// Fills the rate map.
 #[derive(Debug)]

@@ -12,10 +12,12 @@ mod acuity;
 mod image;
 mod map;
 mod pyramid;
+mod targets;
 mod wish;
 
 pub use image::RateImage;
 pub use pyramid::MinPyramid;
 
-pub(crate) use map::{RateMapPass, RateTargets};
+pub(crate) use map::RateMapPass;
+pub(crate) use targets::RateTargets;
 pub(crate) use wish::WishUniform;

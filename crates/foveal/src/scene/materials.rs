@@ -1,117 +1,13 @@
 //! Materials as bind group 1: a uniform block, five textures, five samplers.
 
-use bytemuck::{Pod, Zeroable};
-use foveal_scene::{AlphaMode, ColorSpace, Material, Sampler, Scene, Texture, TextureRef};
-use glam::Mat3;
+use super::material_uniform::{MaterialUniform, material_class, slots};
+use foveal_scene::{ColorSpace, Material, Sampler, Scene, Texture};
 
 use super::families::{Families, FamilyBindings, Slot};
 use super::samplers::Samplers;
 use super::textures::{ArrayLimits, Textures};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, uniform};
 use crate::{Error, Settings};
-
-/// Mirrors `Material` in `shared/material.wgsl`, where the fields are explained.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Pod, Zeroable)]
-pub(crate) struct MaterialUniform {
-    pub(crate) base_color: [f32; 4],
-    pub(crate) emissive: [f32; 3],
-    pub(crate) metallic: f32,
-    pub(crate) roughness: f32,
-    pub(crate) normal_scale: f32,
-    pub(crate) occlusion_strength: f32,
-    pub(crate) alpha_cutoff: f32,
-    pub(crate) uv: [[[f32; 4]; 2]; 5],
-    pub(crate) layers: [u32; 2],
-    pub(crate) number: u32,
-    pub(crate) procedural_seed: u32,
-    pub(crate) procedural_frequency: f32,
-    pub(crate) reserved_0: u32,
-    pub(crate) reserved_1: u32,
-    pub(crate) reserved_2: u32,
-}
-
-/// A material's texture slots in the order of the shader's bindings; their positions are the flags' bits.
-fn slots(material: &Material) -> [Option<TextureRef>; 5] {
-    [
-        material.base_color_texture,
-        material.metallic_roughness_texture,
-        material.normal_texture,
-        material.occlusion_texture,
-        material.emissive_texture,
-    ]
-}
-
-const IS_UNLIT: u32 = 32;
-const IS_PROCEDURAL: u32 = 64;
-const HAS_UV_MAP: u32 = 128;
-const HAS_OWN_UV_MAPS: u32 = 256;
-
-/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for procedural, one where a
-/// texture is read elsewhere than at the first UV set as it is, one where textures are read at different places.
-pub(crate) fn material_class(material: &Material) -> u32 {
-    let slots = slots(material);
-    let textures = slots
-        .iter()
-        .enumerate()
-        .map(|(i, slot)| u32::from(slot.is_some()) << i);
-    let flags = [
-        (material.unlit, IS_UNLIT),
-        (material.procedural.is_some(), IS_PROCEDURAL),
-        (slots.iter().flatten().any(has_uv_map), HAS_UV_MAP),
-        (shared_uv_map(&slots).is_none(), HAS_OWN_UV_MAPS),
-    ];
-    let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
-    textures.sum::<u32>() | flags.sum::<u32>()
-}
-
-fn has_uv_map(slot: &TextureRef) -> bool {
-    slot.uv_set != 0 || slot.uv_transform != Mat3::IDENTITY
-}
-
-/// What all slots in use share, if they do.
-fn shared_uv_map(slots: &[Option<TextureRef>; 5]) -> Option<[[f32; 4]; 2]> {
-    let mut maps = slots.iter().flatten().map(|&slot| uv_rows(slot));
-    let first = maps.next().unwrap_or([[0.0; 4]; 2]);
-    maps.all(|map| map == first).then_some(first)
-}
-
-impl MaterialUniform {
-    /// `layers`: where the slots' textures lie in their arrays, each below 256.
-    pub(crate) fn new(material: &Material, number: u32, layers: [u32; 5]) -> Self {
-        let [a, b, c, d, e] = layers.map(|layer| layer as u8);
-        let slots = slots(material);
-        let own = slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows));
-        Self {
-            base_color: material.base_color.to_array(),
-            emissive: material.emissive.to_array(),
-            metallic: material.metallic,
-            roughness: material.roughness,
-            normal_scale: material.normal_scale,
-            occlusion_strength: material.occlusion_strength,
-            alpha_cutoff: match material.alpha_mode {
-                AlphaMode::Mask { cutoff } => cutoff,
-                AlphaMode::Opaque | AlphaMode::Blend => 0.0,
-            },
-            uv: shared_uv_map(&slots).map_or(own, |map| [map; 5]),
-            layers: [u32::from_le_bytes([a, b, c, d]), u32::from(e)],
-            number,
-            procedural_seed: material.procedural.map_or(0, |p| p.seed),
-            procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
-            reserved_0: 0,
-            reserved_1: 0,
-            reserved_2: 0,
-        }
-    }
-}
-
-fn uv_rows(slot: TextureRef) -> [[f32; 4]; 2] {
-    let m = slot.uv_transform;
-    [
-        [m.x_axis.x, m.y_axis.x, m.z_axis.x, slot.uv_set as f32],
-        [m.x_axis.y, m.y_axis.y, m.z_axis.y, 0.0],
-    ]
-}
 
 /// The layout of bind group 1.
 pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-use super::{Settings, as_text};
+use super::define::as_text;
 use crate::Error;
 
 /// Display on which the picture is seen: a plane in front of the eye. As text a name, a field of view
@@ -74,7 +74,7 @@ impl Display {
         Some(2.0 * (0.5 * width / distance).atan())
     }
 
-    fn is_possible(self) -> bool {
+    pub(super) fn is_possible(self) -> bool {
         let is_positive = match self {
             Self::Plane {
                 width_m,
@@ -108,7 +108,7 @@ impl FromStr for Display {
     }
 }
 
-fn wrong(value: String) -> Error {
+pub(super) fn wrong(value: String) -> Error {
     Error::Setting {
         name: "display",
         value,
@@ -134,21 +134,6 @@ impl fmt::Display for Display {
 }
 
 as_text!(Display);
-
-/// Checks the settings of the eye.
-pub(super) fn validate(s: &Settings) -> Result<(), Error> {
-    if !s.eye.display.is_possible() {
-        return Err(wrong(s.eye.display.to_string()));
-    }
-    if !(5.0..=10.0).contains(&s.eye.quality_jod) {
-        return Err(Error::Setting {
-            name: "quality",
-            value: s.eye.quality_jod.to_string(),
-            expected: "between 5 and 10",
-        });
-    }
-    Ok(())
-}
 
 #[cfg(test)]
 mod tests {

@@ -6,9 +6,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
-use super::{Antialiasing, RateCombine, RateSource, Settings, Shading, as_text};
+use super::define::as_text;
 use crate::Error;
-use crate::stereo::EyeLayout;
 
 /// Number of eyes, and submission of their geometry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -250,154 +249,11 @@ fn numbers(text: &str) -> Option<Vec<f32>> {
     text.split(',').map(|n| n.trim().parse().ok()).collect()
 }
 
-impl Settings {
-    /// Whether there are two eyes.
-    #[must_use]
-    pub fn is_stereo(&self) -> bool {
-        self.stereo.mode != Stereo::Off
-    }
-
-    /// Whether both eyes have the same position, frustum and gaze, so that one picture serves both.
-    pub(crate) fn is_seen_alike(&self) -> bool {
-        let same = match self.stereo.frusta {
-            EyeFrusta::Camera => true,
-            EyeFrusta::Tangents([left, right]) => left == right,
-        };
-        self.is_stereo() && self.stereo.ipd_m == 0.0 && same && self.stereo.gaze_shift == [0.0; 2]
-    }
-
-    /// Width and height in pixels of the picture that [`crate::Renderer::read_picture`] returns.
-    #[must_use]
-    pub fn picture_size(&self) -> (u32, u32) {
-        match self.stereo.output {
-            _ if !self.is_stereo() => (self.picture.width, self.picture.height),
-            Output::SideBySide | Output::Headset => (2 * self.picture.width, self.picture.height),
-            Output::Flat | Output::SideBySideHalf => (self.picture.width, self.picture.height),
-            Output::Anaglyph | Output::AnaglyphDubois => (self.picture.width, self.picture.height),
-        }
-    }
-
-    /// Whether a source of the rate map is the lens.
-    pub(crate) fn rates_by_lens(&self) -> bool {
-        let second = self.coarse.combine != RateCombine::First;
-        self.shading.mode == Shading::Coarse
-            && (self.coarse.source == RateSource::Lens
-                || second && self.coarse.other_source == RateSource::Lens)
-    }
-}
-
-const TANGENTS: &str = "eight numbers between -100 and 100: left < right and bottom < top of the left eye, then of the right";
-
-/// Checks the settings of stereo.
-pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
-    let wrong = |name, value: String, expected| {
-        Err(Error::Setting {
-            name,
-            value,
-            expected,
-        })
-    };
-    if s.rates_by_lens() && !(s.is_stereo() && s.stereo.output == Output::Headset) {
-        return wrong(
-            "rate",
-            "lens".to_owned(),
-            "another source unless stereo is on and the output is a headset's",
-        );
-    }
-    if s.stereo.mode == Stereo::Multiview && s.antialiasing.mode != Antialiasing::None {
-        let expected = "auto, instanced or two-pass where edges are smoothed: sub-samples of both eyes lie in one target";
-        return wrong("stereo", "multiview".to_owned(), expected);
-    }
-    if !(0.0..=1000.0).contains(&s.stereo.ipd_m) {
-        return wrong(
-            "ipd",
-            s.stereo.ipd_m.to_string(),
-            "between 0 and 1000 metres",
-        );
-    }
-    if !(1e-3..=1e9).contains(&s.stereo.convergence_m) {
-        let value = s.stereo.convergence_m.to_string();
-        return wrong("convergence", value, "between 0.001 and 1e9 metres");
-    }
-    let frusta = match s.stereo.frusta {
-        EyeFrusta::Camera => &[][..],
-        EyeFrusta::Tangents(ref eyes) => &eyes[..],
-    };
-    for [left, right, bottom, top] in frusta {
-        let sound = [left, right, bottom, top].iter().all(|t| t.abs() <= 100.0);
-        if !(sound && right - left >= 1e-3 && top - bottom >= 1e-3) {
-            return wrong("eye-tangents", s.stereo.frusta.to_string(), TANGENTS);
-        }
-    }
-    let [x, y] = s.stereo.gaze_shift;
-    if !(x.abs() <= 16.0 && y.abs() <= 16.0) {
-        let expected = "two numbers between -16 and 16";
-        return wrong("gaze-shift", format!("{x},{y}"), expected);
-    }
-    crate::stereo::check_lens(&s.stereo.lens.profile())?;
-    let layout = EyeLayout::of(s);
-    let width = u64::from(layout.target_size().0).max(u64::from(s.picture_size().0));
-    if width > u64::from(limits.max_texture_dimension_2d) {
-        return Err(Error::Limit {
-            what: "the width of both eyes' pictures side by side".to_owned(),
-            value: width,
-            limit: limits.max_texture_dimension_2d.into(),
-            hint: ": take a smaller width".to_owned(),
-        });
-    }
-    Ok(())
-}
+pub(super) const TANGENTS: &str = "eight numbers between -100 and 100: left < right and bottom < top of the left eye, then of the right";
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn message(s: &Settings) -> String {
-        let error = s.validate(&wgpu::Limits::default());
-        error.err().map_or(String::new(), |e| e.to_string())
-    }
-
-    #[test]
-    fn impossible_eyes_and_lenses_are_refused_by_name() {
-        let stereo = Settings::default().with(|s| s.stereo.mode = Stereo::Instanced);
-        assert_eq!(message(&stereo), "");
-        type Change = fn(&mut Settings);
-        let wrong: [(&str, Change); 13] = [
-            ("ipd", |s| s.stereo.ipd_m = -0.06),
-            ("ipd", |s| s.stereo.ipd_m = f32::NAN),
-            ("convergence", |s| s.stereo.convergence_m = 0.0),
-            ("convergence", |s| s.stereo.convergence_m = f32::INFINITY),
-            ("eye-tangents", |s| {
-                s.stereo.frusta = "1,-1,-1,1,-1,1,-1,1".parse().expect("it can be read")
-            }),
-            ("eye-tangents", |s| {
-                s.stereo.frusta = "-1,1,-1,1,-1,1,1,1".parse().expect("it can be read")
-            }),
-            ("eye-tangents", |s| {
-                s.stereo.frusta = "-1,nan,-1,1,-1,1,-1,1".parse().expect("it can be read")
-            }),
-            ("eye-tangents", |s| {
-                s.stereo.frusta = "-1,inf,-1,1,-1,1,-1,1".parse().expect("it can be read")
-            }),
-            ("gaze-shift", |s| s.stereo.gaze_shift = [f32::NAN, 0.0]),
-            ("rate", |s| {
-                (s.shading.mode, s.coarse.source) = (Shading::Coarse, RateSource::Lens);
-            }),
-            ("lens", |s| {
-                s.stereo.lens = "-0.5,0,0".parse().expect("it can be read")
-            }),
-            ("lens", |s| {
-                s.stereo.lens = "nan,0,0".parse().expect("it can be read")
-            }),
-            ("both eyes", |s| s.picture.width = 5000),
-        ];
-        for (name, change) in wrong {
-            let mut s = stereo.clone();
-            change(&mut s);
-            let text = message(&s);
-            assert!(text.contains(name), "{name}: '{text}'");
-        }
-    }
 
     #[test]
     fn lenses_and_frusta_are_read_as_they_are_written() {

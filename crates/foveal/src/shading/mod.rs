@@ -13,6 +13,7 @@ mod variable;
 #[cfg(test)]
 pub(crate) use variable::twin::extent as sample_extent;
 
+pub(crate) use crate::formats::RADIANCE_FORMAT;
 #[cfg(test)]
 pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
@@ -21,7 +22,7 @@ pub(crate) use coarse::{
 #[cfg(test)]
 pub(crate) use history::HistoryParameters;
 pub(crate) use history::{HistoryStage, HistoryTargets};
-pub(crate) use pass::{RADIANCE_FORMAT, ShadingPass, lighting_constants};
+pub(crate) use pass::{ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};
 #[cfg(test)]
 pub(crate) use variable::RatesUniform;

@@ -1,6 +1,7 @@
 //! The shading pass.
 
 use super::{SampleList, Samples};
+use crate::formats::RADIANCE_FORMAT;
 use crate::geometry::GBuffer;
 use crate::gpu::{
     Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
@@ -8,9 +9,6 @@ use crate::gpu::{
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};
-
-/// Linear radiance, before exposure.
-pub(crate) const RADIANCE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rgba16Float;
 
 /// Settings that change the lighting shaders.
 pub(crate) fn lighting_constants(settings: &Settings) -> [(&'static str, f64); 2] {

@@ -5,6 +5,7 @@
 //! left eye's picture and, from a stride on, the right one's, so that every deferred stage visits both in one draw or
 //! dispatch (`shared/frame.wgsl`, `view_of`).
 
+mod choose;
 mod eyes;
 mod layout;
 mod lens;

@@ -1,6 +1,7 @@
 //! The pass that draws triangles.
 
-use super::{TRIANGLE_FORMAT, VisibilityTargets};
+use super::VisibilityTargets;
+use crate::formats::TRIANGLE_FORMAT;
 use crate::geometry::{
     DrawList, Draws, GBuffer, IDENTITY_FORMAT, PipelineKey, PipelineRecipe, Pipelines,
     VertexSource, Window,

@@ -4,7 +4,7 @@
 //! what is no tile and the stencil operation does the writing; the shading draw is then rejected before its
 //! shader runs wherever the test fails.
 
-use super::{CoarseTargets, shading_constants, targets::STENCIL_FORMAT};
+use super::{CoarseTargets, STENCIL_FORMAT, shading_constants};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};

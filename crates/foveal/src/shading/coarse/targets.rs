@@ -2,14 +2,12 @@
 
 use super::LEVELS;
 use crate::composite::{LightTargets, PatchTargets};
+use crate::formats::STENCIL_FORMAT;
 use crate::gpu::{Gpu, MipChain};
 use crate::rate::RateTargets;
 use crate::shading::{HistoryTargets, RADIANCE_FORMAT};
 use crate::stereo::EyeLayout;
 use crate::{CoarseBackend, Composite, Settings};
-
-/// A stencil whose mips can be attached one by one.
-pub(crate) const STENCIL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Stencil8;
 
 /// The rate map, its tiles' samples, and what either backend needs to find the tiles.
 #[derive(Debug)]
@@ -91,7 +89,7 @@ impl CoarseTargets {
                     wgpu::TextureUsages::empty(),
                 )
             }),
-            lists: if super::needs_lists(settings) {
+            lists: if super::levels::needs_lists(settings) {
                 levels.map(list).collect()
             } else {
                 Vec::new()

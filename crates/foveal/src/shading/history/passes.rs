@@ -2,8 +2,8 @@
 
 use bytemuck::{Pod, Zeroable};
 
+use super::lit::{Lit, ROUND};
 use super::targets::{HistoryTargets, LIST_STEP, List, SEEN_FORMAT};
-use super::{Lit, ROUND};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,

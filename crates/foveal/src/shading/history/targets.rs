@@ -1,5 +1,6 @@
 //! What is remembered from frame to frame, and the lists of a frame.
 
+use super::lit::SAMPLE_BYTES;
 use crate::gpu::{self, Gpu};
 use crate::shading::RADIANCE_FORMAT;
 use crate::stereo::EyeLayout;
@@ -11,8 +12,6 @@ pub(super) const SEEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint
 pub(super) const LISTED_BYTES: u64 = 40;
 /// Bytes of `Dispatch` there: the step between bindings.
 pub(super) const LIST_STEP: u64 = 256;
-/// Bytes of a listed sample.
-const SAMPLE_BYTES: u64 = 8;
 
 /// A list of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -49,17 +48,10 @@ pub(crate) struct HistoryTargets {
     pub(super) tiles: wgpu::Buffer,
 }
 
-/// Whether the lists of a frame of this size can be bound.
-pub(super) fn fits(gpu: &Gpu, settings: &Settings) -> bool {
-    let (width, height) = EyeLayout::of(settings).target_size();
-    let bytes = u64::from(width) * u64::from(height) * SAMPLE_BYTES;
-    bytes <= gpu.device.limits().max_storage_buffer_binding_size
-}
-
 impl HistoryTargets {
     /// `None` where light is not carried along.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
-        if !super::is_used(gpu, settings) {
+        if !super::lit::is_used(gpu, settings) {
             return None;
         }
         let size = EyeLayout::of(settings).target_size();

@@ -5,7 +5,7 @@ use foveal_scene::{Camera, Scene};
 
 use glam::UVec2;
 
-use super::ROUND;
+use super::lit::ROUND;
 use super::targets::HistoryTargets;
 use super::twin::{Before, Fate, Seen};
 use crate::gpu::{read_buffer, read_level};

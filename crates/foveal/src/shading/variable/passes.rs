@@ -1,5 +1,6 @@
 //! The passes that find rates and samples, and the one that lights samples.
 
+use super::targets::looks_around;
 use bytemuck::{Pod, Zeroable};
 
 use super::VariableTargets;
@@ -249,11 +250,6 @@ impl RatePasses {
         pass.set_bind_group(2, &group, &[]);
         pass.dispatch_workgroups_indirect(&t.listed, 0);
     }
-}
-
-/// Whether contrast is looked for beyond the quad.
-pub(super) fn looks_around(s: &Settings) -> bool {
-    s.variable.contrast != Contrast::Quad
 }
 
 fn find_constants(s: &Settings) -> [(&'static str, f64); 6] {

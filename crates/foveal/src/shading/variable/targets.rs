@@ -1,6 +1,6 @@
 //! What variable shading remembers and writes.
 
-use super::passes::looks_around;
+use crate::Contrast;
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
 use crate::stereo::EyeLayout;
@@ -75,4 +75,9 @@ impl VariableTargets {
     pub(crate) fn bytes(&self) -> u64 {
         self.bytes
     }
+}
+
+/// Whether contrast is looked for beyond the quad.
+pub(super) fn looks_around(s: &Settings) -> bool {
+    s.variable.contrast != Contrast::Quad
 }

@@ -1,8 +1,8 @@
 //! Settings on devices without storage buffers and compute shaders
 //! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
-use super::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading};
 use crate::Error;
+use crate::settings::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading};
 
 /// Stages that are missing on such devices.
 const MISSING_STAGES: [&str; 4] = [

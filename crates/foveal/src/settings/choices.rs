@@ -1,0 +1,152 @@
+//! Choices about the picture, culling, materials, anti-aliasing and lighting.
+
+use serde::{Deserialize, Serialize};
+
+/// Objects that the renderer submits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Culling {
+    /// Objects in the camera's frustum.
+    #[default]
+    Frustum,
+    /// Objects in the camera's frustum that no nearer surface hides.
+    Occlusion,
+    /// All objects: the reference.
+    Off,
+}
+/// Sharing of one occlusion test between two eyes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CullingEyes {
+    /// One exact test per eye. An object is drawn if either eye sees it.
+    #[default]
+    Each,
+    /// One test for both eyes. It holds everywhere in the smallest sphere that contains both.
+    /// Occluders are rasterized once and hide less.
+    Shared,
+}
+/// Content of the picture: the finished frame or a debug view.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DebugView {
+    /// The finished frame.
+    #[default]
+    Final,
+    /// Distance from the eye along the view axis on a logarithmic scale; near is white.
+    Depth,
+    /// World-space shading normals; (n + 1) / 2 as RGB.
+    Normals,
+    /// Base colour without light.
+    BaseColor,
+    /// One colour per instance.
+    Instances,
+    /// Motion since the previous frame: red is right, green is down. Mid-grey is no motion, full
+    /// scale is 16 pixels.
+    Motion,
+    /// White pixels where anti-aliasing shades more than once.
+    Edges,
+    /// Samples that anti-aliasing shades per pixel: black is one, then blue through red to white
+    /// for all sub-samples.
+    Samples,
+    /// The finished frame under one colour per level of coarse shading; white where every pixel is
+    /// shaded.
+    Rate,
+    /// The finished frame with the outlines of coarse shading's blocks.
+    Blocks,
+    /// The finished frame where a sample was shaded, dark elsewhere.
+    Shaded,
+    /// The finished frame with variable shading's knowledge: red where no earlier value was found,
+    /// green where a value was measured again.
+    Unknown,
+    /// One colour per material: the bins of the visibility buffer.
+    Bins,
+}
+impl DebugView {
+    /// Whether this view needs lighting.
+    pub(crate) fn is_lit(self) -> bool {
+        match self {
+            Self::Final | Self::Rate | Self::Blocks | Self::Shaded | Self::Unknown => true,
+            Self::Depth | Self::Normals | Self::BaseColor | Self::Instances | Self::Motion => false,
+            Self::Edges | Self::Samples | Self::Bins => false,
+        }
+    }
+}
+/// Materials of a visibility buffer that one dispatch resolves. The picture is the same to the bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum MaterialDispatch {
+    /// The faster way on this device: `Material` on lavapipe, `Family` elsewhere.
+    #[default]
+    Auto,
+    /// All materials that share a shader variant, texture arrays and samplers.
+    Family,
+    /// One material.
+    Material,
+}
+/// Smoothing of edges. See `docs/antialiasing.md`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Antialiasing {
+    /// One sample at each pixel's centre.
+    #[default]
+    None,
+    /// Every sub-sample is shaded: the reference.
+    Ssaa,
+    /// One sample per surface that a pixel shows: several at edges, one elsewhere.
+    Msaa,
+}
+/// Placement of a pixel's sub-samples.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SamplePattern {
+    /// A regular grid of n x n, drawn at n times the resolution.
+    #[default]
+    Grid,
+    /// A rotated grid of 4 or 8 samples, no two in one row or column. The scene is drawn once per
+    /// sample.
+    Rotated,
+}
+/// Pixels that [`Antialiasing::Msaa`] treats as edges, and the sub-samples that it shades there.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EdgeTest {
+    /// Pixels whose sub-samples differ in instance, plane or direction. One sample is shaded per
+    /// surface and weighted by coverage.
+    #[default]
+    Surface,
+    /// Pixels whose reversed depths differ by more than 1e-4, as in the technique's source. All
+    /// sub-samples are shaded.
+    Paper,
+    /// No pixels. Only the first sub-sample is shaded, as in the source's mode 'none'.
+    Never,
+}
+/// Reflection of light by surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightingModel {
+    /// glTF's metallic-roughness model: Lambert and GGX.
+    #[default]
+    Ggx,
+    /// Lambert and Blinn-Phong, as in the techniques' sources.
+    BlinnPhong,
+}
+/// Lights that a sample evaluates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LightAssignment {
+    /// Lights whose range touches the sample's cluster (froxel).
+    #[default]
+    Clustered,
+    /// All lights: the reference.
+    Brute,
+}
+/// Curve from scene radiance to display values.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToneMap {
+    /// A filmic curve fitted to the ACES reference transform.
+    #[default]
+    Aces,
+    /// Identity, clipped at 1.
+    Linear,
+}

@@ -1,0 +1,110 @@
+//! Checks of the settings, alone and beside each other, and what follows from them.
+
+mod coarse;
+mod eye;
+mod reduced;
+mod stereo;
+mod variable;
+
+use super::{Composite, Settings, Shading};
+use crate::Error;
+
+impl Settings {
+    /// Checks that the settings make sense and that a device with these limits can draw them.
+    ///
+    /// # Errors [`Error::Setting`] for a value that makes no sense, alone or beside the others;
+    /// [`Error::Limit`] for one that the device cannot draw.
+    pub fn validate(&self, limits: &wgpu::Limits) -> Result<(), Error> {
+        let most = limits.max_texture_dimension_2d;
+        for (name, value) in [
+            ("width", self.picture.width),
+            ("height", self.picture.height),
+        ] {
+            if value == 0 {
+                return Err(Error::Setting {
+                    name,
+                    value: "0".to_owned(),
+                    expected: "at least 1",
+                });
+            }
+            if value > most {
+                return Err(Error::Limit {
+                    what: format!("the picture's {name} in pixels"),
+                    value: u64::from(value),
+                    limit: u64::from(most),
+                    hint: String::new(),
+                });
+            }
+        }
+        if !self.picture.exposure_stops.is_finite() || self.picture.exposure_stops.abs() > 64.0 {
+            let value = self.picture.exposure_stops.to_string();
+            return Err(Error::Setting {
+                name: "exposure",
+                value,
+                expected: "between -64 and 64",
+            });
+        }
+        if !(0.5..=1.0).contains(&self.picture.render_scale) {
+            return Err(Error::Setting {
+                name: "render-scale",
+                value: self.picture.render_scale.to_string(),
+                expected: "between 0.5 and 1",
+            });
+        }
+        if !(1..=16).contains(&self.lighting.anisotropy) {
+            let value = self.lighting.anisotropy.to_string();
+            return Err(Error::Setting {
+                name: "anisotropy",
+                value,
+                expected: "between 1 and 16",
+            });
+        }
+        for (name, value) in [
+            ("occluder-size", self.culling.occluder_size),
+            ("occludee-size", self.culling.occludee_size),
+            ("culling-radius", self.culling.radius_m),
+            ("culling-budget", self.culling.budget_ms),
+        ] {
+            if !(0.0..=1e6).contains(&value) {
+                return Err(Error::Setting {
+                    name,
+                    value: value.to_string(),
+                    expected: "between 0 and 1000000",
+                });
+            }
+        }
+        for (name, value, range, expected) in [
+            (
+                "occlusion-scale",
+                self.culling.buffer_scale,
+                1..=16,
+                "between 1 and 16",
+            ),
+            (
+                "culling-threads",
+                self.culling.threads,
+                0..=32,
+                "between 0 and 32",
+            ),
+        ] {
+            if !range.contains(&value) {
+                return Err(Error::Setting {
+                    name,
+                    value: value.to_string(),
+                    expected,
+                });
+            }
+        }
+        if crate::gpu::is_reduced(limits) {
+            reduced::validate(self)?;
+        }
+        coarse::validate(self)?;
+        eye::validate(self)?;
+        variable::validate(self)?;
+        stereo::validate(self, limits)?;
+        if self.shading.mode == Shading::Coarse && self.coarse.composite == Composite::Smooth {
+            crate::composite::check_limits(self, limits)?;
+        }
+        crate::antialias::validate(self, limits)
+    }
+}

@@ -1,0 +1,168 @@
+//! All of kept light that outlives a frame.
+
+use super::HistoryTargets;
+use super::changed::Changed;
+use super::lit::{Lit, is_used};
+use super::passes::HistoryParameters;
+use super::passes::HistoryPasses;
+use crate::gpu::Gpu;
+use crate::lights::LightUniform;
+use crate::rate::RateTargets;
+use crate::recorder::Recorder;
+use crate::shading::coarse::UsedBackend;
+use crate::shading::history::targets;
+use crate::targets::Targets;
+use crate::{CoarseStats, Settings};
+use foveal_scene::Camera;
+
+/// All that outlives a frame.
+#[derive(Debug)]
+pub(crate) struct HistoryStage {
+    passes: HistoryPasses,
+    /// The camera of the last frame that was drawn.
+    last: Option<Camera>,
+    /// The scene's pose has changed since.
+    moved: bool,
+    /// Where the eyes looked: `EyeSettings::gaze` and `StereoSettings::gaze_shift`.
+    gaze: [[f32; 2]; 2],
+    /// Where lamps have changed since.
+    changed: Changed,
+    /// Frames since nothing was remembered.
+    frame: u32,
+    /// Frames at rest.
+    rested: u32,
+    pub(super) lit: Lit,
+    /// What the last frame's passes were told.
+    pub(super) told: HistoryParameters,
+}
+impl HistoryStage {
+    /// `None` where light is not carried along.
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame: &wgpu::BindGroupLayout,
+        input: &wgpu::BindGroupLayout,
+    ) -> Option<Self> {
+        is_used(gpu, settings).then(|| Self {
+            passes: HistoryPasses::new(gpu, settings, frame, input),
+            last: None,
+            moved: false,
+            gaze: [settings.eye.gaze, settings.stereo.gaze_shift],
+            changed: Changed::default(),
+            frame: 0,
+            rested: 0,
+            lit: Lit::default(),
+            told: HistoryParameters::default(),
+        })
+    }
+
+    /// The next frame follows none.
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// The next frame shows another pose of the scene.
+    pub(crate) fn scene_moved(&mut self) {
+        self.moved = true;
+    }
+
+    /// The next frame's lamps are other ones.
+    pub(crate) fn lamps_changed(&mut self, before: &[LightUniform], now: &[LightUniform]) {
+        self.changed.add(before, now);
+    }
+
+    /// Decides what the frame does.
+    pub(crate) fn begin(
+        &mut self,
+        gpu: &Gpu,
+        settings: &Settings,
+        (camera, previous): (&Camera, &Camera),
+    ) {
+        let gaze = [settings.eye.gaze, settings.stereo.gaze_shift];
+        let moved = std::mem::take(&mut self.moved)
+            || self.changed != Changed::Nowhere
+            || std::mem::replace(&mut self.gaze, gaze) != gaze;
+        let changed = std::mem::take(&mut self.changed);
+        let reset = self.last.as_ref().is_none_or(|last| last != previous)
+            || changed == Changed::Everywhere;
+        let rests = !reset && !moved && camera == previous;
+        self.frame = if reset { 0 } else { self.frame.wrapping_add(1) };
+        self.rested = if rests {
+            self.rested.saturating_add(1)
+        } else {
+            0
+        };
+        self.lit = Lit {
+            even: self.lit.even != (self.rested == 0),
+            turn: self.rested.checked_sub(1),
+        };
+        self.last = Some(camera.clone());
+        self.told = self.parameters(settings, reset, &changed);
+        self.passes.write(gpu, &self.told);
+    }
+
+    /// What the frame's passes are told.
+    fn parameters(&self, settings: &Settings, reset: bool, changed: &Changed) -> HistoryParameters {
+        // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a factor of 4. Found by measurement.
+        let finer = 4.0_f32.powf(settings.eye.quality_jod - 9.5);
+        let mut parameters = HistoryParameters {
+            rounding: rounding(self.frame),
+            phase: match self.lit.turn {
+                Some(turn) => turn,
+                // The golden ratio's part: any few frames that follow each other lie evenly in the order.
+                None => self.frame.wrapping_mul(2_654_435_769),
+            },
+            reset: u32::from(reset),
+            renewal: (finer / 12.0).clamp(1.0 / 64.0, 1.0),
+            tolerance: (0.07 / finer).clamp(0.01, 1.0),
+            change: 0.5,
+            ..HistoryParameters::default()
+        };
+        if let Changed::Within(places) = changed {
+            parameters.changed_count = places.len() as u32;
+            parameters.changed[..places.len()].copy_from_slice(places);
+        }
+        parameters
+    }
+
+    /// Whether the frame's rates matter: at rest pixels are shaded in turn, whatever their rate.
+    pub(crate) fn needs_rates(&self) -> bool {
+        self.lit.turn.is_none()
+    }
+
+    /// Encodes the frame's lighting of solid surfaces into the radiance target.
+    pub(crate) fn light(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        targets: &Targets,
+        (rate, history): (&RateTargets, &HistoryTargets),
+    ) {
+        self.passes
+            .light(recorder, input, targets, rate, history, self.lit);
+    }
+
+    /// The figures of a frame that left these lists.
+    pub(crate) fn stats(listed: &[u8], coarsest: u8, pixels: u64) -> CoarseStats {
+        let words: Vec<u32> = bytemuck::pod_collect_to_vec(listed);
+        let levels = &words[1..=1 + usize::from(coarsest)];
+        let samples_per_level: Vec<_> = levels.iter().map(|&n| u64::from(n)).collect();
+        let unlit_pixels = u64::from(words[2 * targets::LISTED_BYTES as usize / 4]);
+        let shaded = samples_per_level.iter().sum::<u64>() + unlit_pixels;
+        CoarseStats {
+            samples_per_level,
+            unlit_pixels,
+            shaded_fraction: shaded as f64 / pixels as f64,
+            backend: UsedBackend::Compute.name().to_owned(),
+            backend_reason: "light is kept from frame to frame".to_owned(),
+        }
+    }
+}
+/// What is added to places before they are rounded to whole pixels: so that what moves by a part of a pixel a frame moves by
+/// that on average (the same recurrence as the pixels' order, in two dimensions).
+fn rounding(frame: u32) -> [f32; 2] {
+    [3_242_174_889_u32, 2_447_445_414].map(|step| {
+        let part = frame.wrapping_mul(step) >> 8;
+        (part as f32 / 16_777_216.0 - 0.5) * 0.98
+    })
+}

@@ -1,0 +1,138 @@
+//! All of variable shading that outlives a frame.
+
+use super::Plan;
+use super::balance::Balance;
+use super::passes::{RatePasses, Turn};
+use super::probes::Probes;
+use super::view::RateView;
+use crate::gpu::Gpu;
+use crate::recorder::Recorder;
+use crate::stereo::{Eye, EyeLayout};
+use crate::targets::Targets;
+use crate::{Settings, Timing, VariableStats};
+use foveal_scene::Camera;
+
+/// All of variable shading that outlives a frame.
+#[derive(Debug)]
+pub(crate) struct VariableStage {
+    passes: RatePasses,
+    view: Option<RateView>,
+    probes: Probes,
+    balance: Balance,
+    /// The camera of the frame that the targets know.
+    last: Option<Camera>,
+    /// Frames since the targets knew nothing.
+    frame: u32,
+}
+impl VariableStage {
+    pub(crate) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        frame_layout: &wgpu::BindGroupLayout,
+        input_layout: &wgpu::BindGroupLayout,
+    ) -> Self {
+        Self {
+            passes: RatePasses::new(gpu, settings, frame_layout, input_layout),
+            view: RateView::new(gpu, settings.picture.view, frame_layout),
+            probes: Probes::default(),
+            balance: Balance::new(settings.variable.force),
+            last: None,
+            frame: 0,
+        }
+    }
+
+    /// The next frame follows none: what is known belongs to another scene or size.
+    pub(crate) fn forget(&mut self) {
+        self.last = None;
+    }
+
+    /// The next frame shows another pose.
+    pub(crate) fn scene_moved(&mut self) {
+        self.probes.disturb();
+    }
+
+    /// What the next frame does.
+    pub(crate) fn plan(&mut self) -> Plan {
+        let plan = self.balance.plan();
+        if !plan.active {
+            self.forget();
+        }
+        plan
+    }
+
+    /// Whether the last frame was shaded at a rate.
+    pub(crate) fn is_active(&self) -> bool {
+        self.last.is_some()
+    }
+
+    /// Encodes the passes that find rates and samples.
+    pub(crate) fn find_rates(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        settings: &Settings,
+        targets: &Targets,
+        eyes: &[Eye; 2],
+        (camera, previous): (&Camera, &Camera),
+    ) {
+        let Some(t) = &targets.variable else { return };
+        let known = self.last.as_ref();
+        let reset = known.is_none_or(|last| last != previous);
+        if reset {
+            self.frame = 0;
+            self.probes.settle();
+        } else if known != Some(camera) {
+            self.probes.disturb();
+        }
+        let turn = Turn {
+            even: self.frame.is_multiple_of(2),
+            reset,
+            probe: self.probes.next(),
+        };
+        self.passes
+            .find_rates(recorder, settings, targets, (t, eyes), turn);
+        self.last = Some(camera.clone());
+        self.frame = self.frame.wrapping_add(1);
+    }
+
+    /// Encodes lighting of the samples that were found.
+    pub(crate) fn shade(
+        &self,
+        recorder: &mut Recorder<'_>,
+        input: &wgpu::BindGroup,
+        targets: &Targets,
+    ) {
+        if let Some(t) = &targets.variable {
+            self.passes
+                .shade(recorder, input, t, &targets.radiance_view);
+        }
+    }
+
+    /// Encodes the view of the rates that the settings ask for.
+    pub(crate) fn show(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
+        if let (Some(view), Some(t)) = (&self.view, &targets.variable) {
+            view.draw(recorder, t, &targets.picture_view);
+        }
+    }
+
+    /// The figures of a frame whose passes took `gpu_ms` and which counted `listed`; `None`: it was shaded in full.
+    pub(crate) fn figures(
+        &mut self,
+        settings: &Settings,
+        listed: Option<&[u8]>,
+        gpu_ms: &[Timing],
+    ) -> VariableStats {
+        let layout = EyeLayout::of(settings);
+        let pixels = layout.pixels();
+        let mut stats = self.balance.observe(settings.stage(), gpu_ms);
+        stats.active = listed.is_some();
+        stats.samples_per_rate = vec![pixels, 0, 0, 0, 0];
+        if let Some(bytes) = listed {
+            let words: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+            stats.samples_per_rate = words[4..9].iter().map(|&n| u64::from(n)).collect();
+            let quads = layout.width.div_ceil(2) * layout.height.div_ceil(2) * layout.eyes;
+            stats.unknown_fraction = f64::from(words[9]) / f64::from(quads);
+        }
+        stats.shaded_fraction = stats.samples_per_rate.iter().sum::<u64>() as f64 / pixels as f64;
+        stats
+    }
+}
