@@ -13,6 +13,7 @@ fn main() {
     collect(&root, &root, &mut files);
     let imported: Vec<&str> = files.values().flat_map(|text| imports(text)).collect();
     for (name, text) in &files {
+        check_directives(name, text);
         for import in imports(text) {
             assert!(
                 files.contains_key(import),
@@ -22,10 +23,7 @@ fn main() {
     }
     let mut code = String::from("static FILES: &[(&str, &str)] = &[\n");
     for name in files.keys() {
-        let _ = writeln!(
-            code,
-            "    ({name:?}, include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), \"/src/{name}\"))),"
-        );
+        let _ = writeln!(code, "    ({name:?}, {:?}),", files[name]);
     }
     code.push_str("];\n");
     let roots: Vec<&String> = files
@@ -53,6 +51,12 @@ fn main() {
 fn collect(root: &Path, folder: &Path, files: &mut BTreeMap<String, String>) {
     for entry in fs::read_dir(folder).expect("the sources can be listed") {
         let path = entry.expect("the sources can be listed").path();
+        let is_hidden = path
+            .file_name()
+            .is_some_and(|n| n.to_string_lossy().starts_with('.'));
+        if is_hidden {
+            continue;
+        }
         if path.is_dir() {
             collect(root, &path, files);
         } else if path.extension().is_some_and(|e| e == "wgsl") {
@@ -73,4 +77,31 @@ fn imports(text: &str) -> impl Iterator<Item = &str> {
                 .or(line.strip_prefix("#export "))
         })
         .map(str::trim)
+}
+
+/// Every directive is known, and conditions are closed.
+fn check_directives(name: &str, text: &str) {
+    // Of each condition that is open: whether its `#else` was there.
+    let mut open = Vec::new();
+    for (number, line) in (1..).zip(text.lines()) {
+        let Some(directive) = line.trim().strip_prefix('#') else {
+            continue;
+        };
+        let word = directive.split(' ').next().unwrap_or_default();
+        let is_right = match word {
+            "import" | "export" | "expects" => directive.len() > word.len(),
+            "variant" => open.is_empty(),
+            "ifdef" | "ifndef" => {
+                open.push(false);
+                directive.split(' ').count() == 2
+            }
+            "else" => open
+                .last_mut()
+                .is_some_and(|seen| !std::mem::replace(seen, true)),
+            "endif" => open.pop().is_some(),
+            _ => false,
+        };
+        assert!(is_right, "src/{name}:{number}: '{line}' cannot stand here");
+    }
+    assert!(open.is_empty(), "src/{name}: an #ifdef is not closed");
 }

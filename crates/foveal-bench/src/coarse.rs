@@ -239,7 +239,7 @@ fn measure(
                     s.shading.mode = Shading::Coarse;
                     s.coarse.backend = backend;
                     s.coarse.composite = composite;
-                    s.shading.stage = rate_stage;
+                    s.rate.stage = rate_stage;
                 });
                 sides.push(Side::new(gpu, scene, camera, &settings)?);
             }
@@ -275,7 +275,7 @@ fn measure(
                 fovea_inner: settings.coarse.fovea_inner,
                 refine_edges: settings.coarse.refine_edges,
                 geometry: settings.geometry.path,
-                rate_stage: settings.shading.stage,
+                rate_stage: settings.rate.stage,
                 backend: settings.coarse.backend,
                 composite: settings.coarse.composite,
                 levels: u32::from(settings.coarse.coarsest_level) + 1,

@@ -222,7 +222,7 @@ fn measure(
     let variable_settings = full_settings.clone().with(|s| {
         s.shading.mode = Shading::Variable;
         s.coarse.source = RateSource::Content;
-        s.shading.stage = stage;
+        s.rate.stage = stage;
         s.variable.threshold = contrast_threshold;
         s.variable.force = true;
     });

@@ -35,7 +35,8 @@ impl Side {
     pub(crate) async fn set_scene(&mut self, scene: &Scene) -> Result<(), String> {
         self.previous = None;
         // What is baked into the upload; settings that cannot be met are the next frame's to report.
-        let Settings { width, height, .. } = *self.renderer.settings();
+        let picture = &self.renderer.settings().picture;
+        let (width, height) = (picture.width, picture.height);
         let settings = self.wished.clone().with(|s| {
             s.picture.width = width;
             s.picture.height = height;
@@ -60,10 +61,8 @@ impl Side {
             s.picture.height = height;
         });
         // Some outputs show both eyes in full, side by side.
-        settings.width = (width * width / settings.picture_size().0).max(1);
-        let before = self.renderer.settings();
-        let uploads =
-            before.culling != settings.culling || before.anisotropy != settings.anisotropy;
+        settings.picture.width = (width * width / settings.picture_size().0).max(1);
+        let uploads = settings.needs_scene_again(self.renderer.settings());
         self.renderer
             .set_settings(&settings)
             .await

@@ -187,8 +187,14 @@ impl Viewer {
     /// # Errors
     /// A sentence that names the setting.
     pub fn set_settings(&mut self, reference: &str, chosen: &str) -> Result<(), String> {
-        let read =
-            |text: &str| serde_json::from_str::<Settings>(text).map_err(|cause| cause.to_string());
+        let read = |text: &str| {
+            serde_json::from_str::<Settings>(text).map_err(|cause| {
+                // Where in the JSON it stands tells the page's user nothing.
+                let sentence = cause.to_string();
+                let end = sentence.find(" at line ").unwrap_or(sentence.len());
+                sentence[..end].to_owned()
+            })
+        };
         let (reference, chosen) = (read(reference)?, read(chosen)?);
         self.compare_anew();
         self.reference.wish(reference);

@@ -47,8 +47,8 @@ pub use settings::{
     CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,
     EdgeTest, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings, Kind, Lens,
     LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch, Output,
-    PictureSettings, RateCombine, RateSource, RateStage, RefineEdges, SamplePattern, Setting,
-    Settings, Shading, ShadingSettings, Stereo, StereoSettings, ToneMap, VariableSettings,
+    PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges, SamplePattern,
+    Setting, Settings, Shading, ShadingSettings, Stereo, StereoSettings, ToneMap, VariableSettings,
     variant_names,
 };
 pub use stats::{

@@ -159,7 +159,7 @@ impl Renderer {
     }
 
     /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
-    /// [`LightingSettings::anisotropy`], and one to [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are
+    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are
     /// baked with the scene, takes effect with the next [`Renderer::set_scene`].
     ///
     /// # Errors
@@ -227,7 +227,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source wishes every pixel.
+    /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source requests every pixel.
     pub fn set_rate_image(&mut self, image: RateImage) {
         if let Some(coarse) = &mut self.stages.coarse {
             coarse.rate_map.set_image(&self.gpu, &image);
@@ -289,7 +289,7 @@ impl Renderer {
             if moves {
                 history.scene_moved();
             }
-            history.lamps_changed(&lights_before, &self.scene.lights);
+            history.lights_changed(&lights_before, &self.scene.lights);
         }
         self.frame_bindings
             .write_instances(&self.gpu, self.scene.instance_uniforms())?;

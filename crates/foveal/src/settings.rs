@@ -22,7 +22,8 @@ pub use define::{Kind, Setting, variant_names};
 pub use eye::Display;
 pub use list::{
     AntialiasingSettings, CoarseSettings, CullingSettings, EyeSettings, GeometrySettings,
-    LightingSettings, PictureSettings, Settings, ShadingSettings, StereoSettings, VariableSettings,
+    LightingSettings, PictureSettings, RateSettings, Settings, ShadingSettings, StereoSettings,
+    VariableSettings,
 };
 pub use stereo::{EyeClipping, EyeFrusta, Lens, LensProfile, Output, Stereo};
 pub use variable::{Contrast, Geometry, RateStage};

@@ -82,7 +82,7 @@ pub struct VariableStats {
     pub unknown_fraction: f64,
     /// Finding rates and samples.
     pub mask_ms: f64,
-    /// Carrying over what is known from the frame before; 0 where finding rates does it (contrast within quads).
+    /// Reprojection over what is known from the frame before; 0 where finding rates does it (contrast within quads).
     pub reproject_ms: f64,
     /// Sorting pixels by material; 0 without a visibility buffer.
     pub binning_ms: f64,

@@ -267,7 +267,7 @@ fn shared(scene: &str) -> Option<PathBuf> {
     None
 }
 
-/// Cameras in the scene's middle that look all around, and one from outside.
+/// Cameras in the scene's centre that look all around, and one from outside.
 fn around(scene: &Scene) -> Vec<Camera> {
     let bounds = scene.bounds();
     let eye = bounds.center() - 0.3 * bounds.size() * Vec3::Y;

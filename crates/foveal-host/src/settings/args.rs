@@ -119,15 +119,20 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
 fn text_of<T: FromStr<Err = foveal::Error>>() -> ValueParser {
     ValueParser::new(|text: &str| match text.parse::<T>() {
         Ok(_) => Ok(Value::from(text)),
-        Err(cause) => Err(cause),
+        // The flag is named already.
+        Err(foveal::Error::Setting { expected, .. }) => Err(format!("it must be {expected}")),
+        Err(cause) => Err(cause.to_string()),
     })
 }
 
 /// What `--lens` names; a file's coefficients go into the settings themselves.
 fn lens(text: &str) -> Result<Value, String> {
     if !text.to_lowercase().ends_with(".toml") {
-        text.parse::<Lens>().map_err(|cause| cause.to_string())?;
-        return Ok(Value::from(text));
+        return match text.parse::<Lens>() {
+            Ok(_) => Ok(Value::from(text)),
+            Err(foveal::Error::Setting { expected, .. }) => Err(format!("it must be {expected}")),
+            Err(cause) => Err(cause.to_string()),
+        };
     }
     let wrong = |cause: &dyn std::fmt::Display| format!("the lens file '{text}': {cause}");
     let file = std::fs::read_to_string(text).map_err(|e| wrong(&e))?;

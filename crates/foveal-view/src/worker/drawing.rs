@@ -1,6 +1,6 @@
 //! Device, scene and up to two renderers: the one that is asked about, and its reference.
 
-use foveal::{AdapterStats, Culling, FrameStats, Gpu, RateSource, Renderer, Settings};
+use foveal::{AdapterStats, FrameStats, Gpu, RateSource, Renderer, Settings};
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 
@@ -254,11 +254,8 @@ impl Side {
         if let Some(image) = image {
             side.renderer.set_rate_image(image);
         }
-        let rebaked = |before: &Settings| {
-            before.lighting.anisotropy != settings.lighting.anisotropy
-                || before.culling != settings.culling && settings.culling.mode == Culling::Occlusion
-        };
-        if before.as_ref().is_none_or(rebaked) {
+        let needs_scene = |before: &Settings| settings.needs_scene_again(before);
+        if before.as_ref().is_none_or(needs_scene) {
             block_on(side.renderer.set_scene(scene))?;
             side.posed_s = None;
         }

@@ -28,6 +28,6 @@ fn classify(@builtin(position) position: vec4f) -> Classified {
         textureLoad(sample_identity, texel, 0).xy,
         textureLoad(sample_triangle, texel, 0).x,
         vec2u(max(sorted >> 16u, 1u), countOneBits(members)),
-        middle_of_members(pixel, members).z,
+        center_of_members(pixel, members).z,
     );
 }

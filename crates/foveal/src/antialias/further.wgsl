@@ -12,6 +12,6 @@ fn extent_of(texel: vec2u) -> vec2u {
     return vec2u(1u);
 }
 
-fn middle_of(texel: vec2u) -> vec2f {
+fn center_of(texel: vec2u) -> vec2f {
     return unpack_quarters(load_words(identity, texel).y);
 }

@@ -51,7 +51,7 @@ fn corner_position(vertex: u32) -> vec3f {
 }
 
 // Mean position of some sub-samples in pixels of the frame, and their mean depth: that at the position, on a plane.
-fn middle_of_members(pixel: vec2u, members: u32) -> vec3f {
+fn center_of_members(pixel: vec2u, members: u32) -> vec3f {
     var sum = vec3f(0.0);
     // All are looked at: a loop of one length for all lanes is unrolled, one over the members is not.
     for (var i = 0u; i < COUNT; i++) {

@@ -30,7 +30,7 @@ const MAX_BAND_PIXELS: u64 = 65_535 * 64;
 /// The sub-samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Pattern {
-    /// Side x side cells, a sample in the middle of each, row by row.
+    /// Side x side cells, a sample in the centre of each, row by row.
     Grid { side: u32 },
     /// Samples at these sixteenths of a pixel.
     Rotated(&'static [[u8; 2]]),
@@ -125,7 +125,7 @@ impl Band {
             Pattern::Rotated(offsets) => (0..)
                 .zip(*offsets)
                 .map(|(index, offset)| {
-                    // The rasterizer looks at the middle of a texel: the frame moves against the offset.
+                    // The rasterizer looks at the centre of a texel: the frame moves against the offset.
                     let [x, y] = offset.map(|sixteenths| 0.5 - f32::from(sixteenths) / 16.0);
                     let tile = index * self.rows;
                     Window {

@@ -1,4 +1,4 @@
-// Shading of the entries whose materials were evaluated from triangles.
+// Shading of the entries whose materials were resolved from triangles.
 
 #import antialias/quarters.wgsl
 #import antialias/queue.wgsl

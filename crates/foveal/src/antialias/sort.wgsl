@@ -22,12 +22,12 @@
 
 fn list_surface(pixel: vec2u, members: u32, entry: u32) {
     let id = id_at(pixel, firstTrailingBit(members));
-    let middle = middle_of_members(pixel, members);
+    let center = center_of_members(pixel, members);
     let row = u32(frame.target_size.x);
     let at = vec2u(entry % row, entry / row);
-    textureStore(further_identity, at, vec4u(id.x, pack_quarters(middle.xy), 0u, 0u));
+    textureStore(further_identity, at, vec4u(id.x, pack_quarters(center.xy), 0u, 0u));
     textureStore(further_triangle, at, vec4u(id.y, 0u, 0u, 0u));
-    textureStore(further_depth, at, vec4u(bitcast<u32>(middle.z), 0u, 0u, 0u));
+    textureStore(further_depth, at, vec4u(bitcast<u32>(center.z), 0u, 0u, 0u));
 }
 
 @compute @workgroup_size(64)

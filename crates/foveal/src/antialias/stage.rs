@@ -33,8 +33,8 @@ pub(crate) struct EdgeCounts {
 /// How a band's entries are shaded.
 #[derive(Clone, Copy)]
 pub(crate) struct Shadings<'a> {
-    /// What shading reads of the sub-samples' G-buffer.
-    pub(crate) input: &'a wgpu::BindGroup,
+    /// What shading reads of the sub-samples' G-buffer, where that holds surfaces.
+    pub(crate) input: Option<&'a wgpu::BindGroup>,
     /// They are shaded at all.
     pub(crate) shade: bool,
 }
@@ -77,7 +77,7 @@ impl AntialiasStage {
         })
     }
 
-    /// Whether sub-samples' materials are evaluated only once their triangles were sorted into surfaces.
+    /// Whether sub-samples' materials are resolved only once their triangles were sorted into surfaces.
     pub(crate) fn sorts_triangles(&self) -> bool {
         self.triangles.is_some()
     }
@@ -115,6 +115,7 @@ impl AntialiasStage {
             return triangles.classify(recorder, scene, t, targets, (*band, uniform));
         }
         let Shadings { input, shade } = shading;
+        let Some(input) = input else { return };
         t.begin_band(recorder.encoder);
         self.merge_surfaces(recorder, input, t, targets, (*band, uniform));
         if shade && self.edges != Edges::None {

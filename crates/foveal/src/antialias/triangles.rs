@@ -2,7 +2,7 @@
 //!
 //! Pixels that show several triangles are listed (`candidates.wgsl`) and their sub-samples sorted into surfaces
 //! (`sort.wgsl`); one triangle per surface is kept: the largest surface's in the ordinary G-buffer (`classify.wgsl`),
-//! the others' in a target of their own, row by row in the order of the queue's entries. Materials are evaluated for
+//! the others' in a target of their own, row by row in the order of the queue's entries. Materials are resolved for
 //! those alone, so a pixel within a surface costs what it costs without anti-aliasing, where the other way evaluates
 //! and averages all sub-samples.
 

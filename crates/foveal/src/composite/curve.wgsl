@@ -1,5 +1,5 @@
 // Radiance within a tile: its patch, raised to pass through the tile's sample and through the
-// middles between it and neighbours of its size: bilinear interpolation where tiles are alike. CPU
+// midpoints between it and neighbours of its size: bilinear interpolation where tiles are alike. CPU
 // twin of all of the smooth composite: `composite/twin.rs`.
 //
 // Patches meet along their edges, tiles raise a common edge alike and the sample's raise vanishes
@@ -20,7 +20,7 @@
 fn curve(p: Patch, peak: vec2f, uv: vec2f, raise: vec3f, raise_x: vec3f, raise_y: vec3f) -> vec3f {
     // 1 at the sample, 0 at the edges.
     let slope = select(uv / peak, (1.0 - uv) / (1.0 - peak), uv > peak);
-    // 1 at the middle of an edge, 0 at its ends.
+    // 1 at the centre of an edge, 0 at its ends.
     let tent = 1.0 - abs(2.0 * uv - 1.0);
     let radiance = patch_at(p, uv)
         + raise_x * ((1.0 - slope.x) * tent.y)

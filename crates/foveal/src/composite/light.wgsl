@@ -62,6 +62,6 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         unlit[atomicAdd(&counts[0], 1u)] = texel.x | (texel.y << 16u);
         return;
     }
-    let lamps = (diffuse_color(s) / PI * found.diffuse + environment_reflectance(s, v) * found.mirrored) / found.weight;
-    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lamps, vec3f(65504.0)), 1.0));
+    let lights = (diffuse_color(s) / PI * found.diffuse + environment_reflectance(s, v) * found.mirrored) / found.weight;
+    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lights, vec3f(65504.0)), 1.0));
 }

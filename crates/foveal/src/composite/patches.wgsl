@@ -1,5 +1,5 @@
 // A tile's patch: radiance at the corners of the tile's part inside the picture, bilinear between,
-// and how far the middles of its left and its upper edge are raised above that.
+// and how far the midpoints of its left and its upper edge are raised above that.
 
 #import composite/tiling.wgsl
 #import shared/frame.wgsl

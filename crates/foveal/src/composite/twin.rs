@@ -262,7 +262,7 @@ impl Inputs {
         .map(|corner| self.corner(corner, tile))
     }
 
-    /// How far the middle of a tile's left (`axis` 0) or upper edge is raised: `raise.wgsl`.
+    /// How far the centre of a tile's left (`axis` 0) or upper edge is raised: `raise.wgsl`.
     fn raise(&self, tile: Tile, axis: usize) -> Vec3 {
         let (low, high) = (self.low(tile).as_vec2(), self.high(tile).as_vec2());
         if low[axis] == 0.0 {
@@ -270,9 +270,9 @@ impl Inputs {
         }
         let corners = self.corners(tile);
         let (begin, end) = (corners[0], if axis == 0 { corners[2] } else { corners[1] });
-        let mut middle = 0.5 * (low + high);
-        middle[axis] = low[axis];
-        let mut probe = middle;
+        let mut center = 0.5 * (low + high);
+        center[axis] = low[axis];
+        let mut probe = center;
         probe[axis] -= 0.5;
         let other = self.tile_at(probe.as_uvec2());
         let (a, b) = (self.sample(tile), self.sample(other));
@@ -283,7 +283,7 @@ impl Inputs {
             return Vec3::ZERO;
         }
         let (here, there) = (a.texel.as_vec2() + 0.5, b.texel.as_vec2() + 0.5);
-        let beside = 0.5 * (here + there) - middle;
+        let beside = 0.5 * (here + there) - center;
         let along = (end - begin) / (high[1 - axis] - low[1 - axis]);
         let apart = here - there;
         let across = (a.radiance - b.radiance - along * apart[1 - axis]) / apart[axis];

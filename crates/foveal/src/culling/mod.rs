@@ -127,7 +127,7 @@ impl CullingStage {
     /// hidden is hidden from both. A view that makes no sense culls nothing.
     ///
     /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then the left eye's. Or both
-    /// are tested at once, from their middle. A result that holds for some way around the eyes is kept until they leave
+    /// are tested at once, from their centre. A result that holds for some way around the eyes is kept until they leave
     /// it.
     pub(crate) fn cull(
         &mut self,
@@ -170,7 +170,7 @@ impl CullingStage {
             }
             _ => None,
         };
-        // Eyes that look too far apart have no middle.
+        // Eyes that look too far apart have no centre.
         if !both.is_some_and(|view| self.cull_for(scene, view, clock)) {
             // The figures that are shown are the first eye's.
             for eye in wanted.eyes.into_iter().flatten().rev() {

@@ -2,7 +2,7 @@
 
 use super::FaceNormals;
 use super::{
-    DrawList, Draws, Evaluation, PipelineKey, PipelineRecipe, Pipelines, Rates, VertexSource,
+    DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, Rates, ResolveAt, VertexSource,
     VisibilityPass,
 };
 use super::{GBuffer, Window};
@@ -173,27 +173,27 @@ impl GeometryPass {
     }
 
     /// Encodes the rest of it, at the pixels of `at`.
-    pub(crate) fn evaluate(
+    pub(crate) fn resolve(
         &self,
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
         target: &GBuffer,
-        at: &Evaluation<'_>,
+        at: &ResolveAt<'_>,
     ) {
         if let Means::Triangles(pass) = &self.means {
-            pass.evaluate(recorder, draws, target, &[self.whole()], at);
+            pass.resolve(recorder, draws, target, &[self.whole()], at);
         }
     }
 
     /// Encodes the evaluation of further surfaces of pixels at edges into texels that lie anywhere in the picture.
-    pub(crate) fn evaluate_further(
+    pub(crate) fn resolve_further(
         &self,
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
         target: &GBuffer,
     ) {
         if let Means::Triangles(pass) = &self.means {
-            pass.evaluate_further(recorder, draws, target, self.whole());
+            pass.resolve_further(recorder, draws, target, self.whole());
         }
     }
 
@@ -209,7 +209,7 @@ impl GeometryPass {
             Means::Surfaces(pipelines) => pipelines,
             Means::Triangles(pass) => {
                 pass.draw_triangles(recorder, draws, target, windows);
-                return pass.evaluate(recorder, draws, target, windows, &Evaluation::FULL);
+                return pass.resolve(recorder, draws, target, windows, &ResolveAt::FULL);
             }
         };
         let depth = wgpu::RenderPassDepthStencilAttachment {

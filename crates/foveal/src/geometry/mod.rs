@@ -19,7 +19,7 @@ pub(crate) use face_normals::FaceNormals;
 pub(crate) use gbuffer::GeometryPass;
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
 pub(crate) use target::GBuffer;
-pub(crate) use visibility::{Evaluation, Rates, VisibilityPass, VisibilityTargets};
+pub(crate) use visibility::{Rates, ResolveAt, VisibilityPass, VisibilityTargets};
 #[cfg(test)]
 pub(crate) use visibility::{WindowsUniform, level_scene};
 pub(crate) use window::Window;

@@ -58,7 +58,7 @@ impl Table {
         }
     }
 
-    /// Writes `bytes` from the beginning; true where that took a new resource, which must be bound anew.
+    /// Writes `bytes` from the beginning; true where that took a new resource, which must be bound again.
     pub(crate) fn write(&mut self, gpu: &Gpu, bytes: &[u8]) -> bool {
         let grows = self.held.room() < bytes.len();
         if grows {

@@ -2,13 +2,13 @@
 //!
 //! The smallest angle that the eye resolves grows in proportion to the angle to the gaze (Guenter, Finch, Drucker, Tan and Snyder
 //! 2012, 'Foveated 3D graphics', eq. 1): `ACUITY + SLOPE * eccentricity`, in degrees a cycle. A block's side is that times a
-//! factor, which [`EyeSettings::quality_jod`] names by the difference that is left.
+//! factor, which [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod) names by the difference that is left.
 
 use crate::Settings;
 use crate::stereo::Eye;
 
 #[cfg(test)]
-use super::WishUniform;
+use super::RequestUniform;
 
 /// Smallest resolvable angle at the gaze, in radians a cycle: 1/48 degree.
 const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
@@ -86,22 +86,22 @@ fn tangents([sx, sy, ox, oy]: [f32; 4], [x, y]: [f32; 2]) -> [f32; 2] {
     [(2.0 * x - 1.0) * sx + ox, (1.0 - 2.0 * y) * sy + oy]
 }
 
-/// The level that the left or only eye's picture wishes at a position in pixels: twin of `foveated_level` in `rate/fovea.wgsl`.
+/// The level that the left or only eye's picture requests at a position in pixels: twin of `foveated_level` in `rate/fovea.wgsl`.
 #[cfg(test)]
-pub(super) fn level(wish: &WishUniform, s: &Settings, pixel: [f32; 2]) -> u32 {
-    let to_display = wish.display_from_ndc[0];
+pub(super) fn level(request: &RequestUniform, s: &Settings, pixel: [f32; 2]) -> u32 {
+    let to_display = request.display_from_ndc[0];
     let place = [
         pixel[0] / s.picture.width as f32,
         pixel[1] / s.picture.height as f32,
     ];
     let to_pixel = direction(to_display, place);
     let chord: f32 = (0..3)
-        .map(|i| (to_pixel[i] - wish.gaze_direction[0][i]).powi(2))
+        .map(|i| (to_pixel[i] - request.gaze_direction[0][i]).powi(2))
         .sum();
     let half = (0.5 * chord.sqrt()).min(0.75);
     let squared = half * half;
     let series = 1.0 + squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * (15.0 / 336.0)));
     let pixel_side = 2.0 * to_display[0] / s.picture.width as f32 * to_pixel[2];
-    let side = (wish.block_at_gaze + wish.block_growth * 2.0 * half * series) / pixel_side;
-    (side.log2().floor().max(0.0) as u32).min(wish.coarsest)
+    let side = (request.block_at_gaze + request.block_growth * 2.0 * half * series) / pixel_side;
+    (side.log2().floor().max(0.0) as u32).min(request.coarsest)
 }

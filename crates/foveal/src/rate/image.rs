@@ -1,4 +1,4 @@
-//! A picture as a source of wishes.
+//! A picture as a source of requested levels.
 
 /// A grey picture stretched over the frame: 0 asks for every pixel, 255 for level 8.
 #[derive(Clone, Debug, PartialEq, Eq)]

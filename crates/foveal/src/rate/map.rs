@@ -1,7 +1,7 @@
 //! The rate map's passes and targets.
 
 use super::targets::{CELL_FORMAT, RateTargets};
-use super::{RateImage, WishUniform};
+use super::{RateImage, RequestUniform};
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, MipChain, bind_group, bind_group_layout, sampled, sampled_layers, uniform};
 use crate::recorder::{Recorder, overwritten};
@@ -12,9 +12,9 @@ use crate::{Settings, shader};
 /// Fills the rate map.
 #[derive(Debug)]
 pub(crate) struct RateMapPass {
-    wish: wgpu::RenderPipeline,
-    wish_layout: wgpu::BindGroupLayout,
-    wish_uniform: wgpu::Buffer,
+    request: wgpu::RenderPipeline,
+    request_layout: wgpu::BindGroupLayout,
+    request_uniform: wgpu::Buffer,
     image: wgpu::TextureView,
     pyramid: wgpu::RenderPipeline,
     owner: wgpu::RenderPipeline,
@@ -31,9 +31,9 @@ impl RateMapPass {
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let stage = wgpu::ShaderStages::FRAGMENT;
-        let wish_layout = bind_group_layout(
+        let request_layout = bind_group_layout(
             &gpu.device,
-            "rate wish",
+            "requested levels",
             stage,
             &[uniform(), cells, words, words, depth],
         );
@@ -51,23 +51,23 @@ impl RateMapPass {
         };
         let coarsest = f64::from(settings.coarse.coarsest_level);
         let balance = f64::from(u8::from(settings.coarse.balance));
-        let wish_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("rate wish"),
-            size: size_of::<WishUniform>() as u64,
+        let request_uniform = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some("requested levels"),
+            size: size_of::<RequestUniform>() as u64,
             usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         Self {
-            wish: pipeline(
-                "rate wish",
+            request: pipeline(
+                "requested levels",
                 if settings.sees_by_depth() {
-                    shader::RATE_WISH.variant(&["BY_DEPTH"])
+                    shader::RATE_REQUEST.variant(&["BY_DEPTH"])
                 } else {
-                    shader::RATE_WISH
+                    shader::RATE_REQUEST
                 },
-                "wish_level",
-                &wish_layout,
-                &super::wish::wish_constants(settings),
+                "requested_level",
+                &request_layout,
+                &super::request::request_constants(settings),
             ),
             pyramid: pipeline(
                 "rate pyramid",
@@ -83,9 +83,9 @@ impl RateMapPass {
                 &cells_layout,
                 &[("COARSEST", coarsest)],
             ),
-            wish_layout,
-            wish_uniform,
-            // One texel of level 0: without a picture every pixel is wished.
+            request_layout,
+            request_uniform,
+            // One texel of level 0: without a picture every pixel is requested.
             image: image_texture(gpu, (1, 1), &[0]),
             cells_layout,
         }
@@ -106,15 +106,15 @@ impl RateMapPass {
         target: &RateTargets,
     ) {
         let gpu = recorder.gpu;
-        let uniform = WishUniform::new(settings, eyes, lenses);
+        let uniform = RequestUniform::new(settings, eyes, lenses);
         gpu.queue
-            .write_buffer(&self.wish_uniform, 0, bytemuck::bytes_of(&uniform));
+            .write_buffer(&self.request_uniform, 0, bytemuck::bytes_of(&uniform));
         let wish_group = bind_group(
             &gpu.device,
-            "rate wish",
-            &self.wish_layout,
+            "requested levels",
+            &self.request_layout,
             &[
-                self.wish_uniform.as_entire_binding(),
+                self.request_uniform.as_entire_binding(),
                 wgpu::BindingResource::TextureView(&self.image),
                 wgpu::BindingResource::TextureView(&gbuffer.surface_layers),
                 wgpu::BindingResource::TextureView(&gbuffer.identity_layers),
@@ -137,7 +137,7 @@ impl RateMapPass {
             chain.draw(&mut pass, level);
         };
         let pyramid = &target.pyramid;
-        fill("rate wish", pyramid, 1, &self.wish, &wish_group);
+        fill("requested levels", pyramid, 1, &self.request, &wish_group);
         for level in pyramid.range().skip(1) {
             let below = cells(pyramid.level(level - 1));
             fill("rate pyramid", pyramid, level, &self.pyramid, &below);

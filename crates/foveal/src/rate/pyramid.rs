@@ -1,6 +1,6 @@
 //! The exact tiling on the CPU: the passes' twin, and what tests and tools ask about a tiling.
 
-/// The minimum of the wishes over each block of each level, and the tiling that follows from it.
+/// The minimum of the requested levels over each block of each level, and the tiling that follows from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MinPyramid {
     levels: Vec<Grid>,
@@ -25,18 +25,18 @@ impl Grid {
 }
 
 impl MinPyramid {
-    /// Builds the pyramid over `wishes`, rows of `width` (at least 1) levels; wishes above `coarsest` count as
+    /// Builds the pyramid over `requests`, rows of `width` (at least 1) levels; requests above `coarsest` count as
     /// `coarsest`. With `balance`, neighbouring blocks differ by one level at most.
     #[must_use]
-    pub fn new(width: u32, wishes: &[u8], coarsest: u8, balance: bool) -> Self {
+    pub fn new(width: u32, requests: &[u8], coarsest: u8, balance: bool) -> Self {
         let width = width.max(1);
-        let cells = wishes
+        let cells = requests
             .iter()
             .map(|&w| (w & LEVEL).min(coarsest) | w & EDGE)
             .collect();
         let mut levels = vec![Grid {
             width,
-            height: wishes.len() as u32 / width,
+            height: requests.len() as u32 / width,
             cells,
         }];
         for level in 1..=coarsest {
@@ -139,7 +139,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A map whose wishes come in patches of 2^patch pixels, so that coarse levels occur at all.
+    /// A map whose requested levels come in patches of 2^patch pixels, so that coarse levels occur at all.
     fn patches(width: u32, height: u32, patch: u32, seed: u32) -> Vec<u8> {
         (0..height)
             .flat_map(|y| (0..width).map(move |x| (x, y)))
@@ -167,20 +167,20 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(48))]
 
         #[test]
-        fn every_pixel_has_exactly_one_owner((w, _, wishes) in maps(), coarsest in 0..9u8, balance: bool) {
-            let pyramid = MinPyramid::new(w, &wishes, coarsest, balance);
-            for (index, &wish) in (0..).zip(&wishes) {
+        fn every_pixel_has_exactly_one_owner((w, _, requests) in maps(), coarsest in 0..9u8, balance: bool) {
+            let pyramid = MinPyramid::new(w, &requests, coarsest, balance);
+            for (index, &request) in (0..).zip(&requests) {
                 let (x, y) = (index % w, index / w);
                 let owners: Vec<u8> =
                     (0..=coarsest).filter(|&l| pyramid.owns(l, x >> l, y >> l)).collect();
                 prop_assert_eq!(&owners, &vec![pyramid.owner_level(x, y)]);
-                prop_assert!(owners[0] <= wish, "never coarser than wished");
+                prop_assert!(owners[0] <= request, "never coarser than requested");
             }
         }
 
         #[test]
-        fn tiles_cover_the_picture_once((w, h, wishes) in maps(), balance: bool) {
-            let pyramid = MinPyramid::new(w, &wishes, 8, balance);
+        fn tiles_cover_the_picture_once((w, h, requests) in maps(), balance: bool) {
+            let pyramid = MinPyramid::new(w, &requests, 8, balance);
             let mut area = 0;
             for level in 0..=8u8 {
                 let (bw, bh) = pyramid.size(level);
@@ -196,8 +196,8 @@ mod tests {
         }
 
         #[test]
-        fn balanced_neighbours_differ_by_one_level_at_most((w, h, wishes) in maps()) {
-            let pyramid = MinPyramid::new(w, &wishes, 8, true);
+        fn balanced_neighbours_differ_by_one_level_at_most((w, h, requests) in maps()) {
+            let pyramid = MinPyramid::new(w, &requests, 8, true);
             for y in 0..h {
                 for x in 0..w {
                     let here = pyramid.owner_level(x, y);
@@ -215,15 +215,15 @@ mod tests {
     fn a_picture_of_4096_x_4096_is_tiled_once() {
         for (patch, balance) in [(3, false), (6, true)] {
             let side = 4096;
-            let wishes = patches(side, side, patch, 77);
-            let pyramid = MinPyramid::new(side, &wishes, 8, balance);
+            let requests = patches(side, side, patch, 77);
+            let pyramid = MinPyramid::new(side, &requests, 8, balance);
             let area: u64 = (0..9).map(|l| pyramid.tiles()[l] << (2 * l)).sum();
             assert_eq!(area, u64::from(side).pow(2));
-            for (index, &wish) in (0..).zip(&wishes).step_by(97) {
+            for (index, &request) in (0..).zip(&requests).step_by(97) {
                 let (x, y) = (index % side, index / side);
                 let owners = (0..=8).filter(|&l| pyramid.owns(l, x >> l, y >> l)).count();
                 assert_eq!(owners, 1, "{x}, {y}");
-                assert!(pyramid.owner_level(x, y) <= wish);
+                assert!(pyramid.owner_level(x, y) <= request);
             }
         }
     }

@@ -9,7 +9,7 @@ pub(super) const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
 /// The rate map of one frame size.
 #[derive(Debug)]
 pub(crate) struct RateTargets {
-    /// Minimum of the wishes per block, from level 1 on.
+    /// Minimum of the requested levels per block, from level 1 on.
     pub(crate) pyramid: MipChain,
     /// Owner level of 2 x 2 pixels each: a single level, 1.
     pub(crate) owner: MipChain,

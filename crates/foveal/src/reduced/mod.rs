@@ -64,7 +64,7 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
             let full = picture(&rendered(&scene, camera, &settings));
             let ours = pollster::block_on(reduced(&scene, camera, &settings).read_picture());
             let ours = ours.expect("read-back works");
-            // Depth is found anew from the distance: a rounding moves a light's edge now and then.
+            // Depth is found again from the distance: a rounding moves a light's edge now and then.
             let share = differing(&full, &ours, 2);
             assert!(share < 1e-3, "{name}: {share} of the channels");
             assert!(differing(&full, &vec![0; full.len()], 20) > 0.2, "{name}");

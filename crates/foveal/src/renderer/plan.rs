@@ -16,9 +16,10 @@ pub(super) enum SampleChoice {
 /// Which samples a frame shades, chosen once.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct FramePlan {
-    /// What finds shading rates: the rate map, the rate mask, or for [`SampleChoice::Every`] nothing.
+    /// Samples whose rates are found before anything is shaded: by the rate map or the rate mask.
+    /// [`SampleChoice::Every`] needs no rates.
     pub(super) rates: SampleChoice,
-    /// Where materials are evaluated.
+    /// Where materials are resolved.
     pub(super) materials: SampleChoice,
     /// Where surfaces are lit besides edges; `None` where no light is shown, or edges are all that is lit.
     pub(super) lighting: Option<SampleChoice>,
@@ -37,7 +38,7 @@ impl Stages {
         let stage = self.settings.stage();
         let variable = match &mut self.variable {
             Some(variable) if is_lit => variable.plan(),
-            _ => crate::shading::Plan::default(),
+            _ => crate::shading::VariablePlan::default(),
         };
         let rates = if variable.active {
             SampleChoice::Variable

@@ -1,4 +1,4 @@
-//! What is made anew with the settings.
+//! What is made again with the settings.
 
 use super::{Clock, CoarseStages, Frame, Seen, Stages};
 use crate::antialias::AntialiasStage;

@@ -6,7 +6,7 @@ use crate::FrameStats;
 use crate::antialias::Shadings;
 use crate::culling::CullingCounts;
 use crate::frame::FrameUniform;
-use crate::geometry::{Draws, Evaluation};
+use crate::geometry::{Draws, ResolveAt};
 use crate::gpu::CpuTimer;
 use crate::lights::{ClusterGrid, SceneLights};
 use crate::recorder::Recorder;
@@ -32,7 +32,7 @@ impl Renderer {
         self.submitted(culled, cpu)
     }
 
-    /// Finds out which objects are seen, unless the last answer is held on to.
+    /// Finds the visible objects, or keeps the last frame's while culling is frozen.
     fn cull(&mut self, frame: &Frame<'_>, seen: &Seen) -> CullingCounts {
         let settings = &self.stages.settings;
         let objects = self.scene.stats.objects;
@@ -77,7 +77,7 @@ impl Renderer {
         }
     }
 
-    /// Writes what shaders are told of the frame.
+    /// Writes the frame's uniform block and the list of drawn instances.
     fn upload(&mut self, frame: &Frame<'_>, seen: &Seen) -> ClusterGrid {
         let (gpu, scene) = (&self.gpu, &self.scene);
         let Stages {
@@ -187,7 +187,9 @@ impl Stages {
         };
         let lights = self.scene_lights(draws);
         let gbuffer = samples.gbuffer();
-        let input = &shading.input(recorder.gpu, gbuffer, lights);
+        let input =
+            (!antialias.sorts_triangles()).then(|| shading.input(recorder.gpu, gbuffer, lights));
+        let input = input.as_ref();
         let blended = samples
             .blended()
             .filter(|_| plan.is_lit && !draws.list.blended.is_empty());
@@ -209,8 +211,8 @@ impl Stages {
             antialias.merge(recorder, draws.scene, targets, band, shadings);
         }
         if let Some(further) = samples.further_gbuffer() {
-            geometry.evaluate(recorder, draws, &targets.gbuffer, &Evaluation::FULL);
-            geometry.evaluate_further(recorder, draws, further);
+            geometry.resolve(recorder, draws, &targets.gbuffer, &ResolveAt::FULL);
+            geometry.resolve_further(recorder, draws, further);
         }
     }
 
@@ -249,8 +251,8 @@ impl Stages {
                     rate_map.draw(recorder, settings, eyes, gbuffer, &tiles.rate);
                 }
                 if at_rates {
-                    let at = Evaluation::at_rates(&tiles.rate.owner.whole);
-                    geometry.evaluate(recorder, draws, gbuffer, &at);
+                    let at = ResolveAt::at_rates(&tiles.rate.owner.whole);
+                    geometry.resolve(recorder, draws, gbuffer, &at);
                 }
             }
             SampleChoice::Variable => {
@@ -259,11 +261,11 @@ impl Stages {
                 };
                 variable.find_rates(recorder, settings, targets, &seen.eyes, cameras);
                 if at_rates && plan.compares {
-                    geometry.evaluate(recorder, draws, gbuffer, &Evaluation::COMPARED);
+                    geometry.resolve(recorder, draws, gbuffer, &ResolveAt::COMPARED);
                 }
                 if at_rates {
-                    let at = Evaluation::at_rates(&rates.mask);
-                    geometry.evaluate(recorder, draws, gbuffer, &at);
+                    let at = ResolveAt::at_rates(&rates.mask);
+                    geometry.resolve(recorder, draws, gbuffer, &at);
                 }
             }
         }
@@ -317,7 +319,7 @@ impl Stages {
         }
     }
 
-    /// Forward: blended surfaces over that.
+    /// Forward: blended surfaces over opaque ones.
     fn blend(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
         match &self.antialias {
             Some(antialias) => antialias.blend(recorder, draws.list, &self.targets),

@@ -3,7 +3,7 @@
 use super::{Frame, Renderer, Stages};
 use crate::FrameStats;
 use crate::frame::FrameUniform;
-use crate::geometry::{Evaluation, GeometryPass};
+use crate::geometry::{GeometryPass, ResolveAt};
 use crate::lights::{ClusterGrid, LightAssigner, SceneLights};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
@@ -58,7 +58,7 @@ impl Renderer {
         self.encode(|recorder, stages, scene| {
             let targets = &stages.targets;
             let mask = targets.variable.as_ref().filter(|_| rated);
-            let at = mask.map_or(Evaluation::FULL, |v| Evaluation::at_rates(&v.mask));
+            let at = mask.map_or(ResolveAt::FULL, |v| ResolveAt::at_rates(&v.mask));
             let pass = stages.geometry.triangles().expect("a visibility buffer");
             pass.sort_again(recorder, scene, &targets.gbuffer, &at, subgroups);
         });

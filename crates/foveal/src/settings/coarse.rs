@@ -33,14 +33,14 @@ pub enum CoarseBackend {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RateSource {
-    /// The eye's resolution: the angle to the gaze on [`EyeSettings::display`], for
-    /// [`EyeSettings::quality_jod`].
+    /// The eye's resolution: the angle to the gaze on [`EyeSettings::display`](crate::EyeSettings::display), for
+    /// [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod).
     #[default]
     Foveated,
-    /// The distance to the gaze in pixels, between [`CoarseSettings::fovea_inner`] and
-    /// [`CoarseSettings::fovea_outer`], as in the technique's source.
+    /// The distance to the gaze in pixels, between [`CoarseSettings::fovea_inner`](crate::CoarseSettings::fovea_inner) and
+    /// [`CoarseSettings::fovea_outer`](crate::CoarseSettings::fovea_outer), as in the technique's source.
     Radii,
-    /// [`CoarseSettings::constant_level`] everywhere.
+    /// [`CoarseSettings::constant_level`](crate::CoarseSettings::constant_level) everywhere.
     Constant,
     /// A picture stretched over the frame: black requests every pixel, white requests level 8.
     Image,

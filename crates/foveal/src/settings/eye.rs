@@ -80,6 +80,8 @@ impl Display {
                 width_m,
                 distance_m,
             } => width_m > 0.0 && distance_m > 0.0,
+            // Beyond 180 the tangent comes round again.
+            Self::Degrees(degrees) => degrees <= 171.0,
             _ => true,
         };
         let degrees = self.across().map(f32::to_degrees);
@@ -158,9 +160,11 @@ mod tests {
         assert!((degrees("60") - 60.0).abs() < 1e-3);
         assert!((degrees("2x1") - 90.0).abs() < 1e-3);
         for wrong in [
-            "", "tv", "0", "-60", "171", "nan", "inf", "0x1", "1x0", "1x", "x1", "1x2x3", "-1x-1",
+            "", "tv", "0", "-60", "171", "400", "nan", "inf", "0x1", "1x0", "1x", "x1", "1x2x3",
+            "-1x-1",
         ] {
-            assert!(wrong.parse::<Display>().is_err(), "{wrong}");
+            let cause = wrong.parse::<Display>().expect_err(wrong).to_string();
+            assert!(cause.contains("display"), "{wrong}: {cause}");
         }
     }
 }

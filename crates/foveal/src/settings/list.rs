@@ -36,7 +36,8 @@ settings! {
         culling => mode: Culling = Culling::default(), "Culling", Kind::choice::<Culling>();
         /// Smallest apparent size of an occluder. Smaller objects hide nothing: culling is then
         /// faster and finds less. An object is too small if radius^2 < distance * size^2 *
-        /// tan(fov / 2), the measure of Intel's sample, which uses 1.5. 0 uses every occluder.
+        /// tan(fov / 2), the measure of Intel's sample, which uses 1.5. 0 leaves out
+        /// no occluder for its size.
         occluder_size => occluder_size: f32 = 0.0, "Occluder size", Kind::Number { least: 0.0, most: 5.0 };
         /// Smallest apparent size of an object that is drawn, by the same measure as
         /// occluder-size. Above 0 small objects disappear from the picture; Intel's sample uses
@@ -97,8 +98,8 @@ settings! {
         /// Placement of the sub-samples: grid is regular, rotated has no two in one row or
         /// column.
         pattern => pattern: SamplePattern = SamplePattern::default(), "Pattern", Kind::choice::<SamplePattern>();
-        /// Pixels that msaa treats as edges: surface takes pixels with several surfaces, paper
-        /// those that differ in depth (as the technique's source does), never none.
+        /// Pixels that msaa treats as edges: surface takes those with several surfaces, paper those
+        /// that differ in depth (as the technique's source does), never takes none.
         edge_test => edge_test: EdgeTest = EdgeTest::default(), "Edge test", Kind::choice::<EdgeTest>();
     }
     /// The number of samples that are shaded.
@@ -107,10 +108,6 @@ settings! {
         /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels as
         /// the content allows.
         shading => mode: Shading = Shading::default(), "Shading", Kind::choice::<Shading>();
-        /// Work done once per sample instead of once per pixel: lighting, material (only with
-        /// variable shading) or both. Materials need the visibility geometry. auto takes both
-        /// where it is possible, else lighting.
-        rate_stage => stage: RateStage = RateStage::default(), "Stage", Kind::choice::<RateStage>();
     }
     /// The eye, its display, and the difference that it may see.
     "Eye" eye: EyeSettings {
@@ -164,19 +161,27 @@ settings! {
         rate_balance => balance: bool = true, "Balance", Kind::Switch;
         /// Finer shading at geometric edges: graded shades all edges one level finer (two where
         /// samples hold colours), inner shades edges near the gaze pixel by pixel, everywhere
-        /// shades all edges so, off leaves them as requested.
+        /// shades all edges pixel by pixel, off leaves them as requested.
         refine_edges => refine_edges: RefineEdges = RefineEdges::default(), "Refine edges", Kind::choice::<RefineEdges>();
         /// Pixel of a block that its sample shades: center takes the one at the centre, typical
         /// the most typical of five.
         coarse_sample => sample: CoarseSample = CoarseSample::default(), "Sample", Kind::choice::<CoarseSample>();
         /// Reconstruction of pixels from samples: light puts each pixel's own surface into the
-        /// samples' light; the others join colours, smooth by continuous patches, paper by the
-        /// four taps of the technique's source, nearest not at all.
+        /// samples' light. The others use the samples' colours: smooth joins them by continuous
+        /// patches, paper by the four taps of the technique's source, nearest leaves blocks of one
+        /// colour.
         composite => composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
         /// Light history: light is kept per pixel from frame to frame, reprojected by motion
         /// and reshaded step by step. Off: every sample is reshaded in every frame. Works with
         /// the composite light and samples at centres, and not with the stencil backend.
         history => history: bool = true, "Keep light", Kind::Switch;
+    }
+    /// Work that is done at a shading rate.
+    "Shading at a rate" rate: RateSettings {
+        /// Work done once per sample instead of once per pixel: lighting, material (only with
+        /// variable shading) or both. Materials need the visibility geometry. auto takes both
+        /// where it is possible, else lighting.
+        rate_stage => stage: RateStage = RateStage::default(), "Stage", Kind::choice::<RateStage>();
     }
     /// Samples of up to four by four pixels, by content.
     "Variable shading" variable: VariableSettings {
@@ -234,7 +239,16 @@ impl Settings {
         self
     }
 
-    /// The same settings at the size at which the frame is drawn, before [`PictureSettings::render_scale`]
+    /// Whether a scene that was set with the settings `before` must be set again to be drawn with
+    /// these: occluders and samplers are made with it.
+    #[must_use]
+    pub fn needs_scene_again(&self, before: &Self) -> bool {
+        let occlusion = self.culling.mode == Culling::Occlusion;
+        self.lighting.anisotropy != before.lighting.anisotropy
+            || occlusion && before.culling.mode != Culling::Occlusion
+    }
+
+    /// The same settings at the size at which the frame is drawn, before [`PictureSettings::render_scale`](crate::PictureSettings::render_scale)
     /// stretches it.
     #[must_use]
     pub fn drawn(&self) -> Self {

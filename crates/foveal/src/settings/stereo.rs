@@ -270,10 +270,12 @@ mod tests {
             assert_eq!(text.parse::<EyeFrusta>().expect(text).to_string(), text);
         }
         for wrong in ["cardboard", "1,2", "1,2,3,4", "a,b,c"] {
-            assert!(wrong.parse::<Lens>().is_err(), "{wrong}");
+            let cause = wrong.parse::<Lens>().expect_err(wrong).to_string();
+            assert!(cause.contains("lens"), "{wrong}: {cause}");
         }
         for wrong in ["-1,1,-1,1", "x", "-1,1,-1,1,-1,1,-1,1,0"] {
-            assert!(wrong.parse::<EyeFrusta>().is_err(), "{wrong}");
+            let cause = wrong.parse::<EyeFrusta>().expect_err(wrong).to_string();
+            assert!(cause.contains("eye-tangents"), "{wrong}: {cause}");
         }
     }
 }

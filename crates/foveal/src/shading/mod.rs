@@ -26,4 +26,4 @@ pub(crate) use pass::{ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};
 #[cfg(test)]
 pub(crate) use variable::RatesUniform;
-pub(crate) use variable::{Plan, VariableStage, VariableTargets};
+pub(crate) use variable::{VariablePlan, VariableStage, VariableTargets};

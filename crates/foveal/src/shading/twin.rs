@@ -163,7 +163,7 @@ pub(crate) fn ggx_lobe(n: Vec3, v: Vec3, l: Vec3, n_dot_l: f32, a2: f32) -> f32 
     distribution * visibility
 }
 
-/// A surface's radiance, and what the lamps alone send to it: `Lit` in `shared/lighting.wgsl`.
+/// A surface's radiance, and what the lights alone send to it: `Lit` in `shared/lighting.wgsl`.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct Lit {
     pub(crate) radiance: Vec3,
@@ -177,7 +177,7 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
-/// A lamp's part.
+/// A light's part.
 fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) -> Lit {
     let radiant = Vec3::from(light.radiant);
     let (direction, irradiance) = if light.kind == 0 {
@@ -211,7 +211,7 @@ fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) 
     }
 }
 
-/// What all lamps send to a surface; the radiance holds what it emits and reflects of its surroundings too.
+/// What all lights send to a surface; the radiance holds what it emits and reflects of its surroundings too.
 pub(crate) fn light_surface(
     scene: &Scene,
     lights: &[LightUniform],

@@ -1,5 +1,5 @@
 // Blocks of the coarse tiling: level l has square blocks of 2^l pixels. Blocks of all levels begin
-// anew where the right eye's picture does, so that none belongs to both; those at a picture's right
+// again where the right eye's picture does, so that none belongs to both; those at a picture's right
 // and lower border may reach beyond it. CPU twins: `rate/pyramid.rs`, `shading/coarse/block.rs`.
 
 #import shared/frame.wgsl

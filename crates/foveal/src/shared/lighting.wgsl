@@ -1,4 +1,4 @@
-// How a surface is lit by lamps: the one lighting model of all passes.
+// How a surface is lit by lights: the one lighting model of all passes.
 
 #import shared/frame.wgsl
 #import shared/light.wgsl
@@ -20,14 +20,14 @@ struct Arriving {
     irradiance: vec3f,
 }
 
-// A surface's radiance, and what the lamps alone send to it.
+// A surface's radiance, and what the lights alone send to it.
 struct Lit {
     radiance: vec3f,
     // Irradiance that is left for diffuse reflection.
     diffuse: vec3f,
     // Mirrored radiance.
     mirrored: vec3f,
-    // Sum of the unit directions to the lamps, weighted by their luminance.
+    // Sum of the unit directions to the lights, weighted by their luminance.
     direction: vec3f,
     // The same, weighted by the luminance of what is mirrored.
     mirrored_direction: vec3f,
@@ -110,7 +110,7 @@ fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
     return cluster * light_words();
 }
 
-// Radiance that leaves a surface towards the eye, and the lamps' light that it comes from. Lights are summed in ascending order
+// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights are summed in ascending order
 // whichever way they are found, so that clustered and brute agree to the bit.
 fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);

@@ -1,4 +1,4 @@
-// What a surface reflects of its surroundings, lamps aside.
+// What a surface reflects of its surroundings, lights aside.
 
 #import shared/frame.wgsl
 #import shared/surface.wgsl

@@ -34,7 +34,7 @@ struct VertexOut {
 
 // How eyes are drawn: 0 one view to a target or layer, 1 each in a pass of its own, 2 as instances in turn.
 override EYES: u32 = 0u;
-// An eye's fragments beyond the middle of the target are discarded, not clipped.
+// An eye's fragments beyond the centre of the target are discarded, not clipped.
 override DISCARD_BEYOND: bool = false;
 
 // Highest bit of an instance's number on its way to the fragments: it is seen by the right eye.
@@ -66,7 +66,7 @@ fn in_target(clip: vec4f, view: u32) -> vec4f {
     return vec4f(clip.x * part + select(-shift, shift, view == 1u), clip.yzw);
 }
 
-// How far inside an eye's own half of the target, in clip space, from x, y, w there; negative beyond the middle.
+// How far inside an eye's own half of the target, in clip space, from x, y, w there; negative beyond the centre.
 fn inside_own_half(now: vec3f, marked_instance: u32) -> f32 {
     return now.z + select(-now.x, now.x, (marked_instance & RIGHT_EYE) != 0u);
 }
@@ -173,7 +173,7 @@ struct ClippedVertexOut {
 @vertex
 fn vertex_clipped(in: VertexIn) -> ClippedVertexOut {
     let v = vertex_of(in, drawn_as(in.drawn_index));
-    // A little beyond the middle, so that rounding takes no pixel away, and less than any sub-sample lies beyond it.
+    // A little beyond the centre, so that rounding takes no pixel away, and less than any sub-sample lies beyond it.
     let slack = v.now.z / (64.0 * frame.size.x);
     let inside = array<f32, 1>(inside_own_half(v.now, v.instance) + slack);
     return ClippedVertexOut(

@@ -53,17 +53,17 @@ pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Err
     check(settings, camera)?;
     let aspect = settings.picture.width as f32 / settings.picture.height as f32;
     let clip_from_view = camera.clip_from_view(aspect);
-    let middle = Eye {
+    let center = Eye {
         world_from_view: camera.world_from_view,
         clip_from_view,
         orthographic: matches!(camera.projection, Projection::Orthographic { .. }),
     };
     if !settings.is_stereo() {
-        return Ok([middle; 2]);
+        return Ok([center; 2]);
     }
     Ok([-0.5f32, 0.5].map(|side| {
         let x = side * settings.stereo.ipd_m;
-        let mut eye = middle;
+        let mut eye = center;
         let right = camera.world_from_view.x_axis;
         eye.world_from_view.w_axis += right * x;
         match settings.stereo.frusta {
@@ -75,7 +75,7 @@ pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Err
                 m.z_axis.x = (right + left) / (right - left);
                 m.z_axis.y = (top + bottom) / (top - bottom);
             }
-            // Points straight ahead at the convergence distance keep the middle's place in the picture.
+            // Points straight ahead at the convergence distance keep the centre's place in the picture.
             EyeFrusta::Camera => {
                 eye.clip_from_view.z_axis.x -=
                     clip_from_view.x_axis.x * x / settings.stereo.convergence_m

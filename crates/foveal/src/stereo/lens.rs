@@ -38,11 +38,11 @@ impl LensProfile {
         }
         // Bisection halves the interval to the last bit: no polynomial makes it fail.
         for _ in 0..48 {
-            let middle = 0.5 * (low + high);
-            if self.seen(middle) < seen {
-                low = middle;
+            let center = 0.5 * (low + high);
+            if self.seen(center) < seen {
+                low = center;
             } else {
-                high = middle;
+                high = center;
             }
         }
         Some(0.5 * (low + high))

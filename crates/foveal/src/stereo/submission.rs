@@ -9,9 +9,9 @@ use crate::StereoStats;
 pub(crate) enum Submission {
     /// One eye.
     Mono,
-    /// Every draw once per eye, each within a scissor, or clipped at the middle besides as instancing would.
+    /// Every draw once per eye, each within a scissor, or clipped at the centre besides as instancing would.
     TwoPass { clips: bool },
-    /// Every draw once with twice the instances, clipped at the middle by the rasterizer, or by discarding.
+    /// Every draw once with twice the instances, clipped at the centre by the rasterizer, or by discarding.
     Instanced { clips: bool },
     /// Every draw once, to a layer for each eye.
     Multiview,
@@ -66,7 +66,7 @@ impl Submission {
         NonZeroU32::new(0b11).filter(|_| self == Self::Multiview)
     }
 
-    /// Whether the rasterizer clips at the middle: shaders then have a plane.
+    /// Whether the rasterizer clips at the centre: shaders then have a plane.
     pub(crate) fn clips(self) -> bool {
         matches!(
             self,

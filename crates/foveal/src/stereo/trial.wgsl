@@ -15,7 +15,7 @@ struct Corner {
     @invariant @builtin(position) clip: vec4f,
     // Of the triangle, from 1 on.
     @location(0) @interpolate(flat) number: u32,
-    // How far inside the eye's own half of the target; negative beyond the middle.
+    // How far inside the eye's own half of the target; negative beyond the centre.
     @location(1) inside_own_half: f32,
 }
 
@@ -36,12 +36,12 @@ fn spread(value: u32) -> f32 {
 // As an eye sees it.
 fn corner(drawn: u32, vertex: u32, eye: u32) -> Corner {
     let triangle = drawn * TRIANGLES + vertex / 3u;
-    let middle = 1.2 * vec2f(spread(triangle * 3u), spread(triangle * 3u + 1u));
+    let center = 1.2 * vec2f(spread(triangle * 3u), spread(triangle * 3u + 1u));
     let depth = 0.5 + 0.49 * spread(triangle * 3u + 2u);
     let seed = (triangle * 3u + vertex % 3u) * 2u + 0x10000000u;
     let away = 0.25 * vec2f(spread(seed), spread(seed + 1u));
     let shift = select(0.3, -0.3, eye == 1u) * depth;
-    return Corner(vec4f(middle + away + vec2f(shift, 0.0), depth, 1.0), triangle + 1u, 1.0);
+    return Corner(vec4f(center + away + vec2f(shift, 0.0), depth, 1.0), triangle + 1u, 1.0);
 }
 
 // One eye alone: the number's highest bit tells which.

@@ -44,6 +44,7 @@ fn changed(setting: &Setting, default: &Value) -> Value {
         }
         (Kind::Place, Value::Array(_)) => Value::from(vec![0.25, -0.5]),
         (Kind::Text, Value::String(_)) if setting.key == "lens" => Value::from("dk1"),
+        (Kind::Text, Value::String(_)) if setting.key == "display" => Value::from("fhd-24"),
         (Kind::Text, Value::String(_)) => Value::from("-1,0.5,-1,1,-0.5,1,-1,1"),
         (Kind::File, Value::String(_)) => Value::from("a b.png"),
         (kind, value) => panic!("{}: {value} is no {kind:?}", setting.key),

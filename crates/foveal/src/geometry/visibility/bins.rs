@@ -1,6 +1,6 @@
 //! The passes that sort the seen pixels by material.
 
-use super::{Evaluation, Rates, VisibilityTargets, with_mask};
+use super::{Rates, ResolveAt, VisibilityTargets, with_mask};
 use crate::geometry::{GBuffer, SURFACE_FORMAT};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
@@ -115,7 +115,7 @@ impl BinPass {
         target: &GBuffer,
         visibility: &VisibilityTargets,
         (bins, by): (&Bins, MaterialDispatch),
-        at: &Evaluation<'_>,
+        at: &ResolveAt<'_>,
     ) {
         let Some(families) = scene.materials.family_bindings() else {
             return;

@@ -72,7 +72,7 @@ fn every_listed_pixel_is_in_its_materials_bin_once() {
                 settings.with(|s| {
                     s.shading.mode = Shading::Variable;
                     s.coarse.source = RateSource::Content;
-                    s.shading.stage = RateStage::Both;
+                    s.rate.stage = RateStage::Both;
                     s.variable.force = true;
                 })
             } else {

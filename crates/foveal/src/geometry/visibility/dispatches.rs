@@ -30,7 +30,7 @@ impl Numbers {
     }
 }
 
-/// Each size has a sampler of its own: shaders are compiled anew for each that they meet.
+/// Each size has a sampler of its own: shaders are compiled again for each that they meet.
 fn texture(n: &mut Numbers, number: u32) -> Texture {
     let (width, height, filter, mip) = [
         (16, 16, Filter::Linear, true),
@@ -168,7 +168,7 @@ fn a_picture_by_families_is_the_one_by_materials_to_the_byte() {
         plain.clone().with(|s| {
             s.shading.mode = shading;
             s.coarse.source = rate;
-            s.shading.stage = RateStage::Both;
+            s.rate.stage = RateStage::Both;
             // That of light needs materials at every pixel.
             s.coarse.composite = crate::Composite::Smooth;
             s.variable.force = true;

@@ -2,7 +2,7 @@
 //! evaluated afterwards, once per pixel, whatever the overdraw.
 //!
 //! After Burns and Hunt 2013, 'The visibility buffer'. Passes: [`VisiblePass`] draws instance, motion, triangle and
-//! depth; [`BinPass`] sorts the seen pixels by material; [`ResolvePass`] evaluates each material at its pixels, with
+//! depth; [`BinPass`] sorts the seen pixels by material; [`ResolvePass`] resolves each material at its pixels, with
 //! analytic barycentric coordinates and derivatives (`shared/attributes.wgsl`), and writes the surfaces of the
 //! ordinary G-buffer, so that every later stage sees an ordinary G-buffer. There is one indirect dispatch for each
 //! family of materials (`scene/families.rs`), whose bins lie side by side.
@@ -25,5 +25,5 @@ pub(crate) use resolve::WindowsUniform;
 pub(crate) use tests::level_scene;
 
 pub(crate) use pass::VisibilityPass;
-pub(crate) use targets::{Evaluation, Rates, VisibilityTargets};
 use targets::{Listed, with_mask};
+pub(crate) use targets::{Rates, ResolveAt, VisibilityTargets};

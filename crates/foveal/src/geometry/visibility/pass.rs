@@ -3,7 +3,7 @@
 use super::bins::{BinPass, Bins};
 use super::raster::VisiblePass;
 use super::resolve::ResolvePass;
-use super::targets::{Evaluation, Listed, Rates};
+use super::targets::{Listed, Rates, ResolveAt};
 use crate::geometry::{DrawList, Draws, FaceNormals, GBuffer, Window};
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
@@ -21,7 +21,7 @@ struct Materials {
 pub(crate) struct VisibilityPass {
     raster: VisiblePass,
     full: Materials,
-    /// Where materials are evaluated at a rate.
+    /// Where materials are resolved at a rate.
     rated: Option<Materials>,
     /// For the further surfaces of pixels at edges.
     further: Option<ResolvePass>,
@@ -30,7 +30,7 @@ pub(crate) struct VisibilityPass {
 }
 impl VisibilityPass {
     /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: the footprint of a pixel's textures, in
-    /// pixels, where [`VisibilityPass::evaluate_further`] will be called; `rates`: materials will be evaluated there.
+    /// pixels, where [`VisibilityPass::resolve_further`] will be called; `rates`: materials will be evaluated there.
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
@@ -123,20 +123,20 @@ impl VisibilityPass {
     }
 
     /// Encodes the passes after that: from identity and triangle to surfaces, at the pixels of `at`.
-    pub(crate) fn evaluate(
+    pub(crate) fn resolve(
         &self,
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
         target: &GBuffer,
         windows: &[Window],
-        at: &Evaluation<'_>,
+        at: &ResolveAt<'_>,
     ) {
         let materials = match (at.mask, &self.rated) {
             (Some(_), rated) => rated.as_ref(),
             (None, _) => Some(&self.full),
         };
         if let Some(Materials { bin, resolve }) = materials {
-            self.evaluate_by((bin, resolve), recorder, draws, target, windows, at);
+            self.resolve_by((bin, resolve), recorder, draws, target, windows, at);
         }
     }
 
@@ -147,7 +147,7 @@ impl VisibilityPass {
         recorder: &mut Recorder<'_>,
         scene: &SceneOnGpu,
         target: &GBuffer,
-        at: &Evaluation<'_>,
+        at: &ResolveAt<'_>,
         subgroups: bool,
     ) {
         let rates = at.mask.map(|_| Rates::Samples);
@@ -161,7 +161,7 @@ impl VisibilityPass {
 
     /// The same for a target whose texels lie anywhere in the picture: identity's second word tells, as
     /// `antialias/quarters.wgsl` has it.
-    pub(crate) fn evaluate_further(
+    pub(crate) fn resolve_further(
         &self,
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
@@ -170,19 +170,19 @@ impl VisibilityPass {
     ) {
         if let Some(further) = &self.further {
             let passes = (&self.full.bin, further);
-            let at = &Evaluation::FULL;
-            self.evaluate_by(passes, recorder, draws, target, &[whole], at);
+            let at = &ResolveAt::FULL;
+            self.resolve_by(passes, recorder, draws, target, &[whole], at);
         }
     }
 
-    fn evaluate_by(
+    fn resolve_by(
         &self,
         (bin, resolve): (&BinPass, &ResolvePass),
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
         target: &GBuffer,
         windows: &[Window],
-        at: &Evaluation<'_>,
+        at: &ResolveAt<'_>,
     ) {
         let Some(visibility) = &target.visibility else {
             return;

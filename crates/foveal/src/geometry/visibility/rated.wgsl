@@ -28,6 +28,6 @@ fn extent_of(texel: vec2u) -> vec2u {
 }
 
 // The sample's centre, in texels.
-fn middle_of(texel: vec2u) -> vec2f {
+fn center_of(texel: vec2u) -> vec2f {
     return vec2f(texel) + 0.5 * vec2f(extent_of(texel));
 }

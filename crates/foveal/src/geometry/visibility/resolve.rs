@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use bytemuck::{Pod, Zeroable};
 
-use super::{Evaluation, Listed, Rates, VisibilityTargets, with_mask};
+use super::{Listed, Rates, ResolveAt, VisibilityTargets, with_mask};
 use crate::geometry::{Draws, FaceNormals, GBuffer, SURFACE_FORMAT, Window};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, uniform,
@@ -140,7 +140,7 @@ impl ResolvePass {
         target: &GBuffer,
         visibility: &VisibilityTargets,
         windows: &[Window],
-        at: &Evaluation<'_>,
+        at: &ResolveAt<'_>,
     ) {
         let Draws { scene, list } = draws;
         // A scene that this geometry could not draw has none.

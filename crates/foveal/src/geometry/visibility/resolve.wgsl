@@ -76,7 +76,7 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     let around = frame_around(texel);
     // Texels per pixel: sub-samples have their own.
     let scale = around.zw / frame.target_size;
-    let pixel = (middle_of(texel) - around.xy) / scale;
+    let pixel = (center_of(texel) - around.xy) / scale;
     let ndc = ndc_of(in_eye(pixel));
     let step = vec2f(2.0, -2.0) / (frame.size * scale) * vec2f(extent) * FOOTPRINT;
     let instance = load_words(identity, texel).x - 1u;

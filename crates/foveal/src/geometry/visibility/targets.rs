@@ -44,16 +44,16 @@ impl VisibilityTargets {
         }
     }
 }
-/// At which pixels materials are evaluated, and what the passes are timed under.
+/// At which pixels materials are resolved, and what the passes are timed under.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Evaluation<'a> {
+pub(crate) struct ResolveAt<'a> {
     /// Once per sample of this mask (`shading/variable`), or per tile of these owner levels (`rate/`); `None`: at every
     /// pixel.
     pub(crate) mask: Option<&'a wgpu::TextureView>,
     pub(super) binning_label: &'static str,
     pub(super) material_label: &'static str,
 }
-impl<'a> Evaluation<'a> {
+impl<'a> ResolveAt<'a> {
     /// At every pixel.
     pub(crate) const FULL: Self = Self {
         mask: None,
@@ -78,7 +78,7 @@ impl<'a> Evaluation<'a> {
 }
 /// `resources`, and the mask where there is one.
 pub(super) fn with_mask<'a>(
-    at: &Evaluation<'a>,
+    at: &ResolveAt<'a>,
     resources: &[wgpu::BindingResource<'a>],
 ) -> Vec<wgpu::BindingResource<'a>> {
     let mask = at.mask.map(wgpu::BindingResource::TextureView);
@@ -92,7 +92,7 @@ pub(crate) enum Rates {
     /// Where the tiles of a rate map are sampled.
     Tiles(CoarseSample),
 }
-/// Which pixels' materials are evaluated: a variant of `listed.wgsl`.
+/// Which pixels' materials are resolved: a variant of `listed.wgsl`.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Listed {
     Every,

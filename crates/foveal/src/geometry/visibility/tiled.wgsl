@@ -44,6 +44,6 @@ fn extent_of(texel: vec2u) -> vec2u {
 }
 
 // Depth is the texel's own: so is its surface.
-fn middle_of(texel: vec2u) -> vec2f {
+fn center_of(texel: vec2u) -> vec2f {
     return vec2f(texel) + 0.5;
 }

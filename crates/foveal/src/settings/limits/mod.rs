@@ -12,7 +12,8 @@ use crate::Error;
 impl Settings {
     /// Checks that the settings make sense and that a device with these limits can draw them.
     ///
-    /// # Errors [`Error::Setting`] for a value that makes no sense, alone or beside the others;
+    /// # Errors
+    /// [`Error::Setting`] for a value that makes no sense, alone or beside the others;
     /// [`Error::Limit`] for one that the device cannot draw.
     pub fn validate(&self, limits: &wgpu::Limits) -> Result<(), Error> {
         let most = limits.max_texture_dimension_2d;

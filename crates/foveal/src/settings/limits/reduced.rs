@@ -25,13 +25,13 @@ impl Setting {
 
 /// Checks that the settings need nothing that is missing there.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {
-    let wishes = [
+    let requests = [
         ("view", s.picture.view == DebugView::Final, "final"),
         ("geometry", s.geometry.path == Geometry::Gbuffer, "gbuffer"),
         ("aa", s.antialiasing.mode == Antialiasing::None, "none"),
         ("shading", s.shading.mode == Shading::Full, "full"),
     ];
-    match wishes.into_iter().find(|(_, is_met, _)| !is_met) {
+    match requests.into_iter().find(|(_, is_met, _)| !is_met) {
         None => Ok(()),
         Some((name, _, only)) => Err(Error::Setting {
             name,

@@ -15,7 +15,7 @@ impl Settings {
         let material = self.geometry.path == Geometry::Visibility
             && self.antialiasing.mode == Antialiasing::None
             && !light;
-        match (self.shading.mode, self.shading.stage) {
+        match (self.shading.mode, self.rate.stage) {
             (Shading::Full, _) => RateStage::Lighting,
             (_, RateStage::Auto) if material => RateStage::Both,
             (_, RateStage::Auto) => RateStage::Lighting,
@@ -74,17 +74,17 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
             "another one unless shading is coarse",
         );
     }
-    if s.shading.mode == Shading::Coarse && s.shading.stage == RateStage::Material {
+    if s.shading.mode == Shading::Coarse && s.rate.stage == RateStage::Material {
         return wrong(
             "rate-stage",
-            name(&s.shading.stage),
+            name(&s.rate.stage),
             "another one unless shading is variable",
         );
     }
     if s.sees_by_depth() && s.coarse.composite == Composite::Light {
         return wrong(
             "rate-stage",
-            name(&s.shading.stage),
+            name(&s.rate.stage),
             "lighting where the composite is light",
         );
     }
@@ -92,14 +92,14 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         if s.geometry.path != Geometry::Visibility {
             return wrong(
                 "rate-stage",
-                name(&s.shading.stage),
+                name(&s.rate.stage),
                 "lighting unless the geometry is visibility",
             );
         }
         if s.antialiasing.mode != Antialiasing::None {
             return wrong(
                 "rate-stage",
-                name(&s.shading.stage),
+                name(&s.rate.stage),
                 "lighting where edges are smoothed",
             );
         }

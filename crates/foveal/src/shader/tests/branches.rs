@@ -145,7 +145,7 @@ fn branches_on_uniforms(module: &naga::Module) -> Vec<String> {
     found
 }
 
-/// Mesa's lavapipe takes the values of such uniforms into the shader and compiles it anew whenever their
+/// Mesa's lavapipe takes the values of such uniforms into the shader and compiles it again whenever their
 /// buffer changes, which is every frame; the old one's memory is never given back (seen with 22.3.6).
 #[test]
 fn no_branch_is_decided_by_uniforms_alone() {

@@ -35,7 +35,7 @@ macro_rules! assert_same_layout {
 fn shared_structs_lie_the_same_in_rust_and_wgsl() {
     use crate::frame::{FrameUniform, ViewUniform};
     use crate::lights::LightUniform;
-    use crate::rate::WishUniform;
+    use crate::rate::RequestUniform;
     use crate::scene::{InstanceUniform, MaterialUniform};
     assert_same_layout!(
         GEOMETRY_GBUFFER,
@@ -95,9 +95,9 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         ]
     );
     assert_same_layout!(
-        RATE_WISH,
-        "Wish",
-        WishUniform,
+        RATE_REQUEST,
+        "Request",
+        RequestUniform,
         [
             gaze,
             squared_radii,
@@ -197,7 +197,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         ]
     );
     for shader in [
-        SHADING_HISTORY_CARRY,
+        SHADING_HISTORY_REPROJECT,
         SHADING_HISTORY_TILES,
         SHADING_HISTORY_REST,
     ] {

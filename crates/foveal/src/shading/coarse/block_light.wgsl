@@ -10,8 +10,8 @@
 #import shared/surface.wgsl
 #import shared/surroundings.wgsl
 
-// By how much lamps in all directions widen a highlight. Found by measurement: 0.5, which follows from half-way directions' turning by
-// half as much as the lamps, makes rough stones too bright.
+// By how much lights in all directions widen a highlight. Found by measurement: 0.5, which follows from half-way directions' turning by
+// half as much as the lights, makes rough stones too bright.
 const SPREAD: f32 = 0.1;
 
 struct LitBlock {

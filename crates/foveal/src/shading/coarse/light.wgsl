@@ -1,9 +1,9 @@
-// What a sample of coarse shading holds beside its radiance: the lamps' light, freed of the
+// What a sample of coarse shading holds beside its radiance: the lights' light, freed of the
 // surface's own colour, so that other surfaces can be put into it (composite/light.wgsl). Rust:
 // `composite/light_twin.rs`.
 //
-// Diffuse light is that of one lamp in the direction that light comes from on the whole, mirrored
-// light that of one in the direction that it mostly comes from, spread out as the lamps are: so
+// Diffuse light is that of one light in the direction that light comes from on the whole, mirrored
+// light that of one in the direction that it mostly comes from, spread out as the lights are: so
 // that each pixel's own normal and roughness shape both.
 
 #import shared/surface.wgsl
@@ -26,7 +26,7 @@ struct SampleLight {
     normal: vec3f,
 }
 
-// How much of a lamp's light a surface mirrors, for a normal and a squared alpha.
+// How much of a light's light a surface mirrors, for a normal and a squared alpha.
 fn highlight(n: vec3f, v: vec3f, l: vec3f, a2: f32) -> f32 {
     let n_dot_l = max(dot(n, l), LEAST_COSINE);
     return n_dot_l * ggx_lobe(n, v, l, normalize(v + l), n_dot_l, min(a2, 1.0));

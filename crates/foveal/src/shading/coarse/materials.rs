@@ -30,7 +30,7 @@ fn settings(rate_stage: RateStage) -> Settings {
         s.coarse.fovea_outer = 0.6;
         s.eye.gaze = [0.3, 0.6];
         s.coarse.refine_edges = RefineEdges::Off;
-        s.shading.stage = rate_stage;
+        s.rate.stage = rate_stage;
     })
 }
 

@@ -67,18 +67,18 @@ fn radiance(renderer: &Renderer) -> Vec<[u16; 4]> {
     texels(&renderer.targets().radiance_view)
 }
 
-/// The tiling that the device's wishes, which are those of 2 x 2 pixels, give on the CPU.
+/// The tiling that the device's requested levels, which are those of 2 x 2 pixels, give on the CPU.
 fn twin(renderer: &Renderer) -> MinPyramid {
     let s = renderer.settings();
     let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
     let quads = cells(&rate.pyramid, 1);
     let across = s.picture.width.div_ceil(2);
-    let wishes: Vec<u8> = (0..s.picture.width * s.picture.height)
+    let requests: Vec<u8> = (0..s.picture.width * s.picture.height)
         .map(|i| quads[(i / s.picture.width / 2 * across + i % s.picture.width / 2) as usize])
         .collect();
     MinPyramid::new(
         s.picture.width,
-        &wishes,
+        &requests,
         s.coarse.coarsest_level,
         s.coarse.balance,
     )
@@ -136,7 +136,7 @@ fn wishes_equal_their_twin() {
         let renderer = draw_with_image(&settings, image.clone());
         let rate = &renderer.targets().coarse.as_ref().unwrap().rate;
         let eyes = crate::stereo::eyes(&settings, &scene().cameras[0]).unwrap();
-        let uniform = crate::rate::WishUniform::new(&settings, &eyes, None);
+        let uniform = crate::rate::RequestUniform::new(&settings, &eyes, None);
         let quads = cells(&rate.pyramid, 1);
         let level = |x: u32, y: u32| {
             let (x, y) = (x.min(SIZES[0].0 - 1), y.min(SIZES[0].1 - 1));
@@ -144,18 +144,18 @@ fn wishes_equal_their_twin() {
         };
         let differing = (0..)
             .zip(quads)
-            .filter(|&(i, wish)| {
+            .filter(|&(i, request)| {
                 let across = settings.picture.width.div_ceil(2);
                 let (x, y) = (i % across * 2, i / across * 2);
                 let finest = level(x, y)
                     .min(level(x + 1, y))
                     .min(level(x, y + 1))
                     .min(level(x + 1, y + 1));
-                finest != wish
+                finest != request
             })
             .count();
         // A squared distance may round to either side of a radius.
-        assert!(differing <= 2, "{differing} wishes differ");
+        assert!(differing <= 2, "{differing} requests differ");
     }
 }
 

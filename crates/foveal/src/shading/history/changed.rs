@@ -1,4 +1,4 @@
-//! Where lamps have changed from one frame to the next.
+//! Where lights have changed from one frame to the next.
 
 use crate::lights::LightUniform;
 
@@ -15,12 +15,12 @@ pub(super) enum Changed {
     Nowhere,
     /// Within spheres: centre and radius in metres, world space.
     Within(Vec<[f32; 4]>),
-    /// Anywhere: too many lamps have changed, or one that lights everything.
+    /// Anywhere: too many lights have changed, or one that lights everything.
     Everywhere,
 }
 
 impl Changed {
-    /// Adds where these lamps differ.
+    /// Adds where these lights differ.
     pub(super) fn add(&mut self, before: &[LightUniform], now: &[LightUniform]) {
         let mut places = match std::mem::take(self) {
             Self::Nowhere => Vec::new(),

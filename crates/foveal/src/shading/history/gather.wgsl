@@ -1,9 +1,9 @@
-// Pixels that remember nothing take the light of the samples around them.
+// Pixels that have no history take the light of the samples around them.
 
 #import composite/gather.wgsl
 #import composite/tiling.wgsl
 #import shading/coarse/light.wgsl
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
@@ -12,16 +12,16 @@
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
-// Pixels' light, where it was carried over or sampled.
+// Pixels' light, where it was reprojected or sampled.
 @group(1) @binding(3) var light: texture_2d<u32>;
 @group(1) @binding(4) var radiance: texture_storage_2d<rgba16float, write>;
 @group(1) @binding(5) var<storage, read_write> listed: array<Listed, 3>;
-// Of the pixels that remember nothing.
+// Of the pixels that have no history.
 @group(1) @binding(9) var<storage, read> dispatch: Dispatch;
 @group(1) @binding(6) var<storage, read> bare: array<u32>;
 // Pixels that no sample speaks for.
 @group(1) @binding(7) var<storage, read_write> unlit: array<vec2u>;
-// What pixels remember from here on, on its way to `light`.
+// What pixels keep from here on, on its way to `light`.
 @group(1) @binding(8) var gathered: texture_storage_2d<rgba32uint, write>;
 
 fn sampled_at(tile: Tile) -> vec2u {
@@ -57,8 +57,8 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     }
     let diffuse = found.diffuse / found.weight;
     let mirror = found.mirrored / found.weight;
-    let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
-    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lamps, vec3f(65504.0)), 1.0));
+    let lights = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
+    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lights, vec3f(65504.0)), 1.0));
     // As light from one direction each, which gives the same on this surface.
     let direction = unit_or(found.direction, s.normal);
     let mirrored_direction = unit_or(found.mirrored_direction, s.normal);

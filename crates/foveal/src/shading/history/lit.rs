@@ -1,4 +1,4 @@
-//! What a frame of kept light does.
+//! What a frame does with the light history.
 
 use crate::gpu::Gpu;
 use crate::stereo::EyeLayout;

@@ -18,7 +18,7 @@ use crate::{Settings, shader};
 /// Pixels a side that one workgroup looks at.
 const TILE: u32 = 8;
 
-/// Mirrors `History` in `remembered.wgsl`, where the fields are explained.
+/// Mirrors `History` in `layout.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct HistoryParameters {
@@ -44,7 +44,7 @@ struct Pass {
 pub(super) struct HistoryPasses {
     keep: Pass,
     spread: Pass,
-    carry: Pass,
+    reproject: Pass,
     size: Pass,
     shade: Pass,
     gather: Pass,
@@ -102,10 +102,10 @@ impl HistoryPasses {
                 &tiles,
                 &[],
             ),
-            carry: pass(
-                "carrying light",
-                shader::SHADING_HISTORY_CARRY,
-                "carry",
+            reproject: pass(
+                "reprojection of light",
+                shader::SHADING_HISTORY_REPROJECT,
+                "reproject",
                 None,
                 &[
                     uint,
@@ -185,7 +185,7 @@ impl HistoryPasses {
 }
 
 impl HistoryPasses {
-    /// Encodes the frame's passes: lights `h.radiance`, and remembers what the next frame needs.
+    /// Encodes the frame's passes: lights `h.radiance`, and keeps what the next frame needs.
     pub(super) fn light(
         &self,
         recorder: &mut Recorder<'_>,
@@ -223,9 +223,9 @@ impl HistoryPasses {
             h.tiles.as_entire_binding(),
         ];
         let tiles = group(&self.keep, "tiles", &tiles);
-        let carry = group(
-            &self.carry,
-            "carrying light",
+        let reproject = group(
+            &self.reproject,
+            "reprojection of light",
             &[
                 view(&rate.owner.whole),
                 view(&gbuffer.surface_layers),
@@ -296,18 +296,18 @@ impl HistoryPasses {
         let at = |list: List| list as u64 * LIST_STEP;
         if lit.turn.is_none() {
             recorder.encoder.clear_buffer(&h.wanted, 0, None);
-            let mut pass = recorder.compute_pass("carrying light");
+            let mut pass = recorder.compute_pass("reprojection of light");
             let of_tiles = (across * down).div_ceil(64);
             pass.set_bind_group(1, &tiles, &[]);
             pass.set_pipeline(&self.keep.pipeline);
             pass.dispatch_workgroups(of_tiles, 1, 1);
             pass.set_pipeline(&self.spread.pipeline);
             pass.dispatch_workgroups(of_tiles, 1, 1);
-            pass.set_pipeline(&self.carry.pipeline);
-            pass.set_bind_group(1, &carry, &[]);
+            pass.set_pipeline(&self.reproject.pipeline);
+            pass.set_bind_group(1, &reproject, &[]);
             pass.dispatch_workgroups(across, down, 1);
         } else {
-            let mut pass = recorder.compute_pass("carrying light");
+            let mut pass = recorder.compute_pass("reprojection of light");
             pass.set_pipeline(&self.rest.pipeline);
             pass.set_bind_group(1, &rest, &[]);
             pass.dispatch_workgroups(across, down, 1);

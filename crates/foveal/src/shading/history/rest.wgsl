@@ -1,7 +1,7 @@
 // While nothing moves: lists the pixels whose turn it is, so that after a round each was shaded by
 // itself.
 
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl

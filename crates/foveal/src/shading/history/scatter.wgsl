@@ -1,6 +1,6 @@
-// Puts gathered light where it is remembered.
+// Puts gathered light where it is kept.
 
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 
 @group(1) @binding(0) var<storage, read> dispatch: Dispatch;
 @group(1) @binding(1) var<storage, read> bare: array<u32>;

@@ -2,7 +2,7 @@
 
 #import shading/coarse/block_light.wgsl
 #import shading/history/measured.wgsl
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 #import shared/frame.wgsl
 #import shared/surroundings.wgsl
 

@@ -1,6 +1,6 @@
 // Dispatches from the lengths of lists.
 
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 
 // Workgroups that a dispatch may have in one dimension.
 const MAX_ROW: u32 = 65535u;

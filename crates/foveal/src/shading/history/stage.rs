@@ -1,4 +1,4 @@
-//! All of kept light that outlives a frame.
+//! All of the light history that outlives a frame.
 
 use super::HistoryTargets;
 use super::changed::Changed;
@@ -25,9 +25,9 @@ pub(crate) struct HistoryStage {
     moved: bool,
     /// Where the eyes looked: `EyeSettings::gaze` and `StereoSettings::gaze_shift`.
     gaze: [[f32; 2]; 2],
-    /// Where lamps have changed since.
+    /// Where lights have changed since.
     changed: Changed,
-    /// Frames since nothing was remembered.
+    /// Frames since nothing was kept.
     frame: u32,
     /// Frames at rest.
     rested: u32,
@@ -36,7 +36,7 @@ pub(crate) struct HistoryStage {
     pub(super) told: HistoryParameters,
 }
 impl HistoryStage {
-    /// `None` where light is not carried along.
+    /// `None` where light is not reprojected.
     pub(crate) fn new(
         gpu: &Gpu,
         settings: &Settings,
@@ -66,8 +66,8 @@ impl HistoryStage {
         self.moved = true;
     }
 
-    /// The next frame's lamps are other ones.
-    pub(crate) fn lamps_changed(&mut self, before: &[LightUniform], now: &[LightUniform]) {
+    /// The next frame's lights are other ones.
+    pub(crate) fn lights_changed(&mut self, before: &[LightUniform], now: &[LightUniform]) {
         self.changed.add(before, now);
     }
 

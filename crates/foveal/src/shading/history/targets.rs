@@ -1,4 +1,4 @@
-//! What is remembered from frame to frame, and the lists of a frame.
+//! What is kept from frame to frame, and the lists of a frame.
 
 use super::lit::SAMPLE_BYTES;
 use crate::gpu::{self, Gpu};
@@ -6,9 +6,9 @@ use crate::shading::RADIANCE_FORMAT;
 use crate::stereo::EyeLayout;
 use crate::{Settings, composite::LIGHT_FORMAT};
 
-/// What a pixel remembers besides its light: `remembered.wgsl`.
+/// What a pixel keeps besides its light: `layout.wgsl`.
 pub(super) const SEEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
-/// Bytes of `Listed` in `remembered.wgsl`.
+/// Bytes of `Listed` in `layout.wgsl`.
 pub(super) const LISTED_BYTES: u64 = 40;
 /// Bytes of `Dispatch` there: the step between bindings.
 pub(super) const LIST_STEP: u64 = 256;
@@ -26,7 +26,7 @@ pub(super) enum List {
 pub(crate) struct HistoryTargets {
     /// Each pixel's light, of even and of odd frames.
     pub(super) light: [wgpu::TextureView; 2],
-    /// What else each pixel remembers.
+    /// What else each pixel keeps.
     pub(super) seen: [wgpu::TextureView; 2],
     /// Radiance of solid surfaces, without what is blended over it.
     pub(super) radiance: wgpu::TextureView,
@@ -36,7 +36,7 @@ pub(crate) struct HistoryTargets {
     pub(super) dispatches: wgpu::Buffer,
     /// Samples to be shaded: first those that are chosen, then those of unlit pixels.
     pub(super) samples: wgpu::Buffer,
-    /// Pixels that remember nothing.
+    /// Pixels that have no history.
     pub(super) bare: wgpu::Buffer,
     /// A bit for each pixel that is a block's sample.
     pub(super) wanted: wgpu::Buffer,
@@ -49,7 +49,7 @@ pub(crate) struct HistoryTargets {
 }
 
 impl HistoryTargets {
-    /// `None` where light is not carried along.
+    /// `None` where light is not reprojected.
     pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
         if !super::lit::is_used(gpu, settings) {
             return None;

@@ -62,7 +62,7 @@ fn full(scene: &Scene, camera: &Camera, settings: &Settings) -> Vec<[u16; 4]> {
     seen(&rendered(scene, camera, &settings))
 }
 
-/// The same frame with samples shaded anew.
+/// The same frame with samples reshaded.
 fn anew(scene: &Scene, camera: &Camera, settings: &Settings) -> Vec<[u16; 4]> {
     let settings = settings.clone().with(|s| s.coarse.history = false);
     seen(&rendered(scene, camera, &settings))
@@ -228,7 +228,7 @@ fn a_gaze_that_jumps_sees_every_pixel_in_the_next_frame() {
     let around = (-3..3).flat_map(|x| (-3..3).map(move |y| (50 + y) * 157 + 141 + x));
     let (mut same, mut pixels) = (0, 0);
     for at in around.map(|at: i32| at as usize) {
-        // A pixel whose own light is remembered is as good.
+        // A pixel whose own light is kept is as good.
         let channels = |texel: [u16; 4]| [0, 1, 2].map(|c| f32_of_half(texel[c]));
         for (a, b) in channels(found[at]).into_iter().zip(channels(full[at])) {
             assert!((a - b).abs() <= 0.02 * b + 0.01, "pixel {at}: {a} {b}");
@@ -295,7 +295,7 @@ fn what_is_carried_and_what_is_shaded_equal_their_twin() {
     let mut fates = [0; 4];
     for frame in 1..6 {
         let [now, previous] = [at(frame), at(frame - 1)];
-        // Gathering light overwrites what was remembered.
+        // Gathering light overwrites what was kept.
         let last = usize::from(!film.renderer.history().lit.even);
         let kept = kept_targets(&film);
         let (light, seen) = (texels(&kept.light[last]), texels(&kept.seen[last]));
@@ -321,7 +321,7 @@ fn what_is_carried_and_what_is_shaded_equal_their_twin() {
         let (mut shaded, mut bare, mut off) = (0, 0, 0);
         for (i, &found) in (0..).zip(&found) {
             let texel = UVec2::new(i % SIZE.0, i / SIZE.0);
-            let (fate, remembers) = frame_seen.carry([&now, &previous], &before, &told, texel);
+            let (fate, remembers) = frame_seen.reproject([&now, &previous], &before, &told, texel);
             fates[fate as usize] += 1;
             shaded += u64::from(fate == Fate::Shaded);
             bare += u64::from(fate == Fate::Bare);

@@ -1,7 +1,7 @@
 // What the last frame's samples say of each tile.
 
 #import shading/history/measured.wgsl
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 
 @group(1) @binding(0) var<storage, read> history: History;
 @group(1) @binding(1) var<storage, read_write> measured: array<Measured>;
@@ -9,9 +9,9 @@
 @group(1) @binding(2) var<storage, read_write> kept: array<vec2f>;
 @group(1) @binding(3) var<storage, read_write> tiles: array<TileHistory>;
 
-// Part of an error that is remembered from frame to frame.
+// Part of an error that is kept from frame to frame.
 const KEPT: f32 = 0.85;
-// Of a change: it is gone when what was remembered is.
+// Of a change: it is gone when what was kept is.
 const KEPT_CHANGE: f32 = 0.5;
 // Part of an error that is expected in the tiles around.
 const SPREAD: f32 = 0.7;

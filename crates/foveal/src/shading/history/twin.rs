@@ -1,4 +1,4 @@
-//! The CPU twin of what the device carries along and shades anew, of one eye.
+//! The CPU twin of what the device carries along and reshades, of one eye.
 
 use foveal_scene::Camera;
 use glam::{IVec2, UVec2, Vec2};
@@ -8,7 +8,7 @@ use crate::shading::sample_texel;
 use crate::shading::twin::{position_at, unit_from_octahedral, unit_from_square};
 use crate::testing::f32_of_half;
 
-/// The constants of `remembered.wgsl` and `carry.wgsl`.
+/// The constants of `layout.wgsl` and `reproject.wgsl`.
 const INSTANCE: u32 = 0xfff;
 const LEVEL_SHIFT: u32 = 12;
 const AT_ALL: u32 = 0x8000;
@@ -41,16 +41,16 @@ pub(super) struct Before {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Fate {
     Backdrop,
-    /// Its light is carried along.
-    Carried,
+    /// Its light is reprojected.
+    Reprojected,
     /// It is shaded by itself.
     Shaded,
     /// It takes the light of the samples around it.
     Bare,
 }
 
-/// A pixel's fate, and what it remembers besides light from here on.
-pub(super) type Carried = (Fate, u32);
+/// A pixel's fate, and what it keeps besides light from here on.
+pub(super) type Reprojected = (Fate, u32);
 
 impl Seen {
     fn level(&self, texel: UVec2) -> u32 {
@@ -62,14 +62,14 @@ impl Seen {
         (texel.y * self.size.x + texel.x) as usize
     }
 
-    /// `carry.wgsl`, of perspective cameras and without lamps that have changed.
-    pub(super) fn carry(
+    /// `reproject.wgsl`, of perspective cameras and without lights that have changed.
+    pub(super) fn reproject(
         &self,
         [camera, previous]: [&Camera; 2],
         before: &Before,
         told: &HistoryParameters,
         texel: UVec2,
-    ) -> Carried {
+    ) -> Reprojected {
         let i = self.index(texel);
         let depth = self.depth[i];
         if depth == 0.0 {
@@ -129,7 +129,7 @@ impl Seen {
             let sample = sample_texel(block.into(), level, 0, self.size.into());
             let is_block_sample = level > 0 && UVec2::from(sample) == texel;
             if !is_renewed {
-                return (Fate::Carried, now | old & (OWN | 7 << LEVEL_SHIFT));
+                return (Fate::Reprojected, now | old & (OWN | 7 << LEVEL_SHIFT));
             } else if !is_block_sample {
                 return (Fate::Shaded, now | OWN);
             }

@@ -1,6 +1,6 @@
 //! What variable shading costs and saves, and whether it stays on.
 
-use super::Plan;
+use super::VariablePlan;
 use crate::{RateStage, Timing, VariableStats};
 
 /// Frames before the first comparison: the first ones compile shaders and shade in full.
@@ -37,7 +37,7 @@ impl Balance {
     }
 
     /// What the next frame does.
-    pub(super) fn plan(&mut self) -> Plan {
+    pub(super) fn plan(&mut self) -> VariablePlan {
         if self.off && self.frames >= REST {
             (self.off, self.rested, self.frames) = (false, true, 0);
         }
@@ -49,7 +49,7 @@ impl Balance {
             }
         }
         self.frames = self.frames.wrapping_add(1);
-        Plan {
+        VariablePlan {
             active: !self.off,
             compares: !self.off && self.wanted > 0,
         }
@@ -117,7 +117,7 @@ impl Balance {
 mod tests {
     use super::*;
 
-    fn timings(plan: Plan, shading: f64) -> Vec<Timing> {
+    fn timings(plan: VariablePlan, shading: f64) -> Vec<Timing> {
         let times = [
             ("shading", shading, true),
             ("rate mask", 1.0, plan.active),

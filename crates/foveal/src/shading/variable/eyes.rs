@@ -5,7 +5,7 @@ use foveal_scene::{Camera, Projection};
 use glam::UVec2;
 
 use super::probes::Probes;
-use super::tests::{Film, carried, differing, known_otherwise, shifted, variable};
+use super::tests::{Film, differing, known_otherwise, reprojected, shifted, variable};
 use super::twin::{self, Seen};
 use crate::EyeFrusta;
 use crate::gpu::read_buffer;
@@ -90,7 +90,7 @@ fn each_eyes_rates_and_samples_equal_their_twins() {
                 &part(&shown, eye, 1),
             );
             let found = part(&found, eye, 2);
-            let known = carried(&part(&known, eye, 2), &found);
+            let known = reprojected(&part(&known, eye, 2), &found);
             let (off, quads) = (known_otherwise(&known, &twin), known.len());
             assert!(off <= quads / 200, "eye {eye}: {off} of {quads} known");
             let twin = twin::rates(&settings, &seen, cameras[0], &known, probe);
@@ -126,7 +126,7 @@ fn each_eye_is_shaded_at_the_rates_of_one_eye_alone() {
     ] {
         let both = two_eyes(camera, stereo).with(|s| {
             s.geometry.path = geometry;
-            s.shading.stage = rate_stage;
+            s.rate.stage = rate_stage;
         });
         let one = both.clone().with(|s| s.stereo.mode = Stereo::Off);
         let mut film = Film::new(&scene, &both);

@@ -16,7 +16,7 @@ override COMBINE: u32 = 0u;
 override CONTRAST: u32 = 1u;
 // Samples may stand for 4 x 4 pixels.
 override BLOCKS: bool = false;
-// Contrast needs what is known of other quads, which a pass before this one has carried over.
+// Contrast needs what is known of other quads, which a pass before this one has reprojected.
 override LOOKS_AROUND: bool = true;
 
 // Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law fails there).
@@ -40,16 +40,16 @@ struct Listed {
 // rates.wgsl.
 @group(1) @binding(10) var<storage, read_write> samples: array<u32>;
 
-// Luminances of a quad at an offset; of the quad in the middle where that one is unknown or not there: no eye looks at
+// Luminances of a quad at an offset; of the quad in the centre where that one is unknown or not there: no eye looks at
 // the other's picture.
-fn luma_of(quad: vec2i, offset: vec2i, middle: vec4f) -> vec4f {
+fn luma_of(quad: vec2i, offset: vec2i, center: vec4f) -> vec4f {
     let at = quad + offset;
     let picture = picture_of(vec2u(quad) * 2u);
     let low = vec2i(picture.low / 2u);
     let end = vec2i((picture.end + 1u) / 2u);
     let inside = all(at >= low) && all(at < end);
-    let found = textureLoad(carried, clamp(at, low, end - 1), 0);
-    return select(middle, unpack4x8unorm(found.x), inside && (found.y & KNOWN_AT_ALL) != 0u);
+    let found = textureLoad(reprojected, clamp(at, low, end - 1), 0);
+    return select(center, unpack4x8unorm(found.x), inside && (found.y & KNOWN_AT_ALL) != 0u);
 }
 
 // Contrast across and down, relative to the mean.
@@ -110,7 +110,7 @@ fn rate_of_level(level: u32) -> u32 {
 fn rate_from(source: u32, quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     switch source {
         case 0u: { return rate_of_level(foveated_level(vec2f(quad * 2u) + 1.0)); }
-        case 1u: { return rate_of_level(wish.constant_level); }
+        case 1u: { return rate_of_level(request.constant_level); }
         case 4u: { return rate_of_level(radii_level(vec2f(quad * 2u) + 1.0)); }
         default: { return content_rate(quad, lumas, motion); }
     }
@@ -197,9 +197,9 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
         let d = load_depth(depth, first);
         let maps = maps_at(first);
         if LOOKS_AROUND {
-            found = textureLoad(carried, quad, 0).xy;
+            found = textureLoad(reprojected, quad, 0).xy;
         } else {
-            found = carried_over(picture, maps, first, who, d, motion);
+            found = reprojected(picture, maps, first, who, d, motion);
         }
         let probed = (quad.x & rates.probe_mask) == rates.probe_x && (quad.y & rates.probe_mask) == rates.probe_y;
         notes = select(0u, RATE_PROBED, probed) | select(RATE_UNKNOWN, 0u, (found.y & KNOWN_AT_ALL) != 0u);

@@ -10,7 +10,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     uniform,
 };
-use crate::rate::WishUniform;
+use crate::rate::RequestUniform;
 use crate::recorder::Recorder;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::stereo::Eye;
@@ -37,7 +37,7 @@ pub(crate) struct RatesUniform {
 /// Finds rates and samples, and lights samples.
 #[derive(Debug)]
 pub(crate) struct RatePasses {
-    /// A pass of its own where contrast is looked for beyond the quad; else the mask's carries over too.
+    /// A pass of its own where contrast is looked for beyond the quad; else the mask's reprojects too.
     reproject: Option<wgpu::ComputePipeline>,
     find: wgpu::ComputePipeline,
     find_layout: wgpu::BindGroupLayout,
@@ -46,7 +46,7 @@ pub(crate) struct RatePasses {
     shade: wgpu::ComputePipeline,
     shade_layout: wgpu::BindGroupLayout,
     rates: wgpu::Buffer,
-    wish: wgpu::Buffer,
+    request: wgpu::Buffer,
 }
 
 const fn written(format: wgpu::TextureFormat) -> wgpu::BindingType {
@@ -59,7 +59,7 @@ const fn written(format: wgpu::TextureFormat) -> wgpu::BindingType {
 
 /// What differs from frame to frame.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Turn {
+pub(super) struct RateFrame {
     /// Which of the targets are this frame's.
     pub(super) even: bool,
     /// Nothing is known of the frame before.
@@ -153,7 +153,7 @@ impl RatePasses {
             size_layout,
             shade_layout,
             rates: buffer("rates", size_of::<RatesUniform>()),
-            wish: buffer("rate wish", size_of::<WishUniform>()),
+            request: buffer("requested levels", size_of::<RequestUniform>()),
         }
     }
 
@@ -165,9 +165,9 @@ impl RatePasses {
         settings: &Settings,
         targets: &Targets,
         (t, eyes): (&VariableTargets, &[Eye; 2]),
-        turn: Turn,
+        turn: RateFrame,
     ) {
-        let Turn { even, reset, probe } = turn;
+        let RateFrame { even, reset, probe } = turn;
         let gpu = recorder.gpu;
         let rates = RatesUniform {
             threshold: settings.variable.threshold,
@@ -181,22 +181,22 @@ impl RatePasses {
         };
         gpu.queue
             .write_buffer(&self.rates, 0, bytemuck::bytes_of(&rates));
-        let wish = WishUniform::new(settings, eyes, None);
+        let request = RequestUniform::new(settings, eyes, None);
         gpu.queue
-            .write_buffer(&self.wish, 0, bytemuck::bytes_of(&wish));
+            .write_buffer(&self.request, 0, bytemuck::bytes_of(&request));
         let [now, before] = [usize::from(!even), usize::from(even)].map(|i| &t.known[i]);
         let gbuffer = &targets.gbuffer;
         let finished = t.finished.as_ref().unwrap_or(&targets.picture_view);
         let view = wgpu::BindingResource::TextureView;
-        let group = |label, carried, written| {
+        let group = |label, reprojected, written| {
             let resources = [
-                self.wish.as_entire_binding(),
+                self.request.as_entire_binding(),
                 self.rates.as_entire_binding(),
                 view(&gbuffer.identity_layers),
                 view(&gbuffer.depth_layers),
                 view(before),
                 view(finished),
-                view(carried),
+                view(reprojected),
                 view(written),
                 view(&t.mask),
                 t.listed.as_entire_binding(),
@@ -207,14 +207,14 @@ impl RatePasses {
         let quads = t.mask.texture().size();
         let tiles = [quads.width.div_ceil(TILE), quads.height.div_ceil(TILE)];
         recorder.encoder.clear_buffer(&t.listed, 0, None);
-        if let (Some(reproject), Some(carried)) = (&self.reproject, &t.carried) {
-            let group = group("reprojection", before, carried);
+        if let (Some(reproject), Some(reprojected)) = (&self.reproject, &t.reprojected) {
+            let group = group("reprojection", before, reprojected);
             let mut pass = recorder.compute_pass("reprojection");
             pass.set_pipeline(reproject);
             pass.set_bind_group(1, &group, &[]);
             pass.dispatch_workgroups(tiles[0], tiles[1], 1);
         }
-        let find = group("rate mask", t.carried.as_ref().unwrap_or(before), now);
+        let find = group("rate mask", t.reprojected.as_ref().unwrap_or(before), now);
         let listed = [t.listed.as_entire_binding()];
         let size = bind_group(&gpu.device, "rate dispatch", &self.size_layout, &listed);
         let mut pass = recorder.compute_pass("rate mask");

@@ -21,7 +21,7 @@ struct Rates {
 // Of the frame before: what was known of its quads, its picture.
 @group(1) @binding(4) var before: texture_2d<u32>;
 @group(1) @binding(5) var picture_before: texture_2d<f32>;
-// What a pass before this one has carried over.
-@group(1) @binding(6) var carried: texture_2d<u32>;
+// What a pass before this one has reprojected.
+@group(1) @binding(6) var reprojected: texture_2d<u32>;
 @group(1) @binding(7) var known: texture_storage_2d<rg32uint, write>;
 @group(1) @binding(8) var mask: texture_storage_2d<r32uint, write>;

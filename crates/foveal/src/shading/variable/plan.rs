@@ -2,7 +2,7 @@
 
 /// What a frame does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Plan {
+pub(crate) struct VariablePlan {
     /// Shades at a rate; else in full.
     pub(crate) active: bool,
     /// Shades in full besides, to compare.

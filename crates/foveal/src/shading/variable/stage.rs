@@ -1,8 +1,8 @@
 //! All of variable shading that outlives a frame.
 
-use super::Plan;
+use super::VariablePlan;
 use super::balance::Balance;
-use super::passes::{RatePasses, Turn};
+use super::passes::{RateFrame, RatePasses};
 use super::probes::Probes;
 use super::view::RateView;
 use crate::gpu::Gpu;
@@ -52,7 +52,7 @@ impl VariableStage {
     }
 
     /// What the next frame does.
-    pub(crate) fn plan(&mut self) -> Plan {
+    pub(crate) fn plan(&mut self) -> VariablePlan {
         let plan = self.balance.plan();
         if !plan.active {
             self.forget();
@@ -83,7 +83,7 @@ impl VariableStage {
         } else if known != Some(camera) {
             self.probes.disturb();
         }
-        let turn = Turn {
+        let turn = RateFrame {
             even: self.frame.is_multiple_of(2),
             reset,
             probe: self.probes.next(),

@@ -1,4 +1,4 @@
-//! What variable shading remembers and writes.
+//! What variable shading keeps and writes.
 
 use crate::Contrast;
 use crate::gpu::{self, Gpu};
@@ -19,7 +19,7 @@ pub(crate) struct VariableTargets {
     /// What is known of each quad: of even and of odd frames.
     pub(super) known: [wgpu::TextureView; 2],
     /// The same between reprojection and mask, where these are two passes.
-    pub(super) carried: Option<wgpu::TextureView>,
+    pub(super) reprojected: Option<wgpu::TextureView>,
     /// Each quad's rate.
     pub(crate) mask: wgpu::TextureView,
     /// The samples, packed as in `rates.wgsl`.
@@ -57,12 +57,12 @@ impl VariableTargets {
             let none = wgpu::TextureUsages::empty();
             gpu::target(gpu, "finished frame", size, PICTURE_FORMAT, none)
         });
-        let carried = looks_around(settings).then(|| known("known of quads, carried over"));
-        let histories = 2 + u64::from(carried.is_some());
+        let reprojected = looks_around(settings).then(|| known("known of quads, reprojected over"));
+        let histories = 2 + u64::from(reprojected.is_some());
         let quads_bytes = u64::from(quads.0) * u64::from(quads.1) * (histories * 8 + 4);
         Self {
             known: [known("known of quads, even"), known("known of quads, odd")],
-            carried,
+            reprojected,
             mask: gpu::target(gpu, "rate mask", quads, MASK_FORMAT, written),
             samples: buffer("rate samples", pixels * 4, wgpu::BufferUsages::empty()),
             listed: buffer("listed samples", LISTED_BYTES, wgpu::BufferUsages::INDIRECT),

@@ -57,8 +57,8 @@ pub(super) fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
-/// What was carried over into what is known, whose notes of quads shaded in full must be those of `mask`.
-pub(super) fn carried(known: &[[u32; 2]], mask: &[u32]) -> Vec<[u32; 2]> {
+/// What was reprojected into what is known, whose notes of quads shaded in full must be those of `mask`.
+pub(super) fn reprojected(known: &[[u32; 2]], mask: &[u32]) -> Vec<[u32; 2]> {
     let cells = known.iter().zip(mask);
     cells
         .map(|(&[lumas, place], rate)| {
@@ -110,12 +110,12 @@ fn reprojection_rates_and_samples_equal_their_twins() {
                 let probe = probes.next();
                 let seen = film.seen();
                 let (known, mask) = (film.known(frame + 1), film.mask());
-                let carried = carried(&known, &mask);
+                let reprojected = reprojected(&known, &mask);
                 let quads = known.len();
                 let twin = twin::reproject(&seen, [&now, &previous], &before, &shown);
-                let off = known_otherwise(&carried, &twin);
+                let off = known_otherwise(&reprojected, &twin);
                 assert!(off <= quads / 200, "{off} of {quads} known otherwise");
-                let twin = twin::rates(&settings, &seen, &now, &carried, probe);
+                let twin = twin::rates(&settings, &seen, &now, &reprojected, probe);
                 let off = differing(&mask, &twin);
                 assert!(off <= quads / 400, "{off} of {quads} rates, {contrast:?}");
                 mask.iter().for_each(|m| rates_seen[*m as usize & 7] += 1);
@@ -155,7 +155,7 @@ fn foveation_and_content_combine_to_the_coarser_or_finer_rate() {
         film.draw(camera);
         film.draw(camera);
         let mask = film.mask();
-        let known = carried(&film.known(2), &mask);
+        let known = reprojected(&film.known(2), &mask);
         let twin = twin::rates(&settings, &film.seen(), camera, &known, Probe::NONE);
         assert!(differing(&mask, &twin) <= mask.len() / 400);
         assert!(mask.iter().any(|m| m & 7 == 0) && mask.iter().any(|m| m & 3 == 3));
@@ -249,7 +249,7 @@ fn a_still_camera_has_a_constant_mask_and_picture_from_the_third_frame_on() {
     ] {
         let settings = variable((93, 61)).with(|s| {
             s.geometry.path = Geometry::Visibility;
-            s.shading.stage = stage;
+            s.rate.stage = stage;
             s.variable.contrast = contrast;
         });
         let mut film = Film::new(&scene, &settings);
@@ -273,7 +273,7 @@ fn after_a_walk_and_back_the_mask_is_that_of_a_fresh_start_within_eight_frames()
     for stage in [RateStage::Lighting, RateStage::Both] {
         let settings = (variable(SIZES[0])).with(|s| {
             s.geometry.path = Geometry::Visibility;
-            s.shading.stage = stage;
+            s.rate.stage = stage;
             s.variable.contrast = Contrast::Neighbors;
         });
         let mut fresh = Film::new(&scene, &settings);

@@ -4,7 +4,7 @@ use foveal_scene::Camera;
 use glam::{IVec2, UVec2, Vec2, Vec3, Vec4};
 
 use super::probes::Probe;
-use crate::rate::WishUniform;
+use crate::rate::RequestUniform;
 use crate::shading::twin::position_at;
 use crate::testing::f32_of_half;
 use crate::{Contrast, RateCombine, RateSource, Settings};
@@ -198,7 +198,7 @@ pub(super) fn rates(
 ) -> Vec<u32> {
     let quads = seen.quads();
     let eyes = crate::stereo::eyes(settings, camera).unwrap();
-    let wish = WishUniform::new(settings, &eyes, None);
+    let request = RequestUniform::new(settings, &eyes, None);
     let each = || (0..quads.y).flat_map(|y| (0..quads.x).map(move |x| UVec2::new(x, y)));
     let of_level = |level: u32| [0, 3, 7][level.min(2) as usize];
     let single: Vec<(u32, u32)> = each()
@@ -214,15 +214,15 @@ pub(super) fn rates(
             let from = |source| match source {
                 RateSource::Foveated => {
                     let centre = (quad * 2).as_vec2() + 1.0;
-                    of_level(wish.foveated(settings, centre.into()))
+                    of_level(request.foveated(settings, centre.into()))
                 }
                 RateSource::Radii => {
-                    let centre =
-                        (quad * 2).as_vec2() + 1.0 - Vec2::new(wish.gaze[0][0], wish.gaze[0][1]);
-                    let radii = wish.squared_radii.as_flattened().iter();
+                    let centre = (quad * 2).as_vec2() + 1.0
+                        - Vec2::new(request.gaze[0][0], request.gaze[0][1]);
+                    let radii = request.squared_radii.as_flattened().iter();
                     of_level(radii.filter(|&&r| centre.length_squared() >= r).count() as u32)
                 }
-                RateSource::Constant => of_level(wish.constant_level),
+                RateSource::Constant => of_level(request.constant_level),
                 RateSource::Image | RateSource::Lens | RateSource::Content => {
                     let motion = seen.motion(quad * 2).length();
                     let threshold = settings.variable.threshold
@@ -231,7 +231,7 @@ pub(super) fn rates(
                     u32::from(c.x <= threshold) | u32::from(c.y <= threshold) << 1
                 }
             };
-            let wished = match settings.coarse.combine {
+            let requested = match settings.coarse.combine {
                 RateCombine::First => from(settings.coarse.source),
                 RateCombine::Coarser => {
                     from(settings.coarse.source) | from(settings.coarse.other_source)
@@ -240,7 +240,7 @@ pub(super) fn rates(
                     from(settings.coarse.source) & from(settings.coarse.other_source)
                 }
             };
-            let rate = wished & (surface_limit(seen, camera, quad * 2) | 4);
+            let rate = requested & (surface_limit(seen, camera, quad * 2) | 4);
             (if rate & 3 == 3 { rate } else { rate & 3 }, 0)
         })
         .collect();

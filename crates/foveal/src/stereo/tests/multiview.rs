@@ -69,7 +69,7 @@ fn pipelines(base: &Settings) -> Vec<Settings> {
         base.clone().with(|s| s.geometry.path = visibility),
         variable.with(|s| {
             s.geometry.path = visibility;
-            s.shading.stage = RateStage::Both;
+            s.rate.stage = RateStage::Both;
         }),
     ];
     let views = [

@@ -1,4 +1,4 @@
-//! Settings of the wish pass as its shader reads them, and the pass's twin on the CPU.
+//! Settings of the request pass as its shader reads them, and the pass's twin on the CPU.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -8,10 +8,10 @@ use super::acuity;
 use crate::stereo::{Eye, EyeLayout, LensFit};
 use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
 
-/// Mirrors `Wish` in `rate/wish.wgsl`, where the fields are explained.
+/// Mirrors `Request` in `rate/request.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-pub(crate) struct WishUniform {
+pub(crate) struct RequestUniform {
     pub(crate) gaze: [[f32; 4]; 2],
     pub(crate) squared_radii: [[f32; 4]; 2],
     pub(crate) lens_squared_radii: [[[f32; 4]; 2]; 2],
@@ -31,7 +31,7 @@ pub(crate) struct WishUniform {
 /// an edge is its own surface all the same.
 const GRADED_BY: u8 = 2;
 
-impl WishUniform {
+impl RequestUniform {
     /// The uniform for these settings and eyes; `lenses` are both eyes' where the output has them.
     pub(crate) fn new(s: &Settings, eyes: &[Eye; 2], lenses: Option<&[LensFit; 2]>) -> Self {
         let (width, height) = (s.picture.width as f32, s.picture.height as f32);
@@ -85,7 +85,7 @@ impl WishUniform {
         acuity::level(self, s, pixel)
     }
 
-    /// The level that the pixel at (x, y) of a picture without a lens wishes, edges aside.
+    /// The level that the pixel at (x, y) of a picture without a lens requests, edges aside.
     #[cfg(test)]
     pub(crate) fn level(&self, s: &Settings, x: u32, y: u32, image: Option<&RateImage>) -> u8 {
         let from = |source| match source {
@@ -116,8 +116,8 @@ impl WishUniform {
     }
 }
 
-/// Overrides of the wish pass's shader.
-pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
+/// Overrides of the request pass's shader.
+pub(super) fn request_constants(s: &Settings) -> [(&'static str, f64); 3] {
     let number = |source| match source {
         RateSource::Foveated => 0.0,
         RateSource::Constant => 1.0,
@@ -138,7 +138,7 @@ pub(super) fn wish_constants(s: &Settings) -> [(&'static str, f64); 3] {
     ]
 }
 
-/// Squared radii in pixels from which on levels 1, 2, ... are wished; out of reach beyond the coarsest. They come
+/// Squared radii in pixels from which on levels 1, 2, ... are requested; out of reach beyond the coarsest. They come
 /// from the CPU once a frame, so that no device's power function decides over a pixel's level.
 fn squared_radii(s: &Settings) -> [[f32; 4]; 2] {
     let height = s.picture.height as f32;
@@ -181,7 +181,7 @@ mod tests {
             s.picture.height = 720;
             s.eye.display = "60".parse().expect("it can be read");
         });
-        let uniform = WishUniform::new(&s, &eyes_of(&s), None);
+        let uniform = RequestUniform::new(&s, &eyes_of(&s), None);
         let factor = uniform.block_growth / 0.0275;
         let plane = 640.0 / 30f32.to_radians().tan();
         for x in [640, 700, 800, 900, 1000, 1100, 1279] {
@@ -206,7 +206,7 @@ mod tests {
                 s.eye.display = display.parse().expect("it can be read");
                 s.eye.quality_jod = quality;
             });
-            WishUniform::new(&s, &eyes_of(&s), None).level(&s, x, 360, None)
+            RequestUniform::new(&s, &eyes_of(&s), None).level(&s, x, 360, None)
         };
         for x in [640, 760, 900, 1270] {
             let levels =
@@ -228,7 +228,7 @@ mod tests {
             s.coarse.fovea_inner = 0.1;
             s.coarse.fovea_outer = 0.8;
         });
-        let uniform = WishUniform::new(&s, &eyes_of(&s), None);
+        let uniform = RequestUniform::new(&s, &eyes_of(&s), None);
         let along: Vec<u8> = (0..1000).map(|x| uniform.level(&s, x, 0, None)).collect();
         assert!(along[..100].iter().all(|&l| l == 0));
         assert!(along[101..].iter().all(|&l| l > 0));
@@ -249,7 +249,9 @@ mod tests {
                 s.picture.width = 10;
                 s.picture.height = 1;
             });
-            [0, 9].map(|x| WishUniform::new(&s, &eyes_of(&s), None).level(&s, x, 0, image.as_ref()))
+            [0, 9].map(|x| {
+                RequestUniform::new(&s, &eyes_of(&s), None).level(&s, x, 0, image.as_ref())
+            })
         };
         assert_eq!(level(RateCombine::First), [3, 3]);
         assert_eq!(level(RateCombine::Coarser), [3, 8]);

@@ -1,4 +1,4 @@
-// What is remembered of each pixel and of each tile of 8 x 8 pixels from frame to frame. Rust:
+// What is kept of each pixel and of each tile of 8 x 8 pixels from frame to frame. Rust:
 // `shading/history/passes.rs`.
 
 #import shared/frame.wgsl
@@ -8,26 +8,26 @@ struct History {
     rounding: vec2f,
     // Added to the pixels' order of renewal; another one each frame.
     phase: u32,
-    // 1: nothing is remembered.
+    // 1: nothing is kept.
     reset: u32,
     // Samples a frame for each block, by which a block's light is renewed while nothing changes.
     renewal: f32,
-    // Relative error of what is remembered from which on it is renewed more often.
+    // Relative error of what is kept from which on it is renewed more often.
     tolerance: f32,
-    // Relative change of a pixel's light from which on what is remembered around it counts no more.
+    // Relative change of a pixel's light from which on what is kept around it counts no more.
     change: f32,
     // Places in `changed`.
     changed_count: u32,
-    // Where lamps light now or lit in the frame before that have changed: centre and radius, world space. Nothing is remembered there.
+    // Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing is kept there.
     changed: array<vec4f, 16>,
 }
 
-// What a pixel remembers besides its light: the instance that is seen (12 bits of its number + 1), the level of the block that
+// What a pixel keeps besides its light: the instance that is seen (12 bits of its number + 1), the level of the block that
 // its light was sampled for (3 bits), two notes, and the distance's upper 15 bits as a rounded float, which is 0.4 % apart.
 const SEEN_INSTANCE: u32 = 0xfffu;
 const SEEN_LEVEL_SHIFT: u32 = 12u;
 const SEEN_LEVEL: u32 = 7u;
-// Something is remembered.
+// Something is kept.
 const SEEN_AT_ALL: u32 = 0x8000u;
 // The light was sampled at this place of the surface, not around it.
 const SEEN_OWN: u32 = 0x10000u;
@@ -48,7 +48,7 @@ fn distance_from_bits(bits: u32) -> f32 {
 struct TileHistory {
     // Relative error of what its samples were expected to be, the largest of late.
     error: f32,
-    // The same of pixels whose own light was remembered: nothing but time can have changed it.
+    // The same of pixels whose own light was kept: nothing but time can have changed it.
     change: f32,
 }
 
@@ -92,7 +92,7 @@ struct Dispatch {
     reserved: array<vec4u, 15>,
 }
 
-// The lists: samples; pixels that remember nothing; of these the ones that no sample speaks for.
+// The lists: samples; pixels that have no history; of these the ones that no sample speaks for.
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;

@@ -1,5 +1,5 @@
-// The finest level that one of 2 x 2 pixels wishes, and whether they lie at a geometric edge: level
-// 1 of the min-pyramid. Rust: `rate/wish.rs`.
+// The finest level that one of 2 x 2 pixels requests, and whether they lie at a geometric edge: level
+// 1 of the min-pyramid. Rust: `rate/request.rs`.
 
 #variant
 #variant BY_DEPTH
@@ -28,7 +28,7 @@ override COMBINE: u32 = 0u;
 // How much coarser the screen is here than on the lens's axis.
 fn lens_level(pixel: vec2f) -> u32 {
     let tangent = view_position(pixel, 1.0).xy;
-    return radii_below(dot(tangent, tangent), wish.lens_squared_radii[view_at(pixel)]);
+    return radii_below(dot(tangent, tangent), request.lens_squared_radii[view_at(pixel)]);
 }
 
 // The picture is stretched over each eye's.
@@ -40,7 +40,7 @@ fn image_texel(texel: vec2u) -> vec2u {
 fn level_from(source: u32, texel: vec2u) -> u32 {
     switch source {
         case 0u: { return foveated_level(vec2f(texel) + 0.5); }
-        case 1u: { return wish.constant_level; }
+        case 1u: { return request.constant_level; }
         case 3u: { return lens_level(vec2f(texel) + 0.5); }
         case 4u: { return radii_level(vec2f(texel) + 0.5); }
         default: { return textureLoad(rate_image, image_texel(texel), 0).x; }
@@ -99,15 +99,15 @@ fn holds_edge(block: vec2u) -> bool {
 }
 
 @fragment
-fn wish_level(in: LevelVertex) -> @location(0) u32 {
+fn requested_level(in: LevelVertex) -> @location(0) u32 {
     let block = vec2u(in.position.xy);
     let last = picture_of(block * 2u).end - 1u;
-    var level = wish.coarsest;
+    var level = request.coarsest;
     for (var i = 0u; i < 4u; i++) {
         level = min(level, pixel_level(min(block * 2u + vec2u(i & 1u, i >> 1u), last)));
     }
-    if level == 0u || level > wish.edges_up_to || !holds_edge(block) {
+    if level == 0u || level > request.edges_up_to || !holds_edge(block) {
         return level;
     }
-    return select(level, level - min(level, wish.refine_by), level <= wish.refine_up_to) | CELL_EDGE;
+    return select(level, level - min(level, request.refine_by), level <= request.refine_up_to) | CELL_EDGE;
 }

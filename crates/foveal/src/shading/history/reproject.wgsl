@@ -1,9 +1,9 @@
-// Carries each pixel's light over from the frame before, puts the pixel's surface into it, and
-// lists what is shaded anew. CPU twin: `shading/history/twin.rs`.
+// Reprojects each pixel's light from the frame before, puts the pixel's surface into it, and
+// lists what is reshaded. CPU twin: `shading/history/twin.rs`.
 
 #import composite/tiling.wgsl
 #import shading/coarse/light.wgsl
-#import shading/history/remembered.wgsl
+#import shading/history/layout.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
@@ -14,7 +14,7 @@
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
 @group(1) @binding(4) var<storage, read> history: History;
-// Of the frame before: pixels' light, and what else they remember.
+// Of the frame before: pixels' light, and what else they keep.
 @group(1) @binding(5) var light_before: texture_2d<u32>;
 @group(1) @binding(6) var seen_before: texture_2d<u32>;
 @group(1) @binding(7) var<storage, read> tiles: array<TileHistory>;
@@ -23,7 +23,7 @@
 @group(1) @binding(10) var radiance: texture_storage_2d<rgba16float, write>;
 @group(1) @binding(11) var<storage, read_write> listed: array<Listed, 3>;
 @group(1) @binding(12) var<storage, read_write> samples_listed: array<vec2u>;
-// Pixels that remember nothing, as entries of the block that they take their light from.
+// Pixels that have no history, as entries of the block that they take their light from.
 @group(1) @binding(13) var<storage, read_write> bare: array<u32>;
 // A bit for each pixel that is a block's sample.
 @group(1) @binding(14) var<storage, read_write> wanted: array<atomic<u32>>;
@@ -60,7 +60,7 @@ struct Expected {
     level: u32,
 }
 
-// Whether a lamp that lights a place has changed.
+// Whether a light that lights a place has changed.
 fn has_changed(position: vec3f) -> bool {
     var found = false;
     for (var i = 0u; i < history.changed_count; i++) {
@@ -78,7 +78,7 @@ struct Memory {
     tile: TileHistory,
 }
 
-fn remembered_at(place: vec2i, texel: vec2u, expected: Expected) -> Memory {
+fn history_at(place: vec2i, texel: vec2u, expected: Expected) -> Memory {
     let picture = picture_of(texel);
     let inside = all(place >= vec2i(picture.low)) && all(place < vec2i(picture.end));
     let origin = select(texel, vec2u(place), inside);
@@ -106,7 +106,7 @@ fn want_block(own: Tile) {
 }
 
 @compute @workgroup_size(8, 8)
-fn carry(@builtin(global_invocation_id) id: vec3u) {
+fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let texel = id.xy;
     if any(texel >= vec2u(frame.target_size)) || is_padding(texel, 0u) {
         return;
@@ -128,14 +128,14 @@ fn carry(@builtin(global_invocation_id) id: vec3u) {
     let expect = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
     let before = pixel - unpack2x16float(who.y);
     let rounded = floor(before + history.rounding);
-    var memory = remembered_at(vec2i(rounded), texel, expect);
+    var memory = history_at(vec2i(rounded), texel, expect);
     let is_lit_otherwise = has_changed(position);
     if !memory.is_known && history.reset == 0u && !is_lit_otherwise {
         // The other three of the four pixels around the place.
         let first = floor(before - 0.5);
         for (var i = 1u; i < 4u; i++) {
             let other = first + abs(rounded - first - vec2f(vec2u(i, i >> 1u) & vec2u(1u)));
-            let found = remembered_at(vec2i(other), texel, expect);
+            let found = history_at(vec2i(other), texel, expect);
             if found.is_known && !memory.is_known {
                 memory = found;
             }
