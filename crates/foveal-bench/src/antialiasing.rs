@@ -249,10 +249,7 @@ impl Mode {
 
     /// Draws one frame; the first one's picture is kept.
     fn draw(&mut self, camera: &Camera, measured: bool) -> anyhow::Result<()> {
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(camera);
         self.last = block_on(self.renderer.render(&frame))?;
         if measured {
             self.rounds.push(Times::of(&self.last));

@@ -248,10 +248,7 @@ fn measure(
             last: FrameStats::default(),
         });
     }
-    let frame = Frame {
-        camera,
-        previous_camera: None,
-    };
+    let frame = Frame::new(camera);
     for way in &mut ways {
         for _ in 0..WARM_UP {
             block_on(way.renderer.render(&frame))?;

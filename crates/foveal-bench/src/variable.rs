@@ -170,10 +170,7 @@ impl Film {
     }
 
     fn draw(&mut self, camera: &Camera) -> anyhow::Result<FrameStats> {
-        let frame = Frame {
-            camera,
-            previous_camera: self.last.as_ref(),
-        };
+        let frame = Frame::new(camera).with_previous(self.last.as_ref());
         let stats = block_on(self.renderer.render(&frame))?;
         self.last = Some(camera.clone());
         Ok(stats)

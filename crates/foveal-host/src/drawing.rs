@@ -52,10 +52,7 @@ impl Drawing {
             self.pose(time_s)?;
         }
         let camera = self.viewpoint.at(&self.scene, time_s);
-        let frame = Frame {
-            camera: &camera,
-            previous_camera: Some(&previous_camera),
-        };
+        let frame = Frame::new(&camera).with_previous(&previous_camera);
         Ok(block_on(self.renderer.render(&frame))?)
     }
 

@@ -15,7 +15,7 @@ mod tests;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use foveal::{AdapterStats, CullingFigures, Error, FrameStats, SceneStats, Settings, Visibility};
+use foveal::{AdapterStats, CullingStats, Error, FrameStats, SceneStats, Settings, Visibility};
 use foveal_scene::{Aabb, Camera};
 
 use crate::Host;
@@ -83,7 +83,7 @@ pub(crate) struct Shown {
     pub(crate) compared: Option<Compared>,
     /// Mean FLIP error against the reference, once the view stands still.
     pub(crate) flip: Option<f32>,
-    pub(crate) culling: Option<CullingFigures>,
+    pub(crate) culling: Option<CullingStats>,
     pub(crate) boxes: Vec<(Aabb, Visibility)>,
     pub(crate) depth: Option<OccluderDepth>,
 }

@@ -70,10 +70,7 @@ impl Side {
         if uploads {
             self.set_scene(scene).await?;
         }
-        let frame = Frame {
-            camera,
-            previous_camera: self.previous.as_ref(),
-        };
+        let frame = Frame::new(camera).with_previous(self.previous.as_ref());
         let stats = self.renderer.render(&frame).await;
         self.previous = Some(camera.clone());
         stats.map_err(|cause| cause.to_string())

@@ -67,10 +67,7 @@ fn embed(scene: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
             .first()
             .cloned()
             .unwrap_or_else(|| scene.overview_camera());
-        let frame = Frame {
-            camera: &camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(&camera);
         let target = Target {
             view: &view,
             format: FORMAT,

@@ -32,12 +32,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let gpu = Gpu::open(None).await?;
         let mut renderer = Renderer::new(&gpu, &settings, None).await?;
         renderer.set_scene(&scene).await?;
-        let stats = renderer
-            .render(&Frame {
-                camera: &camera,
-                previous_camera: None,
-            })
-            .await?;
+        let stats = renderer.render(&Frame::new(&camera)).await?;
         let pixels = renderer.read_picture().await?;
 
         image::save_buffer(

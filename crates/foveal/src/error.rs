@@ -2,6 +2,7 @@
 
 /// An error of the renderer. Each message is one sentence that names the place and the cause.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// No adapter matches; the text lists what there is.
     #[error("no graphics adapter {wanted}; available: {available}")]
@@ -12,12 +13,12 @@ pub enum Error {
         available: String,
     },
     /// The adapter refused to open a device.
-    #[error("the adapter '{adapter}' cannot open a device: {cause}")]
+    #[error("the adapter '{adapter}' cannot open a device: {source}")]
     NoDevice {
         /// The adapter's name.
         adapter: String,
         /// What the driver said.
-        cause: String,
+        source: wgpu::RequestDeviceError,
     },
     /// A size, count or setting lies outside what this device or this program can do.
     #[error("{what} is {value}, the limit is {limit}{hint}")]

@@ -34,8 +34,11 @@ mod targets;
 #[cfg(test)]
 mod testing;
 
+/// The crates whose types are in this one's interface.
+pub use {foveal_cull, foveal_scene, glam, wgpu};
+
 pub use clock::Clock;
-pub use culling::CullingFigures;
+pub use culling::CullingStats;
 pub use error::Error;
 pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
@@ -51,6 +54,19 @@ pub use settings::{
     Setting, Settings, Shading, ShadingSettings, Stereo, StereoSettings, ToneMap, VariableSettings,
     variant_names,
 };
+
 pub use stats::{
     AdapterStats, CoarseStats, FrameStats, SceneStats, StereoStats, Timing, VariableStats,
+};
+
+/// Renderers and devices may be given to other threads.
+#[cfg(not(target_arch = "wasm32"))]
+const _: () = {
+    const fn is_send_and_sync<T: Send + Sync>() {}
+    is_send_and_sync::<Error>();
+    is_send_and_sync::<FrameStats>();
+    is_send_and_sync::<Gpu>();
+    is_send_and_sync::<RateImage>();
+    is_send_and_sync::<Renderer>();
+    is_send_and_sync::<Settings>();
 };

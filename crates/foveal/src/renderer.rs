@@ -6,12 +6,13 @@ use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
 use crate::composite::CompositePass;
-use crate::culling::{CullingFigures, CullingStage};
+use crate::culling::{CullingStage, CullingStats};
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{
     CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
 };
+
 use crate::lights::LightAssigner;
 use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
@@ -32,12 +33,33 @@ mod testing;
 
 /// What changes from frame to frame besides the scene's pose.
 #[derive(Clone, Copy, Debug)]
+#[non_exhaustive]
 pub struct Frame<'a> {
     /// Where the frame is seen from.
     pub camera: &'a Camera,
     /// Where the frame before it was seen from, for motion vectors and for what is kept from frame to frame, which is given up where
     /// this is not the camera that was drawn last; `None`: from the same place.
     pub previous_camera: Option<&'a Camera>,
+}
+
+impl<'a> Frame<'a> {
+    /// A frame seen from `camera`, as the one before it was.
+    #[must_use]
+    pub fn new(camera: &'a Camera) -> Self {
+        Self {
+            camera,
+            previous_camera: None,
+        }
+    }
+
+    /// The same, where the frame before it was seen from `previous`.
+    #[must_use]
+    pub fn with_previous(self, previous: impl Into<Option<&'a Camera>>) -> Self {
+        Self {
+            previous_camera: previous.into(),
+            ..self
+        }
+    }
 }
 
 /// Draws scenes.
@@ -373,7 +395,7 @@ impl Renderer {
 
     /// What the culler found in the last frame; `None` without culling.
     #[must_use]
-    pub fn culling(&self) -> Option<CullingFigures> {
+    pub fn culling(&self) -> Option<CullingStats> {
         self.stages.culling.as_ref().map(CullingStage::figures)
     }
 

@@ -14,10 +14,12 @@ pub use choices::{
     Antialiasing, Culling, CullingEyes, DebugView, EdgeTest, LightAssignment, LightingModel,
     MaterialDispatch, SamplePattern, ToneMap,
 };
+
 pub use coarse::{
     COARSEST_LEVEL, CoarseBackend, CoarseSample, Composite, RateCombine, RateSource, RefineEdges,
     Shading,
 };
+
 pub use define::{Kind, Setting, variant_names};
 pub use eye::Display;
 pub use list::{
@@ -25,5 +27,6 @@ pub use list::{
     LightingSettings, PictureSettings, RateSettings, Settings, ShadingSettings, StereoSettings,
     VariableSettings,
 };
+
 pub use stereo::{EyeClipping, EyeFrusta, Lens, LensProfile, Output, Stereo};
 pub use variable::{Contrast, Geometry, RateStage};

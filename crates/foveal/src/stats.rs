@@ -48,6 +48,7 @@ pub struct Timing {
 
 /// What coarse shading did in a frame.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct CoarseStats {
     /// Samples of each level, finest first.
     pub samples_per_level: Vec<u64>,
@@ -71,6 +72,7 @@ impl CoarseStats {
 
 /// What variable shading did in a frame, and what it costs and saves; times in milliseconds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct VariableStats {
     /// Whether the frame was shaded at a rate.
     pub active: bool,
@@ -100,6 +102,7 @@ pub struct VariableStats {
 
 /// How two eyes were drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[non_exhaustive]
 pub struct StereoStats {
     /// `two-pass`, `instanced-clip`, `instanced-discard`, `multiview`, or `once` where both eyes see the same.
     pub mode: String,
@@ -109,6 +112,7 @@ pub struct StereoStats {
 
 /// One frame's figures.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[non_exhaustive]
 pub struct FrameStats {
     /// Width of the picture in pixels.
     pub width: u32,

@@ -32,10 +32,7 @@ pub(crate) fn rendered_on(
             .await
             .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(camera);
         renderer.render(&frame).await.expect("frame is drawn");
         renderer
     })
@@ -94,10 +91,7 @@ impl Film {
     }
 
     pub(crate) fn draw(&mut self, camera: &Camera) -> FrameStats {
-        let frame = Frame {
-            camera,
-            previous_camera: self.last.as_ref(),
-        };
+        let frame = Frame::new(camera).with_previous(self.last.as_ref());
         let stats = pollster::block_on(self.renderer.render(&frame)).unwrap();
         self.last = Some(camera.clone());
         stats

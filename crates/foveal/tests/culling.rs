@@ -31,13 +31,7 @@ fn draw(scene: &Scene, cameras: &[Camera], settings: &Settings) -> Vec<(Vec<u8>,
         renderer.set_scene(scene).await.expect("scene fits");
         let mut drawn = Vec::new();
         for camera in cameras {
-            let stats = renderer
-                .render(&Frame {
-                    camera,
-                    previous_camera: None,
-                })
-                .await
-                .expect("drawn");
+            let stats = renderer.render(&Frame::new(camera)).await.expect("drawn");
             drawn.push((renderer.read_picture().await.expect("read back"), stats));
         }
         drawn

@@ -74,10 +74,7 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
     let (device, queue) = host(Gpu::required_limits());
     let gpu = Gpu::from_device(device.clone(), queue.clone());
     let scene = generate::cornell();
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     for (shading, aa) in [
         (Shading::Full, Antialiasing::None),
         (Shading::Coarse, Antialiasing::None),
@@ -172,10 +169,7 @@ fn the_hosts_own_handlers_stay_in_place() {
     lost.recv().expect("the host's callback was called");
     gpu.note_loss("the host said so");
     let scene = generate::cornell();
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     let error = pollster::block_on(renderer.render(&frame)).expect_err("the device is gone");
     assert!(error.to_string().contains("the host said so"), "{error}");
 }

@@ -24,10 +24,7 @@ fn picture(renderer: &mut Renderer, scene: &Scene) -> nv_flip::FlipImageRgb8 {
         .unwrap_or_else(|| scene.overview_camera());
     let rgba = pollster::block_on(async {
         renderer.set_scene(scene).await.expect("the scene fits");
-        let frame = Frame {
-            camera: &camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(&camera);
         renderer.render(&frame).await.expect("drawn");
         renderer.read_picture().await.expect("read back")
     });

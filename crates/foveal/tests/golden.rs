@@ -27,10 +27,7 @@ fn draw(scene: &str, settings: &Settings) -> Vec<u8> {
             .await
             .expect("settings fit");
         renderer.set_scene(&scene).await.expect("scene fits");
-        let frame = Frame {
-            camera: &scene.cameras[0],
-            previous_camera: None,
-        };
+        let frame = Frame::new(&scene.cameras[0]);
         renderer.render(&frame).await.expect("drawn");
         renderer.read_picture().await.expect("read back")
     })

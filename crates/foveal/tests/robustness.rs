@@ -38,10 +38,7 @@ fn a_thousand_frames_with_a_resize_every_fifty_leave_memory_flat() {
     });
     let mut renderer = renderer(&gpu, &settings);
     let scene = generate::cornell();
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     let mut at = Vec::new();
     pollster::block_on(async {
         renderer.set_scene(&scene).await.expect("scene fits");
@@ -78,10 +75,7 @@ fn a_thousand_frames_with_a_resize_every_fifty_leave_memory_flat() {
 fn a_lost_device_is_an_error_and_no_panic() {
     let gpu = open();
     let scene = generate::cornell();
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     let mut renderer = renderer(
         &gpu,
         &Settings::default().with(|s| {
@@ -136,10 +130,7 @@ fn a_scene_over_a_limit_is_refused_and_the_old_one_stays() {
         }),
     );
     let scene = generate::cornell();
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     pollster::block_on(async {
         renderer.set_scene(&scene).await.expect("scene fits");
         let before = renderer.render(&frame).await.expect("drawn").triangles;
@@ -196,13 +187,7 @@ fn an_empty_scene_shows_the_backdrop() {
     let camera = scene.overview_camera();
     pollster::block_on(async {
         renderer.set_scene(&scene).await.expect("scene fits");
-        let stats = renderer
-            .render(&Frame {
-                camera: &camera,
-                previous_camera: None,
-            })
-            .await
-            .expect("drawn");
+        let stats = renderer.render(&Frame::new(&camera)).await.expect("drawn");
         assert_eq!(
             (stats.draws, stats.triangles, stats.shaded_samples),
             (0, 0, 144)

@@ -71,10 +71,7 @@ fn draw(renderer: &mut Renderer, file: &Path) -> Result<Vec<u8>, String> {
             .set_scene(&scene)
             .await
             .map_err(|e| e.to_string())?;
-        let frame = Frame {
-            camera: &camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(&camera);
         renderer.render(&frame).await.map_err(|e| e.to_string())?;
         renderer.read_picture().await.map_err(|e| e.to_string())
     })

@@ -45,10 +45,7 @@ impl<'a> Side<'a> {
     }
 
     pub(super) fn draw(&mut self) -> anyhow::Result<()> {
-        let frame = Frame {
-            camera: self.camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(self.camera);
         let stats = block_on(self.renderer.render(&frame))?;
         self.lighting_ms
             .push(sum_ms(&stats, |pass| !OTHER.contains(&pass)));

@@ -86,10 +86,7 @@ fn one(
     let settings = settings(size, changes)?;
     let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
     block_on(renderer.set_scene(scene))?;
-    let frame = Frame {
-        camera,
-        previous_camera: Some(camera),
-    };
+    let frame = Frame::new(camera).with_previous(camera);
     for _ in 0..FRAMES {
         block_on(renderer.render(&frame))?;
     }

@@ -104,10 +104,7 @@ impl Side {
     }
 
     fn draw(&mut self, camera: &Camera, before: &Camera) -> anyhow::Result<()> {
-        let frame = Frame {
-            camera,
-            previous_camera: Some(before),
-        };
+        let frame = Frame::new(camera).with_previous(before);
         let before_ms = process_ms();
         let stats: FrameStats = block_on(self.renderer.render(&frame))?;
         self.work_ms.push(process_ms() - before_ms);

@@ -129,11 +129,9 @@ mod tests {
                 ms,
             })
             .collect();
-        let figures = FrameStats {
-            frame_ms,
-            gpu_ms,
-            ..FrameStats::default()
-        };
+        let mut figures = FrameStats::default();
+        figures.frame_ms = frame_ms;
+        figures.gpu_ms = gpu_ms;
         NumberedFrameStats {
             frame: 0,
             time_s: 0.0,

@@ -287,10 +287,7 @@ impl Side {
                 ..camera.clone()
             });
         }
-        let frame = foveal::Frame {
-            camera,
-            previous_camera: before.as_ref(),
-        };
+        let frame = foveal::Frame::new(camera).with_previous(before.as_ref());
         let stats = block_on(self.renderer.render(&frame))?;
         let bytes = block_on(self.renderer.read_picture())?;
         let picture = Rgba {

@@ -150,7 +150,7 @@ fn frozen_culling_stays_as_it_was_found() {
         News::Picture(shown) if shown.camera == behind.camera => Some(shown.culling),
         _ => None,
     });
-    let counts = |found: &Option<foveal::CullingFigures>| found.map(|found| found.stats);
+    let counts = |found: &Option<foveal::CullingStats>| found.map(|found| found.stats);
     assert_eq!(counts(&frozen), counts(&before));
     behind.frozen = false;
     worker.draw(behind);
@@ -158,7 +158,7 @@ fn frozen_culling_stays_as_it_was_found() {
         News::Picture(shown) if counts(&shown.culling) != counts(&before) => Some(shown.culling),
         _ => None,
     });
-    let outside = |found: &Option<foveal::CullingFigures>| {
+    let outside = |found: &Option<foveal::CullingStats>| {
         found.map_or(0, |found| found.stats.occludees_outside)
     };
     assert!(outside(&thawed) > outside(&before));

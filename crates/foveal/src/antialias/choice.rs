@@ -10,6 +10,7 @@ pub(crate) fn by_triangles(settings: &Settings) -> bool {
         && settings.antialiasing.edge_test == EdgeTest::Surface
         && settings.antialiasing.pattern == SamplePattern::Grid
 }
+
 /// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated once for n x n
 /// sub-samples: n x n trilinear samples of 1 / n each, 1 / n apart, blur as much as one of this size. In variances: one of
 /// size s has s^2 / 4 (a mip level's box and the filter's tent), their places (1 - 1 / n^2) / 12.

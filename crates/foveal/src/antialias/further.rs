@@ -3,6 +3,7 @@
 use crate::geometry::{
     DEPTH_FORMAT, GBuffer, IDENTITY_FORMAT, SURFACE_FORMAT, TRIANGLE_FORMAT, VisibilityTargets,
 };
+
 use crate::gpu::{Gpu, target};
 
 /// A word per texel: bits of an entry's depth, a candidate, a pixel's largest surface.
@@ -21,6 +22,7 @@ pub(crate) struct FurtherTargets {
     pub(super) candidate_list_view: wgpu::TextureView,
     pub(super) largest_view: wgpu::TextureView,
 }
+
 /// An indirect dispatch of nothing, and the number of candidates.
 const NO_CANDIDATES: [u32; 4] = [0, 1, 1, 0];
 /// Bytes of an entry in [`FurtherTargets`], the list of its pixels included.
@@ -82,6 +84,7 @@ impl FurtherTargets {
         self.entries() * FURTHER_BYTES + pixels * 8
     }
 }
+
 /// A band's sub-samples without surfaces.
 pub(super) fn band_of_triangles(gpu: &Gpu, texels: (u32, u32)) -> GBuffer {
     let none = wgpu::TextureUsages::empty();

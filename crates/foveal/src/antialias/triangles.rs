@@ -11,6 +11,7 @@ use crate::geometry::{DEPTH_FORMAT, IDENTITY_FORMAT, TRIANGLE_FORMAT, geometry_l
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
 };
+
 use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::scene::SceneOnGpu;
 use crate::shader::Screen;

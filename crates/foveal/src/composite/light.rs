@@ -7,6 +7,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     written,
 };
+
 use crate::recorder::Recorder;
 use crate::shading::{CoarseTargets, RADIANCE_FORMAT};
 use crate::targets::Targets;

@@ -16,6 +16,7 @@ pub(crate) struct LightTargets {
     /// Their number, with room for the counts of nine levels, as the pass that sizes dispatches has them.
     pub(crate) unlit_count: wgpu::Buffer,
 }
+
 impl LightTargets {
     /// Bytes of everything.
     pub(crate) fn bytes(&self) -> u64 {

@@ -11,6 +11,7 @@ use crate::shading::twin::{
     Surface, ambient, environment_reflectance, ggx_lobe, light_surface, luminance, position_at,
     squared_alpha, to_eye, unit_from_square, unpack_shared_exponent, unpack_surface,
 };
+
 use crate::testing::{f32_of_half, gpu, rendered, small, texels};
 use crate::{CoarseSample, Composite, RateSource, RefineEdges, Renderer, Settings, Shading};
 

@@ -20,6 +20,7 @@ pub(crate) struct PatchTargets {
     /// The tiles of either draw, one word each.
     pub(super) quad_tiles: wgpu::Buffer,
 }
+
 impl PatchTargets {
     /// Bytes of everything.
     pub(crate) fn bytes(&self) -> u64 {
@@ -67,12 +68,14 @@ impl PatchTargets {
         })
     }
 }
+
 /// How many patches there are: one per block of each level from 1 on, of a picture padded to whole blocks of the coarsest.
 fn patches((width, height): (u32, u32), coarsest: u32) -> u64 {
     let padded = |pixels: u32| u64::from(pixels.next_multiple_of(1 << coarsest));
     let pixels = padded(width) * padded(height);
     (1..=coarsest).map(|level| pixels >> (2 * level)).sum()
 }
+
 /// [`Error::Limit`] where the device cannot bind as large a buffer as the patches of these settings need.
 pub(crate) fn check_limits(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
     let size = EyeLayout::of(settings).target_size();

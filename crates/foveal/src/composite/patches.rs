@@ -8,6 +8,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     uniform,
 };
+
 use crate::recorder::Recorder;
 use crate::shader;
 use crate::shading::{CoarseTargets, LevelNumbers};

@@ -42,10 +42,7 @@ fn affine_error(
         renderer.set_rate_image(map);
         renderer.set_scene(scene).await.unwrap();
         renderer.shade_affine();
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(camera);
         renderer.render(&frame).await.unwrap();
         renderer
     });

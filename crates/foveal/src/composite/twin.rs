@@ -432,10 +432,7 @@ fn smooth_equals_its_twin() {
             let twos = vec![0x40; part.size() as usize];
             gpu().queue.write_buffer(part, 0, &twos);
         }
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(camera);
         pollster::block_on(renderer.render(&frame)).unwrap();
         let inputs = Inputs::of(&renderer, camera);
         let drawn: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);

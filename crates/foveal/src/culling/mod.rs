@@ -21,7 +21,7 @@ use workers::Workers;
 
 /// What the culler found in a frame, as Intel's occlusion culling sample shows it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CullingFigures {
+pub struct CullingStats {
     /// Counts.
     pub stats: CullStats,
     /// Width and height of the occlusion buffer.
@@ -240,8 +240,8 @@ impl CullingStage {
     }
 
     /// All figures of the last frame.
-    pub(crate) fn figures(&self) -> CullingFigures {
-        CullingFigures {
+    pub(crate) fn figures(&self) -> CullingStats {
+        CullingStats {
             stats: self.culler.stats(),
             buffer: self.culler.size(),
             threads: self.threads.threads().count(),

@@ -6,6 +6,7 @@ pub(crate) mod twin;
 use crate::geometry::{
     DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window,
 };
+
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, drawn_over, overwritten};

@@ -9,6 +9,7 @@ pub(crate) enum FaceNormals {
     /// The triangles' own normals, for telling planes apart.
     Written,
 }
+
 impl FaceNormals {
     /// What these settings need.
     pub(crate) fn wanted_by(settings: &Settings) -> Self {

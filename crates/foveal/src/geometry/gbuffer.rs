@@ -5,6 +5,7 @@ use super::{
     DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, Rates, ResolveAt, VertexSource,
     VisibilityPass,
 };
+
 use super::{GBuffer, Window};
 use crate::formats::{IDENTITY_FORMAT, SURFACE_FORMAT};
 use crate::gpu::Gpu;

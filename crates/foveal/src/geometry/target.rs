@@ -22,6 +22,7 @@ pub(crate) struct GBuffer {
     /// Where surfaces are evaluated after the rasterizer.
     pub(crate) visibility: Option<VisibilityTargets>,
 }
+
 impl GBuffer {
     /// `layers` of this size each.
     pub(crate) fn new(gpu: &Gpu, geometry: Geometry, size: (u32, u32), layers: u32) -> Self {

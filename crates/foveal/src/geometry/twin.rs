@@ -5,6 +5,7 @@ use foveal_scene::{
     AlphaMode, Camera, ColorSpace, Filter, Material, Projection, Sampler, Scene, Texture,
     TextureRef,
 };
+
 use glam::{Mat3, Vec2, Vec3};
 
 use crate::Geometry;

@@ -9,6 +9,7 @@ pub(crate) struct Window {
     /// Left, top, width, height of what is drawn.
     pub(crate) part: [u32; 4],
 }
+
 impl Window {
     /// The whole of a target of this size.
     pub(crate) fn sized(width: u32, height: u32) -> Self {

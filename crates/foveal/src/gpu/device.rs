@@ -12,15 +12,18 @@ pub struct Gpu {
     pub queue: wgpu::Queue,
     lost: Arc<Mutex<Option<String>>>,
 }
+
 /// Without storage buffers there is nothing that the full renderer could do.
 pub(crate) fn is_reduced(limits: &wgpu::Limits) -> bool {
     limits.max_storage_buffers_per_shader_stage == 0
 }
+
 fn note(lost: &Mutex<Option<String>>, reason: String) {
     if let Ok(mut slot) = lost.lock() {
         *slot = Some(reason);
     }
 }
+
 impl Gpu {
     /// Opens the adapter whose name, driver or backend contains `wanted` (case-insensitive), or whose number
     /// in [`Gpu::adapters`] it is; without `wanted`, the most capable one.
@@ -44,9 +47,9 @@ impl Gpu {
                 ..Default::default()
             })
             .await
-            .map_err(|cause| Error::NoDevice {
+            .map_err(|source| Error::NoDevice {
                 adapter: adapter.get_info().name,
-                cause: cause.to_string(),
+                source,
             })?;
         let gpu = Self::from_device(device, queue);
         // Not the device itself, which would never end while its own callback holds it.

@@ -16,12 +16,14 @@ pub(crate) use layout::{
     bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write, uniform,
     written, written_layers,
 };
+
 pub(crate) use mips::MipChain;
 #[cfg(test)]
 pub(crate) use readback::read_level;
 pub(crate) use readback::{
     Arriving, Handover, read_buffer, read_texture, submitted_work_done, work_done,
 };
+
 pub(crate) use table::Table;
 pub(crate) use target::{layer_of, layered_target, layers_of, target};
 pub(crate) use timing::{CpuTimer, GpuTimer};

@@ -24,6 +24,7 @@ pub(crate) struct ClusterGrid {
     /// Pixels by which each eye's picture lies to the right and below in the grid.
     pub(crate) shifts: [[u32; 2]; 2],
 }
+
 impl ClusterGrid {
     /// A grid for the eyes' pictures that resolves the distances at which the lights are.
     pub(crate) fn new(

@@ -92,11 +92,8 @@ fn the_views_equal_their_twins() {
             camera,
             &small(61, 40).with(|s| s.picture.view = view),
         );
-        pollster::block_on(renderer.render(&Frame {
-            camera,
-            previous_camera: Some(&before),
-        }))
-        .expect("drawn");
+        pollster::block_on(renderer.render(&Frame::new(camera).with_previous(&before)))
+            .expect("drawn");
         let gbuffer = &renderer.targets().gbuffer;
         let words: Vec<[u32; 4]> = texels(&gbuffer.surface_view);
         let identity: Vec<[u32; 2]> = texels(&gbuffer.identity_view);
@@ -138,11 +135,7 @@ fn motion_is_the_distance_in_pixels_that_a_point_moved() {
     let settings = small(61, 40);
     let size = Vec2::new(61.0, 40.0);
     let mut renderer = rendered(&scene, camera, &settings);
-    pollster::block_on(renderer.render(&Frame {
-        camera,
-        previous_camera: Some(&before),
-    }))
-    .expect("drawn");
+    pollster::block_on(renderer.render(&Frame::new(camera).with_previous(&before))).expect("drawn");
     let identity: Vec<[u32; 2]> = texels(&renderer.targets().gbuffer.identity_view);
     let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);
     let mut seen = 0;

@@ -14,6 +14,7 @@ pub(crate) struct RateTargets {
     /// Owner level of 2 x 2 pixels each: a single level, 1.
     pub(crate) owner: MipChain,
 }
+
 impl RateTargets {
     /// Bytes of both.
     pub(crate) fn bytes(&self) -> u64 {

@@ -17,6 +17,7 @@ pub(super) struct Counts<T> {
     /// Samples of variable shading.
     pub(super) rates: Option<T>,
 }
+
 /// A frame that the device has not finished, or whose figures have not arrived.
 pub(super) struct InFlight {
     pub(super) stats: FrameStats,
@@ -24,11 +25,13 @@ pub(super) struct InFlight {
     /// The moment when it was done.
     pub(super) done: Handover<f64>,
 }
+
 impl std::fmt::Debug for InFlight {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str("InFlight")
     }
 }
+
 impl InFlight {
     /// Follows the frame that was submitted last.
     pub(super) fn new(

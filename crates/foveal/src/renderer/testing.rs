@@ -98,10 +98,7 @@ impl Renderer {
 
     /// Draws the frame again.
     pub(crate) fn redraw(&mut self, camera: &Camera) -> FrameStats {
-        let frame = Frame {
-            camera,
-            previous_camera: None,
-        };
+        let frame = Frame::new(camera);
         pollster::block_on(self.render(&frame)).expect("frame is drawn")
     }
 

@@ -24,6 +24,7 @@ pub(crate) struct MaterialUniform {
     pub(crate) reserved_1: u32,
     pub(crate) reserved_2: u32,
 }
+
 /// A material's texture slots in the order of the shader's bindings; their positions are the flags' bits.
 pub(super) fn slots(material: &Material) -> [Option<TextureRef>; 5] {
     [
@@ -34,6 +35,7 @@ pub(super) fn slots(material: &Material) -> [Option<TextureRef>; 5] {
         material.emissive_texture,
     ]
 }
+
 const IS_UNLIT: u32 = 32;
 const IS_PROCEDURAL: u32 = 64;
 const HAS_UV_MAP: u32 = 128;
@@ -55,15 +57,18 @@ pub(crate) fn material_class(material: &Material) -> u32 {
     let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
     textures.sum::<u32>() | flags.sum::<u32>()
 }
+
 fn has_uv_map(slot: &TextureRef) -> bool {
     slot.uv_set != 0 || slot.uv_transform != Mat3::IDENTITY
 }
+
 /// What all slots in use share, if they do.
 fn shared_uv_map(slots: &[Option<TextureRef>; 5]) -> Option<[[f32; 4]; 2]> {
     let mut maps = slots.iter().flatten().map(|&slot| uv_rows(slot));
     let first = maps.next().unwrap_or([[0.0; 4]; 2]);
     maps.all(|map| map == first).then_some(first)
 }
+
 impl MaterialUniform {
     /// `layers`: where the slots' textures lie in their arrays, each below 256.
     pub(crate) fn new(material: &Material, number: u32, layers: [u32; 5]) -> Self {
@@ -92,6 +97,7 @@ impl MaterialUniform {
         }
     }
 }
+
 fn uv_rows(slot: TextureRef) -> [[f32; 4]; 2] {
     let m = slot.uv_transform;
     [

@@ -14,6 +14,7 @@ pub enum Culling {
     /// All objects: the reference.
     Off,
 }
+
 /// Sharing of one occlusion test between two eyes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -25,6 +26,7 @@ pub enum CullingEyes {
     /// Occluders are rasterized once and hide less.
     Shared,
 }
+
 /// Content of the picture: the finished frame or a debug view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -61,6 +63,7 @@ pub enum DebugView {
     /// One colour per material: the bins of the visibility buffer.
     Bins,
 }
+
 impl DebugView {
     /// Whether this view needs lighting.
     pub(crate) fn is_lit(self) -> bool {
@@ -71,6 +74,7 @@ impl DebugView {
         }
     }
 }
+
 /// Materials of a visibility buffer that one dispatch resolves. The picture is the same to the bit.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -83,6 +87,7 @@ pub enum MaterialDispatch {
     /// One material.
     Material,
 }
+
 /// Smoothing of edges. See `docs/antialiasing.md`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -95,6 +100,7 @@ pub enum Antialiasing {
     /// One sample per surface that a pixel shows: several at edges, one elsewhere.
     Msaa,
 }
+
 /// Placement of a pixel's sub-samples.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -106,6 +112,7 @@ pub enum SamplePattern {
     /// sample.
     Rotated,
 }
+
 /// Pixels that [`Antialiasing::Msaa`] treats as edges, and the sub-samples that it shades there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -120,6 +127,7 @@ pub enum EdgeTest {
     /// No pixels. Only the first sub-sample is shaded, as in the source's mode 'none'.
     Never,
 }
+
 /// Reflection of light by surfaces.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -130,6 +138,7 @@ pub enum LightingModel {
     /// Lambert and Blinn-Phong, as in the techniques' sources.
     BlinnPhong,
 }
+
 /// Lights that a sample evaluates.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
@@ -140,6 +149,7 @@ pub enum LightAssignment {
     /// All lights: the reference.
     Brute,
 }
+
 /// Curve from scene radiance to display values.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

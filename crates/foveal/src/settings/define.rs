@@ -155,6 +155,7 @@ macro_rules! settings {
         }
     };
 }
+
 pub(super) use settings;
 
 /// Lets serde have a type as the text that [`FromStr`](std::str::FromStr) reads and
@@ -175,6 +176,7 @@ macro_rules! as_text {
         }
     };
 }
+
 pub(super) use as_text;
 
 /// Names of the unit variants of `T` as serde spells them, in the order of declaration.

@@ -19,6 +19,7 @@ pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
     CoarseShading, CoarseTargets, CountPass, LEVELS, LevelNumbers, STENCIL_FORMAT, stencil_state,
 };
+
 #[cfg(test)]
 pub(crate) use history::HistoryParameters;
 pub(crate) use history::{HistoryStage, HistoryTargets};

@@ -6,6 +6,7 @@ use crate::geometry::GBuffer;
 use crate::gpu::{
     Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
 };
+
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};

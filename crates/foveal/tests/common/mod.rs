@@ -17,10 +17,7 @@ pub(crate) fn drawn(
             .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");
         for _ in 0..frames {
-            let frame = Frame {
-                camera,
-                previous_camera: Some(camera),
-            };
+            let frame = Frame::new(camera).with_previous(camera);
             renderer.render(&frame).await.expect("drawn");
         }
         renderer.read_picture().await.expect("read back")

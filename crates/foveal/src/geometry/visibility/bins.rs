@@ -6,6 +6,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     written_layers,
 };
+
 use crate::recorder::Recorder;
 use crate::scene::{MaterialDispatch, SceneOnGpu};
 use crate::shader;

@@ -4,6 +4,7 @@ use foveal_scene::{
     AlphaMode, ColorSpace, Filter, Material, ProceduralLayers, Sampler, Scene, Texture, TextureRef,
     Wrap,
 };
+
 use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
 use crate::forward::twin::{front, quads};
@@ -143,10 +144,7 @@ fn drawn(scene: &Scene, settings: &Settings, limits: ArrayLimits) -> Renderer {
         renderer.set_scene_within(scene, limits).await.unwrap();
         let camera = front();
         for previous_camera in [None, Some(&camera)] {
-            let frame = Frame {
-                camera: &camera,
-                previous_camera,
-            };
+            let frame = Frame::new(&camera).with_previous(previous_camera);
             renderer.render(&frame).await.unwrap();
         }
         renderer

@@ -16,6 +16,7 @@ struct Materials {
     bin: BinPass,
     resolve: ResolvePass,
 }
+
 /// Draws triangles, and evaluates their materials afterwards.
 #[derive(Debug)]
 pub(crate) struct VisibilityPass {
@@ -28,6 +29,7 @@ pub(crate) struct VisibilityPass {
     pub(super) bins: Bins,
     by: MaterialDispatch,
 }
+
 impl VisibilityPass {
     /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: the footprint of a pixel's textures, in
     /// pixels, where [`VisibilityPass::resolve_further`] will be called; `rates`: materials will be evaluated there.

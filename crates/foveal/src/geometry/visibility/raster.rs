@@ -6,6 +6,7 @@ use crate::geometry::{
     DrawList, Draws, GBuffer, IDENTITY_FORMAT, PipelineKey, PipelineRecipe, Pipelines,
     VertexSource, Window,
 };
+
 use crate::gpu::Gpu;
 use crate::recorder::{Recorder, overwritten};
 use crate::shader;

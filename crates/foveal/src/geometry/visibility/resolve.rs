@@ -10,6 +10,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, uniform,
     written_layers,
 };
+
 use crate::recorder::Recorder;
 use crate::scene::{FAMILY_BYTES, MaterialDispatch};
 use crate::shader;

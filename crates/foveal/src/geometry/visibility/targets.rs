@@ -13,6 +13,7 @@ pub(crate) struct VisibilityTargets {
     /// The seen pixels, `x | y << 16`, material by material.
     pub(crate) pixels: wgpu::Buffer,
 }
+
 impl VisibilityTargets {
     /// Bytes of both.
     pub(crate) fn bytes(&self) -> u64 {
@@ -44,6 +45,7 @@ impl VisibilityTargets {
         }
     }
 }
+
 /// At which pixels materials are resolved, and what the passes are timed under.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResolveAt<'a> {
@@ -53,6 +55,7 @@ pub(crate) struct ResolveAt<'a> {
     pub(super) binning_label: &'static str,
     pub(super) material_label: &'static str,
 }
+
 impl<'a> ResolveAt<'a> {
     /// At every pixel.
     pub(crate) const FULL: Self = Self {
@@ -76,6 +79,7 @@ impl<'a> ResolveAt<'a> {
         }
     }
 }
+
 /// `resources`, and the mask where there is one.
 pub(super) fn with_mask<'a>(
     at: &ResolveAt<'a>,
@@ -84,6 +88,7 @@ pub(super) fn with_mask<'a>(
     let mask = at.mask.map(wgpu::BindingResource::TextureView);
     resources.iter().cloned().chain(mask).collect()
 }
+
 /// Where materials may be evaluated other than at every pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Rates {
@@ -92,6 +97,7 @@ pub(crate) enum Rates {
     /// Where the tiles of a rate map are sampled.
     Tiles(CoarseSample),
 }
+
 /// Which pixels' materials are resolved: a variant of `listed.wgsl`.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Listed {
@@ -101,6 +107,7 @@ pub(super) enum Listed {
     /// Further surfaces of pixels at edges.
     Further,
 }
+
 impl Rates {
     /// What these settings need.
     pub(crate) fn wanted_by(settings: &Settings) -> Option<Self> {

@@ -5,6 +5,7 @@ use foveal_scene::{
     AlphaMode, Camera, ColorSpace, Filter, Material, Projection, Sampler, Scene, Texture,
     TextureRef,
 };
+
 use glam::{Mat3, Mat4, Vec2, Vec3};
 
 use crate::forward::twin::quads;
@@ -242,10 +243,7 @@ fn motion_is_the_rasterizers() {
     let motions = [Geometry::Gbuffer, Geometry::Visibility].map(|geometry| {
         let settings = small(61, 40).with(|s| s.geometry.path = geometry);
         let mut renderer = rendered(&scene, camera, &settings);
-        let frame = Frame {
-            camera,
-            previous_camera: Some(&before),
-        };
+        let frame = Frame::new(camera).with_previous(&before);
         pollster::block_on(renderer.render(&frame)).unwrap();
         texels::<[u32; 2]>(&renderer.targets().gbuffer.identity_view)
     });

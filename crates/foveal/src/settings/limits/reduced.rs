@@ -11,6 +11,7 @@ const MISSING_STAGES: [&str; 4] = [
     "Coarse shading",
     "Variable shading",
 ];
+
 /// Single settings that are missing there.
 const MISSING_KEYS: [&str; 3] = ["view", "geometry", "material-dispatch"];
 

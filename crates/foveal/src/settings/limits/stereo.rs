@@ -43,6 +43,7 @@ impl Settings {
                 || second && self.coarse.other_source == RateSource::Lens)
     }
 }
+
 /// Checks the settings of stereo.
 pub(super) fn validate(s: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
     let wrong = |name, value: String, expected| {

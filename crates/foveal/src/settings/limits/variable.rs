@@ -29,6 +29,7 @@ impl Settings {
         self.shading.mode == Shading::Coarse && self.stage().has_material()
     }
 }
+
 /// Checks the settings of variable shading.
 pub(super) fn validate(s: &Settings) -> Result<(), Error> {
     let wrong = |name, value: String, expected| {

@@ -10,6 +10,7 @@ pub(super) fn needs_lists(settings: &Settings) -> bool {
     settings.coarse.backend != CoarseBackend::Stencil
         || settings.coarse.composite == Composite::Smooth
 }
+
 /// Settings that change the shading shaders.
 pub(super) fn shading_constants(settings: &Settings) -> [(&'static str, f64); 3] {
     let [model, assignment] = lighting_constants(settings);

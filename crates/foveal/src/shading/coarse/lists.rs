@@ -4,6 +4,7 @@ use super::{CoarseTargets, LEVELS};
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, storage_read, storage_write, uniform,
 };
+
 use crate::recorder::Recorder;
 use crate::{Settings, shader};
 

@@ -5,6 +5,7 @@ use super::{
     BackendChoice, CoarseTargets, ComputeBackend, CountPass, StencilBackend, TileListing,
     UsedBackend,
 };
+
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
 use crate::{CoarseBackend, CoarseStats, Composite, Settings, Timing, shader};
@@ -21,6 +22,7 @@ pub(crate) struct CoarseShading {
     composite: Composite,
     choice: BackendChoice,
 }
+
 impl CoarseShading {
     pub(crate) fn new(
         gpu: &Gpu,

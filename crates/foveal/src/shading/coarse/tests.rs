@@ -49,10 +49,7 @@ fn draw_with_image(settings: &Settings, image: RateImage) -> Renderer {
         let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
         renderer.set_rate_image(image);
         renderer.set_scene(&scene).await.unwrap();
-        let frame = Frame {
-            camera: &scene.cameras[0],
-            previous_camera: None,
-        };
+        let frame = Frame::new(&scene.cameras[0]);
         renderer.render(&frame).await.unwrap();
         renderer
     })
@@ -242,10 +239,7 @@ fn shaded_samples_are_the_tiles() {
     for backend in [CoarseBackend::Stencil, CoarseBackend::Compute] {
         let settings = (nearest(SIZES[0])).with(|s| s.coarse.backend = backend);
         let mut renderer = draw(&settings);
-        let frame = Frame {
-            camera: &scene.cameras[0],
-            previous_camera: None,
-        };
+        let frame = Frame::new(&scene.cameras[0]);
         let stats = pollster::block_on(renderer.render(&frame)).unwrap();
         let tiles = twin(&renderer).tiles();
         assert_eq!(stats.shaded_samples, tiles.iter().sum::<u64>());
@@ -257,10 +251,7 @@ fn shaded_samples_are_the_tiles() {
 fn the_automatic_backend_settles_and_says_why() {
     let scene = scene();
     let mut renderer = draw(&nearest(SIZES[0]));
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     let reasons: Vec<String> = (0..8)
         .map(|_| pollster::block_on(renderer.render(&frame)).unwrap())
         .map(|stats| stats.coarse.unwrap().backend_reason)
@@ -271,10 +262,7 @@ fn the_automatic_backend_settles_and_says_why() {
 #[test]
 fn resizing_keeps_the_choice_and_draws_the_same_as_a_fresh_renderer() {
     let scene = scene();
-    let frame = Frame {
-        camera: &scene.cameras[0],
-        previous_camera: None,
-    };
+    let frame = Frame::new(&scene.cameras[0]);
     let mut renderer = draw(&nearest(SIZES[1]));
     let settings = nearest(SIZES[0]);
     pollster::block_on(async {

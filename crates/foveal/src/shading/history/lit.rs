@@ -18,6 +18,7 @@ pub(super) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
         && !gpu.is_reduced()
         && fits(gpu, settings)
 }
+
 /// What a frame does.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Lit {

@@ -9,6 +9,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     written,
 };
+
 use crate::rate::RateTargets;
 use crate::recorder::Recorder;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};

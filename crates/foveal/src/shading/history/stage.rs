@@ -35,6 +35,7 @@ pub(crate) struct HistoryStage {
     /// What the last frame's passes were told.
     pub(super) told: HistoryParameters,
 }
+
 impl HistoryStage {
     /// `None` where light is not reprojected.
     pub(crate) fn new(
@@ -158,6 +159,7 @@ impl HistoryStage {
         }
     }
 }
+
 /// What is added to places before they are rounded to whole pixels: so that what moves by a part of a pixel a frame moves by
 /// that on average (the same recurrence as the pixels' order, in two dimensions).
 fn rounding(frame: u32) -> [f32; 2] {

@@ -10,6 +10,7 @@ use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     uniform,
 };
+
 use crate::rate::RequestUniform;
 use crate::recorder::Recorder;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};

@@ -24,6 +24,7 @@ pub(crate) struct VariableStage {
     /// Frames since the targets knew nothing.
     frame: u32,
 }
+
 impl VariableStage {
     pub(crate) fn new(
         gpu: &Gpu,

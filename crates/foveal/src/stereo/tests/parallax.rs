@@ -119,10 +119,7 @@ fn cameras_that_two_eyes_cannot_use_are_errors() {
         ] {
             let mut camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
             camera.projection = projection;
-            let frame = Frame {
-                camera: &camera,
-                previous_camera: None,
-            };
+            let frame = Frame::new(&camera);
             match renderer.render(&frame).await {
                 Err(Error::Setting { name: found, .. }) => assert_eq!(found, name),
                 other => panic!("{projection:?}: {other:?}"),
