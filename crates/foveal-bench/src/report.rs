@@ -122,7 +122,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         "report.json",
         &(serde_json::to_string_pretty(&figures)? + "\n"),
     )?;
-    write("report.csv", &csv::of(&figures))?;
+    write("report.csv", &csv::of(&figures)?)?;
     write("report.html", &page::of(&report))?;
     console::print_result(&format!("{}\n", args.report.join("report.html").display()))?;
     if failures.is_empty() {

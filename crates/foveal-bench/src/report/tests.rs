@@ -200,7 +200,7 @@ fn passes_become_their_median_and_their_spread() {
     let ms = 2.0 * 1234.5678;
     assert_eq!(row["ms"], ms + 0.75);
     assert_eq!(row["spread"]["ms"], json!([ms, ms + 1.5]));
-    let csv = csv::of(&report);
+    let csv = csv::of(&report).unwrap();
     assert!(
         csv.contains("baseline,\"unit0, stage1\",ms,2469.8856,2469.1356,2470.6356"),
         "{csv}"
