@@ -12,6 +12,7 @@ mod figures;
 mod report;
 mod stereo;
 mod subject;
+mod svg;
 mod table;
 mod variable;
 mod verdict;

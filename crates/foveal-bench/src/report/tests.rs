@@ -2,7 +2,9 @@
 
 use serde_json::{Value, json};
 
-use super::html::{escaped, rounded};
+use maud::html;
+
+use super::html::rounded;
 use super::{csv, merge, page, pictures, plan, published};
 
 /// A report with figures that occur nowhere else.
@@ -54,6 +56,11 @@ fn report() -> Value {
         "adapter": { "name": "llvmpipe", "backend": "vulkan", "driver": "Mesa 22" },
         "program_version": "0.1.0", "benches": benches,
     })
+}
+
+/// As the page spells a text.
+fn escaped(text: &str) -> String {
+    html! { (text) }.into_string()
 }
 
 /// All texts of the JSON, as the page spells them.
