@@ -9,6 +9,7 @@ mod bench;
 mod csv;
 pub(crate) mod diff;
 mod html;
+mod markdown;
 mod merge;
 mod page;
 mod pictures;
@@ -46,6 +47,14 @@ pub struct Args {
     #[arg(long, value_name = "DIR")]
     report: PathBuf,
 
+    /// Write the figures as Markdown tables too: a file per bench, and README.md
+    #[arg(long, value_name = "DIR")]
+    markdown: Option<PathBuf>,
+
+    /// The state that is measured, as the tables name it: commit and date
+    #[arg(long, value_name = "TEXT", requires = "markdown")]
+    of: Option<String>,
+
     /// Small pictures and few repetitions: about five minutes on a machine without a graphics card
     #[arg(long)]
     quick: bool,
@@ -70,8 +79,10 @@ pub struct Args {
 
 /// Runs everything and writes the report.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    std::fs::create_dir_all(&args.report)
-        .with_context(|| format!("cannot make the folder '{}'", args.report.display()))?;
+    for folder in std::iter::once(&args.report).chain(&args.markdown) {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("cannot make the folder '{}'", folder.display()))?;
+    }
     for name in ["report.html", "report.json", "report.csv"] {
         atomic_file::check_writable(&args.report.join(name))?;
     }
@@ -122,6 +133,14 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         "report.json",
         &(serde_json::to_string_pretty(&figures)? + "\n"),
     )?;
+    if let Some(folder) = &args.markdown {
+        if let Some(of) = &args.of {
+            figures["of"] = of.as_str().into();
+        }
+        for (name, text) in markdown::of(&figures) {
+            atomic_file::write(&folder.join(name), text.as_bytes())?;
+        }
+    }
     write("report.csv", &csv::of(&figures)?)?;
     write("report.html", &page::of(&report))?;
     console::print_result(&format!("{}\n", args.report.join("report.html").display()))?;
