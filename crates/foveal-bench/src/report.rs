@@ -43,7 +43,7 @@ pub struct Args {
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
 
-    /// The folder for report.html, report.json and report.csv; made if it is not there
+    /// Folder for report.html, report.json and report.csv; created if missing
     #[arg(long, value_name = "DIR")]
     report: PathBuf,
 
@@ -63,12 +63,12 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
 
-    /// Only these benches; the others are listed as skipped
+    /// Benches to run; the report lists all others as skipped [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     #[arg(value_parser = PossibleValuesParser::new(plan::BENCHES.iter().map(|bench| bench.name)))]
     only: Vec<String>,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    /// Graphics adapter: part of its name, or its number in `foveal adapters`
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 
