@@ -30,27 +30,29 @@ pub struct Args {
     #[command(flatten)]
     subject: SubjectArgs,
 
-    /// Width and height in pixels; the source's by default
+    /// Width and height in pixels; by default those of the technique's source
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1000x1500")]
     size: (u32, u32),
 
-    /// Add N coloured point lights to the scene
+    /// Number of coloured point lights to add to the scene
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = values::point_lights)]
     point_lights: u32,
 
-    /// Which lights a sample looks at; the technique's source has no clusters: brute [default: clustered]
+    /// Assignment of lights to samples; the technique's source has no clusters: brute [default:
+    /// clustered]
     #[arg(long, value_name = "WHICH", value_parser = VariantParser::<LightAssignment>::new())]
     lights: Option<LightAssignment>,
 
-    /// How light is reflected; the technique's source uses blinn-phong [default: ggx]
+    /// Model of reflection; the technique's source uses blinn-phong [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
     lighting: Option<LightingModel>,
 
-    /// Frames of each mode after one that warms up; figures are medians over them. Below 10 there is no interval
+    /// Frames of each mode, after one that warms up; figures are their medians. Below 10 there is
+    /// no interval
     #[arg(long, value_name = "N", default_value_t = 12, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
 
-    /// Sub-samples of the SSAA picture that is taken for the truth; 0: leave it out
+    /// Sub-samples of the SSAA picture that serves as the reference; 0: no reference
     #[arg(long, value_name = "N", default_value_t = 64)]
     reference: u32,
 }
@@ -220,7 +222,7 @@ fn rows(
     let pictures: Vec<_> = modes.iter_mut().filter_map(|m| m.picture.take()).collect();
     Ok((modes.iter().zip(&pictures).enumerate())
         .map(|(number, (mode, picture))| {
-            let near = |truth: &Picture| Nearness::of(truth, picture);
+            let near = |reference: &Picture| Nearness::of(reference, picture);
             let reference = reference.as_ref().map(near);
             // Each is compared with none by the same geometry.
             let geometry = mode.renderer.settings().geometry.path;
@@ -345,8 +347,8 @@ fn summary(report: &Report) -> String {
         "none/frame",
         "none/shade",
         "FLIP to ssaa",
-        "FLIP to truth",
-        "JOD to truth",
+        "FLIP to reference",
+        "JOD to reference",
         "MB",
         "source fps",
     ];

@@ -42,40 +42,42 @@ pub struct Args {
     #[arg(long, value_name = "N", default_values_t = [200])]
     lights: Vec<u32>,
 
-    /// Range of each of them in metres; 0: no range, as in the technique's source [default: shorter the more
-    /// lights there are]
+    /// Range of each point light in metres; 0: no range, as in the technique's source [default:
+    /// shorter with more lights]
     #[arg(long, value_name = "M", value_parser = values::non_negative)]
     light_range: Option<f32>,
 
-    /// How light is reflected; the technique's source uses blinn-phong [default: ggx]
+    /// Model of reflection; the technique's source uses blinn-phong [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
     lighting: Option<LightingModel>,
 
-    /// Radius where every pixel is shaded, by the picture's height; may be given several times
+    /// Radius around the gaze in which every pixel is shaded, as a fraction of the picture's
+    /// height; may be given several times
     #[arg(long, value_name = "R", default_values_t = [0.125])]
     fovea_inner: Vec<f32>,
 
-    /// Where geometric edges are shaded more finely [default: graded]
+    /// Finer shading at geometric edges [default: graded]
     #[arg(long, value_name = "WHERE", value_parser = VariantParser::<RefineEdges>::new())]
     refine_edges: Option<RefineEdges>,
 
-    /// How the G-buffer is filled [default: gbuffer]
+    /// Way in which the G-buffer is filled [default: gbuffer]
     #[arg(long, value_name = "HOW", value_parser = VariantParser::<Geometry>::new())]
     geometry: Option<Geometry>,
 
-    /// What is done once per sample; may be given several times [default: auto]
+    /// Stage that runs once per sample; may be given several times [default: auto]
     #[arg(long, value_name = "STAGE", value_parser = VariantParser::<RateStage>::new())]
     rate_stage: Vec<RateStage>,
 
-    /// Backends; may be given several times [default: stencil and compute]
+    /// Backends of coarse shading; may be given several times [default: stencil and compute]
     #[arg(long, value_name = "HOW", value_parser = VariantParser::<CoarseBackend>::new())]
     backend: Vec<CoarseBackend>,
 
-    /// Besides, rows over 10 to 2,000 lights and over fovea radii, at the last size by the last backend
+    /// Add rows over 10 to 2,000 lights and over fovea radii, at the last size with the last
+    /// backend
     #[arg(long)]
     sweep: bool,
 
-    /// Rounds that are measured, after one that warms up; below 10 the ratio has no interval
+    /// Measured rounds, after one that warms up; below 10 the ratio has no interval
     #[arg(long, value_name = "N", default_value_t = 3)]
     pairs: u32,
 }

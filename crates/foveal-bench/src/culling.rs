@@ -33,12 +33,13 @@ pub struct Args {
     #[command(flatten)]
     culling: CullingArgs,
 
-    /// `inside`: up to 48 cameras at eye height over floors with free space around, found by themselves, besides the
-    /// scene's own and eight around it. Or cameras from a JSON list, as for `foveal cull`, instead of these
+    /// Cameras: `inside` adds up to 48 at eye height above floors with free space around, found in
+    /// the scene, to the scene's own and eight around it. A JSON list, as for `foveal cull`,
+    /// replaces them all
     #[arg(long, value_name = "inside|FILE.json")]
     cameras: Option<cameras::Choice>,
 
-    /// Sizes of the depth buffer in pixels
+    /// Sizes of the occlusion buffer in pixels
     #[arg(long, value_name = "WxH,…", value_parser = values::size, value_delimiter = ',')]
     #[arg(default_value = "640x360,1280x720")]
     sizes: Vec<(u32, u32)>,
@@ -48,16 +49,16 @@ pub struct Args {
     #[arg(value_parser = clap::value_parser!(u32).range(1..=256))]
     threads: Vec<u32>,
 
-    /// How many random boxes are tested
+    /// Number of random boxes to test
     #[arg(long, value_name = "N", default_value_t = 27_000)]
     boxes: u32,
 
-    /// Times are medians of N repetitions, after three to warm up
+    /// Repetitions, after three that warm up; times are their medians
     #[arg(long, value_name = "N", default_value_t = 31, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     repetitions: u32,
 
-    /// Compare with an exact reference at the same resolution and at four times it; exit code 1 if anything
-    /// visible was culled. Slow
+    /// Compare with the exact reference at the same resolution and at four times it (slow). Exit
+    /// code 1 if anything visible was culled
     #[arg(long)]
     check: bool,
 
@@ -65,8 +66,8 @@ pub struct Args {
     #[arg(long, value_name = "FILE.json|-")]
     json: Option<PathBuf>,
 
-    /// Instead of SCENE: cost against occluder triangles, boxes, resolution and threads on generated scenes,
-    /// as CSV, with a plot of the same name ending in .svg beside it
+    /// Write cost against occluder triangles, boxes, resolution and threads as CSV, with a plot
+    /// beside it (.svg). Generated scenes replace SCENE
     #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenes", "cameras", "json", "check"])]
     scaling: Option<PathBuf>,
 

@@ -11,7 +11,7 @@ use foveal_host::{atomic_file, console, gpu};
 /// What every such bench is told.
 #[derive(Debug, Clone, clap::Args)]
 pub(super) struct FigureArgs {
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    /// Graphics adapter: part of its name, or its number in `foveal adapters`
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 

@@ -12,6 +12,7 @@ mod figures;
 mod report;
 mod stereo;
 mod subject;
+mod svg;
 mod table;
 mod variable;
 mod verdict;
@@ -20,26 +21,26 @@ pub use report::planned_commands;
 
 use clap::Subcommand;
 
-/// What to measure.
+/// The benches.
 #[derive(Debug, Subcommand)]
 pub enum BenchCommand {
-    /// Which settings make this scene faster on this machine, and at what error
+    /// The settings that make this scene faster on this machine, and their error
     Verdict(Box<verdict::Args>),
-    /// Rasterizing occluders and testing boxes on the CPU
+    /// Occlusion culling on the CPU: rasterizing occluders, testing boxes
     Culling(Box<culling::Args>),
     /// Coarse shading against shading every pixel
     Coarse(coarse::Args),
-    /// No anti-aliasing, MSAA and SSAA: time, edges, and how near each comes to many samples
+    /// Anti-aliasing: none, MSAA and SSAA by time, edges, and distance from many samples
     Antialiasing(antialiasing::Args),
-    /// What an eye sees of each way of shading, on displays: JOD, lit samples, time, flicker
+    /// Visible difference of each way of shading on displays: JOD, lit samples, time, flicker
     Eye(eye::Args),
-    /// Shading at a rate that the content decides against shading every pixel
+    /// Variable-rate shading, by content, against shading every pixel
     Variable(variable::Args),
-    /// Two eyes by each way of submission, against one eye and against two passes
+    /// Stereo by each way of submission, against one eye and against two passes
     Stereo(stereo::Args),
-    /// The verdict and all benches as one report: a page with pictures and plots, JSON, CSV
+    /// All benches and the verdict as one report: a page with pictures and plots, JSON, CSV
     All(report::Args),
-    /// What became slower between two reports
+    /// Differences between two reports: what became slower, what faster
     Diff(report::diff::Args),
 }
 

@@ -9,6 +9,7 @@ mod bench;
 mod csv;
 pub(crate) mod diff;
 mod html;
+mod markdown;
 mod merge;
 mod page;
 mod pictures;
@@ -42,9 +43,17 @@ pub struct Args {
     #[arg(default_value = scene_source::DEFAULT_SCENE)]
     scene: String,
 
-    /// The folder for report.html, report.json and report.csv; made if it is not there
+    /// Folder for report.html, report.json and report.csv; created if missing
     #[arg(long, value_name = "DIR")]
     report: PathBuf,
+
+    /// Write the figures as Markdown tables too: a file per bench, and README.md
+    #[arg(long, value_name = "DIR")]
+    markdown: Option<PathBuf>,
+
+    /// The state that is measured, as the tables name it: commit and date
+    #[arg(long, value_name = "TEXT", requires = "markdown")]
+    of: Option<String>,
 
     /// Small pictures and few repetitions: about five minutes on a machine without a graphics card
     #[arg(long)]
@@ -54,12 +63,12 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = values::size)]
     size: Option<(u32, u32)>,
 
-    /// Only these benches; the others are listed as skipped
+    /// Benches to run; the report lists all others as skipped [default: all]
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     #[arg(value_parser = PossibleValuesParser::new(plan::BENCHES.iter().map(|bench| bench.name)))]
     only: Vec<String>,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    /// Graphics adapter: part of its name, or its number in `foveal adapters`
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 
@@ -70,8 +79,10 @@ pub struct Args {
 
 /// Runs everything and writes the report.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
-    std::fs::create_dir_all(&args.report)
-        .with_context(|| format!("cannot make the folder '{}'", args.report.display()))?;
+    for folder in std::iter::once(&args.report).chain(&args.markdown) {
+        std::fs::create_dir_all(folder)
+            .with_context(|| format!("cannot make the folder '{}'", folder.display()))?;
+    }
     for name in ["report.html", "report.json", "report.csv"] {
         atomic_file::check_writable(&args.report.join(name))?;
     }
@@ -122,7 +133,15 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         "report.json",
         &(serde_json::to_string_pretty(&figures)? + "\n"),
     )?;
-    write("report.csv", &csv::of(&figures))?;
+    if let Some(folder) = &args.markdown {
+        if let Some(of) = &args.of {
+            figures["of"] = of.as_str().into();
+        }
+        for (name, text) in markdown::of(&figures) {
+            atomic_file::write(&folder.join(name), text.as_bytes())?;
+        }
+    }
+    write("report.csv", &csv::of(&figures)?)?;
     write("report.html", &page::of(&report))?;
     console::print_result(&format!("{}\n", args.report.join("report.html").display()))?;
     if failures.is_empty() {

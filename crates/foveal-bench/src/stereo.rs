@@ -67,7 +67,7 @@ pub struct Args {
     #[command(flatten)]
     camera: CameraArgs,
 
-    /// Frames of each way after two that warm up; figures are medians over them
+    /// Frames of each way, after two that warm up; figures are their medians
     #[arg(long, value_name = "N", default_value_t = 15, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
 

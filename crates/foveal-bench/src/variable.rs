@@ -36,7 +36,7 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "960x540")]
     size: (u32, u32),
 
-    /// Coloured point lights that are added to the scene; may be given several times
+    /// Number of coloured point lights to add to the scene; may be given several times
     #[arg(long, value_name = "N", default_values_t = [32, 128], value_parser = values::point_lights)]
     point_lights: Vec<u32>,
 
@@ -44,11 +44,11 @@ pub struct Args {
     #[arg(long, value_name = "X", default_values_t = [0.04])]
     contrast_threshold: Vec<f32>,
 
-    /// Metres by which the camera moves to the side in each frame
+    /// Sideways movement of the camera per frame in metres
     #[arg(long, value_name = "M", default_value_t = 0.01)]
     step: f32,
 
-    /// Frames that are measured, after those that warm up; figures are medians over them
+    /// Measured frames, after those that warm up; figures are their medians
     #[arg(long, value_name = "N", default_value_t = 6, value_parser = clap::value_parser!(u32).range(1..))]
     rounds: u32,
 }

@@ -33,11 +33,11 @@ pub struct Args {
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1280x720")]
     size: (u32, u32),
 
-    /// Add N coloured point lights to the scene
+    /// Number of coloured point lights to add to the scene
     #[arg(long, value_name = "N", default_value_t = 0)]
     point_lights: u32,
 
-    /// Frames of each candidate that count, after eight that warm up; below 10 there is no verdict
+    /// Measured frames of each candidate, after eight that warm up; below 10 there is no verdict
     #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u32).range(1..=200))]
     rounds: u32,
 }

@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use crate::{adapters, compare, completions, cull, render, scene_info, view};
 use foveal_bench::BenchCommand;
 
-/// Foveal renders scenes, and measures what rendering costs and how far two pictures are apart.
+/// Foveal renders scenes and measures what each technique costs, gains and changes in the picture.
 #[derive(Debug, Parser)]
 #[command(
     name = "foveal",
@@ -22,32 +22,32 @@ pub(crate) struct Cli {
 /// What to do.
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Draw a scene into a PNG file, or a sequence of frames into many
+    /// Draw a scene into a PNG file, or a sequence of frames into numbered files
     Render(Box<render::Args>),
     /// Open a window on a scene: fly, switch every setting, see what it costs
     View(Box<view::Args>),
-    /// Measure how far two pictures of the same size are apart
+    /// Measure the difference of two pictures, or of two videos
     Compare(compare::Args),
     /// List the graphics adapters of this machine
     Adapters(adapters::Args),
-    /// Look into a scene without drawing it
+    /// Describe a scene without drawing it
     #[command(subcommand)]
     Scene(SceneCommand),
     /// Cull a scene on the CPU: what is visible, occluded, outside or too small, and what that costs
     Cull(Box<cull::Args>),
-    /// Measure what a technique costs and gains
+    /// Measure what each technique costs and gains
     #[command(subcommand)]
     Bench(Box<BenchCommand>),
-    /// Print what completes these commands in a shell
+    /// Print completions for a shell
     Completions(completions::Args),
-    /// Write the manual's pages, one per command
+    /// Write manual pages, one per command
     Man(completions::ManArgs),
 }
 
 /// What to do with a scene.
 #[derive(Debug, Subcommand)]
 pub(crate) enum SceneCommand {
-    /// Counts, size, cameras and warnings
+    /// Print counts, size, cameras and warnings
     Info(scene_info::Args),
 }
 

@@ -21,11 +21,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     camera: CameraArgs,
 
-    /// Add N coloured point lights to the scene
+    /// Number of coloured point lights to add to the scene
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     point_lights: u32,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    /// Graphics adapter: part of its name, or its number in `foveal adapters`
     #[arg(long, value_name = "NAME|NUMBER")]
     adapter: Option<String>,
 

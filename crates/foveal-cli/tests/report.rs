@@ -35,9 +35,17 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
         "verdict,baseline,antialiasing",
         "--report",
         "r",
+        "--markdown",
+        "tables",
+        "--of",
+        "commit abc1234",
     ];
     succeed(folder.path(), &words);
     let at = folder.path().join("r");
+    let tables = folder.path().join("tables");
+    let index = fs::read_to_string(tables.join("README.md")).unwrap();
+    assert!(index.contains("[Baseline](baseline.md)") && index.contains("commit abc1234"));
+    assert!(tables.join("antialiasing.md").exists() && !tables.join("culling.md").exists());
     let report = json(&at.join("report.json"));
     assert_eq!(bench(&report, "culling")["status"], "skipped");
     for name in ["baseline", "antialiasing"] {

@@ -8,12 +8,12 @@ use crate::values;
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Scene files")]
 pub struct ImportArgs {
-    /// The animation that plays, by name or by number from 0 (`foveal scene info` lists them); or all at once: all
-    /// [default: 0]
+    /// Animation to play, by name or by number from 0 (`foveal scene info` lists them); `all`: all
+    /// at once [default: 0]
     #[arg(long, value_name = "NAME|NUMBER|all")]
     clip: Option<Clip>,
 
-    /// The variant of materials that is shown, by name or by number from 0 [default: none]
+    /// Variant of materials to show, by name or by number from 0 [default: none]
     #[arg(long, value_name = "NAME|NUMBER")]
     variant: Option<String>,
 

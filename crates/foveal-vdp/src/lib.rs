@@ -15,6 +15,8 @@
 //! assert!(comparison.jod < 10.0);
 //! # Ok::<(), foveal_vdp::VdpError>(())
 //! ```
+//!
+//! The feature `rayon` spreads rows over the current rayon pool; results stay the same to the bit.
 #![forbid(unsafe_code)]
 
 mod difference;

@@ -1,6 +1,8 @@
-//! A plain SVG plot: panels side by side, both axes logarithmic, milliseconds upwards.
+//! A plot of its own file: panels side by side, both axes logarithmic, milliseconds upwards.
 
-use std::fmt::Write;
+use maud::{Markup, PreEscaped, html};
+
+use crate::svg::{self, Axis, at};
 
 /// One diagram.
 pub(super) struct Panel {
@@ -19,130 +21,44 @@ const PLOT: (f64, f64) = (270.0, 210.0);
 /// All panels in one picture.
 pub(super) fn svg(panels: &[Panel]) -> String {
     let width = WIDTH * panels.len() as f64;
-    let mut svg = format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{HEIGHT}\" font-family=\"sans-serif\" font-size=\"11\">\n<rect width=\"100%\" height=\"100%\" fill=\"white\"/>\n"
-    );
-    for (i, panel) in panels.iter().enumerate() {
-        let _ = writeln!(svg, "<g transform=\"translate({} 0)\">", WIDTH * i as f64);
-        draw(&mut svg, panel);
-        svg.push_str("</g>\n");
-    }
-    svg.push_str("</svg>\n");
-    svg
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" width=(width) height=(HEIGHT) font-family="sans-serif" font-size="11" {
+            rect width="100%" height="100%" fill="white" {}
+            @for (i, panel) in panels.iter().enumerate() {
+                (PreEscaped("\n"))
+                g transform=(format!("translate({} 0)", WIDTH * i as f64)) { (draw(panel)) }
+            }
+        }
+    };
+    svg.into_string() + "\n"
 }
 
-fn draw(svg: &mut String, panel: &Panel) {
-    let points = || {
-        panel
-            .lines
-            .iter()
-            .flat_map(|(_, points)| points.iter().copied())
-    };
-    let x = Axis::over(points().map(|p| p.0));
-    let y = Axis::over(points().map(|p| p.1));
-    let place = |(px, py): (f64, f64)| {
-        (
-            LEFT + x.place(px) * PLOT.0,
-            TOP + (1.0 - y.place(py)) * PLOT.1,
-        )
-    };
-    let text = |svg: &mut String, x: f64, y: f64, anchor: &str, text: &str| {
-        let _ = writeln!(
-            svg,
-            "<text x=\"{x:.1}\" y=\"{y:.1}\" text-anchor=\"{anchor}\">{text}</text>"
-        );
-    };
-    for tick in x.ticks() {
-        let (at, _) = place((tick, y.low()));
-        let bottom = TOP + PLOT.1;
-        let _ = writeln!(svg, "<path d=\"M{at:.1} {TOP}V{bottom}\" stroke=\"#ddd\"/>");
-        text(svg, at, bottom + 15.0, "middle", &short(tick));
-    }
-    for tick in y.ticks() {
-        let (_, at) = place((x.low(), tick));
-        let right = LEFT + PLOT.0;
-        let _ = writeln!(svg, "<path d=\"M{LEFT} {at:.1}H{right}\" stroke=\"#ddd\"/>");
-        text(svg, LEFT - 5.0, at + 4.0, "end", &short(tick));
-    }
-    let _ = writeln!(
-        svg,
-        "<rect x=\"{LEFT}\" y=\"{TOP}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#888\"/>",
-        PLOT.0, PLOT.1
+fn draw(panel: &Panel) -> Markup {
+    let points = || panel.lines.iter().flat_map(|(_, points)| points);
+    let (across, upward) = (
+        Axis::decades(points().map(|p| p.0)),
+        Axis::decades(points().map(|p| p.1)),
     );
-    text(
-        svg,
-        LEFT + PLOT.0 / 2.0,
-        TOP + PLOT.1 + 34.0,
-        "middle",
-        &panel.title,
-    );
-    text(svg, LEFT - 5.0, TOP - 10.0, "end", "ms");
-    for (i, ((name, points), color)) in panel.lines.iter().zip(COLORS).enumerate() {
-        let path: Vec<String> = points
-            .iter()
-            .map(|&p| place(p))
-            .map(|(x, y)| format!("{x:.1},{y:.1}"))
-            .collect();
-        let _ = writeln!(
-            svg,
-            "<polyline points=\"{}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>",
-            path.join(" ")
-        );
-        for point in &path {
-            let (x, y) = point.split_once(',').unwrap_or(("0", "0"));
-            let _ = writeln!(
-                svg,
-                "<circle cx=\"{x}\" cy=\"{y}\" r=\"3\" fill=\"{color}\"/>"
-            );
+    let x = |value: f64| LEFT + across.place(value) * PLOT.0;
+    let y = |value: f64| TOP + (1.0 - upward.place(value)) * PLOT.1;
+    let (right, bottom) = (LEFT + PLOT.0, TOP + PLOT.1);
+    let place = |&(px, py): &(f64, f64)| (x(px), y(py), 3.0);
+    html! {
+        @for tick in across.powers_of_ten() {
+            path d=(format!("M{:.1} {TOP}V{bottom}", x(tick))) stroke="#ddd" {}
+            text x=(at(x(tick))) y=(at(bottom + 15.0)) text-anchor="middle" { (short(tick)) }
         }
-        let at = LEFT + 8.0 + 90.0 * i as f64;
-        let _ = writeln!(
-            svg,
-            "<text x=\"{at}\" y=\"{}\" fill=\"{color}\">{name}</text>",
-            TOP - 10.0
-        );
-    }
-}
-
-/// Whole decades around the values, as exponents of ten.
-struct Axis {
-    low: f64,
-    high: f64,
-}
-
-impl Axis {
-    fn over(values: impl Iterator<Item = f64>) -> Self {
-        let (low, high) = values
-            .filter(|v| *v > 0.0 && v.is_finite())
-            .map(f64::log10)
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
-                (low.min(v), high.max(v))
-            });
-        if low > high {
-            return Self {
-                low: 0.0,
-                high: 1.0,
-            };
+        @for tick in upward.powers_of_ten() {
+            path d=(format!("M{LEFT} {:.1}H{right}", y(tick))) stroke="#ddd" {}
+            text x=(at(LEFT - 5.0)) y=(at(y(tick) + 4.0)) text-anchor="end" { (short(tick)) }
         }
-        let (low, high) = (low.floor(), high.ceil());
-        Self {
-            low,
-            high: high.max(low + 1.0),
+        rect x=(LEFT) y=(TOP) width=(PLOT.0) height=(PLOT.1) fill="none" stroke="#888" {}
+        text x=(at(LEFT + PLOT.0 / 2.0)) y=(at(bottom + 34.0)) text-anchor="middle" { (panel.title) }
+        text x=(at(LEFT - 5.0)) y=(at(TOP - 10.0)) text-anchor="end" { "ms" }
+        @for (i, ((name, points), color)) in panel.lines.iter().zip(COLORS).enumerate() {
+            (svg::line(&points.iter().map(place).collect::<Vec<_>>(), color, color))
+            text x=(LEFT + 8.0 + 90.0 * i as f64) y=(TOP - 10.0) fill=(color) { (name) }
         }
-    }
-
-    fn low(&self) -> f64 {
-        10_f64.powf(self.low)
-    }
-
-    /// 0 at the low end to 1 at the high one.
-    fn place(&self, value: f64) -> f64 {
-        let exponent = value.max(f64::MIN_POSITIVE).log10();
-        ((exponent - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
-    }
-
-    fn ticks(&self) -> impl Iterator<Item = f64> + use<> {
-        (self.low as i32..=self.high as i32).map(|e| 10_f64.powi(e))
     }
 }
 

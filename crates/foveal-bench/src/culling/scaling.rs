@@ -5,12 +5,12 @@
 //! town. The eye is the demo scene's first camera. What does not vary is 1 million triangles, 27,000 boxes,
 //! 640x360 and one thread. Times are the shortest of all repetitions: how work grows, not how busy the machine is.
 
-use std::fmt::Write;
 use std::path::Path;
 
 use foveal_cull::FrameOptions;
 use foveal_scene::Scene;
 use glam::{DAffine3, DVec3};
+use serde::Serialize;
 
 use super::boxes;
 use super::cameras::Cameras;
@@ -91,7 +91,7 @@ pub(super) fn run(file: &Path, repetitions: u32, quiet: bool) -> anyhow::Result<
         measured.push((name, rows));
     }
     progress.finish_and_clear();
-    atomic_file::write(file, csv(&measured).as_bytes())?;
+    atomic_file::write(file, &csv(&measured)?)?;
     atomic_file::write(&svg, plot::svg(&panels(&measured)).as_bytes())?;
     console::print_result(&format!("wrote {} and {}\n", file.display(), svg.display()))
 }
@@ -182,25 +182,39 @@ fn spiral(copy: u32) -> DVec3 {
     DVec3::ZERO
 }
 
-fn csv(series: &[(&str, Vec<Row>)]) -> String {
-    let mut text = "series,occluder_triangles,query_boxes,width,height,threads,raster_ms,query_ms,query_ns_per_box\n".to_owned();
-    for (name, rows) in series {
+/// One line of the CSV.
+#[derive(Serialize)]
+struct Line<'a> {
+    series: &'a str,
+    occluder_triangles: u64,
+    query_boxes: u64,
+    width: u32,
+    height: u32,
+    threads: u32,
+    raster_ms: String,
+    query_ms: String,
+    query_ns_per_box: String,
+}
+
+fn csv(series: &[(&str, Vec<Row>)]) -> anyhow::Result<Vec<u8>> {
+    let mut table = csv::Writer::from_writer(Vec::new());
+    for (series, rows) in series {
         for r in rows {
-            let _ = writeln!(
-                text,
-                "{name},{},{},{},{},{},{:.6},{:.6},{:.3}",
-                r.occluder_triangles,
-                r.query_boxes,
-                r.width,
-                r.height,
-                r.threads,
-                r.raster_min_ms,
-                r.query_min_ms,
-                r.query_min_ms * 1e6 / r.query_boxes.max(1) as f64
-            );
+            let ns = r.query_min_ms * 1e6 / r.query_boxes.max(1) as f64;
+            table.serialize(Line {
+                series,
+                occluder_triangles: r.occluder_triangles,
+                query_boxes: r.query_boxes,
+                width: r.width,
+                height: r.height,
+                threads: r.threads,
+                raster_ms: format!("{:.6}", r.raster_min_ms),
+                query_ms: format!("{:.6}", r.query_min_ms),
+                query_ns_per_box: format!("{ns:.3}"),
+            })?;
         }
     }
-    text
+    Ok(table.into_inner()?)
 }
 
 fn panels(series: &[(&str, Vec<Row>)]) -> Vec<Panel> {

@@ -14,26 +14,27 @@ pub struct Args {
     #[command(flatten)]
     pub(super) subject: SubjectArgs,
 
-    /// The displays [default: all that have a name]
+    /// Displays, by name [default: all]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = screen::named)]
     pub(super) display: Vec<Screen>,
 
-    /// Largest width and height in pixels: of larger displays the middle is drawn, with the display's own pixels per degree.
-    /// `whole`: all pixels of each display [default: 640x360; with --quick 480x270]
+    /// Largest width and height in pixels; of a larger display its centre is drawn, at the
+    /// display's own pixels per degree. `whole`: all pixels of each display [default: 640x360; with
+    /// --quick 480x270]
     #[arg(long, value_name = "WxH|whole", value_parser = screen::fit)]
     size: Option<Fit>,
 
-    /// Coloured point lights that are added to the scene
+    /// Number of coloured point lights to add to the scene
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     pub(super) point_lights: u32,
 
-    /// Frames of each way whose time counts, after eight that warm up; below 10 there is no verdict, 0: no times [default: 20; with
-    /// --quick 10]
+    /// Timed frames of each way, after eight that warm up. Below 10 there is no verdict; 0: no
+    /// times [default: 20; with --quick 10]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=200))]
     rounds: Option<u32>,
 
-    /// Frames of the video, along --path: the demo scene's own path, else a camera that sways; 0: no video [default: 16; with --quick
-    /// 6]
+    /// Frames of the video along --path, which is the demo scene's own path there and `sway`
+    /// elsewhere; 0: no video [default: 16; with --quick 6]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
     frames: Option<u32>,
 

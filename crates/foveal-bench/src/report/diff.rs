@@ -22,10 +22,10 @@ pub struct Args {
     old: PathBuf,
     /// The later report.json
     new: PathBuf,
-    /// Exit with 1 where anything became slower
+    /// Exit with code 1 if anything became slower
     #[arg(long)]
     fail: bool,
-    /// Write all of it as a page: what changed, then each bench
+    /// Write the comparison as a page: first what changed, then each bench
     #[arg(long, value_name = "FILE.html")]
     page: Option<PathBuf>,
 }

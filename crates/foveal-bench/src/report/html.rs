@@ -1,6 +1,7 @@
-//! Words for the page. Every figure goes through [`Figures::figure`], which takes it out of the JSON and leaves its place there
+//! Figures of the page. Every one goes through [`Figures::figure`], which takes it out of the JSON and leaves its place there
 //! in the markup, so that a test can look each of them up.
 
+use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;
 
 /// The JSON that the page is made from.
@@ -8,45 +9,42 @@ pub(super) struct Figures<'a>(pub(super) &'a Value);
 
 impl Figures<'_> {
     /// The number at a JSON pointer, or a dash where there is none.
-    pub(super) fn figure(&self, pointer: &str, factor: f64, digits: usize) -> String {
-        match self.shown(pointer, factor, digits) {
-            Some(text) => format!(
-                "<span data-json=\"{}\" data-factor=\"{factor}\" data-digits=\"{digits}\">{text}</span>",
-                escaped(pointer)
-            ),
-            None => "&ndash;".to_owned(),
+    pub(super) fn figure(&self, pointer: &str, factor: f64, digits: usize) -> Markup {
+        html! {
+            @match self.shown(pointer, factor, digits) {
+                Some(text) => span data-json=(pointer) data-factor=(factor) data-digits=(digits) { (text) },
+                None => "\u{2013}",
+            }
         }
     }
 
     /// As [`Figures::figure`], for the inside of an SVG.
-    pub(super) fn svg_figure(&self, pointer: &str, factor: f64, digits: usize) -> String {
-        match self.shown(pointer, factor, digits) {
-            Some(text) => format!(
-                "<tspan data-json=\"{}\" data-factor=\"{factor}\" data-digits=\"{digits}\">{text}</tspan>",
-                escaped(pointer)
-            ),
-            None => String::new(),
+    pub(super) fn svg_figure(&self, pointer: &str, factor: f64, digits: usize) -> Markup {
+        html! {
+            @if let Some(text) = self.shown(pointer, factor, digits) {
+                tspan data-json=(pointer) data-factor=(factor) data-digits=(digits) { (text) }
+            }
         }
     }
 
     fn shown(&self, pointer: &str, factor: f64, digits: usize) -> Option<String> {
         match self.0.pointer(pointer)? {
             Value::Number(number) => Some(rounded(number.as_f64()? * factor, digits)),
-            Value::String(text) => Some(escaped(text)),
+            Value::String(text) => Some(text.clone()),
             _ => None,
         }
     }
 
-    /// A text of the JSON's.
-    pub(super) fn text(&self, pointer: &str) -> String {
+    /// A text of the JSON's; empty where there is none.
+    pub(super) fn text(&self, pointer: &str) -> &str {
         let text = self.0.pointer(pointer).and_then(Value::as_str);
-        escaped(text.unwrap_or_default())
+        text.unwrap_or_default()
     }
 
     /// A text or a number of the JSON's, as the JSON has it.
     pub(super) fn word(&self, pointer: &str) -> String {
         match self.0.pointer(pointer) {
-            Some(Value::String(text)) => escaped(text),
+            Some(Value::String(text)) => text.clone(),
             Some(Value::Number(number)) => number.to_string(),
             _ => String::new(),
         }
@@ -69,14 +67,30 @@ pub(super) fn rounded(number: f64, digits: usize) -> String {
     format!("{number:.digits$}")
 }
 
-pub(super) fn escaped(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+/// A whole page without network: a title, a body, a script, and style beyond that of all pages.
+pub(super) fn page(title: &str, style: &str, body: &Markup, script: Option<&str>) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                title { (title) }
+                link rel="icon" href="data:,";
+                style { (PreEscaped(STYLE)) (PreEscaped(style)) }
+            }
+            body {
+                main { (body) }
+                @if let Some(script) = script {
+                    script { (PreEscaped(script)) }
+                }
+            }
+        }
+    };
+    page.into_string() + "\n"
 }
 
-pub(super) const STYLE: &str = "
+const STYLE: &str = "
 :root { color-scheme: light dark; --back: #fbfbfc; --card: #fff; --line: #dfe3e8; --text: #1c2026; --faint: #626b78;
   --accent: #1f6fb4; --bad: #b3382c; --good: #1d7a3a; --pay: #8a5a00; }
 @media (prefers-color-scheme: dark) { :root { --back: #14161a; --card: #1d2026; --line: #343a44; --text: #dce0e6;

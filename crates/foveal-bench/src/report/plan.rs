@@ -14,7 +14,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: VERDICT,
         title: "The verdict",
-        about: "Each setting that may help, against the plain frame: whole frames, drawn in turn, in an order that is drawn by lot.",
+        about: "Each setting that may help, compared with the plain frame. All draw the same frames in turn, in random order; times are of whole frames.",
         subcommand: &["bench", "verdict"],
         quick: &[THE_SCENE, "--rounds", "40"],
         full: &[THE_SCENE, "--rounds", "60"],
@@ -29,8 +29,8 @@ pub(super) const BENCHES: &[Bench] = &[
             column("work_ratio", "by processor time", 2),
             column("reference_ms", "plain ms", 2),
             column("chosen_ms", "this ms", 2),
-            column("chosen_low_ms", "a tenth below", 2),
-            column("chosen_high_ms", "a tenth above", 2),
+            column("chosen_low_ms", "lowest tenth ms", 2),
+            column("chosen_high_ms", "highest tenth ms", 2),
             column("flip_mean", "FLIP", 4),
             column("jod", "JOD", 2),
             column("pairs", "pairs", 0),
@@ -43,7 +43,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "baseline",
         title: "Baseline",
-        about: "The plain frame that everything else is compared with: every pixel shaded once, no anti-aliasing, objects outside the frustum left out.",
+        about: "The plain frame, with which everything else is compared: every pixel is shaded once, without anti-aliasing; objects outside the frustum are left out.",
         subcommand: &["render"],
         quick: &[THE_SCENE, "--warmup", "2", "--frames", "3"],
         full: &[THE_SCENE, "--warmup", "3", "--frames", "9"],
@@ -60,7 +60,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "culling",
         title: "Software occlusion culling",
-        about: "Occluders are rasterized on the processor, then boxes are tested against their depth: what nothing can show is never submitted.",
+        about: "Occluders are rasterized on the processor, then the boxes of objects are tested against their depth. Hidden objects are never submitted.",
         subcommand: &["bench", "culling"],
         quick: &[
             THE_SCENE,
@@ -103,7 +103,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "culling-load",
         title: "Culling under load",
-        about: "The demo scene with more and more objects, seen by its first camera; one thread.",
+        about: "The demo scene with a growing number of objects, seen by its first camera, on one thread.",
         subcommand: &["bench", "culling"],
         quick: &[
             "demo:1000",
@@ -156,7 +156,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "culling-frames",
         title: "Whole frames with culling",
-        about: "The same picture with all objects, with those in the frustum, and with those that nothing hides.",
+        about: "The same picture drawn with all objects, with those in the frustum, and with those that are not hidden.",
         subcommand: &["render"],
         quick: &[THE_SCENE, "--warmup", "1", "--frames", "3"],
         full: &[THE_SCENE, "--warmup", "2", "--frames", "9"],
@@ -183,7 +183,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "stereo",
         title: "Instanced stereo",
-        about: "Both eyes in one submission.",
+        about: "Both eyes are drawn by one submission, and compared with one pass per eye.",
         subcommand: &["bench", "stereo"],
         quick: &["materials", THE_SCENE, "--rounds", "10"],
         full: &["materials", "materials2", THE_SCENE],
@@ -223,7 +223,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "coarse",
         title: "Coarse pixel shading",
-        about: "Away from the gaze one lighting evaluation serves a whole block of pixels.",
+        about: "Away from the gaze, one lighting evaluation serves a whole block of pixels.",
         subcommand: &["bench", "coarse"],
         quick: &[
             THE_SCENE, "--pairs", "10", "--lights", "10", "--lights", "200",
@@ -285,7 +285,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "eye",
         title: "What the eye sees",
-        about: "Each way of shading against every pixel lit, on displays that are seen at one point: lit samples, whole frames, and JOD: ten is no visible difference, one less is a difference that three of four observers see. Pictures show the display's middle, with its own pixels per degree. Of MSAA it is no loss, but the difference from a picture without anti-aliasing.",
+        about: "Each way of shading compared with full shading, on displays whose viewer looks at one point: lit samples, times of whole frames, and JOD. Ten JOD is no visible difference; nine is a difference that three of four observers see. Pictures show the centre of each display at its own pixels per degree. For MSAA, JOD states the difference from a picture without anti-aliasing, which is not a loss.",
         subcommand: &["bench", "eye"],
         quick: &[THE_SCENE, "--quick", "--display", "h60"],
         full: &[THE_SCENE],
@@ -335,7 +335,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "variable",
         title: "Variable-rate shading in software",
-        about: "Where the picture is flat, one evaluation serves a few pixels. The mask comes from the last frame, reprojected in the same pass.",
+        about: "Where the picture is flat, one evaluation serves several pixels. The mask comes from the last frame and is reprojected in the same pass.",
         subcommand: &["bench", "variable"],
         quick: &[THE_SCENE, "--rounds", "10", "--point-lights", "32"],
         full: &[
@@ -400,7 +400,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "antialiasing",
         title: "Anti-aliasing in compute",
-        about: "Only pixels that several surfaces share are shaded more than once.",
+        about: "Only pixels that show several surfaces are shaded more than once.",
         subcommand: &["bench", "antialiasing"],
         quick: &[THE_SCENE, "--rounds", "10", "--reference", "16"],
         full: &[THE_SCENE, "--rounds", "15"],
@@ -418,8 +418,8 @@ pub(super) const BENCHES: &[Bench] = &[
             column("frame_ratio_high", "at most", 2),
             column("shade_ratio", "none / shade", 2),
             column("flip_to_ssaa", "FLIP to ssaa", 4),
-            column("flip_to_reference", "FLIP to truth", 4),
-            column("jod_to_reference", "JOD to truth", 2),
+            column("flip_to_reference", "FLIP to reference", 4),
+            column("jod_to_reference", "JOD to reference", 2),
         ],
         cost: "frame_ms",
         quality: Some(Quality {

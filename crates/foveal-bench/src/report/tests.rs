@@ -2,8 +2,10 @@
 
 use serde_json::{Value, json};
 
-use super::html::{escaped, rounded};
-use super::{csv, merge, page, pictures, plan, published};
+use maud::html;
+
+use super::html::rounded;
+use super::{csv, markdown, merge, page, pictures, plan, published};
 
 /// A report with figures that occur nowhere else.
 fn report() -> Value {
@@ -54,6 +56,11 @@ fn report() -> Value {
         "adapter": { "name": "llvmpipe", "backend": "vulkan", "driver": "Mesa 22" },
         "program_version": "0.1.0", "benches": benches,
     })
+}
+
+/// As the page spells a text.
+fn escaped(text: &str) -> String {
+    html! { (text) }.into_string()
 }
 
 /// All texts of the JSON, as the page spells them.
@@ -200,10 +207,46 @@ fn passes_become_their_median_and_their_spread() {
     let ms = 2.0 * 1234.5678;
     assert_eq!(row["ms"], ms + 0.75);
     assert_eq!(row["spread"]["ms"], json!([ms, ms + 1.5]));
-    let csv = csv::of(&report);
+    let csv = csv::of(&report).unwrap();
     assert!(
         csv.contains("baseline,\"unit0, stage1\",ms,2469.8856,2469.1356,2470.6356"),
         "{csv}"
     );
     assert!(csv.contains("stereo,,skipped,no such adapter,,"), "{csv}");
+}
+
+#[test]
+fn the_markdown_has_a_file_per_measured_bench_and_says_what_was_measured() {
+    let mut report = report();
+    report["of"] = "commit abc1234, 2026-11-22".into();
+    let files = markdown::of(&report);
+    let file = |name: &str| {
+        let found = files.iter().find(|(file, _)| file == name);
+        found.map(|(_, text)| text.as_str())
+    };
+    // The skipped one is in the index alone.
+    assert_eq!(files.len(), plan::BENCHES.len());
+    assert!(file("stereo.md").is_none());
+    let index = file("README.md").unwrap();
+    assert!(
+        index.contains("| Instanced stereo | skipped: no such adapter |"),
+        "{index}"
+    );
+    assert!(index.contains("[Baseline](baseline.md)"), "{index}");
+    let baseline = file("baseline.md").unwrap();
+    assert!(baseline.contains("CPU <7>, 2 threads, linux") && baseline.contains("commit abc1234"));
+    // The same median and range as in the CSV.
+    assert!(
+        baseline.contains("| unit0, stage1 | 2469.89 (2469.14 to 2470.64) |"),
+        "{baseline}"
+    );
+    // Every row of a table has as many cells as its head.
+    for (name, text) in &files {
+        let mut cells = text
+            .lines()
+            .filter(|line| line.starts_with('|'))
+            .map(|line| line.matches('|').count());
+        let head = cells.next().unwrap();
+        assert!(cells.all(|count| count == head), "{name}");
+    }
 }

@@ -1,6 +1,6 @@
 //! The first page: what to adopt for this scene on this machine, what not, and why.
 
-use std::fmt::Write;
+use maud::{Markup, html};
 
 use super::bench::VERDICT;
 use super::html::Figures;
@@ -18,94 +18,93 @@ const DECISIONS: [(&str, &str); 5] = [
 ];
 
 /// The verdict, before all sections.
-pub(super) fn show(body: &mut String, f: &Figures<'_>) {
-    let Some(index) = BENCHES.iter().position(|bench| bench.name == VERDICT) else {
-        return;
+pub(super) fn show(f: &Figures<'_>) -> Markup {
+    let index = BENCHES.iter().position(|bench| bench.name == VERDICT);
+    let Some((index, bench)) = index.map(|index| (index, &BENCHES[index])) else {
+        return html! {};
     };
-    let (bench, at) = (&BENCHES[index], format!("/benches/{index}"));
-    let _ = write!(
-        body,
-        "<section id=\"{VERDICT}\">\n<h2>For this scene, on this machine</h2>\n"
-    );
+    let at = format!("/benches/{index}");
     let status = f.text(&format!("{at}/status"));
-    if status != "measured" {
-        let cause = f.text(&format!("{at}/cause"));
-        let _ = writeln!(
-            body,
-            "<p class=\"bad\">No verdict. {status}: {cause}</p></section>"
-        );
-        return;
-    }
-    let rows = f.len(&format!("{at}/rows"));
-    body.push_str("<div class=\"verdicts\">\n");
-    for (decision, heading) in DECISIONS {
-        for row in 0..rows {
-            let of = |key: &str| f.text(&format!("{at}/rows/{row}/{key}"));
-            if of("decision") != decision {
-                continue;
-            }
-            let flags = match of("flags") {
-                flags if flags.is_empty() || matches!(decision, "skip" | "impossible") => {
-                    String::new()
+    html! {
+        section id=(VERDICT) {
+            h2 { "For this scene, on this machine" }
+            @if status != "measured" {
+                p.bad { "No verdict. " (status) ": " (f.text(&format!("{at}/cause"))) }
+            } @else {
+                (decisions(f, &at))
+                (command(f, &at))
+                @if let Some(svg) = plots::ratios(f, &at) {
+                    h3 { "Plain frame / this, with the interval of each" }
+                    (svg)
                 }
-                flags => format!("<br><code>{flags}</code>"),
-            };
-            let _ = writeln!(
-                body,
-                "<p class=\"{decision}\"><b>{heading}</b> <span><b>{}</b>: {}.{flags}</span></p>",
-                of("label"),
-                of("why"),
-            );
+                p.faint {
+                    "The ratio is the plain frame's time by the other's: above one is faster. The interval holds the \
+                     true ratio in all but two of a thousand cases; where it comes within two percent of one there is \
+                     no difference."
+                }
+                details {
+                    summary { "Figures" }
+                    (table(f, &at, bench.columns))
+                    h3 { "To measure it again" }
+                    (commands(f, &format!("{at}/commands")))
+                    (drawn_by(f, &at))
+                }
+            }
         }
     }
-    body.push_str("</div>\n");
-    command(body, f, &at, rows);
-    if let Some(svg) = plots::ratios(f, &at) {
-        let _ = writeln!(
-            body,
-            "<h3>Plain frame / this, with the interval of each</h3>\n{svg}"
-        );
+}
+
+fn decisions(f: &Figures<'_>, at: &str) -> Markup {
+    let of = |row: usize, key: &str| f.text(&format!("{at}/rows/{row}/{key}"));
+    html! {
+        .verdicts {
+            @for (decision, heading) in DECISIONS {
+                @for row in (0..f.len(&format!("{at}/rows"))).filter(|&row| of(row, "decision") == decision) {
+                    p class=(decision) {
+                        b { (heading) }
+                        " "
+                        span {
+                            b { (of(row, "label")) }
+                            ": " (of(row, "why")) "."
+                            @let flags = of(row, "flags");
+                            @if !(flags.is_empty() || matches!(decision, "skip" | "impossible")) {
+                                br;
+                                code { (flags) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
     }
-    let _ = write!(
-        body,
-        "<p class=\"faint\">The ratio is the plain frame's time by the other's: above one is faster. The interval holds the \
-         true ratio in all but two of a thousand cases; where it comes within two percent of one there is no difference.</p>\n\
-         <details><summary>Figures</summary>\n",
-    );
-    table(body, f, &at, bench.columns);
-    body.push_str("<h3>To measure it again</h3>\n<p>");
-    commands(body, f, &at);
-    body.push_str("</p>\n");
-    drawn_by(body, f, &at, rows);
-    body.push_str("</details>\n</section>\n");
 }
 
 /// How each picture is drawn and compared again.
-fn drawn_by(body: &mut String, f: &Figures<'_>, at: &str, rows: usize) {
-    body.push_str("<h3>To draw the pictures again, and compare them</h3>\n");
-    for row in 0..rows {
-        let at = format!("{at}/rows/{row}");
-        let label = f.text(&format!("{at}/label"));
-        let _ = write!(body, "<p>{label}<br>");
-        for index in 0..f.len(&format!("{at}/made_by")) {
-            let command = f.text(&format!("{at}/made_by/{index}"));
-            let _ = write!(body, "<code>{command}</code><br>");
+fn drawn_by(f: &Figures<'_>, at: &str) -> Markup {
+    html! {
+        h3 { "To draw the pictures again, and compare them" }
+        @for row in 0..f.len(&format!("{at}/rows")) {
+            p { (f.text(&format!("{at}/rows/{row}/label"))) }
+            (commands(f, &format!("{at}/rows/{row}/made_by")))
         }
-        body.push_str("</p>\n");
     }
 }
 
 /// The line to copy: of what was adopted together, or alone.
-fn command(body: &mut String, f: &Figures<'_>, at: &str, rows: usize) {
+fn command(f: &Figures<'_>, at: &str) -> Markup {
     let is_adopted = |row: &usize| f.text(&format!("{at}/rows/{row}/decision")) == "adopt";
     // What is put together comes last.
-    let Some(row) = (0..rows).rev().find(is_adopted) else {
-        body.push_str("<p>Nothing made this scene measurably faster: keep the defaults.</p>\n");
-        return;
-    };
-    let _ = writeln!(
-        body,
-        "<h3>To draw it so</h3>\n<p class=\"copy\"><code>{}</code><button type=\"button\">Copy</button></p>",
-        f.text(&format!("{at}/rows/{row}/command"))
-    );
+    let adopted = (0..f.len(&format!("{at}/rows"))).rev().find(is_adopted);
+    html! {
+        @match adopted {
+            None => p { "Nothing made this scene measurably faster: keep the defaults." },
+            Some(row) => {
+                h3 { "To draw it so" }
+                p.copy {
+                    code { (f.text(&format!("{at}/rows/{row}/command"))) }
+                    button type="button" { "Copy" }
+                }
+            }
+        }
+    }
 }

@@ -20,19 +20,20 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) eye: EyeArgs,
 
-    /// Write FLIP's error map: black where no eye sees a difference, through magenta to yellow
+    /// Write FLIP's error map: black for no visible difference, through magenta to yellow
     #[arg(long, value_name = "FILE.png")]
     pub(super) diff: Option<PathBuf>,
 
-    /// Exit with code 1 where the mean FLIP error is above X (0: equal to the eye, 1: as different as can be)
+    /// Exit with code 1 if the mean FLIP error is above X (0: no visible difference, 1: the
+    /// largest)
     #[arg(long, value_name = "X", value_parser = values::threshold)]
     max_flip: Option<f64>,
 
-    /// Exit with code 1 where the PSNR is below X decibels
+    /// Exit with code 1 if the PSNR is below X decibels
     #[arg(long, value_name = "X", value_parser = values::threshold)]
     pub(super) min_psnr: Option<f64>,
 
-    /// Exit with code 1 where the quality is below X JOD (10: no visible difference)
+    /// Exit with code 1 if the quality is below X JOD (10: no visible difference)
     #[arg(long, value_name = "X", value_parser = values::threshold)]
     pub(super) min_jod: Option<f64>,
 

@@ -15,9 +15,9 @@ const BRIGHTEST_JOD: f32 = 8.0;
 /// How the pictures are looked at.
 #[derive(Debug, clap::Args)]
 pub(super) struct EyeArgs {
-    /// The display that the pictures fill, which adds the quality in JOD at the gaze: hmd (a headset's eye, 91.5 degrees
-    /// across), h60 (60 degrees across), fhd and fhd-24 (a 24-inch monitor at 0.6 m), uhd-27, quest-3, vision-pro, phone,
-    /// degrees across, or WIDTHxDISTANCE in metres
+    /// Display that the pictures fill; adds the quality in JOD at the gaze. hmd (one eye of a
+    /// headset, 91.5 degrees across), h60 (60 degrees across), fhd and fhd-24 (a 24-inch monitor at
+    /// 0.6 m), uhd-27, quest-3, vision-pro, phone, degrees across, or WIDTHxDISTANCE in metres
     #[arg(long, value_name = "WHICH", value_parser = display, help_heading = "Eye")]
     display: Option<Display>,
 
@@ -25,19 +25,20 @@ pub(super) struct EyeArgs {
     #[arg(long, value_name = "CD", value_parser = values::positive, help_heading = "Eye")]
     peak: Option<f32>,
 
-    /// Light that falls onto the display, in lux
+    /// Ambient light on the display in lux
     #[arg(long, value_name = "LUX", value_parser = values::non_negative, help_heading = "Eye")]
     ambient: Option<f32>,
 
-    /// Where the eye looks, as fractions of the picture from its top left corner
+    /// Gaze as fractions of the picture from its top left corner
     #[arg(long, value_name = "X,Y", value_parser = values::vec2, default_value = "0.5,0.5", help_heading = "Eye")]
     gaze: [f32; 2],
 
-    /// Frames per second, for folders
+    /// Frames per second of a video, which is a folder
     #[arg(long, value_name = "N", value_parser = values::positive, default_value_t = 30.0, help_heading = "Eye")]
     pub(super) fps: f32,
 
-    /// Write where the eye sees differences: black for none, through magenta to yellow for 8 JOD lost and more
+    /// Write a map of visible differences: black for none, through magenta to yellow for 8 JOD lost
+    /// and more
     #[arg(long, value_name = "FILE.png", help_heading = "Eye")]
     heat_map: Option<PathBuf>,
 }

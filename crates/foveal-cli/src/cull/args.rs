@@ -23,35 +23,36 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) import: ImportArgs,
 
-    /// The depth buffer's size in pixels; coverage is sampled 4x4 times in each. Intel's sample has 320x192,
-    /// 640x360, 1280x720 and 1920x1080
+    /// Size of the occlusion buffer in pixels; each has 4x4 samples of coverage. Intel's sample has
+    /// 320x192, 640x360, 1280x720 and 1920x1080
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "640x360")]
     pub(super) size: (u32, u32),
 
-    /// How many threads work
+    /// Number of worker threads
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=256))]
     pub(super) threads: u32,
 
-    /// Repeat each frame N times; times are medians
+    /// Repetitions of each frame; times are their medians
     #[arg(long, value_name = "N", default_value_t = 9, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(super) frames: u32,
 
-    /// Write the depth buffer as a picture: near is bright, dark blue is empty. With several cameras their
-    /// number goes before the ending
+    /// Write the occlusion buffer as a picture: near is bright, dark blue is empty. With several
+    /// cameras the number of each goes before .png
     #[arg(long, value_name = "FILE.png")]
     pub(super) depth: Option<PathBuf>,
 
-    /// Write the depth buffer with the projected boxes over it: green visible, red occluded, yellow small
+    /// Write the occlusion buffer with the projected boxes over it: green visible, red occluded,
+    /// yellow too small
     #[arg(long, value_name = "FILE.png")]
     pub(super) overlay: Option<PathBuf>,
 
-    /// Write the figures and what became of each object as JSON (see docs/cull-schema.md); `-` prints it
-    /// instead of the table
+    /// Write the stats and the visibility of each object as JSON (see docs/cull-schema.md); `-`
+    /// prints it instead of the table
     #[arg(long, value_name = "FILE.json|-")]
     pub(super) json: Option<PathBuf>,
 
-    /// Compare with an exact reference at the same resolution and at four times it; exit code 1 if anything
-    /// visible was culled. Slow
+    /// Compare with the exact reference at the same resolution and at four times it (slow). Exit
+    /// code 1 if anything visible was culled
     #[arg(long)]
     pub(super) check: bool,
 

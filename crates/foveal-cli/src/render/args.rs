@@ -18,8 +18,8 @@ pub(crate) struct Args {
     #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
-    /// The PNG file to write; for --frames with the number's place in it: frame_####.png or {frame}.png. Given once
-    /// more: how the picture shows what both eyes see, as --show does
+    /// PNG file to write; with --frames it has a place for the number: frame_####.png or
+    /// {frame}.png. May be given once more to say how both eyes are shown, as --show does
     #[arg(short, long, value_name = "FILE.png|HOW", required = true)]
     output: Vec<PathBuf>,
 
@@ -35,15 +35,15 @@ pub(crate) struct Args {
     #[command(flatten)]
     pub(super) import: ImportArgs,
 
-    /// Add N coloured point lights to the scene
+    /// Number of coloured point lights to add to the scene
     #[arg(long, value_name = "N", default_value_t = 0, value_parser = values::point_lights)]
     pub(super) point_lights: u32,
 
-    /// Another number scatters the added point lights differently
+    /// Seed of the added point lights; another one scatters them differently
     #[arg(long, value_name = "N", default_value_t = 0, requires = "point_lights")]
     pub(super) light_seed: u64,
 
-    /// The graphics adapter: part of its name, or its number in `foveal adapters`
+    /// Graphics adapter: part of its name, or its number in `foveal adapters`
     #[arg(long, value_name = "NAME|NUMBER")]
     pub(super) adapter: Option<String>,
 
@@ -51,7 +51,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.json")]
     pub(super) stats: Option<PathBuf>,
 
-    /// Draw the first frame N times before the one that is measured and written
+    /// Number of times that the first frame is drawn before it is measured and written
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(super) warmup: u32,
 
@@ -64,15 +64,16 @@ pub(crate) struct Args {
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Time")]
 pub(crate) struct FrameArgs {
-    /// The moment of a single picture, in seconds
+    /// Time of a single picture in seconds
     #[arg(long, value_name = "S", value_parser = values::time_s, conflicts_with = "frames")]
     pub(super) time: Option<f32>,
 
-    /// Show the moment at rest: the frame before, from which motion is taken, is the same
+    /// Nothing moves: the frame before, from which motion is taken, is the same as this one
     #[arg(long, conflicts_with = "frames")]
     pub(super) still: bool,
 
-    /// Draw the frames A up to but not including B, or 0 up to N; frame n is at n / fps seconds
+    /// Range of frames to draw: A up to but not including B, or 0 up to N; frame n is at n / fps
+    /// seconds
     #[arg(long, value_name = "A..B|N", value_parser = values::frames)]
     pub(super) frames: Option<Range<u32>>,
 
@@ -80,7 +81,7 @@ pub(crate) struct FrameArgs {
     #[arg(long, value_name = "N", value_parser = values::positive, default_value_t = 30.0)]
     pub(super) fps: f32,
 
-    /// Leave out frames whose file is there already
+    /// Skip frames whose file exists already
     #[arg(long, requires = "frames")]
     pub(super) skip_existing: bool,
 }

@@ -10,37 +10,39 @@ use crate::{command_line, scene_source, values};
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Camera")]
 pub struct CameraArgs {
-    /// A camera of the scene, by name or by number from 0; or `overview`: the whole scene from outside; or
-    /// `inside`: the longest view within it. Without: the scene's first camera, else whichever of the two fits
+    /// Camera of the scene, by name or by number from 0; `overview`: the whole scene from outside;
+    /// `inside`: the longest view within it [default: the scene's first camera; without cameras
+    /// `inside` where there is an inside, else `overview`]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target"])]
     pub(super) camera: Option<String>,
 
-    /// The eye's position in metres
+    /// Position of the eye in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(requires = "target")]
     pub(super) eye: Option<Vec3>,
 
-    /// The point to look at in metres
+    /// Point to look at in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(requires = "eye")]
     pub(super) target: Option<Vec3>,
 
-    /// The direction that is up in the picture [default: 0,1,0]
+    /// Direction that is up in the picture [default: 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
     pub(super) up: Option<Vec3>,
 
-    /// The vertical field of view in degrees [default: the camera's own, else 60]
+    /// Vertical field of view in degrees [default: the camera's own, else 60]
     #[arg(long, value_name = "DEG", value_parser = values::fov_deg)]
     pub(super) fov: Option<f32>,
 
-    /// A camera to the last bit, as the window copies it: perspective,FOV_RAD,NEAR_M or
+    /// Exact camera, as the window copies it: perspective,FOV_RAD,NEAR_M or
     /// orthographic,HEIGHT_M,NEAR_M,FAR_M, then twelve numbers: right, up, back, eye
     #[arg(long, value_name = "NUMBERS", value_parser = values::exact_camera, allow_hyphen_values = true)]
     #[arg(conflicts_with_all = ["camera", "eye", "target", "fov"])]
     pub(super) exact_camera: Option<Camera>,
 
-    /// Move along the keyframes in a JSON file (see docs/program.md), or along the demo scene's own path: demo; or to and
-    /// fro around another camera, sideways by 5 cm at up to 5 cm a second, as a head does: sway
+    /// Path of the camera: a JSON file of keyframes (see docs/program.md); `demo`: the demo scene's
+    /// own; `sway`: to and fro around another camera, sideways by 5 cm at up to 5 cm a second, as a
+    /// head moves
     #[arg(long, value_name = "FILE.json|demo|sway")]
     pub(super) path: Option<String>,
 }

@@ -12,33 +12,36 @@ use crate::values;
 #[derive(Debug, Clone, clap::Args)]
 #[command(next_help_heading = "Culling")]
 pub struct CullingArgs {
-    /// What occludes: `auto` (what the file marks, else everything), `marked` (nodes with extras.occluder),
-    /// `all`, or names of sets (extras.set) with commas between. Only opaque surfaces occlude
+    /// Occluders: `auto` (those that the file marks, else all objects), `marked` (nodes with
+    /// extras.occluder), `all`, or names of sets (extras.set) with commas between. Only opaque
+    /// surfaces occlude
     #[arg(long, value_name = "auto|marked|all|SET,…", default_value = "auto")]
     pub occluders: Choice,
 
-    /// Leave out occluders that look smaller than this (Intel's sample: 1.5)
+    /// Leave out occluders whose apparent size is below this (Intel's sample: 1.5)
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
     pub occluder_size_threshold: f32,
 
-    /// Leave out parts of occluders that can cover fewer pixels of the depth buffer than this per quadrilateral
+    /// Leave out parts of occluders that cover fewer pixels of the occlusion buffer than this per
+    /// quadrilateral
     #[arg(long, value_name = "PX", default_value_t = 6.0, value_parser = values::non_negative)]
     pub occluder_pixels_per_quad: f32,
 
-    /// Cull objects that look smaller than this (Intel's sample: 0.01)
+    /// Cull objects whose apparent size is below this (Intel's sample: 0.01)
     #[arg(long, value_name = "X", default_value_t = 0.0, value_parser = values::non_negative)]
     pub occludee_size_threshold: f32,
 
-    /// Cull for two eyes so many metres apart, with the camera between them: what is culled is hidden from both
+    /// Distance of two eyes in metres, with the camera between them: what is culled is hidden from
+    /// both. 0: one eye
     #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
     pub eyes_apart: f32,
 
-    /// The result shall hold while each eye moves by less than this, metres
+    /// Radius in metres around each eye within which the result holds
     #[arg(long, value_name = "M", default_value_t = 0.0, value_parser = values::non_negative)]
     pub validity_radius: f32,
 
-    /// Begin no occluder later than this in a frame, milliseconds: near ones come first, and what is left out
-    /// only makes more visible
+    /// Time after which no further occluder is begun in a frame, in milliseconds. Near ones come
+    /// first; leaving some out only makes more visible
     #[arg(long, value_name = "MS", value_parser = values::non_negative)]
     pub budget_ms: Option<f32>,
 }
@@ -47,20 +50,21 @@ pub struct CullingArgs {
 #[derive(Debug, Clone, Default, clap::Args)]
 #[command(next_help_heading = "Camera")]
 pub struct ViewArgs {
-    /// One camera of the scene, by name or by number from 0, or `overview`. Without: all of the scene's cameras
+    /// Camera of the scene, by name or by number from 0, or `overview` [default: all of the scene's
+    /// cameras]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "cameras"])]
     pub(super) camera: Option<String>,
 
-    /// The eye's position in metres
+    /// Position of the eye in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true)]
     #[arg(requires = "target", conflicts_with = "cameras")]
     pub(super) eye: Option<Vec3>,
 
-    /// The point to look at in metres
+    /// Point to look at in metres
     #[arg(long, value_name = "X,Y,Z", value_parser = values::vec3, allow_hyphen_values = true, requires = "eye")]
     pub(super) target: Option<Vec3>,
 
-    /// The vertical field of view in degrees [default: the camera's own, else 60]
+    /// Vertical field of view in degrees [default: the camera's own, else 60]
     #[arg(long, value_name = "DEG", value_parser = values::fov_deg, conflicts_with = "cameras")]
     pub(super) fov: Option<f32>,
 

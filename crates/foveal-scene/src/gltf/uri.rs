@@ -1,5 +1,10 @@
 //! URIs of buffers and images: data URIs are decoded here, relative ones prepared for the resolver.
 
+use base64::Engine;
+use base64::alphabet::{STANDARD, URL_SAFE};
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+use percent_encoding::percent_decode_str;
+
 /// What a URI asks for.
 #[derive(Debug, PartialEq)]
 pub(crate) enum Uri {
@@ -16,7 +21,7 @@ pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
             .split_once(',')
             .ok_or("is a data URI without a comma")?;
         let bytes = if head.to_ascii_lowercase().ends_with(";base64") {
-            base64(body.as_bytes()).ok_or("is a data URI whose base64 is broken")?
+            base64(body).ok_or("is a data URI whose base64 is broken")?
         } else {
             percent(body)
         };
@@ -42,50 +47,21 @@ pub(crate) fn parse(uri: &str) -> Result<Uri, String> {
 
 /// `%41` to `A`; anything that is not an escape stays.
 fn percent(text: &str) -> Vec<u8> {
-    let bytes = text.as_bytes();
-    let digit = |i: usize| bytes.get(i).and_then(|&b| (b as char).to_digit(16));
-    let mut out = Vec::with_capacity(bytes.len());
-    let mut i = 0;
-    while i < bytes.len() {
-        match (bytes[i], digit(i + 1), digit(i + 2)) {
-            (b'%', Some(high), Some(low)) => {
-                out.push((high * 16 + low) as u8);
-                i += 3;
-            }
-            (byte, ..) => {
-                out.push(byte);
-                i += 1;
-            }
-        }
-    }
-    out
+    percent_decode_str(text).collect()
 }
 
-/// RFC 4648 with or without padding, both alphabets.
-fn base64(text: &[u8]) -> Option<Vec<u8>> {
-    let end = text.iter().rposition(|&b| b != b'=').map_or(0, |i| i + 1);
-    let text = &text[..end];
-    if text.len() % 4 == 1 {
-        return None;
-    }
-    let mut out = Vec::with_capacity(text.len() / 4 * 3 + 2);
-    for quad in text.chunks(4) {
-        let mut bits = 0u32;
-        for &byte in quad {
-            let six = match byte {
-                b'A'..=b'Z' => byte - b'A',
-                b'a'..=b'z' => byte - b'a' + 26,
-                b'0'..=b'9' => byte - b'0' + 52,
-                b'+' | b'-' => 62,
-                b'/' | b'_' => 63,
-                _ => return None,
-            };
-            bits = bits << 6 | u32::from(six);
-        }
-        bits <<= 6 * (4 - quad.len());
-        out.extend_from_slice(&bits.to_be_bytes()[1..quad.len()]);
-    }
-    Some(out)
+/// RFC 4648 with or without padding, in either alphabet.
+fn base64(text: &str) -> Option<Vec<u8>> {
+    let options = GeneralPurposeConfig::new()
+        .with_decode_padding_mode(DecodePaddingMode::RequireNone)
+        .with_decode_allow_trailing_bits(true);
+    let alphabet = if text.contains(['-', '_']) {
+        &URL_SAFE
+    } else {
+        &STANDARD
+    };
+    let engine = GeneralPurpose::new(alphabet, options);
+    engine.decode(text.trim_end_matches('=')).ok()
 }
 
 #[cfg(test)]
@@ -103,10 +79,10 @@ mod tests {
             ("Zm9vYg", b"foob"),
             ("-_-_", b"\xfb\xff\xbf"),
         ] {
-            assert_eq!(base64(text.as_bytes()).as_deref(), Some(bytes), "{text}");
+            assert_eq!(base64(text).as_deref(), Some(bytes), "{text}");
         }
-        assert_eq!(base64(b"Zm9vY"), None);
-        assert_eq!(base64(b"Zm 9"), None);
+        assert_eq!(base64("Zm9vY"), None);
+        assert_eq!(base64("Zm 9"), None);
     }
 
     #[test]

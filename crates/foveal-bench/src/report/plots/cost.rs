@@ -1,22 +1,22 @@
 //! Each row's cost as a bar.
 
-use std::fmt::Write;
+use maud::{Markup, html};
 
-use super::axes::{COLORS, WIDTH, error_bar, tick_text, ticks};
 use crate::report::bench::Bench;
 use crate::report::html::Figures;
+use crate::svg::{COLORS, WIDTH, at, error_bar, tick_text, ticks};
 
 /// More bars than these are not legible: other plots say it better, and the table has all rows.
 const MOST_BARS: usize = 16;
 
 /// A bar per row, where they are few, with the passes' range.
-pub(crate) fn cost(f: &Figures<'_>, at: &str, bench: &Bench) -> Option<String> {
-    let rows = f.len(&format!("{at}/rows"));
+pub(crate) fn cost(f: &Figures<'_>, bench_at: &str, bench: &Bench) -> Option<Markup> {
+    let rows = f.len(&format!("{bench_at}/rows"));
     if rows > MOST_BARS && (bench.quality.is_some() || bench.load.is_some()) {
         return None;
     }
     let rows = rows.min(MOST_BARS);
-    let of = |row: usize, rest: &str| f.number(&format!("{at}/rows/{row}/{rest}"));
+    let of = |row: usize, rest: &str| f.number(&format!("{bench_at}/rows/{row}/{rest}"));
     let value = |row: usize| of(row, bench.cost);
     let end = |row: usize, i: usize| of(row, &format!("spread/{}/{i}", bench.cost));
     let most = (0..rows)
@@ -26,52 +26,34 @@ pub(crate) fn cost(f: &Figures<'_>, at: &str, bench: &Bench) -> Option<String> {
     let widest = ticks.last().copied().unwrap_or(most);
     let x = |ms: f64| ms / widest * (WIDTH - 64.0);
     let floor = rows as f64 * 34.0 + 2.0;
-    let mut svg = format!(
-        "<svg viewBox=\"-4 0 {} {}\" role=\"img\">",
-        WIDTH + 4.0,
-        floor + 24.0
-    );
-    for &tick in &ticks {
-        let _ = write!(
-            svg,
-            "<path d=\"M{at_x:.1} 0V{floor:.1}\" class=\"grid\"/>\
-             <text class=\"faint tick\" x=\"{at_x:.1}\" y=\"{:.1}\" text-anchor=\"middle\">{}</text>",
-            floor + 15.0,
-            tick_text(tick),
-            at_x = x(tick),
-        );
-    }
-    let _ = write!(
-        svg,
-        "<text class=\"faint\" x=\"{WIDTH}\" y=\"{:.1}\" text-anchor=\"end\">ms</text>",
-        floor + 15.0
-    );
-    for row in 0..rows {
-        let Some(ms) = value(row) else { continue };
+    let bar = |row: usize, ms: f64| {
         let y = row as f64 * 34.0;
         let width = x(ms).max(1.0);
-        let color = COLORS[row % COLORS.len()];
-        let _ = write!(
-            svg,
-            "<text class=\"faint\" x=\"0\" y=\"{:.1}\">{}</text>\
-             <rect x=\"0\" y=\"{:.1}\" width=\"{width:.1}\" height=\"12\" rx=\"2\" fill=\"{color}\"/>",
-            y + 12.0,
-            f.text(&format!("{at}/rows/{row}/label")),
-            y + 17.0,
-        );
-        let mut beside = width;
-        if let (Some(least), Some(most)) = (end(row, 0), end(row, 1)) {
-            error_bar(&mut svg, x(least), x(most), y + 23.0);
-            beside = x(most);
+        let range = end(row, 0).zip(end(row, 1));
+        let beside = range.map_or(width, |(_, most)| x(most));
+        html! {
+            text.faint x="0" y=(at(y + 12.0)) { (f.text(&format!("{bench_at}/rows/{row}/label"))) }
+            rect x="0" y=(at(y + 17.0)) width=(at(width)) height="12" rx="2" fill=(COLORS[row % COLORS.len()]) {}
+            @if let Some((least, most)) = range {
+                (error_bar(x(least), x(most), y + 23.0))
+            }
+            text x=(at(beside + 6.0)) y=(at(y + 27.0)) {
+                (f.svg_figure(&format!("{bench_at}/rows/{row}/{}", bench.cost), 1.0, 2))
+            }
         }
-        let _ = write!(
-            svg,
-            "<text x=\"{:.1}\" y=\"{:.1}\">{}</text>",
-            beside + 6.0,
-            y + 27.0,
-            f.svg_figure(&format!("{at}/rows/{row}/{}", bench.cost), 1.0, 2),
-        );
-    }
-    svg.push_str("</svg>");
-    Some(svg)
+    };
+    Some(html! {
+        svg viewBox=(format!("-4 0 {} {}", WIDTH + 4.0, floor + 24.0)) role="img" {
+            @for tick in ticks {
+                path.grid d=(format!("M{:.1} 0V{floor:.1}", x(tick))) {}
+                text.faint.tick x=(at(x(tick))) y=(at(floor + 15.0)) text-anchor="middle" { (tick_text(tick)) }
+            }
+            text.faint x=(WIDTH) y=(at(floor + 15.0)) text-anchor="end" { "ms" }
+            @for row in 0..rows {
+                @if let Some(ms) = value(row) {
+                    (bar(row, ms))
+                }
+            }
+        }
+    })
 }

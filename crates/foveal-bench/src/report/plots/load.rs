@@ -1,10 +1,10 @@
 //! Cost against load: a line per series, from the least load to the most.
 
-use std::fmt::Write;
+use maud::{Markup, html};
 
-use super::axes::{WIDTH, heights, mark, ticks, upright_error_bar};
 use crate::report::bench::{Bench, Load};
 use crate::report::html::Figures;
+use crate::svg::{self, Axis, WIDTH, at, heights, legend, mark, ticks, upright_error_bar};
 
 /// From this ratio of the largest load to the least, the axis is logarithmic.
 const LOGARITHMIC_FROM: f64 = 12.0;
@@ -29,10 +29,10 @@ struct Line {
 }
 
 /// A line per series and cost, each from the least load to the most; those with one load only are left out.
-fn lines(f: &Figures<'_>, at: &str, load: &Load) -> Vec<Line> {
+fn lines(f: &Figures<'_>, bench_at: &str, load: &Load) -> Vec<Line> {
     let mut all: Vec<Line> = Vec::new();
-    for row in 0..f.len(&format!("{at}/rows")) {
-        let of = |key: &str| format!("{at}/rows/{row}/{key}");
+    for row in 0..f.len(&format!("{bench_at}/rows")) {
+        let of = |key: &str| format!("{bench_at}/rows/{row}/{key}");
         let is_other = |&(key, text): &(&str, &str)| f.text(&of(key)) != text;
         let Some(x) = f.number(&of(load.x)) else {
             continue;
@@ -82,85 +82,79 @@ fn lines(f: &Figures<'_>, at: &str, load: &Load) -> Vec<Line> {
 }
 
 /// The plot, where the rows have more than one load.
-pub(crate) fn load(f: &Figures<'_>, at: &str, bench: &Bench) -> Option<String> {
+pub(crate) fn load(f: &Figures<'_>, bench_at: &str, bench: &Bench) -> Option<Markup> {
     let load = bench.load.as_ref()?;
-    let all = lines(f, at, load);
+    let all = lines(f, bench_at, load);
     let dots = || all.iter().flat_map(|line| &line.dots);
     let least = dots().map(|dot| dot.load).min_by(f64::total_cmp)?;
     let most = dots().map(|dot| dot.load).max_by(f64::total_cmp)?;
     let most_ms = dots().map(|dot| dot.cost).max_by(f64::total_cmp)?;
     let is_logarithmic = least > 0.0 && most / least > LOGARITHMIC_FROM;
-    let along = |load: f64| {
-        if is_logarithmic {
-            (load / least).ln() / (most / least).ln()
-        } else {
-            (load - least) / (most - least)
-        }
+    let axis = if is_logarithmic {
+        Axis::Logarithmic(least, most)
+    } else {
+        Axis::Linear(least, most)
     };
-    let x = |load: f64| LEFT + 14.0 + along(load) * (WIDTH - LEFT - 44.0);
+    let x = |load: f64| LEFT + 14.0 + axis.place(load) * (WIDTH - LEFT - 44.0);
     let ticks = ticks(most_ms);
     let top = ticks.last().copied().unwrap_or(1.0);
     let y = |cost: f64| FLOOR - cost / top * (FLOOR - 40.0);
+    let right = WIDTH - 10.0;
 
-    let height = FLOOR + 58.0 + all.len() as f64 * 18.0;
-    let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\">");
-    let _ = write!(
-        svg,
-        "<path d=\"M{LEFT} 10V{FLOOR}H{right}\" fill=\"none\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-         <text class=\"faint\" x=\"{}\" y=\"18\">ms</text>\
-         <text class=\"faint\" x=\"{right}\" y=\"{}\" text-anchor=\"end\">{}{}</text>",
-        LEFT + 6.0,
-        FLOOR + 34.0,
-        load.title,
-        if is_logarithmic { ", logarithmic" } else { "" },
-        right = WIDTH - 10.0,
-    );
-    heights(&mut svg, &ticks, LEFT, WIDTH - 10.0, y);
     let mut loads: Vec<&Dot> = dots().collect();
     loads.sort_by(|a, b| a.load.total_cmp(&b.load));
     let mut last = f64::NEG_INFINITY;
-    for dot in loads {
-        let at_x = x(dot.load);
-        if at_x - last >= LEAST_GAP {
-            let _ = write!(
-                svg,
-                "<path d=\"M{at_x:.1} {FLOOR}v4\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-                 <text class=\"faint\" x=\"{at_x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-                FLOOR + 17.0,
-                f.svg_figure(&format!("{at}/rows/{}/{}", dot.row, load.x), 1.0, 0),
-            );
-            last = at_x;
+    loads.retain(|dot| {
+        let is_apart = x(dot.load) - last >= LEAST_GAP;
+        if is_apart {
+            last = x(dot.load);
         }
-    }
-    for (i, line) in all.iter().enumerate() {
+        is_apart
+    });
+    let range = |line: &Line, dot: &Dot| {
+        let end = |i: usize| {
+            f.number(&format!(
+                "{bench_at}/rows/{}/spread/{}/{i}",
+                dot.row, line.cost
+            ))
+        };
+        end(0).zip(end(1))
+    };
+    let line = |i: usize, of: &Line| {
         let (color, fill) = mark(i);
-        let mut path = String::new();
-        for (j, dot) in line.dots.iter().enumerate() {
-            let end = |i: usize| {
-                let spread = format!("{at}/rows/{}/spread/{}/{i}", dot.row, line.cost);
-                f.number(&spread)
-            };
-            if let (Some(least), Some(most)) = (end(0), end(1)) {
-                upright_error_bar(&mut svg, x(dot.load), y(least), y(most));
+        let places: Vec<_> = of
+            .dots
+            .iter()
+            .map(|dot| (x(dot.load), y(dot.cost), 4.0))
+            .collect();
+        html! {
+            @for dot in &of.dots {
+                @if let Some((least, most)) = range(of, dot) {
+                    (upright_error_bar(x(dot.load), y(least), y(most)))
+                }
             }
-            let (x, y) = (x(dot.load), y(dot.cost));
-            let _ = write!(path, "{}{x:.1} {y:.1}", if j == 0 { 'M' } else { 'L' });
-            let _ = write!(
-                svg,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"4\" fill=\"{fill}\" stroke=\"{color}\"/>"
-            );
+            (svg::line(&places, color, fill))
+            (legend(i, LEFT, FLOOR + 56.0, &html! { (of.name) }))
         }
-        let base = FLOOR + 56.0 + i as f64 * 18.0;
-        let _ = write!(
-            svg,
-            "<path d=\"{path}\" fill=\"none\" stroke=\"{color}\" stroke-width=\"2\"/>\
-             <circle cx=\"{}\" cy=\"{:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{color}\"/><text x=\"{}\" y=\"{base:.1}\">{}</text>",
-            LEFT + 6.0,
-            base - 4.0,
-            LEFT + 18.0,
-            line.name,
-        );
-    }
-    svg.push_str("</svg>");
-    Some(svg)
+    };
+    let height = FLOOR + 58.0 + all.len() as f64 * 18.0;
+    Some(html! {
+        svg viewBox=(format!("0 0 {WIDTH} {height}")) role="img" {
+            path d=(format!("M{LEFT} 10V{FLOOR}H{right}")) fill="none" stroke="currentColor" opacity="0.5" {}
+            text.faint x=(LEFT + 6.0) y="18" { "ms" }
+            text.faint x=(right) y=(FLOOR + 34.0) text-anchor="end" {
+                (load.title) @if is_logarithmic { ", logarithmic" }
+            }
+            (heights(&ticks, LEFT, right, y))
+            @for dot in loads {
+                path d=(format!("M{:.1} {FLOOR}v4", x(dot.load))) stroke="currentColor" opacity="0.5" {}
+                text.faint x=(at(x(dot.load))) y=(FLOOR + 17.0) text-anchor="middle" {
+                    (f.svg_figure(&format!("{bench_at}/rows/{}/{}", dot.row, load.x), 1.0, 0))
+                }
+            }
+            @for (i, of) in all.iter().enumerate() {
+                (line(i, of))
+            }
+        }
+    })
 }

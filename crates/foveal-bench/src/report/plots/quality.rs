@@ -1,10 +1,10 @@
 //! Quality against speed: a dot per row, a curve where something grows along it.
 
-use std::fmt::Write;
+use maud::{Markup, html};
 
-use super::axes::{WIDTH, heights, mark, tick_text, ticks};
 use crate::report::bench::{Bench, Quality};
 use crate::report::html::Figures;
+use crate::svg::{self, WIDTH, at, heights, mark, tick_text, ticks};
 
 const LEFT: f64 = 52.0;
 const RIGHT: f64 = WIDTH - 24.0;
@@ -24,15 +24,15 @@ struct Dot {
 struct Curve {
     /// What tells it from the others, and how the legend spells it.
     key: String,
-    name: String,
+    name: Markup,
     dots: Vec<Dot>,
 }
 
 /// The curves of rows whose `apart` is `part`, each in the order of what grows along it.
-fn curves(f: &Figures<'_>, at: &str, quality: &Quality, part: &str) -> Vec<Curve> {
+fn curves(f: &Figures<'_>, bench_at: &str, quality: &Quality, part: &str) -> Vec<Curve> {
     let mut all: Vec<Curve> = Vec::new();
-    for row in 0..f.len(&format!("{at}/rows")) {
-        let of = |key: &str| format!("{at}/rows/{row}/{key}");
+    for row in 0..f.len(&format!("{bench_at}/rows")) {
+        let of = |key: &str| format!("{bench_at}/rows/{row}/{key}");
         if quality.apart.is_some_and(|key| f.word(&of(key)) != part) {
             continue;
         }
@@ -52,13 +52,19 @@ fn curves(f: &Figures<'_>, at: &str, quality: &Quality, part: &str) -> Vec<Curve
         match all.iter_mut().find(|curve| curve.key == key) {
             Some(curve) if quality.along.is_some() => curve.dots.push(dot),
             _ => {
-                let shown = quality.series.iter().map(|key| match *key {
-                    "lights" => format!("{} lights", f.svg_figure(&of(key), 1.0, 0)),
-                    _ => f.text(&of(key)),
-                });
+                let shown = |key: &str| match key {
+                    "lights" => html! { (f.svg_figure(&of(key), 1.0, 0)) " lights" },
+                    _ => html! { (f.text(&of(key))) },
+                };
+                let name = html! {
+                    @for (i, key) in quality.series.iter().enumerate() {
+                        @if i > 0 { ", " }
+                        (shown(key))
+                    }
+                };
                 all.push(Curve {
                     key,
-                    name: shown.collect::<Vec<_>>().join(", "),
+                    name,
                     dots: vec![dot],
                 });
             }
@@ -72,14 +78,14 @@ fn curves(f: &Figures<'_>, at: &str, quality: &Quality, part: &str) -> Vec<Curve
 }
 
 /// A plot for each part of the rows, with the part's name.
-pub(crate) fn quality(f: &Figures<'_>, at: &str, bench: &Bench) -> Vec<(String, String)> {
+pub(crate) fn quality(f: &Figures<'_>, bench_at: &str, bench: &Bench) -> Vec<(String, Markup)> {
     let Some(quality) = &bench.quality else {
         return Vec::new();
     };
     let mut parts: Vec<String> = Vec::new();
-    for row in 0..f.len(&format!("{at}/rows")) {
+    for row in 0..f.len(&format!("{bench_at}/rows")) {
         let part = quality.apart.map_or(String::new(), |key| {
-            f.word(&format!("{at}/rows/{row}/{key}"))
+            f.word(&format!("{bench_at}/rows/{row}/{key}"))
         });
         if !parts.contains(&part) {
             parts.push(part);
@@ -88,14 +94,14 @@ pub(crate) fn quality(f: &Figures<'_>, at: &str, bench: &Bench) -> Vec<(String, 
     parts
         .into_iter()
         .filter_map(|part| {
-            let curves = curves(f, at, quality, &part);
+            let curves = curves(f, bench_at, quality, &part);
             let svg = plot(quality, &curves)?;
             Some((part, svg))
         })
         .collect()
 }
 
-fn plot(quality: &Quality, curves: &[Curve]) -> Option<String> {
+fn plot(quality: &Quality, curves: &[Curve]) -> Option<Markup> {
     let dots: Vec<&Dot> = curves.iter().flat_map(|curve| &curve.dots).collect();
     let most_x = dots.iter().map(|dot| dot.x).max_by(f64::total_cmp)?;
     let most_error = dots.iter().map(|dot| dot.error).max_by(f64::total_cmp)?;
@@ -107,60 +113,34 @@ fn plot(quality: &Quality, curves: &[Curve]) -> Option<String> {
     let is_curve = curves.iter().any(|curve| curve.dots.len() > 1);
     let legend = FLOOR + if is_curve { 74.0 } else { 56.0 };
     let height = legend + curves.len() as f64 * 18.0;
-    let mut svg = format!("<svg viewBox=\"0 0 {WIDTH} {height}\" role=\"img\">");
-    let _ = write!(
-        svg,
-        "<path d=\"M{LEFT} 10V{FLOOR}H{RIGHT}\" fill=\"none\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-         <text class=\"faint\" x=\"{RIGHT}\" y=\"{}\" text-anchor=\"end\">{}</text>\
-         <text class=\"faint\" x=\"{}\" y=\"18\">{}</text>",
-        FLOOR + 34.0,
-        quality.axis,
-        LEFT + 6.0,
-        quality.error.1,
-    );
-    heights(&mut svg, &upward, LEFT, RIGHT, y);
-    for tick in across {
-        let _ = write!(
-            svg,
-            "<path d=\"M{at_x:.1} {FLOOR}v4\" stroke=\"currentColor\" opacity=\"0.5\"/>\
-             <text class=\"faint tick\" x=\"{at_x:.1}\" y=\"{}\" text-anchor=\"middle\">{}</text>",
-            FLOOR + 17.0,
-            tick_text(tick),
-            at_x = x(tick),
-        );
-    }
-    if let (Some((_, title)), true) = (quality.along, is_curve) {
-        let _ = write!(
-            svg,
-            "<text class=\"faint\" x=\"{RIGHT}\" y=\"{}\" text-anchor=\"end\">larger dots: {title}</text>",
-            FLOOR + 52.0,
-        );
-    }
-    for (i, curve) in curves.iter().enumerate() {
-        let (stroke, fill) = mark(i);
-        let mut path = String::new();
-        let mut circles = String::new();
-        for (j, dot) in curve.dots.iter().enumerate() {
-            let (x, y) = (x(dot.x), y(dot.error));
-            let _ = write!(path, "{}{x:.1} {y:.1}", if j == 0 { 'M' } else { 'L' });
-            let radius = if is_curve { 3.0 + 1.5 * j as f64 } else { 5.0 };
-            let _ = write!(
-                circles,
-                "<circle cx=\"{x:.1}\" cy=\"{y:.1}\" r=\"{radius}\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"2\"/>"
-            );
+    let drawn = |i: usize, curve: &Curve| {
+        let (color, fill) = mark(i);
+        let radius = |j: usize| if is_curve { 3.0 + 1.5 * j as f64 } else { 5.0 };
+        let dots = curve.dots.iter().enumerate();
+        let places: Vec<_> = dots
+            .map(|(j, dot)| (x(dot.x), y(dot.error), radius(j)))
+            .collect();
+        html! {
+            (svg::line(&places, color, fill))
+            (svg::legend(i, LEFT, legend, &curve.name))
         }
-        let base = legend + i as f64 * 18.0;
-        let _ = write!(
-            svg,
-            "<path d=\"{path}\" fill=\"none\" stroke=\"{stroke}\" stroke-width=\"2\"/>{circles}\
-             <circle cx=\"{}\" cy=\"{:.1}\" r=\"5\" fill=\"{fill}\" stroke=\"{stroke}\" stroke-width=\"2\"/>\
-             <text x=\"{}\" y=\"{base:.1}\">{}</text>",
-            LEFT + 6.0,
-            base - 4.0,
-            LEFT + 18.0,
-            curve.name,
-        );
-    }
-    svg.push_str("</svg>");
-    Some(svg)
+    };
+    Some(html! {
+        svg viewBox=(format!("0 0 {WIDTH} {height}")) role="img" {
+            path d=(format!("M{LEFT} 10V{FLOOR}H{RIGHT}")) fill="none" stroke="currentColor" opacity="0.5" {}
+            text.faint x=(RIGHT) y=(FLOOR + 34.0) text-anchor="end" { (quality.axis) }
+            text.faint x=(LEFT + 6.0) y="18" { (quality.error.1) }
+            (heights(&upward, LEFT, RIGHT, y))
+            @for tick in across {
+                path d=(format!("M{:.1} {FLOOR}v4", x(tick))) stroke="currentColor" opacity="0.5" {}
+                text.faint.tick x=(at(x(tick))) y=(FLOOR + 17.0) text-anchor="middle" { (tick_text(tick)) }
+            }
+            @if let (Some((_, title)), true) = (quality.along, is_curve) {
+                text.faint x=(RIGHT) y=(FLOOR + 52.0) text-anchor="end" { "larger dots: " (title) }
+            }
+            @for (i, curve) in curves.iter().enumerate() {
+                (drawn(i, curve))
+            }
+        }
+    })
 }
