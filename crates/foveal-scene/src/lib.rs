@@ -18,7 +18,6 @@
 
 pub mod generate;
 
-mod bounds;
 mod camera;
 mod cloud;
 mod error;
@@ -35,9 +34,9 @@ mod texture;
 mod threads;
 mod timings;
 
-pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
 pub use error::{Limit, SceneError};
+pub use foveal_bounds::Aabb;
 pub use light::{Environment, Light, LightKind};
 pub use load::{LoadOptions, MissingNormals, load, load_bytes};
 pub use material::{AlphaMode, Material, ProceduralLayers, TextureRef};
