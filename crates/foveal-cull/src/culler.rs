@@ -264,8 +264,8 @@ impl Culler {
     ///
     /// Boxes are in metres relative to `origin` (world metres). A box that is not a volume (NaN,
     /// inside out) is visible. O(boxes): about 5 ns for a random box in a level, up to 100 ns for
-    /// one that only single pixels decide. For many static boxes, [`query_tree`](Self::query_tree)
-    /// is faster.
+    /// one that only single pixels decide. Where most boxes are hidden or outside in groups,
+    /// [`query_tree`](Self::query_tree) is faster.
     ///
     /// # Errors
     /// [`CullError::LengthMismatch`] if `results` is not as long as `boxes`.

@@ -43,7 +43,7 @@ pub enum CullError {
         /// Length that was given.
         found: usize,
     },
-    /// The set has no occluder with this id: it was removed, or another set gave it out.
+    /// The set has no occluder with this id, for instance since it was removed.
     UnknownOccluder,
     /// A mesh has too many triangles for the 32-bit offsets of a baked mesh.
     #[non_exhaustive]

@@ -161,6 +161,9 @@
 //! occlusion culling sample (thresholds and stats).
 #![deny(unsafe_code)]
 
+#[cfg(feature = "bench")]
+#[doc(hidden)]
+pub mod bench;
 mod bounds;
 mod camera;
 mod culler;

@@ -66,7 +66,7 @@ fn drawn(
 
 #[test]
 fn a_floor_under_the_eye_is_hidden_by_a_wall_before_what_is_seen_of_it() {
-    // 1.7 m below, the view's lower border meets the floor after 2.94 m.
+    // 1.7 m below, the view's lower edge meets the floor after 2.94 m.
     for (distance, clusters) in [(2.0, 1), (2.9, 1), (3.0, 2), (20.0, 2)] {
         for meshes in [[wall(distance), floor()], [floor(), wall(distance)]] {
             let (stats, covered, _) = drawn(&meshes, InstructionSet::detect());
@@ -80,7 +80,7 @@ fn a_floor_under_the_eye_is_hidden_by_a_wall_before_what_is_seen_of_it() {
 fn a_floor_that_is_seen_is_drawn_wholly() {
     let (stats, covered, depth) = drawn(&[floor()], InstructionSet::detect());
     assert_eq!(stats.clusters_rasterized, 1);
-    // To 60 m away: 1.7 / 60 of the way from the middle down to tan 30 degrees.
+    // To 60 m away: 1.7 / 60 of the way from the centre down to tan 30 degrees.
     let rows = 64.0 * (1.0 - 1.7 / 60.0 / 30_f64.to_radians().tan());
     let expected = rows.floor() as usize * 128;
     assert!(

@@ -10,7 +10,7 @@ fn quad(distance: f32, x0: f32, x1: f32) -> [Vec3; 4] {
     [(x0, -1.0), (x1, -1.0), (x1, 1.0), (x0, 1.0)].map(|(x, y)| Vec3::new(x, y, -1.0) * distance)
 }
 
-/// Depth of every pixel of the middle row.
+/// Depth of every pixel of the central row.
 fn depths(quads: &[[Vec3; 4]], set: InstructionSet) -> Vec<f32> {
     let positions = quads.concat();
     let indices: Vec<u32> = (0..quads.len() as u32)

@@ -106,17 +106,17 @@ fn culls_nothing_visible_around(seed: u64) -> Result<(), TestCaseError> {
     let mut r = Random::new(seed);
     let objects = 1 + r.below(6);
     let scene = scene(&mut r, objects, 150, DVec3::ZERO);
-    let middle = eye(&mut r, DVec3::ZERO, seed.is_multiple_of(5));
+    let center = eye(&mut r, DVec3::ZERO, seed.is_multiple_of(5));
     let size = size(&mut r);
     let radius = [0.005, 0.03, 0.2][r.below(3)];
-    let view = View::mono(middle).with_validity_radius(radius);
+    let view = View::mono(center).with_validity_radius(radius);
     let results = answers_to_all(&scene, &view, size);
     let eyes = [0, 1, 2].map(|k| {
         let far = if k == 0 { 1.0 } else { r.next() };
         let step = r.vec(1.0).normalize() * (radius * far);
         Eye {
-            world_from_eye: DAffine3::from_translation(step) * middle.world_from_eye,
-            ..middle
+            world_from_eye: DAffine3::from_translation(step) * center.world_from_eye,
+            ..center
         }
     });
     see_nothing_culled(&scene, &eyes, size, &results)
@@ -266,7 +266,7 @@ proptest! {
     }
 }
 
-/// What a sample decides that lies within float rounding of a border, in whose place `f64` has to
+/// What a sample decides that lies within float rounding of an edge, in whose place `f64` has to
 /// decide.
 #[test]
 fn samples_beside_a_border_are_not_covered() {

@@ -16,7 +16,6 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 
-mod bounds;
 mod camera;
 mod cloud;
 mod error;
@@ -33,9 +32,9 @@ mod texture;
 mod threads;
 mod timings;
 
-pub use bounds::Aabb;
 pub use camera::{Camera, Projection};
 pub use error::{Limit, SceneError};
+pub use foveal_bounds::Aabb;
 pub use light::{Environment, Light, LightKind};
 pub use load::{LoadOptions, MissingNormals, load, load_bytes};
 pub use material::{AlphaMode, Material, ProceduralLayers, TextureRef};

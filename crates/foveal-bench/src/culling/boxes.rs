@@ -8,7 +8,7 @@ use foveal_cull::Aabb;
 use glam::Vec3;
 
 /// `count` boxes within `bounds`; none where there is no geometry.
-pub(super) fn random(bounds: foveal_scene::Aabb, count: u32) -> Vec<Aabb> {
+pub(super) fn random(bounds: Aabb, count: u32) -> Vec<Aabb> {
     if bounds.is_empty() {
         return Vec::new();
     }
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn boxes_fill_the_bounds_and_stay_the_same() {
-        let bounds = foveal_scene::Aabb {
+        let bounds = Aabb {
             min: Vec3::new(-10.0, 0.0, 5.0),
             max: Vec3::new(10.0, 4.0, 6.0),
         };

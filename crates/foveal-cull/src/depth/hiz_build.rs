@@ -75,7 +75,7 @@ mod tests {
     use crate::InstructionSet;
 
     #[test]
-    fn the_summary_is_the_farthest_of_the_blocks_below() {
+    fn the_hiz_has_the_farthest_depth_of_the_blocks_below() {
         for (width, height) in [(72, 40), (8, 8), (8, 130), (300, 16)] {
             let mut buffer = OcclusionBuffer::new(width, height);
             for (i, min) in (0i16..).zip(&mut buffer.min) {

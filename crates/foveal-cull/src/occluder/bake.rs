@@ -25,7 +25,7 @@ pub struct BakeOptions {
     /// Whether to bake the adjacency of every cluster, for view regions
     /// ([`View::stereo`](crate::View::stereo),
     /// [`View::with_validity_radius`](crate::View::with_validity_radius)); `true` by default.
-    /// Baking then takes three to four times as long, and the mesh three times the memory. Without
+    /// Baking then takes two to four times as long, and the mesh three times the memory. Without
     /// it view regions are just as safe but hide less, since every polygon shrinks by itself. Views
     /// of one exact eye do not need it. Two-sided meshes never have it.
     pub adjacency: bool,
@@ -65,8 +65,10 @@ impl OccluderMesh {
     ///
     /// Baking welds positions that are bit-equal, drops degenerate triangles, joins neighbouring
     /// triangles to nearly flat quads, and groups quads into clusters of up to 64 by the
-    /// surface-area heuristic over position and normal. Equal input gives an equal mesh. O(n log
-    /// n): bake when a level loads, not per frame.
+    /// surface-area heuristic over position and normal. Equal input gives an equal mesh.
+    ///
+    /// O(n log n): about 1 microsecond per triangle on one core, 2.5 with adjacency. Bake when a
+    /// level loads, not per frame.
     ///
     /// # Errors
     /// [`CullError::NotTriangles`], [`CullError::IndexOutOfRange`], [`CullError::NotFinite`] for a

@@ -427,7 +427,7 @@ mod tests {
         assert_eq!(creased(&strips(0.1)), 1.0);
         // A bent surface of 6 x 6 quads of 1 m. Of 144 edges, each counted from its quads, 24 are
         // on its boundary.
-        let sheet = |bend: f32, adjacency: bool| {
+        let surface = |bend: f32, adjacency: bool| {
             let point = |i: usize| {
                 let (x, y) = ((i % 7) as f32, (i / 7) as f32);
                 Vec3::new(x, y, bend * (x - 3.0) * (x - 3.0))
@@ -440,10 +440,10 @@ mod tests {
             let options = BakeOptions::default().with_adjacency(adjacency);
             creased(&OccluderMesh::bake(&points, &indices, options).unwrap())
         };
-        assert!((sheet(0.0, true) - 24.0 / 144.0).abs() < 1e-6);
-        assert!((0.15..0.2).contains(&sheet(0.02, true)));
+        assert!((surface(0.0, true) - 24.0 / 144.0).abs() < 1e-6);
+        assert!((0.15..0.2).contains(&surface(0.02, true)));
         // Three of the five lines across bend by more than 20 degrees: 67.5 of 189 m.
-        assert!((0.35..0.36).contains(&sheet(0.4, true)));
-        assert_eq!(sheet(0.0, false), 1.0);
+        assert!((0.35..0.36).contains(&surface(0.4, true)));
+        assert_eq!(surface(0.0, false), 1.0);
     }
 }

@@ -43,9 +43,9 @@ impl Screen<'_> {
             } else {
                 (1.0, 0.0)
             };
-            for (border, row) in rows.into_iter().enumerate() {
-                most[border] += row * c + row.abs() * h;
-                terms[border] += row.abs() * (c.abs() + h);
+            for (edge, row) in rows.into_iter().enumerate() {
+                most[edge] += row * c + row.abs() * h;
+                terms[edge] += row.abs() * (c.abs() + h);
             }
         }
         let mut beside = false;

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn pixels_within_reach_of_a_border_are_erased_and_no_others() {
+    fn pixels_within_reach_of_a_silhouette_edge_are_its_margin_and_no_others() {
         let (width, height) = (80, 56);
         let mut seed = 1u32;
         let mut random = move |most: f32| {

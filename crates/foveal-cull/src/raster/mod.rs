@@ -7,19 +7,19 @@
 //! updates one block, and `layers` does so where parts lie far apart. `clip` is the slow path for
 //! what crosses the near plane or leaves the guard band.
 
-mod block;
+pub(crate) mod block;
 pub(crate) mod candidates;
 mod clip;
 mod cluster;
 pub(crate) mod draw;
-mod edges;
+pub(crate) mod edges;
 mod extent;
 pub(crate) mod facing;
 mod layers;
 mod margin;
 mod patch;
 mod points;
-mod polygon;
+pub(crate) mod polygon;
 pub(crate) mod scratch;
 pub(crate) mod select;
 mod setup;

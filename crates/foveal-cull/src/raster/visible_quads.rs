@@ -160,7 +160,7 @@ mod tests {
     }
 
     #[test]
-    fn quads_that_face_the_eye_and_are_not_hidden_are_open() {
+    fn quads_that_face_the_eye_and_are_not_hidden_are_visible() {
         let (mesh, screen) = ball();
         let mut points = Points::default();
         for (i, p) in screen.iter().enumerate() {
@@ -207,11 +207,11 @@ mod tests {
                 ];
                 let nearest = corners.iter().map(|c| c[2]).fold(0.0, f32::max);
                 let seen = mine[2] >= 4 || encode(nearest) > encode(0.58);
-                let is_open = visible.quads[q / 8] >> (q % 8) & 1 != 0;
-                assert_eq!(is_open, front && seen, "quad {q}, mirrored {mirrored}");
-                here += u32::from(is_open);
+                let is_visible = visible.quads[q / 8] >> (q % 8) & 1 != 0;
+                assert_eq!(is_visible, front && seen, "quad {q}, mirrored {mirrored}");
+                here += u32::from(is_visible);
                 hidden += u32::from(front && !seen);
-                if is_open {
+                if is_visible {
                     blocks = [
                         blocks[0].min(mine[0]),
                         blocks[1].min(mine[1]),

@@ -393,22 +393,22 @@ impl Lanes for Avx2 {
 
     #[inline(always)]
     fn edge_rows(self, slope: __m256d) -> Self::B {
-        let mut borders = [[slope; 10]; 4];
-        for (e, border) in borders.iter_mut().enumerate() {
+        let mut edges = [[slope; 10]; 4];
+        for (e, edge) in edges.iter_mut().enumerate() {
             let slope = self.qpick(slope, [e as u8; 4]);
-            for (border, rows) in border.iter_mut().zip(ROWS.as_chunks().0) {
-                *border = self.qmul(self.qload(rows), slope);
+            for (edge, rows) in edge.iter_mut().zip(ROWS.as_chunks().0) {
+                *edge = self.qmul(self.qload(rows), slope);
             }
         }
-        borders
+        edges
     }
     #[inline(always)]
-    fn spans(self, at: __m256d, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn spans(self, at: __m256d, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         let at = four!(e => self.qpick(at, [e as u8; 4]));
         let [mut from, mut to] = [[at[0]; 10]; 2];
         avx2!({
             for k in 0..10 {
-                let [a, b, c, d] = four!(e => _mm256_add_pd(at[e], borders[e][k]));
+                let [a, b, c, d] = four!(e => _mm256_add_pd(at[e], edges[e][k]));
                 (from[k], to[k]) = (_mm256_max_pd(a, b), _mm256_min_pd(c, d));
             }
             if let Some([after, last]) = limits {

@@ -242,16 +242,16 @@ impl Lanes for Avx512 {
         })
     }
     #[inline(always)]
-    fn spans(self, at: __m256d, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn spans(self, at: __m256d, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         avx512!({
             let at = four!(e => lane(self, at, e));
             let mut from = five!(k => _mm512_max_pd(
-                _mm512_add_pd(at[0], borders[0][k]),
-                _mm512_add_pd(at[1], borders[1][k]),
+                _mm512_add_pd(at[0], edges[0][k]),
+                _mm512_add_pd(at[1], edges[1][k]),
             ));
             let to = five!(k => _mm512_min_pd(
-                _mm512_add_pd(at[2], borders[2][k]),
-                _mm512_add_pd(at[3], borders[3][k]),
+                _mm512_add_pd(at[2], edges[2][k]),
+                _mm512_add_pd(at[3], edges[3][k]),
             ));
             if let Some(limits) = limits {
                 from = five!(k => limited(self, from[k], limits, k));

@@ -127,7 +127,7 @@ pub(crate) trait Lanes: Copy {
     /// [`Portable`](super::portable::Portable) has it. `at`: where they cross the first row; sample
     /// n is right of what is less than n + 1. `limits`: only rows after the first one and not after
     /// the second count.
-    fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
+    fn spans(self, at: Self::Q, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
     /// The samples and the pixel centres of the spans in the block that begins at sample `left`.
     fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64);
     /// Eight rows of eight pixels: those from one number to before another.

@@ -317,14 +317,14 @@ impl Lanes for Portable {
         slope.map(|slope| ROWS.map(|row| row * slope))
     }
     #[inline(always)]
-    fn spans(self, at: [f64; 4], borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
-        let border = |e: usize, i: usize| at[e] + borders[e][i];
+    fn spans(self, at: [f64; 4], edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+        let edge = |e: usize, i: usize| at[e] + edges[e][i];
         let mut spans = [[0; 40]; 2];
         for i in 0..40 {
             let inside = limits.is_none_or(|[after, last]| after < ROWS[i] && ROWS[i] <= last);
-            let from = larger(border(0, i), border(1, i));
+            let from = larger(edge(0, i), edge(1, i));
             spans[0][i] = number(if inside { from } else { FAR }, i);
-            spans[1][i] = number(smaller(border(2, i), border(3, i)), i);
+            spans[1][i] = number(smaller(edge(2, i), edge(3, i)), i);
         }
         spans
     }

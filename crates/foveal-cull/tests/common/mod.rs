@@ -273,19 +273,19 @@ pub fn answers(
 }
 
 fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Reference {
-    let mut truth = Reference::new(eye, w, h).unwrap();
+    let mut exact = Reference::new(eye, w, h).unwrap();
     for o in &scene.objects {
-        truth.add(&o.positions, &o.indices, &o.transform, o.two_sided);
+        exact.add(&o.positions, &o.indices, &o.transform, o.two_sided);
     }
-    truth.finish();
-    truth
+    exact.finish();
+    exact
 }
 
 /// Per pixel, the farthest depth that the reference has at `n` times `n` samples; 0 where one is
 /// not covered.
 pub fn farthest_in_pixels(scene: &Scene, eye: &Eye, (w, h): (u32, u32), n: u32) -> Vec<f32> {
-    let truth = reference(scene, eye, (w * n, h * n));
-    let at = |x: u32, y: u32| truth.depth()[(y * w * n + x) as usize];
+    let exact = reference(scene, eye, (w * n, h * n));
+    let at = |x: u32, y: u32| exact.depth()[(y * w * n + x) as usize];
     let pixel = |x: u32, y: u32| {
         (0..n * n)
             .map(|i| at(x * n + i % n, y * n + i / n))
@@ -302,10 +302,10 @@ pub fn wrongly_culled(
     n: u32,
     results: &[Visibility],
 ) -> Vec<usize> {
-    let truth = reference(scene, eye, (w * n, h * n));
+    let exact = reference(scene, eye, (w * n, h * n));
     (0..results.len())
         .filter(|&i| {
-            !results[i].is_visible() && truth.seen(&scene.boxes[i], scene.origin) == Seen::Visible
+            !results[i].is_visible() && exact.seen(&scene.boxes[i], scene.origin) == Seen::Visible
         })
         .collect()
 }

@@ -101,10 +101,7 @@ impl CullingScene {
 
     fn take_boxes(&mut self, scene: &Scene) {
         self.boxes.clear();
-        let boxes = scene
-            .objects
-            .iter()
-            .map(|o| foveal_cull::Aabb::new(o.bounds.min, o.bounds.max));
+        let boxes = scene.objects.iter().map(|o| o.bounds);
         self.boxes.extend(boxes);
     }
 }

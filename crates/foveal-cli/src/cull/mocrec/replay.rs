@@ -278,7 +278,7 @@ fn triangles_box(triangles: &Triangles) -> Option<Aabb> {
         let p = triangles.vertices[i as usize].as_dvec3();
         world_from_model.transform_point3(p).as_vec3()
     });
-    let bounds = Aabb::from_points(points);
+    let bounds = Aabb::of_points(points);
     (bounds.min.is_finite() && bounds.max.is_finite() && bounds.min.cmple(bounds.max).all())
         .then_some(bounds)
 }

@@ -252,20 +252,20 @@ impl<R: Registers> Lanes for Narrow<R> {
     fn edge_rows(self, slope: Self::Q) -> Self::B {
         let slope = self.each(slope);
         let (rows, _) = ROWS.as_chunks();
-        let mut borders = [[slope[0]; 20]; 4];
-        for (border, slope) in borders.iter_mut().zip(slope) {
-            for (border, rows) in border.iter_mut().zip(rows) {
-                *border = self.0.qmul(self.0.qload(rows), slope);
+        let mut edges = [[slope[0]; 20]; 4];
+        for (edge, slope) in edges.iter_mut().zip(slope) {
+            for (edge, rows) in edge.iter_mut().zip(rows) {
+                *edge = self.0.qmul(self.0.qload(rows), slope);
             }
         }
-        borders
+        edges
     }
     #[inline(always)]
-    fn spans(self, at: Self::Q, borders: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn spans(self, at: Self::Q, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         let at = self.each(at);
         let [mut from, mut to] = [[at[0]; 20]; 2];
         for k in 0..20 {
-            let [a, b, c, d] = four!(e => self.0.qadd(at[e], borders[e][k]));
+            let [a, b, c, d] = four!(e => self.0.qadd(at[e], edges[e][k]));
             (from[k], to[k]) = (self.0.qmax(a, b), self.0.qmin(c, d));
         }
         if let Some(limits) = limits {
@@ -406,7 +406,7 @@ impl<R: Registers> Narrow<R> {
         four!(k => self.0.qsplat(all[k]))
     }
 
-    /// Moves the left border far off in rows beyond the limits.
+    /// Moves the left edge far off in rows beyond the limits.
     #[cold]
     fn limit(self, from: &mut [R::Q; 20], [after, last]: [f64; 2]) {
         for (from, rows) in from.iter_mut().zip(ROWS.as_chunks::<2>().0) {

@@ -1,0 +1,215 @@
+//! The culler's hot kernels, on a town that this file makes.
+//!
+//! `cargo bench -p foveal-cull` runs all of them; a name after `--` selects some, as in `cargo
+//! bench -p foveal-cull -- query`.
+#![allow(clippy::unwrap_used, reason = "a bench has no caller to tell")]
+
+use divan::Bencher;
+use divan::counter::ItemsCount;
+use foveal_cull::bench::{self, BlockUpdates, FullBuffer};
+use foveal_cull::glam::{DAffine3, DQuat, DVec3, Vec3};
+use foveal_cull::{
+    Aabb, BakeOptions, Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, OccluderMesh,
+    OccluderSet, Projection, SingleThread, View, Visibility,
+};
+use std::sync::Arc;
+
+fn main() {
+    divan::main();
+}
+
+/// Numbers that are the same in every run.
+struct Random(u64);
+
+impl Random {
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        low + (high - low) * ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    fn point(&mut self, low: Vec3, high: Vec3) -> Vec3 {
+        Vec3::from_array([0, 1, 2].map(|k| self.between(low[k].into(), high[k].into()) as f32))
+    }
+}
+
+/// Positions and indices of a surface of `n` x `n` quads.
+fn surface(n: u32, point: impl Fn(f32, f32) -> Vec3) -> (Vec<Vec3>, Vec<u32>) {
+    let at = |i: u32| i as f32 / n as f32;
+    let positions = (0..=n)
+        .flat_map(|j| (0..=n).map(move |i| (i, j)))
+        .map(|(i, j)| point(at(i), at(j)))
+        .collect();
+    let indices = (0..n)
+        .flat_map(|j| (0..n).map(move |i| j * (n + 1) + i))
+        .flat_map(|a| [a, a + 1, a + n + 2, a, a + n + 2, a + n + 1])
+        .collect();
+    (positions, indices)
+}
+
+fn hills() -> (Vec<Vec3>, Vec<u32>) {
+    surface(96, |u, v| {
+        let height = (u * 9.0).sin() + (v * 7.0).cos();
+        Vec3::new(u * 120.0 - 60.0, height, 60.0 - v * 120.0)
+    })
+}
+
+fn ball() -> (Vec<Vec3>, Vec<u32>) {
+    surface(24, |u, v| {
+        let (around, down) = (
+            u * core::f32::consts::TAU,
+            (1.0 - v) * core::f32::consts::PI,
+        );
+        let side = down.sin();
+        Vec3::new(around.cos() * side, down.cos(), -around.sin() * side) * 2.0
+    })
+}
+
+/// Hills with 260 houses and domes on them.
+fn town() -> OccluderSet {
+    let baked = |(positions, indices): (Vec<Vec3>, Vec<u32>)| {
+        Arc::new(OccluderMesh::bake(&positions, &indices, BakeOptions::default()).unwrap())
+    };
+    let (low, high) = (Vec3::new(-1.0, 0.0, -1.0), Vec3::new(1.0, 8.0, 1.0));
+    let house = Arc::new(OccluderMesh::from_box(Aabb::new(low, high)).unwrap());
+    let dome = baked(ball());
+    let mut set = OccluderSet::new();
+    set.add(baked(hills()), DAffine3::IDENTITY).unwrap();
+    let mut r = Random(1);
+    for k in 0..260 {
+        let (low, high) = (Vec3::new(-50.0, -1.0, -50.0), Vec3::new(50.0, 1.0, 50.0));
+        let at = r.point(low, high).as_dvec3();
+        let scale = r
+            .point(Vec3::splat(0.4), Vec3::new(3.0, 2.0, 3.0))
+            .as_dvec3();
+        let turn = DQuat::from_rotation_y(r.between(0.0, 6.0));
+        let mesh = if k % 3 == 0 { &dome } else { &house };
+        let place = DAffine3::from_scale_rotation_translation(scale, turn, at);
+        set.add(Arc::clone(mesh), place).unwrap();
+    }
+    set
+}
+
+fn boxes(count: usize) -> Vec<Aabb> {
+    let mut r = Random(2);
+    let one = |_| {
+        let center = r.point(Vec3::new(-60.0, -2.0, -60.0), Vec3::new(60.0, 8.0, 60.0));
+        let half = r.point(Vec3::splat(0.1), Vec3::splat(1.5));
+        Aabb::new(center - half, center + half)
+    };
+    (0..count).map(one).collect()
+}
+
+/// An eye in a street, or above the town; to the right by `right_m`.
+fn eye(place: &str, right_m: f64) -> Eye {
+    let (at, target) = match place {
+        "inside" => (DVec3::new(22.0, 2.5, 19.0), DVec3::new(0.0, 2.0, 0.0)),
+        _ => (DVec3::new(60.0, 30.0, 50.0), DVec3::ZERO),
+    };
+    let right = (target - at).cross(DVec3::Y).normalize() * right_m;
+    let projection = Projection::perspective(1.05, 16.0 / 9.0, 0.05, f64::INFINITY);
+    Eye::look_at(at + right, target + right, DVec3::Y, projection)
+}
+
+const PLACES: [&str; 2] = ["inside", "around"];
+
+fn rasterized(place: &str) -> Culler {
+    let mut culler = Culler::new(640, 360).unwrap();
+    let view = View::mono(eye(place, 0.0));
+    let options = FrameOptions::default();
+    culler
+        .rasterize(&view, &town(), &options, &SingleThread)
+        .unwrap();
+    culler
+}
+
+/// A whole frame, 640x360 pixels; items are occluder triangles.
+#[divan::bench(args = PLACES)]
+fn rasterize(bencher: Bencher<'_, '_>, place: &str) {
+    frames(bencher, &View::mono(eye(place, 0.0)));
+}
+
+/// The same for two eyes.
+#[divan::bench(args = PLACES)]
+fn rasterize_two_eyes(bencher: Bencher<'_, '_>, place: &str) {
+    frames(
+        bencher,
+        &View::stereo(eye(place, -0.032), eye(place, 0.032)),
+    );
+}
+
+fn frames(bencher: Bencher<'_, '_>, view: &View) {
+    let (set, options) = (town(), FrameOptions::default());
+    let mut culler = Culler::new(640, 360).unwrap();
+    bencher
+        .counter(ItemsCount::new(set.triangle_count()))
+        .bench_local(|| culler.rasterize(view, &set, &options, &SingleThread));
+}
+
+/// Random boxes one after the other.
+#[divan::bench(args = PLACES)]
+fn query_boxes(bencher: Bencher<'_, '_>, place: &str) {
+    let (culler, boxes) = (rasterized(place), boxes(9000));
+    let mut results = vec![Visibility::Visible; boxes.len()];
+    bencher
+        .counter(ItemsCount::new(boxes.len()))
+        .bench_local(|| culler.query(&boxes, DVec3::ZERO, &mut results));
+}
+
+/// The same boxes by their tree.
+#[divan::bench(args = PLACES)]
+fn query_tree(bencher: Bencher<'_, '_>, place: &str) {
+    let (culler, boxes) = (rasterized(place), boxes(9000));
+    let tree = OccludeeTree::build(&boxes, DVec3::ZERO);
+    let mut results = vec![Visibility::Visible; boxes.len()];
+    bencher
+        .counter(ItemsCount::new(boxes.len()))
+        .bench_local(|| culler.query_tree(&tree, &mut results));
+}
+
+/// Fitting a tree to moved boxes.
+#[divan::bench]
+fn refit_tree(bencher: Bencher<'_, '_>) {
+    let boxes = boxes(9000);
+    let mut tree = OccludeeTree::build(&boxes, DVec3::ZERO);
+    bencher
+        .counter(ItemsCount::new(boxes.len()))
+        .bench_local(|| tree.refit(&boxes));
+}
+
+/// Polygons that cover a part of one block.
+#[divan::bench]
+fn update_block(bencher: Bencher<'_, '_>) {
+    const POLYGONS: u32 = 64;
+    let (mut block, set) = (BlockUpdates::new(POLYGONS), InstructionSet::detect());
+    bencher
+        .counter(ItemsCount::new(POLYGONS))
+        .bench_local(|| block.run(set));
+}
+
+/// The HiZ of a full buffer of 640x360 pixels.
+#[divan::bench]
+fn build_hiz(bencher: Bencher<'_, '_>) {
+    let (mut buffer, set) = (FullBuffer::new(640, 360), InstructionSet::detect());
+    bencher.bench_local(|| buffer.build_hiz(set));
+}
+
+/// Boxes from rows to lanes.
+#[divan::bench]
+fn transpose(bencher: Bencher<'_, '_>) {
+    let (boxes, set) = (boxes(1024), InstructionSet::detect());
+    bencher
+        .counter(ItemsCount::new(boxes.len()))
+        .bench_local(|| bench::transpose(&boxes, set));
+}
+
+/// Baking the hills, 18,432 triangles, for one exact eye (`false`) and for view regions (`true`).
+#[divan::bench(args = [false, true], max_time = 1)]
+fn bake(bencher: Bencher<'_, '_>, adjacency: bool) {
+    let (positions, indices) = hills();
+    let options = BakeOptions::default().with_adjacency(adjacency);
+    bencher
+        .counter(ItemsCount::new(indices.len() / 3))
+        .bench_local(|| OccluderMesh::bake(&positions, &indices, options));
+}
