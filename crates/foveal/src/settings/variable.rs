@@ -19,14 +19,14 @@ pub enum Geometry {
 #[serde(rename_all = "kebab-case")]
 pub enum RateStage {
     /// [`RateStage::Both`] where it is possible: with [`Geometry::Visibility`], without
-    /// anti-aliasing, and without [`Composite::Light`], which needs each pixel's surface. Else
+    /// anti-aliasing, and without [`Composite::Light`](crate::Composite::Light), which needs each pixel's surface. Else
     /// lighting.
     #[default]
     Auto,
     /// Lighting.
     Lighting,
     /// Materials, as in variable shading's source. Needs [`Geometry::Visibility`] and
-    /// [`Shading::Variable`].
+    /// [`Shading::Variable`](crate::Shading::Variable).
     Material,
     /// Materials and lighting. Needs [`Geometry::Visibility`].
     Both,
