@@ -10,7 +10,6 @@
 #[cfg(target_arch = "wasm32")]
 mod camera;
 #[cfg(target_arch = "wasm32")]
-#[cfg(target_arch = "wasm32")]
 mod present;
 #[cfg(all(target_arch = "wasm32", feature = "webgl"))]
 mod pump;
