@@ -199,7 +199,7 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
         if LOOKS_AROUND {
             found = textureLoad(reprojected, quad, 0).xy;
         } else {
-            found = reprojected(picture, maps, first, who, d, motion);
+            found = reprojected_to(picture, maps, first, who, d, motion);
         }
         let probed = (quad.x & rates.probe_mask) == rates.probe_x && (quad.y & rates.probe_mask) == rates.probe_y;
         notes = select(0u, RATE_PROBED, probed) | select(RATE_UNKNOWN, 0u, (found.y & KNOWN_AT_ALL) != 0u);

@@ -66,7 +66,7 @@ fn measured(picture: Picture, quad: vec2u) -> u32 {
 }
 
 // What is known of the quad that begins at `texel`, where instance `who` (+ 1) is seen at depth `d`.
-fn reprojected(picture: Picture, maps: EyeMaps, texel: vec2u, who: u32, d: f32, motion: vec2f) -> vec2u {
+fn reprojected_to(picture: Picture, maps: EyeMaps, texel: vec2u, who: u32, d: f32, motion: vec2f) -> vec2u {
     var distance = 0.0;
     var expected = 0.0;
     if d > 0.0 {
@@ -107,6 +107,6 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     }
     let who = load_words(identity, texel).xy;
     let d = load_depth(depth, texel);
-    let found = reprojected(picture, maps_at(texel), texel, who.x, d, motion_of(who));
+    let found = reprojected_to(picture, maps_at(texel), texel, who.x, d, motion_of(who));
     textureStore(known, id.xy, vec4u(found, 0u, 0u));
 }

@@ -57,7 +57,7 @@ impl VariableTargets {
             let none = wgpu::TextureUsages::empty();
             gpu::target(gpu, "finished frame", size, PICTURE_FORMAT, none)
         });
-        let reprojected = looks_around(settings).then(|| known("known of quads, reprojected over"));
+        let reprojected = looks_around(settings).then(|| known("known of quads, reprojected"));
         let histories = 2 + u64::from(reprojected.is_some());
         let quads_bytes = u64::from(quads.0) * u64::from(quads.1) * (histories * 8 + 4);
         Self {
