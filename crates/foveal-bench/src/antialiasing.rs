@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::subject::{Header, Subject, SubjectArgs};
 use super::table::{jod_text, text};
-use foveal_host::clock::now_ms;
+use foveal_host::clock::now_ns;
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -239,7 +239,11 @@ fn rows(
 
 impl Mode {
     fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
-        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        let mut renderer = block_on(Renderer::new(
+            gpu,
+            settings,
+            foveal::RendererOptions::default().with_clock(now_ns),
+        ))?;
         block_on(renderer.set_scene(scene))?;
         Ok(Self {
             renderer,

@@ -15,7 +15,7 @@ use serde::Serialize;
 use super::figures::FigureArgs;
 use super::table::text;
 use foveal_host::camera::{CameraArgs, Viewpoint};
-use foveal_host::clock::now_ms;
+use foveal_host::clock::now_ns;
 use foveal_host::{scene_source, values};
 
 /// Version of the JSON's shape.
@@ -203,7 +203,11 @@ fn usable(gpu: &Gpu) -> anyhow::Result<(Vec<Named>, Vec<Skipped>)> {
             s.picture.height = 16;
             s.stereo.mode = stereo;
         });
-        match block_on(Renderer::new(gpu, &settings, None)) {
+        match block_on(Renderer::new(
+            gpu,
+            &settings,
+            foveal::RendererOptions::default(),
+        )) {
             Ok(_) => ways.push((mode, stereo, eye_clipping)),
             Err(error @ foveal::Error::Setting { .. }) => skipped.push(Skipped {
                 mode,
@@ -239,7 +243,11 @@ fn measure(
             };
             s.geometry.merge_draws = !of_source;
         });
-        let mut renderer = block_on(Renderer::new(gpu, &settings, Some(now_ms)))?;
+        let mut renderer = block_on(Renderer::new(
+            gpu,
+            &settings,
+            foveal::RendererOptions::default().with_clock(now_ns),
+        ))?;
         block_on(renderer.set_scene(scene))?;
         ways.push(Way {
             name: mode,

@@ -3,10 +3,15 @@
 use std::sync::OnceLock;
 use std::time::Instant;
 
+/// Nanoseconds since the first call.
+pub fn now_ns() -> u64 {
+    static START: OnceLock<Instant> = OnceLock::new();
+    u64::try_from(START.get_or_init(Instant::now).elapsed().as_nanos()).unwrap_or(u64::MAX)
+}
+
 /// Milliseconds since the first call.
 pub fn now_ms() -> f64 {
-    static START: OnceLock<Instant> = OnceLock::new();
-    START.get_or_init(Instant::now).elapsed().as_secs_f64() * 1e3
+    now_ns() as f64 * 1e-6
 }
 
 /// Runs `stage` and adds its milliseconds to `timings` under `name`.

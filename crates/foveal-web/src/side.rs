@@ -14,9 +14,13 @@ pub(crate) struct Side {
 
 impl Side {
     pub(crate) async fn new(gpu: &Gpu, settings: &Settings, scene: &Scene) -> Result<Self, String> {
-        let mut renderer = Renderer::new(gpu, settings, Some(now_ms))
-            .await
-            .map_err(|cause| cause.to_string())?;
+        let mut renderer = Renderer::new(
+            gpu,
+            settings,
+            foveal::RendererOptions::default().with_clock(now_ns),
+        )
+        .await
+        .map_err(|cause| cause.to_string())?;
         renderer
             .set_scene(scene)
             .await
@@ -90,7 +94,12 @@ impl Side {
     }
 }
 
-/// The page's clock.
+/// The page's clock in nanoseconds.
+fn now_ns() -> u64 {
+    (now_ms() * 1e6) as u64
+}
+
+/// The page's clock in milliseconds.
 pub(crate) fn now_ms() -> f64 {
     web_sys::window()
         .and_then(|w| w.performance())

@@ -60,7 +60,8 @@ fn embed(scene: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
             s.picture.width = 320;
             s.picture.height = 180;
         });
-        let mut renderer = Renderer::new(&gpu, &settings, None).await?;
+        let mut renderer =
+            Renderer::new(&gpu, &settings, foveal::RendererOptions::default()).await?;
         renderer.set_scene(&scene).await?;
         let camera = scene
             .cameras

@@ -30,7 +30,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         });
 
         let gpu = Gpu::open(None).await?;
-        let mut renderer = Renderer::new(&gpu, &settings, None).await?;
+        let mut renderer =
+            Renderer::new(&gpu, &settings, foveal::RendererOptions::default()).await?;
         renderer.set_scene(&scene).await?;
         let stats = renderer.render(&Frame::new(&camera)).await?;
         let pixels = renderer.read_picture().await?;

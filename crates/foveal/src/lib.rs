@@ -44,7 +44,7 @@ pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
 pub use output::Target;
 pub use rate::{MinPyramid, RateImage};
-pub use renderer::{Frame, Renderer};
+pub use renderer::{Frame, Renderer, RendererOptions};
 pub use settings::{
     Antialiasing, AntialiasingSettings, COARSEST_LEVEL, CoarseBackend, CoarseSample,
     CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,

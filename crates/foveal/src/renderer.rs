@@ -62,6 +62,23 @@ impl<'a> Frame<'a> {
     }
 }
 
+/// What a host lends to a renderer.
+#[derive(Clone, Copy, Debug, Default)]
+#[non_exhaustive]
+pub struct RendererOptions {
+    /// The host's clock. Without one there are no times of the CPU, no budget of culling, and ways of
+    /// drawing two eyes are not timed.
+    pub clock: Option<Clock>,
+}
+
+impl RendererOptions {
+    /// The same with a clock.
+    #[must_use]
+    pub fn with_clock(self, clock: Clock) -> Self {
+        Self { clock: Some(clock) }
+    }
+}
+
 /// Draws scenes.
 #[derive(Debug)]
 pub struct Renderer {
@@ -129,7 +146,12 @@ impl Renderer {
     /// [`Error::Limit`] where the device offers less than [`Gpu::required_limits`]; that or [`Error::Setting`] where
     /// the settings cannot be met on it;
     /// [`Error::OutOfMemory`] where the targets do not fit.
-    pub async fn new(gpu: &Gpu, settings: &Settings, clock: Option<Clock>) -> Result<Self, Error> {
+    pub async fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        options: RendererOptions,
+    ) -> Result<Self, Error> {
+        let RendererOptions { clock } = options;
         gpu.check_limits()?;
         let frame_bindings = FrameBindings::new(gpu);
         let material_layout = material_layout(gpu);

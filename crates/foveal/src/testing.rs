@@ -28,7 +28,7 @@ pub(crate) fn rendered_on(
     settings: &Settings,
 ) -> Renderer {
     pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu, settings, None)
+        let mut renderer = Renderer::new(gpu, settings, crate::RendererOptions::default())
             .await
             .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");
@@ -81,7 +81,9 @@ pub(crate) struct Film {
 impl Film {
     pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
         pollster::block_on(async {
-            let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+            let mut renderer = Renderer::new(gpu(), settings, crate::RendererOptions::default())
+                .await
+                .unwrap();
             renderer.set_scene(scene).await.unwrap();
             Self {
                 renderer,

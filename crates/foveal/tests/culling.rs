@@ -14,9 +14,9 @@ use foveal_scene::{Camera, LoadOptions, Projection, Scene};
 use glam::{Mat4, Vec3};
 
 /// Every look takes a microsecond.
-fn clock_ms() -> f64 {
+fn clock_ns() -> u64 {
     static LOOKS: AtomicU64 = AtomicU64::new(0);
-    LOOKS.fetch_add(1, Ordering::Relaxed) as f64 * 1e-3
+    LOOKS.fetch_add(1, Ordering::Relaxed) * 1000
 }
 
 /// One picture and its figures per camera.
@@ -25,9 +25,13 @@ fn draw(scene: &Scene, cameras: &[Camera], settings: &Settings) -> Vec<(Vec<u8>,
         let gpu = Gpu::open(None)
             .await
             .expect("the tests need a graphics adapter");
-        let mut renderer = Renderer::new(&gpu, settings, Some(clock_ms))
-            .await
-            .expect("settings fit");
+        let mut renderer = Renderer::new(
+            &gpu,
+            settings,
+            foveal::RendererOptions::default().with_clock(clock_ns),
+        )
+        .await
+        .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");
         let mut drawn = Vec::new();
         for camera in cameras {

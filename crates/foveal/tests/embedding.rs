@@ -3,10 +3,10 @@
 use foveal::{Antialiasing, Error, Frame, Gpu, Renderer, Settings, Shading, Target};
 use foveal_generate as generate;
 
-fn clock() -> f64 {
+fn clock() -> u64 {
     static START: std::sync::OnceLock<std::time::Instant> = std::sync::OnceLock::new();
     let start = START.get_or_init(std::time::Instant::now);
-    start.elapsed().as_secs_f64() * 1e3
+    start.elapsed().as_nanos() as u64
 }
 
 fn host(required_limits: wgpu::Limits) -> (wgpu::Device, wgpu::Queue) {
@@ -90,9 +90,13 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
             s.coarse.history = false;
         });
         pollster::block_on(async {
-            let mut renderer = Renderer::new(&gpu, &settings, Some(clock))
-                .await
-                .expect("fits");
+            let mut renderer = Renderer::new(
+                &gpu,
+                &settings,
+                foveal::RendererOptions::default().with_clock(clock),
+            )
+            .await
+            .expect("fits");
             renderer.set_scene(&scene).await.expect("fits");
             let waited = renderer.render(&frame).await.expect("drawn");
             let expected = renderer.read_picture().await.expect("read");
@@ -140,7 +144,11 @@ fn a_host_with_too_little_is_told_what_is_missing() {
         ..wgpu::Limits::default()
     });
     let gpu = Gpu::from_device(device, queue);
-    let error = pollster::block_on(Renderer::new(&gpu, &Settings::default(), None));
+    let error = pollster::block_on(Renderer::new(
+        &gpu,
+        &Settings::default(),
+        foveal::RendererOptions::default(),
+    ));
     let error = error.expect_err("four storage buffers are too few");
     assert!(matches!(error, Error::Limit { .. }), "{error}");
     assert!(
@@ -163,7 +171,12 @@ fn the_hosts_own_handlers_stay_in_place() {
         s.picture.width = 32;
         s.picture.height = 32;
     });
-    let mut renderer = pollster::block_on(Renderer::new(&gpu, &settings, None)).expect("fits");
+    let mut renderer = pollster::block_on(Renderer::new(
+        &gpu,
+        &settings,
+        foveal::RendererOptions::default(),
+    ))
+    .expect("fits");
     device.destroy();
     let _ = device.poll(wgpu::PollType::wait_indefinitely());
     lost.recv().expect("the host's callback was called");

@@ -43,7 +43,12 @@ fn renderers() -> [Renderer; 2] {
             s.picture.height = HEIGHT;
             s.geometry.path = geometry;
         });
-        pollster::block_on(Renderer::new(&gpu, &settings, None)).expect("settings fit")
+        pollster::block_on(Renderer::new(
+            &gpu,
+            &settings,
+            foveal::RendererOptions::default(),
+        ))
+        .expect("settings fit")
     })
 }
 

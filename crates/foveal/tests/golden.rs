@@ -23,7 +23,7 @@ fn draw(scene: &str, settings: &Settings) -> Vec<u8> {
         let gpu = Gpu::open(None)
             .await
             .expect("the tests need a graphics adapter");
-        let mut renderer = Renderer::new(&gpu, settings, None)
+        let mut renderer = Renderer::new(&gpu, settings, foveal::RendererOptions::default())
             .await
             .expect("settings fit");
         renderer.set_scene(&scene).await.expect("scene fits");

@@ -13,7 +13,12 @@ fn open() -> Gpu {
 }
 
 fn renderer(gpu: &Gpu, settings: &Settings) -> Renderer {
-    pollster::block_on(Renderer::new(gpu, settings, None)).expect("settings fit")
+    pollster::block_on(Renderer::new(
+        gpu,
+        settings,
+        foveal::RendererOptions::default(),
+    ))
+    .expect("settings fit")
 }
 
 /// Resident memory of this process in bytes.
@@ -101,7 +106,11 @@ fn settings_that_cannot_be_met_name_the_limit() {
     let gpu = open();
     let limit = u64::from(gpu.device.limits().max_texture_dimension_2d);
     let absurd = Settings::default().with(|s| s.picture.width = 1_000_000);
-    match pollster::block_on(Renderer::new(&gpu, &absurd, None)) {
+    match pollster::block_on(Renderer::new(
+        &gpu,
+        &absurd,
+        foveal::RendererOptions::default(),
+    )) {
         Err(Error::Limit {
             value: 1_000_000,
             limit: l,
@@ -114,7 +123,11 @@ fn settings_that_cannot_be_met_name_the_limit() {
         Settings::default().with(|s| s.picture.exposure_stops = f32::NAN),
         Settings::default().with(|s| s.lighting.anisotropy = 17),
     ] {
-        let refused = pollster::block_on(Renderer::new(&gpu, &bad, None));
+        let refused = pollster::block_on(Renderer::new(
+            &gpu,
+            &bad,
+            foveal::RendererOptions::default(),
+        ));
         assert!(matches!(refused, Err(Error::Setting { .. })), "{refused:?}");
     }
 }

@@ -51,7 +51,7 @@ fn renderer() -> Renderer {
         let gpu = Gpu::open(None)
             .await
             .expect("the tests need a graphics adapter");
-        Renderer::new(&gpu, &settings, None)
+        Renderer::new(&gpu, &settings, foveal::RendererOptions::default())
             .await
             .expect("settings fit")
     })

@@ -9,7 +9,7 @@ use pollster::block_on;
 
 use crate::subject::Subject;
 use foveal_host::camera::Viewpoint;
-use foveal_host::clock::now_ms;
+use foveal_host::clock::now_ns;
 use foveal_host::drawing::{Drawing, moment};
 use foveal_host::picture::Picture;
 
@@ -87,7 +87,11 @@ impl<'a> Studio<'a> {
 
     fn drawing(&self, settings: &Settings, view: &Rc<Viewpoint>) -> anyhow::Result<Drawing> {
         let Subject { gpu, scene, .. } = self.subject;
-        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        let mut renderer = block_on(Renderer::new(
+            gpu,
+            settings,
+            foveal::RendererOptions::default().with_clock(now_ns),
+        ))?;
         block_on(renderer.set_scene(scene))?;
         // What does not move is on the device, and not looked at again.
         let scene = if scene.is_animated() {

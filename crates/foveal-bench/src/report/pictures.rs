@@ -86,7 +86,11 @@ fn one(
     changes: Changes,
 ) -> anyhow::Result<(Picture, Settings)> {
     let settings = settings(size, changes)?;
-    let mut renderer = block_on(Renderer::new(gpu, &settings, None))?;
+    let mut renderer = block_on(Renderer::new(
+        gpu,
+        &settings,
+        foveal::RendererOptions::default(),
+    ))?;
     block_on(renderer.set_scene(scene))?;
     let frame = Frame::new(camera).with_previous(camera);
     for _ in 0..FRAMES {

@@ -1,7 +1,7 @@
 //! The sides of a verdict, drawn in turn.
 
 use foveal::{Frame, FrameStats, Gpu, Renderer, Settings};
-use foveal_host::clock::now_ms;
+use foveal_host::clock::now_ns;
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_measure::{Comparison, turn};
@@ -93,7 +93,11 @@ pub(super) fn measure(
 
 impl Side {
     fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
-        let mut renderer = block_on(Renderer::new(gpu, settings, Some(now_ms)))?;
+        let mut renderer = block_on(Renderer::new(
+            gpu,
+            settings,
+            foveal::RendererOptions::default().with_clock(now_ns),
+        ))?;
         block_on(renderer.set_scene(scene))?;
         Ok(Self {
             renderer,

@@ -16,7 +16,7 @@ use foveal::{AdapterStats, FrameStats, Renderer, Settings, Timing};
 use pollster::block_on;
 
 use foveal_host::camera::Viewpoint;
-use foveal_host::clock::{now_ms, timed};
+use foveal_host::clock::{now_ms, now_ns, timed};
 use foveal_host::drawing::Drawing;
 use foveal_host::progress::progress_bar;
 use foveal_host::rate_image::rate_image;
@@ -141,7 +141,11 @@ fn prepare(
         gpu::open(args.adapter.as_deref())
     })?;
     let mut renderer = timed(&mut device_ms, "pipelines", || {
-        block_on(Renderer::new(&gpu, settings, Some(now_ms)))
+        block_on(Renderer::new(
+            &gpu,
+            settings,
+            foveal::RendererOptions::default().with_clock(now_ns),
+        ))
     })?;
 
     if let Some(image) = rate_image {

@@ -242,7 +242,11 @@ impl Side {
                 side
             }
             None => {
-                let renderer = block_on(Renderer::new(gpu, settings, Some(clock::now_ms)))?;
+                let renderer = block_on(Renderer::new(
+                    gpu,
+                    settings,
+                    foveal::RendererOptions::default().with_clock(clock::now_ns),
+                ))?;
                 slot.insert(Self {
                     renderer,
                     before: None,

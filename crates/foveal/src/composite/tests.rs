@@ -38,7 +38,9 @@ fn affine_error(
     map: RateImage,
 ) -> (f32, u32, u32) {
     let renderer = pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+        let mut renderer = Renderer::new(gpu(), settings, crate::RendererOptions::default())
+            .await
+            .unwrap();
         renderer.set_rate_image(map);
         renderer.set_scene(scene).await.unwrap();
         renderer.shade_affine();

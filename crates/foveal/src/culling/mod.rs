@@ -14,6 +14,7 @@ use foveal_cull::{Budget, CullStats, Culler, Eye, FrameOptions, Projection, View
 use foveal_scene::Camera;
 use glam::Mat4;
 
+use crate::clock::{self, ms_between};
 use crate::{Clock, Culling, CullingEyes, Error, Settings};
 use found_for::FoundFor;
 use scene::affine;
@@ -185,8 +186,7 @@ impl CullingStage {
     /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is false then.
     fn cull_for(&mut self, scene: &CullingScene, view: View, clock: Option<Clock>) -> bool {
         let view = view.with_validity_radius(self.radius_m);
-        let clock_ns = clock.map(|clock| move || (clock() * 1e6) as u64);
-        let budget = clock_ns.as_ref().filter(|_| self.budget_ms > 0.0);
+        let budget = clock.as_ref().filter(|_| self.budget_ms > 0.0);
         let budget =
             budget.map(|clock| Budget::new(clock, clock() + (self.budget_ms * 1e6) as u64));
         let options = FrameOptions::default()
@@ -196,13 +196,13 @@ impl CullingStage {
             .with_budget(budget);
         self.of_eye.clear();
         self.of_eye.resize(scene.boxes.len(), Visibility::Visible);
-        let now = || clock.map_or(0.0, |clock| clock());
-        let start_ms = now();
+        let now = || clock::read(clock);
+        let start = now();
         let threads = self.threads.threads();
         let rasterized = self
             .culler
             .rasterize(&view, &scene.occluders, &options, threads);
-        let rasterized_ms = now();
+        let rasterized_at = now();
         if rasterized.is_ok()
             && self
                 .culler
@@ -212,8 +212,8 @@ impl CullingStage {
             self.of_eye.fill(Visibility::Visible);
         }
         self.over_budget += self.culler.stats().clusters_over_budget;
-        self.rasterize_ms += rasterized_ms - start_ms;
-        self.test_ms += now() - rasterized_ms;
+        self.rasterize_ms += ms_between(start, rasterized_at);
+        self.test_ms += ms_between(rasterized_at, now());
         if self.results.is_empty() {
             self.results.extend(&self.of_eye);
         }

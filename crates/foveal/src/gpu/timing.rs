@@ -5,23 +5,24 @@ use std::num::NonZeroU32;
 use wgpu_profiler::{GpuProfiler, GpuProfilerQuery, GpuProfilerSettings};
 
 use super::Gpu;
+use crate::clock::{self, ms_between};
 use crate::{Clock, Error, Timing};
 
 /// Names the stages of a frame's CPU work; silent without a clock.
 pub(crate) struct CpuTimer {
     clock: Option<Clock>,
-    last_ms: f64,
-    start_ms: f64,
+    last_ns: u64,
+    start_ns: u64,
     stages: Vec<Timing>,
 }
 
 impl CpuTimer {
     pub(crate) fn start(clock: Option<Clock>) -> Self {
-        let now = clock.map_or(0.0, |c| c());
+        let now = clock::read(clock);
         Self {
             clock,
-            last_ms: now,
-            start_ms: now,
+            last_ns: now,
+            start_ns: now,
             stages: Vec::new(),
         }
     }
@@ -32,9 +33,9 @@ impl CpuTimer {
             let now = clock();
             self.stages.push(Timing {
                 name: name.to_owned(),
-                ms: now - self.last_ms,
+                ms: ms_between(self.last_ns, now),
             });
-            self.last_ms = now;
+            self.last_ns = now;
         }
     }
 
@@ -43,7 +44,8 @@ impl CpuTimer {
     }
 
     pub(crate) fn since_start_ms(&self) -> f64 {
-        self.clock.map_or(0.0, |c| c() - self.start_ms)
+        self.clock
+            .map_or(0.0, |now| ms_between(self.start_ns, now()))
     }
 }
 

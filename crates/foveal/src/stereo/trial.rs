@@ -5,6 +5,7 @@
 //! draws. Each way is tried once per renderer, when it is first wanted.
 
 use super::Submission;
+use crate::clock::{self, ms_between};
 use crate::gpu::{self, ErrorTrap, Gpu, layered_target, read_texture, submitted_work_done};
 use crate::{Clock, Error, shader};
 
@@ -90,12 +91,12 @@ async fn draw(gpu: &Gpu, way: Submission, clock: Option<Clock>) -> Result<(Vec<u
     let trial = Trial::new(gpu, way);
     let mut least = f64::MAX;
     for round in 0..=ROUNDS {
-        let start = clock.map_or(0.0, |now| now());
+        let start = clock::read(clock);
         trial.submit(gpu);
         submitted_work_done(gpu).await?;
         // The first one makes the driver compile.
         if round > 0 {
-            least = least.min(clock.map_or(0.0, |now| now()) - start);
+            least = least.min(ms_between(start, clock::read(clock)));
         }
     }
     let bytes = read_texture(gpu, trial.color.texture()).await;

@@ -12,7 +12,7 @@ pub(crate) fn drawn(
 ) -> nv_flip::FlipImageRgb8 {
     let camera = &scene.cameras[0];
     let rgba = pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu, settings, None)
+        let mut renderer = Renderer::new(gpu, settings, foveal::RendererOptions::default())
             .await
             .expect("settings fit");
         renderer.set_scene(scene).await.expect("scene fits");

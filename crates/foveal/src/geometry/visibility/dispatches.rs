@@ -140,7 +140,9 @@ fn limits(layers: u32, bytes: u64) -> ArrayLimits {
 /// Two frames of the scene, its arrays of textures within `limits`.
 fn drawn(scene: &Scene, settings: &Settings, limits: ArrayLimits) -> Renderer {
     pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+        let mut renderer = Renderer::new(gpu(), settings, crate::RendererOptions::default())
+            .await
+            .unwrap();
         renderer.set_scene_within(scene, limits).await.unwrap();
         let camera = front();
         for previous_camera in [None, Some(&camera)] {

@@ -272,7 +272,9 @@ fn pulled_vertices_give_the_same_gbuffer_as_numbered_triangles() {
         let settings = by_triangles(&small(157, 101));
         let [numbered, pulled] = [gpu(), &plain].map(|gpu| {
             pollster::block_on(async {
-                let mut renderer = Renderer::new(gpu, &settings, None).await.unwrap();
+                let mut renderer = Renderer::new(gpu, &settings, crate::RendererOptions::default())
+                    .await
+                    .unwrap();
                 renderer.set_scene(&scene).await.unwrap();
                 renderer.redraw(&scene.cameras[0]);
                 let g = &renderer.targets().gbuffer;

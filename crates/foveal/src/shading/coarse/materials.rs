@@ -186,7 +186,8 @@ fn depth_tells_the_normals_of_planes() {
 #[test]
 fn what_cannot_be_done_at_the_rate_is_refused() {
     let wrong = |s: Settings| {
-        let error = pollster::block_on(Renderer::new(gpu(), &s, None)).unwrap_err();
+        let error = pollster::block_on(Renderer::new(gpu(), &s, crate::RendererOptions::default()))
+            .unwrap_err();
         assert!(
             matches!(
                 error,

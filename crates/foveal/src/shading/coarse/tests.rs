@@ -46,7 +46,9 @@ fn draw(settings: &Settings) -> Renderer {
 fn draw_with_image(settings: &Settings, image: RateImage) -> Renderer {
     let scene = scene();
     pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu(), settings, None).await.unwrap();
+        let mut renderer = Renderer::new(gpu(), settings, crate::RendererOptions::default())
+            .await
+            .unwrap();
         renderer.set_rate_image(image);
         renderer.set_scene(&scene).await.unwrap();
         let frame = Frame::new(&scene.cameras[0]);

@@ -151,7 +151,11 @@ fn multiview_that_a_driver_draws_wrong_is_refused() {
     }
     let gpu = gpu();
     let settings = of(&two_eyes(64, 48), Stereo::Multiview);
-    let made = pollster::block_on(Renderer::new(gpu, &settings, None));
+    let made = pollster::block_on(Renderer::new(
+        gpu,
+        &settings,
+        crate::RendererOptions::default(),
+    ));
     let right = gpu.has_multiview() && {
         let verdict = pollster::block_on(Trials::default().of(gpu, Submission::Multiview, None));
         verdict.expect("a trial").is_right()
@@ -168,9 +172,9 @@ fn multiview_that_a_driver_draws_wrong_is_refused() {
 
 #[test]
 fn auto_takes_a_way_that_is_right_and_says_why() {
-    fn clock() -> f64 {
+    fn clock() -> u64 {
         static START: OnceLock<Instant> = OnceLock::new();
-        START.get_or_init(Instant::now).elapsed().as_secs_f64() * 1e3
+        START.get_or_init(Instant::now).elapsed().as_nanos() as u64
     }
     let scene = generate::cornell();
     let camera = &scene.cameras[0];
@@ -180,7 +184,9 @@ fn auto_takes_a_way_that_is_right_and_says_why() {
     ] {
         pollster::block_on(async {
             let settings = of(&two_eyes(64, 48), Stereo::Auto);
-            let mut renderer = Renderer::new(gpu(), &settings, clock).await.expect("fits");
+            let mut renderer = Renderer::new(gpu(), &settings, crate::RendererOptions { clock })
+                .await
+                .expect("fits");
             renderer.set_scene(&scene).await.expect("fits");
             let stereo = renderer.redraw(camera).stereo.expect("two eyes");
             assert!(stereo.reason.contains(said), "{stereo:?}");

@@ -101,7 +101,9 @@ fn cameras_that_two_eyes_cannot_use_are_errors() {
     let settings = two_eyes(40, 30);
     pollster::block_on(async {
         let gpu = crate::testing::gpu();
-        let mut renderer = Renderer::new(gpu, &settings, None).await.expect("fits");
+        let mut renderer = Renderer::new(gpu, &settings, crate::RendererOptions::default())
+            .await
+            .expect("fits");
         renderer.set_scene(&scene).await.expect("fits");
         let orthographic = |near_m, far_m| Projection::Orthographic {
             height_m: 1.0,
