@@ -45,6 +45,8 @@ pub use gpu::Gpu;
 pub use output::Target;
 pub use rate::{MinPyramid, RateImage};
 pub use renderer::{Frame, Renderer, RendererOptions};
+#[cfg(feature = "serde")]
+pub use settings::variant_names;
 pub use settings::{
     Antialiasing, AntialiasingSettings, COARSEST_LEVEL, CoarseBackend, CoarseSample,
     CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,
@@ -52,7 +54,6 @@ pub use settings::{
     LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch, Output,
     PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges, SamplePattern,
     Setting, Settings, Shading, ShadingSettings, Stereo, StereoSettings, ToneMap, VariableSettings,
-    variant_names,
 };
 
 pub use stats::{

@@ -20,7 +20,9 @@ pub use coarse::{
     Shading,
 };
 
-pub use define::{Kind, Setting, variant_names};
+#[cfg(feature = "serde")]
+pub use define::variant_names;
+pub use define::{Kind, Setting};
 pub use eye::Display;
 pub use list::{
     AntialiasingSettings, CoarseSettings, CullingSettings, EyeSettings, GeometrySettings,

@@ -1,9 +1,11 @@
 //! What a frame cost: counts and times, as the program writes them to JSON.
 
+#[cfg(feature = "serde")]
 use serde::Serialize;
 
 /// The device that drew the frame.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct AdapterStats {
     /// The adapter's own name.
     pub name: String,
@@ -16,7 +18,8 @@ pub struct AdapterStats {
 }
 
 /// What the scene holds.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct SceneStats {
     /// Meshes (one per glTF primitive).
     pub meshes: u64,
@@ -38,7 +41,8 @@ pub struct SceneStats {
 }
 
 /// One named duration.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 pub struct Timing {
     /// The stage's or the pass's name.
     pub name: String,
@@ -47,7 +51,8 @@ pub struct Timing {
 }
 
 /// What coarse shading did in a frame.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 #[non_exhaustive]
 pub struct CoarseStats {
     /// Samples of each level, finest first.
@@ -71,7 +76,8 @@ impl CoarseStats {
 }
 
 /// What variable shading did in a frame, and what it costs and saves; times in milliseconds.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 #[non_exhaustive]
 pub struct VariableStats {
     /// Whether the frame was shaded at a rate.
@@ -101,7 +107,8 @@ pub struct VariableStats {
 }
 
 /// How two eyes were drawn.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 #[non_exhaustive]
 pub struct StereoStats {
     /// `two-pass`, `instanced-clip`, `instanced-discard`, `multiview`, or `once` where both eyes see the same.
@@ -111,7 +118,8 @@ pub struct StereoStats {
 }
 
 /// One frame's figures.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
 #[non_exhaustive]
 pub struct FrameStats {
     /// Width of the picture in pixels.
@@ -150,13 +158,13 @@ pub struct FrameStats {
     /// Bytes of all targets that depend on the frame's size: G-buffers, radiance, picture, lists.
     pub target_bytes: u64,
     /// With coarse shading.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub coarse: Option<CoarseStats>,
     /// With variable shading.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub variable: Option<VariableStats>,
     /// With two eyes.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub stereo: Option<StereoStats>,
     /// From the start of the frame's CPU work until the GPU finished it, in milliseconds.
     pub frame_ms: f64,

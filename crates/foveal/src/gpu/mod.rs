@@ -4,11 +4,15 @@ mod adapter;
 mod device;
 mod layout;
 mod mips;
+#[cfg(feature = "profiler")]
+mod profiled;
 mod readback;
 mod table;
 mod target;
 mod timing;
 mod trap;
+#[cfg(not(feature = "profiler"))]
+mod unprofiled;
 
 pub use device::Gpu;
 pub(crate) use device::is_reduced;
@@ -24,7 +28,11 @@ pub(crate) use readback::{
     Arriving, Handover, read_buffer, read_texture, submitted_work_done, work_done,
 };
 
+#[cfg(feature = "profiler")]
+pub(crate) use profiled::GpuTimer;
 pub(crate) use table::Table;
 pub(crate) use target::{layer_of, layered_target, layers_of, target};
-pub(crate) use timing::{CpuTimer, GpuTimer};
+pub(crate) use timing::CpuTimer;
 pub(crate) use trap::ErrorTrap;
+#[cfg(not(feature = "profiler"))]
+pub(crate) use unprofiled::GpuTimer;

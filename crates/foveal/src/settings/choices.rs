@@ -1,10 +1,15 @@
 //! Choices about the picture, culling, materials, anti-aliasing and lighting.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Objects that the renderer submits.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Culling {
     /// Objects in the camera's frustum.
     #[default]
@@ -16,8 +21,12 @@ pub enum Culling {
 }
 
 /// Sharing of one occlusion test between two eyes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum CullingEyes {
     /// One exact test per eye. An object is drawn if either eye sees it.
     #[default]
@@ -28,8 +37,12 @@ pub enum CullingEyes {
 }
 
 /// Content of the picture: the finished frame or a debug view.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum DebugView {
     /// The finished frame.
     #[default]
@@ -76,8 +89,12 @@ impl DebugView {
 }
 
 /// Materials of a visibility buffer that one dispatch resolves. The picture is the same to the bit.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum MaterialDispatch {
     /// The faster way on this device: `Material` on lavapipe, `Family` elsewhere.
     #[default]
@@ -89,8 +106,12 @@ pub enum MaterialDispatch {
 }
 
 /// Smoothing of edges. See `docs/antialiasing.md`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Antialiasing {
     /// One sample at each pixel's centre.
     #[default]
@@ -102,8 +123,12 @@ pub enum Antialiasing {
 }
 
 /// Placement of a pixel's sub-samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum SamplePattern {
     /// A regular grid of n x n, drawn at n times the resolution.
     #[default]
@@ -114,8 +139,12 @@ pub enum SamplePattern {
 }
 
 /// Pixels that [`Antialiasing::Msaa`] treats as edges, and the sub-samples that it shades there.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum EdgeTest {
     /// Pixels whose sub-samples differ in instance, plane or direction. One sample is shaded per
     /// surface and weighted by coverage.
@@ -129,8 +158,12 @@ pub enum EdgeTest {
 }
 
 /// Reflection of light by surfaces.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum LightingModel {
     /// glTF's metallic-roughness model: Lambert and GGX.
     #[default]
@@ -140,8 +173,12 @@ pub enum LightingModel {
 }
 
 /// Lights that a sample evaluates.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum LightAssignment {
     /// Lights whose range touches the sample's cluster (froxel).
     #[default]
@@ -151,8 +188,12 @@ pub enum LightAssignment {
 }
 
 /// Curve from scene radiance to display values.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum ToneMap {
     /// A filmic curve fitted to the ACES reference transform.
     #[default]

@@ -1,11 +1,16 @@
 //! Settings of coarse shading: the shading rate, the method that visits samples, and the
 //! reconstruction of pixels from them.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Number of samples that the lighting stage shades.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Shading {
     /// One sample per pixel: the reference.
     #[default]
@@ -17,8 +22,12 @@ pub enum Shading {
 }
 
 /// Method that visits the samples of coarse shading.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum CoarseBackend {
     /// The method that the first frames show to be faster on this device.
     #[default]
@@ -30,8 +39,12 @@ pub enum CoarseBackend {
 }
 
 /// Source of the requested level. Level l requests one sample per 2^l x 2^l pixels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum RateSource {
     /// The eye's resolution: the angle to the gaze on [`EyeSettings::display`](crate::EyeSettings::display), for
     /// [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod).
@@ -51,8 +64,12 @@ pub enum RateSource {
 }
 
 /// Use of the second source of levels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum RateCombine {
     /// The second source is ignored.
     #[default]
@@ -64,8 +81,12 @@ pub enum RateCombine {
 }
 
 /// Geometric edges that are shaded more finely than requested.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum RefineEdges {
     /// All edges: one level finer than requested with [`Composite::Light`], two with the other
     /// composites.
@@ -81,8 +102,12 @@ pub enum RefineEdges {
 }
 
 /// Pixel of a block that its sample shades.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum CoarseSample {
     /// The pixel at the block's centre.
     #[default]
@@ -92,8 +117,12 @@ pub enum CoarseSample {
 }
 
 /// Reconstruction of pixels from samples.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Composite {
     /// Samples hold light without the surface's own colour. Each pixel's own surface is lit by the
     /// samples around it. Pixels that no sample fits are shaded by themselves.

@@ -3,9 +3,13 @@
 //! made from the table; the keys of a TOML file are the struct's fields. A setting that is added to
 //! the list is in all of them.
 
+#[cfg(feature = "serde")]
 use serde::Deserialize;
+#[cfg(feature = "serde")]
 use serde::de::value::Error;
+#[cfg(feature = "serde")]
 use serde::de::{Deserializer, Error as _, Visitor};
+#[cfg(feature = "serde")]
 use serde::forward_to_deserialize_any;
 
 /// Description of a setting, from which flags, panels and controls are made.
@@ -53,6 +57,7 @@ pub enum Kind {
     Text,
 }
 
+#[cfg(feature = "serde")]
 impl Kind {
     /// A choice between the unit variants of `T`.
     pub(super) const fn choice<T: for<'de> Deserialize<'de>>() -> Self {
@@ -60,6 +65,7 @@ impl Kind {
     }
 }
 
+#[cfg(feature = "serde")]
 /// A field's name as a settings file spells it: kebab case.
 pub(super) const fn kebab<const N: usize>(name: &str) -> [u8; N] {
     let mut key = [0; N];
@@ -87,8 +93,12 @@ macro_rules! settings {
     ) => {
         /// All settings of a frame. In a file, and as flags, all keys lie side by side:
         /// `coarse.source` is `rate`, `stereo.ipd_m` is `ipd`; [`Settings::ALL`] lists them.
-        #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-        #[serde(from = "Keys", into = "Keys")]
+        #[derive(Clone, Debug, Default, PartialEq)]
+        #[cfg_attr(
+            feature = "serde",
+            derive(Serialize, Deserialize),
+            serde(from = "Keys", into = "Keys")
+        )]
         #[non_exhaustive]
         pub struct Settings {
             $( $(#[doc = $about])+ pub $place: $group, )+
@@ -110,30 +120,35 @@ macro_rules! settings {
         )+
 
         /// A settings file.
+        #[cfg(feature = "serde")]
         #[derive(Serialize, Deserialize)]
         #[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
         struct Keys {
             $( $( $key: $type, )+ )+
         }
 
+        #[cfg(feature = "serde")]
         impl Default for Keys {
             fn default() -> Self {
                 Settings::default().into()
             }
         }
 
+        #[cfg(feature = "serde")]
         impl From<Keys> for Settings {
             fn from(keys: Keys) -> Self {
                 Self { $( $place: $group { $( $field: keys.$key, )+ }, )+ }
             }
         }
 
+        #[cfg(feature = "serde")]
         impl From<Settings> for Keys {
             fn from(settings: Settings) -> Self {
                 Self { $( $( $key: settings.$place.$field, )+ )+ }
             }
         }
 
+        #[cfg(feature = "serde")]
         impl Settings {
             /// Descriptions of all settings, stage by stage in the order of the frame.
             pub const ALL: &'static [$crate::settings::Setting] = &[
@@ -158,6 +173,7 @@ macro_rules! settings {
 
 pub(super) use settings;
 
+#[cfg(feature = "serde")]
 /// Lets serde have a type as the text that [`FromStr`](std::str::FromStr) reads and
 /// [`Display`](std::fmt::Display) writes.
 macro_rules! as_text {
@@ -177,8 +193,10 @@ macro_rules! as_text {
     };
 }
 
+#[cfg(feature = "serde")]
 pub(super) use as_text;
 
+#[cfg(feature = "serde")]
 /// Names of the unit variants of `T` as serde spells them, in the order of declaration.
 #[must_use]
 pub fn variant_names<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] {
@@ -187,9 +205,11 @@ pub fn variant_names<T: for<'de> Deserialize<'de>>() -> &'static [&'static str] 
     found
 }
 
+#[cfg(feature = "serde")]
 /// A deserializer that yields no value and records the names of the variants that are expected.
 struct Probe<'a>(&'a mut &'static [&'static str]);
 
+#[cfg(feature = "serde")]
 impl<'de> Deserializer<'de> for Probe<'_> {
     type Error = Error;
 
@@ -213,7 +233,7 @@ impl<'de> Deserializer<'de> for Probe<'_> {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "serde"))]
 mod tests {
     use super::*;
     use crate::{DebugView, LightingModel, Settings};

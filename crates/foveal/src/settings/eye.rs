@@ -3,6 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
+#[cfg(feature = "serde")]
 use super::define::as_text;
 use crate::Error;
 
@@ -135,6 +136,7 @@ impl fmt::Display for Display {
     }
 }
 
+#[cfg(feature = "serde")]
 as_text!(Display);
 
 #[cfg(test)]

@@ -1,10 +1,13 @@
 //! The list of all settings, from which struct, defaults, flags, panels and controls are made.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 use super::choices::*;
 use super::coarse::*;
-use super::define::{Kind, settings};
+#[cfg(feature = "serde")]
+use super::define::Kind;
+use super::define::settings;
 use super::eye::*;
 use super::stereo::*;
 use super::variable::*;

@@ -4,14 +4,20 @@
 use std::fmt;
 use std::str::FromStr;
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
+#[cfg(feature = "serde")]
 use super::define::as_text;
 use crate::Error;
 
 /// Number of eyes, and submission of their geometry.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Stereo {
     /// One eye.
     #[default]
@@ -29,8 +35,12 @@ pub enum Stereo {
 
 /// Method that keeps one eye's geometry out of the other eye's half of the target with
 /// [`Stereo::Instanced`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum EyeClipping {
     /// Clip distances where the device has them, else discard.
     #[default]
@@ -43,8 +53,12 @@ pub enum EyeClipping {
 }
 
 /// Presentation of both eyes' pictures. With one eye its picture is shown unchanged.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Output {
     /// The picture of the left or only eye.
     #[default]
@@ -64,16 +78,20 @@ pub enum Output {
 /// A headset's lens as a radial polynomial. Radii are tangents of the angle to the lens's axis. A
 /// point that the screen shows at radius `p` appears to the eye at `p (1 + k1 p² + k2 p⁴ + k3 p⁶)`,
 /// times a factor per colour.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(deny_unknown_fields, rename_all = "kebab-case")
+)]
 pub struct LensProfile {
     /// Coefficients k1, k2, k3.
     pub distortion: [f32; 3],
     /// Factors c0, c1 of red: it is seen at c0 + c1 p² times the radius of green.
-    #[serde(default = "no_fringe")]
+    #[cfg_attr(feature = "serde", serde(default = "no_fringe"))]
     pub red: [f32; 2],
     /// Factors c0, c1 of blue.
-    #[serde(default = "no_fringe")]
+    #[cfg_attr(feature = "serde", serde(default = "no_fringe"))]
     pub blue: [f32; 2],
 }
 
@@ -91,6 +109,7 @@ impl LensProfile {
 
 const NO_FRINGE: [f32; 2] = [1.0, 0.0];
 
+#[cfg(feature = "serde")]
 fn no_fringe() -> [f32; 2] {
     NO_FRINGE
 }
@@ -194,6 +213,7 @@ impl fmt::Display for Lens {
     }
 }
 
+#[cfg(feature = "serde")]
 as_text!(Lens);
 
 /// Frusta of both eyes. As text nothing, or eight tangents with commas between: left, right, bottom
@@ -235,6 +255,7 @@ impl fmt::Display for EyeFrusta {
     }
 }
 
+#[cfg(feature = "serde")]
 as_text!(EyeFrusta);
 
 fn write_numbers(f: &mut fmt::Formatter<'_>, numbers: &[f32]) -> fmt::Result {

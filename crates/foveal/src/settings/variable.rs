@@ -1,10 +1,15 @@
 //! Settings of the geometry pass and of variable shading, whose rate follows the picture's content.
 
+#[cfg(feature = "serde")]
 use serde::{Deserialize, Serialize};
 
 /// Way to fill the G-buffer.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Geometry {
     /// The rasterizer evaluates materials for every fragment that passes the depth test.
     #[default]
@@ -15,8 +20,12 @@ pub enum Geometry {
 }
 
 /// Work done once per sample instead of once per pixel in coarse and variable shading.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum RateStage {
     /// [`RateStage::Both`] where it is possible: with [`Geometry::Visibility`], without
     /// anti-aliasing, and without [`Composite::Light`](crate::Composite::Light), which needs each pixel's surface. Else
@@ -45,8 +54,12 @@ impl RateStage {
 }
 
 /// Measure of the contrast in variable shading.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
 pub enum Contrast {
     /// Differences within 2 x 2 pixels.
     #[default]
