@@ -1,5 +1,6 @@
-//! Makes a table of the crate's shader files (`src/**/*.wgsl`), and a constant for each that no other imports:
-//! `src/rate/owner.wgsl` becomes `RATE_OWNER`. `src/shader/compose.rs` reads the directives.
+//! Makes a table of the crate's shader files (`src/**/*.wgsl`), and a constant for each that no
+//! other imports: `src/rate/owner.wgsl` becomes `RATE_OWNER`. `src/shader/compose.rs` reads the
+//! directives.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;

@@ -20,7 +20,8 @@ use foveal_host::values::VariantParser;
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
 
-/// Frames per second that the source reports on a GTX 960, Sponza, about 1000 x 1500: none, MSAA, SSAA.
+/// Frames per second that the source reports on a GTX 960, Sponza, about 1000 x 1500: none, MSAA,
+/// SSAA.
 const SOURCE_FPS: [(&str, &str); 3] =
     [("none", "> 60"), ("msaa", "about 30"), ("ssaa", "about 10")];
 
@@ -90,7 +91,8 @@ struct Row {
     /// Shading, shading of edges, combination.
     shade_ms: f64,
     frame_ms: f64,
-    /// None / this: above 1 this takes less time; with the interval of the whole frame's, where there are rounds enough.
+    /// None / this: above 1 this takes less time; with the interval of the whole frame's, where
+    /// there are rounds enough.
     frame_ratio: f64,
     frame_ratio_low: Option<f64>,
     frame_ratio_high: Option<f64>,
@@ -143,7 +145,8 @@ impl Times {
     }
 }
 
-/// The modes: the first by each geometry is what the others are compared with, the second of all what FLIP is.
+/// The modes: the first by each geometry is what the others are compared with, the second of all
+/// what FLIP is.
 fn modes(base: &Settings) -> Vec<Settings> {
     use Antialiasing::{Msaa, None, Ssaa};
     use EdgeTest::{Paper, Surface};

@@ -1,8 +1,9 @@
-//! `foveal bench coarse`: full shading and coarse shading by each backend and composite, in turn, medians of all.
+//! `foveal bench coarse`: full shading and coarse shading by each backend and composite, in turn,
+//! medians of all.
 //!
-//! Timed is lighting with composite: all passes but geometry, light assignment, forward, tone map and the counting
-//! of tiles for the statistics; the rate map is part of it. Materials that are evaluated after the rasterizer are timed
-//! besides.
+//! Timed is lighting with composite: all passes but geometry, light assignment, forward, tone map
+//! and the counting of tiles for the statistics; the rate map is part of it. Materials that are
+//! evaluated after the rasterizer are timed besides.
 
 mod side;
 
@@ -24,8 +25,8 @@ use foveal_host::{scene_source, values};
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
 
-/// Frames per second that the source reports (Radeon RX 560, 200 point lights, nine levels): each pixel, the
-/// interpolating composite, the nearest one.
+/// Frames per second that the source reports (Radeon RX 560, 200 point lights, nine levels): each
+/// pixel, the interpolating composite, the nearest one.
 const SOURCE_FPS: [(&str, f64); 3] = [("full", 36.4), ("interpolated", 60.1), ("nearest", 68.6)];
 
 /// Arguments of `foveal bench coarse`.
@@ -107,7 +108,8 @@ struct Row {
     composite: Composite,
     levels: u32,
     shaded_fraction: f64,
-    /// Full / coarse, whole frames: above 1 coarse is faster; with its interval where there are pairs enough.
+    /// Full / coarse, whole frames: above 1 coarse is faster; with its interval where there are
+    /// pairs enough.
     frame_ratio: f64,
     frame_ratio_low: Option<f64>,
     frame_ratio_high: Option<f64>,
@@ -327,8 +329,8 @@ fn print(row: &Row) {
     );
 }
 
-/// The source's table rebuilt: frames per second of whole frames and the gains over full shading, for the first case
-/// by its last backend.
+/// The source's table rebuilt: frames per second of whole frames and the gains over full shading,
+/// for the first case by its last backend.
 fn beside_the_source(rows: &[Row]) -> String {
     let Some(first) = rows.first() else {
         return String::new();

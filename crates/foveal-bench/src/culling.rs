@@ -1,7 +1,8 @@
 //! `foveal bench culling`: what rasterizing occluders and testing boxes cost on the CPU.
 //!
-//! For each scene, camera and size a row per number of threads, as docs/cull-schema.md describes. Times are
-//! medians; numbers of threads take turns within each repetition, so that a busy machine is unfair to none.
+//! For each scene, camera and size a row per number of threads, as docs/cull-schema.md describes.
+//! Times are medians; numbers of threads take turns within each repetition, so that a busy machine
+//! is unfair to none.
 
 mod boxes;
 mod cameras;

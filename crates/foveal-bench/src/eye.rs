@@ -1,8 +1,9 @@
-//! `foveal bench eye`: what an eye sees of each way of shading, and what that costs: lit samples, whole frames against full
-//! shading, and quality in JOD, in a picture and in a video, on each display.
+//! `foveal bench eye`: what an eye sees of each way of shading, and what that costs: lit samples,
+//! whole frames against full shading, and quality in JOD, in a picture and in a video, on each
+//! display.
 //!
-//! Pictures and videos are those that `foveal render` draws; each row names the commands that draw and compare them again.
-//! Times come from all ways drawn in turn, by lot.
+//! Pictures and videos are those that `foveal render` draws; each row names the commands that draw
+//! and compare them again. Times come from all ways drawn in turn, by lot.
 
 mod args;
 mod commands;

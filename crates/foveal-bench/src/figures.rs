@@ -25,8 +25,8 @@ impl FigureArgs {
         self.json.as_deref().filter(|path| path.as_os_str() != "-")
     }
 
-    /// Starts the clock and opens the device. Fails where the figures could not be written later; nothing shall be
-    /// measured for nothing.
+    /// Starts the clock and opens the device. Fails where the figures could not be written later;
+    /// nothing shall be measured for nothing.
     pub(super) fn begin(&self) -> anyhow::Result<Gpu> {
         now_ms();
         self.file().map_or(Ok(()), atomic_file::check_writable)?;

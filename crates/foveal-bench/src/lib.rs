@@ -1,7 +1,8 @@
-//! `foveal bench`: what each technique costs and gains against its plain reference. One file per technique.
+//! `foveal bench`: what each technique costs and gains against its plain reference. One file per
+//! technique.
 //!
-//! Modes are measured in turn, round after round, and compared within each round, so that a machine that is
-//! busy with something else slows all of them alike.
+//! Modes are measured in turn, round after round, and compared within each round, so that a machine
+//! that is busy with something else slows all of them alike.
 
 mod antialiasing;
 mod changes;

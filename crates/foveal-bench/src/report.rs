@@ -1,9 +1,9 @@
-//! `foveal bench all`: every bench in turn, and one page: what to adopt for this scene, then each technique beside its
-//! source.
+//! `foveal bench all`: every bench in turn, and one page: what to adopt for this scene, then each
+//! technique beside its source.
 //!
-//! Each bench runs in a process of its own, several passes over, so that one that fails takes nothing else down
-//! and the passes tell how steady the figures are. All figures go into one JSON value; page and CSV are made from it
-//! and from nothing else.
+//! Each bench runs in a process of its own, several passes over, so that one that fails takes
+//! nothing else down and the passes tell how steady the figures are. All figures go into one JSON
+//! value; page and CSV are made from it and from nothing else.
 
 mod bench;
 mod csv;
@@ -166,7 +166,8 @@ fn progress(quiet: bool, steps: u64) -> ProgressBar {
     }
 }
 
-/// The words of all commands that a report of this scene runs, so that the program can hold them to its own arguments.
+/// The words of all commands that a report of this scene runs, so that the program can hold them to
+/// its own arguments.
 #[must_use]
 pub fn planned_commands(scene: &str) -> Vec<Vec<String>> {
     let place = Path::new("figures");

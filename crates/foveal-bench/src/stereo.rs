@@ -1,7 +1,7 @@
 //! `foveal bench stereo`: two eyes by each way of submission, and one eye, in turn.
 //!
-//! Each way is drawn twice: the geometry alone (a view of the base colour), as the technique's source measured it, and
-//! the whole frame with all deferred stages.
+//! Each way is drawn twice: the geometry alone (a view of the base colour), as the technique's
+//! source measured it, and the whole frame with all deferred stages.
 
 use foveal::{
     AdapterStats, Culling, DebugView, EyeClipping, Frame, FrameStats, Gpu, Renderer, Settings,
@@ -56,8 +56,8 @@ const WARM_UP: u32 = 2;
 /// Arguments of `foveal bench stereo`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// glTF 2.0 files or generated scenes [default: materials materials2 demo]. All but the first two are culled by occlusion, and their
-    /// equal draws are merged
+    /// glTF 2.0 files or generated scenes [default: materials materials2 demo]. All but the first
+    /// two are culled by occlusion, and their equal draws are merged
     scenes: Vec<String>,
 
     /// Width and height of one eye's picture in pixels
@@ -96,8 +96,8 @@ struct Skipped {
     cause: String,
 }
 
-/// One way's figures; times are medians in milliseconds, ratios the reference's time by this way's: above 1 this is
-/// faster.
+/// One way's figures; times are medians in milliseconds, ratios the reference's time by this way's:
+/// above 1 this is faster.
 #[derive(Debug, Serialize)]
 struct Row {
     scene: String,

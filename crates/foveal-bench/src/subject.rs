@@ -1,4 +1,5 @@
-//! What a bench on a graphics adapter is about, and where its figures go: the same arguments for each.
+//! What a bench on a graphics adapter is about, and where its figures go: the same arguments for
+//! each.
 
 use foveal::{AdapterStats, Gpu};
 use foveal_host::command_line::quoted;
@@ -92,7 +93,8 @@ impl SubjectArgs {
         Ok(Subject { gpu, scene, camera })
     }
 
-    /// What `foveal render` is told to draw the subject as a bench does that has warmed up, but for settings.
+    /// What `foveal render` is told to draw the subject as a bench does that has warmed up, but for
+    /// settings.
     pub(super) fn words(&self, point_lights: u32, output: &str) -> String {
         let mut words = vec![self.scene.clone(), "--output".to_owned(), output.to_owned()];
         words.extend(["--warmup".to_owned(), WARM_UP.to_string()]);

@@ -7,14 +7,16 @@ pub(crate) const COLORS: [&str; 6] = [
     "#4e9ad9", "#e08e45", "#5fb87a", "#c96bb0", "#b59a2c", "#3fa7aa",
 ];
 
-/// What tells the i-th of several lines: its colour, and what fills its dots. The second half's dots are rings.
+/// What tells the i-th of several lines: its colour, and what fills its dots. The second half's
+/// dots are rings.
 pub(crate) fn mark(i: usize) -> (&'static str, &'static str) {
     let color = COLORS[i % COLORS.len()];
     let is_ring = (i / COLORS.len()) % 2 == 1;
     (color, if is_ring { "var(--card)" } else { color })
 }
 
-/// Round numbers from 0 to at least `most`: 1, 2 or 5 times a power of ten apart, three to six of them.
+/// Round numbers from 0 to at least `most`: 1, 2 or 5 times a power of ten apart, three to six of
+/// them.
 pub(crate) fn ticks(most: f64) -> Vec<f64> {
     let rough = most.max(1e-9) / 4.0;
     let power = 10f64.powf(rough.log10().floor());

@@ -1,6 +1,7 @@
 //! Figures as columns of text.
 
-/// Lines of cells, each column as wide as its widest cell, numbers (all but the first column) to the right.
+/// Lines of cells, each column as wide as its widest cell, numbers (all but the first column) to
+/// the right.
 pub(super) fn text(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {

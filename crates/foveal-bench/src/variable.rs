@@ -1,5 +1,5 @@
-//! `foveal bench variable`: shading at a rate that the content decides, against full shading, frame by frame in turn
-//! while the camera sways.
+//! `foveal bench variable`: shading at a rate that the content decides, against full shading, frame
+//! by frame in turn while the camera sways.
 
 use foveal::{
     AdapterStats, Frame, FrameStats, Geometry, Gpu, RateSource, RateStage, Renderer, Settings,
@@ -78,7 +78,8 @@ struct Row {
     binning_ms: f64,
     full_frame_ms: f64,
     variable_frame_ms: f64,
-    /// Full / variable, whole frames: above 1 variable is faster; with its interval where there are rounds enough.
+    /// Full / variable, whole frames: above 1 variable is faster; with its interval where there are
+    /// rounds enough.
     frame_ratio: f64,
     frame_ratio_low: Option<f64>,
     frame_ratio_high: Option<f64>,
@@ -96,7 +97,8 @@ struct Row {
     jod: Option<f32>,
 }
 
-/// What is made of the scene's materials: their factors alone, as they are, factors and eight layers of noise.
+/// What is made of the scene's materials: their factors alone, as they are, factors and eight
+/// layers of noise.
 const COSTS: [&str; 3] = ["plain", "textured", "procedural"];
 
 /// Runs the benchmark.

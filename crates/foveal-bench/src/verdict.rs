@@ -1,7 +1,9 @@
-//! `foveal bench verdict`: which settings make this scene faster on this machine, and at what error.
+//! `foveal bench verdict`: which settings make this scene faster on this machine, and at what
+//! error.
 //!
-//! Each candidate draws the same frames as the plain settings, in turn with all others, in an order that is drawn by lot.
-//! Those that are faster and near enough are then put together and compared once more, as one.
+//! Each candidate draws the same frames as the plain settings, in turn with all others, in an order
+//! that is drawn by lot. Those that are faster and near enough are then put together and compared
+//! once more, as one.
 
 mod candidates;
 mod decision;

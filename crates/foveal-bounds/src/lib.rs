@@ -19,8 +19,9 @@ use glam::{Mat4, Vec3};
 
 /// An axis-aligned box, `min` to `max` inclusive.
 ///
-/// A box with a NaN or with `min > max` in some axis is *not a volume*; [`is_valid`](Self::is_valid)
-/// tells. [`Aabb::EMPTY`] is one such box. The layout is six `f32` in a row: `min`, then `max`.
+/// A box with a NaN or with `min > max` in some axis is *not a volume*;
+/// [`is_valid`](Self::is_valid) tells. [`Aabb::EMPTY`] is one such box. The layout is six `f32` in
+/// a row: `min`, then `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Aabb {

@@ -33,7 +33,8 @@ pub(crate) enum Command {
     /// Describe a scene without drawing it
     #[command(subcommand)]
     Scene(SceneCommand),
-    /// Cull a scene on the CPU: what is visible, occluded, outside or too small, and what that costs
+    /// Cull a scene on the CPU: what is visible, occluded, outside or too small, and what that
+    /// costs
     Cull(Box<cull::Args>),
     /// Measure what each technique costs and gains
     #[command(subcommand)]

@@ -1,4 +1,5 @@
-//! `foveal completions` and `foveal man`: the commands as shells and manuals know them, made from the arguments themselves.
+//! `foveal completions` and `foveal man`: the commands as shells and manuals know them, made from
+//! the arguments themselves.
 
 use std::path::PathBuf;
 

@@ -1,7 +1,9 @@
-//! The `foveal` program: draws scenes, compares pictures, and says what there is to draw and to draw with.
+//! The `foveal` program: draws scenes, compares pictures, and says what there is to draw and to
+//! draw with.
 //!
-//! Each subcommand has its own module with its arguments and its `run`. What fails comes back here as one
-//! error, is printed as one paragraph, and decides the exit code: 0 done, 1 failed, 2 wrong usage.
+//! Each subcommand has its own module with its arguments and its `run`. What fails comes back here
+//! as one error, is printed as one paragraph, and decides the exit code: 0 done, 1 failed, 2 wrong
+//! usage.
 #![forbid(unsafe_code)]
 
 mod adapters;

@@ -1,8 +1,9 @@
 //! Keeps other libraries from writing to stderr.
 
-/// Without `XDG_RUNTIME_DIR`, the Wayland client library says so on stderr each time a graphics device is looked for. A
-/// folder that is not there is enough to keep it quiet. Variables of the own process cannot be set safely once other
-/// libraries may read them: the program is replaced by itself.
+/// Without `XDG_RUNTIME_DIR`, the Wayland client library says so on stderr each time a graphics
+/// device is looked for. A folder that is not there is enough to keep it quiet. Variables of the
+/// own process cannot be set safely once other libraries may read them: the program is replaced by
+/// itself.
 #[cfg(target_os = "linux")]
 pub(crate) fn hush() {
     use std::os::unix::process::CommandExt;

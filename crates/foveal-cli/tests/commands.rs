@@ -1,5 +1,5 @@
-//! What the benches and the report say they did can be done again: each command that stands beside figures is run, and
-//! gives them. Needs a graphics adapter.
+//! What the benches and the report say they did can be done again: each command that stands beside
+//! figures is run, and gives them. Needs a graphics adapter.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 

@@ -1,4 +1,5 @@
-//! `foveal bench all` and `foveal bench diff`, from the command to the page in a browser. Needs a graphics adapter.
+//! `foveal bench all` and `foveal bench diff`, from the command to the page in a browser. Needs a
+//! graphics adapter.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 #![allow(clippy::print_stdout, reason = "a test says what it skipped")]

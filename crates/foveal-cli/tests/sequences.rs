@@ -1,4 +1,5 @@
-//! Image sequences: any part of one renders alone and the same, and finished frames can be left out.
+//! Image sequences: any part of one renders alone and the same, and finished frames can be left
+//! out.
 //!
 //! These tests draw, and need a graphics adapter; Mesa's lavapipe will do.
 

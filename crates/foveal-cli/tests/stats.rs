@@ -1,4 +1,5 @@
-//! `--stats` and `adapters --json` write what their documentation says. They need a graphics adapter.
+//! `--stats` and `adapters --json` write what their documentation says. They need a graphics
+//! adapter.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 

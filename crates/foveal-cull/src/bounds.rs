@@ -1,8 +1,8 @@
 //! The boxes that occludees are tested as and occluders are bounded by.
 //!
-//! Coordinates are metres, relative to an origin that the owner of the boxes names in `f64`, so that
-//! a world far from zero loses nothing. Queries report a box that is not a volume as visible, since
-//! nothing can be proved about it.
+//! Coordinates are metres, relative to an origin that the owner of the boxes names in `f64`, so
+//! that a world far from zero loses nothing. Queries report a box that is not a volume as visible,
+//! since nothing can be proved about it.
 
 pub use foveal_bounds::Aabb;
 

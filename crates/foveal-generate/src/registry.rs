@@ -3,7 +3,8 @@
 use crate::{DemoOptions, GenerateError};
 use foveal_scene::Scene;
 
-/// Generates the scene called `name`: one of [`NAMES`](crate::NAMES), or `demo:N` for about N instances.
+/// Generates the scene called `name`: one of [`NAMES`](crate::NAMES), or `demo:N` for about N
+/// instances.
 ///
 /// # Errors
 /// [`GenerateError::UnknownScene`] for any other name (a caller that also takes file names can try

@@ -1,8 +1,8 @@
 //! Files that are there whole or not at all.
 //!
-//! Bytes go to a temporary name in the destination's folder, are synchronised to the disk and then renamed.
-//! Nobody ever sees half a file under the final name: not after Ctrl-C, not after a power cut, and not another
-//! process that works in the same folder.
+//! Bytes go to a temporary name in the destination's folder, are synchronised to the disk and then
+//! renamed. Nobody ever sees half a file under the final name: not after Ctrl-C, not after a power
+//! cut, and not another process that works in the same folder.
 
 use std::fs::{self, File};
 use std::io::{ErrorKind, Write};
@@ -56,7 +56,8 @@ pub fn is_finished(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() > 0)
 }
 
-/// Where the bytes really go: behind links, so that a link stays a link; never over a device or a folder.
+/// Where the bytes really go: behind links, so that a link stays a link; never over a device or a
+/// folder.
 fn destination(path: &Path) -> anyhow::Result<PathBuf> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => bail!("cannot write '{}': it is a folder", path.display()),
@@ -89,7 +90,8 @@ fn temporary(destination: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let prefix = format!(".{name}.");
     let mut builder = tempfile::Builder::new();
     builder.prefix(&prefix).suffix(".tmp");
-    // Temporary files are private by default; this one becomes an ordinary file, which the umask governs.
+    // Temporary files are private by default; this one becomes an ordinary file, which the umask
+    // governs.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder_of(destination))

@@ -2,7 +2,8 @@
 
 use foveal_scene::{Camera, Projection};
 
-/// A camera to the last bit, as `foveal render --exact-camera` takes it: shortest decimals that are the same numbers again.
+/// A camera to the last bit, as `foveal render --exact-camera` takes it: shortest decimals that are
+/// the same numbers again.
 #[must_use]
 pub fn exact_camera(camera: &Camera) -> String {
     let (kind, mut numbers) = match camera.projection {

@@ -5,7 +5,8 @@ use std::io::{ErrorKind, Write};
 
 use anyhow::Context;
 
-/// Writes a command's result to stdout. A reader that has gone away (`foveal … | head`) is no failure.
+/// Writes a command's result to stdout. A reader that has gone away (`foveal … | head`) is no
+/// failure.
 pub fn print_result(text: &str) -> anyhow::Result<()> {
     let mut out = std::io::stdout().lock();
     match out
@@ -27,8 +28,9 @@ pub fn escaped_line(text: &str) -> String {
     escaped(text, false)
 }
 
-/// Names in files may hold anything. Control characters, and those that change the direction of writing, could make a
-/// terminal show or do what the program never said: they are written as JSON writes them, `\u001b`.
+/// Names in files may hold anything. Control characters, and those that change the direction of
+/// writing, could make a terminal show or do what the program never said: they are written as JSON
+/// writes them, `\u001b`.
 fn escaped(text: &str, lines: bool) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

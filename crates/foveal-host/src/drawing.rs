@@ -11,7 +11,8 @@ use crate::picture::Picture;
 
 /// When a frame is, in seconds.
 pub fn moment(frame: u32, fps: f32) -> f32 {
-    // In f64: exact for every frame number, so that the moment does not depend on how it was reached.
+    // In f64: exact for every frame number, so that the moment does not depend on how it was
+    // reached.
     (f64::from(frame) / f64::from(fps)) as f32
 }
 
@@ -41,13 +42,15 @@ impl Drawing {
         }
     }
 
-    /// Draws a moment, with motion since another. Its picture depends on the two alone, not on the frames drawn before.
+    /// Draws a moment, with motion since another. Its picture depends on the two alone, not on the
+    /// frames drawn before.
     pub fn draw_moment(&mut self, time_s: f32, previous_time_s: f32) -> anyhow::Result<FrameStats> {
         if self.posed_s != Some(previous_time_s) {
             self.pose(previous_time_s)?;
         }
         let previous_camera = self.viewpoint.at(&self.scene, previous_time_s);
-        // What is at rest is left there: another pose, though the same, would be taken for a movement.
+        // What is at rest is left there: another pose, though the same, would be taken for a
+        // movement.
         if !(self.is_at_rest && self.posed_s == Some(time_s)) {
             self.pose(time_s)?;
         }

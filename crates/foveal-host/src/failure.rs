@@ -28,8 +28,8 @@ static LAST_PANIC: Mutex<Option<String>> = Mutex::new(None);
 
 /// Runs `command`, prints what went wrong, and chooses the exit code.
 ///
-/// A panic is a defect of this program; it still ends as one paragraph and exit code 1. The hook keeps quiet
-/// itself, because a panic that a guard further down catches is that guard's to report.
+/// A panic is a defect of this program; it still ends as one paragraph and exit code 1. The hook
+/// keeps quiet itself, because a panic that a guard further down catches is that guard's to report.
 pub fn report(name: &str, command: impl FnOnce() -> anyhow::Result<()>) -> ExitCode {
     std::panic::set_hook(Box::new(remember));
     match catch_unwind(AssertUnwindSafe(command)) {

@@ -10,7 +10,8 @@ pub const INSTALL_A_DRIVER: &str = "no graphics adapter was found on this machin
 /// Opens the adapter that `wanted` names, or the most capable one.
 pub fn open(wanted: Option<&str>) -> anyhow::Result<Gpu> {
     match pollster::block_on(Gpu::open(wanted)) {
-        // The full renderer's shaders cannot be said in desktop GL; the reduced one is for devices that say so themselves.
+        // The full renderer's shaders cannot be said in desktop GL; the reduced one is for devices
+        // that say so themselves.
         Ok(gpu) if is_gl(&gpu.adapter_stats()) && !gpu.is_reduced() => {
             bail!(only_gl(&gpu.adapter_stats()))
         }

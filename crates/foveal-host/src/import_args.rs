@@ -17,11 +17,13 @@ pub struct ImportArgs {
     #[arg(long, value_name = "NAME|NUMBER")]
     variant: Option<String>,
 
-    /// Most memory for textures while they are loaded; larger pictures are reduced to fit [default: 4.3GB]
+    /// Most memory for textures while they are loaded; larger pictures are reduced to fit [default:
+    /// 4.3GB]
     #[arg(long, value_name = "SIZE", value_parser = values::bytes)]
     max_texture_memory: Option<u64>,
 
-    /// Largest side of a texture in texels; larger pictures are halved until they fit [default: 8192]
+    /// Largest side of a texture in texels; larger pictures are halved until they fit [default:
+    /// 8192]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     max_texture_size: Option<u32>,
 
@@ -45,7 +47,8 @@ pub struct ImportArgs {
     #[arg(long, value_name = "N")]
     max_expansion: Option<u64>,
 
-    /// Read files outside the scene's own folder where the scene names them, also through symbolic links
+    /// Read files outside the scene's own folder where the scene names them, also through symbolic
+    /// links
     #[arg(long)]
     outside_files: bool,
 }

@@ -1,8 +1,8 @@
-//! What a program around the renderer needs: scenes, cameras and settings from the command line and from files, a
-//! graphics adapter, pictures, a clock, a terminal, and failures as one paragraph.
+//! What a program around the renderer needs: scenes, cameras and settings from the command line and
+//! from files, a graphics adapter, pictures, a clock, a terminal, and failures as one paragraph.
 //!
-//! The `foveal` program and its benches share it. Each module stands alone; [`drawing`] joins them to a scene that is
-//! drawn moment by moment.
+//! The `foveal` program and its benches share it. Each module stands alone; [`drawing`] joins them
+//! to a scene that is drawn moment by moment.
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 

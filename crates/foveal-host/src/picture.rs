@@ -34,7 +34,8 @@ impl Picture {
         })
     }
 
-    /// Reads a PNG file; 16-bit channels are rounded to 8 bits, grey becomes RGB, a missing alpha is 255.
+    /// Reads a PNG file; 16-bit channels are rounded to 8 bits, grey becomes RGB, a missing alpha
+    /// is 255.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let read = || -> anyhow::Result<Self> {
             if path.is_dir() {

@@ -17,7 +17,8 @@ pub const DEFAULT_SCENE: &str = "demo";
 /// A camera for every moment, in seconds.
 pub type TimedCamera = Box<dyn Fn(f32) -> Camera>;
 
-/// Loads or generates the scene called `name`, posed at time 0, and adds the time of each stage to `load_ms`.
+/// Loads or generates the scene called `name`, posed at time 0, and adds the time of each stage to
+/// `load_ms`.
 ///
 /// A generated scene's name wins over a file of the same name; `./demo` means the file.
 pub fn load_timed(

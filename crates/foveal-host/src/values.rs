@@ -1,5 +1,5 @@
-//! Values as the command line spells them. Each parser's message completes clap's «invalid value '…' for
-//! '--flag'».
+//! Values as the command line spells them. Each parser's message completes clap's «invalid value
+//! '…' for '--flag'».
 
 mod variants;
 

@@ -9,8 +9,8 @@ use crate::spread::Spread;
 /// How sure an interval is: of a thousand comparisons of equal sides two may find a difference.
 pub const CONFIDENCE: f64 = 0.998;
 
-/// Ratios nearer to 1 than this part are no difference: two renderers with equal settings can be this far apart by where
-/// their memory lies.
+/// Ratios nearer to 1 than this part are no difference: two renderers with equal settings can be
+/// this far apart by where their memory lies.
 pub const MARGIN: f64 = 0.02;
 
 /// The times that two sides took for the same frame.
@@ -63,10 +63,11 @@ pub struct Comparison {
     pub reference: Spread,
     /// The chosen side's times in milliseconds.
     pub chosen: Spread,
-    /// Reference / chosen: above 1 the chosen side is faster. The middle over all pairs of frames, which need not be
-    /// the ratio of the medians.
+    /// Reference / chosen: above 1 the chosen side is faster. The middle over all pairs of frames,
+    /// which need not be the ratio of the medians.
     pub ratio: f64,
-    /// The interval that holds the true ratio with [`CONFIDENCE`]; `None` where there are too few pairs.
+    /// The interval that holds the true ratio with [`CONFIDENCE`]; `None` where there are too few
+    /// pairs.
     pub interval: Option<[f64; 2]>,
     /// How many pairs there are.
     pub pairs: usize,
@@ -75,10 +76,12 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares pairs of times. Pairs in which a time is not a positive number are left out; `None` where none is left.
+    /// Compares pairs of times. Pairs in which a time is not a positive number are left out; `None`
+    /// where none is left.
     ///
-    /// Where the side that is drawn first always takes longer (or less long), as after a pause, that is taken out first. It
-    /// costs the test nothing: with equal sides the correction is the same whoever was drawn first.
+    /// Where the side that is drawn first always takes longer (or less long), as after a pause,
+    /// that is taken out first. It costs the test nothing: with equal sides the correction is the
+    /// same whoever was drawn first.
     #[must_use]
     pub fn of(pairs: &[Pair]) -> Option<Self> {
         let pairs: Vec<Pair> = pairs.iter().copied().filter(Pair::is_valid).collect();
@@ -105,8 +108,9 @@ impl Comparison {
         })
     }
 
-    /// Compares two of several sides that were drawn round by round: in round n, counted from 0, in the order
-    /// `turn(n, sides)`. Each of the two is given by its number and its times, one per round.
+    /// Compares two of several sides that were drawn round by round: in round n, counted from 0, in
+    /// the order `turn(n, sides)`. Each of the two is given by its number and its times, one per
+    /// round.
     #[must_use]
     pub fn of_rounds(
         sides: usize,
@@ -136,7 +140,8 @@ impl Comparison {
         matches!(self.finding, Finding::Faster | Finding::Slower)
     }
 
-    /// The ratio in few words: "1.26x (1.22 to 1.30)", "no difference (0.98 to 1.03)", "too few frames".
+    /// The ratio in few words: "1.26x (1.22 to 1.30)", "no difference (0.98 to 1.03)", "too few
+    /// frames".
     #[must_use]
     pub fn text(&self) -> String {
         let Some([low, high]) = self.interval else {

@@ -1,13 +1,14 @@
 //! How two ways of drawing are compared: the one method of the window, the report and the benches.
 //!
-//! Both sides draw the same frames, warm, one after the other. [`turn`] says in which order: it is drawn by lot for
-//! each frame, so that with equal sides each of the two is as likely to meet a slow moment as the other, whatever the
-//! machine does meanwhile. The test needs nothing else: drift, outliers and a neighbour's load cannot make a
-//! difference of their own.
+//! Both sides draw the same frames, warm, one after the other. [`turn`] says in which order: it is
+//! drawn by lot for each frame, so that with equal sides each of the two is as likely to meet a
+//! slow moment as the other, whatever the machine does meanwhile. The test needs nothing else:
+//! drift, outliers and a neighbour's load cannot make a difference of their own.
 //!
-//! [`Comparison::of`] takes the pairs of times. Its ratio is *reference / chosen*: above 1 the chosen side is faster.
-//! The ratio comes with an interval, by the signed-rank test of Wilcoxon on the logarithms of the pairs' ratios
-//! (Hodges and Lehmann 1963). Only an interval that lies wholly beyond [`MARGIN`] is a difference.
+//! [`Comparison::of`] takes the pairs of times. Its ratio is *reference / chosen*: above 1 the
+//! chosen side is faster. The ratio comes with an interval, by the signed-rank test of Wilcoxon on
+//! the logarithms of the pairs' ratios (Hodges and Lehmann 1963). Only an interval that lies wholly
+//! beyond [`MARGIN`] is a difference.
 //!
 //! ```
 //! use foveal_measure::{Comparison, Finding, Pair, turn};
@@ -23,7 +24,8 @@
 //! assert!((found.ratio - 20.2 / 16.0).abs() < 0.01);
 //! ```
 //!
-//! No clock, no device, no randomness of its own: the same times give the same answer on every machine.
+//! No clock, no device, no randomness of its own: the same times give the same answer on every
+//! machine.
 #![forbid(unsafe_code)]
 
 mod comparison;

@@ -8,14 +8,15 @@ pub const LEAST_PAIRS: usize = 10;
 /// After this number of pairs no more are drawn: what is not found by then is small.
 pub const ENOUGH_PAIRS: usize = 80;
 
-/// After these numbers of pairs the sides are compared. Not after every pair: who looks again and again sees a difference some
-/// time. Four looks make two thousandths eight at most.
+/// After these numbers of pairs the sides are compared. Not after every pair: who looks again and
+/// again sees a difference some time. Four looks make two thousandths eight at most.
 const LOOKS: [usize; 4] = [10, 20, 40, ENOUGH_PAIRS];
 
-/// The order in which `sides` sides draw the frame with this number: by lot, the same on every machine.
+/// The order in which `sides` sides draw the frame with this number: by lot, the same on every
+/// machine.
 ///
-/// That the lot decides is what makes the comparison valid: where the sides are equal, whatever else slows a frame meets
-/// either with the same chance.
+/// That the lot decides is what makes the comparison valid: where the sides are equal, whatever
+/// else slows a frame meets either with the same chance.
 #[must_use]
 pub fn turn(frame: u64, sides: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..sides).collect();

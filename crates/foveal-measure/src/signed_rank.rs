@@ -1,15 +1,16 @@
 //! The signed-rank test as an interval: which shifts of the differences the test would not refuse.
 //!
-//! F. Wilcoxon 1945; the interval by J. L. Hodges and E. L. Lehmann 1963: all means of two differences (a difference
-//! with itself among them), sorted, without as many at either end as the test allows.
+//! F. Wilcoxon 1945; the interval by J. L. Hodges and E. L. Lehmann 1963: all means of two
+//! differences (a difference with itself among them), sorted, without as many at either end as the
+//! test allows.
 
 use crate::spread::of_sorted;
 
 /// Above this the statistic's distribution is taken for a normal one; below it is counted out.
 const MOST_COUNTED: usize = 64;
 
-/// The middle of all means of two differences, and the interval that holds the true middle with `confidence`;
-/// no interval where there are too few differences for it. `None` of nothing.
+/// The middle of all means of two differences, and the interval that holds the true middle with
+/// `confidence`; no interval where there are too few differences for it. `None` of nothing.
 pub(crate) fn estimate(differences: &[f64], confidence: f64) -> Option<(f64, Option<[f64; 2]>)> {
     let means = means(differences);
     let last = means.len().checked_sub(1)?;
@@ -34,7 +35,8 @@ fn means(differences: &[f64]) -> Vec<f64> {
     means
 }
 
-/// How many means are left out at either end, so that each end is missed with a probability of at most `tail`.
+/// How many means are left out at either end, so that each end is missed with a probability of at
+/// most `tail`.
 fn left_out(n: usize, tail: f64) -> Option<usize> {
     if n > MOST_COUNTED {
         let n = n as f64;
@@ -54,7 +56,8 @@ fn left_out(n: usize, tail: f64) -> Option<usize> {
     refused.count().checked_sub(1).map(|last| last + 1)
 }
 
-/// The chance of each value of the statistic: the sum of the ranks 1 to n, each of which counts or not by a fair coin.
+/// The chance of each value of the statistic: the sum of the ranks 1 to n, each of which counts or
+/// not by a fair coin.
 fn chances(n: usize) -> Vec<f64> {
     let mut chances = vec![0.0; n * (n + 1) / 2 + 1];
     chances[0] = 1.0;
@@ -71,8 +74,8 @@ fn chances(n: usize) -> Vec<f64> {
     chances
 }
 
-/// How many standard deviations from the middle `tail` of a normal distribution begins: by Abramowitz and Stegun
-/// 26.2.23, whose error is below 0.00045.
+/// How many standard deviations from the middle `tail` of a normal distribution begins: by
+/// Abramowitz and Stegun 26.2.23, whose error is below 0.00045.
 fn normal_quantile(tail: f64) -> f64 {
     let t = (-2.0 * tail.ln()).sqrt();
     let above = 2.515517 + t * (0.802853 + t * 0.010328);

@@ -1,4 +1,5 @@
-//! Comparisons of simulated machines: equal sides are equal, unequal ones are not, whatever the noise.
+//! Comparisons of simulated machines: equal sides are equal, unequal ones are not, whatever the
+//! noise.
 
 use crate::series::{Series, mixed, turn};
 use crate::{Comparison, Finding, Pair};

@@ -39,7 +39,8 @@ pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The value below which `part` (0 to 1) of all lies, interpolated between neighbours; 0 of nothing.
+/// The value below which `part` (0 to 1) of all lies, interpolated between neighbours; 0 of
+/// nothing.
 #[must_use]
 pub fn quantile(values: &[f64], part: f64) -> f64 {
     let mut sorted = values.to_vec();

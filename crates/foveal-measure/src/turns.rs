@@ -2,7 +2,8 @@
 
 use crate::{Comparison, Pair, Series, turn};
 
-/// Frames of both sides that are drawn before any counts: drivers compile, and what adapts from frame to frame adapts.
+/// Frames of both sides that are drawn before any counts: drivers compile, and what adapts from
+/// frame to frame adapts.
 pub const WARM_UP: u64 = 8;
 
 /// The times of one frame of one side, in milliseconds.
@@ -14,7 +15,8 @@ pub struct FrameTimes {
     pub passes_ms: f64,
 }
 
-/// A reference and a chosen side of one view: which one draws first, and what their times say so far.
+/// A reference and a chosen side of one view: which one draws first, and what their times say so
+/// far.
 #[derive(Clone, Debug, Default)]
 pub struct Turns {
     drawn: u64,
@@ -29,8 +31,8 @@ impl Turns {
         turn(self.drawn, 2).first() == Some(&0)
     }
 
-    /// Takes over the times of the pair that was just drawn. The first [`WARM_UP`] pairs do not count, nor do those after
-    /// the end.
+    /// Takes over the times of the pair that was just drawn. The first [`WARM_UP`] pairs do not
+    /// count, nor do those after the end.
     pub fn add(&mut self, reference: FrameTimes, chosen: FrameTimes) {
         let reference_first = self.reference_first();
         self.drawn += 1;
@@ -58,7 +60,8 @@ impl Turns {
         self.frames.found()
     }
 
-    /// The comparison of all passes on the device; `None` before the first look, and without timestamps.
+    /// The comparison of all passes on the device; `None` before the first look, and without
+    /// timestamps.
     #[must_use]
     pub fn passes(&self) -> Option<&Comparison> {
         self.passes.found()

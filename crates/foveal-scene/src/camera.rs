@@ -9,7 +9,8 @@ pub enum Projection {
     Perspective {
         /// Full vertical field of view in radians, in (0, π).
         fov_y_rad: f32,
-        /// Distance of the near plane in metres, > 0. There is no far plane: depth is reversed and infinite.
+        /// Distance of the near plane in metres, > 0. There is no far plane: depth is reversed and
+        /// infinite.
         near_m: f32,
     },
     /// A parallel projection.
@@ -68,8 +69,8 @@ impl Camera {
         self.world_from_view.w_axis.truncate()
     }
 
-    /// Clip space from view space for a target of `aspect` = width / height; depth reversed in [0, 1]
-    /// (1 at the near plane; 0 at infinity for perspective, at the far plane for orthographic).
+    /// Clip space from view space for a target of `aspect` = width / height; depth reversed in [0,
+    /// 1] (1 at the near plane; 0 at infinity for perspective, at the far plane for orthographic).
     #[must_use]
     pub fn clip_from_view(&self, aspect: f32) -> Mat4 {
         match self.projection {

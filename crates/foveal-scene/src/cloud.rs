@@ -1,8 +1,8 @@
 //! Exact world-space boxes of transformed meshes.
 //!
-//! A [`Cloud`] holds the positions that a mesh's triangles use, in blocks with boxes of their own. A
-//! block whose transformed box lies within what has been found already cannot widen the result and is
-//! skipped, so the answer is bit for bit that of transforming every point.
+//! A [`Cloud`] holds the positions that a mesh's triangles use, in blocks with boxes of their own.
+//! A block whose transformed box lies within what has been found already cannot widen the result
+//! and is skipped, so the answer is bit for bit that of transforming every point.
 
 use glam::{Mat4, Vec3, Vec3A};
 
@@ -22,8 +22,8 @@ pub(crate) struct Cloud {
 }
 
 impl Cloud {
-    /// The positions that `mesh`'s indices name. For many `uses` more is spent here so that each call of
-    /// [`Cloud::bounds`] is faster; the thresholds are where that begins to pay.
+    /// The positions that `mesh`'s indices name. For many `uses` more is spent here so that each
+    /// call of [`Cloud::bounds`] is faster; the thresholds are where that begins to pay.
     pub(crate) fn of(mesh: &Mesh, uses: u64) -> Self {
         let mut used = vec![false; mesh.vertices.len()];
         for &i in &mesh.indices {

@@ -41,7 +41,8 @@ pub enum SceneError {
         /// What is wrong with it.
         cause: String,
     },
-    /// A part of the document contradicts the glTF 2.0 specification so that no picture can be made from it.
+    /// A part of the document contradicts the glTF 2.0 specification so that no picture can be made
+    /// from it.
     #[error("{file} is broken at {place}: {cause}")]
     Invalid {
         /// The file as it was asked for.

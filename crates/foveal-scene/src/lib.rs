@@ -2,8 +2,9 @@
 //!
 //! A [`Scene`] is plain data without any graphics API in it. It comes from a glTF 2.0 file
 //! ([`load`]) or from a program's own code (as the scenes of `foveal-generate` do), and is posed at
-//! a point in time by [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres, counter-clockwise front
-//! faces, column vectors; matrices are named *to_from* (`world_from_object`).
+//! a point in time by [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres,
+//! counter-clockwise front faces, column vectors; matrices are named *to_from*
+//! (`world_from_object`).
 //!
 //! ```no_run
 //! use foveal_scene::{LoadOptions, load};

@@ -28,23 +28,24 @@ pub struct LoadOptions {
     pub time_s: f32,
     /// Which animation plays; see [`Scene::play`].
     pub clip: Clip,
-    /// Which of the file's variants of materials is shown (KHR_materials_variants), by name or by number from 0; `None`:
-    /// the materials as they are without.
+    /// Which of the file's variants of materials is shown (KHR_materials_variants), by name or by
+    /// number from 0; `None`: the materials as they are without.
     pub variant: Option<String>,
-    /// Use the threads of the current rayon pool; without, everything happens on the caller's thread.
+    /// Use the threads of the current rayon pool; without, everything happens on the caller's
+    /// thread.
     pub parallel: bool,
     /// How normals are made where the file gives none.
     pub missing_normals: MissingNormals,
-    /// Allow external files outside the scene's own folder, by path (`../textures/wood.png`) or by a symbolic
-    /// link that leads there.
+    /// Allow external files outside the scene's own folder, by path (`../textures/wood.png`) or by
+    /// a symbolic link that leads there.
     pub outside_files: bool,
     /// Most bytes of the file and all files that it names, together.
     pub max_file_bytes: u64,
     /// Largest width and height of a texture in texels; larger pictures are halved until they fit.
     pub max_texture_size: u32,
-    /// Most bytes that textures may take while they are loaded: decoded pictures, their mip levels, and what the
-    /// decoders that run at one time need beside them. The largest pictures are halved until all fit; a
-    /// picture that cannot even be decoded within it is an error.
+    /// Most bytes that textures may take while they are loaded: decoded pictures, their mip levels,
+    /// and what the decoders that run at one time need beside them. The largest pictures are halved
+    /// until all fit; a picture that cannot even be decoded within it is an error.
     pub max_texture_bytes: u64,
     /// Most vertices of all meshes together, morph targets included.
     pub max_vertices: u64,
@@ -52,14 +53,16 @@ pub struct LoadOptions {
     pub max_instances: u64,
     /// Most triangles, each counted once per instance.
     pub max_triangles: u64,
-    /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB that any file may have. Scenes
-    /// stay far below the default; a file that goes beyond it was made to fill the memory.
+    /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB that any file
+    /// may have. Scenes stay far below the default; a file that goes beyond it was made to fill the
+    /// memory.
     pub max_expansion: u64,
 }
 
 impl Default for LoadOptions {
-    /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only; 4 GiB of files, 8192-texel textures, 4 GiB of
-    /// them, 64 Mi vertices, 4 Mi instances, 4 Gi triangles, 256 bytes per byte.
+    /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only; 4 GiB of
+    /// files, 8192-texel textures, 4 GiB of them, 64 Mi vertices, 4 Mi instances, 4 Gi triangles,
+    /// 256 bytes per byte.
     fn default() -> Self {
         Self {
             time_s: 0.0,
@@ -81,9 +84,9 @@ impl Default for LoadOptions {
 
 /// Loads a glTF 2.0 scene: `.glb`, or `.gltf` with data URIs or external files beside it.
 ///
-/// What the file asks for and Foveal cannot give is listed in [`Scene::warnings`]. A picture that is
-/// missing or broken is such a warning, and a magenta checker board takes its place as a colour (a
-/// neutral value as anything else). Nodes without geometry, lights or cameras leave no trace.
+/// What the file asks for and Foveal cannot give is listed in [`Scene::warnings`]. A picture that
+/// is missing or broken is such a warning, and a magenta checker board takes its place as a colour
+/// (a neutral value as anything else). Nodes without geometry, lights or cameras leave no trace.
 ///
 /// # Errors
 /// When the file cannot be read, is not glTF 2.0, contradicts itself so that no sensible picture can
@@ -172,8 +175,8 @@ fn open_regular(path: &Path) -> Result<File, String> {
     File::open(path).map_err(|e| e.to_string())
 }
 
-/// Reads a file that a scene names. Without `outside_files` it must lie in or under the scene's folder, by its path and
-/// after all symbolic links.
+/// Reads a file that a scene names. Without `outside_files` it must lie in or under the scene's
+/// folder, by its path and after all symbolic links.
 fn resolve_beside(
     folder: &Path,
     uri: &str,

@@ -21,7 +21,8 @@ pub enum AlphaMode {
 pub struct TextureRef {
     /// Index into [`Scene::textures`](crate::Scene::textures).
     pub texture: u32,
-    /// Which of a vertex's two UV sets it reads: 0 or 1 (the importer maps the file's sets to these).
+    /// Which of a vertex's two UV sets it reads: 0 or 1 (the importer maps the file's sets to
+    /// these).
     pub uv_set: u32,
     /// Texture coordinates from vertex coordinates (KHR_texture_transform), affine in 2-D.
     pub uv_transform: Mat3,
@@ -64,9 +65,10 @@ pub struct Material {
     pub procedural: Option<ProceduralLayers>,
 }
 
-/// A surface of eight layers of noise in world space, each over those before where its height is great. Each has its own
-/// colour, which multiplies the base colour, its own roughness, which replaces the material's, and raises the
-/// normal. Needs neither texture nor UVs. Layers whose lumps are finer than two pixels fade into their mean.
+/// A surface of eight layers of noise in world space, each over those before where its height is
+/// great. Each has its own colour, which multiplies the base colour, its own roughness, which
+/// replaces the material's, and raises the normal. Needs neither texture nor UVs. Layers whose
+/// lumps are finer than two pixels fade into their mean.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProceduralLayers {
     /// What colours, roughnesses and noise follow from.

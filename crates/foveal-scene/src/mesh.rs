@@ -17,7 +17,8 @@ pub struct Vertex {
     pub tangent: [f32; 4],
     /// The two UV sets that the material uses, (0, 0) top left.
     pub uv: [[f32; 2]; 2],
-    /// Linear RGBA, 8 bits each (vertex colours are linear in glTF); opaque white when the file gives none.
+    /// Linear RGBA, 8 bits each (vertex colours are linear in glTF); opaque white when the file
+    /// gives none.
     pub color: [u8; 4],
     /// Zero. Keeps the vertex at 64 bytes.
     pub reserved: u32,
@@ -34,8 +35,9 @@ pub struct Mesh {
     pub indices: Vec<u32>,
     /// Smallest box around the vertices that the indices use, object space.
     pub bounds: Aabb,
-    /// Morph targets or a skin change its vertices from pose to pose. Such a mesh belongs to one node;
-    /// the vertices of a skinned one are in world space, and its instances' matrices the identity.
+    /// Morph targets or a skin change its vertices from pose to pose. Such a mesh belongs to one
+    /// node; the vertices of a skinned one are in world space, and its instances' matrices the
+    /// identity.
     pub deforms: bool,
 }
 

@@ -11,8 +11,9 @@ use std::ops::Range;
 pub enum Content {
     /// sRGB colour; alpha is ignored by the material or not there.
     Color,
-    /// sRGB colour with a meaningful alpha: transparent texels give no colour. With a threshold, the
-    /// share of texels that pass it is kept the same on every level (Castaño 2010, 'Computing alpha mipmaps').
+    /// sRGB colour with a meaningful alpha: transparent texels give no colour. With a threshold,
+    /// the share of texels that pass it is kept the same on every level (Castaño 2010, 'Computing
+    /// alpha mipmaps').
     Cutout {
         /// Alpha threshold in 0 … 1 of an alpha mask; `None` for blending.
         threshold: Option<f32>,
@@ -68,7 +69,8 @@ pub fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<
     levels
 }
 
-/// Texels as 16-bit numbers in the space where they may be averaged. Normals are offset by one half.
+/// Texels as 16-bit numbers in the space where they may be averaged. Normals are offset by one
+/// half.
 type Wide = Vec<[u16; 4]>;
 
 /// Appends texels as they may be averaged.
@@ -151,7 +153,8 @@ fn narrow(wide: &[[u16; 4]], content: Content, alpha_scale: f32) -> Vec<u8> {
     out
 }
 
-/// Half the size, rounded down, at least one texel each way. `read` appends the texels of a range of rows.
+/// Half the size, rounded down, at least one texel each way. `read` appends the texels of a range
+/// of rows.
 fn halve(width: usize, height: usize, read: impl Fn(Range<usize>, &mut Wide)) -> Wide {
     let (w, h) = ((width / 2).max(1), (height / 2).max(1));
     let mut out = Vec::with_capacity(w * h);
@@ -253,16 +256,17 @@ fn alpha_scale(wide: &[[u16; 4]], threshold: f32, wanted: f32) -> f32 {
     let mut alphas: Vec<u16> = wide.iter().map(|t| t[3]).collect();
     alphas.sort_unstable_by(|a, b| b.cmp(a));
     let passing = ((wanted * alphas.len() as f32).round() as usize).max(1);
-    // The smallest alpha that is to pass. Where many texels share it, all of them pass or none does:
-    // whichever is nearer, but never nothing at all.
+    // The smallest alpha that is to pass. Where many texels share it, all of them pass or none
+    // does: whichever is nearer, but never nothing at all.
     let mut least = alphas[passing - 1];
     let above = alphas.partition_point(|&a| a > least);
     let with_ties = alphas.partition_point(|&a| a >= least);
     if above > 0 && with_ties - passing > passing - above {
         least = alphas[above - 1];
     }
-    // The threshold goes midway between the last that passes and the first that does not: a renderer
-    // interpolates between texels, and with the threshold at either of them every edge would move.
+    // The threshold goes midway between the last that passes and the first that does not: a
+    // renderer interpolates between texels, and with the threshold at either of them every edge
+    // would move.
     let failing = alphas[alphas.partition_point(|&a| a >= least)..]
         .first()
         .copied();

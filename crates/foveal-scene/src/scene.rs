@@ -7,8 +7,8 @@ use crate::{
     Texture,
 };
 
-/// One thing as the file's author sees it: a node with a mesh, or one element of its GPU instancing.
-/// It is what culling answers for; it has one [`Instance`] per primitive of its mesh.
+/// One thing as the file's author sees it: a node with a mesh, or one element of its GPU
+/// instancing. It is what culling answers for; it has one [`Instance`] per primitive of its mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
     /// The node's name.
@@ -36,7 +36,8 @@ pub struct Instance {
     pub material: u32,
     /// Index into [`Scene::objects`].
     pub object: u32,
-    /// World space from the mesh's object space; affine, finite, invertible or not, of either handedness.
+    /// World space from the mesh's object space; affine, finite, invertible or not, of either
+    /// handedness.
     pub world_from_object: Mat4,
     /// Smallest box around the transformed vertices (not around the transformed box).
     pub bounds: Aabb,
@@ -76,7 +77,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Backdrop and ambient light.
     pub environment: Environment,
-    /// Names of the file's variants of materials; [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
+    /// Names of the file's variants of materials;
+    /// [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
     pub variants: Vec<String>,
     /// What the importer could not honour.
     pub warnings: Vec<Warning>,
@@ -95,8 +97,9 @@ impl Scene {
             .fold(Aabb::EMPTY, |b, o| b.union(o.bounds))
     }
 
-    /// Whether an instance's surface can hide things for certain: opaque (masks have holes, blended surfaces
-    /// show what is behind them) and rigid (an occluder that deforms would have to be prepared in every pose).
+    /// Whether an instance's surface can hide things for certain: opaque (masks have holes, blended
+    /// surfaces show what is behind them) and rigid (an occluder that deforms would have to be
+    /// prepared in every pose).
     #[must_use]
     pub fn can_occlude(&self, instance: &Instance) -> bool {
         let material = &self.materials[instance.material as usize];
@@ -118,8 +121,8 @@ impl Scene {
             .sum()
     }
 
-    /// Adds a sun where the scene has no punctual light of its own, so that it is not seen in the dark;
-    /// true if it did. It stands high, to the left of and behind a viewer who looks down -z.
+    /// Adds a sun where the scene has no punctual light of its own, so that it is not seen in the
+    /// dark; true if it did. It stands high, to the left of and behind a viewer who looks down -z.
     pub fn light_by_default(&mut self) -> bool {
         let needed = self.lights.is_empty();
         if needed {
@@ -136,8 +139,8 @@ impl Scene {
         needed
     }
 
-    /// A camera that sees the whole scene in a picture at least 6:5 wide: from the front, a little above and
-    /// to the right, 45° high.
+    /// A camera that sees the whole scene in a picture at least 6:5 wide: from the front, a little
+    /// above and to the right, 45° high.
     #[must_use]
     pub fn overview_camera(&self) -> Camera {
         const TAN_HALF_FOV: f32 = 0.414_213_57;

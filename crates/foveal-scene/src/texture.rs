@@ -70,7 +70,7 @@ pub struct Texture {
     pub color_space: ColorSpace,
     /// How it is read.
     pub sampler: Sampler,
-    /// RGBA8 rows top to bottom, one `Vec` per mip level, level k of size max(1, width >> k) x max(1, height >> k).
-    /// Level 0 alone where the sampler has no mip filter.
+    /// RGBA8 rows top to bottom, one `Vec` per mip level, level k of size max(1, width >> k) x
+    /// max(1, height >> k). Level 0 alone where the sampler has no mip filter.
     pub levels: Vec<Vec<u8>>,
 }

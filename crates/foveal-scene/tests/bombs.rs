@@ -1,7 +1,8 @@
-//! Small files that ask for much: each ends with a clear error, or with a scene where that is cheap, and the process never
-//! holds more than 300 MB.
+//! Small files that ask for much: each ends with a clear error, or with a scene where that is
+//! cheap, and the process never holds more than 300 MB.
 //!
-//! The files are made here; those beside the repository (`../shared/data/bombs`) are tried too where they are there.
+//! The files are made here; those beside the repository (`../shared/data/bombs`) are tried too
+//! where they are there.
 
 #![allow(
     clippy::unwrap_used,

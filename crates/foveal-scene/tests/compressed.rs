@@ -1,5 +1,5 @@
-//! The samples beside the repository, compressed by `gltf-transform`, against their originals: the same geometry and
-//! pictures but for what the compression loses.
+//! The samples beside the repository, compressed by `gltf-transform`, against their originals: the
+//! same geometry and pictures but for what the compression loses.
 //!
 //! Without `../shared/data/compressed` the test says so and passes.
 
@@ -28,7 +28,8 @@ fn area(scene: &Scene) -> f64 {
     triangles.sum()
 }
 
-/// Mean difference of two pictures per channel, of 255. What is transparent has no colour: lossy WebP drops it.
+/// Mean difference of two pictures per channel, of 255. What is transparent has no colour: lossy
+/// WebP drops it.
 fn difference(a: &[u8], b: &[u8]) -> f64 {
     let texels = a.as_chunks::<4>().0.iter().zip(b.as_chunks::<4>().0);
     let sum: u64 = texels

@@ -178,7 +178,8 @@ fn contradiction(expected: &Expected, outcome: &Result<Scene, SceneError>) -> Op
         }
         (0, Err(error)) => Some(format!("a valid file is refused: {error}")),
         (0, Ok(_)) | (_, Err(_)) => None,
-        // Nothing is shown, which a warning says; what is wrong with parts that nobody sees is not judged.
+        // Nothing is shown, which a warning says; what is wrong with parts that nobody sees is not
+        // judged.
         (_, Ok(scene)) if scene.objects.is_empty() => None,
         (_, Ok(scene)) => {
             let harmless = |code: &String| HARMLESS.iter().any(|(known, _)| known == code);

@@ -1,9 +1,9 @@
 //! Visible difference within one band: contrast, masking, and what is pooled from them.
 //!
-//! After Mantiuk et al. 2021: contrast against the reference's local luminance, mutual masking (the smaller of both
-//! pictures' contrasts hides), Minkowski sums over space, bands, channels and time, and a power law from their result to
-//! JOD. The numbers are fitted to measurements (docs/eye-metric.md), because the published program was calibrated anew
-//! after its paper.
+//! After Mantiuk et al. 2021: contrast against the reference's local luminance, mutual masking (the
+//! smaller of both pictures' contrasts hides), Minkowski sums over space, bands, channels and time,
+//! and a power law from their result to JOD. The numbers are fitted to measurements
+//! (docs/eye-metric.md), because the published program was calibrated anew after its paper.
 
 use crate::levels::Level;
 use crate::pyramid::Plane;
@@ -45,8 +45,8 @@ pub(crate) enum Channel {
     Transient,
 }
 
-/// The difference at each pixel of a band, and the band's mean of it. `background` is the reference's low-passed
-/// sustained luminance in cd/m².
+/// The difference at each pixel of a band, and the band's mean of it. `background` is the
+/// reference's low-passed sustained luminance in cd/m².
 pub(crate) fn band(
     level: &Level,
     channel: Channel,

@@ -17,7 +17,8 @@ pub enum Extent {
     },
 }
 
-/// A flat sRGB display, seen from straight ahead of its middle. A picture fills it, whatever its number of pixels.
+/// A flat sRGB display, seen from straight ahead of its middle. A picture fills it, whatever its
+/// number of pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Display {
     /// Its size.
@@ -37,7 +38,8 @@ impl Display {
     pub const HEADSET: Self = Self::named_model(91.5, 100.0, 0.0);
     /// A window of 60 degrees across, 100 cd/m², in the dark.
     pub const DEGREES_60: Self = Self::named_model(60.0, 100.0, 0.0);
-    /// A 24-inch full-HD monitor at 0.6 m: 47.8 degrees across, 200 cd/m², in a lit office of 250 lux.
+    /// A 24-inch full-HD monitor at 0.6 m: 47.8 degrees across, 200 cd/m², in a lit office of 250
+    /// lux.
     pub const MONITOR_24: Self = Self::named_model(47.8, 200.0, 250.0);
 
     const fn named_model(fov_horizontal_deg: f32, peak: f32, ambient_lux: f32) -> Self {
@@ -60,8 +62,8 @@ impl Display {
         }
     }
 
-    /// Names that [`Display::named`] knows, and their displays. Headsets and the phone are seen in the dark at 100 cd/m²,
-    /// monitors in an office at 200.
+    /// Names that [`Display::named`] knows, and their displays. Headsets and the phone are seen in
+    /// the dark at 100 cd/m², monitors in an office at 200.
     pub const NAMED: [(&'static str, Self); 8] = [
         ("hmd", Self::HEADSET),
         ("h60", Self::DEGREES_60),
@@ -85,8 +87,9 @@ impl Display {
         found.map(|&(_, display)| display)
     }
 
-    /// A display by its name, its degrees across, or `WIDTHxDISTANCE` in metres; those without a name have the light of
-    /// [`Display::DEGREES_60`]. `None` where the text is none of these, or the display cannot be.
+    /// A display by its name, its degrees across, or `WIDTHxDISTANCE` in metres; those without a
+    /// name have the light of [`Display::DEGREES_60`]. `None` where the text is none of these, or
+    /// the display cannot be.
     ///
     /// ```
     /// # use foveal_vdp::Display;
@@ -113,8 +116,8 @@ impl Display {
         display.check().is_ok().then_some(display)
     }
 
-    /// The same display, of which only `part` of the width is there, around the middle: with as many of its pixels, the
-    /// same pixels per degree.
+    /// The same display, of which only `part` of the width is there, around the middle: with as
+    /// many of its pixels, the same pixels per degree.
     ///
     /// ```
     /// # use foveal_vdp::Display;
@@ -176,7 +179,8 @@ impl Display {
         widths * width as f64
     }
 
-    /// Luminance in cd/m² that a fully lit channel adds to black (red, green, blue), and that of black.
+    /// Luminance in cd/m² that a fully lit channel adds to black (red, green, blue), and that of
+    /// black.
     fn light(&self) -> ([f32; 3], f32) {
         let black = self.peak / self.contrast;
         let reflected = self.ambient_lux * self.reflectivity / core::f32::consts::PI;

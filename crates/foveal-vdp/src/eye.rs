@@ -1,7 +1,8 @@
 //! Where the eye looks, and how finely it sees each pixel.
 //!
-//! Angles are taken per axis: a pixel's direction is (atan(x/d), atan(y/d)), eccentricity the length of the difference
-//! to the gaze's direction. A flat display has more pixels per degree away from its middle, by 1/cos².
+//! Angles are taken per axis: a pixel's direction is (atan(x/d), atan(y/d)), eccentricity the
+//! length of the difference to the gaze's direction. A flat display has more pixels per degree away
+//! from its middle, by 1/cos².
 
 use crate::{Display, VdpError};
 
@@ -31,9 +32,11 @@ impl Gaze {
     }
 }
 
-/// Dougherty et al. 2003: eccentricity in degrees at which cortical magnification is half of the fovea's.
+/// Dougherty et al. 2003: eccentricity in degrees at which cortical magnification is half of the
+/// fovea's.
 const HALF_MAGNIFICATION_DEG: f64 = 3.67;
-/// By which power of the magnification frequencies grow; fitted to measurements (docs/eye-metric.md).
+/// By which power of the magnification frequencies grow; fitted to measurements
+/// (docs/eye-metric.md).
 const MAGNIFICATION_POWER: f64 = 0.6058;
 
 /// A picture's geometry before the eye.
@@ -59,8 +62,8 @@ impl Geometry {
         }
     }
 
-    /// ln of the factor by which a pyramid level's frequency grows, for each of its `width * height` pixels:
-    /// what the fovea sees as fine as this place sees the middle's frequency.
+    /// ln of the factor by which a pyramid level's frequency grows, for each of its `width *
+    /// height` pixels: what the fovea sees as fine as this place sees the middle's frequency.
     pub(crate) fn ln_frequency_scale(&self, width: usize, height: usize) -> Vec<f32> {
         let angles = |count: usize, size: f64| -> Vec<f64> {
             let place = |i: usize| ((i as f64 + 0.5) / count as f64 - 0.5) * size;

@@ -1,4 +1,5 @@
-//! The pyramid's levels as the eye meets them: each with its frequency, and a sensitivity per pixel.
+//! The pyramid's levels as the eye meets them: each with its frequency, and a sensitivity per
+//! pixel.
 
 use crate::eye::Geometry;
 use crate::sensitivity::{SensitivityTable, transient_ratio};
@@ -14,7 +15,8 @@ const SMALLEST_SIDE: usize = 2;
 #[derive(Clone, Debug)]
 pub(crate) struct Level {
     width: usize,
-    /// The first level's band holds what is finer than half of it too, the others' just what the next does not.
+    /// The first level's band holds what is finer than half of it too, the others' just what the
+    /// next does not.
     gain: f32,
     table: SensitivityTable,
     /// Each pixel's column in the table.

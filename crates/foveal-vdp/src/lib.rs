@@ -1,9 +1,11 @@
-//! How visible the difference between two pictures, or two videos, is to an eye that looks at one point of them.
+//! How visible the difference between two pictures, or two videos, is to an eye that looks at one
+//! point of them.
 //!
-//! The metric is FovVideoVDP (Mantiuk, Denes, Chapiro, Kaplanyan, Rufo, Bachy, Lian and Patney 2021, «FovVideoVDP: A
-//! visible difference predictor for wide field-of-view video»), written after its paper and calibrated by measurement:
-//! docs/eye-metric.md says what comes from where, and how near it is to the published program. It knows the
-//! display (size, luminance, light in the room), the eye's loss of detail away from the gaze, masking, and time.
+//! The metric is FovVideoVDP (Mantiuk, Denes, Chapiro, Kaplanyan, Rufo, Bachy, Lian and Patney
+//! 2021, «FovVideoVDP: A visible difference predictor for wide field-of-view video»), written after
+//! its paper and calibrated by measurement: docs/eye-metric.md says what comes from where, and how
+//! near it is to the published program. It knows the display (size, luminance, light in the room),
+//! the eye's loss of detail away from the gaze, masking, and time.
 //!
 //! ```
 //! use foveal_vdp::{Display, Gaze, Metric, Pixels};

@@ -39,8 +39,8 @@ impl Pixels<'_> {
 /// A comparison of two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
-    /// Quality in just-objectionable differences: 10 is no visible difference, 9 one that 75 % of observers take for the
-    /// worse; strong distortions give less, even less than 0.
+    /// Quality in just-objectionable differences: 10 is no visible difference, 9 one that 75 % of
+    /// observers take for the worse; strong distortions give less, even less than 0.
     pub jod: f32,
     /// Where it is visible.
     pub heat_map: HeatMap,
@@ -55,9 +55,10 @@ pub struct VideoComparison {
     pub heat_map: HeatMap,
     /// Number of frames.
     pub frames: usize,
-    /// The test's change from frame to frame in the periphery, by the reference's: mean absolute difference of luma (code
-    /// values) low-passed with σ = 4 pixels, farther from the gaze than 0.35 of the height. A
-    /// reference at rest counts as 10⁻⁹. `None` for a single frame, or without a periphery.
+    /// The test's change from frame to frame in the periphery, by the reference's: mean absolute
+    /// difference of luma (code values) low-passed with σ = 4 pixels, farther from the gaze than
+    /// 0.35 of the height. A reference at rest counts as 10⁻⁹. `None` for a single frame, or
+    /// without a periphery.
     pub flicker: Option<f32>,
 }
 
@@ -68,7 +69,8 @@ pub struct HeatMap {
     pub width: usize,
     /// Height in pixels.
     pub height: usize,
-    /// Rows top to bottom: the JOD that it would cost if all of the picture differed as this pixel does.
+    /// Rows top to bottom: the JOD that it would cost if all of the picture differed as this pixel
+    /// does.
     pub jod_lost: Vec<f32>,
 }
 

@@ -25,9 +25,10 @@ impl Plane {
         &self.values[y * self.width..][..self.width]
     }
 
-    /// The next level: low-passed, every second row and column. Borders are mirrored, but for the right one where just one of
-    /// width and height is odd: there the published metric weighs the last column by the height's parity, which makes
-    /// it 1.25 or 0.75 times as bright. Scores depend on it, so that we do the same.
+    /// The next level: low-passed, every second row and column. Borders are mirrored, but for the
+    /// right one where just one of width and height is odd: there the published metric weighs the
+    /// last column by the height's parity, which makes it 1.25 or 0.75 times as bright. Scores
+    /// depend on it, so that we do the same.
     pub(crate) fn reduced(&self) -> Self {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut values = Vec::with_capacity(width * height);

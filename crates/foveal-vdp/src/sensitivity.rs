@@ -1,10 +1,11 @@
 //! Contrast sensitivity by spatial frequency and luminance, for what stays and for what changes.
 //!
-//! FovVideoVDP (Mantiuk et al. 2021) gives both temporal channels a sensitivity that depends on frequency,
-//! luminance and eccentricity, the last by the cortical magnification factor: a place at eccentricity *e* sees a
-//! frequency as the fovea sees a higher one. The polynomials below are our own: fitted to responses of the
-//! published metric to noise of low contrast on grey, for 0.26 to 40 cycles per degree and 0.1 to 1000 cd/m²
-//! (docs/eye-metric.md). They are within 0.5 % (root mean square) of what was measured.
+//! FovVideoVDP (Mantiuk et al. 2021) gives both temporal channels a sensitivity that depends on
+//! frequency, luminance and eccentricity, the last by the cortical magnification factor: a place at
+//! eccentricity *e* sees a frequency as the fovea sees a higher one. The polynomials below are our
+//! own: fitted to responses of the published metric to noise of low contrast on grey, for 0.26 to
+//! 40 cycles per degree and 0.1 to 1000 cd/m² (docs/eye-metric.md). They are within 0.5 % (root
+//! mean square) of what was measured.
 
 /// Smallest and largest luminance that sensitivity tells apart, cd/m².
 pub(crate) const LUMINANCE: (f32, f32) = (0.1, 1000.0);
@@ -36,7 +37,8 @@ const FREQUENCIES: (f64, f64) = (0.2, 70.0);
 /// Above 41 cycles per degree sensitivity falls by this further power.
 const CUT_OFF: (f64, f64) = (41.0, 11.0);
 
-/// Natural logarithm of the sustained channel's sensitivity; frequency in cycles per degree, luminance in cd/m².
+/// Natural logarithm of the sustained channel's sensitivity; frequency in cycles per degree,
+/// luminance in cd/m².
 pub(crate) fn ln_sustained(frequency: f64, luminance: f64) -> f64 {
     let ln_frequency = frequency.max(FREQUENCIES.0).ln();
     let x = ln_frequency.min(FREQUENCIES.1.ln()) / 2.0;

@@ -1,7 +1,9 @@
-//! What the eye makes of time: a sustained answer to what is there, a transient one to what changes.
+//! What the eye makes of time: a sustained answer to what is there, a transient one to what
+//! changes.
 //!
-//! The impulse responses have the form of Mantiuk et al. 2021: sustained, a Gaussian in the logarithm of time around
-//! 60 ms; transient, its derivative. Both end after a quarter of a second. Measured responses agree to 1e-5.
+//! The impulse responses have the form of Mantiuk et al. 2021: sustained, a Gaussian in the
+//! logarithm of time around 60 ms; transient, its derivative. Both end after a quarter of a second.
+//! Measured responses agree to 1e-5.
 
 use crate::pyramid::Plane;
 
@@ -13,7 +15,8 @@ const WIDTH: f64 = 0.5;
 const EPSILON_S: f64 = 1e-4;
 /// Length of the filters.
 const LENGTH_S: f64 = 0.25;
-/// The scale to which the transient sensitivity is fitted: 4/105 s, the step between taps at 30 frames per second.
+/// The scale to which the transient sensitivity is fitted: 4/105 s, the step between taps at 30
+/// frames per second.
 const TRANSIENT_SCALE_S: f64 = 4.0 / 105.0;
 
 /// Taps by age in frames, the newest first.
@@ -45,7 +48,8 @@ impl Filters {
         }
     }
 
-    /// Both answers to the frames seen so far, newest first; before the first frame it was always there.
+    /// Both answers to the frames seen so far, newest first; before the first frame it was always
+    /// there.
     pub(crate) fn apply<'a>(
         &self,
         newest_first: impl Iterator<Item = &'a Plane> + Clone,

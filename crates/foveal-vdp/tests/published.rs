@@ -1,7 +1,8 @@
-//! JOD beside the values of the published metric, for pictures and videos made here from integers alone.
+//! JOD beside the values of the published metric, for pictures and videos made here from integers
+//! alone.
 //!
-//! `FOVEAL_VDP_PAIRS=DIR cargo test -p foveal-vdp --test published -- --ignored` writes all pairs, as PPM
-//! files with the ending `png`, for measuring them with another program.
+//! `FOVEAL_VDP_PAIRS=DIR cargo test -p foveal-vdp --test published -- --ignored` writes all pairs,
+//! as PPM files with the ending `png`, for measuring them with another program.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 
@@ -10,7 +11,8 @@ mod pairs;
 use foveal_vdp::{Display, Gaze, Metric, Pixels};
 use pairs::{Clip, DISTORTIONS, Frame, SCENES};
 
-/// Greatest distance to the published metric; the aim is 0.1, the distance found when this was written 0.01.
+/// Greatest distance to the published metric; the aim is 0.1, the distance found when this was
+/// written 0.01.
 const TOLERANCE_JOD: f32 = 0.03;
 
 struct Row {
@@ -132,7 +134,8 @@ fn every_pair_agrees_with_the_published_metric() {
 #[test]
 fn a_single_frame_is_a_picture() {
     let rows = rows();
-    // A weak distortion: with strong ones the rest of the transient filter, which does not quite sum to zero, is seen.
+    // A weak distortion: with strong ones the rest of the transient filter, which does not quite
+    // sum to zero, is seen.
     let row = &rows[3];
     let metric = metric(row);
     let (reference, test) = (&row.reference.frames[0].pixels, &row.test.frames[0].pixels);

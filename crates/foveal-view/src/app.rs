@@ -1,4 +1,5 @@
-//! What the window knows, and what becomes of input: from the hands to the next request for a picture.
+//! What the window knows, and what becomes of input: from the hands to the next request for a
+//! picture.
 
 mod files;
 mod hands;

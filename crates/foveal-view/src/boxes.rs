@@ -35,7 +35,8 @@ fn color(visibility: Visibility) -> Color32 {
     }
 }
 
-/// Draws the nearest boxes over a picture at `rect`, hidden ones last, since they are what one looks for.
+/// Draws the nearest boxes over a picture at `rect`, hidden ones last, since they are what one
+/// looks for.
 pub(crate) fn draw(
     painter: &egui::Painter,
     rect: Rect,
@@ -88,8 +89,8 @@ fn lines(clip_from_world: &Mat4, bounds: &Aabb) -> Vec<[[f32; 2]; 2]> {
     lines
 }
 
-/// The part of an edge within the frustum: Liang and Barsky, in clip space. Depth is reversed, so that `z <= w` is
-/// before the near plane; nothing is behind the far one.
+/// The part of an edge within the frustum: Liang and Barsky, in clip space. Depth is reversed, so
+/// that `z <= w` is before the near plane; nothing is behind the far one.
 fn clipped(a: Vec4, b: Vec4) -> Option<(Vec4, Vec4)> {
     let planes = |p: Vec4| [p.w + p.x, p.w - p.x, p.w + p.y, p.w - p.y, p.w - p.z];
     let (from, to) = (planes(a), planes(b));

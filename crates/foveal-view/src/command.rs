@@ -27,7 +27,8 @@ pub(crate) fn words(
         words.extend(["--time".to_owned(), time_s.to_string()]);
     }
     words.push("--still".to_owned());
-    // From its second frame on, which forgets what was before, the window draws a view that stands still as often.
+    // From its second frame on, which forgets what was before, the window draws a view that stands
+    // still as often.
     words.extend(["--warmup".to_owned(), (SETTLING_FRAMES - 2).to_string()]);
     words.extend(host.scene_flags.iter().cloned());
     words.extend((host.flags)(settings));

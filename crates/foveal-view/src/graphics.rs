@@ -1,6 +1,7 @@
 //! What the window draws itself with: a surface, a device and the interface's painter.
 //!
-//! A device can be lost at any time: its driver starts anew, or the machine slept. Then all three are made again.
+//! A device can be lost at any time: its driver starts anew, or the machine slept. Then all three
+//! are made again.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -105,7 +106,8 @@ impl Graphics {
         }
     }
 
-    /// Shows the interface's triangles; `false` where the surface had to be set up again and nothing is shown yet.
+    /// Shows the interface's triangles; `false` where the surface had to be set up again and
+    /// nothing is shown yet.
     pub(crate) fn show(
         &mut self,
         window: &Window,

@@ -1,8 +1,8 @@
 //! A window on the renderer: fly through a scene, switch every setting, see what it costs.
 //!
-//! [`run`] opens it. The window draws itself on a device of its own and asks a thread for pictures of the scene, so
-//! that it answers whatever a frame takes. Panels are made from the table of the settings; files, flags and loading
-//! are the [`Host`]'s.
+//! [`run`] opens it. The window draws itself on a device of its own and asks a thread for pictures
+//! of the scene, so that it answers whatever a frame takes. Panels are made from the table of the
+//! settings; files, flags and loading are the [`Host`]'s.
 #![forbid(unsafe_code)]
 
 mod app;
@@ -67,7 +67,8 @@ pub struct Host {
     pub exact_camera: fn(&Camera) -> String,
     /// A word as a shell takes it.
     pub quoted: fn(&str) -> String,
-    /// The flags of `foveal render` that stand for what `load` adds to a scene, and for the adapter.
+    /// The flags of `foveal render` that stand for what `load` adds to a scene, and for the
+    /// adapter.
     pub scene_flags: Vec<String>,
 }
 

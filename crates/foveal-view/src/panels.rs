@@ -1,4 +1,5 @@
-//! Everything around the picture: the bar on top, settings on the left, figures on the right, keys below.
+//! Everything around the picture: the bar on top, settings on the left, figures on the right, keys
+//! below.
 
 mod bar;
 mod compare;

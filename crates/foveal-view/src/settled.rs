@@ -1,4 +1,5 @@
-//! What the window shows of a view that stands still, without a window: by the thread that draws for it.
+//! What the window shows of a view that stands still, without a window: by the thread that draws
+//! for it.
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};

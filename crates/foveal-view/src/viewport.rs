@@ -10,8 +10,8 @@ use crate::app::App;
 use crate::navigator::Hands;
 use crate::{boxes, legend, look};
 
-/// The greys of the culler's depth: from its own nearest (white) to its farthest, logarithmic; black where nothing is
-/// proven.
+/// The greys of the culler's depth: from its own nearest (white) to its farthest, logarithmic;
+/// black where nothing is proven.
 pub(crate) fn depth_grays(near_over_distance: &[f32]) -> impl Iterator<Item = u8> + '_ {
     let covered = || near_over_distance.iter().copied().filter(|&d| d > 0.0);
     let near = covered().fold(f32::MIN_POSITIVE, f32::max).log2();

@@ -1,9 +1,9 @@
 //! The thread that loads and draws, so that the window answers while a frame takes its time.
 //!
-//! It has its own device: whatever happens to it, the window stays, says what happened, and a new device is opened.
-//! Only the newest request counts; a request that is settled is drawn a few times, until what adapts from frame to
-//! frame has adapted. With a reference both sides are drawn in turn until they can be told apart, or have been drawn
-//! often enough to say that they cannot.
+//! It has its own device: whatever happens to it, the window stays, says what happened, and a new
+//! device is opened. Only the newest request counts; a request that is settled is drawn a few
+//! times, until what adapts from frame to frame has adapted. With a reference both sides are drawn
+//! in turn until they can be told apart, or have been drawn often enough to say that they cannot.
 
 mod drawing;
 mod inbox;
@@ -253,8 +253,8 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
             Err(error) => {
                 tell.fail(&error);
                 drawing.give_up_device();
-                // A lost device is no fault of the request: once more, on a new one. All else not again until
-                // something changes.
+                // A lost device is no fault of the request: once more, on a new one. All else not
+                // again until something changes.
                 let was_lost = matches!(error.downcast_ref(), Some(Error::DeviceLost { .. }));
                 if !was_lost || std::mem::replace(&mut is_second_try, true) {
                     wanted = None;

@@ -1,10 +1,10 @@
-//! The renderer behind a web page: two pictures of one scene from one camera, a reference on the left and the chosen
-//! settings on the right, divided by a slider.
+//! The renderer behind a web page: two pictures of one scene from one camera, a reference on the
+//! left and the chosen settings on the right, divided by a slider.
 //!
-//! The page (`web/page`) holds the controls, the camera and the clock of frames; this crate holds what must be
-//! Rust. Settings and figures cross as JSON, in the words of the native program. Built by `./run web`, once for WebGPU
-//! and once, with the feature `webgl`, for browsers that have WebGL 2 alone; on anything but `wasm32` the crate is
-//! empty.
+//! The page (`web/page`) holds the controls, the camera and the clock of frames; this crate holds
+//! what must be Rust. Settings and figures cross as JSON, in the words of the native program. Built
+//! by `./run web`, once for WebGPU and once, with the feature `webgl`, for browsers that have WebGL
+//! 2 alone; on anything but `wasm32` the crate is empty.
 #![forbid(unsafe_code)]
 
 #[cfg(target_arch = "wasm32")]

@@ -47,7 +47,8 @@ pub(crate) fn generated(name: &str) -> Result<Scene, String> {
     Ok(scene)
 }
 
-/// A `.glb` or a `.gltf` that holds its buffers itself: a page cannot read what lies beside a dropped file.
+/// A `.glb` or a `.gltf` that holds its buffers itself: a page cannot read what lies beside a
+/// dropped file.
 pub(crate) fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, String> {
     let options = LoadOptions {
         parallel: false,

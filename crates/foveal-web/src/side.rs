@@ -38,7 +38,8 @@ impl Side {
 
     pub(crate) async fn set_scene(&mut self, scene: &Scene) -> Result<(), String> {
         self.previous = None;
-        // What is baked into the upload; settings that cannot be met are the next frame's to report.
+        // What is baked into the upload; settings that cannot be met are the next frame's to
+        // report.
         let picture = &self.renderer.settings().picture;
         let (width, height) = (picture.width, picture.height);
         let settings = self.wished.clone().with(|s| {
@@ -52,8 +53,8 @@ impl Side {
             .map_err(|cause| cause.to_string())
     }
 
-    /// Draws the next frame, shown as `width` x `height` pixels. `scene` is what was set last: settings that are baked
-    /// into the upload set it anew.
+    /// Draws the next frame, shown as `width` x `height` pixels. `scene` is what was set last:
+    /// settings that are baked into the upload set it anew.
     pub(crate) async fn draw(
         &mut self,
         scene: &Scene,

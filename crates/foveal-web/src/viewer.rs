@@ -96,9 +96,10 @@ pub fn default_settings() -> String {
     serde_json::to_string(&Settings::default()).unwrap_or_default()
 }
 
-/// What is to be known of each setting in order to offer it: a list of `{key, stage, label, help, kind, names, least,
-/// most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and `number` (between `least` and `most`), `place`, `text`,
-/// `file`. With the feature `webgl` only those that the reduced renderer can meet.
+/// What is to be known of each setting in order to offer it: a list of `{key, stage, label, help,
+/// kind, names, least, most}`, `kind` one of `switch`, `choice` (of `names`), `integer` and
+/// `number` (between `least` and `most`), `place`, `text`, `file`. With the feature `webgl` only
+/// those that the reduced renderer can meet.
 #[wasm_bindgen]
 #[must_use]
 pub fn settings_table() -> String {
@@ -164,7 +165,8 @@ impl Viewer {
         serde_json::to_string(&self.gpu.adapter_stats()).unwrap_or_default()
     }
 
-    /// Shows a generated scene; tells its figures and its camera as JSON. The old scene stays where it fails.
+    /// Shows a generated scene; tells its figures and its camera as JSON. The old scene stays where
+    /// it fails.
     ///
     /// # Errors
     /// A sentence: no such scene, or it does not fit.
@@ -173,7 +175,8 @@ impl Viewer {
         self.show(scene).await
     }
 
-    /// Shows a `.glb`; tells its figures and its camera as JSON. The old scene stays where it fails.
+    /// Shows a `.glb`; tells its figures and its camera as JSON. The old scene stays where it
+    /// fails.
     ///
     /// # Errors
     /// A sentence that names the file, the place and the cause.
@@ -182,7 +185,8 @@ impl Viewer {
         self.show(scene).await
     }
 
-    /// Takes over both sides' settings (JSON, the words of the program's TOML; sizes are the frame's own).
+    /// Takes over both sides' settings (JSON, the words of the program's TOML; sizes are the
+    /// frame's own).
     ///
     /// # Errors
     /// A sentence that names the setting.
@@ -255,7 +259,8 @@ impl Viewer {
         serde_json::to_string(&cost).map_err(|cause| cause.to_string())
     }
 
-    /// The last picture of the chosen side, or of the reference: RGBA8 rows, sRGB-encoded, top to bottom.
+    /// The last picture of the chosen side, or of the reference: RGBA8 rows, sRGB-encoded, top to
+    /// bottom.
     ///
     /// # Errors
     /// A sentence: the device was lost.

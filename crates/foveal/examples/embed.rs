@@ -1,8 +1,9 @@
 //! The renderer in a host that has its own device, its own textures and its own passes:
 //! `cargo run -p foveal --example embed -- [SCENE] [OUT.png]`.
 //!
-//! The host opens the device, and draws a frame of its own around what the renderer draws into its texture. Nothing
-//! waits for the device until the host reads its texture back to write the picture.
+//! The host opens the device, and draws a frame of its own around what the renderer draws into its
+//! texture. Nothing waits for the device until the host reads its texture back to write the
+//! picture.
 
 #![allow(clippy::print_stdout, reason = "an example says what it made")]
 
@@ -73,7 +74,8 @@ fn embed(scene: &str) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
             view: &view,
             format: FORMAT,
         };
-        // A few frames, as a host's loop draws them; figures come when the device is done with a frame.
+        // A few frames, as a host's loop draws them; figures come when the device is done with a
+        // frame.
         let mut figures = None;
         for _ in 0..100 {
             if let Some(stats) = renderer.render_to(&frame, target).await? {

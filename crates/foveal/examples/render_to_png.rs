@@ -1,5 +1,5 @@
-//! Renders a scene headless: `cargo run --release -p foveal --example render_to_png -- cornell out.png`.
-//! The scene is a glTF file or the name of a generated one.
+//! Renders a scene headless: `cargo run --release -p foveal --example render_to_png -- cornell
+//! out.png`. The scene is a glTF file or the name of a generated one.
 
 #![allow(clippy::print_stdout, reason = "an example says what it made")]
 

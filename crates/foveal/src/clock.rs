@@ -1,7 +1,7 @@
 //! The clock of the host.
 
-/// The host's clock: nanoseconds since any fixed moment, as the culler's budget counts them. It never
-/// goes back.
+/// The host's clock: nanoseconds since any fixed moment, as the culler's budget counts them. It
+/// never goes back.
 pub type Clock = fn() -> u64;
 
 /// A reading of a clock; 0 without one.

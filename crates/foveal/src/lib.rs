@@ -1,9 +1,9 @@
 //! A renderer that draws only what is seen and shades only as finely as the eye resolves.
 //!
 //! [`Gpu`] opens a device, [`Renderer`] draws a [`foveal_scene::Scene`] through it, [`Settings`]
-//! says how, [`FrameStats`] says what it cost. The library never blocks, never reads a clock and never
-//! touches a file by itself, so that it also runs in a browser: device creation and read-back are
-//! async, and the clock is the caller's.
+//! says how, [`FrameStats`] says what it cost. The library never blocks, never reads a clock and
+//! never touches a file by itself, so that it also runs in a browser: device creation and read-back
+//! are async, and the clock is the caller's.
 #![forbid(unsafe_code)]
 
 pub mod gpu;

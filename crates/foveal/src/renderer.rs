@@ -37,8 +37,9 @@ mod testing;
 pub struct Frame<'a> {
     /// Where the frame is seen from.
     pub camera: &'a Camera,
-    /// Where the frame before it was seen from, for motion vectors and for what is kept from frame to frame, which is given up where
-    /// this is not the camera that was drawn last; `None`: from the same place.
+    /// Where the frame before it was seen from, for motion vectors and for what is kept from frame
+    /// to frame, which is given up where this is not the camera that was drawn last; `None`: from
+    /// the same place.
     pub previous_camera: Option<&'a Camera>,
 }
 
@@ -66,8 +67,8 @@ impl<'a> Frame<'a> {
 #[derive(Clone, Copy, Debug, Default)]
 #[non_exhaustive]
 pub struct RendererOptions {
-    /// The host's clock. Without one there are no times of the CPU, no budget of culling, and ways of
-    /// drawing two eyes are not timed.
+    /// The host's clock. Without one there are no times of the CPU, no budget of culling, and ways
+    /// of drawing two eyes are not timed.
     pub clock: Option<Clock>,
 }
 
@@ -203,8 +204,9 @@ impl Renderer {
     }
 
     /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
-    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are
-    /// baked with the scene, takes effect with the next [`Renderer::set_scene`].
+    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
+    /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
+    /// takes effect with the next [`Renderer::set_scene`].
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.
@@ -271,7 +273,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source requests every pixel.
+    /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source
+    /// requests every pixel.
     pub fn set_rate_image(&mut self, image: RateImage) {
         if let Some(coarse) = &mut self.stages.coarse {
             coarse.rate_map.set_image(&self.gpu, &image);
@@ -318,8 +321,8 @@ impl Renderer {
         Ok(())
     }
 
-    /// Takes over a new pose of the same scene (after [`Scene::pose`]). The pose before it becomes the
-    /// previous one, from which motion vectors are taken.
+    /// Takes over a new pose of the same scene (after [`Scene::pose`]). The pose before it becomes
+    /// the previous one, from which motion vectors are taken.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
@@ -374,9 +377,10 @@ impl Renderer {
         Ok(self.figures(submitted, &counts, gpu_ms, frame_ms))
     }
 
-    /// Draws one frame into the host's texture, stretched to its size, and waits for nothing. Given are the figures of an
-    /// earlier frame that has been finished since the last call; a host that draws all the time gets them every few
-    /// frames. The host's own passes may follow at once: they are executed after these.
+    /// Draws one frame into the host's texture, stretched to its size, and waits for nothing. Given
+    /// are the figures of an earlier frame that has been finished since the last call; a host that
+    /// draws all the time gets them every few frames. The host's own passes may follow at once:
+    /// they are executed after these.
     ///
     /// # Errors
     /// As [`Renderer::render`]; [`Error::Validation`] where `target` cannot be drawn to.
@@ -410,7 +414,8 @@ impl Renderer {
         bytes
     }
 
-    /// Whether frames draw what culling found last, whatever their camera sees: to look at a result from elsewhere.
+    /// Whether frames draw what culling found last, whatever their camera sees: to look at a result
+    /// from elsewhere.
     pub fn freeze_culling(&mut self, frozen: bool) {
         self.frozen = frozen;
     }
@@ -430,8 +435,9 @@ impl Renderer {
         }
     }
 
-    /// The last frame's occlusion buffer: width, height, and rows from the top, near / distance (0: nothing proven), for
-    /// orthographic cameras 1 at the near plane to 0 at the far one. `None` without culling.
+    /// The last frame's occlusion buffer: width, height, and rows from the top, near / distance (0:
+    /// nothing proven), for orthographic cameras 1 at the near plane to 0 at the far one. `None`
+    /// without culling.
     #[must_use]
     pub fn occluder_depth(&self) -> Option<(u32, u32, Vec<f32>)> {
         self.stages.culling.as_ref().map(CullingStage::depth)

@@ -1,5 +1,5 @@
-//! The settings of a frame: a struct per stage that the library, the program's flags and a TOML file
-//! share. In each enum the first variant is the default.
+//! The settings of a frame: a struct per stage that the library, the program's flags and a TOML
+//! file share. In each enum the first variant is the default.
 
 mod choices;
 mod coarse;

@@ -25,8 +25,8 @@ pub struct SceneStats {
     pub meshes: u64,
     /// Materials.
     pub materials: u64,
-    /// Families of materials that share shader, arrays of textures and samplers: as many dispatches evaluate a visibility
-    /// buffer's materials at most, where they do so by families.
+    /// Families of materials that share shader, arrays of textures and samplers: as many dispatches
+    /// evaluate a visibility buffer's materials at most, where they do so by families.
     pub material_families: u64,
     /// Textures.
     pub textures: u64,
@@ -57,13 +57,15 @@ pub struct Timing {
 pub struct CoarseStats {
     /// Samples of each level, finest first.
     pub samples_per_level: Vec<u64>,
-    /// Pixels that no tile's sample speaks for, which were shaded one by one; with the composite of light.
+    /// Pixels that no tile's sample speaks for, which were shaded one by one; with the composite of
+    /// light.
     pub unlit_pixels: u64,
     /// All samples and those pixels by all pixels.
     pub shaded_fraction: f64,
     /// The backend that shaded this frame: `stencil` or `compute`.
     pub backend: String,
-    /// Why it is this backend: `asked for`, `measuring`, what was measured, or that light is kept from frame to frame.
+    /// Why it is this backend: `asked for`, `measuring`, what was measured, or that light is kept
+    /// from frame to frame.
     pub backend_reason: String,
 }
 
@@ -90,7 +92,8 @@ pub struct VariableStats {
     pub unknown_fraction: f64,
     /// Finding rates and samples.
     pub mask_ms: f64,
-    /// Reprojection over what is known from the frame before; 0 where finding rates does it (contrast within quads).
+    /// Reprojection over what is known from the frame before; 0 where finding rates does it
+    /// (contrast within quads).
     pub reproject_ms: f64,
     /// Sorting pixels by material; 0 without a visibility buffer.
     pub binning_ms: f64,
@@ -111,7 +114,8 @@ pub struct VariableStats {
 #[cfg_attr(feature = "serde", derive(Serialize))]
 #[non_exhaustive]
 pub struct StereoStats {
-    /// `two-pass`, `instanced-clip`, `instanced-discard`, `multiview`, or `once` where both eyes see the same.
+    /// `two-pass`, `instanced-clip`, `instanced-discard`, `multiview`, or `once` where both eyes
+    /// see the same.
     pub mode: String,
     /// Why it is this one.
     pub reason: String,
@@ -152,8 +156,8 @@ pub struct FrameStats {
     pub shaded_samples: u64,
     /// Share of the pixels that anti-aliasing shades more than once; 0 without anti-aliasing.
     pub edge_fraction: f64,
-    /// Surfaces that anti-aliasing found no room for: their pixels show their largest surface alone. The next frame has room
-    /// for them, unless the device has none.
+    /// Surfaces that anti-aliasing found no room for: their pixels show their largest surface
+    /// alone. The next frame has room for them, unless the device has none.
     pub surfaces_left_out: u64,
     /// Bytes of all targets that depend on the frame's size: G-buffers, radiance, picture, lists.
     pub target_bytes: u64,

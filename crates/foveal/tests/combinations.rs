@@ -1,5 +1,5 @@
-//! Every way of shading with every anti-aliasing, over both geometries, for one eye and for two: nothing is refused, and
-//! all draw nearly what full shading of the same kind draws.
+//! Every way of shading with every anti-aliasing, over both geometries, for one eye and for two:
+//! nothing is refused, and all draw nearly what full shading of the same kind draws.
 #![allow(clippy::print_stdout, reason = "a test says what it measured")]
 
 mod common;
@@ -42,7 +42,8 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
             });
             let error = mean_flip(&reference, &drawn(&gpu, &scene, &settings, FRAMES));
             println!("{geometry:?}, {shading:?}, {aa:?}, {stereo:?}: {error:.4}");
-            // Over a visibility buffer a pixel's materials are averaged by surface, not by sub-sample.
+            // Over a visibility buffer a pixel's materials are averaged by surface, not by
+            // sub-sample.
             let most = match shading {
                 Shading::Full => 0.003,
                 Shading::Coarse => 0.045,

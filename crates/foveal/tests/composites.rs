@@ -1,4 +1,5 @@
-//! Each composite of coarse shading against full shading, by perceptual difference: mean FLIP (Andersson et al. 2020).
+//! Each composite of coarse shading against full shading, by perceptual difference: mean FLIP
+//! (Andersson et al. 2020).
 #![allow(clippy::print_stdout, reason = "a test says what it measured")]
 
 mod common;

@@ -149,7 +149,8 @@ fn a_result_that_is_kept_while_the_eye_moves_a_little_leaves_the_picture_as_it_i
     }
 }
 
-/// Two eyes see the same by each way of culling; returns how many objects each eye by itself and one test for both hid.
+/// Two eyes see the same by each way of culling; returns how many objects each eye by itself and
+/// one test for both hid.
 fn assert_same_to_two_eyes(
     name: &str,
     scene: &Scene,

@@ -68,7 +68,8 @@ fn bytes(device: &wgpu::Device, queue: &wgpu::Queue, texture: &wgpu::Texture) ->
     buffer.get_mapped_range(..).expect("mapped").to_vec()
 }
 
-/// Renders into textures of the host's, and gives its frames' figures with those of a frame that waited.
+/// Renders into textures of the host's, and gives its frames' figures with those of a frame that
+/// waited.
 #[test]
 fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
     let (device, queue) = host(Gpu::required_limits());

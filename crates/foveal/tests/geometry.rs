@@ -1,5 +1,5 @@
-//! The visibility buffer's pictures against the rasterizer's, by FLIP, on generated scenes and on those of others
-//! where they are at hand.
+//! The visibility buffer's pictures against the rasterizer's, by FLIP, on generated scenes and on
+//! those of others where they are at hand.
 #![allow(
     clippy::print_stdout,
     reason = "a test says what it skipped and what it measured"

@@ -1,7 +1,8 @@
 //! Whole frames of the generated scenes against small committed pictures.
 //!
-//! `UPDATE_GOLDEN=1 cargo test -p foveal --test golden` writes them again; look at them before you commit.
-//! Adapters round differently, so the comparison is perceptual: mean FLIP (Andersson et al. 2020).
+//! `UPDATE_GOLDEN=1 cargo test -p foveal --test golden` writes them again; look at them before you
+//! commit. Adapters round differently, so the comparison is perceptual: mean FLIP (Andersson et al.
+//! 2020).
 
 use std::path::PathBuf;
 

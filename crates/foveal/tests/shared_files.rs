@@ -1,5 +1,5 @@
-//! Files of others, where they are at hand: every sample gives a picture, every malformed file a picture or an
-//! error, none a panic or a long wait.
+//! Files of others, where they are at hand: every sample gives a picture, every malformed file a
+//! picture or an error, none a panic or a long wait.
 #![allow(
     clippy::print_stdout,
     reason = "a test says what it skipped and what it measured"
@@ -11,7 +11,8 @@ use std::time::{Duration, Instant};
 use foveal::{Frame, Gpu, Renderer, Settings};
 use foveal_scene::LoadOptions;
 
-/// The most that loading and drawing one file may take; debug builds on busy machines get some grace.
+/// The most that loading and drawing one file may take; debug builds on busy machines get some
+/// grace.
 const LONGEST: Duration = Duration::from_secs(if cfg!(debug_assertions) { 20 } else { 5 });
 
 fn shared(folder: &str) -> Option<PathBuf> {

@@ -1,8 +1,8 @@
 //! Random boxes, the same on every machine.
 //!
-//! Box i has its centre anywhere in the scene's bounds and, in each axis on its own, a half extent of 0.1 % to
-//! 2 % of the bounds' diagonal, small ones as likely as large ones on a logarithmic scale. Numbers come from
-//! an integer hash of (i, which number), top 24 bits.
+//! Box i has its centre anywhere in the scene's bounds and, in each axis on its own, a half extent
+//! of 0.1 % to 2 % of the bounds' diagonal, small ones as likely as large ones on a logarithmic
+//! scale. Numbers come from an integer hash of (i, which number), top 24 bits.
 
 use foveal_cull::Aabb;
 use glam::Vec3;

@@ -1,9 +1,10 @@
 //! Cameras where people stand: at eye height over floors, with free space around.
 //!
-//! Points are spread over what faces up, as many per square metre everywhere, and lifted to eye height. One is kept
-//! where the floor under it is the one that it was lifted from, nothing is just above it, nothing is near around it, and
-//! most level rays meet the front of a surface: in a room, a street or a court, neither within a solid nor out in the
-//! open. Kept ones lie far apart while there are such. From each the camera looks in four level directions.
+//! Points are spread over what faces up, as many per square metre everywhere, and lifted to eye
+//! height. One is kept where the floor under it is the one that it was lifted from, nothing is just
+//! above it, nothing is near around it, and most level rays meet the front of a surface: in a room,
+//! a street or a court, neither within a solid nor out in the open. Kept ones lie far apart while
+//! there are such. From each the camera looks in four level directions.
 
 use foveal_cull::{Eye, Projection};
 use foveal_scene::Scene;

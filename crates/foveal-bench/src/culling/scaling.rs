@@ -1,9 +1,10 @@
 //! How cost grows: with occluder triangles, boxes, resolution and threads.
 //!
-//! Occluders are the demo scene's opaque instances, shuffled by a hash and taken until their triangles reach
-//! the wanted number; beyond the whole town, copies of it stand around it. Boxes are random ones within the
-//! town. The eye is the demo scene's first camera. What does not vary is 1 million triangles, 27,000 boxes,
-//! 640x360 and one thread. Times are the shortest of all repetitions: how work grows, not how busy the machine is.
+//! Occluders are the demo scene's opaque instances, shuffled by a hash and taken until their
+//! triangles reach the wanted number; beyond the whole town, copies of it stand around it. Boxes
+//! are random ones within the town. The eye is the demo scene's first camera. What does not vary is
+//! 1 million triangles, 27,000 boxes, 640x360 and one thread. Times are the shortest of all
+//! repetitions: how work grows, not how busy the machine is.
 
 use std::path::Path;
 

@@ -1,4 +1,5 @@
-//! The commands that make a row's figures again, but for times, which only the bench itself can take.
+//! The commands that make a row's figures again, but for times, which only the bench itself can
+//! take.
 
 use foveal::Settings;
 use foveal_host::command_line::quoted;

@@ -6,7 +6,8 @@ use foveal_vdp::{Display, Extent};
 use super::ways::{Follows, Way};
 use crate::changes::changed;
 
-/// A display by the name that `foveal render --display` knows, and its pixels: an eye's where it is a headset.
+/// A display by the name that `foveal render --display` knows, and its pixels: an eye's where it is
+/// a headset.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Screen {
     pub(super) name: &'static str,
@@ -22,7 +23,8 @@ const fn screen(name: &'static str, width: u32, height: u32) -> Screen {
     }
 }
 
-/// All with a name; `hmd` and `h60` have as many pixels as docs/benchmarks/coarse.md compares them with.
+/// All with a name; `hmd` and `h60` have as many pixels as docs/benchmarks/coarse.md compares them
+/// with.
 pub(super) const ALL: [Screen; 7] = [
     screen("h60", 1280, 720),
     screen("fhd-24", 1920, 1080),

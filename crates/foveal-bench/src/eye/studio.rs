@@ -1,5 +1,5 @@
-//! Draws pictures and videos as `foveal render` does, each with a renderer of its own, and keeps those that several
-//! displays share.
+//! Draws pictures and videos as `foveal render` does, each with a renderer of its own, and keeps
+//! those that several displays share.
 
 use std::rc::Rc;
 

@@ -1,4 +1,5 @@
-//! A bench as the report knows it: how it is called, which rows it gives, and what of them the page shows.
+//! A bench as the report knows it: how it is called, which rows it gives, and what of them the page
+//! shows.
 
 use std::path::Path;
 use std::process::Command;
@@ -64,7 +65,8 @@ pub(super) struct Quality {
     pub(super) axis: &'static str,
     /// An error, and what it is called; small is good.
     pub(super) error: (&'static str, &'static str),
-    /// Where the figure is not the error itself but a quality: the best one, from which it is counted.
+    /// Where the figure is not the error itself but a quality: the best one, from which it is
+    /// counted.
     pub(super) best: Option<f64>,
     /// What grows along a curve, and its title; none: each row stands alone.
     pub(super) along: Option<(&'static str, &'static str)>,
@@ -138,8 +140,8 @@ pub(super) const THE_SCENE: &str = "SCENE";
 pub(super) const VERDICT: &str = "verdict";
 
 impl Bench {
-    /// How many passes are made where all others make `passes`: some draw their sides in turn, and have intervals of their
-    /// own.
+    /// How many passes are made where all others make `passes`: some draw their sides in turn, and
+    /// have intervals of their own.
     pub(super) fn passes(&self, passes: usize) -> usize {
         match self.name {
             VERDICT | "eye" => 1,

@@ -1,4 +1,5 @@
-//! All rows of all benches as one table: bench, row, figure, value, least and largest of the passes.
+//! All rows of all benches as one table: bench, row, figure, value, least and largest of the
+//! passes.
 
 use csv::Writer;
 use serde_json::Value;

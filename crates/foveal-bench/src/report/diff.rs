@@ -1,7 +1,8 @@
 //! `foveal bench diff`: what became slower between two reports.
 //!
-//! A time counts as slower when its median grew by more than a twentieth *and* the new passes all lie above the old
-//! ones: where the passes of both overlap, the machine's noise explains the difference.
+//! A time counts as slower when its median grew by more than a twentieth *and* the new passes all
+//! lie above the old ones: where the passes of both overlap, the machine's noise explains the
+//! difference.
 
 mod page;
 mod pairs;

@@ -1,5 +1,5 @@
-//! Figures of the page. Every one goes through [`Figures::figure`], which takes it out of the JSON and leaves its place there
-//! in the markup, so that a test can look each of them up.
+//! Figures of the page. Every one goes through [`Figures::figure`], which takes it out of the JSON
+//! and leaves its place there in the markup, so that a test can look each of them up.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use serde_json::Value;

@@ -1,4 +1,5 @@
-//! The report as Markdown: a file of tables per bench, and an index. Made from the report's JSON alone.
+//! The report as Markdown: a file of tables per bench, and an index. Made from the report's JSON
+//! alone.
 
 use serde_json::Value;
 

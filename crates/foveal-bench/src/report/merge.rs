@@ -5,8 +5,8 @@ use serde_json::{Map, Value, json};
 use super::bench::Bench;
 use foveal_measure::median;
 
-/// A row per row of the first pass. Numbers that the passes disagree about become their median; `spread` holds the least
-/// and the largest of each.
+/// A row per row of the first pass. Numbers that the passes disagree about become their median;
+/// `spread` holds the least and the largest of each.
 pub(super) fn passes(bench: &Bench, passes: &[Vec<Value>]) -> Value {
     let Some(first) = passes.first() else {
         return json!([]);
@@ -18,7 +18,8 @@ pub(super) fn passes(bench: &Bench, passes: &[Vec<Value>]) -> Value {
         };
         let mut merged = Map::new();
         let plain = label(bench, columns);
-        // A bench that has come to tell its rows apart by more than is known here shall not confuse anybody.
+        // A bench that has come to tell its rows apart by more than is known here shall not confuse
+        // anybody.
         let same = labels.iter().filter(|label| **label == plain).count();
         labels.push(plain.clone());
         let label = match same {

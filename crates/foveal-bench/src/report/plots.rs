@@ -1,4 +1,5 @@
-//! Plots as inline SVG. Their figures are the JSON's; ticks of an axis stand at round numbers and are marked as such.
+//! Plots as inline SVG. Their figures are the JSON's; ticks of an axis stand at round numbers and
+//! are marked as such.
 
 mod cost;
 mod load;

@@ -33,8 +33,8 @@ pub(super) enum Decision {
 pub(super) struct Found {
     /// Whole frames by the clock on the wall.
     pub(super) frame: Comparison,
-    /// Whole frames by the processor's time, of all threads: where the processor draws, and other programs take their share
-    /// of it, that is steadier.
+    /// Whole frames by the processor's time, of all threads: where the processor draws, and other
+    /// programs take their share of it, that is steadier.
     pub(super) work: Option<Comparison>,
     pub(super) nearness: Nearness,
 }

@@ -133,7 +133,8 @@ impl Side {
     }
 }
 
-/// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within half a metre.
+/// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within
+/// half a metre.
 fn swayed(camera: &Camera, frame: u32) -> Camera {
     const STEP_M: f32 = 0.02;
     const STEPS: u32 = 24;
@@ -145,7 +146,8 @@ fn swayed(camera: &Camera, frame: u32) -> Camera {
     camera
 }
 
-/// Milliseconds that this process has had of the processor, all threads together; 0 where nobody says.
+/// Milliseconds that this process has had of the processor, all threads together; 0 where nobody
+/// says.
 fn process_ms() -> f64 {
     #[cfg(unix)]
     {

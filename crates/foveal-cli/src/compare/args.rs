@@ -11,10 +11,12 @@ use super::eye::EyeArgs;
 /// Arguments of `foveal compare`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The reference: a PNG file, or a folder of PNG files, the frames of a video in the order of their names
+    /// The reference: a PNG file, or a folder of PNG files, the frames of a video in the order of
+    /// their names
     pub(super) a: PathBuf,
 
-    /// The picture under test, a PNG file of the same size, or a folder with files of the same names
+    /// The picture under test, a PNG file of the same size, or a folder with files of the same
+    /// names
     pub(super) b: PathBuf,
 
     #[command(flatten)]
@@ -84,7 +86,8 @@ impl Args {
         failures
     }
 
-    /// Holds what was found against the thresholds, prints it as text or as JSON, and fails where one is not met.
+    /// Holds what was found against the thresholds, prints it as text or as JSON, and fails where
+    /// one is not met.
     pub(super) fn conclude<F: Findings>(&self, mut found: F) -> anyhow::Result<()> {
         let failures = self.failures(&found.measured());
         found.set_passed(failures.is_empty());

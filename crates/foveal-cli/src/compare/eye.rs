@@ -46,7 +46,8 @@ pub(super) struct EyeArgs {
 /// What an eye sees at a display.
 #[derive(Debug, PartialEq, Serialize)]
 pub(super) struct Verdict {
-    /// 10: no visible difference; 9: three quarters of observers take the reference for the better one.
+    /// 10: no visible difference; 9: three quarters of observers take the reference for the better
+    /// one.
     pub(super) jod: f32,
     /// In the display's middle.
     pub(super) pixels_per_degree: f32,

@@ -1,6 +1,7 @@
 //! Differences as numbers see them.
 
-/// Peak signal-to-noise ratio of red, green and blue in decibels, peak 255; `None` (infinite) for equal colours.
+/// Peak signal-to-noise ratio of red, green and blue in decibels, peak 255; `None` (infinite) for
+/// equal colours.
 pub(super) fn psnr_db(a: &[[u8; 4]], b: &[[u8; 4]]) -> Option<f64> {
     let squares: u64 = a
         .iter()

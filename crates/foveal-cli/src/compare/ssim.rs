@@ -1,6 +1,7 @@
-//! Structural similarity: Wang, Bovik, Sheikh and Simoncelli 2004, «Image Quality Assessment: From Error Visibility
-//! to Structural Similarity», on luma (Rec. 601 weights, not rounded), with the paper's own choices: an 11x11 Gaussian
-//! window of σ = 1.5, K₁ = 0.01, K₂ = 0.03, the mean over all places where the window lies within the picture.
+//! Structural similarity: Wang, Bovik, Sheikh and Simoncelli 2004, «Image Quality Assessment: From
+//! Error Visibility to Structural Similarity», on luma (Rec. 601 weights, not rounded), with the
+//! paper's own choices: an 11x11 Gaussian window of σ = 1.5, K₁ = 0.01, K₂ = 0.03, the mean over
+//! all places where the window lies within the picture.
 
 use foveal_host::picture::Picture;
 
@@ -45,7 +46,8 @@ fn luma(picture: &Picture) -> Vec<f64> {
     picture.pixels.iter().map(weigh).collect()
 }
 
-/// The window's weighted mean at each place where it lies within the picture: first along rows, then columns.
+/// The window's weighted mean at each place where it lies within the picture: first along rows,
+/// then columns.
 fn blurred(width: usize, height: usize, signal: &[f64]) -> Vec<f64> {
     let weights = gaussian();
     let weighted = |values: &[f64], stride: usize| {
@@ -108,7 +110,8 @@ mod tests {
         assert!((mean_ssim(&a, &b).unwrap() - expected).abs() < 1e-9);
     }
 
-    /// The value comes from a direct evaluation of the paper's formula with the full 11x11 window in NumPy.
+    /// The value comes from a direct evaluation of the paper's formula with the full 11x11 window
+    /// in NumPy.
     #[test]
     fn a_textured_pair_has_the_value_of_an_independent_evaluation() {
         let base = |x: u32, y: u32| x * 37 + y * 91 + x * y * 5;

@@ -1,7 +1,8 @@
 //! `foveal cull`: occlusion culling alone, on the CPU.
 //!
-//! In the order of a run: the arguments are checked, the scene or recording becomes subjects (occluders,
-//! boxes, eyes), each eye is culled and timed, compared with the exact reference where wanted, and drawn.
+//! In the order of a run: the arguments are checked, the scene or recording becomes subjects
+//! (occluders, boxes, eyes), each eye is culled and timed, compared with the exact reference where
+//! wanted, and drawn.
 
 mod args;
 #[cfg(test)]

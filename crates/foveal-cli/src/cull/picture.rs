@@ -13,8 +13,8 @@ const SMALL: [u8; 4] = [240, 220, 40, 255];
 /// The overlay is at least this wide where whole pixels allow, so that boxes can be told apart.
 const OVERLAY_WIDTH: u32 = 1280;
 
-/// The depth buffer in greys, logarithmic between its own nearest (white) and farthest (dark) pixel; dark
-/// blue where nothing is proven to be covered.
+/// The depth buffer in greys, logarithmic between its own nearest (white) and farthest (dark)
+/// pixel; dark blue where nothing is proven to be covered.
 pub(super) fn depth(culler: &Culler) -> anyhow::Result<Picture> {
     let (width, height) = culler.size();
     let mut depth = vec![0.0; width as usize * height as usize];
@@ -41,7 +41,8 @@ pub(super) fn depth(culler: &Culler) -> anyhow::Result<Picture> {
     })
 }
 
-/// The depth buffer, enlarged, with the edges of all boxes in the frustum. What is seen is drawn last.
+/// The depth buffer, enlarged, with the edges of all boxes in the frustum. What is seen is drawn
+/// last.
 pub(super) fn overlay(
     culler: &Culler,
     eye: &Eye,

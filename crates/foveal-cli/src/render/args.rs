@@ -13,8 +13,8 @@ use foveal_host::values;
 /// Arguments of `foveal render`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file (.gltf or .glb), or a generated scene: demo, demo:INSTANCES, materials, materials2,
-    /// cornell, materials-grid, alpha
+    /// A glTF 2.0 file (.gltf or .glb), or a generated scene: demo, demo:INSTANCES, materials,
+    /// materials2, cornell, materials-grid, alpha
     #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 

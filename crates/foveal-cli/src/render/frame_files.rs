@@ -73,7 +73,8 @@ pub(super) struct FrameJob {
     pub(super) file: PathBuf,
 }
 
-/// The frames of a range. Each depends on its own number alone, so that any sub-range gives the same files.
+/// The frames of a range. Each depends on its own number alone, so that any sub-range gives the
+/// same files.
 pub(super) fn sequence(range: Range<u32>, fps: f32, pattern: &FramePattern) -> Vec<FrameJob> {
     range
         .map(|frame| FrameJob {

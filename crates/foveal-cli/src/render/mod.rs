@@ -1,7 +1,8 @@
 //! `foveal render`: from a scene to pictures on the disk.
 //!
-//! In the order of a run: the arguments are checked, the places for the files are tried, the scene loads while
-//! the device opens, the scene goes onto the device, each frame is drawn and written, the figures are written.
+//! In the order of a run: the arguments are checked, the places for the files are tried, the scene
+//! loads while the device opens, the scene goes onto the device, each frame is drawn and written,
+//! the figures are written.
 
 mod args;
 mod frame_files;
@@ -135,7 +136,8 @@ fn prepare(
         .context("cannot start a thread")?;
 
     let rate_image = rate_image(settings)?;
-    // Fails before the scene is there where the size is beyond the device: the thread then ends with the program.
+    // Fails before the scene is there where the size is beyond the device: the thread then ends
+    // with the program.
     let mut device_ms = Vec::new();
     let gpu = timed(&mut device_ms, "device", || {
         gpu::open(args.adapter.as_deref())

@@ -1,5 +1,5 @@
-//! `--stats`: what the pictures cost, as JSON. docs/stats.schema.json describes each field; a change that breaks
-//! a reader of it raises [`SCHEMA_VERSION`].
+//! `--stats`: what the pictures cost, as JSON. docs/stats.schema.json describes each field; a
+//! change that breaks a reader of it raises [`SCHEMA_VERSION`].
 
 use foveal::{AdapterStats, FrameStats, SceneStats, Settings, Timing};
 use serde::Serialize;
@@ -19,7 +19,8 @@ pub(super) struct RunStats {
     pub(super) settings: Settings,
     pub(super) adapter: AdapterStats,
     pub(super) scene: NamedSceneStats,
-    /// What happened until the first frame was drawn, in order; loading and opening the device overlap.
+    /// What happened until the first frame was drawn, in order; loading and opening the device
+    /// overlap.
     pub(super) load_ms: Vec<Timing>,
     /// From the program's start until the first picture was on the disk.
     pub(super) first_picture_ms: f64,

@@ -1,7 +1,8 @@
 //! The real window on a virtual screen, driven by real keys and a real pointer.
 //!
-//! Needs Xvfb and xdotool; without them it says so and passes, unless `FOVEAL_WINDOW_TEST=required`, as `./run test`
-//! sets it. Screenshots come from Xvfb's frame buffer; `FOVEAL_SCREENSHOTS=DIR` keeps them as PNG files.
+//! Needs Xvfb and xdotool; without them it says so and passes, unless
+//! `FOVEAL_WINDOW_TEST=required`, as `./run test` sets it. Screenshots come from Xvfb's frame
+//! buffer; `FOVEAL_SCREENSHOTS=DIR` keeps them as PNG files.
 
 #![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
 #![allow(clippy::print_stdout, reason = "a test says what it skipped")]

@@ -1,7 +1,8 @@
-//! Another client of the screen: one that drags a file over the window, and one that reads the clipboard.
+//! Another client of the screen: one that drags a file over the window, and one that reads the
+//! clipboard.
 //!
-//! The file manager's side of the X drag-and-drop protocol, version 5, and the requestor's of the ICCCM's selections
-//! (section 2.4), for texts that fit into one property.
+//! The file manager's side of the X drag-and-drop protocol, version 5, and the requestor's of the
+//! ICCCM's selections (section 2.4), for texts that fit into one property.
 
 use std::path::Path;
 use std::time::{Duration, Instant};

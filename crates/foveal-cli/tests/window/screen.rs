@@ -296,7 +296,8 @@ pub(crate) fn start_server(folder: &Path, (width, height): (usize, usize)) -> (R
     for _ in 0..16 {
         let display = format!(":{}", first + NEXT.fetch_add(1, Ordering::Relaxed) % 16);
         let server = Command::new("Xvfb")
-            // Else it starts anew when its last client goes, as the one that asks below does, and turns the window away.
+            // Else it starts anew when its last client goes, as the one that asks below does, and
+            // turns the window away.
             .args([&display, "-noreset", "-nolisten", "tcp", "-screen", "0"])
             .arg(format!("{width}x{height}x24"))
             .args(["-fbdir", "."])

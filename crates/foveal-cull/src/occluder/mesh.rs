@@ -8,7 +8,8 @@ use glam::{DVec3, Vec3};
 
 /// A baked occluder mesh.
 ///
-/// Immutable; share it between occluders by `Arc`. [`BakeOptions`](crate::BakeOptions) decide its size.
+/// Immutable; share it between occluders by `Arc`. [`BakeOptions`](crate::BakeOptions) decide its
+/// size.
 #[derive(Clone, Debug)]
 pub struct OccluderMesh {
     pub(crate) vertices: Vertices,

@@ -48,7 +48,8 @@ impl MeshBuilder {
         )
     }
 
-    /// A flat quad as [`panel`](Self::panel) with the UVs of its upper left and lower right corners.
+    /// A flat quad as [`panel`](Self::panel) with the UVs of its upper left and lower right
+    /// corners.
     pub(crate) fn panel_uv(
         &mut self,
         corner: Vec3,
@@ -72,7 +73,8 @@ impl MeshBuilder {
         self.bevel_box(min, max, 0.0)
     }
 
-    /// A box whose edges are cut by `bevel` metres and shaded round; 44 triangles (12 without bevel).
+    /// A box whose edges are cut by `bevel` metres and shaded round; 44 triangles (12 without
+    /// bevel).
     pub(crate) fn bevel_box(&mut self, min: Vec3, max: Vec3, bevel: f32) -> &mut Self {
         let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
         let size = max - min;

@@ -65,8 +65,8 @@ impl CameraArgs {
         Ok(())
     }
 
-    /// The same along a path; one that is asked for already stays. Where the scene has a path of its own and no other place
-    /// is asked for it is that one, else swaying.
+    /// The same along a path; one that is asked for already stays. Where the scene has a path of
+    /// its own and no other place is asked for it is that one, else swaying.
     pub fn along_a_path(&self, scene_name: &str) -> Self {
         let is_placed = self.camera.is_some() || self.eye.is_some() || self.exact_camera.is_some();
         let has_own = scene_source::camera_path(scene_name).is_some();

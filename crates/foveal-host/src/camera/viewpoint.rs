@@ -31,11 +31,13 @@ enum Kind {
     Sway(Box<Kind>),
 }
 
-/// How far [`Kind::Sway`] moves to either side in metres; in a radian per second, so that it is the speed too.
+/// How far [`Kind::Sway`] moves to either side in metres; in a radian per second, so that it is the
+/// speed too.
 const SWAY_M: f32 = 0.05;
 
 impl Viewpoint {
-    /// Follows the arguments; `scene` is posed at time 0, so that the choice does not depend on the frame.
+    /// Follows the arguments; `scene` is posed at time 0, so that the choice does not depend on the
+    /// frame.
     pub fn choose(args: &CameraArgs, scene: &Scene, scene_name: &str) -> anyhow::Result<Self> {
         let fov_y_deg = args.fov.unwrap_or(DEFAULT_FOV_DEG);
         let fov_y_rad = args.fov.map(f32::to_radians);

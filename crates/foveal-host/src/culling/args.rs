@@ -68,8 +68,8 @@ pub struct ViewArgs {
     #[arg(long, value_name = "DEG", value_parser = values::fov_deg, conflicts_with = "cameras")]
     pub(super) fov: Option<f32>,
 
-    /// Cameras from a JSON list of {eye, target, up, fov_y_deg or ortho_height, aspect, near, far}; see
-    /// docs/cull-schema.md
+    /// Cameras from a JSON list of {eye, target, up, fov_y_deg or ortho_height, aspect, near, far};
+    /// see docs/cull-schema.md
     #[arg(long, value_name = "FILE.json")]
     pub(super) cameras: Option<PathBuf>,
 }

@@ -1,4 +1,5 @@
-//! What a result must hold for, and how long it may take: one eye or two, a radius around them, a time budget.
+//! What a result must hold for, and how long it may take: one eye or two, a radius around them, a
+//! time budget.
 
 use std::time::Instant;
 
@@ -55,8 +56,8 @@ impl CullingArgs {
     }
 }
 
-/// Eyes from which a result for `view` is compared with the reference: its own, and with a radius six more each,
-/// moved by almost that along their axes.
+/// Eyes from which a result for `view` is compared with the reference: its own, and with a radius
+/// six more each, moved by almost that along their axes.
 pub(super) fn places(view: &View) -> Vec<Eye> {
     let radius = 0.999 * view.validity_radius_m;
     [Some(view.eye), view.second_eye]

@@ -1,7 +1,8 @@
 //! Cameras from a JSON list, as outside programs write them.
 //!
-//! Each entry is `{eye, target, up, fov_y_deg or ortho_height, aspect, near, far}`; what may be left out and
-//! what then holds is in docs/cull-schema.md. Errors name the file, the entry and the key.
+//! Each entry is `{eye, target, up, fov_y_deg or ortho_height, aspect, near, far}`; what may be
+//! left out and what then holds is in docs/cull-schema.md. Errors name the file, the entry and the
+//! key.
 
 use std::path::Path;
 

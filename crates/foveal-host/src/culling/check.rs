@@ -1,4 +1,5 @@
-//! Comparison with the exact reference: was anything culled that can be seen, was anything kept that cannot.
+//! Comparison with the exact reference: was anything culled that can be seen, was anything kept
+//! that cannot.
 
 use anyhow::Context;
 use foveal_cull::reference::{Reference, Seen};

@@ -22,8 +22,8 @@ pub fn clip_position(eye: &Eye, world: DVec3) -> DVec4 {
     )
 }
 
-/// Whether one plane of the frustum has the whole box behind it. Such a box is certainly not seen; others may
-/// still miss the frustum.
+/// Whether one plane of the frustum has the whole box behind it. Such a box is certainly not seen;
+/// others may still miss the frustum.
 pub(super) fn is_outside(eye: &Eye, bounds: &Aabb) -> bool {
     let [near, far] = eye.projection.near_far_m();
     let behind = corners(bounds).map(|corner| {

@@ -1,7 +1,9 @@
-//! FLIP: the difference that a viewer sees when two pictures are shown in turn at the same place (Andersson et
-//! al. 2020, «FLIP: A Difference Evaluator for Alternating Images»), by NVIDIA's own code.
+//! FLIP: the difference that a viewer sees when two pictures are shown in turn at the same place
+//! (Andersson et al. 2020, «FLIP: A Difference Evaluator for Alternating Images»), by NVIDIA's own
+//! code.
 //!
-//! The viewer sits as the paper assumes: 0.7 m from a display 0.7 m wide with 3840 pixels, 67 pixels per degree.
+//! The viewer sits as the paper assumes: 0.7 m from a display 0.7 m wide with 3840 pixels, 67
+//! pixels per degree.
 
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageFloat, FlipImageRgb8};
 

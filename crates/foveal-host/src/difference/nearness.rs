@@ -1,11 +1,13 @@
-//! How near one picture is to another, as the benches say it: by FLIP, and by the eye's metric at one display.
+//! How near one picture is to another, as the benches say it: by FLIP, and by the eye's metric at
+//! one display.
 
 use foveal_vdp::{Display, Gaze, Metric, Pixels};
 
 use super::flip::ErrorMap;
 use crate::picture::Picture;
 
-/// The display of the benches that name none: `h60`, 60 degrees across, whatever the picture's size; the eye looks at the middle.
+/// The display of the benches that name none: `h60`, 60 degrees across, whatever the picture's
+/// size; the eye looks at the middle.
 pub const BENCH_DISPLAY: &str = "h60";
 
 /// How near a picture is to its reference.
@@ -13,7 +15,8 @@ pub const BENCH_DISPLAY: &str = "h60";
 pub struct Nearness {
     /// Mean FLIP error; 0 is equal.
     pub flip: f64,
-    /// At [`BENCH_DISPLAY`]: 10 is no visible difference. `None` where the picture is too small for the metric.
+    /// At [`BENCH_DISPLAY`]: 10 is no visible difference. `None` where the picture is too small for
+    /// the metric.
     pub jod: Option<f32>,
 }
 

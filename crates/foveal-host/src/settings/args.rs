@@ -1,7 +1,7 @@
 //! The settings as flags, made from their table: `--tone-map aces` for the key `tone-map`.
 //!
-//! Two flags are spelled otherwise: `--size WxH` is width and height, and `--rate FILE.png` names the image source
-//! and its file at once.
+//! Two flags are spelled otherwise: `--size WxH` is width and height, and `--rate FILE.png` names
+//! the image source and its file at once.
 
 use std::path::PathBuf;
 use std::str::FromStr;

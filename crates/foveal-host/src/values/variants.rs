@@ -1,5 +1,5 @@
-//! Choices on the command line, taken from the enums of the library as serde spells them, so that flags and
-//! settings file can never disagree about a name.
+//! Choices on the command line, taken from the enums of the library as serde spells them, so that
+//! flags and settings file can never disagree about a name.
 
 use std::marker::PhantomData;
 

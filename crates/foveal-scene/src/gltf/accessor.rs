@@ -1,5 +1,5 @@
-//! Definitions of accessors (glTF 2.0 specification, section 3.6.2); [`reader`](super::reader) gives
-//! their elements.
+//! Definitions of accessors (glTF 2.0 specification, section 3.6.2); [`reader`](super::reader)
+//! gives their elements.
 
 use std::collections::HashMap;
 
@@ -45,7 +45,8 @@ impl Component {
     }
 }
 
-/// For each accessor the first one that reads the same: meshes that differ by nothing else are built once.
+/// For each accessor the first one that reads the same: meshes that differ by nothing else are
+/// built once.
 pub(crate) fn first_of_equal(accessors: &[Accessor]) -> Vec<u32> {
     let mut first = HashMap::new();
     let number = |(i, accessor): (usize, &'_ Accessor)| {

@@ -1,8 +1,8 @@
 //! What a file may ask for, added up before anything is allocated.
 //!
-//! The options limit each kind of thing for itself; the [`Budget`] limits all of them together by the size of the
-//! files: a few bytes can name the same data many times over, promise pictures of a billion texels, or multiply
-//! instances by primitives, and none of that may fill the memory.
+//! The options limit each kind of thing for itself; the [`Budget`] limits all of them together by
+//! the size of the files: a few bytes can name the same data many times over, promise pictures of a
+//! billion texels, or multiply instances by primitives, and none of that may fill the memory.
 
 use std::sync::atomic::{AtomicU64, Ordering};
 

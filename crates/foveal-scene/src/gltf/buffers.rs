@@ -1,4 +1,5 @@
-//! The bytes behind the buffers, decompressed where they are compressed, and the budgets that keep short files from becoming long vectors.
+//! The bytes behind the buffers, decompressed where they are compressed, and the budgets that keep
+//! short files from becoming long vectors.
 
 use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -13,8 +14,8 @@ use super::uri::{self, Uri};
 use crate::error::{Flaw, Parsed};
 use crate::{LoadOptions, threads};
 
-/// Numbers that all accessors together may yield, and how many more for each byte of the files: overlapping accessors
-/// can make many out of few bytes.
+/// Numbers that all accessors together may yield, and how many more for each byte of the files:
+/// overlapping accessors can make many out of few bytes.
 const FREE_NUMBERS: u64 = 64 << 20;
 const NUMBERS_PER_BYTE: u64 = 64;
 
@@ -88,7 +89,8 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    /// Decodes what is compressed. What is broken fails only when something reads it; what is too large is an error.
+    /// Decodes what is compressed. What is broken fails only when something reads it; what is too
+    /// large is an error.
     pub(crate) fn decompress(&mut self, document: &Document, parallel: bool) -> Parsed<()> {
         let views = 0..document.views.len() as u32;
         let coded: Vec<(u32, &Coded)> = views
@@ -195,7 +197,8 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    /// Counts elements that exist only by declaration: a short file must not fill the memory with zeros.
+    /// Counts elements that exist only by declaration: a short file must not fill the memory with
+    /// zeros.
     pub(crate) fn take_unbacked(&self, elements: u64) -> Parsed<()> {
         self.unbacked
             .take(elements, "elements without stored values")

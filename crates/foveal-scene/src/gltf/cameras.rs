@@ -69,7 +69,8 @@ fn parse_projection(o: Obj<'_>) -> Parsed<Projection> {
         "orthographic" => {
             let p = o.need("orthographic", o.object("orthographic")?)?;
             let parse = || -> Parsed<Projection> {
-                // Negative magnifications occur in the wild and mirror the picture; the size is what is meant.
+                // Negative magnifications occur in the wild and mirror the picture; the size is
+                // what is meant.
                 let y_mag = p.need("ymag", p.float("ymag")?)?.abs();
                 if y_mag <= 0.0 {
                     return Err(Flaw::new("is 0").under("ymag"));

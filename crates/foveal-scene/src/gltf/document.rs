@@ -264,7 +264,8 @@ fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
     })
 }
 
-/// The roots of the default scene; of the first one where none is named; all parentless nodes where there is none.
+/// The roots of the default scene; of the first one where none is named; all parentless nodes where
+/// there is none.
 fn parse_roots(root: Obj<'_>, counts: &Counts, warn: &mut Vec<String>) -> Parsed<Vec<u32>> {
     let scenes = root.objects("scenes", |o| o.indices("nodes", counts.nodes))?;
     let scene = root.index("scene", counts.scenes)?;

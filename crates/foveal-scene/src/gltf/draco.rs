@@ -67,7 +67,8 @@ impl DracoDef {
         (points.unwrap_or(0), corners / 3)
     }
 
-    /// Memory that decoding takes: the elements, and what the decoder keeps of each point and triangle.
+    /// Memory that decoding takes: the elements, and what the decoder keeps of each point and
+    /// triangle.
     pub(crate) fn decoding_bytes(&self, accessors: &[Accessor]) -> u64 {
         let (points, triangles) = self.promised(accessors);
         let width = |(a, _): &(u32, u32)| 8 * accessors[*a as usize].width as u64;
@@ -136,8 +137,9 @@ impl DracoDef {
     }
 }
 
-/// Writers that leave all attributes outside the stream, as for sparse accessors, store indices of a mesh without points.
-/// The decoder wants points for them; indices are a byte each then, as they are for up to 255 points.
+/// Writers that leave all attributes outside the stream, as for sparse accessors, store indices of
+/// a mesh without points. The decoder wants points for them; indices are a byte each then, as they
+/// are for up to 255 points.
 fn with_points(bytes: &[u8]) -> Cow<'_, [u8]> {
     const HEADER: usize = 11;
     const SEQUENTIAL: u8 = 0;

@@ -44,8 +44,8 @@ const INVISIBLE: &[&str] = &[
     "OMI_physics_shape",
 ];
 
-/// Formats of textures that are not read. Where such a texture has another picture, that one is shown and there is
-/// nothing to say; where it has none, the texture's own warning says so.
+/// Formats of textures that are not read. Where such a texture has another picture, that one is
+/// shown and there is nothing to say; where it has none, the texture's own warning says so.
 const TEXTURE_FORMATS: &[&str] = &["EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"];
 
 /// How a file that requires an extension becomes one that does not.

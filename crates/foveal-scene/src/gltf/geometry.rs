@@ -136,7 +136,8 @@ fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec
     }
 }
 
-/// Renumbers the indices when they use only a part of the vertices; returns each vertex's number in the file.
+/// Renumbers the indices when they use only a part of the vertices; returns each vertex's number in
+/// the file.
 ///
 /// Exporters like to cut one large vertex buffer into many primitives: without this each of them
 /// would carry all of it.

@@ -46,8 +46,8 @@ impl ImageDef {
     }
 }
 
-/// For each image the first one with the same source: what is named twice is decoded once. Views that begin at the same
-/// byte hold the same picture.
+/// For each image the first one with the same source: what is named twice is decoded once. Views
+/// that begin at the same byte hold the same picture.
 pub(crate) fn first_of_equal(images: &[ImageDef], views: &[View]) -> Vec<u32> {
     let mut by_uri = HashMap::new();
     let mut by_place = HashMap::new();

@@ -131,7 +131,8 @@ impl<'a> Obj<'a> {
         self.read(key, |v| v.as_str().ok_or_else(|| wrong(v, "a string")))
     }
 
-    /// A name for people, cut where it is longer than any name: it may be copied for each of a million instances.
+    /// A name for people, cut where it is longer than any name: it may be copied for each of a
+    /// million instances.
     pub(crate) fn name(self, key: &str) -> Parsed<Option<String>> {
         const MOST_BYTES: usize = 1024;
         let name = self.string(key)?;

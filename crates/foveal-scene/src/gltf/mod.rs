@@ -70,7 +70,8 @@ pub(crate) fn import(
     options: &LoadOptions,
     resolver: &Resolver<'_>,
 ) -> Result<Scene, SceneError> {
-    // The last net. Bad input is found by checks; what slips through must still not end the program.
+    // The last net. Bad input is found by checks; what slips through must still not end the
+    // program.
     catch_unwind(AssertUnwindSafe(|| {
         import_checked(bytes, file, options, resolver)
     }))

@@ -8,7 +8,8 @@ use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Influences, MorphTarget, Shape};
 
-/// Reads what deforms a primitive; `None` for rigid ones. `source` names each vertex's number in the file.
+/// Reads what deforms a primitive; `None` for rigid ones. `source` names each vertex's number in
+/// the file.
 pub(crate) fn read_shape(
     def: &PrimitiveDef,
     reader: Reader<'_>,

@@ -101,7 +101,8 @@ impl NodeDef {
     }
 }
 
-/// The bottom row of a node's matrix is (0, 0, 0, 1) by the specification; anything else would not be a place.
+/// The bottom row of a node's matrix is (0, 0, 0, 1) by the specification; anything else would not
+/// be a place.
 fn affine(mut columns: [f32; 16]) -> Mat4 {
     for (i, w) in [(3, 0.0), (7, 0.0), (11, 0.0), (15, 1.0)] {
         columns[i] = w;

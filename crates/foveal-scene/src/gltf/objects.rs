@@ -129,7 +129,8 @@ pub(crate) struct Placed {
     pub(crate) clouds: Vec<Option<Arc<Cloud>>>,
 }
 
-/// Places every shown node's elements. What lies beyond the range of numbers is left out with a warning.
+/// Places every shown node's elements. What lies beyond the range of numbers is left out with a
+/// warning.
 pub(crate) fn place(
     shown: &[Shown],
     nodes: &[NodeDef],

@@ -178,7 +178,8 @@ impl Geometry {
 /// Memory per corner of a triangle while a mesh is built: as read, and as kept.
 const INDEX_BYTES: u64 = 8;
 
-/// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what deforms it.
+/// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what
+/// deforms it.
 fn vertex_bytes(def: &PrimitiveDef) -> u64 {
     let vertex = size_of::<Vertex>() as u64;
     let joints = def.attributes.joints.iter().flatten().count() as u64;

@@ -1,7 +1,7 @@
 //! Pictures: from a file's bytes to RGBA8 texels.
 //!
-//! Every decoder runs behind checks of what the header promises and behind a net for panics: a broken
-//! picture must cost neither the scene nor the machine.
+//! Every decoder runs behind checks of what the header promises and behind a net for panics: a
+//! broken picture must cost neither the scene nor the machine.
 
 use std::borrow::Cow;
 use std::io::Cursor;
@@ -142,7 +142,8 @@ pub(crate) fn promise(bytes: &[u8]) -> Result<Promise, String> {
             height,
             bytes_per_texel: decoder.color_type().bytes_per_pixel(),
         };
-        // Other formats say a plain picture in fewer bytes; what they take is counted like all else.
+        // Other formats say a plain picture in fewer bytes; what they take is counted like all
+        // else.
         let is_png = format_of(bytes) == Ok(ImageFormat::Png);
         if is_png && promise.texels() > bytes.len() as u64 * MAX_TEXELS_PER_BYTE {
             return Err(format!(

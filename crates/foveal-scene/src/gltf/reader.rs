@@ -1,4 +1,5 @@
-//! The elements of accessors as numbers: integer and normalized components, strides, sparse substitution.
+//! The elements of accessors as numbers: integer and normalized components, strides, sparse
+//! substitution.
 
 use super::accessor::{Accessor, Component};
 use super::buffers::Buffers;

@@ -1,4 +1,5 @@
-//! From nodes, skins, morph targets and animations to the rig that [`Scene::pose`](crate::Scene::pose) plays.
+//! From nodes, skins, morph targets and animations to the rig that
+//! [`Scene::pose`](crate::Scene::pose) plays.
 
 use std::sync::Arc;
 

@@ -1,8 +1,8 @@
 //! Tangents by MikkTSpace, the method that glTF prescribes and normal maps are baked for.
 //!
 //! The implementation at hand takes time in the square of the triangles around a vertex, recurses
-//! over them, and searches the whole mesh for each triangle without area. So the latter are kept from
-//! it, and meshes with excessive fans get the same angle-weighted means without the search for
+//! over them, and searches the whole mesh for each triangle without area. So the latter are kept
+//! from it, and meshes with excessive fans get the same angle-weighted means without the search for
 //! connected fans, which is what MikkTSpace yields for clean surfaces.
 
 use std::collections::HashMap;

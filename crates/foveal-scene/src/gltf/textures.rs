@@ -1,7 +1,7 @@
 //! Textures: which ones the materials need, decoding, mip levels, and placeholders.
 //!
-//! One picture gives several [`Texture`]s when it is used with several samplers or meanings (colour,
-//! cut-out, data, normals); equal uses share one.
+//! One picture gives several [`Texture`]s when it is used with several samplers or meanings
+//! (colour, cut-out, data, normals); equal uses share one.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -102,7 +102,8 @@ impl Wanted {
         let sampler = texture
             .sampler
             .map_or_else(Sampler::default, |s| document.samplers[s as usize]);
-        // Without mip levels only the colour space is left to differ, and with a picture the placeholder is not needed.
+        // Without mip levels only the colour space is left to differ, and with a picture the
+        // placeholder is not needed.
         let role = match (role, sampler.mip, texture.image) {
             (Role::Cutout(_), None, Some(_)) => Role::Color,
             (Role::Normal, None, Some(_)) => Role::Data,
@@ -131,8 +132,8 @@ struct Source<'a> {
     uses: Vec<usize>,
 }
 
-/// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder; one that is beyond a limit
-/// is an error before anything is decoded.
+/// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder; one
+/// that is beyond a limit is an error before anything is decoded.
 pub(crate) fn decode(
     wanted: &Wanted,
     reader: Reader<'_>,
@@ -160,7 +161,8 @@ pub(crate) fn decode(
     Ok(textures.into_iter().map(|(_, t)| t).collect())
 }
 
-/// The wanted pictures, each once. Files are read here, one after the other: a resolver need not be quick or parallel.
+/// The wanted pictures, each once. Files are read here, one after the other: a resolver need not be
+/// quick or parallel.
 fn sources<'a>(wanted: &Wanted, reader: Reader<'a>, resolver: &Resolver<'_>) -> Vec<Source<'a>> {
     let mut sources: Vec<Source<'a>> = Vec::new();
     let mut number: HashMap<Option<u32>, usize> = HashMap::new();
@@ -199,7 +201,8 @@ impl Source<'_> {
         self.encoded.as_ref().ok().map(|(_, promise)| *promise)
     }
 
-    /// Memory of the textures made from it, with their mip levels, where none is larger than `largest`.
+    /// Memory of the textures made from it, with their mip levels, where none is larger than
+    /// `largest`.
     fn kept_bytes(&self, largest: u32) -> u64 {
         self.promise().map_or(0, |promise| {
             let drop = levels_to_drop(promise.width, promise.height, largest);
@@ -209,8 +212,8 @@ impl Source<'_> {
         })
     }
 
-    /// Memory while it is decoded, beside what is kept. What is reduced is not kept as it was decoded, and of several uses
-    /// one after the other has a copy.
+    /// Memory while it is decoded, beside what is kept. What is reduced is not kept as it was
+    /// decoded, and of several uses one after the other has a copy.
     fn decoding_bytes(&self, largest: u32) -> u64 {
         self.promise().map_or(0, |promise| {
             let reduced = levels_to_drop(promise.width, promise.height, largest) > 0;

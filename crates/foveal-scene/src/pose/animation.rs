@@ -56,7 +56,8 @@ impl Animation {
         }
     }
 
-    /// The animation's own time for a time of the scene: looped; times that are not finite count as 0.
+    /// The animation's own time for a time of the scene: looped; times that are not finite count as
+    /// 0.
     pub(crate) fn looped(&self, time_s: f32) -> f32 {
         if !time_s.is_finite() || self.duration_s <= 0.0 {
             return 0.0;
@@ -94,7 +95,8 @@ impl Channel {
         }
     }
 
-    /// Numbers of a key: `part` 0 is the in-tangent, 1 the value, 2 the out-tangent of a cubic spline.
+    /// Numbers of a key: `part` 0 is the in-tangent, 1 the value, 2 the out-tangent of a cubic
+    /// spline.
     fn part(&self, key: usize, part: usize) -> &[f32] {
         let at = match self.interpolation {
             Interpolation::CubicSpline => key * 3 + part,

@@ -36,7 +36,8 @@ pub(crate) struct Shape {
     pub(crate) rest: Vec<Vertex>,
     pub(crate) targets: Vec<MorphTarget>,
     pub(crate) influences: Option<Influences>,
-    /// Every triangle has three vertices of its own and its normal is that of its plane, deformed too.
+    /// Every triangle has three vertices of its own and its normal is that of its plane, deformed
+    /// too.
     pub(crate) flat: bool,
 }
 
@@ -132,7 +133,8 @@ fn blend(matrices: &[Mat4], influences: &Influences, vertex: usize) -> Mat4 {
     sum
 }
 
-/// The matrix that carries normals: the inverse transpose up to a factor, but safe for singular ones.
+/// The matrix that carries normals: the inverse transpose up to a factor, but safe for singular
+/// ones.
 fn cofactor(matrix: Mat4) -> Mat3 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
     Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y))

@@ -1,4 +1,5 @@
-//! What moves: the node hierarchy, animations, skins and morph targets behind [`Scene::pose`](crate::Scene::pose).
+//! What moves: the node hierarchy, animations, skins and morph targets behind
+//! [`Scene::pose`](crate::Scene::pose).
 
 mod animation;
 mod clip;

@@ -10,7 +10,8 @@ use super::{Animation, Clip, Deformer, Local, Skin, Target};
 use crate::cloud::Cloud;
 use crate::{Aabb, Scene, Vertex, gltf, threads};
 
-/// How a scene moves: node hierarchy, animations, skins, morph targets. Opaque; the default does not move.
+/// How a scene moves: node hierarchy, animations, skins, morph targets. Opaque; the default does
+/// not move.
 #[derive(Clone, Debug, Default)]
 pub struct Rig {
     pub(crate) data: Option<Arc<RigData>>,
@@ -222,8 +223,8 @@ impl Scene {
         self.animation_duration_s() > 0.0
     }
 
-    /// Length in seconds of the clip that plays, or of the longest one where several do; 0 without any. Each one loops
-    /// over its own length.
+    /// Length in seconds of the clip that plays, or of the longest one where several do; 0 without
+    /// any. Each one loops over its own length.
     #[must_use]
     pub fn animation_duration_s(&self) -> f32 {
         let played = self.animations().get(self.rig.played.clone());
@@ -235,14 +236,15 @@ impl Scene {
         self.rig.data.as_ref().map_or(&[], |rig| &rig.animations)
     }
 
-    /// The name and length in seconds of each clip, in the file's order. Names may be empty or equal.
+    /// The name and length in seconds of each clip, in the file's order. Names may be empty or
+    /// equal.
     pub fn clips(&self) -> impl ExactSizeIterator<Item = (&str, f32)> {
         let animations = self.animations().iter();
         animations.map(|a| (a.name.as_str(), a.duration_s))
     }
 
-    /// Chooses what [`Scene::pose`] plays from now on; false, and nothing changes, if there is no such clip. A scene
-    /// without clips has its first.
+    /// Chooses what [`Scene::pose`] plays from now on; false, and nothing changes, if there is no
+    /// such clip. A scene without clips has its first.
     pub fn play(&mut self, clip: &Clip) -> bool {
         let clips = self.animations();
         let played = match clip {

@@ -113,7 +113,8 @@ impl Frame {
         }
     }
 
-    /// Blocks of up to `largest` pixels a side, by the distance to the gaze, with their middle's colour.
+    /// Blocks of up to `largest` pixels a side, by the distance to the gaze, with their middle's
+    /// colour.
     fn blocks(&self, largest: i32, gaze: (f32, f32)) -> Self {
         let (gaze_x, gaze_y) = (
             (gaze.0 * self.width as f32) as i32,
@@ -171,7 +172,8 @@ impl Frame {
         })
     }
 
-    /// Blocks of 8x8 pixels whose deviation from their mean is quantised coarsely, as strong compression does.
+    /// Blocks of 8x8 pixels whose deviation from their mean is quantised coarsely, as strong
+    /// compression does.
     fn quantised_blocks(&self) -> Self {
         Self::draw(self.width, self.height, |x, y| {
             let (left, upper) = (x / 8 * 8, y / 8 * 8);
@@ -202,7 +204,8 @@ fn scene_colour(scene: usize, x: i32, y: i32, time: usize) -> [u8; 3] {
             let grain = (hash(x, y, 2) % 17) as i32 - 8;
             grey_tinted(if joint { 30 } else { stone + grain })
         }
-        // Cloth: stripes that grow finer to the right, under a light that falls off; they move down.
+        // Cloth: stripes that grow finer to the right, under a light that falls off; they move
+        // down.
         1 => {
             let phase = (x * x / 300 + y + 2 * time) % 16;
             let bright = 150 - y / 3;

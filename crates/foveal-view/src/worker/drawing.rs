@@ -105,7 +105,8 @@ impl Drawing {
         let (Some(gpu), Some(scene)) = (&self.gpu, &mut self.scene) else {
             return Ok(None);
         };
-        // A view that stands still is drawn as if nothing had been before: its picture does not depend on the way to it.
+        // A view that stands still is drawn as if nothing had been before: its picture does not
+        // depend on the way to it.
         let is_afresh = repeat == 1;
         let Some(settings) = &request.reference else {
             self.reference = None;
@@ -266,8 +267,8 @@ impl Side {
         Ok(side)
     }
 
-    /// Draws the request's view; `scene` is posed for its moment. `is_afresh`: what was learnt from the frames before is
-    /// forgotten.
+    /// Draws the request's view; `scene` is posed for its moment. `is_afresh`: what was learnt from
+    /// the frames before is forgotten.
     fn draw(
         &mut self,
         scene: &mut Scene,

@@ -1,4 +1,5 @@
-//! How visible the difference of both sides is, in JOD, found by a thread of its own: drawing goes on meanwhile.
+//! How visible the difference of both sides is, in JOD, found by a thread of its own: drawing goes
+//! on meanwhile.
 
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::JoinHandle;
@@ -131,7 +132,8 @@ fn pixels(picture: &Rgba) -> Pixels<'_> {
     Pixels::Rgba(picture.bytes.as_chunks::<4>().0)
 }
 
-/// The display that the settings name. `camera` is one that the camera's own field of view fills, as a headset's.
+/// The display that the settings name. `camera` is one that the camera's own field of view fills,
+/// as a headset's.
 fn display(
     settings: &Settings,
     camera: &Camera,

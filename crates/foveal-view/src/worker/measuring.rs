@@ -17,7 +17,8 @@ pub(crate) struct Compared {
     pub(crate) is_done: bool,
 }
 
-/// Pairs of one view with one reference and one choice. The moment of an animated scene may change: both sides draw it.
+/// Pairs of one view with one reference and one choice. The moment of an animated scene may change:
+/// both sides draw it.
 pub(super) struct Measuring {
     reference: Settings,
     chosen: Settings,

@@ -1,5 +1,5 @@
-//! Blended surfaces at the sub-samples: drawn over nothing against the sub-samples' depth, band by band, averaged, and
-//! laid over the pixels' radiance when that is known.
+//! Blended surfaces at the sub-samples: drawn over nothing against the sub-samples' depth, band by
+//! band, averaged, and laid over the pixels' radiance when that is known.
 
 use super::pattern::{Band, Pattern};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, target, uniform};
@@ -175,7 +175,8 @@ mod tests {
             .collect()
     }
 
-    /// Where the glasses lie within the opaque quad or beside it, a picture of n times the size, averaged.
+    /// Where the glasses lie within the opaque quad or beside it, a picture of n times the size,
+    /// averaged.
     #[test]
     fn glass_has_the_edges_of_a_picture_of_n_times_the_size() {
         let (scene, camera) = (glasses(), camera());
@@ -207,7 +208,8 @@ mod tests {
                 s.geometry.path = geometry;
             });
             let (sum, most) = off(&settings);
-            // Where the opaque quad ends behind glass, the two are averaged one by one, and bright weighs less.
+            // Where the opaque quad ends behind glass, the two are averaged one by one, and bright
+            // weighs less.
             assert!(
                 sum < 0.1 * none && most < 0.1,
                 "{aa:?} {geometry:?}: {sum} of {none}, {most}"

@@ -11,9 +11,10 @@ pub(crate) fn by_triangles(settings: &Settings) -> bool {
         && settings.antialiasing.pattern == SamplePattern::Grid
 }
 
-/// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated once for n x n
-/// sub-samples: n x n trilinear samples of 1 / n each, 1 / n apart, blur as much as one of this size. In variances: one of
-/// size s has s^2 / 4 (a mip level's box and the filter's tent), their places (1 - 1 / n^2) / 12.
+/// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated
+/// once for n x n sub-samples: n x n trilinear samples of 1 / n each, 1 / n apart, blur as much as
+/// one of this size. In variances: one of size s has s^2 / 4 (a mip level's box and the filter's
+/// tent), their places (1 - 1 / n^2) / 12.
 pub(crate) fn footprint(settings: &Settings) -> Option<f64> {
     let samples = f64::from(Pattern::of(settings).count());
     by_triangles(settings).then(|| ((1.0 + 2.0 / samples) / 3.0).sqrt())

@@ -16,7 +16,8 @@ pub(crate) struct FurtherTargets {
     /// Of entry i, row by row; without depth.
     pub(super) gbuffer: GBuffer,
     pub(super) depth_view: wgpu::TextureView,
-    /// Of one band: how many pixels show several triangles, which they are, and each one's largest surface.
+    /// Of one band: how many pixels show several triangles, which they are, and each one's largest
+    /// surface.
     pub(super) candidates: wgpu::Buffer,
     pub(super) no_candidates: wgpu::Buffer,
     pub(super) candidate_list_view: wgpu::TextureView,
@@ -28,13 +29,15 @@ const NO_CANDIDATES: [u32; 4] = [0, 1, 1, 0];
 /// Bytes of an entry in [`FurtherTargets`], the list of its pixels included.
 const FURTHER_BYTES: u64 = 16 + 8 + 4 + 4 + 4;
 impl FurtherTargets {
-    /// Room for one further surface in every fourth pixel, more for a small picture: one of a detailed scene has one in
-    /// every fifth. Where the room ends, a pixel shows its largest surface alone, until there is more.
+    /// Room for one further surface in every fourth pixel, more for a small picture: one of a
+    /// detailed scene has one in every fifth. Where the room ends, a pixel shows its largest
+    /// surface alone, until there is more.
     pub(super) fn usual_room(width: u32, height: u32) -> u64 {
         u64::from(width) * u64::from(height.div_ceil(4).max((2 * height).min(128)))
     }
 
-    /// For a picture of this size, with room for at least so many entries, as far as the device's textures go.
+    /// For a picture of this size, with room for at least so many entries, as far as the device's
+    /// textures go.
     pub(super) fn new(gpu: &Gpu, width: u32, height: u32, room: u64) -> Self {
         let most = gpu.device.limits().max_texture_dimension_2d;
         let rows = room.div_ceil(width.into()).clamp(1, most.into()) as u32;

@@ -50,10 +50,12 @@ fn corner_position(vertex: u32) -> vec3f {
     return bitcast<vec3f>(vertices[vertex * 4u].xyz);
 }
 
-// Mean position of some sub-samples in pixels of the frame, and their mean depth: that at the position, on a plane.
+// Mean position of some sub-samples in pixels of the frame, and their mean depth: that at the
+// position, on a plane.
 fn center_of_members(pixel: vec2u, members: u32) -> vec3f {
     var sum = vec3f(0.0);
-    // All are looked at: a loop of one length for all lanes is unrolled, one over the members is not.
+    // All are looked at: a loop of one length for all lanes is unrolled, one over the members is
+    // not.
     for (var i = 0u; i < COUNT; i++) {
         let at = vec3f(sample_position(pixel, i), depth_at(pixel, i));
         sum += select(vec3f(0.0), at, ((members >> i) & 1u) != 0u);

@@ -6,7 +6,8 @@ use crate::{Antialiasing, DebugView, Error, SamplePattern, Settings};
 
 /// Largest side of a grid.
 const MAX_SIDE: u32 = 16;
-/// Sub-samples whose surfaces are told apart: a pixel's are the bits of one word, and few are ever needed.
+/// Sub-samples whose surfaces are told apart: a pixel's are the bits of one word, and few are ever
+/// needed.
 const MAX_MSAA: u32 = 16;
 
 /// Checks the anti-aliasing settings.

@@ -1,8 +1,9 @@
 //! Where a pixel's sub-samples lie, and where each has its texel.
 //!
-//! A frame is drawn in bands of rows, so that the supersampled G-buffer stays small whatever the frame's size.
-//! A grid of n x n fills a band of n times the width and height in one go; a rotated pattern has one tile per
-//! sub-sample, one below the other, each drawn by itself with the frame moved by a part of a texel.
+//! A frame is drawn in bands of rows, so that the supersampled G-buffer stays small whatever the
+//! frame's size. A grid of n x n fills a band of n times the width and height in one go; a rotated
+//! pattern has one tile per sub-sample, one below the other, each drawn by itself with the frame
+//! moved by a part of a texel.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -76,8 +77,8 @@ impl Pattern {
         }
     }
 
-    /// Rows of pixels in a band of a frame of this size, at most, where a sub-sample takes `bytes` and a texture has
-    /// at most `max_texels` rows.
+    /// Rows of pixels in a band of a frame of this size, at most, where a sub-sample takes `bytes`
+    /// and a texture has at most `max_texels` rows.
     pub(crate) fn rows_per_band(
         &self,
         (width, height): (u32, u32),
@@ -125,7 +126,8 @@ impl Band {
             Pattern::Rotated(offsets) => (0..)
                 .zip(*offsets)
                 .map(|(index, offset)| {
-                    // The rasterizer looks at the centre of a texel: the frame moves against the offset.
+                    // The rasterizer looks at the centre of a texel: the frame moves against the
+                    // offset.
                     let [x, y] = offset.map(|sixteenths| 0.5 - f32::from(sixteenths) / 16.0);
                     let tile = index * self.rows;
                     Window {

@@ -4,7 +4,8 @@ struct Queue {
     // Workgroups for the band's entries, and how many entries there were before it.
     band_groups: vec3u,
     start: u32,
-    // Workgroups for all entries, and how many there are; more than fit into the queue are left out.
+    // Workgroups for all entries, and how many there are; more than fit into the queue are left
+    // out.
     all_groups: vec3u,
     total: u32,
     // Pixels that have entries, and their lighting evaluations.

@@ -1,5 +1,5 @@
-// The sub-samples of a pixel in the band of supersampled texels, which the importing shader binds as
-// `band`. Rust: `antialias/pattern.rs`.
+// The sub-samples of a pixel in the band of supersampled texels, which the importing shader binds
+// as `band`. Rust: `antialias/pattern.rs`.
 
 #expects band
 

@@ -77,7 +77,8 @@ impl AntialiasStage {
         })
     }
 
-    /// Whether sub-samples' materials are resolved only once their triangles were sorted into surfaces.
+    /// Whether sub-samples' materials are resolved only once their triangles were sorted into
+    /// surfaces.
     pub(crate) fn sorts_triangles(&self) -> bool {
         self.triangles.is_some()
     }
@@ -100,8 +101,9 @@ impl AntialiasStage {
         self.blended.average(recorder, blended, *band, uniform);
     }
 
-    /// Encodes what becomes of a band's sub-samples once they are drawn: each pixel's largest surface goes to the ordinary
-    /// G-buffer, the others to the queue; entries are shaded at once where their surfaces are known.
+    /// Encodes what becomes of a band's sub-samples once they are drawn: each pixel's largest
+    /// surface goes to the ordinary G-buffer, the others to the queue; entries are shaded at once
+    /// where their surfaces are known.
     pub(crate) fn merge(
         &self,
         recorder: &mut Recorder<'_>,
@@ -192,8 +194,8 @@ impl AntialiasStage {
         self.edges != Edges::All
     }
 
-    /// Joins the entries with the ordinary path's radiance, in the radiance target; `further` is what shading reads of
-    /// the further surfaces' G-buffer.
+    /// Joins the entries with the ordinary path's radiance, in the radiance target; `further` is
+    /// what shading reads of the further surfaces' G-buffer.
     pub(crate) fn combine(
         &self,
         recorder: &mut Recorder<'_>,

@@ -29,7 +29,8 @@ fn facet_at(pixel: vec2u, index: u32) -> Facet {
     return Facet(instance, index, position, face_normal(load_words(gbuffer_surface, texel).w));
 }
 
-// What is mirrored of the surroundings is averaged too, not found for the average: it changes too fast with the normal.
+// What is mirrored of the surroundings is averaged too, not found for the average: it changes too
+// fast with the normal.
 override MIRROR: bool = false;
 
 // What some sub-samples see on average.

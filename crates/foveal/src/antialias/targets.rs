@@ -1,5 +1,5 @@
-//! What anti-aliasing keeps: the band of sub-samples, the tally of each pixel, and the queue of what is shaded
-//! besides the ordinary path.
+//! What anti-aliasing keeps: the band of sub-samples, the tally of each pixel, and the queue of
+//! what is shaded besides the ordinary path.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -129,7 +129,8 @@ impl SampleTargets {
         self.entries.size() / ENTRY_BYTES
     }
 
-    /// Targets with room for `wanted` entries and some more, where the device can have them and these are fewer.
+    /// Targets with room for `wanted` entries and some more, where the device can have them and
+    /// these are fewer.
     pub(crate) fn grown(&self, gpu: &Gpu, settings: &Settings, wanted: u64) -> Option<Self> {
         let grown = Self::with_room(gpu, settings, self.rows, wanted + wanted / 4);
         (grown.room() > self.room()).then_some(grown.with_blended_as(self, gpu))
@@ -159,7 +160,8 @@ impl SampleTargets {
         Self { blended, ..self }
     }
 
-    /// The targets for bands of `rows` rows and at least `room` entries, as far as the device can have them.
+    /// The targets for bands of `rows` rows and at least `room` entries, as far as the device can
+    /// have them.
     pub(crate) fn with_room(gpu: &Gpu, settings: &Settings, rows: u32, room: u64) -> Self {
         let (width, height) = EyeLayout::of(settings).target_size();
         let pattern = Pattern::of(settings);
@@ -246,7 +248,8 @@ impl SampleTargets {
     }
 }
 
-/// Bytes of a sub-sample in the band: its surface, identity, triangle and depth, as far as they are kept.
+/// Bytes of a sub-sample in the band: its surface, identity, triangle and depth, as far as they are
+/// kept.
 fn bytes_per_sample(settings: &Settings) -> u64 {
     if by_triangles(settings) { 16 } else { 28 }
 }

@@ -1,4 +1,5 @@
-//! Anti-aliased frames against their twins, against each other and against plain frames of n times the size.
+//! Anti-aliased frames against their twins, against each other and against plain frames of n times
+//! the size.
 
 use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};
@@ -249,7 +250,8 @@ fn two_by_two_at_1080p_stays_under_250_megabytes() {
     }
 }
 
-/// The surfaces that triangles are sorted into against those of stored sub-samples, which have a twin.
+/// The surfaces that triangles are sorted into against those of stored sub-samples, which have a
+/// twin.
 #[test]
 fn triangles_are_sorted_into_the_same_surfaces_as_stored_subsamples() {
     for scene in [generate::cornell(), generate::materials_grid()] {

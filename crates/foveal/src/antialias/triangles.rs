@@ -1,10 +1,11 @@
 //! Anti-aliasing over a visibility buffer: only triangles are drawn at every sub-sample.
 //!
-//! Pixels that show several triangles are listed (`candidates.wgsl`) and their sub-samples sorted into surfaces
-//! (`sort.wgsl`); one triangle per surface is kept: the largest surface's in the ordinary G-buffer (`classify.wgsl`),
-//! the others' in a target of their own, row by row in the order of the queue's entries. Materials are resolved for
-//! those alone, so a pixel within a surface costs what it costs without anti-aliasing, where the other way evaluates
-//! and averages all sub-samples.
+//! Pixels that show several triangles are listed (`candidates.wgsl`) and their sub-samples sorted
+//! into surfaces (`sort.wgsl`); one triangle per surface is kept: the largest surface's in the
+//! ordinary G-buffer (`classify.wgsl`), the others' in a target of their own, row by row in the
+//! order of the queue's entries. Materials are resolved for those alone, so a pixel within a
+//! surface costs what it costs without anti-aliasing, where the other way evaluates and averages
+//! all sub-samples.
 
 use super::further::WORD;
 use crate::geometry::{DEPTH_FORMAT, IDENTITY_FORMAT, TRIANGLE_FORMAT, geometry_layout};
@@ -148,8 +149,8 @@ impl TriangleStage {
         }
     }
 
-    /// Encodes the sorting of a band's sub-samples, whose triangles are known: each pixel's largest surface into the
-    /// ordinary G-buffer, the others into that of further surfaces.
+    /// Encodes the sorting of a band's sub-samples, whose triangles are known: each pixel's largest
+    /// surface into the ordinary G-buffer, the others into that of further surfaces.
     pub(super) fn classify(
         &self,
         recorder: &mut Recorder<'_>,

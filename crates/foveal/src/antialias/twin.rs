@@ -151,7 +151,8 @@ fn same_surface(texels: &SampleTexels, camera: &Camera, a: &Facet, b: &Facet) ->
     off * off <= tolerance * aa
 }
 
-/// The resolve: radiances averaged by brightness-dependent weights; each counts for its part of the pixel.
+/// The resolve: radiances averaged by brightness-dependent weights; each counts for its part of the
+/// pixel.
 pub(super) fn resolve(parts: impl IntoIterator<Item = (Vec3, f32)>, exposure: f32) -> Vec3 {
     let (mut sum, mut weights) = (Vec3::ZERO, 0.0);
     for (radiance, part) in parts {

@@ -1,6 +1,6 @@
 // Radiance within a tile: its patch, raised to pass through the tile's sample and through the
-// midpoints between it and neighbours of its size: bilinear interpolation where tiles are alike. CPU
-// twin of all of the smooth composite: `composite/twin.rs`.
+// midpoints between it and neighbours of its size: bilinear interpolation where tiles are alike.
+// CPU twin of all of the smooth composite: `composite/twin.rs`.
 //
 // Patches meet along their edges, tiles raise a common edge alike and the sample's raise vanishes
 // there, so the picture is continuous. Where radiance is affine, patches are and all raises are
@@ -15,8 +15,9 @@
 @group(1) @binding(5) var<storage, read> patches: array<vec4u>;
 @group(1) @binding(6) var<storage, read> upper_raises: array<u32>;
 
-// `uv` and the sample's place `peak` lie within the tile, 0 to 1; `raise` is the sample's above the patch; `raise_x`
-// that of the left or right edge, `raise_y` that of the upper or lower one, whichever are on uv's side of the sample.
+// `uv` and the sample's place `peak` lie within the tile, 0 to 1; `raise` is the sample's above the
+// patch; `raise_x` that of the left or right edge, `raise_y` that of the upper or lower one,
+// whichever are on uv's side of the sample.
 fn curve(p: Patch, peak: vec2f, uv: vec2f, raise: vec3f, raise_x: vec3f, raise_y: vec3f) -> vec3f {
     // 1 at the sample, 0 at the edges.
     let slope = select(uv / peak, (1.0 - uv) / (1.0 - peak), uv > peak);

@@ -44,8 +44,8 @@ fn is_inside(picture: Picture, texel: vec2i) -> bool {
     return all(texel >= vec2i(picture.low)) && all(texel < vec2i(picture.end));
 }
 
-// The texel of a quadrant around a corner; beyond the picture's border instead one in the next tile inwards, so
-// that the fit goes on through the border. Outside the picture where there is none.
+// The texel of a quadrant around a corner; beyond the picture's border instead one in the next tile
+// inwards, so that the fit goes on through the border. Outside the picture where there is none.
 fn quadrant_texel(picture: Picture, corner: vec2i, quadrant: u32) -> vec2i {
     let first = vec2i(picture.low);
     let last = vec2i(picture.end) - 1;
@@ -112,7 +112,8 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
         }
         offsets[i] = vec2f(texel) + 0.5 - vec2f(corner);
         radiance[i] = value.rgb;
-        // All then pull alike at their gradient: a near sample is worth as much as a far one is not.
+        // All then pull alike at their gradient: a near sample is worth as much as a far one is
+        // not.
         weights[i] = 1.0 / (dot(offsets[i], offsets[i]) + 0.25);
         least = min(least, value.rgb);
         most = max(most, value.rgb);
@@ -134,7 +135,8 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
         sxy += w * d.x * d.y;
         syy += w * d.y * d.y;
     }
-    // Few or collinear samples leave gradients undetermined: a little of the identity makes them small.
+    // Few or collinear samples leave gradients undetermined: a little of the identity makes them
+    // small.
     let ridge = 1e-4 * (sxx + syy);
     sxx += ridge;
     syy += ridge;
@@ -148,14 +150,15 @@ fn corner_radiance(corner: vec2i, own: Tile, own_sample: vec4f, own_seen: Seen) 
         sum += part * radiance[i];
     }
     let fitted = sum / total;
-    // Four samples around a corner enclose it: an affine fit stays between them, and others shall. Past the
-    // border or an edge the fit runs on, but not away.
+    // Four samples around a corner enclose it: an affine fit stays between them, and others shall.
+    // Past the border or an edge the fit runs on, but not away.
     let slack = select((most - least) * 1.5, vec3f(0.0), all_touch);
     return clamp(fitted, max(least - slack, vec3f(0.0)), most + slack);
 }
 
-// Where the tile to the right of one (`axis` 0) or below it has another size, nobody fits a patch of this size there, but
-// this tile looks for its raises there: an earlier frame's must not be found.
+// Where the tile to the right of one (`axis` 0) or below it has another size, nobody fits a patch
+// of this size there, but this tile looks for its raises there: an earlier frame's must not be
+// found.
 fn clear_beside(own: Tile, axis: u32) {
     var block = own.block;
     block[axis] += 1u;

@@ -1,5 +1,5 @@
-// The light of the samples around a pixel. The importing shader binds `gbuffer_depth` and says where a
-// tile's sample lies (`sampled_at`) and what it holds (`light_of`). CPU twin:
+// The light of the samples around a pixel. The importing shader binds `gbuffer_depth` and says
+// where a tile's sample lies (`sampled_at`) and what it holds (`light_of`). CPU twin:
 // `composite/light_twin.rs`.
 //
 // A pixel of a tile of level l looks at the four points around it of the lattice of that level's
@@ -16,7 +16,8 @@
 #import shared/surroundings.wgsl
 #expects gbuffer_depth, sampled_at, light_of
 
-// Beyond this rise over distance a sample lies on another plane than the pixel, and below the second one on the same.
+// Beyond this rise over distance a sample lies on another plane than the pixel, and below the
+// second one on the same.
 const OFF_PLANE: f32 = 0.6;
 const ON_PLANE: f32 = 0.2;
 // Weight of samples whose normal is at right angles to the pixel's.

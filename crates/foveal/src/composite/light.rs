@@ -1,4 +1,5 @@
-//! The composite of light: each pixel's own surface in the light of the samples around it (`light.wgsl`).
+//! The composite of light: each pixel's own surface in the light of the samples around it
+//! (`light.wgsl`).
 //!
 //! Pixels that no sample speaks for are listed; the caller shades them.
 

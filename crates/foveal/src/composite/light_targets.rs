@@ -13,7 +13,8 @@ pub(crate) struct LightTargets {
     pub(crate) samples: MipChain,
     /// Pixels that no sample speaks for.
     pub(crate) unlit: SampleList,
-    /// Their number, with room for the counts of nine levels, as the pass that sizes dispatches has them.
+    /// Their number, with room for the counts of nine levels, as the pass that sizes dispatches has
+    /// them.
     pub(crate) unlit_count: wgpu::Buffer,
 }
 

@@ -1,4 +1,5 @@
-//! The twin of samples' light and of the composite that puts pixels' surfaces into it: from the G-buffer and the lights.
+//! The twin of samples' light and of the composite that puts pixels' surfaces into it: from the
+//! G-buffer and the lights.
 
 use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};

@@ -4,7 +4,8 @@ use crate::gpu::{Gpu, MipChain};
 use crate::stereo::EyeLayout;
 use crate::{Error, Settings};
 
-/// Bytes of a patch's parts in the two buffers, which `pack_patch` in `composite/patches.wgsl` describes.
+/// Bytes of a patch's parts in the two buffers, which `pack_patch` in `composite/patches.wgsl`
+/// describes.
 const PART_BYTES: [u64; 2] = [32, 4];
 /// The patches of all tiles of one frame size, and which tiles are drawn as quads.
 #[derive(Debug)]
@@ -69,14 +70,16 @@ impl PatchTargets {
     }
 }
 
-/// How many patches there are: one per block of each level from 1 on, of a picture padded to whole blocks of the coarsest.
+/// How many patches there are: one per block of each level from 1 on, of a picture padded to whole
+/// blocks of the coarsest.
 fn patches((width, height): (u32, u32), coarsest: u32) -> u64 {
     let padded = |pixels: u32| u64::from(pixels.next_multiple_of(1 << coarsest));
     let pixels = padded(width) * padded(height);
     (1..=coarsest).map(|level| pixels >> (2 * level)).sum()
 }
 
-/// [`Error::Limit`] where the device cannot bind as large a buffer as the patches of these settings need.
+/// [`Error::Limit`] where the device cannot bind as large a buffer as the patches of these settings
+/// need.
 pub(crate) fn check_limits(settings: &Settings, limits: &wgpu::Limits) -> Result<(), Error> {
     let size = EyeLayout::of(settings).target_size();
     let value = PART_BYTES[0] * patches(size, settings.coarse.coarsest_level.into());

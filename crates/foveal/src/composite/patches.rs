@@ -1,7 +1,7 @@
 //! The smooth composite's first half: a patch per tile, fitted to the samples around it.
 //!
-//! One dispatch per level over the level's list of tiles (`fit.wgsl`), coarsest first, because a corner within a
-//! coarser tile's edge follows that edge.
+//! One dispatch per level over the level's list of tiles (`fit.wgsl`), coarsest first, because a
+//! corner within a coarser tile's edge follows that edge.
 
 use super::patch_targets::PatchTargets;
 use crate::gpu::{
@@ -14,7 +14,8 @@ use crate::shader;
 use crate::shading::{CoarseTargets, LevelNumbers};
 use crate::targets::Targets;
 
-/// Tiles of this level and up are drawn as quads, whatever they hold. Smaller ones have more vertices than pixels.
+/// Tiles of this level and up are drawn as quads, whatever they hold. Smaller ones have more
+/// vertices than pixels.
 const QUAD_LEVEL: u32 = 3;
 
 /// Fits patches.

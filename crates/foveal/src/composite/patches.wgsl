@@ -13,8 +13,8 @@ struct Patch {
     upper: vec3f,
 }
 
-// 18 halves: c00, c10, c01.rg; c01.b, c11, left, upper.r; upper.gb. The first two parts of all patches lie in one
-// array, the third ones in another.
+// 18 halves: c00, c10, c01.rg; c01.b, c11, left, upper.r; upper.gb. The first two parts of all
+// patches lie in one array, the third ones in another.
 struct PackedPatch {
     part_0: vec4u,
     part_1: vec4u,
@@ -39,8 +39,9 @@ fn pack_patch(p: Patch) -> PackedPatch {
     );
 }
 
-// Number of a tile's patch: those of level 1 come first, in rows, then those of level 2, and so on. The samples'
-// texture is padded to whole blocks of the coarsest level, so each level has a quarter of the one before.
+// Number of a tile's patch: those of level 1 come first, in rows, then those of level 2, and so on.
+// The samples' texture is padded to whole blocks of the coarsest level, so each level has a quarter
+// of the one before.
 fn patch_index(block: vec2u, level: u32) -> u32 {
     let all = textureDimensions(samples, 0);
     let pixels = all.x * all.y;

@@ -29,7 +29,8 @@ fn seen_at(texel: vec2u) -> Seen {
     );
 }
 
-// Neither leaves the other's tangent plane by much: 27 degrees of arc; nor do the normals differ much.
+// Neither leaves the other's tangent plane by much: 27 degrees of arc; nor do the normals differ
+// much.
 fn same_surface(a: Seen, b: Seen) -> bool {
     if a.instance != b.instance {
         return false;

@@ -1,8 +1,9 @@
-//! The smooth composite: patches fitted to the samples (`patches.rs`), then each pixel from its tile's patch.
+//! The smooth composite: patches fitted to the samples (`patches.rs`), then each pixel from its
+//! tile's patch.
 //!
-//! Large tiles are drawn as quads whose vertices bring the patch along, so that a pixel looks nothing up; the pixels
-//! of small tiles look up theirs. What only some pixels need runs behind a stencil, since not all devices skip the
-//! branch that no pixel takes.
+//! Large tiles are drawn as quads whose vertices bring the patch along, so that a pixel looks
+//! nothing up; the pixels of small tiles look up theirs. What only some pixels need runs behind a
+//! stencil, since not all devices skip the branch that no pixel takes.
 
 use super::patch_targets::{DRAW_BYTES, PatchTargets};
 use super::patches::PatchPass;
@@ -13,7 +14,8 @@ use crate::shading::{CoarseTargets, RADIANCE_FORMAT, stencil_state};
 use crate::targets::Targets;
 use crate::{Settings, shader};
 
-/// What a pixel's stencil says: a quad covered it, or another surface than its tile's sample is seen there.
+/// What a pixel's stencil says: a quad covered it, or another surface than its tile's sample is
+/// seen there.
 const COVERED: u32 = 1;
 const EDGE: u32 = 2;
 

@@ -107,8 +107,9 @@ fn mark_edge_pixel(in: EdgeVertex) {
     }
 }
 
-// Radiance at a pixel whose tile sampled another surface: a mean over the neighbours on the pixel's side of the tile
-// that sampled the pixel's, nearer ones counting more; without any, over those across from them; else the tile's own.
+// Radiance at a pixel whose tile sampled another surface: a mean over the neighbours on the pixel's
+// side of the tile that sampled the pixel's, nearer ones counting more; without any, over those
+// across from them; else the tile's own.
 fn across_edge(position: vec2f, own: Tile, seen: Seen) -> vec3f {
     let low = vec2f(tile_low(own));
     let high = vec2f(tile_high(own));
@@ -122,7 +123,8 @@ fn across_edge(position: vec2f, own: Tile, seen: Seen) -> vec3f {
         if i >= 3u && total > 0.0 {
             break;
         }
-        // Beside, above or below, both; then across; the last turn is for the tile itself, should no neighbour do.
+        // Beside, above or below, both; then across; the last turn is for the tile itself, should
+        // no neighbour do.
         let turn = vec2u(i + 1u, (i + 1u) >> 1u) & vec2u(1u);
         let turn_across = vec2u(u32(i == 3u), u32(i == 4u));
         let probe_near = select(position, near, turn == vec2u(1u));

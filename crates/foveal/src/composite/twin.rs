@@ -1,4 +1,5 @@
-//! The twin of the smooth composite: each pixel by itself, from the tiling, its samples and the G-buffer of one eye.
+//! The twin of the smooth composite: each pixel by itself, from the tiling, its samples and the
+//! G-buffer of one eye.
 
 use foveal_generate as generate;
 use foveal_scene::Camera;
@@ -448,7 +449,8 @@ fn smooth_equals_its_twin() {
                 wrong.push((at, drawn, twin));
             }
         }
-        // Where float and float disagree whether two texels show one surface, a few pixels go the other way.
+        // Where float and float disagree whether two texels show one surface, a few pixels go the
+        // other way.
         let most = drawn.len() / 500;
         assert!(
             wrong.len() <= most,

@@ -1,8 +1,9 @@
 //! Culling: which objects are seen at all, decided on the CPU before anything is drawn.
 //!
-//! The occlusion buffer has by default a quarter of the picture's size per axis, and its frustum is the picture's,
-//! widened to whole buffer pixels: the 4x4 coverage samples in each of its pixels then lie on the picture's
-//! own pixel centres, so that what is culled could not have changed a single pixel.
+//! The occlusion buffer has by default a quarter of the picture's size per axis, and its frustum is
+//! the picture's, widened to whole buffer pixels: the 4x4 coverage samples in each of its pixels
+//! then lie on the picture's own pixel centres, so that what is culled could not have changed a
+//! single pixel.
 
 mod found_for;
 mod scene;
@@ -124,12 +125,12 @@ impl CullingStage {
         }
     }
 
-    /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are two eyes: what is
-    /// hidden is hidden from both. A view that makes no sense culls nothing.
+    /// Tests all objects for a picture of `width` x `height` pixels, or two of them where there are
+    /// two eyes: what is hidden is hidden from both. A view that makes no sense culls nothing.
     ///
-    /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then the left eye's. Or both
-    /// are tested at once, from their centre. A result that holds for some way around the eyes is kept until they leave
-    /// it.
+    /// Each eye is tested for itself, exactly; the figures and the buffer that are shown are then
+    /// the left eye's. Or both are tested at once, from their centre. A result that holds for some
+    /// way around the eyes is kept until they leave it.
     pub(crate) fn cull(
         &mut self,
         scene: &CullingScene,
@@ -183,7 +184,8 @@ impl CullingStage {
         self.counts()
     }
 
-    /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is false then.
+    /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is
+    /// false then.
     fn cull_for(&mut self, scene: &CullingScene, view: View, clock: Option<Clock>) -> bool {
         let view = view.with_validity_radius(self.radius_m);
         let budget = clock.as_ref().filter(|_| self.budget_ms > 0.0);
@@ -273,7 +275,8 @@ impl CullingStage {
     }
 }
 
-/// How far a frustum is widened to the right and downwards, relative to its size, to end at whole buffer pixels.
+/// How far a frustum is widened to the right and downwards, relative to its size, to end at whole
+/// buffer pixels.
 fn widened((width, height): (u32, u32), scale: u32) -> (f64, f64) {
     let of = |pixels: u32| f64::from(pixels.next_multiple_of(scale)) / f64::from(pixels);
     (of(width), of(height))

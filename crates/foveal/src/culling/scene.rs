@@ -30,8 +30,8 @@ fn new_pose() -> u64 {
 }
 
 impl CullingScene {
-    /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the objects that are
-    /// marked as occluders, or of all objects where none is marked.
+    /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the
+    /// objects that are marked as occluders, or of all objects where none is marked.
     pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
         let mut this = Self {
             pose: new_pose(),

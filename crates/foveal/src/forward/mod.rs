@@ -129,8 +129,8 @@ impl ForwardPass {
         self.copy_radiance(recorder.encoder, targets, Copied::Back);
     }
 
-    /// Encodes the pass over nothing, for the frame drawn once into each of `windows`: sub-samples, whose depth is
-    /// known.
+    /// Encodes the pass over nothing, for the frame drawn once into each of `windows`: sub-samples,
+    /// whose depth is known.
     pub(crate) fn draw_alone(
         &self,
         recorder: &mut Recorder<'_>,
@@ -178,8 +178,9 @@ impl ForwardPass {
         }
     }
 
-    /// Copies the eyes' radiance to their layers or back, where each eye is drawn to its own: every other stage has them
-    /// side by side, and depth, which the pass tests against, in layers. Only frames with blended surfaces come here.
+    /// Copies the eyes' radiance to their layers or back, where each eye is drawn to its own: every
+    /// other stage has them side by side, and depth, which the pass tests against, in layers. Only
+    /// frames with blended surfaces come here.
     fn copy_radiance(&self, encoder: &mut wgpu::CommandEncoder, targets: &Targets, copied: Copied) {
         let Some(layers) = &targets.radiance_layers else {
             return;

@@ -9,7 +9,8 @@ use super::{Faces, PipelineKey};
 use crate::scene::SceneOnGpu;
 use crate::stereo::Drawn;
 
-/// One draw: equal meshes with equal materials, `count` instances from `first` in [`DrawList::drawn`].
+/// One draw: equal meshes with equal materials, `count` instances from `first` in
+/// [`DrawList::drawn`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Batch {
     pub(crate) key: PipelineKey,
@@ -40,8 +41,8 @@ pub(crate) struct Draws<'a> {
 }
 
 impl DrawList {
-    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`; where they `merge`,
-    /// equal ones become instances of one draw.
+    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`;
+    /// where they `merge`, equal ones become instances of one draw.
     pub(crate) fn build(
         &mut self,
         scene: &SceneOnGpu,
@@ -158,7 +159,8 @@ impl DrawList {
         drawn.push(instance);
     }
 
-    /// Issues `batches` into a pass that has bind group 0 and the geometry bound, `drawn` for one eye or both.
+    /// Issues `batches` into a pass that has bind group 0 and the geometry bound, `drawn` for one
+    /// eye or both.
     pub(crate) fn issue(
         batches: &[Batch],
         pass: &mut wgpu::RenderPass<'_>,
@@ -169,7 +171,8 @@ impl DrawList {
         Self::issue_with(batches, pass, scene, |key| pipelines.get(key), false, drawn);
     }
 
-    /// As [`DrawList::issue`], with the pipeline that each key gets; `pulled`: the shader fetches the vertices.
+    /// As [`DrawList::issue`], with the pipeline that each key gets; `pulled`: the shader fetches
+    /// the vertices.
     pub(crate) fn issue_with<'p>(
         batches: &[Batch],
         pass: &mut wgpu::RenderPass<'_>,

@@ -149,8 +149,8 @@ impl GeometryPass {
         self.draw_windows(recorder, draws, target, &[self.whole()]);
     }
 
-    /// Encodes what of [`GeometryPass::draw`] does not depend on materials, where surfaces are evaluated after the
-    /// rasterizer.
+    /// Encodes what of [`GeometryPass::draw`] does not depend on materials, where surfaces are
+    /// evaluated after the rasterizer.
     pub(crate) fn draw_triangles(
         &self,
         recorder: &mut Recorder<'_>,
@@ -186,7 +186,8 @@ impl GeometryPass {
         }
     }
 
-    /// Encodes the evaluation of further surfaces of pixels at edges into texels that lie anywhere in the picture.
+    /// Encodes the evaluation of further surfaces of pixels at edges into texels that lie anywhere
+    /// in the picture.
     pub(crate) fn resolve_further(
         &self,
         recorder: &mut Recorder<'_>,

@@ -10,7 +10,8 @@
 
 // Alpha cuts holes; without, the depth test may run before the shader.
 override MASKED: bool = false;
-// The triangle's own normal goes into the spare bits of the surface: anti-aliasing tells planes apart by it.
+// The triangle's own normal goes into the spare bits of the surface: anti-aliasing tells planes
+// apart by it.
 override FACE_NORMAL: bool = false;
 
 struct GBufferOut {

@@ -18,7 +18,8 @@ fn lattice_hash(cell: UVec3, seed: u32) -> u32 {
     word >> 22 ^ word
 }
 
-/// Value noise by eight weights, and its gradient by their derivatives: not the shader's nested means.
+/// Value noise by eight weights, and its gradient by their derivatives: not the shader's nested
+/// means.
 fn value_noise(p: Vec3, seed: u32) -> (f32, Vec3) {
     let low = p.floor();
     let t = p - low;

@@ -5,8 +5,9 @@ use crate::Geometry;
 use crate::formats::{DEPTH_FORMAT, IDENTITY_FORMAT, SURFACE_FORMAT};
 use crate::gpu::{self, Gpu};
 
-/// What is seen at each pixel; 28 bytes a pixel. The eyes' pictures lie side by side in one layer, or where geometry is drawn
-/// by multiview each in its own; passes draw into the views, and shaders read the layers (`shared/layers.wgsl`).
+/// What is seen at each pixel; 28 bytes a pixel. The eyes' pictures lie side by side in one layer,
+/// or where geometry is drawn by multiview each in its own; passes draw into the views, and shaders
+/// read the layers (`shared/layers.wgsl`).
 #[derive(Debug)]
 pub(crate) struct GBuffer {
     /// Base colour and occlusion, normal, emissive, metallic and roughness: `pack_surface` in

@@ -52,7 +52,8 @@ fn intersect(scene: &Scene, origin: Vec3, direction: Vec3) -> Option<Hit> {
             if inside < 0.0 || t <= 0.0 || nearest.as_ref().is_some_and(|n| n.distance <= t) {
                 continue;
             }
-            // Unit vectors at the vertices, interpolated: as the vertex shader and the rasterizer do.
+            // Unit vectors at the vertices, interpolated: as the vertex shader and the rasterizer
+            // do.
             let n = v.map(|v| (normals * Vec3::from(v.normal)).normalize());
             let normal = n[0] * (1.0 - b1 - b2) + n[1] * b1 + n[2] * b2;
             let normal = normal.normalize() * if front { 1.0 } else { -1.0 };

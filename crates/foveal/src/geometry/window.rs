@@ -3,8 +3,8 @@
 /// A part of a G-buffer, and where the frame lies relative to it; all in texels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Window {
-    /// Left, top, width, height of the whole frame; it may reach beyond the G-buffer, and fractions of a
-    /// texel move the sample positions.
+    /// Left, top, width, height of the whole frame; it may reach beyond the G-buffer, and fractions
+    /// of a texel move the sample positions.
     pub(crate) frame: [f32; 4],
     /// Left, top, width, height of what is drawn.
     pub(crate) part: [u32; 4],

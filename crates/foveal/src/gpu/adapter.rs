@@ -7,7 +7,8 @@ pub(super) async fn all() -> Vec<wgpu::Adapter> {
     of(wgpu::Backends::from_env().unwrap_or(wgpu::Backends::all())).await
 }
 
-/// The adapters to choose from when nothing is asked for: GL, which lacks much, where there is nothing else.
+/// The adapters to choose from when nothing is asked for: GL, which lacks much, where there is
+/// nothing else.
 async fn preferred() -> Vec<wgpu::Adapter> {
     if let Some(backends) = wgpu::Backends::from_env() {
         return of(backends).await;

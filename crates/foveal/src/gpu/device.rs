@@ -25,8 +25,8 @@ fn note(lost: &Mutex<Option<String>>, reason: String) {
 }
 
 impl Gpu {
-    /// Opens the adapter whose name, driver or backend contains `wanted` (case-insensitive), or whose number
-    /// in [`Gpu::adapters`] it is; without `wanted`, the most capable one.
+    /// Opens the adapter whose name, driver or backend contains `wanted` (case-insensitive), or
+    /// whose number in [`Gpu::adapters`] it is; without `wanted`, the most capable one.
     ///
     /// # Errors
     /// [`Error::NoAdapter`] and [`Error::NoDevice`].
@@ -34,7 +34,8 @@ impl Gpu {
         Self::from_adapter(&super::adapter::choose(wanted).await?).await
     }
 
-    /// Opens a device of the host's adapter, with what [`Gpu::wanted_features`] and [`Gpu::wanted_limits`] say.
+    /// Opens a device of the host's adapter, with what [`Gpu::wanted_features`] and
+    /// [`Gpu::wanted_limits`] say.
     ///
     /// # Errors
     /// [`Error::NoDevice`].
@@ -62,9 +63,9 @@ impl Gpu {
         Ok(gpu)
     }
 
-    /// Takes the host's device and leaves all that is the host's alone: its error handler, its device-lost callback,
-    /// its other submissions. The device must offer [`Gpu::required_limits`]; a callback of the host's that hears of its
-    /// loss should call [`Gpu::note_loss`].
+    /// Takes the host's device and leaves all that is the host's alone: its error handler, its
+    /// device-lost callback, its other submissions. The device must offer [`Gpu::required_limits`];
+    /// a callback of the host's that hears of its loss should call [`Gpu::note_loss`].
     #[must_use]
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
         Self {
@@ -74,7 +75,8 @@ impl Gpu {
         }
     }
 
-    /// Takes down that the device is gone: from now on the renderer answers with [`Error::DeviceLost`].
+    /// Takes down that the device is gone: from now on the renderer answers with
+    /// [`Error::DeviceLost`].
     pub fn note_loss(&self, reason: impl Into<String>) {
         note(&self.lost, reason.into());
     }
@@ -85,9 +87,9 @@ impl Gpu {
         wgpu::Limits::default()
     }
 
-    /// The limits that suffice for the reduced renderer, which needs neither storage buffers nor compute shaders: what
-    /// WebGL 2 has. It draws every pixel, of one eye or two, culled or not; [`Settings::validate`](crate::Settings::validate)
-    /// refuses all else.
+    /// The limits that suffice for the reduced renderer, which needs neither storage buffers nor
+    /// compute shaders: what WebGL 2 has. It draws every pixel, of one eye or two, culled or not;
+    /// [`Settings::validate`](crate::Settings::validate) refuses all else.
     #[must_use]
     pub fn reduced_limits() -> wgpu::Limits {
         wgpu::Limits::downlevel_webgl2_defaults()

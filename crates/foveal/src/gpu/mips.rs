@@ -2,7 +2,8 @@
 
 use super::Gpu;
 
-/// A texture whose mip l holds a texel per block of 2^l x 2^l pixels, blocks at the border included.
+/// A texture whose mip l holds a texel per block of 2^l x 2^l pixels, blocks at the border
+/// included.
 #[derive(Debug)]
 pub(crate) struct MipChain {
     pub(crate) texture: wgpu::Texture,
@@ -17,8 +18,9 @@ pub(crate) struct MipChain {
 }
 
 impl MipChain {
-    /// Levels `first..=coarsest` for a picture of `width` x `height`. Mips halve their size rounding down where
-    /// blocks round up, so the texture is padded to whole blocks of the coarsest level.
+    /// Levels `first..=coarsest` for a picture of `width` x `height`. Mips halve their size
+    /// rounding down where blocks round up, so the texture is padded to whole blocks of the
+    /// coarsest level.
     pub(crate) fn new(
         gpu: &Gpu,
         label: &str,
@@ -90,7 +92,8 @@ impl MipChain {
         )
     }
 
-    /// Restricts a pass into a level to its blocks, and draws them with the level as instance number.
+    /// Restricts a pass into a level to its blocks, and draws them with the level as instance
+    /// number.
     pub(crate) fn draw(&self, pass: &mut wgpu::RenderPass<'_>, level: u32) {
         let (width, height) = self.blocks(level);
         pass.set_viewport(0.0, 0.0, width as f32, height as f32, 0.0, 1.0);

@@ -41,7 +41,8 @@ impl GpuTimer {
         })
     }
 
-    /// Opens a render pass that is timed under `label`, to several layers at once where there is a mask.
+    /// Opens a render pass that is timed under `label`, to several layers at once where there is a
+    /// mask.
     pub(crate) fn render_pass<'e>(
         &mut self,
         encoder: &'e mut wgpu::CommandEncoder,
@@ -92,7 +93,8 @@ impl GpuTimer {
         let _ = self.profiler.end_frame();
     }
 
-    /// The oldest finished frame's passes in order, those of one name added up; empty while none is finished.
+    /// The oldest finished frame's passes in order, those of one name added up; empty while none is
+    /// finished.
     pub(crate) fn collect(&mut self, gpu: &Gpu) -> Vec<Timing> {
         let Some(results) = self
             .profiler

@@ -85,7 +85,8 @@ pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<V
     read_level(gpu, texture, 0, (texture.width(), texture.height())).await
 }
 
-/// The bytes of the upper left `width` x `height` texels of a mip, layer after layer, rows top to bottom without padding.
+/// The bytes of the upper left `width` x `height` texels of a mip, layer after layer, rows top to
+/// bottom without padding.
 pub(crate) async fn read_level(
     gpu: &Gpu,
     texture: &wgpu::Texture,

@@ -1,4 +1,5 @@
-//! What shaders look up: a storage buffer, or a texture of the same words where the device has no storage buffers.
+//! What shaders look up: a storage buffer, or a texture of the same words where the device has no
+//! storage buffers.
 
 use super::{Gpu, sampled, storage_read};
 use crate::Error;
@@ -58,7 +59,8 @@ impl Table {
         }
     }
 
-    /// Writes `bytes` from the beginning; true where that took a new resource, which must be bound again.
+    /// Writes `bytes` from the beginning; true where that took a new resource, which must be bound
+    /// again.
     pub(crate) fn write(&mut self, gpu: &Gpu, bytes: &[u8]) -> bool {
         let grows = self.held.room() < bytes.len();
         if grows {

@@ -2,8 +2,8 @@
 
 use super::Gpu;
 
-/// A view of a new texture without mips that passes draw into, that others read, and that can be read back;
-/// `usage` is what it is used for besides.
+/// A view of a new texture without mips that passes draw into, that others read, and that can be
+/// read back; `usage` is what it is used for besides.
 pub(crate) fn target(
     gpu: &Gpu,
     label: &str,

@@ -25,7 +25,8 @@ fn slice_span(slice: u32) -> vec2f {
     );
 }
 
-// The cluster in a view's space, its depth clipped to the light's: slices at both ends are infinite.
+// The cluster in a view's space, its depth clipped to the light's: slices at both ends are
+// infinite.
 fn cluster_box(view: u32, cluster: vec3u, nearest: f32, farthest: f32) -> Box {
     let span = slice_span(cluster.z);
     let z = vec2f(max(span.x, nearest), min(span.y, farthest));
@@ -71,7 +72,8 @@ fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
     if !everywhere {
         first = cluster_slice(nearest);
         last = cluster_slice(farthest);
-        // The slice is a rounded logarithm: one more on either side holds what rounding may have moved.
+        // The slice is a rounded logarithm: one more on either side holds what rounding may have
+        // moved.
         first -= min(first, 1u);
         last = min(last + 1u, frame.cluster_counts.z - 1u);
     }

@@ -1,8 +1,8 @@
 //! Lights on the device, and which of them reach which cluster (froxel) of the view.
 //!
-//! The grid has square tiles on the screen and slices that grow geometrically with the distance (Olsson,
-//! Billeter, Assarsson 2012, 'Clustered Deferred and Forward Shading'). A cluster holds one bit per light:
-//! nothing overflows, and lights come out in ascending order.
+//! The grid has square tiles on the screen and slices that grow geometrically with the distance
+//! (Olsson, Billeter, Assarsson 2012, 'Clustered Deferred and Forward Shading'). A cluster holds
+//! one bit per light: nothing overflows, and lights come out in ascending order.
 
 mod clusters;
 mod grid;

@@ -1,4 +1,5 @@
-//! Light assignment on the CPU, for devices that have no compute shaders: what `clusters.wgsl` finds, into tables.
+//! Light assignment on the CPU, for devices that have no compute shaders: what `clusters.wgsl`
+//! finds, into tables.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 

@@ -1,4 +1,5 @@
-//! Presentation of two eyes' pictures: one of them, side by side, as an anaglyph, or against a headset's lenses.
+//! Presentation of two eyes' pictures: one of them, side by side, as an anaglyph, or against a
+//! headset's lenses.
 
 use bytemuck::{Pod, Zeroable};
 

@@ -4,7 +4,8 @@
 #import shared/frame.wgsl
 #import shared/full_screen.wgsl
 
-// 0 the left eye, 1 both side by side, 2 at half the width each, 3 anaglyph, 4 anaglyph after Dubois, 5 headset.
+// 0 the left eye, 1 both side by side, 2 at half the width each, 3 anaglyph, 4 anaglyph after
+// Dubois, 5 headset.
 override OUTPUT: u32 = 0u;
 // The headset's picture fades to black within this part of its height at the eyes' borders.
 const FADE: f32 = 0.02;
@@ -47,7 +48,8 @@ fn half_width(pixel: vec2u) -> vec3f {
     return encoded(0.5 * (linear(seen_by(view, first)) + linear(seen_by(view, second))));
 }
 
-// Rec. 601 luma of the left eye in red, of the right one in green and blue, as the technique's source has it.
+// Rec. 601 luma of the left eye in red, of the right one in green and blue, as the technique's
+// source has it.
 fn anaglyph(pixel: vec2u) -> vec3f {
     let weights = vec3f(0.299, 0.587, 0.114);
     let left = dot(seen_by(0u, pixel), weights);
@@ -55,8 +57,8 @@ fn anaglyph(pixel: vec2u) -> vec3f {
     return vec3f(left, right, right);
 }
 
-// Dubois 2001, 'A projection method to generate anaglyph stereo images' (ICASSP), the least-squares matrices for
-// red-cyan glasses on a display with sRGB's primaries; they act on linear light.
+// Dubois 2001, 'A projection method to generate anaglyph stereo images' (ICASSP), the least-squares
+// matrices for red-cyan glasses on a display with sRGB's primaries; they act on linear light.
 fn dubois(pixel: vec2u) -> vec3f {
     let from_left = mat3x3f(
         vec3f(0.4561, -0.0400822, -0.0152161),
@@ -72,7 +74,8 @@ fn dubois(pixel: vec2u) -> vec3f {
     return encoded(saturate(sum));
 }
 
-// Linear light at a position in pixels of an eye's picture, bilinear; fades to black at its borders.
+// Linear light at a position in pixels of an eye's picture, bilinear; fades to black at its
+// borders.
 fn light_at(view: u32, position: vec2f) -> vec3f {
     let size = vec2i(frame.size);
     let corner = clamp(position, vec2f(-1.0), frame.size + 1.0) - 0.5;

@@ -77,8 +77,8 @@ impl PresentPass {
     }
 }
 
-/// A texture of the host's, drawn to with the format of the view: an sRGB one encodes by itself, into any other the
-/// renderer writes sRGB values.
+/// A texture of the host's, drawn to with the format of the view: an sRGB one encodes by itself,
+/// into any other the renderer writes sRGB values.
 #[derive(Clone, Copy, Debug)]
 pub struct Target<'a> {
     /// One layer of one mip of a texture with [`wgpu::TextureUsages::RENDER_ATTACHMENT`].

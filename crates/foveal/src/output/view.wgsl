@@ -35,7 +35,8 @@ fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
     let surface = unpack_surface(load_words(gbuffer_surface, texel), vec3f(0.0));
     switch VIEW {
         case 1u: {
-            // One grey step per 1/16 of a doubling: white at the near plane, black 16 doublings (65 km at 1 m) on.
+            // One grey step per 1/16 of a doubling: white at the near plane, black 16 doublings (65
+            // km at 1 m) on.
             let doublings = log2(max(view_distance(depth), frame.near) / frame.near);
             return vec4f(vec3f(1.0 - saturate(doublings / 16.0)), 1.0);
         }

@@ -1,8 +1,10 @@
 //! How coarsely the eye resolves: the largest block that it does not tell from its pixels.
 //!
-//! The smallest angle that the eye resolves grows in proportion to the angle to the gaze (Guenter, Finch, Drucker, Tan and Snyder
-//! 2012, 'Foveated 3D graphics', eq. 1): `ACUITY + SLOPE * eccentricity`, in degrees a cycle. A block's side is that times a
-//! factor, which [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod) names by the difference that is left.
+//! The smallest angle that the eye resolves grows in proportion to the angle to the gaze (Guenter,
+//! Finch, Drucker, Tan and Snyder 2012, 'Foveated 3D graphics', eq. 1): `ACUITY + SLOPE *
+//! eccentricity`, in degrees a cycle. A block's side is that times a factor, which
+//! [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod) names by the difference that is
+//! left.
 
 use crate::Settings;
 use crate::stereo::Eye;
@@ -12,11 +14,14 @@ use super::RequestUniform;
 
 /// Smallest resolvable angle at the gaze, in radians a cycle: 1/48 degree.
 const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
-/// Its growth per angle of eccentricity: the slope with which Guenter et al. found no visible difference.
+/// Its growth per angle of eccentricity: the slope with which Guenter et al. found no visible
+/// difference.
 const SLOPE: f32 = 0.0275;
 
-/// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each: means over the demo scene, Sponza
-/// and the castle at 60 degrees across (docs/benchmarks/coarse.md). That of 10 is extrapolated, that of 8.91 from three pictures of five.
+/// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each:
+/// means over the demo scene, Sponza and the castle at 60 degrees across
+/// (docs/benchmarks/coarse.md). That of 10 is extrapolated, that of 8.91 from three pictures of
+/// five.
 const QUALITIES: [(f32, f32); 7] = [
     (10.0, 0.05),
     (9.85, 0.15),
@@ -27,7 +32,8 @@ const QUALITIES: [(f32, f32); 7] = [
     (8.91, 2.0),
 ];
 
-/// What is assumed where a camera's rays are parallel, so that its picture tells no angle: 60 degrees across.
+/// What is assumed where a camera's rays are parallel, so that its picture tells no angle: 60
+/// degrees across.
 const PARALLEL_ACROSS: f32 = std::f32::consts::FRAC_PI_3;
 
 /// Sides of blocks: at the gaze in radians, and growth per radian of eccentricity.
@@ -59,7 +65,8 @@ impl Blocks {
     }
 }
 
-/// Tangents on the display of a point of an eye's picture, from normalized device coordinates: scale in xy, offset in zw.
+/// Tangents on the display of a point of an eye's picture, from normalized device coordinates:
+/// scale in xy, offset in zw.
 pub(super) fn display_from_ndc(s: &Settings, eye: &Eye) -> [f32; 4] {
     let across = match s.eye.display.across() {
         Some(across) => across,
@@ -86,7 +93,8 @@ fn tangents([sx, sy, ox, oy]: [f32; 4], [x, y]: [f32; 2]) -> [f32; 2] {
     [(2.0 * x - 1.0) * sx + ox, (1.0 - 2.0 * y) * sy + oy]
 }
 
-/// The level that the left or only eye's picture requests at a position in pixels: twin of `foveated_level` in `rate/fovea.wgsl`.
+/// The level that the left or only eye's picture requests at a position in pixels: twin of
+/// `foveated_level` in `rate/fovea.wgsl`.
 #[cfg(test)]
 pub(super) fn level(request: &RequestUniform, s: &Settings, pixel: [f32; 2]) -> u32 {
     let to_display = request.display_from_ndc[0];

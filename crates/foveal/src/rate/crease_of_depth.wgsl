@@ -3,9 +3,10 @@
 #import shared/normal_of_depth.wgsl
 #expects depth_at
 
-// Of five texels in a row from `first` on: depth's step between the first two, and between the last two, so that a crease
-// anywhere between the second and the fourth lies between both steps; those before and after are the neighbours'. Both are
-// the same beyond the picture's border, and where depth jumps there: that is the next block's edge.
+// Of five texels in a row from `first` on: depth's step between the first two, and between the last
+// two, so that a crease anywhere between the second and the fourth lies between both steps; those
+// before and after are the neighbours'. Both are the same beyond the picture's border, and where
+// depth jumps there: that is the next block's edge.
 fn steps_along(first: vec2i, axis: u32, last: vec2i) -> vec2f {
     var one = vec2i(0);
     one[axis] = 1;

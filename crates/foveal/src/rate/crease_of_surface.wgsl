@@ -8,8 +8,8 @@ fn normal_at(texel: vec2i) -> vec3f {
     return unit_from_octahedral(unpack2x16snorm(load_words(gbuffer_surface, vec2u(texel)).y));
 }
 
-// Whether a block's surface turns by more than 45 degrees towards the block to its right or below. `first` is its upper left
-// pixel, `last` the picture's last.
+// Whether a block's surface turns by more than 45 degrees towards the block to its right or below.
+// `first` is its upper left pixel, `last` the picture's last.
 fn turns(first: vec2i, last: vec2i) -> bool {
     let normal = normal_at(first);
     let right = normal_at(vec2i(min(first.x + 2, last.x), first.y));

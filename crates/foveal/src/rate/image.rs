@@ -9,7 +9,8 @@ pub struct RateImage {
 }
 
 impl RateImage {
-    /// A picture from its rows, top to bottom; `None` unless there are `width * height` bytes and at least one.
+    /// A picture from its rows, top to bottom; `None` unless there are `width * height` bytes and
+    /// at least one.
     #[must_use]
     pub fn new(width: u32, height: u32, luma: Vec<u8>) -> Option<Self> {
         let bytes = u64::from(width) * u64::from(height);

@@ -1,6 +1,7 @@
 //! The exact tiling on the CPU: the passes' twin, and what tests and tools ask about a tiling.
 
-/// The minimum of the requested levels over each block of each level, and the tiling that follows from it.
+/// The minimum of the requested levels over each block of each level, and the tiling that follows
+/// from it.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MinPyramid {
     levels: Vec<Grid>,
@@ -25,8 +26,9 @@ impl Grid {
 }
 
 impl MinPyramid {
-    /// Builds the pyramid over `requests`, rows of `width` (at least 1) levels; requests above `coarsest` count as
-    /// `coarsest`. With `balance`, neighbouring blocks differ by one level at most.
+    /// Builds the pyramid over `requests`, rows of `width` (at least 1) levels; requests above
+    /// `coarsest` count as `coarsest`. With `balance`, neighbouring blocks differ by one level at
+    /// most.
     #[must_use]
     pub fn new(width: u32, requests: &[u8], coarsest: u8, balance: bool) -> Self {
         let width = width.max(1);
@@ -52,7 +54,8 @@ impl MinPyramid {
         self.levels.len() as u8 - 1
     }
 
-    /// Blocks across and down at a level; those at the right and the bottom may reach beyond the picture.
+    /// Blocks across and down at a level; those at the right and the bottom may reach beyond the
+    /// picture.
     #[must_use]
     pub fn size(&self, level: u8) -> (u32, u32) {
         let grid = &self.levels[usize::from(level)];
@@ -103,8 +106,9 @@ impl MinPyramid {
     }
 }
 
-/// The grid of `level` from the one below: the minimum of the four children inside the picture. For a balanced
-/// tiling a block is allowed only where all blocks around its children are allowed at the children's level.
+/// The grid of `level` from the one below: the minimum of the four children inside the picture. For
+/// a balanced tiling a block is allowed only where all blocks around its children are allowed at
+/// the children's level.
 fn reduce(below: &Grid, level: u8, balance: bool) -> Grid {
     let (width, height) = (below.width.div_ceil(2), below.height.div_ceil(2));
     let cell = |x: u32, y: u32| {
@@ -139,7 +143,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// A map whose requested levels come in patches of 2^patch pixels, so that coarse levels occur at all.
+    /// A map whose requested levels come in patches of 2^patch pixels, so that coarse levels occur
+    /// at all.
     fn patches(width: u32, height: u32, patch: u32, seed: u32) -> Vec<u8> {
         (0..height)
             .flat_map(|y| (0..width).map(move |x| (x, y)))

@@ -5,8 +5,8 @@
 #import shared/frame.wgsl
 #import shared/level.wgsl
 
-// Neighbouring tiles differ by one level at most: a block is allowed only where all blocks around its children are
-// allowed at their level.
+// Neighbouring tiles differ by one level at most: a block is allowed only where all blocks around
+// its children are allowed at their level.
 override BALANCE: bool = false;
 
 @group(1) @binding(0) var below: texture_2d<u32>;

@@ -27,8 +27,8 @@ pub(crate) struct RequestUniform {
     pub(crate) gaze_direction: [[f32; 4]; 2],
 }
 
-/// Levels by which [`RefineEdges::Graded`] refines where samples hold colours. Where they hold light one does: what a pixel shows beyond
-/// an edge is its own surface all the same.
+/// Levels by which [`RefineEdges::Graded`] refines where samples hold colours. Where they hold
+/// light one does: what a pixel shows beyond an edge is its own surface all the same.
 const GRADED_BY: u8 = 2;
 
 impl RequestUniform {
@@ -138,8 +138,9 @@ pub(super) fn request_constants(s: &Settings) -> [(&'static str, f64); 3] {
     ]
 }
 
-/// Squared radii in pixels from which on levels 1, 2, ... are requested; out of reach beyond the coarsest. They come
-/// from the CPU once a frame, so that no device's power function decides over a pixel's level.
+/// Squared radii in pixels from which on levels 1, 2, ... are requested; out of reach beyond the
+/// coarsest. They come from the CPU once a frame, so that no device's power function decides over a
+/// pixel's level.
 fn squared_radii(s: &Settings) -> [[f32; 4]; 2] {
     let height = s.picture.height as f32;
     let (inner, outer) = (s.coarse.fovea_inner * height, s.coarse.fovea_outer * height);
@@ -191,7 +192,8 @@ mod tests {
             let block = degrees / pixel;
             let level = uniform.level(&s, x, 360, None);
             let side = f32::from(1u16 << level);
-            // Near the gaze a block is never smaller than a pixel; the angle's series is good to half a per cent.
+            // Near the gaze a block is never smaller than a pixel; the angle's series is good to
+            // half a per cent.
             assert!(side <= (block * 1.01).max(1.0), "{x}: {side} {block}");
             assert!(block < side * 2.02, "{x}: {side} {block}");
         }

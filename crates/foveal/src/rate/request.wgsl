@@ -1,5 +1,5 @@
-// The finest level that one of 2 x 2 pixels requests, and whether they lie at a geometric edge: level
-// 1 of the min-pyramid. Rust: `rate/request.rs`.
+// The finest level that one of 2 x 2 pixels requests, and whether they lie at a geometric edge:
+// level 1 of the min-pyramid. Rust: `rate/request.rs`.
 
 #variant
 #variant BY_DEPTH
@@ -65,9 +65,10 @@ fn depth_at(texel: vec2i) -> f32 {
     return load_depth(gbuffer_depth, vec2u(texel));
 }
 
-// Whether a surface ends within a block of 2 x 2 pixels or between it and the blocks to its right and below:
-// another instance, a crease of more than 45 degrees, or a jump in depth. Reversed depth is affine in screen space
-// along a plane however it is tilted, so a jump shows as a second difference.
+// Whether a surface ends within a block of 2 x 2 pixels or between it and the blocks to its right
+// and below: another instance, a crease of more than 45 degrees, or a jump in depth. Reversed depth
+// is affine in screen space along a plane however it is tilted, so a jump shows as a second
+// difference.
 fn holds_edge(block: vec2u) -> bool {
     let last = vec2i(picture_of(block * 2u).end) - 1;
     let first = min(vec2i(block) * 2, last);

@@ -1,8 +1,9 @@
-//! The renderer on devices that have neither storage buffers nor compute shaders, held to the full one.
+//! The renderer on devices that have neither storage buffers nor compute shaders, held to the full
+//! one.
 //!
-//! Such a device (WebGL 2) gets tables in textures for storage buffers (`gpu/table.rs`), lights assigned on the CPU
-//! (`lights/tables.rs`) and a G-buffer that holds depth as an integer; all else is the same code. In
-//! shaders, `#ifdef REDUCED` has what reads tables.
+//! Such a device (WebGL 2) gets tables in textures for storage buffers (`gpu/table.rs`), lights
+//! assigned on the CPU (`lights/tables.rs`) and a G-buffer that holds depth as an integer; all else
+//! is the same code. In shaders, `#ifdef REDUCED` has what reads tables.
 
 use std::sync::OnceLock;
 

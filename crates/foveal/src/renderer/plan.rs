@@ -21,7 +21,8 @@ pub(super) struct FramePlan {
     pub(super) rates: SampleChoice,
     /// Where materials are resolved.
     pub(super) materials: SampleChoice,
-    /// Where surfaces are lit besides edges; `None` where no light is shown, or edges are all that is lit.
+    /// Where surfaces are lit besides edges; `None` where no light is shown, or edges are all that
+    /// is lit.
     pub(super) lighting: Option<SampleChoice>,
     /// Pixels at edges are lit more than once: the picture is made from sub-samples.
     pub(super) edges: bool,

@@ -161,7 +161,8 @@ impl Stages {
         }
     }
 
-    /// Geometry: what is seen at each pixel. Materials that are evaluated at a rate are left for later.
+    /// Geometry: what is seen at each pixel. Materials that are evaluated at a rate are left for
+    /// later.
     fn fill_gbuffer(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>, plan: &FramePlan) {
         let (geometry, gbuffer) = (&self.geometry, &self.targets.gbuffer);
         if plan.edges {

@@ -118,7 +118,8 @@ impl Renderer {
         self.stages.targets.samples = Some(targets);
     }
 
-    /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance target.
+    /// Shades the last frame's G-buffer again, sample by sample from a list, into its radiance
+    /// target.
     pub(crate) fn shade_list(&mut self, texels: &[(u32, u32)]) {
         self.encode(|recorder, stages, scene| {
             let (shading, targets) = (&stages.shading, &stages.targets);

@@ -1,7 +1,8 @@
 //! Families of materials: those that one dispatch evaluates at all of their pixels.
 //!
-//! Materials are of one family where the same shader variant reads them out of the same arrays of textures by the same
-//! samplers: what is left to tell them apart are factors and layers, which shaders look up by the pixel's material.
+//! Materials are of one family where the same shader variant reads them out of the same arrays of
+//! textures by the same samplers: what is left to tell them apart are factors and layers, which
+//! shaders look up by the pixel's material.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -109,7 +110,8 @@ impl MaterialDispatch {
         match settings.geometry.material_dispatch {
             crate::MaterialDispatch::Family => Self::Family,
             crate::MaterialDispatch::Material => Self::Material,
-            // Lavapipe gathers what differs from pixel to pixel lane by lane: docs/decisions/0213-families-of-materials.md.
+            // Lavapipe gathers what differs from pixel to pixel lane by lane:
+            // docs/decisions/0213-families-of-materials.md.
             crate::MaterialDispatch::Auto => {
                 if gpu.is_lavapipe() {
                     Self::Material
@@ -238,7 +240,8 @@ impl FamilyBindings {
         &self.groups[family as usize]
     }
 
-    /// A [`FamilyUniform`] for each family, or for each material, whose counts are for binning to fill in.
+    /// A [`FamilyUniform`] for each family, or for each material, whose counts are for binning to
+    /// fill in.
     pub(crate) fn dispatches(&self, by: MaterialDispatch) -> &wgpu::Buffer {
         match by {
             MaterialDispatch::Family => &self.by_family,

@@ -200,7 +200,8 @@ impl SceneGeometry {
         })
     }
 
-    /// Bind group 2 of `shared/attributes.wgsl`; `None` for a scene that failed [`SceneGeometry::check`].
+    /// Bind group 2 of `shared/attributes.wgsl`; `None` for a scene that failed
+    /// [`SceneGeometry::check`].
     pub(crate) fn group(&self) -> Option<&wgpu::BindGroup> {
         self.group.as_ref()
     }

@@ -25,7 +25,8 @@ pub(crate) struct MaterialUniform {
     pub(crate) reserved_2: u32,
 }
 
-/// A material's texture slots in the order of the shader's bindings; their positions are the flags' bits.
+/// A material's texture slots in the order of the shader's bindings; their positions are the flags'
+/// bits.
 pub(super) fn slots(material: &Material) -> [Option<TextureRef>; 5] {
     [
         material.base_color_texture,
@@ -40,8 +41,9 @@ const IS_UNLIT: u32 = 32;
 const IS_PROCEDURAL: u32 = 64;
 const HAS_UV_MAP: u32 = 128;
 const HAS_OWN_UV_MAPS: u32 = 256;
-/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for procedural, one where a
-/// texture is read elsewhere than at the first UV set as it is, one where textures are read at different places.
+/// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for
+/// procedural, one where a texture is read elsewhere than at the first UV set as it is, one where
+/// textures are read at different places.
 pub(crate) fn material_class(material: &Material) -> u32 {
     let slots = slots(material);
     let textures = slots

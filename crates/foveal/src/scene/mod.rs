@@ -113,8 +113,8 @@ impl SceneOnGpu {
         })
     }
 
-    /// Takes over a new pose of the same scene; the pose so far becomes the previous one. Says whether anything has moved, and
-    /// gives the lights so far.
+    /// Takes over a new pose of the same scene; the pose so far becomes the previous one. Says
+    /// whether anything has moved, and gives the lights so far.
     pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) -> (bool, Vec<LightUniform>) {
         let mut moves = self.geometry.deforms();
         for (uniform, instance) in self.uniforms.iter_mut().zip(&scene.instances) {

@@ -15,9 +15,10 @@ pub(crate) struct Samplers<'a> {
 
 impl<'a> Samplers<'a> {
     pub(crate) fn new(gpu: &'a Gpu, anisotropy: u16) -> Self {
-        // Lavapipe's anisotropic filter (Mesa 22.3) visits every texel of a footprint that has no bound, and
-        // finds it from neighbouring coordinates even where the shader gives gradients: a triangle seen edge-on
-        // keeps it busy for minutes. Without it its geometry pass takes a quarter of the time besides.
+        // Lavapipe's anisotropic filter (Mesa 22.3) visits every texel of a footprint that has no
+        // bound, and finds it from neighbouring coordinates even where the shader gives gradients:
+        // a triangle seen edge-on keeps it busy for minutes. Without it its geometry pass takes a
+        // quarter of the time besides.
         let broken = gpu.is_lavapipe();
         let anisotropy = if broken { 1 } else { anisotropy };
         Self {

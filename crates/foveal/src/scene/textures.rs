@@ -1,7 +1,8 @@
 //! Textures on the device: those of one shape are layers of one array.
 //!
-//! Geometry passes bind single layers. What evaluates the materials of many triangles at once binds whole arrays
-//! (`families.rs`), because no device need offer an index into textures that differs from pixel to pixel.
+//! Geometry passes bind single layers. What evaluates the materials of many triangles at once binds
+//! whole arrays (`families.rs`), because no device need offer an index into textures that differs
+//! from pixel to pixel.
 
 use std::collections::HashMap;
 
@@ -22,7 +23,8 @@ pub(crate) struct ArrayLimits {
 impl ArrayLimits {
     /// What `MaterialUniform::layers` has room for.
     const MOST_LAYERS: u32 = 256;
-    /// A driver may refuse a single texture of much more, though there is room for many of this size.
+    /// A driver may refuse a single texture of much more, though there is room for many of this
+    /// size.
     const MOST_BYTES: u64 = 256 << 20;
 
     /// What this device allows. WebGL has no view of one layer: there each texture is alone.
@@ -49,7 +51,8 @@ struct Shape {
 }
 
 impl Shape {
-    /// Of `texture` without the levels that are larger than the device's limit, and how many those are.
+    /// Of `texture` without the levels that are larger than the device's limit, and how many those
+    /// are.
     fn of(texture: &Texture, limit: u32) -> Result<(Self, usize), Error> {
         let side = |level: usize| {
             (
@@ -100,7 +103,8 @@ pub(crate) struct Place {
     pub(crate) layer: u32,
 }
 
-/// Each shape's place, and the arrays: their shape and number of layers. Equal shapes share an array while it has room.
+/// Each shape's place, and the arrays: their shape and number of layers. Equal shapes share an
+/// array while it has room.
 fn arrange(shapes: &[Shape], limits: ArrayLimits) -> (Vec<Place>, Vec<(Shape, u32)>) {
     let mut arrays: Vec<(Shape, u32)> = Vec::new();
     let mut open: HashMap<Shape, usize> = HashMap::new();
@@ -125,7 +129,8 @@ fn arrange(shapes: &[Shape], limits: ArrayLimits) -> (Vec<Place>, Vec<(Shape, u3
     (places, arrays)
 }
 
-/// Texels that wait for their upload at a time, about: without a bound there would be a second copy of all of them.
+/// Texels that wait for their upload at a time, about: without a bound there would be a second copy
+/// of all of them.
 const STAGED_BYTES: usize = 32 << 20;
 
 /// A scene's textures.
@@ -169,7 +174,8 @@ impl Textures {
                 staged += level.len();
             }
             if staged > STAGED_BYTES {
-                // What is written waits in buffers of its own until it is submitted, and they until someone looks.
+                // What is written waits in buffers of its own until it is submitted, and they until
+                // someone looks.
                 gpu.queue.submit([]);
                 let _ = gpu.device.poll(wgpu::PollType::Poll);
                 staged = 0;

@@ -46,12 +46,15 @@ pub enum CoarseBackend {
     serde(rename_all = "kebab-case")
 )]
 pub enum RateSource {
-    /// The eye's resolution: the angle to the gaze on [`EyeSettings::display`](crate::EyeSettings::display), for
+    /// The eye's resolution: the angle to the gaze on
+    /// [`EyeSettings::display`](crate::EyeSettings::display), for
     /// [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod).
     #[default]
     Foveated,
-    /// The distance to the gaze in pixels, between [`CoarseSettings::fovea_inner`](crate::CoarseSettings::fovea_inner) and
-    /// [`CoarseSettings::fovea_outer`](crate::CoarseSettings::fovea_outer), as in the technique's source.
+    /// The distance to the gaze in pixels, between
+    /// [`CoarseSettings::fovea_inner`](crate::CoarseSettings::fovea_inner) and
+    /// [`CoarseSettings::fovea_outer`](crate::CoarseSettings::fovea_outer), as in the technique's
+    /// source.
     Radii,
     /// [`CoarseSettings::constant_level`](crate::CoarseSettings::constant_level) everywhere.
     Constant,

@@ -79,9 +79,9 @@ pub(super) const fn kebab<const N: usize>(name: &str) -> [u8; N] {
 }
 
 /// Makes [`Settings`](crate::Settings), a struct per stage, their defaults and the table of
-/// [`Setting`]s. Each stage has a help text, a heading and its place in `Settings`. Each setting has
-/// a help text (rustdoc, `--help`, the window's tooltip), `key => field: type = default`, a label and
-/// a kind. In a settings file all keys lie side by side.
+/// [`Setting`]s. Each stage has a help text, a heading and its place in `Settings`. Each setting
+/// has a help text (rustdoc, `--help`, the window's tooltip), `key => field: type = default`, a
+/// label and a kind. In a settings file all keys lie side by side.
 macro_rules! settings {
     (
         $(

@@ -7,8 +7,8 @@ use std::str::FromStr;
 use super::define::as_text;
 use crate::Error;
 
-/// Display on which the picture is seen: a plane in front of the eye. As text a name, a field of view
-/// in degrees from left to right (`60`), or `WIDTHxDISTANCE` in metres (`0.531x0.6`).
+/// Display on which the picture is seen: a plane in front of the eye. As text a name, a field of
+/// view in degrees from left to right (`60`), or `WIDTHxDISTANCE` in metres (`0.531x0.6`).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub enum Display {
@@ -20,7 +20,8 @@ pub enum Display {
     Hmd,
     /// `h60`: 60 degrees across.
     H60,
-    /// `fhd-24` (or `fhd`): a 24-inch monitor at 0.6 m, 48 degrees across, 38 pixels a degree at 1920.
+    /// `fhd-24` (or `fhd`): a 24-inch monitor at 0.6 m, 48 degrees across, 38 pixels a degree at
+    /// 1920.
     Fhd24,
     /// `uhd-27`: a 27-inch monitor at 0.6 m, 53 degrees across, 67 pixels a degree at 3840.
     Uhd27,

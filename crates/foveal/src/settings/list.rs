@@ -251,8 +251,8 @@ impl Settings {
             || occlusion && before.culling.mode != Culling::Occlusion
     }
 
-    /// The same settings at the size at which the frame is drawn, before [`PictureSettings::render_scale`](crate::PictureSettings::render_scale)
-    /// stretches it.
+    /// The same settings at the size at which the frame is drawn, before
+    /// [`PictureSettings::render_scale`](crate::PictureSettings::render_scale) stretches it.
     #[must_use]
     pub fn drawn(&self) -> Self {
         let scaled =

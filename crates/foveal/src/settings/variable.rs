@@ -28,8 +28,8 @@ pub enum Geometry {
 )]
 pub enum RateStage {
     /// [`RateStage::Both`] where it is possible: with [`Geometry::Visibility`], without
-    /// anti-aliasing, and without [`Composite::Light`](crate::Composite::Light), which needs each pixel's surface. Else
-    /// lighting.
+    /// anti-aliasing, and without [`Composite::Light`](crate::Composite::Light), which needs each
+    /// pixel's surface. Else lighting.
     #[default]
     Auto,
     /// Lighting.

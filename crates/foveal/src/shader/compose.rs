@@ -8,7 +8,8 @@
 //! | `#variant REDUCED LAYERED` | the shader can be made with these names defined; without such a line it has one variant, with none |
 //! | `#ifdef NAME`, `#ifndef NAME`, `#else`, `#endif` | lines for some variants |
 //!
-//! `enable` directives go to the beginning of the module. Tests hold each file to what it imports and expects.
+//! `enable` directives go to the beginning of the module. Tests hold each file to what it imports
+//! and expects.
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 

@@ -1,4 +1,5 @@
-//! Shaders: composed from files that import each other (`compose.rs`), compiled, and made into pipelines.
+//! Shaders: composed from files that import each other (`compose.rs`), compiled, and made into
+//! pipelines.
 
 mod compose;
 

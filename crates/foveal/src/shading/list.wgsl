@@ -4,7 +4,8 @@
 
 // Texels as x | y << 16.
 @group(2) @binding(0) var<storage, read> samples: array<u32>;
-// Workgroups in x, y, z and the number of samples: the indirect dispatch's arguments with their cause.
+// Workgroups in x, y, z and the number of samples: the indirect dispatch's arguments with their
+// cause.
 @group(2) @binding(1) var<storage, read> dispatch: array<u32, 4>;
 @group(2) @binding(2) var radiance: texture_storage_2d<rgba16float, write>;
 

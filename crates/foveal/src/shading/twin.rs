@@ -1,4 +1,5 @@
-//! The CPU twin of deferred shading: `surface.wgsl`, `lighting.wgsl` and `shading.wgsl` in plain Rust.
+//! The CPU twin of deferred shading: `surface.wgsl`, `lighting.wgsl` and `shading.wgsl` in plain
+//! Rust.
 
 use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};
@@ -79,7 +80,8 @@ pub(crate) fn position_at(camera: &Camera, size: Vec2, pixel: Vec2, depth: f32) 
     camera.world_from_view.transform_point3(view)
 }
 
-/// The normal seen at a texel, world space, from reversed depth alone: `shared/normal_of_depth.wgsl`.
+/// The normal seen at a texel, world space, from reversed depth alone:
+/// `shared/normal_of_depth.wgsl`.
 pub(crate) fn normal_of_depth(camera: &Camera, size: UVec2, depths: &[f32], at: UVec2) -> Vec3 {
     let depth = |at: UVec2| depths[(at.y * size.x + at.x) as usize];
     let here = depth(at);
@@ -211,7 +213,8 @@ fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) 
     }
 }
 
-/// What all lights send to a surface; the radiance holds what it emits and reflects of its surroundings too.
+/// What all lights send to a surface; the radiance holds what it emits and reflects of its
+/// surroundings too.
 pub(crate) fn light_surface(
     scene: &Scene,
     lights: &[LightUniform],

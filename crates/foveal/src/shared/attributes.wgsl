@@ -60,8 +60,8 @@ struct Barycentrics {
     counter_clockwise: bool,
 }
 
-// Perspective-correct barycentric coordinates, for corners given as x, y, w of clip space, at a point in normalized
-// device coordinates; `step` is a pixel's size in these, down being negative.
+// Perspective-correct barycentric coordinates, for corners given as x, y, w of clip space, at a
+// point in normalized device coordinates; `step` is a pixel's size in these, down being negative.
 fn barycentrics_at(a: vec3f, b: vec3f, c: vec3f, ndc: vec2f, step: vec2f) -> Barycentrics {
     // Moving the point to the origin first keeps small triangles precise.
     let p = a.xy - ndc * a.z;
@@ -76,7 +76,8 @@ fn barycentrics_at(a: vec3f, b: vec3f, c: vec3f, ndc: vec2f, step: vec2f) -> Bar
     let at = areas * inverse;
     let right = (areas_right - at * dot(areas_right, one)) * inverse;
     let down = (areas_down - at * dot(areas_down, one)) * inverse;
-    // The rasterizer snaps corners to a grid: where a point just outside counts as inside, so does it here.
+    // The rasterizer snaps corners to a grid: where a point just outside counts as inside, so does
+    // it here.
     let inside = max(at, vec3f(0.0));
     let rest = dot(inside, one);
     return Barycentrics(select(inside / rest, one / 3.0, rest == 0.0), right, down, sum > 0.0);
@@ -98,7 +99,8 @@ struct Attributes {
     face: vec3f,
 }
 
-// The attributes of a triangle (counted within its mesh) of an instance at a point in normalized device coordinates.
+// The attributes of a triangle (counted within its mesh) of an instance at a point in normalized
+// device coordinates.
 fn attributes_at(clip_from_world: mat4x4f, instance: u32, triangle: u32, ndc: vec2f, step: vec2f) -> Attributes {
     let i = instances[instance];
     let place = places[instance];

@@ -1,6 +1,7 @@
 // Blocks of the coarse tiling: level l has square blocks of 2^l pixels. Blocks of all levels begin
-// again where the right eye's picture does, so that none belongs to both; those at a picture's right
-// and lower border may reach beyond it. CPU twins: `rate/pyramid.rs`, `shading/coarse/block.rs`.
+// again where the right eye's picture does, so that none belongs to both; those at a picture's
+// right and lower border may reach beyond it. CPU twins: `rate/pyramid.rs`,
+// `shading/coarse/block.rs`.
 
 #import shared/frame.wgsl
 
@@ -19,9 +20,9 @@ fn is_padding(block: vec2u, level: u32) -> bool {
     return first.x >= picture_of(first).end.x;
 }
 
-// The texel that a block's sample looks at. Candidate 0 is the centre: of the four texels around it the one to
-// the lower right. Candidates 1 to 4 lie a quarter of the side from the corners. A block whose candidate lies
-// beyond its eye's picture takes the nearest of its texels inside.
+// The texel that a block's sample looks at. Candidate 0 is the centre: of the four texels around it
+// the one to the lower right. Candidates 1 to 4 lie a quarter of the side from the corners. A block
+// whose candidate lies beyond its eye's picture takes the nearest of its texels inside.
 fn sample_texel(block: vec2u, level: u32, candidate: u32) -> vec2u {
     let side = 1u << level;
     var within = vec2u(side >> 1u);

@@ -9,10 +9,12 @@ struct View {
     clip_from_world: mat4x4f,
     previous_clip_from_world: mat4x4f,
     world_from_view: mat4x4f,
-    // View-space xy from normalized device coordinates: (ndc * xy + zw), times depth for a perspective.
+    // View-space xy from normalized device coordinates: (ndc * xy + zw), times depth for a
+    // perspective.
     view_from_ndc: vec4f,
     eye: vec3f,
-    // Whole pixels by which the eye's picture is moved in the grid of clusters, so that both look alike far away.
+    // Whole pixels by which the eye's picture is moved in the grid of clusters, so that both look
+    // alike far away.
     cluster_shift_x: f32,
     // Unit view direction, world space.
     forward: vec3f,
@@ -88,8 +90,8 @@ fn ndc_of(pixel: vec2f) -> vec2f {
     return vec2f(2.0, -2.0) * pixel / frame.size + vec2f(-1.0, 1.0);
 }
 
-// View-space position (x right, y up, looking down -z) of a pixel position in an eye's picture at a distance along
-// the view axis.
+// View-space position (x right, y up, looking down -z) of a pixel position in an eye's picture at a
+// distance along the view axis.
 fn position_in_view(view: u32, pixel: vec2f, distance: f32) -> vec3f {
     let to_view = frame.views[view].view_from_ndc;
     let xy = ndc_of(pixel) * to_view.xy + to_view.zw;

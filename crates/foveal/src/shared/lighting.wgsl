@@ -50,7 +50,8 @@ fn arriving(light: Light, position: vec3f) -> Arriving {
     return Arriving(direction, light.radiant * attenuation);
 }
 
-// What a surface makes of light from one direction: the part that is left for diffuse reflection, and the mirrored part.
+// What a surface makes of light from one direction: the part that is left for diffuse reflection,
+// and the mirrored part.
 struct Reflection {
     left: vec3f,
     mirrored: vec3f,
@@ -100,8 +101,8 @@ fn add_light(sum: Lit, s: Surface, v: vec3f, light: Light) -> Lit {
     );
 }
 
-// Index of the first light word of the cluster at a position in pixels of the target and a distance along the view
-// axis.
+// Index of the first light word of the cluster at a position in pixels of the target and a distance
+// along the view axis.
 fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
     let view = view_at(pixel);
     let moved = in_eye(pixel) + vec2f(frame.views[view].cluster_shift_x, frame.views[view].cluster_shift_y);
@@ -110,8 +111,9 @@ fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
     return cluster * light_words();
 }
 
-// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights are summed in ascending order
-// whichever way they are found, so that clustered and brute agree to the bit.
+// Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights
+// are summed in ascending order whichever way they are found, so that clustered and brute agree to
+// the bit.
 fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
     var sum = Lit(s.emissive + ambient(s, v), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));

@@ -1,4 +1,5 @@
-// A material's parameters, and where on a surface its textures are read. Rust: `scene/materials.rs`.
+// A material's parameters, and where on a surface its textures are read. Rust:
+// `scene/materials.rs`.
 
 #expects material
 
@@ -32,7 +33,8 @@ struct Material {
     occlusion_strength: f32,
     // 0 where alpha is no mask.
     alpha_cutoff: f32,
-    // Base colour, metallic-roughness, normal, occlusion, emissive; the first one's for all where they share it.
+    // Base colour, metallic-roughness, normal, occlusion, emissive; the first one's for all where
+    // they share it.
     uv: array<UvMap, 5>,
     // Where the textures lie in their arrays, a byte each.
     layers: vec2u,

@@ -8,10 +8,12 @@
 #import shared/layers.wgsl
 #expects gbuffer_depth
 
-// As in normal_of_surface.wgsl: 45 degrees, as at the creases that mark tiles (rate/crease_of_depth.wgsl).
+// As in normal_of_surface.wgsl: 45 degrees, as at the creases that mark tiles
+// (rate/crease_of_depth.wgsl).
 const SAME_NORMAL: f32 = 0.7;
 
-// Unit normal, view space, of the plane through a texel whose depth changes by `steps` per texel right and down.
+// Unit normal, view space, of the plane through a texel whose depth changes by `steps` per texel
+// right and down.
 fn normal_from_steps(texel: vec2u, depth: f32, steps: vec2f) -> vec3f {
     let to_view = frame.views[view_of(texel)].view_from_ndc;
     let at = ndc_of(in_eye(vec2f(texel) + 0.5)) * to_view.xy + to_view.zw;
@@ -21,7 +23,8 @@ fn normal_from_steps(texel: vec2u, depth: f32, steps: vec2f) -> vec3f {
     return normalize(select(perspective, orthographic, frame.orthographic != 0u));
 }
 
-// Change of depth from a texel to the next along an axis, on the side where the surface goes on more evenly.
+// Change of depth from a texel to the next along an axis, on the side where the surface goes on
+// more evenly.
 fn depth_step(texel: vec2u, axis: u32, depth: f32) -> f32 {
     let picture = picture_of(texel);
     var one = vec2i(0);

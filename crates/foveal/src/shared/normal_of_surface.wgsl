@@ -4,7 +4,8 @@
 #import shared/surface.wgsl
 #expects gbuffer_surface
 
-// Cosine of the angle from which on two normals are two surfaces': 60 degrees, as surfaces may be bumpy.
+// Cosine of the angle from which on two normals are two surfaces': 60 degrees, as surfaces may be
+// bumpy.
 const SAME_NORMAL: f32 = 0.5;
 
 fn normal_seen(texel: vec2u) -> vec3f {

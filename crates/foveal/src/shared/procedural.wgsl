@@ -41,7 +41,8 @@ fn value_noise(p: vec3f, seed: u32) -> vec4f {
     );
 }
 
-// Metres that a pixel shows at a position, as the left or only eye sees it: both see the same surface.
+// Metres that a pixel shows at a position, as the left or only eye sees it: both see the same
+// surface.
 fn pixel_size(position: vec3f) -> f32 {
     let view = frame.views[0];
     let distance = select(dot(position - view.eye, view.forward), 1.0, frame.orthographic != 0u);
@@ -56,8 +57,8 @@ struct Procedural {
     slope: vec3f,
 }
 
-// `frequency` of the coarsest layer in 1/m; each further one's is 1.7 times higher. Layers whose lumps are finer than two
-// pixels, `pixel_m` wide each, fade into their mean.
+// `frequency` of the coarsest layer in 1/m; each further one's is 1.7 times higher. Layers whose
+// lumps are finer than two pixels, `pixel_m` wide each, fade into their mean.
 fn procedural_at(position: vec3f, seed: u32, frequency: f32, pixel_m: f32) -> Procedural {
     var found = Procedural(vec3f(1.0), 0.7, vec3f(0.0));
     var f = frequency;

@@ -1,5 +1,5 @@
-// Textures where there are no neighbours: the importing shader sets how both UV sets change from pixel to
-// pixel.
+// Textures where there are no neighbours: the importing shader sets how both UV sets change from
+// pixel to pixel.
 
 #import shared/material.wgsl
 

@@ -25,7 +25,8 @@ fn sign_not_zero(v: vec2f) -> vec2f {
     return select(vec2f(-1.0), vec2f(1.0), v >= vec2f(0.0));
 }
 
-// Octahedral map (Cigolle et al. 2014, 'A Survey of Efficient Representations for Independent Unit Vectors').
+// Octahedral map (Cigolle et al. 2014, 'A Survey of Efficient Representations for Independent Unit
+// Vectors').
 fn octahedral_from_unit(n: vec3f) -> vec2f {
     let p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
     return select((1.0 - abs(p.yx)) * sign_not_zero(p), p, n.z >= 0.0);
@@ -61,8 +62,8 @@ fn exp2_integer(n: i32) -> f32 {
     return bitcast<f32>(u32(n + 127) << 23u);
 }
 
-// x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic, roughness, and
-// 4 more bits of each base colour and `MIRRORED`, which only an average has.
+// x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic,
+// roughness, and 4 more bits of each base colour and `MIRRORED`, which only an average has.
 fn pack_surface(s: Surface) -> vec4u {
     return vec4u(
         pack4x8unorm(vec4f(sqrt(saturate(s.base_color)), s.occlusion)),

@@ -19,7 +19,8 @@ fn squared_alpha(s: Surface) -> f32 {
     return alpha * alpha;
 }
 
-// GGX distribution times visibility (glTF 2.0 appendix B; Heitz 2014): `l` and `v` are unit directions, `h` lies half-way.
+// GGX distribution times visibility (glTF 2.0 appendix B; Heitz 2014): `l` and `v` are unit
+// directions, `h` lies half-way.
 fn ggx_lobe(n: vec3f, v: vec3f, l: vec3f, h: vec3f, n_dot_l: f32, a2: f32) -> f32 {
     let n_dot_v = max(dot(n, v), 1e-4);
     let n_dot_h = saturate(dot(n, h));
@@ -35,8 +36,8 @@ fn diffuse_color(s: Surface) -> vec3f {
     return (1.0 - s.metallic) * s.base_color;
 }
 
-// What a rough mirror reflects of light that comes from everywhere alike (environment BRDF after Karis 2014, 'Physically Based
-// Shading on Mobile').
+// What a rough mirror reflects of light that comes from everywhere alike (environment BRDF after
+// Karis 2014, 'Physically Based Shading on Mobile').
 fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
     let n_dot_v = saturate(dot(s.normal, v));
     let f0 = reflectance_at_normal(s);

@@ -32,7 +32,8 @@ struct VertexOut {
     @location(7) before: vec3f,
 }
 
-// How eyes are drawn: 0 one view to a target or layer, 1 each in a pass of its own, 2 as instances in turn.
+// How eyes are drawn: 0 one view to a target or layer, 1 each in a pass of its own, 2 as instances
+// in turn.
 override EYES: u32 = 0u;
 // An eye's fragments beyond the centre of the target are discarded, not clipped.
 override DISCARD_BEYOND: bool = false;
@@ -55,8 +56,8 @@ fn drawn_as(instance_index: u32) -> Drawn {
     return Drawn(drawn_at(instance_index), 0u);
 }
 
-// From an eye's own clip space into its part of the target: left -w..w to the leftmost part, right to the rightmost.
-// Two passes do it likewise, so that all ways round alike.
+// From an eye's own clip space into its part of the target: left -w..w to the leftmost part, right
+// to the rightmost. Two passes do it likewise, so that all ways round alike.
 fn in_target(clip: vec4f, view: u32) -> vec4f {
     if EYES == 0u {
         return clip;
@@ -66,7 +67,8 @@ fn in_target(clip: vec4f, view: u32) -> vec4f {
     return vec4f(clip.x * part + select(-shift, shift, view == 1u), clip.yzw);
 }
 
-// How far inside an eye's own half of the target, in clip space, from x, y, w there; negative beyond the centre.
+// How far inside an eye's own half of the target, in clip space, from x, y, w there; negative
+// beyond the centre.
 fn inside_own_half(now: vec3f, marked_instance: u32) -> f32 {
     return now.z + select(-now.x, now.x, (marked_instance & RIGHT_EYE) != 0u);
 }
@@ -98,7 +100,8 @@ fn handedness_of(i: Instance) -> f32 {
 }
 
 fn world_vertex(i: Instance, position: vec3f, normal: vec3f, tangent: vec4f) -> WorldVertex {
-    // Normals go by the cofactor matrix: the inverse transpose times the determinant, so without a division.
+    // Normals go by the cofactor matrix: the inverse transpose times the determinant, so without a
+    // division.
     let cx = cross(i.world_y.xyz, i.world_z.xyz);
     let cy = cross(i.world_z.xyz, i.world_x.xyz);
     let cz = cross(i.world_x.xyz, i.world_y.xyz);
@@ -173,7 +176,8 @@ struct ClippedVertexOut {
 @vertex
 fn vertex_clipped(in: VertexIn) -> ClippedVertexOut {
     let v = vertex_of(in, drawn_as(in.drawn_index));
-    // A little beyond the centre, so that rounding takes no pixel away, and less than any sub-sample lies beyond it.
+    // A little beyond the centre, so that rounding takes no pixel away, and less than any
+    // sub-sample lies beyond it.
     let slack = v.now.z / (64.0 * frame.size.x);
     let inside = array<f32, 1>(inside_own_half(v.now, v.instance) + slack);
     return ClippedVertexOut(

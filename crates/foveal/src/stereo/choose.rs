@@ -83,7 +83,8 @@ impl Submission {
         })
     }
 
-    /// Of the ways that are right, the first one that none after it undercuts by a tenth; the first without a clock.
+    /// Of the ways that are right, the first one that none after it undercuts by a tenth; the first
+    /// without a clock.
     async fn fastest(
         gpu: &Gpu,
         ways: &[Self],
@@ -100,7 +101,8 @@ impl Submission {
                 wrong.push(format!("{} ({texels} of {of} texels)", way.name()));
             }
         }
-        // Fewer draws come first, and a moment's noise does not decide. Two passes are what the others are held to.
+        // Fewer draws come first, and a moment's noise does not decide. Two passes are what the
+        // others are held to.
         let best = right
             .iter()
             .copied()

@@ -26,7 +26,8 @@ impl Eye {
         self.world_from_view.w_axis.truncate()
     }
 
-    /// View-space xy from normalized device coordinates: scale in xy, offset in zw; at distance 1 for a perspective.
+    /// View-space xy from normalized device coordinates: scale in xy, offset in zw; at distance 1
+    /// for a perspective.
     pub(crate) fn view_from_ndc(&self) -> [f32; 4] {
         let m = &self.clip_from_view;
         let (x, y) = (m.x_axis.x, m.y_axis.y);
@@ -75,7 +76,8 @@ pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Err
                 m.z_axis.x = (right + left) / (right - left);
                 m.z_axis.y = (top + bottom) / (top - bottom);
             }
-            // Points straight ahead at the convergence distance keep the centre's place in the picture.
+            // Points straight ahead at the convergence distance keep the centre's place in the
+            // picture.
             EyeFrusta::Camera => {
                 eye.clip_from_view.z_axis.x -=
                     clip_from_view.x_axis.x * x / settings.stereo.convergence_m
@@ -119,8 +121,9 @@ fn check(settings: &Settings, camera: &Camera) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whole pixels by which each eye's picture is moved in the grid of clusters, so that what is far away falls into the
-/// same tiles for both. Any shift is right; this one keeps the lists of lights short.
+/// Whole pixels by which each eye's picture is moved in the grid of clusters, so that what is far
+/// away falls into the same tiles for both. Any shift is right; this one keeps the lists of lights
+/// short.
 pub(crate) fn cluster_shifts(eyes: &[Eye; 2], layout: &EyeLayout) -> [[u32; 2]; 2] {
     let [a, b] = eyes.map(|eye| eye.borders());
     let size = [layout.width, layout.height];

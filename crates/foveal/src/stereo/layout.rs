@@ -12,7 +12,8 @@ pub(crate) struct EyeLayout {
     /// Width of one eye's picture in pixels.
     pub(crate) width: u32,
     pub(crate) height: u32,
-    /// First column of the right eye's picture: the width, or more where coarse blocks are not to span both.
+    /// First column of the right eye's picture: the width, or more where coarse blocks are not to
+    /// span both.
     pub(crate) stride: u32,
 }
 

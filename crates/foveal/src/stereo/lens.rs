@@ -1,13 +1,15 @@
 //! The lens before a headset's screen, and its inverse.
 //!
-//! Radii are tangents of the angle to the lens's axis: `screen` ones as the bare screen would be seen, `seen` ones
-//! as the lens shows it. The forward map is the profile's polynomial, the inverse is found numerically.
+//! Radii are tangents of the angle to the lens's axis: `screen` ones as the bare screen would be
+//! seen, `seen` ones as the lens shows it. The forward map is the profile's polynomial, the inverse
+//! is found numerically.
 
 use super::Eye;
 use crate::settings::LensProfile;
 use crate::{Error, Settings};
 
-/// Screen radius up to which every profile must be sound, unless it shows radius 2 (63 degrees) before that.
+/// Screen radius up to which every profile must be sound, unless it shows radius 2 (63 degrees)
+/// before that.
 const FARTHEST_SCREEN: f32 = 2.0;
 
 impl LensProfile {
@@ -25,8 +27,8 @@ impl LensProfile {
         1.0 + u * (3.0 * k1 + u * (5.0 * k2 + u * 7.0 * k3))
     }
 
-    /// The screen radius at which a radius is seen: the inverse of [`LensProfile::seen`]; none where the lens shows
-    /// it nowhere.
+    /// The screen radius at which a radius is seen: the inverse of [`LensProfile::seen`]; none
+    /// where the lens shows it nowhere.
     pub(crate) fn screen(&self, seen: f32) -> Option<f32> {
         let (mut low, mut high) = (0.0f32, 1.0f32);
         while self.seen(high) < seen {
@@ -48,8 +50,8 @@ impl LensProfile {
         Some(0.5 * (low + high))
     }
 
-    /// Pixels of the screen per pixel of an evenly spaced picture, relative to the axis and as a length: the root of
-    /// the areas' ratio.
+    /// Pixels of the screen per pixel of an evenly spaced picture, relative to the axis and as a
+    /// length: the root of the areas' ratio.
     fn density(&self, screen: f32) -> f32 {
         let around = if screen > 0.0 {
             screen / self.seen(screen)
@@ -91,7 +93,8 @@ pub(crate) fn check_lens(lens: &LensProfile) -> Result<(), Error> {
     })
 }
 
-/// A lens fitted to an eye's frustum: its borders, along the axes, are those of the eye's half of the screen.
+/// A lens fitted to an eye's frustum: its borders, along the axes, are those of the eye's half of
+/// the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct LensFit {
     pub(crate) lens: LensProfile,
@@ -136,9 +139,9 @@ impl LensFit {
         ]))
     }
 
-    /// Squared seen radii from which on levels 1, 2, ... 8 come nearest to the screen's own pixels, whose density
-    /// falls outwards: samples per pixel of the screen stay within a factor of two of the axis's. Beyond what the
-    /// screen's corners show, every level does.
+    /// Squared seen radii from which on levels 1, 2, ... 8 come nearest to the screen's own pixels,
+    /// whose density falls outwards: samples per pixel of the screen stay within a factor of two of
+    /// the axis's. Beyond what the screen's corners show, every level does.
     pub(crate) fn squared_radii(&self) -> [f32; 8] {
         let [l, r, b, t] = self.screen;
         let corner = l.abs().max(r.abs()).hypot(b.abs().max(t.abs()));

@@ -9,9 +9,11 @@ use crate::StereoStats;
 pub(crate) enum Submission {
     /// One eye.
     Mono,
-    /// Every draw once per eye, each within a scissor, or clipped at the centre besides as instancing would.
+    /// Every draw once per eye, each within a scissor, or clipped at the centre besides as
+    /// instancing would.
     TwoPass { clips: bool },
-    /// Every draw once with twice the instances, clipped at the centre by the rasterizer, or by discarding.
+    /// Every draw once with twice the instances, clipped at the centre by the rasterizer, or by
+    /// discarding.
     Instanced { clips: bool },
     /// Every draw once, to a layer for each eye.
     Multiview,

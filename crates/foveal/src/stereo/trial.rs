@@ -1,8 +1,8 @@
-//! Whether a way of submission is right on this device, and how fast it is: a small scene is drawn by it and, eye by
-//! eye, in two passes.
+//! Whether a way of submission is right on this device, and how fast it is: a small scene is drawn
+//! by it and, eye by eye, in two passes.
 //!
-//! Drivers differ: multiview of Mesa 22.3.6 puts triangles of one eye into the other's layer once a pass has several
-//! draws. Each way is tried once per renderer, when it is first wanted.
+//! Drivers differ: multiview of Mesa 22.3.6 puts triangles of one eye into the other's layer once a
+//! pass has several draws. Each way is tried once per renderer, when it is first wanted.
 
 use super::Submission;
 use crate::clock::{self, ms_between};
@@ -14,8 +14,8 @@ const SIDE: u32 = 64;
 /// Draws of a pass, and vertices of a draw: `TRIANGLES` in `trial.wgsl`, three each.
 const DRAWS: u32 = 64;
 const VERTICES: u32 = 3 * 128;
-/// Texels of both eyes that may differ: edges that another half of the target rounds otherwise. A driver that is
-/// wrong has hundreds.
+/// Texels of both eyes that may differ: edges that another half of the target rounds otherwise. A
+/// driver that is wrong has hundreds.
 const ROUNDED: u32 = 2 * SIDE * SIDE / 200;
 /// Times that a way is timed; the least counts.
 const ROUNDS: u32 = 3;

@@ -28,7 +28,8 @@ struct Line {
     dots: Vec<Dot>,
 }
 
-/// A line per series and cost, each from the least load to the most; those with one load only are left out.
+/// A line per series and cost, each from the least load to the most; those with one load only are
+/// left out.
 fn lines(f: &Figures<'_>, bench_at: &str, load: &Load) -> Vec<Line> {
     let mut all: Vec<Line> = Vec::new();
     for row in 0..f.len(&format!("{bench_at}/rows")) {
@@ -47,7 +48,8 @@ fn lines(f: &Figures<'_>, bench_at: &str, load: &Load) -> Vec<Line> {
             let name: Vec<String> = words.iter().cloned().chain(title).collect();
             named.push((cost, name.join(", ")));
         }
-        // What all series are compared with is the same in all of them: one line, of the row that comes first.
+        // What all series are compared with is the same in all of them: one line, of the row that
+        // comes first.
         if let Some((cost, title)) = load.reference
             && !all
                 .iter()

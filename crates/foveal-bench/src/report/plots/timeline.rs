@@ -8,8 +8,8 @@ use crate::svg::{COLORS, WIDTH, at};
 /// A lane's height with its name.
 const LANE: f64 = 44.0;
 
-/// Rows are stages `{unit, stage, ms}` in the order in which they run; those of other units than CPU and GPU (the
-/// whole frame) have no lane.
+/// Rows are stages `{unit, stage, ms}` in the order in which they run; those of other units than
+/// CPU and GPU (the whole frame) have no lane.
 pub(crate) fn timeline(f: &Figures<'_>, bench_at: &str) -> Markup {
     let rows = f.len(&format!("{bench_at}/rows"));
     let unit = |row: usize| f.text(&format!("{bench_at}/rows/{row}/unit"));
@@ -34,7 +34,8 @@ pub(crate) fn timeline(f: &Figures<'_>, bench_at: &str) -> Markup {
         let mut start = 0.0;
         for &row in stages {
             let color = COLORS[named % COLORS.len()];
-            // Each further round through the colours is paler, so that a stage is not taken for another.
+            // Each further round through the colours is paler, so that a stage is not taken for
+            // another.
             let opacity = format!("{:.2}", 1.0 / (1 + named / COLORS.len()) as f64);
             let width = ms(row) / longest * WIDTH;
             let line = legend + 16.0 + named as f64 * 18.0;

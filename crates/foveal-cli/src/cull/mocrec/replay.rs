@@ -13,15 +13,17 @@ use crate::cull::subject::Subject;
 use foveal_host::culling::NamedEye;
 use foveal_host::culling::{Occluders, Shape};
 
-/// Most subjects that a recording becomes. Each draws its occluders from the start, so that a recording in which
-/// every query follows a draw of its own would take time by the square of its length.
+/// Most subjects that a recording becomes. Each draws its occluders from the start, so that a
+/// recording in which every query follows a draw of its own would take time by the square of its
+/// length.
 const MOST_SUBJECTS: usize = 16;
 
 /// Records that are left out are named up to this many.
 const MOST_NOTES: usize = 16;
 
-/// One subject per run of queries with equal occluders before it, at least one. Beyond [`MOST_SUBJECTS`] neighbouring runs
-/// share a subject with the occluders of the first of them: fewer occluders hide nothing more.
+/// One subject per run of queries with equal occluders before it, at least one. Beyond
+/// [`MOST_SUBJECTS`] neighbouring runs share a subject with the occluders of the first of them:
+/// fewer occluders hide nothing more.
 pub(crate) fn subjects(name: &str, recording: &Recording) -> anyhow::Result<Vec<Subject>> {
     let mut shapes = Shapes::default();
     let mut runs = runs(recording, &mut shapes);
@@ -107,8 +109,8 @@ fn runs(recording: &Recording, shapes: &mut Shapes) -> Vec<Run> {
     runs
 }
 
-/// At most [`MOST_SUBJECTS`] runs. Runs after a clear are never answered with occluders from before it: where that would be,
-/// they see none.
+/// At most [`MOST_SUBJECTS`] runs. Runs after a clear are never answered with occluders from before
+/// it: where that would be, they see none.
 fn joined(runs: Vec<Run>) -> Vec<Run> {
     if runs.len() <= MOST_SUBJECTS {
         return runs;
@@ -209,8 +211,8 @@ impl Shapes {
             return None;
         }
         let mirrored = world_from_model.matrix3.determinant() < 0.0;
-        // Counter-clockwise *on the screen* is the front of the recorder; the culler turns the front of
-        // mirrored placements around, as glTF says.
+        // Counter-clockwise *on the screen* is the front of the recorder; the culler turns the
+        // front of mirrored placements around, as glTF says.
         let turn = mirrored != (triangles.backface_winding == 2);
         let two_sided = !matches!(triangles.backface_winding, 1 | 2);
         let key: Vec<u32> = [u32::from(turn), u32::from(two_sided)]
@@ -347,7 +349,8 @@ mod tests {
         assert_eq!(subjects.len(), MOST_SUBJECTS);
         let mut asked = 0;
         for subject in &subjects {
-            // The first query of the subject came after as many draws as it had queries before it, and its own.
+            // The first query of the subject came after as many draws as it had queries before it,
+            // and its own.
             assert_eq!(subject.occluders.placed.len(), asked + 1);
             asked += subject.occludees.boxes.len();
         }

@@ -70,8 +70,8 @@ impl Grid {
         Some(grid)
     }
 
-    /// Spreads a triangle's area over the cells that it passes, by points less than a cell apart; gives their
-    /// number.
+    /// Spreads a triangle's area over the cells that it passes, by points less than a cell apart;
+    /// gives their number.
     fn add_triangle(&mut self, a: Vec3, b: Vec3, c: Vec3) -> u64 {
         let normal_area = 0.5 * (b - a).cross(c - a);
         if !normal_area.is_finite() || normal_area == Vec3::ZERO {

@@ -1,10 +1,11 @@
 //! A good view for scenes that bring no camera and are buildings: from within.
 //!
-//! An overview from outside shows a building's outer walls only. So the scene is put into a coarse voxel grid, and
-//! a place in it is *inside* when every horizontal ray from it meets a surface, nearly all of them the front of one, and
-//! the floor is below: in a room the walls face the viewer, whereas inside a solid thing (a helmet, a duck) one
-//! sees backs of surfaces. Fronts go by the winding, even of double-sided materials: a solid that is drawn from
-//! both sides is still solid. Among the places inside the camera takes one that is roomy and has a long view.
+//! An overview from outside shows a building's outer walls only. So the scene is put into a coarse
+//! voxel grid, and a place in it is *inside* when every horizontal ray from it meets a surface,
+//! nearly all of them the front of one, and the floor is below: in a room the walls face the
+//! viewer, whereas inside a solid thing (a helmet, a duck) one sees backs of surfaces. Fronts go by
+//! the winding, even of double-sided materials: a solid that is drawn from both sides is still
+//! solid. Among the places inside the camera takes one that is roomy and has a long view.
 
 mod grid;
 #[cfg(test)]
@@ -21,8 +22,8 @@ const PLACES: [i32; 3] = [16, 8, 16];
 const HEADINGS: usize = 16;
 /// Slopes (rise per run) of the rays that judge a view: a picture is wider than high.
 const SLOPES: [f32; 3] = [-0.25, 0.0, 0.35];
-/// Least width and depth in metres of a scene that one can be in, and least room around the eye. A helmet with
-/// a modelled lining has an inside too, but nobody wants to look at it from there.
+/// Least width and depth in metres of a scene that one can be in, and least room around the eye. A
+/// helmet with a modelled lining has an inside too, but nobody wants to look at it from there.
 const LEAST_SIZE_M: f32 = 3.0;
 const LEAST_ROOM_M: f32 = 0.4;
 /// Of a view's rays, how many may meet the back of a surface (a curtain's, say).
@@ -57,7 +58,8 @@ pub(super) fn camera(scene: &Scene, fov_y_rad: f32) -> Option<Camera> {
     })
 }
 
-/// How far one sees from `eye` in the best direction, and that direction; `None` outside and in walls.
+/// How far one sees from `eye` in the best direction, and that direction; `None` outside and in
+/// walls.
 fn best_view(grid: &Grid, eye: Vec3) -> Option<(f32, Vec3)> {
     if !grid.is_free(eye) || !matches!(grid.cast(eye, Vec3::NEG_Y), Hit::Front(_)) {
         return None;
@@ -100,8 +102,8 @@ fn best_view(grid: &Grid, eye: Vec3) -> Option<(f32, Vec3)> {
         .max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// 1 in the middle of the ground, less towards the walls and the roof: the way around a building gives long
-/// views as well, but the building is what the scene is about.
+/// 1 in the middle of the ground, less towards the walls and the roof: the way around a building
+/// gives long views as well, but the building is what the scene is about.
 fn centrality(bounds: Aabb, point: Vec3) -> f32 {
     let place = (point - bounds.min) / bounds.size();
     let across = (1.0 - (2.0 * place - 1.0).abs()).max(Vec3::splat(0.05));

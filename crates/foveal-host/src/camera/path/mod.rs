@@ -1,9 +1,10 @@
 //! Camera paths from JSON keyframes, smooth in between.
 //!
-//! A file is a list of `{"t": seconds, "eye": [x, y, z], "target": [x, y, z], "up": […], "fov_y_deg": …}`. Without
-//! `t`, key n is at n seconds. Eye, target, up and field of view follow a Catmull-Rom spline through the keys
-//! (Catmull and Rom 1974): a cubic Hermite curve whose slope at a key is that from the key before it to the key
-//! after it, and at an end that to its neighbour. Before the first and after the last key the camera stands still.
+//! A file is a list of `{"t": seconds, "eye": [x, y, z], "target": [x, y, z], "up": […],
+//! "fov_y_deg": …}`. Without `t`, key n is at n seconds. Eye, target, up and field of view follow a
+//! Catmull-Rom spline through the keys (Catmull and Rom 1974): a cubic Hermite curve whose slope at
+//! a key is that from the key before it to the key after it, and at an end that to its neighbour.
+//! Before the first and after the last key the camera stands still.
 
 #[cfg(test)]
 mod tests;

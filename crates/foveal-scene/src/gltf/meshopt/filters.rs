@@ -1,4 +1,5 @@
-//! What turns decoded elements into attributes (KHR_meshopt_compression, appendix B). In place, little-endian.
+//! What turns decoded elements into attributes (KHR_meshopt_compression, appendix B). In place,
+//! little-endian.
 
 /// Rounded away from zero at a half.
 fn round(x: f32) -> i32 {

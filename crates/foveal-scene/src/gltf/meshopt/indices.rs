@@ -1,6 +1,7 @@
 //! Modes TRIANGLES and INDICES.
 //!
-//! Triangles name edges and vertices of those before them, from queues of 16 each; both sides keep the queues alike.
+//! Triangles name edges and vertices of those before them, from queues of 16 each; both sides keep
+//! the queues alike.
 
 use super::bytes::{Bytes, unzigzag};
 

@@ -1,8 +1,10 @@
-//! Decoders of EXT_meshopt_compression and KHR_meshopt_compression, from bytes to the bytes of a plain buffer view.
+//! Decoders of EXT_meshopt_compression and KHR_meshopt_compression, from bytes to the bytes of a
+//! plain buffer view.
 //!
-//! The formats are those of the extensions' specifications (Kapoulkine 2021 and 2025), which also give the bounds that a
-//! stream must keep. All reads are checked: a broken stream is an error, never more. Written here and not bound from the C++
-//! library, because files from strangers are decoded and because the page for browsers has no C++ compiler.
+//! The formats are those of the extensions' specifications (Kapoulkine 2021 and 2025), which also
+//! give the bounds that a stream must keep. All reads are checked: a broken stream is an error,
+//! never more. Written here and not bound from the C++ library, because files from strangers are
+//! decoded and because the page for browsers has no C++ compiler.
 
 mod bytes;
 mod filters;

@@ -1,7 +1,9 @@
-//! Mode ATTRIBUTES: blocks of elements, each byte position a stream of its own, coded as differences.
+//! Mode ATTRIBUTES: blocks of elements, each byte position a stream of its own, coded as
+//! differences.
 //!
-//! Version 0 (both extensions) codes each byte's difference in groups of 16 with 0, 2, 4 or 8 bits. Version 1 (KHR alone)
-//! adds groups of 1 bit, streams of zeros and of plain bytes, and differences of 16 bits or by XOR.
+//! Version 0 (both extensions) codes each byte's difference in groups of 16 with 0, 2, 4 or 8 bits.
+//! Version 1 (KHR alone) adds groups of 1 bit, streams of zeros and of plain bytes, and differences
+//! of 16 bits or by XOR.
 
 use super::bytes::{Bytes, unzigzag};
 

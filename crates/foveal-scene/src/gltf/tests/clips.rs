@@ -1,4 +1,5 @@
-//! Clips and variants: what is there is listed, what is asked for is shown, what is missing is named.
+//! Clips and variants: what is there is listed, what is asked for is shown, what is missing is
+//! named.
 
 use serde_json::json;
 

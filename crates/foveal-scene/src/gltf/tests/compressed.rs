@@ -57,7 +57,8 @@ fn triangles(file: &File) -> Vec<[[i32; 3]; 3]> {
     all
 }
 
-/// Puts compressed bytes behind a view of a buffer that exists only for readers without the extension.
+/// Puts compressed bytes behind a view of a buffer that exists only for readers without the
+/// extension.
 fn compress(file: &mut File, view: usize, name: &str, bytes: &[u8], stride: usize, mode: &str) {
     let at = file.view(bytes);
     let stored = file.json["bufferViews"][at].clone();
@@ -123,7 +124,8 @@ fn broken_meshopt_data_are_named_with_their_view() {
     }
 }
 
-/// The grid's Draco stream, by the method that follows edges (speed 5) or without prediction (speed 10).
+/// The grid's Draco stream, by the method that follows edges (speed 5) or without prediction (speed
+/// 10).
 pub(super) fn draco_stream(speed: i32) -> Vec<u8> {
     let (points, indices) = grid();
     let mut position = PointAttribute::new();

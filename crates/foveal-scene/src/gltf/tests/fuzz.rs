@@ -1,4 +1,5 @@
-//! Changed files against the importer: an error or a scene, never a panic, and what loads can be posed.
+//! Changed files against the importer: an error or a scene, never a panic, and what loads can be
+//! posed.
 
 use super::File;
 use super::compressed::{draco_file, draco_stream, meshopt_file, webp_file};
@@ -6,7 +7,8 @@ use super::hostile::rich;
 use super::mutate::{self, Rng};
 use crate::{Clip, LoadOptions, SceneError, load_bytes};
 
-/// JSON and binary chunk, put into a container after both are changed: most changes to a whole file only break that.
+/// JSON and binary chunk, put into a container after both are changed: most changes to a whole file
+/// only break that.
 #[derive(Clone)]
 struct Parts {
     json: Vec<u8>,

@@ -150,7 +150,8 @@ fn a_skin_follows_its_joints_and_ignores_its_own_node() {
     file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
     let joints = file.accessor(&[0, 1, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0], 5121, "VEC4", 3);
     file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
-    // Vertex 0 follows joint 0, vertex 1 joint 1, vertex 2 both in equal parts (not normalized in the file).
+    // Vertex 0 follows joint 0, vertex 1 joint 1, vertex 2 both in equal parts (not normalized in
+    // the file).
     file.attribute(
         "WEIGHTS_0",
         &[1., 0., 0., 0., 1., 0., 0., 0., 2., 2., 0., 0.],

@@ -1,6 +1,7 @@
 //! Random changes to good inputs, the same ones for the same seed.
 //!
-//! How long the fuzz tests run is said by `FOVEAL_FUZZ_SECONDS` (each; 2 without), where they begin by `FOVEAL_FUZZ_SEED`.
+//! How long the fuzz tests run is said by `FOVEAL_FUZZ_SECONDS` (each; 2 without), where they begin
+//! by `FOVEAL_FUZZ_SEED`.
 
 use std::time::{Duration, Instant};
 
@@ -129,8 +130,8 @@ fn replace_number(bytes: &mut Vec<u8>, at: usize, with: &str) {
     bytes.splice(start..start + len, with.bytes());
 }
 
-/// Gives `check` changed seeds until the time is over; `check` panics at what must not be. No input may take five seconds
-/// (sixty where the machine is busy with other tests).
+/// Gives `check` changed seeds until the time is over; `check` panics at what must not be. No input
+/// may take five seconds (sixty where the machine is busy with other tests).
 pub(crate) fn run<T: Clone>(
     name: &str,
     seeds: &[T],

@@ -108,7 +108,8 @@ impl BinPass {
         }
     }
 
-    /// Encodes the passes: fills `bins`, the families' dispatches and the list of pixels, and empties the surfaces where nothing is seen.
+    /// Encodes the passes: fills `bins`, the families' dispatches and the list of pixels, and
+    /// empties the surfaces where nothing is seen.
     pub(super) fn sort(
         &self,
         recorder: &mut Recorder<'_>,

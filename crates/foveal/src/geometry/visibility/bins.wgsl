@@ -39,8 +39,8 @@ struct Bin {
 @group(1) @binding(6) var mask: texture_2d<u32>;
 #endif
 
-// What a thread finds at its 2 x 2 pixels: bin + 1, or 0 where nothing is, or where the pixel is another's to stand
-// for.
+// What a thread finds at its 2 x 2 pixels: bin + 1, or 0 where nothing is, or where the pixel is
+// another's to stand for.
 struct Quad {
     // Pixels to look at: all, or none. A loop of none costs nothing, a branch that none takes does.
     count: u32,

@@ -1,4 +1,5 @@
-//! The bins against their twin: by subgroups and by a hash table, at every pixel and at the samples of a mask.
+//! The bins against their twin: by subgroups and by a hash table, at every pixel and at the samples
+//! of a mask.
 
 use foveal_generate as generate;
 use foveal_scene::Scene;

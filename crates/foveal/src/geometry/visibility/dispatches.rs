@@ -1,4 +1,5 @@
-//! Families of materials against materials one by one, and the dispatches' counts against the pixels that are seen.
+//! Families of materials against materials one by one, and the dispatches' counts against the
+//! pixels that are seen.
 
 use foveal_scene::{
     AlphaMode, ColorSpace, Filter, Material, ProceduralLayers, Sampler, Scene, Texture, TextureRef,

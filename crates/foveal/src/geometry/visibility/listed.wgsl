@@ -1,4 +1,5 @@
-// Which pixels' materials are resolved: every pixel's, those of samples, or those of further surfaces at edges.
+// Which pixels' materials are resolved: every pixel's, those of samples, or those of further
+// surfaces at edges.
 
 #ifdef RATED
 #export geometry/visibility/rated.wgsl

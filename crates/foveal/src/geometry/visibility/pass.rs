@@ -31,8 +31,9 @@ pub(crate) struct VisibilityPass {
 }
 
 impl VisibilityPass {
-    /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: the footprint of a pixel's textures, in
-    /// pixels, where [`VisibilityPass::resolve_further`] will be called; `rates`: materials will be evaluated there.
+    /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: the footprint of a
+    /// pixel's textures, in pixels, where [`VisibilityPass::resolve_further`] will be called;
+    /// `rates`: materials will be evaluated there.
     pub(crate) fn new(
         gpu: &Gpu,
         frame_layout: &wgpu::BindGroupLayout,
@@ -109,7 +110,8 @@ impl VisibilityPass {
         }
     }
 
-    /// Encodes the first pass: identity, triangle and depth, for the frame drawn once into each of `windows`.
+    /// Encodes the first pass: identity, triangle and depth, for the frame drawn once into each of
+    /// `windows`.
     pub(crate) fn draw_triangles(
         &self,
         recorder: &mut Recorder<'_>,
@@ -124,7 +126,8 @@ impl VisibilityPass {
         }
     }
 
-    /// Encodes the passes after that: from identity and triangle to surfaces, at the pixels of `at`.
+    /// Encodes the passes after that: from identity and triangle to surfaces, at the pixels of
+    /// `at`.
     pub(crate) fn resolve(
         &self,
         recorder: &mut Recorder<'_>,
@@ -161,8 +164,8 @@ impl VisibilityPass {
         }
     }
 
-    /// The same for a target whose texels lie anywhere in the picture: identity's second word tells, as
-    /// `antialias/quarters.wgsl` has it.
+    /// The same for a target whose texels lie anywhere in the picture: identity's second word
+    /// tells, as `antialias/quarters.wgsl` has it.
     pub(crate) fn resolve_further(
         &self,
         recorder: &mut Recorder<'_>,

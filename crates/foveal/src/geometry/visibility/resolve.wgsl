@@ -31,7 +31,8 @@ override FOOTPRINT: f32 = 1.0;
 // Windows in use, 1 to 8.
 override WINDOWS: u32 = 1u;
 
-// Parts of the target, and where the frame (both eyes) lies relative to it: left, top, width, height in texels.
+// Parts of the target, and where the frame (both eyes) lies relative to it: left, top, width,
+// height in texels.
 struct Windows {
     frames: array<vec4f, 8>,
     parts: array<vec4u, 8>,

@@ -49,8 +49,8 @@ impl VisibilityTargets {
 /// At which pixels materials are resolved, and what the passes are timed under.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ResolveAt<'a> {
-    /// Once per sample of this mask (`shading/variable`), or per tile of these owner levels (`rate/`); `None`: at every
-    /// pixel.
+    /// Once per sample of this mask (`shading/variable`), or per tile of these owner levels
+    /// (`rate/`); `None`: at every pixel.
     pub(crate) mask: Option<&'a wgpu::TextureView>,
     pub(super) binning_label: &'static str,
     pub(super) material_label: &'static str,

@@ -20,8 +20,8 @@ fn by_triangles(settings: &Settings) -> Settings {
         .with(|s| s.geometry.path = Geometry::Visibility)
 }
 
-/// Draws both ways: identity and depth must be equal to the bit but for `moved` motions that round differently,
-/// surfaces to interpolation error but for `off` of the pixels.
+/// Draws both ways: identity and depth must be equal to the bit but for `moved` motions that round
+/// differently, surfaces to interpolation error but for `off` of the pixels.
 fn assert_same_gbuffer(scene: &Scene, camera: &Camera, off: f64) {
     let settings = small(157, 101);
     let [raster, triangles] = [settings.clone(), by_triangles(&settings)]
@@ -106,7 +106,8 @@ fn mirrored_and_two_sided_instances_face_as_the_rasterizer_says() {
     assert_same_gbuffer(&scene, &behind, 0.0);
 }
 
-/// A texture of `side` texels a side whose levels differ in colour, the levels' first doubling in steps of grey.
+/// A texture of `side` texels a side whose levels differ in colour, the levels' first doubling in
+/// steps of grey.
 fn level_texture(side: u32) -> Texture {
     let levels = (0..=side.ilog2()).map(|level| {
         let texel = [(level * 25) as u8, 255 - (level * 25) as u8, 128, 255];
@@ -127,8 +128,8 @@ fn level_texture(side: u32) -> Texture {
     }
 }
 
-/// A floor of 2 km whose corners lie behind the eye and far away, seen from a hand's breadth above it with a field
-/// of view of 150 degrees.
+/// A floor of 2 km whose corners lie behind the eye and far away, seen from a hand's breadth above
+/// it with a field of view of 150 degrees.
 fn floor(texture: Texture) -> (Scene, Camera) {
     let slot = |uv_transform| {
         Some(TextureRef {
@@ -303,7 +304,8 @@ fn anti_aliasing_looks_the_same_on_both_geometries() {
             s.antialiasing.mode = aa;
             s.antialiasing.pattern = pattern;
             s.antialiasing.samples = samples;
-            // On a grid the surface test goes another way over triangles: antialias/triangles.rs and its tests.
+            // On a grid the surface test goes another way over triangles: antialias/triangles.rs
+            // and its tests.
             s.antialiasing.edge_test = match pattern {
                 SamplePattern::Grid => EdgeTest::Paper,
                 SamplePattern::Rotated => EdgeTest::Surface,

@@ -67,7 +67,8 @@ fn declared(code: &str) -> BTreeSet<&str> {
     names
 }
 
-/// Names that a file declares within functions and structs: words before a colon, and after `let` and `var`.
+/// Names that a file declares within functions and structs: words before a colon, and after `let`
+/// and `var`.
 fn local(code: &str) -> BTreeSet<&str> {
     let mut names = BTreeSet::new();
     for line in code.lines() {

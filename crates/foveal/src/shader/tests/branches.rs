@@ -68,7 +68,8 @@ fn origin(
     }
 }
 
-/// A uniform alone, or a uniform against a local variable (a loop's counter), decides the condition.
+/// A uniform alone, or a uniform against a local variable (a loop's counter), decides the
+/// condition.
 fn is_decided_by_uniforms(
     module: &naga::Module,
     function: &naga::Function,
@@ -145,8 +146,9 @@ fn branches_on_uniforms(module: &naga::Module) -> Vec<String> {
     found
 }
 
-/// Mesa's lavapipe takes the values of such uniforms into the shader and compiles it again whenever their
-/// buffer changes, which is every frame; the old one's memory is never given back (seen with 22.3.6).
+/// Mesa's lavapipe takes the values of such uniforms into the shader and compiles it again whenever
+/// their buffer changes, which is every frame; the old one's memory is never given back (seen with
+/// 22.3.6).
 #[test]
 fn no_branch_is_decided_by_uniforms_alone() {
     for shader in every_variant() {

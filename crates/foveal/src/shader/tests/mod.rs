@@ -22,7 +22,8 @@ fn every_shader_validates_without_optional_capabilities() {
         let module = parse(shader);
         // Packing to halves belongs to WebGPU itself; naga counts it as a capability.
         let mut capabilities = naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32;
-        // These are used where the device has the feature; other shaders stand in for them elsewhere.
+        // These are used where the device has the feature; other shaders stand in for them
+        // elsewhere.
         for (name, capability) in [
             ("indexed.wgsl", naga::valid::Capabilities::PRIMITIVE_INDEX),
             ("CLIPPED", naga::valid::Capabilities::CLIP_DISTANCES),

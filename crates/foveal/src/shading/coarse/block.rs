@@ -1,6 +1,7 @@
 //! Where a block is sampled: the twin of `sample_texel` in `shared/blocks.wgsl`.
 
-/// The texel that candidate `candidate` (0: the centre, 1 to 4: near the corners) of a block looks at.
+/// The texel that candidate `candidate` (0: the centre, 1 to 4: near the corners) of a block looks
+/// at.
 pub(crate) fn sample_texel(
     block: (u32, u32),
     level: u32,

@@ -10,8 +10,8 @@
 #import shared/surface.wgsl
 #import shared/surroundings.wgsl
 
-// By how much lights in all directions widen a highlight. Found by measurement: 0.5, which follows from half-way directions' turning by
-// half as much as the lights, makes rough stones too bright.
+// By how much lights in all directions widen a highlight. Found by measurement: 0.5, which follows
+// from half-way directions' turning by half as much as the lights, makes rough stones too bright.
 const SPREAD: f32 = 0.1;
 
 struct LitBlock {
@@ -21,9 +21,11 @@ struct LitBlock {
     light: vec4u,
 }
 
-// A block's surface: its sample's, with the mean normal and roughness of five texels that lie about as far away.
+// A block's surface: its sample's, with the mean normal and roughness of five texels that lie about
+// as far away.
 struct BlockSurface {
-    // Its highlight is wider, as normals differ within the block (Toksvig 2005, 'Mipmapping normal maps').
+    // Its highlight is wider, as normals differ within the block (Toksvig 2005, 'Mipmapping normal
+    // maps').
     surface: Surface,
     // The mean, without that.
     roughness: f32,

@@ -1,7 +1,8 @@
 //! Which backend is used: the one asked for, or the one that the first frames show to be faster.
 //!
-//! A device that does not reject fragments early by stencil pays the stencil backend as much as full shading,
-//! and no feature flag tells. Both backends give the same bytes, so trying them costs time alone.
+//! A device that does not reject fragments early by stencil pays the stencil backend as much as
+//! full shading, and no feature flag tells. Both backends give the same bytes, so trying them costs
+//! time alone.
 
 use crate::CoarseBackend;
 use crate::gpu::Gpu;

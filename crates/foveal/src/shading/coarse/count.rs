@@ -1,4 +1,5 @@
-//! Counts the tiles of each level, for the statistics: the stencil backend itself never needs their number.
+//! Counts the tiles of each level, for the statistics: the stencil backend itself never needs their
+//! number.
 
 use super::{CoarseTargets, LEVELS, LevelNumbers};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, storage_write, uniform};

@@ -9,7 +9,8 @@
 #import shared/surface.wgsl
 #import shared/surroundings.wgsl
 
-// Least cosine between a normal and a direction of light: light that grazes a surface tells little of light on another.
+// Least cosine between a normal and a direction of light: light that grazes a surface tells little
+// of light on another.
 const LEAST_COSINE: f32 = 0.1;
 
 struct SampleLight {
@@ -45,8 +46,8 @@ fn direction_from_bits(bits: u32) -> vec3f {
     return unit_from_octahedral(vec2f(vec2u(bits, bits >> 10u) & vec2u(0x3ffu)) / 511.0 - 1.0);
 }
 
-// x: diffuse, y: mirrored, as shared exponents; z and w: directions as 2 x 10 bits; above them in z the square root of the spread
-// in 8 bits; above them in w the normal as 2 x 6 bits.
+// x: diffuse, y: mirrored, as shared exponents; z and w: directions as 2 x 10 bits; above them in z
+// the square root of the spread in 8 bits; above them in w the normal as 2 x 6 bits.
 fn pack_light(l: SampleLight) -> vec4u {
     let normal = snorm_bits(octahedral_from_unit(l.normal), 31.0);
     return vec4u(

@@ -29,7 +29,8 @@ fn is_tile(block: vec2u, level: u32) -> bool {
     return level == COARSEST || (textureLoad(pyramid, block / 2u, level).x & CELL_LEVEL) <= level;
 }
 
-// A workgroup looks at 16 x 16 blocks, a thread at 2 x 2 of them, and takes room for what it finds at once.
+// A workgroup looks at 16 x 16 blocks, a thread at 2 x 2 of them, and takes room for what it finds
+// at once.
 @compute @workgroup_size(8, 8)
 fn list_tiles(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocation_index) local: u32) {
     let level = current.level;

@@ -1,4 +1,5 @@
-//! Coarse frames over a visibility buffer, materials being evaluated where tiles are sampled and nowhere else.
+//! Coarse frames over a visibility buffer, materials being evaluated where tiles are sampled and
+//! nowhere else.
 
 use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};

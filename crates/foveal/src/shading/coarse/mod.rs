@@ -1,9 +1,10 @@
 //! Coarse shading: one lighting evaluation per tile of the rate map.
 //!
-//! After Imagire, 'Coarse pixel shading by stencil pyramid': level l is shaded into mip l of one target, and
-//! only where the rate map's tiling has a tile of that level. Two backends visit the same tiles and write
-//! the same bytes: [`StencilBackend`] draws each level behind a stencil test, [`ComputeBackend`] dispatches over
-//! lists of tiles. Joining the samples to a picture is the composite's work.
+//! After Imagire, 'Coarse pixel shading by stencil pyramid': level l is shaded into mip l of one
+//! target, and only where the rate map's tiling has a tile of that level. Two backends visit the
+//! same tiles and write the same bytes: [`StencilBackend`] draws each level behind a stencil test,
+//! [`ComputeBackend`] dispatches over lists of tiles. Joining the samples to a picture is the
+//! composite's work.
 
 #[cfg(test)]
 mod block;

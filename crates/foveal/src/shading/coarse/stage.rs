@@ -65,8 +65,8 @@ impl CoarseShading {
         }
     }
 
-    /// Encodes the passes: shades the tiles of `target.rate` into `target.samples`, and counts them into
-    /// `target.counts`.
+    /// Encodes the passes: shades the tiles of `target.rate` into `target.samples`, and counts them
+    /// into `target.counts`.
     pub(crate) fn shade(
         &self,
         recorder: &mut Recorder<'_>,
@@ -90,8 +90,8 @@ impl CoarseShading {
         }
     }
 
-    /// The last frame's figures, for the `tiles` of each level and the pixels that none speaks for; lets the choice of the backend know how long the
-    /// passes took.
+    /// The last frame's figures, for the `tiles` of each level and the pixels that none speaks for;
+    /// lets the choice of the backend know how long the passes took.
     pub(crate) fn stats(
         &mut self,
         tiles: Vec<u64>,

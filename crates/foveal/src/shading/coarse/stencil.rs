@@ -1,8 +1,9 @@
-//! The stencil backend: per level one draw that marks the tiles, and one that shades where it is marked.
+//! The stencil backend: per level one draw that marks the tiles, and one that shades where it is
+//! marked.
 //!
-//! The source writes levels through stencil export, which few devices have. Here the marking shader discards
-//! what is no tile and the stencil operation does the writing; the shading draw is then rejected before its
-//! shader runs wherever the test fails.
+//! The source writes levels through stencil export, which few devices have. Here the marking shader
+//! discards what is no tile and the stencil operation does the writing; the shading draw is then
+//! rejected before its shader runs wherever the test fails.
 
 use super::{CoarseTargets, STENCIL_FORMAT, shading_constants};
 use crate::composite::LIGHT_FORMAT;

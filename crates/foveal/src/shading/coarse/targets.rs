@@ -13,7 +13,8 @@ use crate::{CoarseBackend, Composite, Settings};
 #[derive(Debug)]
 pub(crate) struct CoarseTargets {
     pub(crate) rate: RateTargets,
-    /// Mip l holds the samples of level l: linear radiance, and 1 + the sample's candidate in alpha.
+    /// Mip l holds the samples of level l: linear radiance, and 1 + the sample's candidate in
+    /// alpha.
     pub(crate) samples: MipChain,
     /// For the smooth composite.
     pub(crate) patches: Option<PatchTargets>,

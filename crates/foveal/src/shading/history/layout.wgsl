@@ -18,12 +18,14 @@ struct History {
     change: f32,
     // Places in `changed`.
     changed_count: u32,
-    // Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing is kept there.
+    // Where changed lights reach, now or in the frame before: centre and radius, world space.
+    // Nothing is kept there.
     changed: array<vec4f, 16>,
 }
 
-// What a pixel keeps besides its light: the instance that is seen (12 bits of its number + 1), the level of the block that
-// its light was sampled for (3 bits), two notes, and the distance's upper 15 bits as a rounded float, which is 0.4 % apart.
+// What a pixel keeps besides its light: the instance that is seen (12 bits of its number + 1), the
+// level of the block that its light was sampled for (3 bits), two notes, and the distance's upper
+// 15 bits as a rounded float, which is 0.4 % apart.
 const SEEN_INSTANCE: u32 = 0xfffu;
 const SEEN_LEVEL_SHIFT: u32 = 12u;
 const SEEN_LEVEL: u32 = 7u;
@@ -65,8 +67,8 @@ fn tile_number(texel: vec2u) -> u32 {
     return (texel.y / 8u) * tiles_across() + texel.x / 8u;
 }
 
-// A sample to be shaded: x: column and row in 14 bits each, and the level in 4; y: the luminance that is expected there, and
-// what it is known from (below), as halves.
+// A sample to be shaded: x: column and row in 14 bits each, and the level in 4; y: the luminance
+// that is expected there, and what it is known from (below), as halves.
 const EXPECTED_NOTHING: f32 = 0.0;
 const EXPECTED_AROUND: f32 = 1.0;
 const EXPECTED_OWN: f32 = 2.0;
@@ -97,8 +99,9 @@ const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;
 
-// A pixel's place in it: any share of the least numbers lies evenly in the picture (the additive recurrence by the plastic
-// number: Roberts 2018, 'The Unreasonable Effectiveness of Quasirandom Sequences').
+// A pixel's place in it: any share of the least numbers lies evenly in the picture (the additive
+// recurrence by the plastic number: Roberts 2018, 'The Unreasonable Effectiveness of Quasirandom
+// Sequences').
 fn order_of(texel: vec2u) -> u32 {
     return texel.x * 3242174889u + texel.y * 2447445414u;
 }

@@ -104,13 +104,15 @@ impl HistoryStage {
 
     /// What the frame's passes are told.
     fn parameters(&self, settings: &Settings, reset: bool, changed: &Changed) -> HistoryParameters {
-        // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a factor of 4. Found by measurement.
+        // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a
+        // factor of 4. Found by measurement.
         let finer = 4.0_f32.powf(settings.eye.quality_jod - 9.5);
         let mut parameters = HistoryParameters {
             rounding: rounding(self.frame),
             phase: match self.lit.turn {
                 Some(turn) => turn,
-                // The golden ratio's part: any few frames that follow each other lie evenly in the order.
+                // The golden ratio's part: any few frames that follow each other lie evenly in the
+                // order.
                 None => self.frame.wrapping_mul(2_654_435_769),
             },
             reset: u32::from(reset),
@@ -160,8 +162,9 @@ impl HistoryStage {
     }
 }
 
-/// What is added to places before they are rounded to whole pixels: so that what moves by a part of a pixel a frame moves by
-/// that on average (the same recurrence as the pixels' order, in two dimensions).
+/// What is added to places before they are rounded to whole pixels: so that what moves by a part of
+/// a pixel a frame moves by that on average (the same recurrence as the pixels' order, in two
+/// dimensions).
 fn rounding(frame: u32) -> [f32; 2] {
     [3_242_174_889_u32, 2_447_445_414].map(|step| {
         let part = frame.wrapping_mul(step) >> 8;

@@ -46,8 +46,8 @@ fn seen(renderer: &Renderer) -> Vec<[u16; 4]> {
     .collect()
 }
 
-/// The same frame with every pixel shaded: by a map of pixels where there are two eyes, whose pictures' places in the target
-/// depend on the way of shading.
+/// The same frame with every pixel shaded: by a map of pixels where there are two eyes, whose
+/// pictures' places in the target depend on the way of shading.
 fn full(scene: &Scene, camera: &Camera, settings: &Settings) -> Vec<[u16; 4]> {
     let settings = settings.clone().with(|s| {
         s.shading.mode = if settings.stereo.mode == Stereo::Off {

@@ -11,7 +11,8 @@ const LOSSES: u32 = 3;
 const PERIOD: u32 = 64;
 /// Frames for which it stays off.
 const REST: u32 = 240;
-/// Share of the full cost that must be gained after a rest: more than before it, so that it does not flutter.
+/// Share of the full cost that must be gained after a rest: more than before it, so that it does
+/// not flutter.
 const RETURN_GAIN: f64 = 0.05;
 
 /// Compares, in single frames, shading in full with shading at a rate.

@@ -12,14 +12,16 @@ override SOURCE: u32 = 3u;
 override OTHER: u32 = 0u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
 override COMBINE: u32 = 0u;
-// Contrast: 0 within the quad, 1 against the four neighbours of each pixel, 2 by 3 x 3 Sobel kernels.
+// Contrast: 0 within the quad, 1 against the four neighbours of each pixel, 2 by 3 x 3 Sobel
+// kernels.
 override CONTRAST: u32 = 1u;
 // Samples may stand for 4 x 4 pixels.
 override BLOCKS: bool = false;
 // Contrast needs what is known of other quads, which a pass before this one has reprojected.
 override LOOKS_AROUND: bool = true;
 
-// Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law fails there).
+// Luma that is added to the local mean: what a dark picture's contrast is relative to (Weber's law
+// fails there).
 const DARK: f32 = 0.1;
 // Least cosine between the halves of a quad for them to count as one plane.
 const FLAT: f32 = 0.9;
@@ -40,8 +42,8 @@ struct Listed {
 // rates.wgsl.
 @group(1) @binding(10) var<storage, read_write> samples: array<u32>;
 
-// Luminances of a quad at an offset; of the quad in the centre where that one is unknown or not there: no eye looks at
-// the other's picture.
+// Luminances of a quad at an offset; of the quad in the centre where that one is unknown or not
+// there: no eye looks at the other's picture.
 fn luma_of(quad: vec2i, offset: vec2i, center: vec4f) -> vec4f {
     let at = quad + offset;
     let picture = picture_of(vec2u(quad) * 2u);
@@ -126,14 +128,14 @@ fn wished_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     return rate;
 }
 
-// The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one plane. `last` is the
-// quad's last pixel within the picture.
+// The coarsest rate at which a sample's pixels show one surface: pixels of one instance, in one
+// plane. `last` is the quad's last pixel within the picture.
 fn surface_limit(picture: Picture, maps: EyeMaps, first: vec2u, last: vec2u, who: vec4u, d: vec4f) -> u32 {
     let wide = u32(who.x == who.y && who.z == who.w);
     let tall = u32(who.x == who.z && who.y == who.w);
     let limit = wide | (tall << 1u);
-    // Depth is affine in the picture on a plane, so its slopes across and down give the plane's normal, up to a factor:
-    // of the quad's upper left three pixels and of its lower right three.
+    // Depth is affine in the picture on a plane, so its slopes across and down give the plane's
+    // normal, up to a factor: of the quad's upper left three pixels and of its lower right three.
     let step = vec2f(2.0, -2.0) / frame.size * maps.view_from_ndc.xy;
     let upper = normal_of(vec2f(d.y - d.x, d.z - d.x) / step, on_plane(maps, picture, first), d.x);
     let lower = normal_of(vec2f(d.w - d.z, d.w - d.y) / step, on_plane(maps, picture, last), d.w);
@@ -144,7 +146,8 @@ fn surface_limit(picture: Picture, maps: EyeMaps, first: vec2u, last: vec2u, who
     return select(0u, limit, flat || !whole);
 }
 
-// Of the plane through the point seen at `at` with depth `d`, from depth's slopes. The scale keeps products in range.
+// Of the plane through the point seen at `at` with depth `d`, from depth's slopes. The scale keeps
+// products in range.
 fn normal_of(slopes: vec2f, at: vec2f, d: f32) -> vec3f {
     let z = select(dot(slopes, at) - d, -1.0 / frame.depth_range, frame.orthographic != 0u);
     return vec3f(slopes, z) / max(d, 1e-20);
@@ -154,8 +157,8 @@ var<workgroup> tile_rates: array<u32, 64>;
 var<workgroup> tile_who: array<u32, 64>;
 // Least and greatest luma of each quad.
 var<workgroup> tile_range: array<vec2f, 64>;
-// Samples of each rate, and where they begin: alike ones lie together, so that lanes that light them side by side
-// have equally many pixels to write.
+// Samples of each rate, and where they begin: alike ones lie together, so that lanes that light
+// them side by side have equally many pixels to write.
 var<workgroup> found_of: array<atomic<u32>, 5>;
 var<workgroup> starts: array<u32, 5>;
 var<workgroup> found_unknown: atomic<u32>;

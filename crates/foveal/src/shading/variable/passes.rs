@@ -38,7 +38,8 @@ pub(crate) struct RatesUniform {
 /// Finds rates and samples, and lights samples.
 #[derive(Debug)]
 pub(crate) struct RatePasses {
-    /// A pass of its own where contrast is looked for beyond the quad; else the mask's reprojects too.
+    /// A pass of its own where contrast is looked for beyond the quad; else the mask's reprojects
+    /// too.
     reproject: Option<wgpu::ComputePipeline>,
     find: wgpu::ComputePipeline,
     find_layout: wgpu::BindGroupLayout,
@@ -158,8 +159,9 @@ impl RatePasses {
         }
     }
 
-    /// Encodes reprojection from the frame before, into what is known in `even` or odd frames, and from it the rates
-    /// and samples; one pass does it all unless contrast is looked for beyond the quad.
+    /// Encodes reprojection from the frame before, into what is known in `even` or odd frames, and
+    /// from it the rates and samples; one pass does it all unless contrast is looked for beyond the
+    /// quad.
     pub(super) fn find_rates(
         &self,
         recorder: &mut Recorder<'_>,

@@ -1,6 +1,7 @@
 // Shading rates of quads (2 x 2 pixels) and what they make of pixels. CPU twin: `twin.rs`.
 
-// Bits of a mask's texel. Both of the first two: one sample for the quad; the third besides: one for 2 x 2 quads.
+// Bits of a mask's texel. Both of the first two: one sample for the quad; the third besides: one
+// for 2 x 2 quads.
 const RATE_WIDE: u32 = 1u;
 const RATE_TALL: u32 = 2u;
 const RATE_BLOCK: u32 = 4u;
@@ -21,9 +22,9 @@ fn stands_for_sample(texel: vec2u, rate: u32) -> bool {
     return all((texel & (extent_at(rate) - 1u)) == vec2u(0u));
 }
 
-// A sample in one word: its quad (14 bits across, 14 down: pictures of up to 32,768 pixels a side), the column and row
-// of its upper left pixel there, and whether it is wide and tall. A wide one begins in the first column, so that bit
-// marks a block.
+// A sample in one word: its quad (14 bits across, 14 down: pictures of up to 32,768 pixels a side),
+// the column and row of its upper left pixel there, and whether it is wide and tall. A wide one
+// begins in the first column, so that bit marks a block.
 fn packed_sample(texel: vec2u, rate: u32) -> u32 {
     let quad = texel >> vec2u(1u);
     let within = (texel.x & 1u) | ((texel.y & 1u) << 1u) | u32((rate & RATE_BLOCK) != 0u);

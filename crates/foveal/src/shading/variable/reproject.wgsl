@@ -21,8 +21,9 @@ const KNOWN_FULL: u32 = 0x8000u;
 // Relative difference of distances that counts as the same surface.
 const SAME_DISTANCE: f32 = 0.02;
 
-// An eye's affine maps. Both eyes' are read at constant places and chosen from: a place that differs from lane to lane
-// is gathered lane by lane on some devices, which took as long as all textures together.
+// An eye's affine maps. Both eyes' are read at constant places and chosen from: a place that
+// differs from lane to lane is gathered lane by lane on some devices, which took as long as all
+// textures together.
 struct EyeMaps {
     // View-space xy at distance 1 from normalized device coordinates: (ndc * xy + zw).
     view_from_ndc: vec4f,
@@ -65,7 +66,8 @@ fn measured(picture: Picture, quad: vec2u) -> u32 {
     ));
 }
 
-// What is known of the quad that begins at `texel`, where instance `who` (+ 1) is seen at depth `d`.
+// What is known of the quad that begins at `texel`, where instance `who` (+ 1) is seen at depth
+// `d`.
 fn reprojected_to(picture: Picture, maps: EyeMaps, texel: vec2u, who: u32, d: f32, motion: vec2f) -> vec2u {
     var distance = 0.0;
     var expected = 0.0;

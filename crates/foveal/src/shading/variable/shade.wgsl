@@ -15,10 +15,11 @@ override ONE_SURFACE: bool = false;
 @group(2) @binding(1) var<storage, read> listed: array<u32>;
 @group(2) @binding(2) var radiance: texture_storage_2d<rgba16float, write>;
 
-// Radiance of the pixels from `first` to `last`: depth and surface are averages of these two, which lie opposite each
-// other; where the surface is a plane, depth's is exactly the centre's, because reversed depth is affine on the screen.
-// A single pixel is lit to the bit as in full shading, by the same instructions (half of twice a number is the number):
-// samples of all sizes lie side by side in a list, and a branch would make a group of lanes light twice.
+// Radiance of the pixels from `first` to `last`: depth and surface are averages of these two, which
+// lie opposite each other; where the surface is a plane, depth's is exactly the centre's, because
+// reversed depth is affine on the screen. A single pixel is lit to the bit as in full shading, by
+// the same instructions (half of twice a number is the number): samples of all sizes lie side by
+// side in a list, and a branch would make a group of lanes light twice.
 fn shade_together(first: vec2u, last: vec2u) -> vec4f {
     let depth = 0.5 * (load_depth(gbuffer_depth, first) + load_depth(gbuffer_depth, last));
     let pixel = 0.5 * vec2f(first + last) + 0.5;

@@ -115,7 +115,8 @@ impl VariableStage {
         }
     }
 
-    /// The figures of a frame whose passes took `gpu_ms` and which counted `listed`; `None`: it was shaded in full.
+    /// The figures of a frame whose passes took `gpu_ms` and which counted `listed`; `None`: it was
+    /// shaded in full.
     pub(crate) fn figures(
         &mut self,
         settings: &Settings,

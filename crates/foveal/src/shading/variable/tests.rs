@@ -57,7 +57,8 @@ pub(super) fn differing<T: PartialEq>(a: &[T], b: &[T]) -> usize {
     a.iter().zip(b).filter(|(a, b)| a != b).count()
 }
 
-/// What was reprojected into what is known, whose notes of quads shaded in full must be those of `mask`.
+/// What was reprojected into what is known, whose notes of quads shaded in full must be those of
+/// `mask`.
 pub(super) fn reprojected(known: &[[u32; 2]], mask: &[u32]) -> Vec<[u32; 2]> {
     let cells = known.iter().zip(mask);
     cells
@@ -68,7 +69,8 @@ pub(super) fn reprojected(known: &[[u32; 2]], mask: &[u32]) -> Vec<[u32; 2]> {
         .collect()
 }
 
-/// Quads of which other things are known: luminances may differ by one step, distances by one of theirs.
+/// Quads of which other things are known: luminances may differ by one step, distances by one of
+/// theirs.
 pub(super) fn known_otherwise(a: &[[u32; 2]], b: &[[u32; 2]]) -> usize {
     let alike = |a: &[u32; 2], b: &[u32; 2]| {
         let bytes = a[0].to_le_bytes().into_iter().zip(b[0].to_le_bytes());
@@ -197,7 +199,8 @@ fn each_sample_fills_its_pixels_and_single_pixels_are_full_shading() {
                 continue;
             }
             coarse += 1;
-            // Surfaces of the box are plain: their average is each of them but for the normals of the balls.
+            // Surfaces of the box are plain: their average is each of them but for the normals of
+            // the balls.
             let normals = pixels
                 .iter()
                 .map(|&i| unpack_surface(words[i], Vec3::ZERO).normal);

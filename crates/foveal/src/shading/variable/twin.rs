@@ -57,7 +57,8 @@ pub(super) fn distance_of(place: u32) -> f32 {
     f32::from_bits(place & 0xffff_0000)
 }
 
-/// What `reproject.wgsl` knows of each quad, but for whether it is shaded in full now; perspective cameras.
+/// What `reproject.wgsl` knows of each quad, but for whether it is shaded in full now; perspective
+/// cameras.
 pub(super) fn reproject(
     seen: &Seen,
     [camera, previous]: [&Camera; 2],
@@ -113,7 +114,8 @@ fn lumas(word: u32) -> Vec4 {
 /// Contrast of each quad across and down.
 fn contrast(kind: Contrast, known: &[[u32; 2]], quads: UVec2, quad: UVec2) -> Vec2 {
     let own = lumas(known[(quad.y * quads.x + quad.x) as usize][0]);
-    // Luma of a pixel of the 4 x 4 around and in the quad; a quad that is not there or unknown is like this one.
+    // Luma of a pixel of the 4 x 4 around and in the quad; a quad that is not there or unknown is
+    // like this one.
     let pixel = |x: i32, y: i32| {
         let at = quad.as_ivec2() * 2 + IVec2::new(x, y);
         let cell = texel_of(at.div_euclid(IVec2::splat(2)), quads).map(|i| known[i]);

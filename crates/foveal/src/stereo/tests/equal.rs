@@ -78,7 +78,8 @@ fn pipelines(base: &Settings) -> Vec<(&'static str, Settings)> {
 
 #[test]
 fn two_eyes_in_one_place_see_what_one_eye_sees() {
-    // No multiple of a block, so that the right eye's picture does not begin where the left one's ends.
+    // No multiple of a block, so that the right eye's picture does not begin where the left one's
+    // ends.
     let (width, height) = (150, 101);
     for scene in [generate::cornell(), generate::alpha()] {
         let camera = &scene.cameras[0];
@@ -107,8 +108,8 @@ fn two_eyes_in_one_place_see_what_one_eye_sees() {
                         "{}, {name}, {stereo:?}, {eye_clipping:?}, eye {eye}",
                         scene.name
                     );
-                    // Rasterizers interpolate from the target's corner, which lies elsewhere; averages of sub-samples
-                    // are rounded besides.
+                    // Rasterizers interpolate from the target's corner, which lies elsewhere;
+                    // averages of sub-samples are rounded besides.
                     let rounded = if mono.antialiasing.mode == Antialiasing::None {
                         2
                     } else {
@@ -217,8 +218,9 @@ fn instancing_equals_two_passes_to_the_bit_on_every_generated_scene() {
                 scene.name
             );
         }
-        // A clipped triangle is another polygon: its last bits differ (0.05 % of the pixels by 1 or 2 in the demo scene,
-        // whose ground reaches beyond both borders; elsewhere a pixel or none).
+        // A clipped triangle is another polygon: its last bits differ (0.05 % of the pixels by 1 or
+        // 2 in the demo scene, whose ground reaches beyond both borders; elsewhere a pixel or
+        // none).
         for (eye, (plain, clipped)) in plain.iter().zip(&with_plane).enumerate() {
             let (differing, by) = difference(plain, clipped);
             assert!(

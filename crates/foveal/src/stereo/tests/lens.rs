@@ -33,7 +33,8 @@ fn fits(settings: &Settings) -> [LensFit; 2] {
         .expect("a headset")
 }
 
-/// What a pixel of the screen's half shows, as tangents, and the tangent that the bare screen would show.
+/// What a pixel of the screen's half shows, as tangents, and the tangent that the bare screen would
+/// show.
 fn seen_at(fit: &LensFit, at: Vec2) -> (Vec2, Vec2) {
     let [l, r, b, t] = fit.screen;
     let p = Vec2::new(l + (r - l) * at.x, t + (b - t) * at.y);

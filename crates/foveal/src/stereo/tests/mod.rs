@@ -40,7 +40,8 @@ fn halves(scene: &Scene, camera: &Camera, settings: &Settings) -> [Vec<[u8; 4]>;
     [half(0), half(width)]
 }
 
-/// A flat shape that faces +z, given by its corners in order, in a scene of its own; white and without light.
+/// A flat shape that faces +z, given by its corners in order, in a scene of its own; white and
+/// without light.
 fn shape(corners: &[Vec3]) -> Scene {
     let vertex = |p: &Vec3| Vertex {
         position: p.to_array(),

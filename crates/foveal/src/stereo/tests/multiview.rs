@@ -19,7 +19,8 @@ const DRIVER: &str = "/usr/lib/chromium/vk_swiftshader_icd.json";
 /// Tells the process that runs on it from the one that starts it.
 const CHILD: &str = "FOVEAL_TEST_ON_SWIFTSHADER";
 
-/// Runs this process's test `name` again on SwiftShader; `true` in that process, which is to do the work.
+/// Runs this process's test `name` again on SwiftShader; `true` in that process, which is to do the
+/// work.
 fn on_swiftshader(name: &str) -> bool {
     if std::env::var_os(CHILD).is_some() {
         return true;
@@ -101,8 +102,9 @@ fn multiview_equals_two_passes() {
             for eye in 0..2 {
                 let (differing, by) = difference(&expected[eye], &seen[eye]);
                 let what = format!("{}, eye {eye}: {differing} by {by}", scene.name);
-                // The right eye's half of a wide target is rounded otherwise than a layer: normals of normal maps
-                // in the scene `alpha` differ in their last bit, and one pixel lies on an edge.
+                // The right eye's half of a wide target is rounded otherwise than a layer: normals
+                // of normal maps in the scene `alpha` differ in their last bit, and one pixel lies
+                // on an edge.
                 let rounded = usize::from(eye == 1 && scene.name == "alpha");
                 assert!(differing <= rounded * expected[eye].len() / 100, "{what}");
                 let pairs = expected[eye].iter().zip(&seen[eye]);
@@ -123,7 +125,8 @@ fn layers_of_two_eyes_in_one_place_are_one_eyes_picture_to_the_bit() {
     // No multiple of a block.
     for mono in pipelines(&small(150, 101)) {
         if mono.shading.mode == Shading::Coarse && mono.coarse.composite == Composite::Smooth {
-            // Its patches are fitted in positions of the target: rounding decides over a few of them.
+            // Its patches are fitted in positions of the target: rounding decides over a few of
+            // them.
             continue;
         }
         for scene in [generate::cornell(), generate::alpha()] {
