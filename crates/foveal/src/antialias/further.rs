@@ -10,6 +10,7 @@ use crate::gpu::{Gpu, target};
 pub(super) const WORD: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
 /// A texture that stands where one is asked for and none is looked at.
 const NONE: (u32, u32) = (1, 1);
+
 /// What the further surfaces of all pixels are evaluated in.
 #[derive(Debug)]
 pub(crate) struct FurtherTargets {
@@ -28,6 +29,7 @@ pub(crate) struct FurtherTargets {
 const NO_CANDIDATES: [u32; 4] = [0, 1, 1, 0];
 /// Bytes of an entry in [`FurtherTargets`], the list of its pixels included.
 const FURTHER_BYTES: u64 = 16 + 8 + 4 + 4 + 4;
+
 impl FurtherTargets {
     /// Room for one further surface in every fourth pixel, more for a small picture: one of a
     /// detailed scene has one in every fifth. Where the room ends, a pixel shows its largest

@@ -35,7 +35,7 @@ pub(crate) struct EdgeCounts {
 pub(crate) struct Shadings<'a> {
     /// What shading reads of the sub-samples' G-buffer, where that holds surfaces.
     pub(crate) input: Option<&'a wgpu::BindGroup>,
-    /// They are shaded at all.
+    /// Whether the frame shades them: not where a debug view shows no light.
     pub(crate) shade: bool,
 }
 

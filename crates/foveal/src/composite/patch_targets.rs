@@ -7,6 +7,7 @@ use crate::{Error, Settings};
 /// Bytes of a patch's parts in the two buffers, which `pack_patch` in `composite/patches.wgsl`
 /// describes.
 const PART_BYTES: [u64; 2] = [32, 4];
+
 /// The patches of all tiles of one frame size, and which tiles are drawn as quads.
 #[derive(Debug)]
 pub(crate) struct PatchTargets {

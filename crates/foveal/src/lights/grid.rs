@@ -8,6 +8,7 @@ use foveal_scene::{Camera, Projection};
 const SLICES: u32 = 24;
 /// Tiles grow until the bits of all clusters fit into this.
 const MAX_BYTES: u64 = 32 << 20;
+
 /// How the view is cut into clusters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct ClusterGrid {

@@ -6,6 +6,7 @@ use crate::stereo::EyeLayout;
 
 /// A level, and whether a geometric edge lies in the block.
 pub(super) const CELL_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R8Uint;
+
 /// The rate map of one frame size.
 #[derive(Debug)]
 pub(crate) struct RateTargets {

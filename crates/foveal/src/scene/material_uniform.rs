@@ -41,6 +41,7 @@ const IS_UNLIT: u32 = 32;
 const IS_PROCEDURAL: u32 = 64;
 const HAS_UV_MAP: u32 = 128;
 const HAS_OWN_UV_MAPS: u32 = 256;
+
 /// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for
 /// procedural, one where a texture is read elsewhere than at the first UV set as it is, one where
 /// textures are read at different places.

@@ -5,6 +5,7 @@ use crate::{CoarseBackend, CoarseSample, Composite, Settings};
 
 /// Most levels that there can be.
 pub(crate) const LEVELS: u32 = crate::COARSEST_LEVEL as u32 + 1;
+
 /// Whether some stage visits tiles by lists.
 pub(super) fn needs_lists(settings: &Settings) -> bool {
     settings.coarse.backend != CoarseBackend::Stencil

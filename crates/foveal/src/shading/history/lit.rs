@@ -6,7 +6,8 @@ use crate::{CoarseBackend, CoarseSample, Composite, DebugView, Settings, Shading
 
 /// Frames at rest until each pixel was shaded by itself.
 pub(crate) const ROUND: u32 = 16;
-/// Whether these settings carry light along on this device.
+
+/// Whether these settings keep a light history on this device.
 pub(super) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
     settings.coarse.history
         // Other views of a lit frame show its tiles.
@@ -30,6 +31,7 @@ pub(super) struct Lit {
 
 /// Bytes of a listed sample.
 pub(super) const SAMPLE_BYTES: u64 = 8;
+
 /// Whether the lists of a frame of this size can be bound.
 pub(super) fn fits(gpu: &Gpu, settings: &Settings) -> bool {
     let (width, height) = EyeLayout::of(settings).target_size();
