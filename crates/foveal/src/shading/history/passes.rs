@@ -3,7 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::lit::{Lit, ROUND};
-use super::targets::{HistoryTargets, LIST_STEP, List, SEEN_FORMAT};
+use super::targets::{HistoryTargets, List, SEEN_FORMAT};
 use crate::composite::LIGHT_FORMAT;
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
@@ -185,165 +185,241 @@ impl HistoryPasses {
     }
 }
 
+/// What the passes of one frame read and write.
+struct Frame<'a> {
+    gpu: &'a Gpu,
+    /// The bind group of lights, materials and G-buffer that shading reads.
+    input: &'a wgpu::BindGroup,
+    targets: &'a Targets,
+    rate: &'a RateTargets,
+    history: &'a HistoryTargets,
+    /// Which of the two textures of light, and of what is seen, this frame writes.
+    now: usize,
+    /// Which holds the last frame's.
+    before: usize,
+}
+
+impl Frame<'_> {
+    /// Tiles across and down.
+    fn tiles(&self) -> (u32, u32) {
+        let size = self.history.radiance.texture().size();
+        (size.width.div_ceil(TILE), size.height.div_ceil(TILE))
+    }
+
+    fn light(&self, which: usize) -> wgpu::BindingResource<'_> {
+        view(&self.history.light[which])
+    }
+
+    fn group(
+        &self,
+        pass: &Pass,
+        label: &str,
+        resources: &[wgpu::BindingResource<'_>],
+    ) -> wgpu::BindGroup {
+        bind_group(&self.gpu.device, label, &pass.layout, resources)
+    }
+}
+
+fn view(view: &wgpu::TextureView) -> wgpu::BindingResource<'_> {
+    wgpu::BindingResource::TextureView(view)
+}
+
 impl HistoryPasses {
-    /// Encodes the frame's passes: lights `h.radiance`, and keeps what the next frame needs.
+    /// Encodes the frame's passes: lights `history.radiance`, and keeps what the next frame needs.
     pub(super) fn light(
         &self,
         recorder: &mut Recorder<'_>,
         input: &wgpu::BindGroup,
         targets: &Targets,
-        rate: &RateTargets,
-        h: &HistoryTargets,
+        (rate, history): (&RateTargets, &HistoryTargets),
         lit: Lit,
     ) {
-        recorder.encoder.clear_buffer(&h.listed, 0, None);
-        if lit.turn.is_some_and(|turn| turn >= ROUND) {
-            show(recorder, targets, h);
-            return;
+        let (now, before) = if lit.even { (0, 1) } else { (1, 0) };
+        let frame = Frame {
+            gpu: recorder.gpu,
+            input,
+            targets,
+            rate,
+            history,
+            now,
+            before,
+        };
+        recorder.encoder.clear_buffer(&history.listed, 0, None);
+        match lit.turn {
+            // All is at rest, and every pixel has been shaded.
+            Some(turn) if turn >= ROUND => {}
+            Some(_) => {
+                self.list_turn(recorder, &frame);
+                self.shade_samples(recorder, &frame);
+            }
+            None => {
+                self.reproject(recorder, &frame);
+                self.shade_samples(recorder, &frame);
+                self.gather(recorder, &frame);
+                self.shade_unlit(recorder, &frame);
+            }
         }
-        let gpu = recorder.gpu;
-        let gbuffer = &targets.gbuffer;
-        let view = wgpu::BindingResource::TextureView;
-        let group = |pass: &Pass, label, resources: &[wgpu::BindingResource<'_>]| {
-            bind_group(&gpu.device, label, &pass.layout, resources)
-        };
-        let [now, before] = match lit.even {
-            true => [0, 1],
-            false => [1, 0],
-        };
-        let size = h.radiance.texture().size();
-        let (across, down) = (size.width.div_ceil(TILE), size.height.div_ceil(TILE));
-        let listed = h.listed.as_entire_binding();
-        let samples = h.samples.as_entire_binding();
-        let bare = h.bare.as_entire_binding();
-        let parameters = self.parameters.as_entire_binding();
-        let tiles = [
-            parameters.clone(),
-            h.measured.as_entire_binding(),
-            h.kept.as_entire_binding(),
-            h.tiles.as_entire_binding(),
-        ];
-        let tiles = group(&self.keep, "tiles", &tiles);
-        let reproject = group(
+        show(recorder, targets, history);
+    }
+
+    /// At rest: lists the pixels whose turn it is.
+    fn list_turn(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let h = frame.history;
+        let rest = frame.group(
+            &self.rest,
+            "pixels in turn",
+            &[
+                self.parameters.as_entire_binding(),
+                view(&frame.targets.gbuffer.depth_layers),
+                h.listed.as_entire_binding(),
+                h.samples.as_entire_binding(),
+            ],
+        );
+        let (across, down) = frame.tiles();
+        let mut pass = recorder.compute_pass("reprojection of light");
+        pass.set_pipeline(&self.rest.pipeline);
+        pass.set_bind_group(1, &rest, &[]);
+        pass.dispatch_workgroups(across, down, 1);
+    }
+
+    /// Takes over last frame's light where the same surface is seen, and lists the samples to
+    /// shade and the pixels that hold no light.
+    fn reproject(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let (h, gbuffer) = (frame.history, &frame.targets.gbuffer);
+        recorder.encoder.clear_buffer(&h.wanted, 0, None);
+        let tiles = frame.group(
+            &self.keep,
+            "tiles",
+            &[
+                self.parameters.as_entire_binding(),
+                h.measured.as_entire_binding(),
+                h.kept.as_entire_binding(),
+                h.tiles.as_entire_binding(),
+            ],
+        );
+        let reproject = frame.group(
             &self.reproject,
             "reprojection of light",
             &[
-                view(&rate.owner.whole),
+                view(&frame.rate.owner.whole),
                 view(&gbuffer.surface_layers),
                 view(&gbuffer.depth_layers),
                 view(&gbuffer.identity_layers),
-                parameters.clone(),
-                view(&h.light[before]),
-                view(&h.seen[before]),
+                self.parameters.as_entire_binding(),
+                frame.light(frame.before),
+                view(&h.seen[frame.before]),
                 h.tiles.as_entire_binding(),
-                view(&h.light[now]),
-                view(&h.seen[now]),
+                frame.light(frame.now),
+                view(&h.seen[frame.now]),
                 view(&h.radiance),
-                listed.clone(),
-                samples.clone(),
-                bare.clone(),
+                h.listed.as_entire_binding(),
+                h.samples.as_entire_binding(),
+                h.bare.as_entire_binding(),
                 h.wanted.as_entire_binding(),
             ],
         );
-        let sizing = group(
-            &self.size,
-            "list dispatches",
-            &[listed.clone(), h.dispatches.as_entire_binding()],
-        );
-        let shade = [List::Samples, List::Unlit].map(|list| {
-            group(
-                &self.shade,
-                "shading of samples",
-                &[
-                    h.dispatch(list),
-                    samples.clone(),
-                    view(&h.light[now]),
-                    view(&h.radiance),
-                    h.measured.as_entire_binding(),
-                ],
-            )
-        });
-        let gather = group(
+        let (across, down) = frame.tiles();
+        let of_tiles = (across * down).div_ceil(64);
+        let mut pass = recorder.compute_pass("reprojection of light");
+        pass.set_bind_group(1, &tiles, &[]);
+        pass.set_pipeline(&self.keep.pipeline);
+        pass.dispatch_workgroups(of_tiles, 1, 1);
+        pass.set_pipeline(&self.spread.pipeline);
+        pass.dispatch_workgroups(of_tiles, 1, 1);
+        pass.set_pipeline(&self.reproject.pipeline);
+        pass.set_bind_group(1, &reproject, &[]);
+        pass.dispatch_workgroups(across, down, 1);
+    }
+
+    /// Shades the listed samples, and measures how much their light changed.
+    fn shade_samples(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        recorder
+            .encoder
+            .clear_buffer(&frame.history.measured, 0, None);
+        let mut pass = recorder.compute_pass("shading");
+        self.size_lists(&mut pass, frame);
+        self.shade(&mut pass, frame, List::Samples);
+    }
+
+    /// Gives pixels without light that of their neighbours on the same surface, and lists those
+    /// that have no such neighbour.
+    fn gather(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let (h, gbuffer) = (frame.history, &frame.targets.gbuffer);
+        let gather = frame.group(
             &self.gather,
             "gathering light",
             &[
-                view(&rate.owner.whole),
+                view(&frame.rate.owner.whole),
                 view(&gbuffer.surface_layers),
                 view(&gbuffer.depth_layers),
-                view(&h.light[now]),
+                frame.light(frame.now),
                 view(&h.radiance),
-                listed.clone(),
-                bare.clone(),
-                samples.clone(),
-                view(&h.light[before]),
+                h.listed.as_entire_binding(),
+                h.bare.as_entire_binding(),
+                h.samples.as_entire_binding(),
+                frame.light(frame.before),
                 h.dispatch(List::Bare),
             ],
         );
-        let scatter = group(
+        let scatter = frame.group(
             &self.scatter,
             "gathered light",
             &[
                 h.dispatch(List::Bare),
-                bare,
-                view(&h.light[before]),
-                view(&h.light[now]),
+                h.bare.as_entire_binding(),
+                frame.light(frame.before),
+                frame.light(frame.now),
             ],
         );
-        let rest = group(
-            &self.rest,
-            "pixels in turn",
-            &[parameters, view(&gbuffer.depth_layers), listed, samples],
+        let mut pass = recorder.compute_pass("composite");
+        for (stage, group) in [(&self.gather, &gather), (&self.scatter, &scatter)] {
+            pass.set_pipeline(&stage.pipeline);
+            pass.set_bind_group(1, group, &[]);
+            pass.dispatch_workgroups_indirect(&h.dispatches, List::Bare.offset());
+        }
+        self.size_lists(&mut pass, frame);
+    }
+
+    /// Shades the pixels that found no light among their neighbours.
+    fn shade_unlit(&self, recorder: &mut Recorder<'_>, frame: &Frame<'_>) {
+        let mut pass = recorder.compute_pass("shading");
+        self.shade(&mut pass, frame, List::Unlit);
+    }
+
+    /// Shades the pixels of a list.
+    fn shade(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>, list: List) {
+        let h = frame.history;
+        let shade = frame.group(
+            &self.shade,
+            "shading of samples",
+            &[
+                h.dispatch(list),
+                h.samples.as_entire_binding(),
+                frame.light(frame.now),
+                view(&h.radiance),
+                h.measured.as_entire_binding(),
+            ],
         );
-        let at = |list: List| list as u64 * LIST_STEP;
-        if lit.turn.is_none() {
-            recorder.encoder.clear_buffer(&h.wanted, 0, None);
-            let mut pass = recorder.compute_pass("reprojection of light");
-            let of_tiles = (across * down).div_ceil(64);
-            pass.set_bind_group(1, &tiles, &[]);
-            pass.set_pipeline(&self.keep.pipeline);
-            pass.dispatch_workgroups(of_tiles, 1, 1);
-            pass.set_pipeline(&self.spread.pipeline);
-            pass.dispatch_workgroups(of_tiles, 1, 1);
-            pass.set_pipeline(&self.reproject.pipeline);
-            pass.set_bind_group(1, &reproject, &[]);
-            pass.dispatch_workgroups(across, down, 1);
-        } else {
-            let mut pass = recorder.compute_pass("reprojection of light");
-            pass.set_pipeline(&self.rest.pipeline);
-            pass.set_bind_group(1, &rest, &[]);
-            pass.dispatch_workgroups(across, down, 1);
-        }
-        recorder.encoder.clear_buffer(&h.measured, 0, None);
-        {
-            let mut pass = recorder.compute_pass("shading");
-            pass.set_pipeline(&self.size.pipeline);
-            pass.set_bind_group(1, &sizing, &[]);
-            pass.dispatch_workgroups(1, 1, 1);
-            pass.set_pipeline(&self.shade.pipeline);
-            pass.set_bind_group(1, input, &[]);
-            pass.set_bind_group(2, &shade[0], &[]);
-            pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Samples));
-        }
-        if lit.turn.is_none() {
-            {
-                let mut pass = recorder.compute_pass("composite");
-                pass.set_pipeline(&self.gather.pipeline);
-                pass.set_bind_group(1, &gather, &[]);
-                pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Bare));
-                pass.set_pipeline(&self.scatter.pipeline);
-                pass.set_bind_group(1, &scatter, &[]);
-                pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Bare));
-                pass.set_pipeline(&self.size.pipeline);
-                pass.set_bind_group(1, &sizing, &[]);
-                pass.dispatch_workgroups(1, 1, 1);
-            }
-            let mut pass = recorder.compute_pass("shading");
-            pass.set_pipeline(&self.shade.pipeline);
-            pass.set_bind_group(1, input, &[]);
-            pass.set_bind_group(2, &shade[1], &[]);
-            pass.dispatch_workgroups_indirect(&h.dispatches, at(List::Unlit));
-        }
-        show(recorder, targets, h);
+        pass.set_pipeline(&self.shade.pipeline);
+        pass.set_bind_group(1, frame.input, &[]);
+        pass.set_bind_group(2, &shade, &[]);
+        pass.dispatch_workgroups_indirect(&h.dispatches, list.offset());
+    }
+
+    /// Turns the lengths of lists into sizes of dispatches.
+    fn size_lists(&self, pass: &mut wgpu::ComputePass<'_>, frame: &Frame<'_>) {
+        let h = frame.history;
+        let sizes = frame.group(
+            &self.size,
+            "list dispatches",
+            &[
+                h.listed.as_entire_binding(),
+                h.dispatches.as_entire_binding(),
+            ],
+        );
+        pass.set_pipeline(&self.size.pipeline);
+        pass.set_bind_group(1, &sizes, &[]);
+        pass.dispatch_workgroups(1, 1, 1);
     }
 }
 

@@ -139,10 +139,9 @@ impl HistoryStage {
         recorder: &mut Recorder<'_>,
         input: &wgpu::BindGroup,
         targets: &Targets,
-        (rate, history): (&RateTargets, &HistoryTargets),
+        kept: (&RateTargets, &HistoryTargets),
     ) {
-        self.passes
-            .light(recorder, input, targets, rate, history, self.lit);
+        self.passes.light(recorder, input, targets, kept, self.lit);
     }
 
     /// The figures of a frame that left these lists.

@@ -11,7 +11,7 @@ pub(super) const SEEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint
 /// Bytes of `Listed` in `layout.wgsl`.
 pub(super) const LISTED_BYTES: u64 = 40;
 /// Bytes of `Dispatch` there: the step between bindings.
-pub(super) const LIST_STEP: u64 = 256;
+const LIST_STEP: u64 = 256;
 
 /// A list of a frame.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +19,13 @@ pub(super) enum List {
     Samples = 0,
     Bare = 1,
     Unlit = 2,
+}
+
+impl List {
+    /// Where its `Dispatch` begins.
+    pub(super) const fn offset(self) -> u64 {
+        self as u64 * LIST_STEP
+    }
 }
 
 /// The targets of one frame size.
@@ -118,7 +125,7 @@ impl HistoryTargets {
     pub(super) fn dispatch(&self, list: List) -> wgpu::BindingResource<'_> {
         wgpu::BindingResource::Buffer(wgpu::BufferBinding {
             buffer: &self.dispatches,
-            offset: list as u64 * LIST_STEP,
+            offset: list.offset(),
             size: std::num::NonZeroU64::new(LIST_STEP),
         })
     }
