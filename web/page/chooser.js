@@ -1,7 +1,7 @@
 // Techniques and settings: buttons, the few settings beside them, all settings, and what the viewer is told.
 
 import { writeLink } from './link.js';
-import { $, page, redraw, say } from './page.js';
+import { $, page, redraw } from './page.js';
 import { control, fillPanel } from './panel.js';
 
 /** Frames after a change until variable shading has measured every place. */
@@ -14,16 +14,15 @@ export function applySettings() {
   writeLink();
 }
 
-/** Tells the viewer; for whoever has it alone. */
+/**
+ * Tells the viewer; for whoever has it alone. Throws a sentence where a setting cannot be read, and again before each
+ * frame until it can: no picture is drawn that its names do not describe.
+ */
 export function tellSettings() {
   if (!page.unapplied) return;
-  page.unapplied = false;
   const { reference, chosen } = page.settings.sides;
-  try {
-    page.viewer.set_settings(JSON.stringify(reference), JSON.stringify(chosen));
-  } catch (cause) {
-    say(String(cause));
-  }
+  page.viewer.set_settings(JSON.stringify(reference), JSON.stringify(chosen));
+  page.unapplied = false;
 }
 
 /** How often a picture is drawn that nobody changes any more. */

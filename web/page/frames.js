@@ -24,18 +24,18 @@ function adapt(ms) {
 }
 
 async function drawFrame() {
-  const wish = { camera: page.camera.place(), split: page.split, ...pictureSize() };
+  const request = { camera: page.camera.place(), split: page.split, ...pictureSize() };
   const canvas = $('picture');
-  if (canvas.width !== wish.width || canvas.height !== wish.height) {
-    canvas.width = wish.width;
-    canvas.height = wish.height;
+  if (canvas.width !== request.width || canvas.height !== request.height) {
+    canvas.width = request.width;
+    canvas.height = request.height;
   }
   tellSettings();
   page.unsettled = page.stale ? framesToSettle() : page.unsettled;
   page.stale = false;
   if (page.moved) writeLink();
   page.moved = false;
-  const cost = JSON.parse(await drawOrFail(JSON.stringify(wish)));
+  const cost = JSON.parse(await drawOrFail(JSON.stringify(request)));
   page.unsettled -= 1;
   page.frames += 1;
   page.firstFrameMs ??= performance.now();
@@ -48,11 +48,11 @@ async function drawFrame() {
 }
 
 /** The viewer's frame, unless the canvas loses its context before. */
-function drawOrFail(wish) {
+function drawOrFail(request) {
   return new Promise((done, failed) => {
     if (page.lost) throw page.lost;
     page.fail = failed;
-    page.viewer.draw(wish).then(done, failed);
+    page.viewer.draw(request).then(done, failed);
   });
 }
 

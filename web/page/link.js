@@ -18,7 +18,7 @@ export function writeLink() {
   history.replaceState(null, '', `#${link}`);
 }
 
-/** Takes over the address's wishes; tells which place it names for the camera. */
+/** Takes over the address's settings; tells which place it names for the camera. */
 export function readLink() {
   const link = new URLSearchParams(location.hash.slice(1));
   const technique = page.techniques.find((t) => t.key === link.get('technique'));

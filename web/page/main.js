@@ -61,9 +61,9 @@ async function main() {
   const place = readLink();
   $('scale').value = page.scale;
   placeSplit();
-  const wished = location.hash;
+  const address = location.hash;
   showTechnique(page.technique);
-  history.replaceState(null, '', wished || '#');
+  history.replaceState(null, '', address || '#');
   if (!(await showScene(page.scene, place)) && page.scene.name !== 'demo') {
     await showScene({ name: 'demo', bytes: null });
   }

@@ -6,8 +6,8 @@ use foveal_scene::{Camera, Scene};
 /// A renderer that follows its settings frame by frame.
 pub(crate) struct Side {
     renderer: Renderer,
-    /// What the page wishes; taken over before the next frame.
-    wished: Settings,
+    /// What the page asks for; taken over before the next frame.
+    requested: Settings,
     /// Where the last frame was seen from.
     previous: Option<Camera>,
 }
@@ -27,13 +27,13 @@ impl Side {
             .map_err(|cause| cause.to_string())?;
         Ok(Self {
             renderer,
-            wished: settings.clone(),
+            requested: settings.clone(),
             previous: None,
         })
     }
 
-    pub(crate) fn wish(&mut self, settings: Settings) {
-        self.wished = settings;
+    pub(crate) fn request(&mut self, settings: Settings) {
+        self.requested = settings;
     }
 
     pub(crate) async fn set_scene(&mut self, scene: &Scene) -> Result<(), String> {
@@ -42,7 +42,7 @@ impl Side {
         // report.
         let picture = &self.renderer.settings().picture;
         let (width, height) = (picture.width, picture.height);
-        let settings = self.wished.clone().with(|s| {
+        let settings = self.requested.clone().with(|s| {
             s.picture.width = width;
             s.picture.height = height;
         });
@@ -61,7 +61,7 @@ impl Side {
         camera: &Camera,
         (width, height): (u32, u32),
     ) -> Result<FrameStats, String> {
-        let mut settings = self.wished.clone().with(|s| {
+        let mut settings = self.requested.clone().with(|s| {
             s.picture.width = width;
             s.picture.height = height;
         });

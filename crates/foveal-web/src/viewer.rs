@@ -13,7 +13,7 @@ use crate::side::Side;
 
 /// One frame, as the page asks for it.
 #[derive(Clone, PartialEq, Deserialize)]
-struct Wish {
+struct FrameRequest {
     camera: Place,
     /// Size of the picture in pixels.
     width: u32,
@@ -22,7 +22,7 @@ struct Wish {
     split: f32,
 }
 
-impl Wish {
+impl FrameRequest {
     /// Whether both show the same, wherever the line stands.
     fn shows_the_same(&self, other: &Self) -> bool {
         let split = other.split;
@@ -62,7 +62,7 @@ struct Cost {
     passes: Option<Told>,
     /// Whether more frames can tell nothing more of the two sides.
     is_measured: bool,
-    /// Milliseconds from the wish to the canvas.
+    /// Milliseconds from the request to the canvas.
     total_ms: f64,
 }
 
@@ -77,7 +77,7 @@ pub struct Viewer {
     /// Which side draws first, and what the pairs of this view say.
     turns: Turns,
     /// The view that the pairs are of.
-    turns_of: Option<Wish>,
+    turns_of: Option<FrameRequest>,
     #[cfg(feature = "webgl")]
     _pump: crate::pump::Pump,
 }
@@ -201,8 +201,8 @@ impl Viewer {
         };
         let (reference, chosen) = (read(reference)?, read(chosen)?);
         self.compare_anew();
-        self.reference.wish(reference);
-        self.chosen.wish(chosen);
+        self.reference.request(reference);
+        self.chosen.request(chosen);
         Ok(())
     }
 
@@ -210,15 +210,16 @@ impl Viewer {
     ///
     /// # Errors
     /// A sentence: settings that cannot be met, out of memory, the device was lost.
-    pub async fn draw(&mut self, wish: String) -> Result<String, String> {
-        let wish: Wish = serde_json::from_str(&wish).map_err(|cause| cause.to_string())?;
+    pub async fn draw(&mut self, request: String) -> Result<String, String> {
+        let request: FrameRequest =
+            serde_json::from_str(&request).map_err(|cause| cause.to_string())?;
         let started_ms = crate::side::now_ms();
-        let camera = wish.camera.camera()?;
-        let size = (wish.width, wish.height);
+        let camera = request.camera.camera()?;
+        let size = (request.width, request.height);
         let (mut reference, mut chosen) = (None, None);
-        if !(self.turns_of.as_ref()).is_some_and(|shown| shown.shows_the_same(&wish)) {
+        if !(self.turns_of.as_ref()).is_some_and(|shown| shown.shows_the_same(&request)) {
             self.compare_anew();
-            self.turns_of = Some(wish.clone());
+            self.turns_of = Some(request.clone());
         }
         let order = if self.turns.reference_first() {
             [0, 1]
@@ -226,9 +227,9 @@ impl Viewer {
             [1, 0]
         };
         for side in order {
-            if side == 0 && wish.split > 0.0 {
+            if side == 0 && request.split > 0.0 {
                 reference = Some(self.reference.draw(&self.scene, &camera, size).await?);
-            } else if side == 1 && wish.split < 1.0 {
+            } else if side == 1 && request.split < 1.0 {
                 chosen = Some(self.chosen.draw(&self.scene, &camera, size).await?);
             }
         }
@@ -246,7 +247,7 @@ impl Viewer {
             &self.reference
         };
         self.present
-            .show(&self.gpu, left.picture(), right.picture(), wish.split)?;
+            .show(&self.gpu, left.picture(), right.picture(), request.split)?;
         let is_one_alone = reference.is_none() || chosen.is_none();
         let cost = Cost {
             reference,
