@@ -1,4 +1,5 @@
-//! `foveal bench antialiasing`: the source's comparison (none, MSAA, SSAA), and ours beside it.
+//! `foveal bench antialiasing`: the original method's comparison (none, MSAA, SSAA), and ours
+//! beside it.
 
 use foveal::{
     Antialiasing, EdgeTest, Frame, FrameStats, Geometry, Gpu, LightAssignment, LightingModel,
@@ -9,9 +10,8 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::subject::{Header, Subject, SubjectArgs};
+use super::subject::{Header, Subject, SubjectArgs, timed_renderer};
 use super::table::{jod_text, text};
-use foveal_host::clock::now_ns;
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -20,8 +20,8 @@ use foveal_host::values::VariantParser;
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
 
-/// Frames per second that the source reports on a GTX 960, Sponza, about 1000 x 1500: none, MSAA,
-/// SSAA.
+/// Frames per second that the original method reports on a GTX 960, Sponza, about 1000 x 1500:
+/// none, MSAA, SSAA.
 const SOURCE_FPS: [(&str, &str); 3] =
     [("none", "> 60"), ("msaa", "about 30"), ("ssaa", "about 10")];
 
@@ -31,7 +31,7 @@ pub struct Args {
     #[command(flatten)]
     subject: SubjectArgs,
 
-    /// Width and height in pixels; by default those of the technique's source
+    /// Width and height in pixels; by default those of the original method
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1000x1500")]
     size: (u32, u32),
 
@@ -39,12 +39,12 @@ pub struct Args {
     #[arg(long, value_name = "N", default_value_t = 200, value_parser = values::point_lights)]
     point_lights: u32,
 
-    /// Assignment of lights to samples; the technique's source has no clusters: brute [default:
+    /// Assignment of lights to samples; the original method has no clusters: brute [default:
     /// clustered]
     #[arg(long, value_name = "WHICH", value_parser = VariantParser::<LightAssignment>::new())]
     lights: Option<LightAssignment>,
 
-    /// Model of reflection; the technique's source uses blinn-phong [default: ggx]
+    /// Model of reflection; the original method uses blinn-phong [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
     lighting: Option<LightingModel>,
 
@@ -101,7 +101,7 @@ struct Row {
     /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
     flip_to_ssaa: f64,
     flip_to_reference: Option<f64>,
-    /// The same in JOD at 60 degrees across, gaze in the middle: 10 is no visible difference.
+    /// The same in JOD at 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod_to_ssaa: Option<f32>,
     jod_to_reference: Option<f32>,
 }
@@ -242,12 +242,7 @@ fn rows(
 
 impl Mode {
     fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
-        let mut renderer = block_on(Renderer::new(
-            gpu,
-            settings,
-            foveal::RendererOptions::default().with_clock(now_ns),
-        ))?;
-        block_on(renderer.set_scene(scene))?;
+        let renderer = timed_renderer(gpu, scene, settings)?;
         Ok(Self {
             renderer,
             picture: None,
@@ -284,7 +279,7 @@ impl Mode {
         to_reference: Option<Nearness>,
     ) -> Row {
         let settings = self.renderer.settings();
-        let middle = |figure: fn(&Times) -> f64| median(&self.times(figure));
+        let median_of = |figure: fn(&Times) -> f64| median(&self.times(figure));
         let frame = compared(|t| t.frame_ms);
         let interval = frame.as_ref().and_then(|frame| frame.interval);
         Row {
@@ -303,9 +298,9 @@ impl Mode {
             edge_fraction: self.last.edge_fraction,
             shaded_samples: self.last.shaded_samples,
             target_bytes: self.last.target_bytes,
-            gbuffer_ms: middle(|t| t.gbuffer_ms),
-            shade_ms: middle(|t| t.shade_ms),
-            frame_ms: middle(|t| t.frame_ms),
+            gbuffer_ms: median_of(|t| t.gbuffer_ms),
+            shade_ms: median_of(|t| t.shade_ms),
+            frame_ms: median_of(|t| t.frame_ms),
             frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
             frame_ratio_low: interval.map(|ends| ends[0]),
             frame_ratio_high: interval.map(|ends| ends[1]),

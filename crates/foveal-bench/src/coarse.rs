@@ -25,8 +25,8 @@ use foveal_host::{scene_source, values};
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
 
-/// Frames per second that the source reports (Radeon RX 560, 200 point lights, nine levels): each
-/// pixel, the interpolating composite, the nearest one.
+/// Frames per second that the original method reports (Radeon RX 560, 200 point lights, nine
+/// levels): each pixel, the interpolating composite, the nearest one.
 const SOURCE_FPS: [(&str, f64); 3] = [("full", 36.4), ("interpolated", 60.1), ("nearest", 68.6)];
 
 /// Arguments of `foveal bench coarse`.
@@ -43,12 +43,12 @@ pub struct Args {
     #[arg(long, value_name = "N", default_values_t = [200])]
     lights: Vec<u32>,
 
-    /// Range of each point light in metres; 0: no range, as in the technique's source [default:
+    /// Range of each point light in metres; 0: no range, as in the original method [default:
     /// shorter with more lights]
     #[arg(long, value_name = "M", value_parser = values::non_negative)]
     light_range: Option<f32>,
 
-    /// Model of reflection; the technique's source uses blinn-phong [default: ggx]
+    /// Model of reflection; the original method uses blinn-phong [default: ggx]
     #[arg(long, value_name = "MODEL", value_parser = VariantParser::<LightingModel>::new())]
     lighting: Option<LightingModel>,
 
@@ -124,7 +124,7 @@ struct Row {
     full_frame_ms: f64,
     coarse_frame_ms: f64,
     flip_mean: f64,
-    /// At 60 degrees across, gaze in the middle: 10 is no visible difference.
+    /// At 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod: Option<f32>,
     /// Share of pixels in the fovea's disc that differ: 0 where it is shaded as in full.
     fovea_differing: f64,
@@ -225,7 +225,7 @@ fn measure(
         s.lighting.assignment = LightAssignment::Brute;
         s.lighting.model = args.lighting.unwrap_or_default();
         s.coarse.refine_edges = args.refine_edges.unwrap_or_default();
-        // The map of the technique's source.
+        // The map of the original method.
         s.coarse.source = RateSource::Radii;
         s.coarse.fovea_inner = case.fovea_inner;
         s.geometry.path = args.geometry.unwrap_or_default();
@@ -392,7 +392,7 @@ fn beside_the_source(rows: &[Row]) -> String {
         ]);
     }
     format!(
-        "{} at {}x{}, {} lights, whole frames; beside them the source's on a Radeon RX 560\n",
+        "{} at {}x{}, {} lights, whole frames; beside them the original method's on a Radeon RX 560\n",
         first.scene, first.width, first.height, first.lights
     ) + &text(&lines)
 }

@@ -53,7 +53,7 @@ struct Report {
 struct Row {
     display: &'static str,
     way: &'static str,
-    /// Of the pictures, which show the display's middle where it has more pixels.
+    /// Of the pictures, which show the display's centre where it has more pixels.
     width: u32,
     height: u32,
     degrees_across: f32,
@@ -131,21 +131,21 @@ fn measure(
     let (width, height) = (shown.width as usize, shown.height as usize);
     studio.forget_other_sizes((shown.width, shown.height));
     let metric = |[x, y]: [f32; 2]| Metric::new(&shown.display, width, height, Gaze { x, y });
-    let middle = Settings::default().eye.gaze;
-    let (at_middle, at_off) = (metric(middle)?, metric(OFF_GAZE)?);
-    let full = shown.settings(&WAYS[0], middle)?;
+    let center = Settings::default().eye.gaze;
+    let (at_center, at_off) = (metric(center)?, metric(OFF_GAZE)?);
+    let full = shown.settings(&WAYS[0], center)?;
     if args.rounds() > 0 {
-        let chosen = WAYS.iter().map(|way| shown.settings(way, middle));
+        let chosen = WAYS.iter().map(|way| shown.settings(way, center));
         let chosen = chosen.collect::<anyhow::Result<Vec<Settings>>>()?;
         times.measure(studio, &full, &chosen, (args.rounds(), args.fps))?;
     }
     let mut rows = Vec::new();
     for way in WAYS {
-        let settings = shown.settings(way, middle)?;
+        let settings = shown.settings(way, center)?;
         let off_settings = shown.settings(way, OFF_GAZE)?;
         let reference = studio.still(&full, 0)?;
         let shot = studio.still(&settings, way.warmup)?;
-        let picture = Seen::still(&at_middle, &reference, &shot)?;
+        let picture = Seen::still(&at_center, &reference, &shot)?;
         let shot = studio.still(&off_settings, way.warmup)?;
         let off = Seen::still(&at_off, &reference, &shot)?;
         let video = match args.frames() {
@@ -153,7 +153,7 @@ fn measure(
             frames => {
                 let reference = studio.video(&full, frames, args.fps)?;
                 let shot = studio.video(&settings, frames, args.fps)?;
-                Some(Seen::moving(&at_middle, &reference, &shot, args.fps)?)
+                Some(Seen::moving(&at_center, &reference, &shot, args.fps)?)
             }
         };
         rows.push(Row {
@@ -162,7 +162,7 @@ fn measure(
             width: shown.width,
             height: shown.height,
             degrees_across: shown.display.degrees_across(),
-            pixels_per_degree: at_middle.pixels_per_degree(),
+            pixels_per_degree: at_center.pixels_per_degree(),
             lit_fraction: picture.lit_fraction,
             jod: picture.jod,
             flip_mean: picture.flip_mean,

@@ -1,5 +1,5 @@
 //! `foveal bench all`: every bench in turn, and one page: what to adopt for this scene, then each
-//! technique beside its source.
+//! technique beside the original method.
 //!
 //! Each bench runs in a process of its own, several passes over, so that one that fails takes
 //! nothing else down and the passes tell how steady the figures are. All figures go into one JSON

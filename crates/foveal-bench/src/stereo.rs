@@ -13,9 +13,9 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::figures::FigureArgs;
+use super::subject::timed_renderer;
 use super::table::text;
 use foveal_host::camera::{CameraArgs, Viewpoint};
-use foveal_host::clock::now_ns;
 use foveal_host::{scene_source, values};
 
 /// Version of the JSON's shape.
@@ -27,7 +27,7 @@ const SOURCE_SCENES: [&str; 2] = ["materials", "materials2"];
 /// What is measured without more: those, and one that is culled.
 const SCENES: [&str; 3] = ["materials", "materials2", "demo"];
 
-/// Two passes against instanced in the source: scene, CPU, GPU.
+/// Two passes against instanced in the original method: scene, CPU, GPU.
 const SOURCE_RATIOS: [(&str, f64, f64); 2] = [
     ("materials", 1.0 / 1.114, 1.0 / 1.107),
     ("materials2", 1.0 / 0.805, 1.0 / 1.146),
@@ -243,12 +243,7 @@ fn measure(
             };
             s.geometry.merge_draws = !of_source;
         });
-        let mut renderer = block_on(Renderer::new(
-            gpu,
-            &settings,
-            foveal::RendererOptions::default().with_clock(now_ns),
-        ))?;
-        block_on(renderer.set_scene(scene))?;
+        let renderer = timed_renderer(gpu, scene, &settings)?;
         ways.push(Way {
             name: mode,
             renderer,
@@ -279,7 +274,7 @@ fn row(scene: &str, stages: &'static str, ways: &[Way], number: usize) -> Row {
     let times = |number: usize, figure: fn(&Times) -> f64| -> Vec<f64> {
         ways[number].rounds.iter().map(figure).collect()
     };
-    let middle = |figure: fn(&Times) -> f64| median(&times(number, figure));
+    let median_of = |figure: fn(&Times) -> f64| median(&times(number, figure));
     let compared = |to: usize, figure: fn(&Times) -> f64| {
         let (reference, ms) = (times(to, figure), times(number, figure));
         Comparison::of_rounds(ways.len(), (to, &reference), (number, &ms))
@@ -296,10 +291,10 @@ fn row(scene: &str, stages: &'static str, ways: &[Way], number: usize) -> Row {
         mode: way.name,
         draws: way.last.draws,
         triangles: way.last.triangles,
-        encode_ms: middle(|t| t.encode_ms),
-        submit_ms: middle(|t| t.submit_ms),
-        gpu_ms: middle(|t| t.gpu_ms),
-        frame_ms: middle(|t| t.frame_ms),
+        encode_ms: median_of(|t| t.encode_ms),
+        submit_ms: median_of(|t| t.submit_ms),
+        gpu_ms: median_of(|t| t.gpu_ms),
+        frame_ms: median_of(|t| t.frame_ms),
         ratio_frame: frame.as_ref().map_or(1.0, |frame| frame.ratio),
         ratio_frame_low: interval.map(|ends| ends[0]),
         ratio_frame_high: interval.map(|ends| ends[1]),

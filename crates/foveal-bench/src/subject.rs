@@ -1,9 +1,11 @@
 //! What a bench on a graphics adapter is about, and where its figures go: the same arguments for
 //! each.
 
-use foveal::{AdapterStats, Gpu};
+use foveal::{AdapterStats, Gpu, Renderer, RendererOptions, Settings};
+use foveal_host::clock::now_ns;
 use foveal_host::command_line::quoted;
 use foveal_scene::{Camera, Scene};
+use pollster::block_on;
 use serde::Serialize;
 
 use super::figures::FigureArgs;
@@ -25,6 +27,18 @@ pub(super) struct SubjectArgs {
 
     #[command(flatten)]
     pub(super) figures: FigureArgs,
+}
+
+/// A renderer that shows the scene and times its frames.
+pub(super) fn timed_renderer(
+    gpu: &Gpu,
+    scene: &Scene,
+    settings: &Settings,
+) -> anyhow::Result<Renderer> {
+    let options = RendererOptions::default().with_clock(now_ns);
+    let mut renderer = block_on(Renderer::new(gpu, settings, options))?;
+    block_on(renderer.set_scene(scene))?;
+    Ok(renderer)
 }
 
 /// What a bench's JSON begins with.

@@ -10,9 +10,8 @@ use foveal_scene::{Camera, ProceduralLayers, Scene};
 use pollster::block_on;
 use serde::Serialize;
 
-use super::subject::SubjectArgs;
+use super::subject::{SubjectArgs, timed_renderer};
 use super::table::{jod_text, text};
-use foveal_host::clock::now_ns;
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -20,7 +19,7 @@ use foveal_host::values;
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
 
-/// What the source reports, in milliseconds: mask, reprojection, saved, net.
+/// What the original method reports, in milliseconds: mask, reprojection, saved, net.
 const SOURCE_MS: [&str; 4] = ["0.08", "0.02", "0.06", "-0.04"];
 
 /// Frames that compile shaders and fill the history.
@@ -93,7 +92,7 @@ struct Row {
     shaded_fraction: f64,
     /// Of the last frame.
     flip_mean: f64,
-    /// Of the last frame, at 60 degrees across, gaze in the middle: 10 is no visible difference.
+    /// Of the last frame, at 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod: Option<f32>,
 }
 
@@ -163,12 +162,7 @@ struct Film {
 
 impl Film {
     fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
-        let mut renderer = block_on(Renderer::new(
-            gpu,
-            settings,
-            foveal::RendererOptions::default().with_clock(now_ns),
-        ))?;
-        block_on(renderer.set_scene(scene))?;
+        let renderer = timed_renderer(gpu, scene, settings)?;
         Ok(Self {
             renderer,
             last: None,
@@ -256,7 +250,7 @@ fn measure(
         }
         fraction = b.variable.map_or(1.0, |v| v.shaded_fraction);
     }
-    let middle =
+    let median_of =
         |figure: &dyn Fn(&[f64; 5]) -> f64| median(&frames.iter().map(figure).collect::<Vec<_>>());
     let frame = Comparison::of_rounds(2, (0, &full_frame_ms), (1, &variable_frame_ms));
     let interval = frame.as_ref().and_then(|frame| frame.interval);
@@ -275,14 +269,14 @@ fn measure(
         material_cost,
         lights: scene.lights.len() as u64,
         contrast_threshold,
-        mask_ms: middle(&|f| f[2]),
-        reproject_ms: middle(&|f| f[3]),
-        binning_ms: middle(&|f| f[4]),
-        full_ms: middle(&|f| f[0]),
-        variable_ms: middle(&|f| f[1]),
-        saved_ms: middle(&|f| f[0] - f[1]),
-        net_ms: middle(&|f| f[0] - f[1] - f[2] - f[3]),
-        ratio: middle(&|f| f[0] / f[1].max(1e-9)),
+        mask_ms: median_of(&|f| f[2]),
+        reproject_ms: median_of(&|f| f[3]),
+        binning_ms: median_of(&|f| f[4]),
+        full_ms: median_of(&|f| f[0]),
+        variable_ms: median_of(&|f| f[1]),
+        saved_ms: median_of(&|f| f[0] - f[1]),
+        net_ms: median_of(&|f| f[0] - f[1] - f[2] - f[3]),
+        ratio: median_of(&|f| f[0] / f[1].max(1e-9)),
         shaded_fraction: fraction,
         flip_mean: f64::from(nearness.flip as f32),
         jod: nearness.jod,
@@ -333,7 +327,7 @@ fn summary(report: &Report) -> String {
     let [mask, reproject, saved, net] = SOURCE_MS.map(str::to_owned);
     let none = String::new;
     lines.push(vec![
-        "the source's, on its GPU".to_owned(),
+        "the original method's, on its GPU".to_owned(),
         "0.020".to_owned(),
         none(),
         none(),

@@ -23,7 +23,7 @@ use decision::{Decision, Measured, decide};
 use sides::measure;
 
 /// Version of the JSON's shape.
-const SCHEMA_VERSION: u32 = 1;
+const SCHEMA_VERSION: u32 = 2;
 
 /// Arguments of `foveal bench verdict`.
 #[derive(Debug, clap::Args)]
@@ -79,7 +79,7 @@ struct Row {
     chosen_low_ms: Option<f64>,
     chosen_high_ms: Option<f64>,
     flip_mean: Option<f64>,
-    /// At 60 degrees across, gaze in the middle: 10 is no visible difference.
+    /// At 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod: Option<f32>,
     /// The flags that differ from the defaults.
     flags: String,
@@ -215,7 +215,7 @@ fn summary(report: &Report) -> String {
         report.header.scene, report.width, report.height, report.header.adapter.name, report.rounds
     ) + &text(&lines);
     for row in &report.rows {
-        if matches!(row.decision, Decision::Adopt | Decision::Look) {
+        if matches!(row.decision, Decision::Adopt | Decision::FasterButVisible) {
             said += &format!("{}: {}\n", row.name, row.flags);
         }
     }

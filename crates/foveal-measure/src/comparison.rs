@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::series::turn;
-use crate::signed_rank::{estimate, middle};
+use crate::signed_rank::{estimate, median_of_means};
 use crate::spread::Spread;
 
 /// How sure an interval is: of a thousand comparisons of equal sides two may find a difference.
@@ -63,7 +63,7 @@ pub struct Comparison {
     pub reference: Spread,
     /// The chosen side's times in milliseconds.
     pub chosen: Spread,
-    /// Reference / chosen: above 1 the chosen side is faster. The middle over all pairs of frames,
+    /// Reference / chosen: above 1 the chosen side is faster. The median over all pairs of frames,
     /// which need not be the ratio of the medians.
     pub ratio: f64,
     /// The interval that holds the true ratio with [`CONFIDENCE`]; `None` where there are too few
@@ -86,7 +86,7 @@ impl Comparison {
     pub fn of(pairs: &[Pair]) -> Option<Self> {
         let pairs: Vec<Pair> = pairs.iter().copied().filter(Pair::is_valid).collect();
         let of_first: Vec<f64> = pairs.iter().map(|p| p.sign() * p.log_ratio()).collect();
-        let being_first = middle(&of_first)?;
+        let being_first = median_of_means(&of_first)?;
         let logs: Vec<f64> = (pairs.iter())
             .map(|p| p.log_ratio() - p.sign() * being_first)
             .collect();

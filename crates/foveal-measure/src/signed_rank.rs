@@ -9,7 +9,7 @@ use crate::spread::of_sorted;
 /// Above this the statistic's distribution is taken for a normal one; below it is counted out.
 const MOST_COUNTED: usize = 64;
 
-/// The middle of all means of two differences, and the interval that holds the true middle with
+/// The median of all means of two differences, and the interval that holds the true median with
 /// `confidence`; no interval where there are too few differences for it. `None` of nothing.
 pub(crate) fn estimate(differences: &[f64], confidence: f64) -> Option<(f64, Option<[f64; 2]>)> {
     let means = means(differences);
@@ -19,8 +19,8 @@ pub(crate) fn estimate(differences: &[f64], confidence: f64) -> Option<(f64, Opt
     Some((of_sorted(&means, 0.5), interval))
 }
 
-/// The middle of all means of two differences. `None` of nothing.
-pub(crate) fn middle(differences: &[f64]) -> Option<f64> {
+/// The median of all means of two differences. `None` of nothing.
+pub(crate) fn median_of_means(differences: &[f64]) -> Option<f64> {
     let means = means(differences);
     (!means.is_empty()).then(|| of_sorted(&means, 0.5))
 }
@@ -74,7 +74,7 @@ fn chances(n: usize) -> Vec<f64> {
     chances
 }
 
-/// How many standard deviations from the middle `tail` of a normal distribution begins: by
+/// How many standard deviations from the centre `tail` of a normal distribution begins: by
 /// Abramowitz and Stegun 26.2.23, whose error is below 0.00045.
 fn normal_quantile(tail: f64) -> f64 {
     let t = (-2.0 * tail.ln()).sqrt();
@@ -129,8 +129,8 @@ mod tests {
 
     #[test]
     fn equal_differences_have_no_width() {
-        let (middle, interval) = estimate(&[0.25; 12], 0.999).unwrap();
-        assert_eq!((middle, interval), (0.25, Some([0.25, 0.25])));
+        let (median, interval) = estimate(&[0.25; 12], 0.999).unwrap();
+        assert_eq!((median, interval), (0.25, Some([0.25, 0.25])));
         assert_eq!(estimate(&[], 0.9), None);
         assert_eq!(estimate(&[1.0], 0.9), Some((1.0, None)));
     }

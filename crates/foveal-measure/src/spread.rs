@@ -1,11 +1,11 @@
-//! Several measurements of one thing: the middle, and how far they lie apart.
+//! Several measurements of one thing: the median, and how far they lie apart.
 
 use serde::{Deserialize, Serialize};
 
-/// The middle of some times, how far they lie apart, and how many they are.
+/// The median of some times, how far they lie apart, and how many they are.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Spread {
-    /// The middle one.
+    /// The median.
     pub median: f64,
     /// A tenth of all lies below this.
     pub low: f64,
@@ -33,7 +33,7 @@ impl Spread {
     }
 }
 
-/// The middle value, or the mean of the two in the middle; 0 of nothing.
+/// The median: the central value, or the mean of the two central ones; 0 of nothing.
 #[must_use]
 pub fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
@@ -65,7 +65,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn the_median_is_the_middle() {
+    fn the_median_is_the_central_value() {
         assert_eq!(median(&[]), 0.0);
         assert_eq!(median(&[3.0, 1.0, 2.0]), 2.0);
         assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), 2.5);

@@ -26,7 +26,7 @@ impl History {
         self.frame_ms.iter().copied()
     }
 
-    /// The middle one, and the mean of the slowest hundredth (of the slowest frame, where there are
+    /// The median, and the mean of the slowest hundredth (of the slowest frame, where there are
     /// fewer than 100).
     pub(crate) fn median_and_slowest(&self) -> Option<(f64, f64)> {
         let mut sorted: Vec<f64> = self.frames().collect();

@@ -4,7 +4,7 @@ use foveal::{Frame, FrameStats, Gpu, Renderer, Settings};
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 
-use foveal_host::clock::now_ns;
+use crate::subject::timed_renderer;
 use foveal_host::picture::Picture;
 
 /// One of those that are compared.
@@ -26,12 +26,7 @@ impl<'a> Side<'a> {
     ) -> anyhow::Result<Self> {
         // What the technique itself costs: each frame shades all of its samples.
         let settings = &settings.clone().with(|s| s.coarse.history = false);
-        let mut renderer = block_on(Renderer::new(
-            gpu,
-            settings,
-            foveal::RendererOptions::default().with_clock(now_ns),
-        ))?;
-        block_on(renderer.set_scene(scene))?;
+        let renderer = timed_renderer(gpu, scene, settings)?;
         let mut side = Self {
             renderer,
             camera,

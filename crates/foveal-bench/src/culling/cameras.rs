@@ -1,9 +1,9 @@
 //! Where a scene is measured from: its own cameras (the overview where there are none), eight
 //! around it, and where that is asked for, some inside.
 //!
-//! Camera k of the eight stands at k * 45° (0° is +x, 90° is +z) on an ellipse around the middle of
+//! Camera k of the eight stands at k * 45° (0° is +x, 90° is +z) on an ellipse around the centre of
 //! the bounds, 0.6 of the bounds' size away in x and in z, a quarter of their height above the
-//! middle, and looks at the middle with 60° in height.
+//! centre, and looks at the centre with 60° in height.
 
 use std::convert::Infallible;
 use std::path::PathBuf;

@@ -48,7 +48,7 @@ impl Commands {
         }
     }
 
-    /// The commands of one row: full shading, this way, and this way with the gaze off the middle.
+    /// The commands of one row: full shading, this way, and this way with the gaze off the centre.
     pub(super) fn of(
         &self,
         shown: &Shown,
@@ -70,12 +70,12 @@ impl Commands {
             words.extend(["--fps".to_owned(), self.fps.to_string()]);
             self.render(words, settings)
         };
-        let middle = Settings::default().eye.gaze;
+        let center = Settings::default().eye.gaze;
         MadeBy {
             picture: [
                 still("full.png", full, 0),
                 still("this.png", chosen, way.warmup),
-                compare("full.png this.png", shown, middle, ""),
+                compare("full.png this.png", shown, center, ""),
             ],
             off: [
                 still("full.png", full, 0),
@@ -88,7 +88,7 @@ impl Commands {
                     "mkdir -p full this".to_owned(),
                     moving("full", full),
                     moving("this", chosen),
-                    compare("full this", shown, middle, &fps),
+                    compare("full this", shown, center, &fps),
                 ]
             }),
         }

@@ -61,7 +61,7 @@ pub(super) fn fit(text: &str) -> Result<Fit, String> {
     Ok(Fit::Within { width, height })
 }
 
-/// What is drawn of a display: its middle, or all of it.
+/// What is drawn of a display: its centre, or all of it.
 #[derive(Clone, Debug)]
 pub(super) struct Shown {
     pub(super) width: u32,
@@ -73,7 +73,7 @@ pub(super) struct Shown {
 }
 
 impl Screen {
-    /// The display's middle, with as many pixels per degree as the whole has.
+    /// The display's centre, with as many pixels per degree as the whole has.
     pub(super) fn shown(&self, fit: Fit) -> Shown {
         let whole = Display::named(self.name).unwrap_or(Display::DEGREES_60);
         let (width, height) = match fit {

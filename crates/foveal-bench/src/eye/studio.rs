@@ -3,13 +3,11 @@
 
 use std::rc::Rc;
 
-use foveal::{FrameStats, Renderer, Settings};
+use foveal::{FrameStats, Settings};
 use foveal_scene::Scene;
-use pollster::block_on;
 
-use crate::subject::Subject;
+use crate::subject::{Subject, timed_renderer};
 use foveal_host::camera::Viewpoint;
-use foveal_host::clock::now_ns;
 use foveal_host::drawing::{Drawing, moment};
 use foveal_host::picture::Picture;
 
@@ -87,12 +85,7 @@ impl<'a> Studio<'a> {
 
     fn drawing(&self, settings: &Settings, view: &Rc<Viewpoint>) -> anyhow::Result<Drawing> {
         let Subject { gpu, scene, .. } = self.subject;
-        let mut renderer = block_on(Renderer::new(
-            gpu,
-            settings,
-            foveal::RendererOptions::default().with_clock(now_ns),
-        ))?;
-        block_on(renderer.set_scene(scene))?;
+        let renderer = timed_renderer(gpu, scene, settings)?;
         // What does not move is on the device, and not looked at again.
         let scene = if scene.is_animated() {
             Scene {

@@ -49,7 +49,7 @@ pub(super) const WAYS: &[Way] = &[
         &[("shading", "coarse")],
     ),
     way(
-        "coarse, light, shaded anew",
+        "coarse, light, no history",
         Follows::GazeAndDisplay,
         &[("shading", "coarse"), ("history", "false")],
     ),

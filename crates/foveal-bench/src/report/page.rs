@@ -126,7 +126,7 @@ fn published(f: &Figures<'_>, at: &str) -> Markup {
     html! {
         @if columns > 0 {
             div {
-                h3 { "What the source publishes" }
+                h3 { "What the original method publishes" }
                 .scroll {
                     table {
                         tr {

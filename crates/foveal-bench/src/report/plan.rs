@@ -276,7 +276,7 @@ pub(super) const BENCHES: &[Bench] = &[
                 after: &[("shading", "coarse"), ("composite", "smooth")],
             },
             Pair {
-                title: "Every pixel, and the source's four taps",
+                title: "Every pixel, and the original method's four taps",
                 before: &[],
                 after: &[("shading", "coarse"), ("composite", "paper")],
             },

@@ -23,7 +23,7 @@ pub(super) fn of(bench: &str) -> Value {
         }),
         "stereo" => json!({
             "source": "yvt, instanced stereo rendering",
-            "machine": "the source's; gain over two passes",
+            "machine": "the original method's; gain over two passes",
             "columns": ["", "CPU %", "GPU %"],
             "rows": [
                 ["materials: 20 draws", 11.4, 10.7],
@@ -52,7 +52,7 @@ pub(super) fn of(bench: &str) -> Value {
         }),
         "variable" => json!({
             "source": "Monsho, software variable-rate shading",
-            "machine": "the source's",
+            "machine": "the original method's",
             "columns": ["", "ms"],
             "rows": [
                 ["G-buffer pass", 0.28],

@@ -11,8 +11,8 @@ use super::tables::{commands, table};
 /// Decisions in the order in which the page tells them, and their headings.
 const DECISIONS: [(&str, &str); 5] = [
     ("adopt", "Adopt"),
-    ("look", "Look first"),
-    ("pay", "Pay for"),
+    ("faster-but-visible", "Faster, but visible"),
+    ("better-but-slower", "Better, but slower"),
     ("skip", "Skip"),
     ("impossible", "Not here"),
 ];

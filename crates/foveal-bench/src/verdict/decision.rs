@@ -19,11 +19,11 @@ pub(super) enum Decision {
     /// Faster, and near enough.
     Adopt,
     /// Faster, but far from the plain picture.
-    Look,
+    FasterButVisible,
     /// No gain.
     Skip,
     /// A better picture that takes longer.
-    Pay,
+    BetterButSlower,
     /// The device cannot do it.
     Impossible,
 }
@@ -85,8 +85,14 @@ pub(super) fn decide(aim: Aim, measured: &Measured) -> (Decision, String) {
         (Finding::Faster, _) if is_near(measured.nearness) => {
             (Decision::Adopt, format!("{subject}: {gain}; {picture}"))
         }
-        (Finding::Faster, _) => (Decision::Look, format!("{subject}: {gain}; but {picture}")),
-        (_, Aim::Better) => (Decision::Pay, format!("smoother edges; {subject}: {gain}")),
+        (Finding::Faster, _) => (
+            Decision::FasterButVisible,
+            format!("{subject}: {gain}; but {picture}"),
+        ),
+        (_, Aim::Better) => (
+            Decision::BetterButSlower,
+            format!("smoother edges; {subject}: {gain}"),
+        ),
         (Finding::NoDifference, Aim::Faster) => (Decision::Skip, format!("{subject}: {gain}")),
         (Finding::Slower, Aim::Faster) => (Decision::Skip, format!("{subject}: {gain}")),
     }
@@ -134,7 +140,7 @@ mod tests {
 
     #[test]
     fn what_the_eye_sees_is_looked_at_first() {
-        for (jod, expected) in [(9.2, Decision::Adopt), (8.9, Decision::Look)] {
+        for (jod, expected) in [(9.2, Decision::Adopt), (8.9, Decision::FasterButVisible)] {
             let mut found = measured(20.0, 10.0, 0.01, 20);
             found.as_mut().unwrap().nearness.jod = Some(jod);
             let (decision, why) = decide(Aim::Faster, &found);
@@ -148,10 +154,18 @@ mod tests {
         for (measured, aim, expected) in [
             (measured(20.0, 10.0, 0.0, 20), Aim::Faster, Decision::Adopt),
             (measured(20.0, 10.0, 0.01, 20), Aim::Better, Decision::Adopt),
-            (measured(20.0, 10.0, 0.2, 20), Aim::Faster, Decision::Look),
+            (
+                measured(20.0, 10.0, 0.2, 20),
+                Aim::Faster,
+                Decision::FasterButVisible,
+            ),
             (measured(20.0, 20.0, 0.0, 20), Aim::Faster, Decision::Skip),
             (measured(10.0, 20.0, 0.0, 20), Aim::Faster, Decision::Skip),
-            (measured(10.0, 20.0, 0.1, 20), Aim::Better, Decision::Pay),
+            (
+                measured(10.0, 20.0, 0.1, 20),
+                Aim::Better,
+                Decision::BetterButSlower,
+            ),
             (measured(20.0, 10.0, 0.0, 9), Aim::Faster, Decision::Skip),
             (Err("no".to_owned()), Aim::Faster, Decision::Impossible),
         ] {

@@ -1,7 +1,6 @@
 //! The sides of a verdict, drawn in turn.
 
 use foveal::{Frame, FrameStats, Gpu, Renderer, Settings};
-use foveal_host::clock::now_ns;
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_measure::{Comparison, turn};
@@ -9,7 +8,7 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 
 use super::decision::{Found, Measured};
-use crate::subject::{Subject, WARM_UP};
+use crate::subject::{Subject, WARM_UP, timed_renderer};
 
 /// One of those that are drawn in turn.
 struct Side {
@@ -93,12 +92,7 @@ pub(super) fn measure(
 
 impl Side {
     fn new(gpu: &Gpu, scene: &Scene, settings: &Settings) -> anyhow::Result<Self> {
-        let mut renderer = block_on(Renderer::new(
-            gpu,
-            settings,
-            foveal::RendererOptions::default().with_clock(now_ns),
-        ))?;
-        block_on(renderer.set_scene(scene))?;
+        let renderer = timed_renderer(gpu, scene, settings)?;
         Ok(Self {
             renderer,
             settings: settings.clone(),

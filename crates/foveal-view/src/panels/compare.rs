@@ -92,7 +92,7 @@ fn times(ui: &mut Ui, compared: &Compared) {
         .on_hover_text(
             "Both sides draw the same view in turn, in an order that is drawn by lot. The ratio is the reference's time \
              by the chosen side's: above 1 the chosen side is faster. In brackets: the interval that holds the true ratio \
-             in 998 of 1,000 cases. Below each side: the middle time, and between what times four of five frames lie.",
+             in 998 of 1,000 cases. Below each side: the median time, and between what times four of five frames lie.",
         );
 }
 
@@ -115,7 +115,7 @@ fn color(finding: Finding) -> Color32 {
     }
 }
 
-/// The middle time of a side, and between what times most frames lie.
+/// The median time of a side, and between what times most frames lie.
 fn side(ui: &mut Ui, name: &str, times: &Spread) {
     figure(ui, name, look::ms(times.median));
     let between = format!("{} to {}", look::ms(times.low), look::ms(times.high));

@@ -229,7 +229,8 @@ impl Side {
                 s.coarse.source == RateSource::Image || s.coarse.other_source == RateSource::Image
             };
             uses(settings)
-                && !before.is_some_and(|b| uses(b) && b.coarse.image == settings.coarse.image)
+                && !before
+                    .is_some_and(|b| uses(b) && b.coarse.image_name == settings.coarse.image_name)
         };
         let before = slot.as_ref().map(|side| side.renderer.settings().clone());
         let image = if new_image(before.as_ref()) {

@@ -62,8 +62,8 @@ pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
 }
 
 /// Least and largest of the passes.
-fn spread(row: &Value, key: &str, middle: f64) -> [f64; 2] {
-    let end = |i: usize| row["spread"][key][i].as_f64().unwrap_or(middle);
+fn spread(row: &Value, key: &str, median: f64) -> [f64; 2] {
+    let end = |i: usize| row["spread"][key][i].as_f64().unwrap_or(median);
     [end(0), end(1)]
 }
 
