@@ -18,6 +18,15 @@ pub fn print_result(text: &str) -> anyhow::Result<()> {
     }
 }
 
+/// Writes a file's bytes to stdout. Here a reader that has gone away is a failure: it did not get
+/// the file.
+pub fn write_bytes(bytes: &[u8]) -> anyhow::Result<()> {
+    let mut out = std::io::stdout().lock();
+    out.write_all(bytes)
+        .and_then(|()| out.flush())
+        .context("cannot write to standard output")
+}
+
 /// Prints lines to stderr.
 pub fn note(text: &str) {
     eprint!("{}", escaped(text, true));

@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use foveal::{Frame, FrameStats, Renderer};
+use foveal::{Frame, FrameStats, RadianceImage, Renderer};
 use foveal_scene::Scene;
 use pollster::block_on;
 
@@ -63,6 +63,11 @@ impl Drawing {
     pub fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
         Picture::from_rgba(stats.width, stats.height, &bytes)
+    }
+
+    /// The last frame's radiance.
+    pub fn radiance(&self) -> anyhow::Result<RadianceImage> {
+        Ok(block_on(self.renderer.read_radiance())?)
     }
 
     fn pose(&mut self, time_s: f32) -> anyhow::Result<()> {

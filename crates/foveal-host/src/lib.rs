@@ -17,12 +17,14 @@ pub mod drawing;
 pub mod failure;
 pub mod gpu;
 pub mod import_args;
+pub mod linear_picture;
 pub mod picture;
 pub mod progress;
 pub mod rate_image;
 pub mod scene_source;
 pub mod settings;
 pub mod values;
+pub mod video;
 
 #[cfg(test)]
 #[path = "../../foveal-scene/src/gltf/tests/mutate.rs"]

@@ -58,6 +58,11 @@ impl Picture {
             .collect()
     }
 
+    /// The picture without its alpha as an RGB PNG.
+    pub fn png(&self) -> anyhow::Result<Vec<u8>> {
+        Ok(encode(self.width, self.height, &self.rgb_bytes())?)
+    }
+
     /// Writes the picture without its alpha as an RGB PNG, whole or not at all.
     pub fn write_rgb(&self, path: &Path) -> anyhow::Result<()> {
         write_rgb(path, self.width, self.height, &self.rgb_bytes())
@@ -66,11 +71,15 @@ impl Picture {
 
 /// Writes RGB8 rows as a PNG, whole or not at all.
 pub fn write_rgb(path: &Path, width: u32, height: u32, rgb: &[u8]) -> anyhow::Result<()> {
-    let mut png = Vec::new();
-    PngEncoder::new(&mut png)
-        .write_image(rgb, width, height, ExtendedColorType::Rgb8)
+    let png = encode(width, height, rgb)
         .with_context(|| format!("cannot encode '{}'", path.display()))?;
     crate::atomic_file::write(path, &png)
+}
+
+fn encode(width: u32, height: u32, rgb: &[u8]) -> image::ImageResult<Vec<u8>> {
+    let mut png = Vec::new();
+    PngEncoder::new(&mut png).write_image(rgb, width, height, ExtendedColorType::Rgb8)?;
+    Ok(png)
 }
 
 #[cfg(test)]

@@ -15,12 +15,12 @@ pub fn rate_image(settings: &Settings) -> anyhow::Result<Option<RateImage>> {
     if settings.shading.mode == Shading::Full || !used {
         return Ok(None);
     }
-    if settings.coarse.image.is_empty() {
+    if settings.coarse.image_name.is_empty() {
         bail!(
             "the rate map shall come from a picture, but none is named: add --rate-image FILE.png"
         );
     }
-    let picture = Picture::read(Path::new(&settings.coarse.image))?;
+    let picture = Picture::read(Path::new(&settings.coarse.image_name))?;
     // Rec. 601 luma, as the grey of a grey picture.
     let luma = picture
         .rgb_bytes()

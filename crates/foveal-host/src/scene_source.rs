@@ -1,9 +1,10 @@
 //! From the word on the command line to a scene: the name of a generated scene, or a file's path.
 
+use std::io::Read;
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::bail;
+use anyhow::{Context, bail};
 use foveal::Timing;
 use foveal_generate as generate;
 use foveal_generate::{DemoOptions, GenerateError};
@@ -14,19 +15,26 @@ use crate::import_args;
 /// What is drawn without SCENE.
 pub const DEFAULT_SCENE: &str = "demo";
 
+/// The name of standard input.
+const STDIN: &str = "-";
+
 /// A camera for every moment, in seconds.
 pub type TimedCamera = Box<dyn Fn(f32) -> Camera>;
 
 /// Loads or generates the scene called `name`, posed at time 0, and adds the time of each stage to
 /// `load_ms`.
 ///
-/// A generated scene's name wins over a file of the same name; `./demo` means the file.
+/// A generated scene's name wins over a file of the same name; `./demo` means the file. `-` is a
+/// file on standard input that refers to no other: a .glb.
 pub fn load_timed(
     name: &str,
     options: &LoadOptions,
     load_ms: &mut Vec<Timing>,
 ) -> anyhow::Result<Scene> {
     let start = Instant::now();
+    if name == STDIN {
+        return from_stdin(options, load_ms);
+    }
     match generate::by_name(name) {
         Ok(_) if options.variant.is_some() || matches!(options.clip, Clip::Named(_)) => {
             bail!("the generated scene '{name}' has neither clips nor variants")
@@ -63,6 +71,31 @@ fn from_file(
         );
     }
     let scene = foveal_scene::load(path, options).map_err(import_args::with_flag)?;
+    add_timings(&scene, load_ms);
+    Ok(scene)
+}
+
+/// Reads standard input to its end, or to the limit of a file.
+fn from_stdin(options: &LoadOptions, load_ms: &mut Vec<Timing>) -> anyhow::Result<Scene> {
+    let mut bytes = Vec::new();
+    std::io::stdin()
+        .lock()
+        .take(options.max_file_bytes.saturating_add(1))
+        .read_to_end(&mut bytes)
+        .context("cannot read the scene from standard input")?;
+    let outside = |uri: &str| {
+        Err(format!(
+            "it names '{uri}', and beside standard input there are no files: pipe in a .glb"
+        ))
+    };
+    let scene = foveal_scene::load_bytes(&bytes, "standard input", options, &outside)
+        .map_err(import_args::with_flag)?;
+    add_timings(&scene, load_ms);
+    Ok(scene)
+}
+
+/// Adds the time of each stage of an import.
+fn add_timings(scene: &Scene, load_ms: &mut Vec<Timing>) {
     let LoadTimings {
         read_ms,
         parse_ms,
@@ -78,7 +111,6 @@ fn from_file(
         ("bounds", bounds_ms),
     ];
     load_ms.extend(stages.map(|(name, ms)| timing(name, f64::from(ms))));
-    Ok(scene)
 }
 
 /// Seconds that the walk through the demo scene takes.

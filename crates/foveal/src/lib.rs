@@ -44,7 +44,7 @@ pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
 pub use output::Target;
 pub use rate::{MinPyramid, RateImage};
-pub use renderer::{Frame, Renderer, RendererOptions};
+pub use renderer::{Frame, RadianceImage, Renderer, RendererOptions};
 #[cfg(feature = "serde")]
 pub use settings::variant_names;
 pub use settings::{

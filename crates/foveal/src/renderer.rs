@@ -22,10 +22,12 @@ use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings};
 use in_flight::{Counts, InFlight};
+pub use radiance::RadianceImage;
 
 mod figures;
 mod in_flight;
 mod plan;
+mod radiance;
 mod stages;
 mod submit;
 #[cfg(test)]
@@ -144,9 +146,9 @@ impl Renderer {
     /// Builds the pipelines and the targets for `settings`; the scene is empty.
     ///
     /// # Errors
-    /// [`Error::Limit`] where the device offers less than [`Gpu::required_limits`]; that or [`Error::Setting`] where
-    /// the settings cannot be met on it;
-    /// [`Error::OutOfMemory`] where the targets do not fit.
+    /// [`Error::Limit`] where the device offers less than [`Gpu::required_limits`]; that or
+    /// [`Error::Setting`] where the settings cannot be met on it; [`Error::OutOfMemory`] where the
+    /// targets do not fit.
     pub async fn new(
         gpu: &Gpu,
         settings: &Settings,
@@ -203,7 +205,9 @@ impl Renderer {
         &self.settings
     }
 
-    /// Takes over other settings. A change of size alone rebuilds the targets alone; a change of
+    /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
+    /// history, so that a host with an eye tracker calls this before each frame. A change of size
+    /// alone rebuilds the targets alone; any other makes all pipelines anew. A change of
     /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
     /// takes effect with the next [`Renderer::set_scene`].
@@ -215,11 +219,19 @@ impl Renderer {
         if *settings == self.settings {
             return Ok(());
         }
-        let trap = ErrorTrap::new(&self.gpu, "resizing the picture");
-        let upscale = Upscale::new(&self.gpu, settings);
-        trap.finish().await?;
+        let sizes = |s: &Settings| (s.picture_size(), s.drawn().picture_size());
+        let upscale = if sizes(settings) == sizes(&self.settings) {
+            None
+        } else {
+            let trap = ErrorTrap::new(&self.gpu, "resizing the picture");
+            let upscale = Upscale::new(&self.gpu, settings);
+            trap.finish().await?;
+            Some(upscale)
+        };
         self.draw_with(&settings.drawn()).await?;
-        self.upscale = upscale;
+        if let Some(upscale) = upscale {
+            self.upscale = upscale;
+        }
         self.settings = settings.clone();
         Ok(())
     }
@@ -285,8 +297,8 @@ impl Renderer {
     /// Uploads a scene in place of the last one.
     ///
     /// # Errors
-    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::OutOfMemory`]; the renderer
-    /// keeps its old scene then.
+    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::OutOfMemory`]; the
+    /// renderer keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
         self.set_scene_within(scene, ArrayLimits::of(&self.gpu))
             .await

@@ -7,21 +7,42 @@ use foveal::Settings;
 use foveal_host::camera::CameraArgs;
 use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
+use foveal_host::linear_picture::PictureFormat;
 use foveal_host::settings::SettingsArgs;
 use foveal_host::values;
+
+/// The name that means standard output.
+const STDOUT: &str = "-";
 
 /// Arguments of `foveal render`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// A glTF 2.0 file (.gltf or .glb), or a generated scene: demo, demo:INSTANCES, materials,
-    /// materials2, cornell, materials-grid, alpha
+    /// A glTF 2.0 file (.gltf or .glb), a generated scene (demo, demo:INSTANCES, materials,
+    /// materials2, cornell, materials-grid, alpha), or -: a .glb on standard input
     #[arg(default_value = foveal_host::scene_source::DEFAULT_SCENE)]
     pub(super) scene: String,
 
-    /// PNG file to write; with --frames it has a place for the number: frame_####.png or
-    /// {frame}.png. May be given once more to say how both eyes are shown, as --show does
-    #[arg(short, long, value_name = "FILE.png|HOW", required = true)]
+    /// Picture to write: FILE.png; FILE.exr or FILE.hdr with linear radiance before exposure and
+    /// tone map; - for a PNG on standard output. With --frames the name has a place for the number:
+    /// frame_####.png or {frame}.png. May be given once more to say how both eyes are shown, as
+    /// --show does
+    #[arg(
+        short,
+        long,
+        value_name = "FILE|HOW",
+        required_unless_present = "video"
+    )]
     output: Vec<PathBuf>,
+
+    /// Video of the frames, encoded by the program ffmpeg: FILE.mp4, FILE.webm or another ending
+    /// that it knows
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "frames",
+        conflicts_with = "skip_existing"
+    )]
+    pub(super) video: Option<PathBuf>,
 
     #[command(flatten)]
     pub(super) settings: SettingsArgs,
@@ -96,9 +117,21 @@ impl Args {
         (file.map(PathBuf::as_path), shown.and_then(|s| s.to_str()))
     }
 
-    /// The file to write; empty where none is given.
-    pub(super) fn output(&self) -> &Path {
-        self.outputs().0.unwrap_or(Path::new(""))
+    /// The picture to write, or the pattern of pictures; `None` where only a video is written.
+    pub(super) fn output(&self) -> Option<&Path> {
+        self.outputs().0
+    }
+
+    /// What is written, as the figures name it.
+    pub(super) fn output_name(&self) -> String {
+        let path = self.output().or(self.video.as_deref());
+        path.map(|path| path.display().to_string())
+            .unwrap_or_default()
+    }
+
+    /// Whether the picture goes to standard output.
+    pub(super) fn is_piped(&self) -> bool {
+        self.output().is_some_and(|file| file == Path::new(STDOUT))
     }
 
     /// The settings that hold.
@@ -114,25 +147,58 @@ impl Args {
     pub(super) fn check(&self) -> anyhow::Result<()> {
         let (file, shown) = self.outputs();
         if self.output.len() != usize::from(file.is_some()) + usize::from(shown.is_some()) {
-            return usage("--output names one PNG file, and at most one way to show it");
+            return usage("--output names one picture, and at most one way to show it");
         }
-        if self
-            .output()
-            .extension()
-            .is_none_or(|e| !e.eq_ignore_ascii_case("png"))
-        {
-            return usage(format!(
-                "'{}' must end in .png: pictures are written as PNG",
-                self.output().display()
-            ));
+        if file.is_none() && self.video.is_none() {
+            return usage(
+                "--output says how both eyes are shown; name a picture too: --output FILE.png",
+            );
+        }
+        if let Some(file) = file {
+            let format = PictureFormat::of(file);
+            if self.is_piped() {
+                if self.frames.frames.is_some() {
+                    return usage(
+                        "standard output takes one picture; --frames needs --output frame_####.png or --video",
+                    );
+                }
+            } else if format.is_none() {
+                return usage(format!(
+                    "'{}' must end in .png, .exr or .hdr, or be - for a PNG on standard output",
+                    file.display()
+                ));
+            }
+            if format.is_some_and(PictureFormat::is_linear) {
+                self.check_linear(file)?;
+            }
         }
         self.camera.check()?;
-        if self
-            .stats
-            .as_ref()
-            .is_some_and(|stats| stats == self.output())
-        {
-            return usage("--stats and --output name the same file");
+        let written = [file, self.video.as_deref(), self.stats.as_deref()];
+        for (index, one) in written.iter().enumerate() {
+            if one.is_some() && written[index + 1..].contains(one) {
+                return usage("--output, --video and --stats name the same file");
+            }
+        }
+        Ok(())
+    }
+
+    /// Files of radiance hold what is there before tone map, lenses and colour glasses.
+    fn check_linear(&self, file: &Path) -> anyhow::Result<()> {
+        let settings = self.settings()?;
+        let refuse = |setting: &str| {
+            usage(format!(
+                "'{}' holds radiance, which {setting} does not change or has none of: write a .png, or leave it out",
+                file.display()
+            ))
+        };
+        if settings.picture.view != foveal::DebugView::Final {
+            return refuse("--view");
+        }
+        if settings.is_stereo() && settings.stereo.output != foveal::Output::SideBySide {
+            return refuse("--show");
+        }
+        if settings.picture.render_scale != 1.0 {
+            return refuse("--render-scale");
         }
         Ok(())
     }

@@ -70,18 +70,23 @@ pub(super) struct FrameJob {
     pub(super) frame: u32,
     pub(super) time_s: f32,
     pub(super) previous_time_s: f32,
-    pub(super) file: PathBuf,
+    /// Where the picture goes; `None` where it is a part of a video alone.
+    pub(super) file: Option<PathBuf>,
 }
 
 /// The frames of a range. Each depends on its own number alone, so that any sub-range gives the
 /// same files.
-pub(super) fn sequence(range: Range<u32>, fps: f32, pattern: &FramePattern) -> Vec<FrameJob> {
+pub(super) fn sequence(
+    range: Range<u32>,
+    fps: f32,
+    pattern: Option<&FramePattern>,
+) -> Vec<FrameJob> {
     range
         .map(|frame| FrameJob {
             frame,
             time_s: moment(frame, fps),
             previous_time_s: moment(frame.saturating_sub(1), fps),
-            file: pattern.file(frame),
+            file: pattern.map(|pattern| pattern.file(frame)),
         })
         .collect()
 }
@@ -93,7 +98,7 @@ pub(super) fn still(time_s: f32, fps: f32, file: &Path) -> FrameJob {
         frame: 0,
         time_s,
         previous_time_s,
-        file: file.to_owned(),
+        file: Some(file.to_owned()),
     }
 }
 
@@ -134,8 +139,8 @@ mod tests {
     #[test]
     fn a_frame_depends_on_its_number_alone() {
         let pattern = FramePattern::parse(Path::new("#.png")).unwrap();
-        let whole = sequence(0..50, 29.97, &pattern);
-        let part = sequence(20..30, 29.97, &pattern);
+        let whole = sequence(0..50, 29.97, Some(&pattern));
+        let part = sequence(20..30, 29.97, Some(&pattern));
         assert_eq!(whole[20..30], part);
         assert_eq!(part[1].previous_time_s, part[0].time_s);
         assert_eq!(whole[0].previous_time_s, 0.0);

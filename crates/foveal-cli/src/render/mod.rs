@@ -9,6 +9,7 @@ mod frame_files;
 mod stats;
 mod summary;
 
+use std::path::Path;
 use std::rc::Rc;
 use std::thread;
 
@@ -19,8 +20,10 @@ use pollster::block_on;
 use foveal_host::camera::Viewpoint;
 use foveal_host::clock::{now_ms, now_ns, timed};
 use foveal_host::drawing::Drawing;
+use foveal_host::linear_picture::{self, PictureFormat};
 use foveal_host::progress::progress_bar;
 use foveal_host::rate_image::rate_image;
+use foveal_host::video::Video;
 use foveal_host::{atomic_file, console, gpu, scene_source};
 
 pub(crate) use args::Args;
@@ -36,15 +39,15 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let total = wanted.len();
     let jobs: Vec<FrameJob> = wanted
         .into_iter()
-        .filter(|job| !(args.frames.skip_existing && atomic_file::is_finished(&job.file)))
+        .filter(|job| {
+            let is_there = || job.file.as_deref().is_some_and(atomic_file::is_finished);
+            !(args.frames.skip_existing && is_there())
+        })
         .collect();
     let skipped_frames = (total - jobs.len()) as u64;
-    for file in jobs
-        .first()
-        .map(|job| &job.file)
-        .into_iter()
-        .chain(&args.stats)
-    {
+    let first = jobs.first().and_then(|job| job.file.as_ref());
+    let first = first.filter(|_| !args.is_piped());
+    for file in first.into_iter().chain(&args.video).chain(&args.stats) {
         atomic_file::check_writable(file)?;
     }
     if jobs.is_empty() {
@@ -65,7 +68,24 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     for _ in 0..args.warmup {
         draw(&mut drawing, &jobs[0])?;
     }
-    let (frames, first_picture_ms) = draw_all(&mut drawing, &jobs, &mut load_ms, args.quiet)?;
+    let video = match &args.video {
+        Some(file) => Some(Video::create(
+            file,
+            drawing.renderer.settings().picture_size(),
+            args.frames.fps,
+        )?),
+        None => None,
+    };
+    let mut written = Written {
+        piped: args.is_piped(),
+        video,
+        video_name: args.output_name(),
+    };
+    let (frames, first_picture_ms) =
+        draw_all(&mut drawing, &jobs, &mut load_ms, &mut written, args.quiet)?;
+    if let Some(video) = written.video {
+        video.finish()?;
+    }
 
     let run = RunStats {
         schema: "foveal-render-stats",
@@ -73,7 +93,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         program_version: env!("CARGO_PKG_VERSION"),
         command: CommandStats {
             scene: args.scene.clone(),
-            output: args.output().display().to_string(),
+            output: args.output_name(),
             fps: args.frames.fps,
             point_lights: args.point_lights,
             light_seed: args.light_seed,
@@ -105,11 +125,12 @@ fn jobs(args: &Args) -> anyhow::Result<Vec<FrameJob>> {
     let fps = args.frames.fps;
     match &args.frames.frames {
         Some(range) => {
-            let pattern = FramePattern::parse(args.output())?;
-            Ok(frame_files::sequence(range.clone(), fps, &pattern))
+            let pattern = args.output().map(FramePattern::parse).transpose()?;
+            Ok(frame_files::sequence(range.clone(), fps, pattern.as_ref()))
         }
         None => {
-            let mut job = frame_files::still(args.frames.time.unwrap_or(0.0), fps, args.output());
+            let file = args.output().unwrap_or(Path::new(""));
+            let mut job = frame_files::still(args.frames.time.unwrap_or(0.0), fps, file);
             if args.frames.still {
                 job.previous_time_s = job.time_s;
             }
@@ -181,6 +202,48 @@ fn prepare(
     ))
 }
 
+/// Where frames go besides files.
+struct Written {
+    /// The picture goes to standard output.
+    piped: bool,
+    video: Option<Video>,
+    /// As the command line named it.
+    video_name: String,
+}
+
+impl Written {
+    /// Writes the frame that was drawn last, of which these are the figures.
+    fn write(
+        &mut self,
+        drawing: &Drawing,
+        figures: &FrameStats,
+        file: Option<&Path>,
+        stages: &mut Vec<Timing>,
+    ) -> anyhow::Result<()> {
+        if let Some(file) = file
+            && PictureFormat::of(file).is_some_and(PictureFormat::is_linear)
+        {
+            let radiance = timed(stages, "read_back", || drawing.radiance())?;
+            timed(stages, "write", || linear_picture::write(file, &radiance))?;
+            if self.video.is_none() {
+                return Ok(());
+            }
+        }
+        let picture = timed(stages, "read_back", || drawing.picture(figures))?;
+        timed(stages, "write", || match file {
+            Some(_) if self.piped => console::write_bytes(&picture.png()?),
+            Some(file) if PictureFormat::of(file) == Some(PictureFormat::Png) => {
+                picture.write_rgb(file)
+            }
+            _ => Ok(()),
+        })?;
+        match &mut self.video {
+            Some(video) => timed(stages, "video", || video.push(&picture)),
+            None => Ok(()),
+        }
+    }
+}
+
 /// Draws one frame of the sequence.
 fn draw(drawing: &mut Drawing, job: &FrameJob) -> anyhow::Result<FrameStats> {
     drawing.draw_moment(job.time_s, job.previous_time_s)
@@ -191,6 +254,7 @@ fn draw_all(
     drawing: &mut Drawing,
     jobs: &[FrameJob],
     load_ms: &mut Vec<Timing>,
+    written: &mut Written,
     quiet: bool,
 ) -> anyhow::Result<(Vec<NumberedFrameStats>, f64)> {
     let progress = progress_bar(jobs.len() as u64, "frames", quiet);
@@ -201,8 +265,7 @@ fn draw_all(
         let mut stages = Vec::new();
         let figures = timed(&mut stages, "first_frame", || draw(drawing, job))
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
-        let picture = timed(&mut stages, "read_back", || drawing.picture(&figures))?;
-        timed(&mut stages, "write", || picture.write_rgb(&job.file))?;
+        written.write(drawing, &figures, job.file.as_deref(), &mut stages)?;
         if let Some(variable) = &figures.variable
             && !variable.notice.is_empty()
             && !std::mem::replace(&mut noticed, true)
@@ -216,7 +279,10 @@ fn draw_all(
         frames.push(NumberedFrameStats {
             frame: job.frame,
             time_s: job.time_s,
-            file: job.file.display().to_string(),
+            file: match &job.file {
+                Some(file) => file.display().to_string(),
+                None => written.video_name.clone(),
+            },
             camera: drawing.viewpoint.at(&drawing.scene, job.time_s).name,
             figures,
         });

@@ -43,17 +43,19 @@ pub(super) fn text(run: &RunStats) -> String {
         grouped(median.shaded_samples as u64),
     );
     let [first, .., last] = &run.frames[..] else {
-        let file = run.frames.first().map_or("nothing", |frame| &frame.file);
-        let _ = writeln!(text, "wrote {file}");
+        let _ = match run.frames.first().map(|frame| frame.file.as_str()) {
+            Some("-") => writeln!(text, "wrote the picture to standard output"),
+            Some(file) => writeln!(text, "wrote {file}"),
+            None => writeln!(text, "wrote nothing"),
+        };
         return text;
     };
-    let _ = write!(
-        text,
-        "wrote {} frames, {} to {}",
-        run.frames.len(),
-        first.file,
-        last.file
-    );
+    let _ = write!(text, "wrote {} frames", run.frames.len());
+    let _ = if first.file == last.file {
+        write!(text, " into {}", first.file)
+    } else {
+        write!(text, ", {} to {}", first.file, last.file)
+    };
     if run.skipped_frames > 0 {
         let _ = write!(text, "; {} were there already", run.skipped_frames);
     }

@@ -42,8 +42,9 @@ pub struct CameraArgs {
 
     /// Path of the camera: a JSON file of keyframes (see docs/program.md); `demo`: the demo scene's
     /// own; `sway`: to and fro around another camera, sideways by 5 cm at up to 5 cm a second, as a
-    /// head moves
-    #[arg(long, value_name = "FILE.json|demo|sway")]
+    /// head moves; `turntable`: around the centre of the scene, from another camera or from
+    /// `overview`, one turn in 12 seconds
+    #[arg(long, value_name = "FILE.json|demo|sway|turntable")]
     pub(super) path: Option<String>,
 }
 

@@ -1,10 +1,11 @@
 //! Where each frame is seen from: a camera of the scene, a place on the command line, or a path.
 
+use std::f32::consts::TAU;
 use std::path::Path;
 
 use anyhow::bail;
 use foveal_scene::{Camera, Projection, Scene};
-use glam::Vec3;
+use glam::{Mat3, Vec3};
 
 use super::args::CameraArgs;
 use super::inside;
@@ -27,13 +28,59 @@ enum Kind {
     Still(Camera),
     Path(CameraPath, f32),
     Generated(TimedCamera),
-    /// To and fro, sideways.
-    Sway(Box<Kind>),
+    /// Another one, moved.
+    Moved(Motion, Box<Kind>),
 }
 
-/// How far [`Kind::Sway`] moves to either side in metres; in a radian per second, so that it is the
-/// speed too.
+/// Movements of a camera.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Motion {
+    /// To and fro, sideways.
+    Sway,
+    /// Around a point, counter-clockwise seen from above.
+    Turntable(Vec3),
+}
+
+/// How far [`Motion::Sway`] moves to either side in metres; in a radian per second, so that it is
+/// the speed too.
 const SWAY_M: f32 = 0.05;
+
+/// Seconds of one turn of [`Motion::Turntable`].
+const TURN_S: f32 = 12.0;
+
+impl Motion {
+    /// The movement that `--path` names.
+    fn by_name(name: &str, scene: &Scene) -> Option<Self> {
+        match name {
+            "sway" => Some(Self::Sway),
+            "turntable" => Some(Self::Turntable(scene.bounds().center())),
+            _ => None,
+        }
+    }
+
+    /// Moves the camera to its place at `time_s`.
+    fn apply(self, camera: &mut Camera, time_s: f32) {
+        match self {
+            Self::Sway => {
+                let sideways = camera.world_from_view.x_axis * (SWAY_M * time_s.sin());
+                camera.world_from_view.w_axis += sideways;
+            }
+            Self::Turntable(center) => turn_around(camera, center, time_s),
+        }
+    }
+}
+
+/// Turns a camera around the vertical axis through `center`. Whole turns give the same camera to
+/// the bit.
+fn turn_around(camera: &mut Camera, center: Vec3, time_s: f32) {
+    let turn = Mat3::from_rotation_y(TAU * (time_s / TURN_S).fract());
+    let axes = &mut camera.world_from_view;
+    for axis in [&mut axes.x_axis, &mut axes.y_axis, &mut axes.z_axis] {
+        *axis = (turn * axis.truncate()).extend(0.0);
+    }
+    let eye = axes.w_axis.truncate();
+    axes.w_axis = (eye + (turn * (eye - center) - (eye - center))).extend(1.0);
+}
 
 impl Viewpoint {
     /// Follows the arguments; `scene` is posed at time 0, so that the choice does not depend on the
@@ -41,12 +88,13 @@ impl Viewpoint {
     pub fn choose(args: &CameraArgs, scene: &Scene, scene_name: &str) -> anyhow::Result<Self> {
         let fov_y_deg = args.fov.unwrap_or(DEFAULT_FOV_DEG);
         let fov_y_rad = args.fov.map(f32::to_radians);
-        let sways = args.path.as_deref() == Some("sway");
+        let motion = args.path.as_deref();
+        let motion = motion.and_then(|name| Motion::by_name(name, scene));
         let is_placed = args.camera.is_some() || args.eye.is_some() || args.exact_camera.is_some();
-        if args.path.is_some() && !sways && is_placed {
+        if args.path.is_some() && motion.is_none() && is_placed {
             return usage(
-                "--path says where the camera is, as --camera, --eye and --exact-camera do: only --path sway goes with one \
-                 of them",
+                "--path says where the camera is, as --camera, --eye and --exact-camera do: only --path sway and --path \
+                 turntable go with one of them",
             );
         }
         let kind = if let Some(camera) = &args.exact_camera {
@@ -55,19 +103,20 @@ impl Viewpoint {
             let up = args.up.unwrap_or(Vec3::Y);
             let camera = Camera::look_at(eye, target, up, fov_y_deg.to_radians());
             Kind::Still(with_near_plane(camera, near_m(scene)))
-        } else if let Some(path) = args.path.as_ref().filter(|_| !sways) {
+        } else if let Some(path) = args.path.as_ref().filter(|_| motion.is_none()) {
             Self::path(path, fov_y_deg, scene, scene_name)?
         } else if let Some(name) = &args.camera {
             by_name(name, scene)?
+        } else if matches!(motion, Some(Motion::Turntable(_))) {
+            Kind::Still(scene.overview_camera())
         } else if !scene.cameras.is_empty() {
             Kind::OfScene(0)
         } else {
             Kind::Still(inside_camera(scene).unwrap_or_else(|| scene.overview_camera()))
         };
-        let kind = if sways {
-            Kind::Sway(Box::new(kind))
-        } else {
-            kind
+        let kind = match motion {
+            Some(motion) => Kind::Moved(motion, Box::new(kind)),
+            None => kind,
         };
         let viewpoint = Self { kind, fov_y_rad };
         let camera = viewpoint.at(scene, 0.0);
@@ -115,10 +164,9 @@ impl Kind {
             Self::Still(camera) => camera.clone(),
             Self::Path(path, near_m) => with_near_plane(path.at(time_s), *near_m),
             Self::Generated(path) => path(time_s),
-            Self::Sway(around) => {
-                let mut camera = around.at(scene, time_s);
-                let sideways = camera.world_from_view.x_axis * (SWAY_M * time_s.sin());
-                camera.world_from_view.w_axis += sideways;
+            Self::Moved(motion, from) => {
+                let mut camera = from.at(scene, time_s);
+                motion.apply(&mut camera, time_s);
                 camera
             }
         }
@@ -250,6 +298,36 @@ mod tests {
         };
         let error = chosen(&args, &scene).unwrap_err().to_string();
         assert!(error.contains("--path"), "{error}");
+    }
+
+    #[test]
+    fn a_turntable_goes_around_the_scene_and_comes_back() {
+        let mut scene = scene();
+        scene.cameras.clear();
+        let args = CameraArgs {
+            eye: Some(Vec3::new(2.0, 5.0, 8.0)),
+            target: Some(Vec3::splat(2.0)),
+            path: Some("turntable".to_owned()),
+            ..args()
+        };
+        let camera = Camera::look_at(Vec3::new(2.0, 5.0, 8.0), Vec3::splat(2.0), Vec3::Y, 1.0);
+        let center = Vec3::splat(2.0);
+        let at = |time_s| {
+            let mut camera = camera.clone();
+            turn_around(&mut camera, center, time_s);
+            camera
+        };
+        assert_eq!(at(0.0).world_from_view, camera.world_from_view);
+        assert_eq!(at(2.0 * TURN_S).world_from_view, camera.world_from_view);
+        let quarter = at(0.25 * TURN_S);
+        assert!((quarter.eye() - Vec3::new(8.0, 5.0, 2.0)).length() < 1e-5);
+        let forward = -quarter.world_from_view.z_axis.truncate();
+        let to_center = (center - quarter.eye()).normalize();
+        assert!(
+            (forward - to_center).length() < 1e-5,
+            "it looks at the centre"
+        );
+        assert!(chosen(&args, &scene).is_ok());
     }
 
     #[test]

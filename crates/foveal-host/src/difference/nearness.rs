@@ -7,7 +7,7 @@ use super::flip::ErrorMap;
 use crate::picture::Picture;
 
 /// The display of the benches that name none: `h60`, 60 degrees across, whatever the picture's
-/// size; the eye looks at the middle.
+/// size; the eye looks at the centre.
 pub const BENCH_DISPLAY: &str = "h60";
 
 /// How near a picture is to its reference.

@@ -93,16 +93,16 @@ fn best_view(grid: &Grid, eye: Vec3) -> Option<(f32, Vec3)> {
                 .map(|turn| sight_m[(heading + turn) % HEADINGS])
                 .iter()
                 .sum();
-            let middle = eye + forward * (0.5 * view_m / (3 * SLOPES.len()) as f32);
+            let center = eye + forward * (0.5 * view_m / (3 * SLOPES.len()) as f32);
             (
-                view_m * room_m.sqrt() * centrality(grid.bounds, middle),
+                view_m * room_m.sqrt() * centrality(grid.bounds, center),
                 forward,
             )
         })
         .max_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// 1 in the middle of the ground, less towards the walls and the roof: the way around a building
+/// 1 in the centre of the ground, less towards the walls and the roof: the way around a building
 /// gives long views as well, but the building is what the scene is about.
 fn centrality(bounds: Aabb, point: Vec3) -> f32 {
     let place = (point - bounds.min) / bounds.size();

@@ -119,7 +119,7 @@ fn a_rate_may_be_a_file() {
     ] {
         let settings = from_flags(flags);
         assert_eq!(settings.coarse.source, foveal::RateSource::Image);
-        assert_eq!(settings.coarse.image, "a.PNG");
+        assert_eq!(settings.coarse.image_name, "a.PNG");
     }
     assert!(Line::try_parse_from(["x", "--rate", "sideways"]).is_err());
 }

@@ -1,0 +1,219 @@
+//! What `foveal render` writes besides PNG files: radiance, standard output, videos; and a scene
+//! from standard input.
+//!
+//! These tests draw, and need a graphics adapter; Mesa's lavapipe will do.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod common;
+
+use std::fs;
+use std::io::Write;
+use std::path::Path;
+use std::process::Stdio;
+
+use common::{command, fail, folder, moving_triangle, names, stderr, succeed};
+
+const SIZE: [&str; 2] = ["--size", "48x32"];
+
+fn render<'a>(words: &[&'a str]) -> Vec<&'a str> {
+    [&["render", "cornell", "-q"], words, &SIZE].concat()
+}
+
+/// Display value of linear light, as `--tone-map linear` maps it.
+fn displayed(linear: f32) -> f32 {
+    let v = linear.clamp(0.0, 1.0);
+    let encoded = if v <= 0.003_130_8 {
+        12.92 * v
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    };
+    255.0 * encoded
+}
+
+#[test]
+fn radiance_exposed_and_encoded_is_the_picture() {
+    let folder = folder();
+    let here = folder.path();
+    for eyes in [
+        &[][..],
+        &["--stereo", "instanced", "--show", "side-by-side"],
+    ] {
+        let flags = [&["--tone-map", "linear", "--exposure", "1"], eyes].concat();
+        for file in ["a.png", "a.exr", "a.hdr"] {
+            succeed(here, &render(&[&["-o", file], &flags[..]].concat()));
+        }
+        let picture = image::open(here.join("a.png")).unwrap().into_rgb8();
+        for (file, tolerance) in [("a.exr", 0.6), ("a.hdr", 2.5)] {
+            let radiance = image::open(here.join(file)).unwrap().into_rgb32f();
+            assert_eq!(radiance.dimensions(), picture.dimensions(), "{file}");
+            let mut brightest = 0.0f32;
+            for (linear, shown) in radiance.pixels().zip(picture.pixels()) {
+                // Exposure 1 doubles.
+                for (linear, shown) in linear.0.iter().zip(shown.0) {
+                    let error = (displayed(2.0 * linear) - f32::from(shown)).abs();
+                    assert!(error <= tolerance, "{file}: {linear} is shown as {shown}");
+                    brightest = brightest.max(*linear);
+                }
+            }
+            assert!(
+                brightest > 0.5,
+                "{file}: the scene's light source is bright"
+            );
+        }
+    }
+}
+
+#[test]
+fn radiance_of_what_has_none_is_refused() {
+    let folder = folder();
+    for (flags, named) in [
+        (&["--view", "depth"][..], "--view"),
+        (&["--stereo", "instanced", "--show", "anaglyph"], "--show"),
+        (&["--render-scale", "0.5"], "--render-scale"),
+    ] {
+        let output = command(folder.path(), &render(&[&["-o", "a.exr"], flags].concat()));
+        let output = { output }.output().unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        assert!(stderr(&output).contains(named), "{}", stderr(&output));
+    }
+    assert_eq!(names(folder.path()), [""; 0]);
+}
+
+#[test]
+fn standard_output_takes_the_file_s_bytes() {
+    let folder = folder();
+    let here = folder.path();
+    succeed(here, &render(&["-o", "a.png"]));
+    let piped = succeed(here, &render(&["-o", "-"]));
+    assert!(piped.stdout == fs::read(here.join("a.png")).unwrap());
+    assert_eq!(names(here), ["a.png"]);
+}
+
+#[test]
+fn a_scene_comes_from_standard_input() {
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    let shown = [
+        "--eye", "0,0.7,4", "--target", "0,0.7,0", "-q", "--size", "48x32",
+    ];
+    let from = |scene: &str, bytes: &[u8], file: &str| {
+        let words = [&["render", scene, "-o", file], &shown[..]].concat();
+        let mut child = command(here, &words)
+            .stdin(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // A program that ends early reads no more.
+        let _ = child.stdin.take().unwrap().write_all(bytes);
+        child.wait_with_output().unwrap()
+    };
+    let scene = fs::read(here.join("triangle.gltf")).unwrap();
+    let named = from("triangle.gltf", b"", "named.png");
+    assert_eq!(named.status.code(), Some(0), "{}", stderr(&named));
+    let piped = from("-", &scene, "piped.png");
+    let text = String::from_utf8_lossy(&scene);
+    if text.contains("data:") {
+        assert_eq!(piped.status.code(), Some(0), "{}", stderr(&piped));
+        assert!(
+            fs::read(here.join("named.png")).unwrap() == fs::read(here.join("piped.png")).unwrap()
+        );
+    } else {
+        assert_eq!(piped.status.code(), Some(1));
+        assert!(
+            stderr(&piped).contains("pipe in a .glb"),
+            "{}",
+            stderr(&piped)
+        );
+    }
+    let broken = from("-", b"no scene", "broken.png");
+    assert_eq!(broken.status.code(), Some(1));
+    assert!(
+        stderr(&broken).contains("standard input"),
+        "{}",
+        stderr(&broken)
+    );
+}
+
+/// A program named ffmpeg that notes its words and keeps the frames as they come.
+#[cfg(unix)]
+fn stand_in(folder: &Path, script: &str) -> String {
+    use std::os::unix::fs::PermissionsExt;
+    let bin = folder.join("bin");
+    fs::create_dir_all(&bin).unwrap();
+    fs::write(bin.join("ffmpeg"), format!("#!/bin/sh\n{script}\n")).unwrap();
+    fs::set_permissions(bin.join("ffmpeg"), fs::Permissions::from_mode(0o755)).unwrap();
+    format!("{}:{}", bin.display(), std::env::var("PATH").unwrap())
+}
+
+#[cfg(unix)]
+#[test]
+fn a_video_gets_every_frame() {
+    let folder = folder();
+    let here = folder.path();
+    let path = stand_in(
+        here,
+        "echo \"$@\" > words; for last; do :; done; cat > \"$last\"",
+    );
+    let words = render(&[
+        "--path",
+        "turntable",
+        "--fps",
+        "1",
+        "--frames",
+        "0..3",
+        "--video",
+        "film.mp4",
+        "-o",
+        "f_#.png",
+    ]);
+    let output = command(here, &words).env("PATH", &path).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let film = fs::read(here.join("film.mp4")).unwrap();
+    let mut frames = Vec::new();
+    for frame in 0..3 {
+        let picture = image::open(here.join(format!("f_{frame}.png"))).unwrap();
+        frames.extend(picture.into_rgb8().into_raw());
+    }
+    assert!(
+        film == frames,
+        "the video holds the frames that the files show"
+    );
+    let said = fs::read_to_string(here.join("words")).unwrap();
+    assert!(said.contains("-video_size 48x32 -framerate 1 "), "{said}");
+    // Nothing else is left.
+    assert_eq!(
+        names(here),
+        ["bin", "f_0.png", "f_1.png", "f_2.png", "film.mp4", "words"]
+    );
+}
+
+#[cfg(unix)]
+#[test]
+fn a_video_that_fails_leaves_nothing_and_says_why() {
+    let folder = folder();
+    let here = folder.path();
+    let words = render(&["--frames", "0..2", "--video", "film.mp4"]);
+    let path = stand_in(here, "echo 'no such codec: h264' >&2; exit 3");
+    let output = command(here, &words).env("PATH", &path).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("no such codec: h264"),
+        "{}",
+        stderr(&output)
+    );
+    let output = command(here, &words).env("PATH", here).output().unwrap();
+    assert_eq!(output.status.code(), Some(1));
+    assert!(
+        stderr(&output).contains("not installed"),
+        "{}",
+        stderr(&output)
+    );
+    assert_eq!(names(here), ["bin"]);
+    fail(
+        here,
+        &render(&["--frames", "0..2", "--video", "none/film.mp4"]),
+        &["none"],
+    );
+}

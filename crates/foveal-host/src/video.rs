@@ -1,0 +1,212 @@
+//! Videos: frames are piped into `ffmpeg`, which this program does not contain.
+
+use std::ffi::OsString;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStderr, ChildStdin, Command, Stdio};
+use std::thread::JoinHandle;
+
+use anyhow::{Context, bail};
+
+use crate::picture::Picture;
+
+/// The program that encodes.
+const FFMPEG: &str = "ffmpeg";
+
+/// A video that is being written. Under its final name it is whole or not there.
+pub struct Video {
+    encoder: Child,
+    /// Taken when the last frame is in.
+    frames: Option<ChildStdin>,
+    /// Reads what the encoder complains about, so that it never waits for a reader.
+    complaints: Option<JoinHandle<String>>,
+    size: (u32, u32),
+    path: PathBuf,
+    temporary: tempfile::TempPath,
+}
+
+impl Video {
+    /// Starts the encoder. The end of the file's name (.mp4, .mkv, .webm, .mov, .gif ..) chooses the
+    /// container, ffmpeg the codec; H.264 at a visually lossless rate for .mp4, .mkv and .mov.
+    ///
+    /// # Errors
+    /// Names the file and the cause: no ffmpeg, a folder that is not there.
+    pub fn create(path: &Path, (width, height): (u32, u32), fps: f32) -> anyhow::Result<Self> {
+        crate::atomic_file::check_writable(path)?;
+        let ending = extension(path)?;
+        let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
+        let temporary = tempfile::Builder::new()
+            .prefix(".foveal-")
+            .suffix(&format!(".{ending}"))
+            .tempfile_in(folder.unwrap_or(Path::new(".")))
+            .with_context(|| format!("cannot write '{}'", path.display()))?
+            .into_temp_path();
+        let mut command = Command::new(FFMPEG);
+        command
+            .args(arguments((width, height), fps, &ending))
+            .arg(&temporary)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped());
+        let mut encoder = match command.spawn() {
+            Err(error) if error.kind() == ErrorKind::NotFound => bail!(
+                "cannot write the video '{}': it is encoded by the program ffmpeg, which is not installed here (Debian: \
+                 apt-get install ffmpeg). Without it write pictures: --output frame_####.png",
+                path.display()
+            ),
+            other => other.with_context(|| format!("cannot start {FFMPEG}"))?,
+        };
+        let frames = encoder.stdin.take();
+        let complaints = encoder.stderr.take().map(read_to_end);
+        Ok(Self {
+            encoder,
+            frames,
+            complaints,
+            size: (width, height),
+            path: path.to_owned(),
+            temporary,
+        })
+    }
+
+    /// Appends a frame.
+    ///
+    /// # Errors
+    /// What ffmpeg said, if it ended early; a frame of another size.
+    pub fn push(&mut self, picture: &Picture) -> anyhow::Result<()> {
+        if (picture.width, picture.height) != self.size {
+            bail!("the frames of a video have one size");
+        }
+        let written = match &mut self.frames {
+            Some(frames) => frames.write_all(&picture.rgb_bytes()),
+            None => Ok(()),
+        };
+        match written {
+            Ok(()) => Ok(()),
+            Err(_) => self.wait(),
+        }
+    }
+
+    /// Ends the video and puts it under its name.
+    ///
+    /// # Errors
+    /// What ffmpeg said; the disk is full.
+    pub fn finish(mut self) -> anyhow::Result<()> {
+        self.wait()?;
+        let Self {
+            temporary, path, ..
+        } = self;
+        temporary
+            .persist(&path)
+            .with_context(|| format!("cannot write '{}'", path.display()))
+    }
+
+    /// Waits until ffmpeg has ended; an error where it did not succeed.
+    fn wait(&mut self) -> anyhow::Result<()> {
+        drop(self.frames.take());
+        let status = self.encoder.wait().context("cannot wait for ffmpeg")?;
+        let complaints = self.complaints.take().and_then(|thread| thread.join().ok());
+        if status.success() {
+            return Ok(());
+        }
+        let text = complaints.unwrap_or_default();
+        let last: Vec<&str> = text
+            .lines()
+            .rev()
+            .filter(|l| !l.trim().is_empty())
+            .take(3)
+            .collect();
+        let said: Vec<&str> = last.into_iter().rev().collect();
+        bail!(
+            "cannot write the video '{}': ffmpeg failed ({status}): {}",
+            self.path.display(),
+            said.join("; ")
+        )
+    }
+}
+
+/// The end of the file's name, lower case.
+fn extension(path: &Path) -> anyhow::Result<String> {
+    match path.extension().and_then(|e| e.to_str()) {
+        Some(ending) => Ok(ending.to_ascii_lowercase()),
+        None => bail!(
+            "'{}' must end in .mp4, .webm or another ending of a video that ffmpeg knows",
+            path.display()
+        ),
+    }
+}
+
+/// What ffmpeg is told before the file's name: raw RGB rows on its standard input.
+fn arguments((width, height): (u32, u32), fps: f32, ending: &str) -> Vec<OsString> {
+    let size = format!("{width}x{height}");
+    let rate = fps.to_string();
+    let mut words = vec![
+        "-hide_banner",
+        "-loglevel",
+        "error",
+        "-nostdin",
+        "-y",
+        "-f",
+        "rawvideo",
+        "-pixel_format",
+        "rgb24",
+        "-video_size",
+        &size,
+        "-framerate",
+        &rate,
+        "-i",
+        "pipe:0",
+    ];
+    if matches!(ending, "mp4" | "mkv" | "mov") {
+        // Colour of half resolution, which every player shows, needs even sizes.
+        words.extend([
+            "-vf",
+            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
+            "-c:v",
+            "libx264",
+            "-crf",
+            "16",
+        ]);
+        words.extend(["-pix_fmt", "yuv420p", "-movflags", "+faststart"]);
+    }
+    words.into_iter().map(OsString::from).collect()
+}
+
+fn read_to_end(mut stderr: ChildStderr) -> JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut bytes = Vec::new();
+        // What was read before an error is what there is to tell.
+        let _ = std::io::Read::read_to_end(&mut stderr, &mut bytes);
+        String::from_utf8_lossy(&bytes).into_owned()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ffmpeg_is_told_size_rate_and_format() {
+        let words = arguments((3, 2), 29.97, "mp4");
+        let text: Vec<_> = words.iter().map(|w| w.to_str().unwrap()).collect();
+        let text = text.join(" ");
+        assert!(
+            text.contains("-pixel_format rgb24 -video_size 3x2 -framerate 29.97 -i pipe:0"),
+            "{text}"
+        );
+        assert!(text.contains("libx264"), "{text}");
+        assert!(
+            !arguments((3, 2), 30.0, "webm")
+                .iter()
+                .any(|word| word == "libx264")
+        );
+    }
+
+    #[test]
+    fn a_name_without_an_ending_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = Video::create(&folder.path().join("film"), (2, 2), 30.0)
+            .err()
+            .unwrap();
+        assert!(error.to_string().contains(".mp4"), "{error}");
+    }
+}
