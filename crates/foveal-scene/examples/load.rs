@@ -1,4 +1,5 @@
-//! Loads scenes and prints what is in them and how long each stage took: `cargo run --release --example load -- FILE…`
+//! Loads scenes and prints what is in them and how long each stage took: `cargo run --release
+//! --example load -- FILE…`
 
 #![allow(clippy::print_stdout, reason = "printing is what this program is for")]
 

@@ -89,8 +89,8 @@ impl Default for LoadOptions {
 /// (a neutral value as anything else). Nodes without geometry, lights or cameras leave no trace.
 ///
 /// # Errors
-/// When the file cannot be read, is not glTF 2.0, contradicts itself so that no sensible picture can
-/// be made, requires an unsupported extension, or is beyond a limit of `options`.
+/// When the file cannot be read, is not glTF 2.0, contradicts itself so that no sensible picture
+/// can be made, requires an unsupported extension, or is beyond a limit of `options`.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     let watch = crate::timings::Stopwatch::start();
     let file = path.display().to_string();

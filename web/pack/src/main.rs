@@ -1,4 +1,5 @@
-//! `pack WASM FOLDER`: makes the JavaScript module that loads the WebAssembly, and the WebAssembly that it loads.
+//! `pack WASM FOLDER`: makes the JavaScript module that loads the WebAssembly, and the WebAssembly
+//! that it loads.
 
 use std::path::PathBuf;
 

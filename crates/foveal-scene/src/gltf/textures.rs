@@ -240,7 +240,7 @@ fn plan(
     warn: &mut Vec<String>,
 ) -> Parsed<Plan> {
     let limit = options.max_texture_bytes;
-    let wished = options.max_texture_size.max(1);
+    let requested = options.max_texture_size.max(1);
     for source in sources {
         let bytes = source
             .decoding_bytes(1)
@@ -263,14 +263,14 @@ fn plan(
     };
     let most = |largest: u32| decoding(largest).first().copied().unwrap_or(0);
     let total = |largest: u32| kept(largest).saturating_add(most(largest));
-    let mut largest = wished;
+    let mut largest = requested;
     while largest > 1 && total(largest) > limit {
         largest /= 2;
     }
-    if largest < wished {
+    if largest < requested {
         warn.push(format!(
             "images: want {} for textures; the limit is {}, and they are reduced to {largest} texels",
-            amount(total(wished)),
+            amount(total(requested)),
             amount(limit)
         ));
     }

@@ -2,7 +2,7 @@
 //!
 //! All take level-0 tiles, which are pixels, as they are. `light` puts each pixel's own surface
 //! into the samples' light; the others join the samples' radiance: `nearest` repeats a tile's
-//! sample; `paper` is the interpolation of the technique's source; `smooth` is continuous, exact
+//! sample; `paper` is the interpolation of the original method; `smooth` is continuous, exact
 //! where radiance is an affine function of the position, and reads the G-buffer so as not to mix
 //! surfaces.
 

@@ -1,4 +1,4 @@
-// The interpolating composite of the technique's source (Imagire, 'Coarse pixel shading by stencil
+// The interpolating composite of the original method (Imagire, 'Coarse pixel shading by stencil
 // pyramid').
 //
 // The text gives the neighbours' tangential coordinate as `P_x` or `P_y`, and the fourth point's as

@@ -34,7 +34,7 @@ impl RateImage {
         (self.width, self.height)
     }
 
-    /// Wished levels, rows top to bottom.
+    /// Requested levels, rows top to bottom.
     pub(crate) fn levels(&self) -> Vec<u8> {
         self.luma.iter().map(|&l| Self::level_of(l)).collect()
     }

@@ -109,7 +109,7 @@ impl RateMapPass {
         let uniform = RequestUniform::new(settings, eyes, lenses);
         gpu.queue
             .write_buffer(&self.request_uniform, 0, bytemuck::bytes_of(&uniform));
-        let wish_group = bind_group(
+        let request_group = bind_group(
             &gpu.device,
             "requested levels",
             &self.request_layout,
@@ -137,7 +137,13 @@ impl RateMapPass {
             chain.draw(&mut pass, level);
         };
         let pyramid = &target.pyramid;
-        fill("requested levels", pyramid, 1, &self.request, &wish_group);
+        fill(
+            "requested levels",
+            pyramid,
+            1,
+            &self.request,
+            &request_group,
+        );
         for level in pyramid.range().skip(1) {
             let below = cells(pyramid.level(level - 1));
             fill("rate pyramid", pyramid, level, &self.pyramid, &below);

@@ -150,10 +150,10 @@ pub enum EdgeTest {
     /// surface and weighted by coverage.
     #[default]
     Surface,
-    /// Pixels whose reversed depths differ by more than 1e-4, as in the technique's source. All
+    /// Pixels whose reversed depths differ by more than 1e-4, as in the original method. All
     /// sub-samples are shaded.
     Paper,
-    /// No pixels. Only the first sub-sample is shaded, as in the source's mode 'none'.
+    /// No pixels. Only the first sub-sample is shaded, as in the original method's mode 'none'.
     Never,
 }
 

@@ -134,7 +134,7 @@ pub enum Composite {
     /// Samples hold colours. Continuous patches through the samples join them, guided by geometry;
     /// exact where radiance is linear.
     Smooth,
-    /// Samples hold colours. Four taps interpolate them, as in the technique's source.
+    /// Samples hold colours. Four taps interpolate them, as in the original method.
     Paper,
     /// Samples hold colours. Each pixel takes its block's sample.
     Nearest,

@@ -102,7 +102,7 @@ settings! {
         /// column.
         pattern => pattern: SamplePattern = SamplePattern::default(), "Pattern", Kind::choice::<SamplePattern>();
         /// Pixels that msaa treats as edges: surface takes those with several surfaces, paper those
-        /// that differ in depth (as the technique's source does), never takes none.
+        /// that differ in depth (as the original method does), never takes none.
         edge_test => edge_test: EdgeTest = EdgeTest::default(), "Edge test", Kind::choice::<EdgeTest>();
     }
     /// The number of samples that are shaded.
@@ -115,12 +115,12 @@ settings! {
     /// The eye, its display, and the difference that it may see.
     "Eye" eye: EyeSettings {
         /// Display on which the picture is seen. Shading rates follow from its field of view:
-        /// camera (the camera's own, as in a headset), hmd (92 degrees), h60 (60), fhd-24,
+        /// camera (the camera's own, as in a headset), hmd (91.5 degrees), h60 (60), fhd-24,
         /// uhd-27, quest-3, vision-pro, phone, degrees across, or WIDTHxDISTANCE in metres.
         display => display: Display = Display::Camera, "Display", Kind::Text;
         /// Quality in JOD at which coarse shading aims: 10 is no visible difference from full
-        /// shading, 9 one that 75 % of observers would see. Lower it for speed; 9.5 suits
-        /// observers who look for differences.
+        /// shading, 9 one that 75 % of observers would see. Lower it for speed. Pictures meet
+        /// the default, 9.5; in motion, with history, videos of it are measured at 9.2 to 9.3.
         quality => quality_jod: f32 = 9.5, "Quality", Kind::Number { least: 5.0, most: 10.0 };
         /// Point that the eye looks at, as fractions of the picture from its top left corner.
         /// The default is the centre.
@@ -148,9 +148,9 @@ settings! {
         rate_combine => combine: RateCombine = RateCombine::default(), "Combine", Kind::choice::<RateCombine>();
         /// Level that the source constant requests, 0 to 8: one sample per 2^N x 2^N pixels.
         rate_level => constant_level: u8 = 0, "Constant level", Kind::Integer { least: 0, most: 8 };
-        /// Picture of the source image. The library opens no files: the host hands the pixels
-        /// to the renderer.
-        rate_image => image: String = String::new(), "Image", Kind::File;
+        /// Picture of the source image: a file that the program opens. Hosts of the library pass
+        /// the pixels to the renderer themselves.
+        rate_image => image_name: String = String::new(), "Image", Kind::File;
         /// Radius around the gaze within which every pixel is shaded, in picture heights. For
         /// the source radii.
         fovea_inner => fovea_inner: f32 = 0.125, "Fovea", Kind::Number { least: 0.0, most: 1.0 };
@@ -171,7 +171,7 @@ settings! {
         coarse_sample => sample: CoarseSample = CoarseSample::default(), "Sample", Kind::choice::<CoarseSample>();
         /// Reconstruction of pixels from samples: light puts each pixel's own surface into the
         /// samples' light. The others use the samples' colours: smooth joins them by continuous
-        /// patches, paper by the four taps of the technique's source, nearest leaves blocks of one
+        /// patches, paper by the four taps of the original method, nearest leaves blocks of one
         /// colour.
         composite => composite: Composite = Composite::default(), "Composite", Kind::choice::<Composite>();
         /// Light history: light is kept per pixel from frame to frame, reprojected by motion

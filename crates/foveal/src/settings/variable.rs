@@ -64,7 +64,7 @@ pub enum Contrast {
     /// Differences within 2 x 2 pixels.
     #[default]
     Quad,
-    /// Differences of each pixel to its four neighbours, as in the technique's source.
+    /// Differences of each pixel to its four neighbours, as in the original method.
     Neighbors,
     /// Sobel kernels of 3 x 3 pixels.
     Sobel,

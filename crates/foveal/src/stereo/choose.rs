@@ -10,7 +10,8 @@ impl Submission {
     /// The way that the settings ask for, on this device, and why it is this one.
     ///
     /// # Errors
-    /// [`Error::Setting`] where multiview is asked for and the device lacks it or draws it wrong; as [`Trials::of`].
+    /// [`Error::Setting`] where multiview is asked for and the device lacks it or draws it wrong;
+    /// as [`Trials::of`].
     pub(crate) async fn choose(
         gpu: &Gpu,
         settings: &Settings,

@@ -49,7 +49,8 @@ impl Eye {
 /// The eyes of a camera: the left and the right one, or the same twice where there is one.
 ///
 /// # Errors
-/// [`Error::Setting`] where the camera makes no sense, and where two eyes should see in parallel projection.
+/// [`Error::Setting`] where the camera makes no sense, and where two eyes should see in parallel
+/// projection.
 pub(crate) fn eyes(settings: &Settings, camera: &Camera) -> Result<[Eye; 2], Error> {
     check(settings, camera)?;
     let aspect = settings.picture.width as f32 / settings.picture.height as f32;

@@ -53,7 +53,8 @@ impl Trials {
     /// The verdict on a way, tried now unless it was before.
     ///
     /// # Errors
-    /// [`Error::DeviceLost`], [`Error::OutOfMemory`]. What the device refuses is no error but wrong.
+    /// [`Error::DeviceLost`], [`Error::OutOfMemory`]. What the device refuses is no error but
+    /// wrong.
     pub(crate) async fn of(
         &mut self,
         gpu: &Gpu,

@@ -125,7 +125,7 @@ fn the_rate_map_equals_its_twin_byte_for_byte() {
 }
 
 #[test]
-fn wishes_equal_their_twin() {
+fn requested_levels_equal_their_twin() {
     for rate in [RateSource::Foveated, RateSource::Radii, RateSource::Image] {
         let settings = (nearest(SIZES[0])).with(|s| {
             s.coarse.source = rate;

@@ -118,7 +118,7 @@ fn rate_from(source: u32, quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     }
 }
 
-fn wished_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
+fn requested_rate(quad: vec2u, lumas: vec4f, motion: vec2f) -> u32 {
     let rate = rate_from(SOURCE, quad, lumas, motion);
     if COMBINE == 1u {
         return rate | rate_from(OTHER, quad, lumas, motion);
@@ -216,7 +216,7 @@ fn find_rates(@builtin(global_invocation_id) id: vec3u, @builtin(local_invocatio
                 load_words(identity, last).x,
             );
             let depths = vec4f(d, load_depth(depth, right), load_depth(depth, below), load_depth(depth, last));
-            rate = wished_rate(quad, unpack4x8unorm(found.x), motion);
+            rate = requested_rate(quad, unpack4x8unorm(found.x), motion);
             // A level of 2 and more asks for blocks; they are found below.
             rate &= surface_limit(picture, maps, first, last, ids, depths) | RATE_BLOCK;
             rate = select(rate & 3u, rate, (rate & 3u) == 3u);

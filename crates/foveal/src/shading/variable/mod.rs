@@ -3,8 +3,8 @@
 //!
 //! After Monsho's software variable-rate shading over a visibility buffer. Passes: [`RatePasses`]
 //! reprojects what is known of each quad of pixels and finds rates and samples; the list of samples
-//! is lit like any other. Where the source's mask feeds on its own picture, here contrast is
-//! measured only where pixels were shaded one by one, and kept until they are again
+//! is lit like any other. Where the original method's mask feeds on its own picture, here contrast
+//! is measured only where pixels were shaded one by one, and kept until they are again
 //! (`reproject.wgsl`). So the mask of a still camera cannot change.
 //!
 //! While the camera or the scene moves, one quad in 16 is shaded in full each frame, in turns, and

@@ -3,7 +3,8 @@
 #import shading/variable/rates.wgsl
 #import shared/full_screen.wgsl
 
-// 1 rates in the source's colours, 2 quads of which nothing was known, 3 the samples' own pixels.
+// 1 rates in the original method's colours, 2 quads of which nothing was known, 3 the samples' own
+// pixels.
 override VIEW: u32 = 1u;
 
 @group(1) @binding(0) var finished: texture_2d<f32>;
