@@ -182,6 +182,9 @@ fn a_video_gets_every_frame() {
     );
     let said = fs::read_to_string(here.join("words")).unwrap();
     assert!(said.contains("-video_size 48x32 -framerate 1 "), "{said}");
+    use std::os::unix::fs::PermissionsExt;
+    let mode = |name: &str| fs::metadata(here.join(name)).unwrap().permissions().mode();
+    assert_eq!(mode("film.mp4"), mode("f_0.png"), "both are ordinary files");
     // Nothing else is left.
     assert_eq!(
         names(here),

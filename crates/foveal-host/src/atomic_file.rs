@@ -29,7 +29,7 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
             folder.display()
         );
     }
-    temporary(&destination)
+    temporary(&destination, ".tmp")
         .map(drop)
         .with_context(|| format!("cannot write '{}'", path.display()))
 }
@@ -41,7 +41,7 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
 pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
     let destination = destination(path)?;
     let written = || -> std::io::Result<()> {
-        let mut file = temporary(&destination)?;
+        let mut file = temporary(&destination, ".tmp")?;
         file.write_all(bytes)?;
         file.as_file().sync_all()?;
         file.persist(&destination).map_err(|e| e.error)?;
@@ -49,6 +49,54 @@ pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
         Ok(())
     };
     written().with_context(|| format!("cannot write '{}'", path.display()))
+}
+
+/// A file that another program writes. It vanishes unless it is finished.
+#[derive(Debug)]
+pub struct Pending {
+    temporary: tempfile::TempPath,
+    destination: PathBuf,
+}
+
+impl Pending {
+    /// An empty file beside `path`, whose name ends in `suffix`.
+    ///
+    /// # Errors
+    /// Names the file and the system's reason.
+    pub fn new(path: &Path, suffix: &str) -> anyhow::Result<Self> {
+        let destination = destination(path)?;
+        let temporary = temporary(&destination, suffix)
+            .with_context(|| format!("cannot write '{}'", path.display()))?
+            .into_temp_path();
+        Ok(Self {
+            temporary,
+            destination,
+        })
+    }
+
+    /// Where to write.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.temporary
+    }
+
+    /// Puts the file under its name.
+    ///
+    /// # Errors
+    /// Names the file and the system's reason.
+    pub fn finish(self) -> anyhow::Result<()> {
+        let Self {
+            temporary,
+            destination,
+        } = self;
+        let finished = || -> std::io::Result<()> {
+            File::open(&temporary)?.sync_all()?;
+            temporary.persist(&destination).map_err(|e| e.error)?;
+            sync_folder(folder_of(&destination));
+            Ok(())
+        };
+        finished().with_context(|| format!("cannot write '{}'", destination.display()))
+    }
 }
 
 /// True when a finished file is there.
@@ -82,14 +130,14 @@ fn folder_of(path: &Path) -> &Path {
     }
 }
 
-fn temporary(destination: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+fn temporary(destination: &Path, suffix: &str) -> std::io::Result<tempfile::NamedTempFile> {
     let name = destination
         .file_name()
         .unwrap_or_default()
         .to_string_lossy();
     let prefix = format!(".{name}.");
     let mut builder = tempfile::Builder::new();
-    builder.prefix(&prefix).suffix(".tmp");
+    builder.prefix(&prefix).suffix(suffix);
     // Temporary files are private by default; this one becomes an ordinary file, which the umask
     // governs.
     #[cfg(unix)]

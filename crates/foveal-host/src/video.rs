@@ -8,6 +8,7 @@ use std::thread::JoinHandle;
 
 use anyhow::{Context, bail};
 
+use crate::atomic_file::Pending;
 use crate::picture::Picture;
 
 /// The program that encodes.
@@ -22,7 +23,7 @@ pub struct Video {
     complaints: Option<JoinHandle<String>>,
     size: (u32, u32),
     path: PathBuf,
-    temporary: tempfile::TempPath,
+    file: Pending,
 }
 
 impl Video {
@@ -34,17 +35,11 @@ impl Video {
     pub fn create(path: &Path, (width, height): (u32, u32), fps: f32) -> anyhow::Result<Self> {
         crate::atomic_file::check_writable(path)?;
         let ending = extension(path)?;
-        let folder = path.parent().filter(|f| !f.as_os_str().is_empty());
-        let temporary = tempfile::Builder::new()
-            .prefix(".foveal-")
-            .suffix(&format!(".{ending}"))
-            .tempfile_in(folder.unwrap_or(Path::new(".")))
-            .with_context(|| format!("cannot write '{}'", path.display()))?
-            .into_temp_path();
+        let file = Pending::new(path, &format!(".{ending}"))?;
         let mut command = Command::new(FFMPEG);
         command
             .args(arguments((width, height), fps, &ending))
-            .arg(&temporary)
+            .arg(file.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
             .stderr(Stdio::piped());
@@ -64,7 +59,7 @@ impl Video {
             complaints,
             size: (width, height),
             path: path.to_owned(),
-            temporary,
+            file,
         })
     }
 
@@ -92,12 +87,7 @@ impl Video {
     /// What ffmpeg said; the disk is full.
     pub fn finish(mut self) -> anyhow::Result<()> {
         self.wait()?;
-        let Self {
-            temporary, path, ..
-        } = self;
-        temporary
-            .persist(&path)
-            .with_context(|| format!("cannot write '{}'", path.display()))
+        self.file.finish()
     }
 
     /// Waits until ffmpeg has ended; an error where it did not succeed.
