@@ -1,7 +1,6 @@
-//! The axis-aligned box that Foveal's crates share.
+//! The axis-aligned box of Foveal's scenes.
 //!
-//! A scene's bounds and what a culler tests are the same type, so that nothing is converted on the
-//! way. Coordinates are in whatever space and unit the owner of a box names.
+//! Coordinates are in whatever space and unit the owner of a box names.
 //!
 //! ```
 //! use foveal_bounds::Aabb;

@@ -7,11 +7,11 @@
 use divan::Bencher;
 use divan::counter::ItemsCount;
 use foveal_cull::bench::{self, BlockUpdates, FullBuffer};
-use foveal_cull::glam::{DAffine3, DQuat, DVec3, Vec3};
 use foveal_cull::{
     Aabb, BakeOptions, Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, OccluderMesh,
     OccluderSet, Projection, SingleThread, View, Visibility,
 };
+use glam::{DAffine3, DQuat, DVec3, Vec3};
 use std::sync::Arc;
 
 fn main() {

@@ -4,42 +4,36 @@
 #![allow(clippy::print_stdout, reason = "the table is what the example is for")]
 
 use foveal_cull::{
-    Aabb, CullError, Culler, FrameOptions, OccludeeTree, OccluderMesh, OccluderSet, SingleThread,
-    View, Visibility,
+    Aabb, Affine, CullError, Culler, FrameOptions, OccludeeTree, OccluderMesh, OccluderSet,
+    SingleThread, View, Visibility,
 };
-use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
 
 fn main() -> Result<(), CullError> {
     // One mesh, placed many times.
-    let house = OccluderMesh::from_box(Aabb::new(
-        Vec3::new(-4.0, 0.0, -3.0),
-        Vec3::new(4.0, 6.0, 3.0),
-    ))?;
+    let house = OccluderMesh::from_box(Aabb::new([-4.0, 0.0, -3.0], [4.0, 6.0, 3.0]))?;
     let house = Arc::new(house);
     let mut occluders = OccluderSet::new();
     let mut things = Vec::new();
     for row in 0..20 {
         for column in 0..20 {
-            let at = DVec3::new(
-                f64::from(column) * 11.0 - 105.0,
-                0.0,
-                -10.0 - f64::from(row) * 10.0,
-            );
-            occluders.add(Arc::clone(&house), DAffine3::from_translation(at))?;
+            let (x, z) = (column as f32 * 11.0 - 105.0, -10.0 - row as f32 * 10.0);
+            let place = Affine::from_translation([x, 0.0, z].map(f64::from));
+            occluders.add(Arc::clone(&house), place)?;
             // A cart behind every house, and one on the street.
             for side in [-4.5, 5.5] {
-                let c = at.as_vec3() + Vec3::new(side, 0.5, -4.5);
-                things.push(Aabb::new(c - 0.5, c + 0.5));
+                let [x, y, z] = [x + side, 0.5, z - 4.5];
+                let (min, max) = ([x - 0.5, y - 0.5, z - 0.5], [x + 0.5, y + 0.5, z + 0.5]);
+                things.push(Aabb::new(min, max));
             }
         }
     }
-    let tree = OccludeeTree::build(&things, DVec3::ZERO);
+    let tree = OccludeeTree::build(&things, [0.0; 3]);
 
     let view = View::perspective(
-        DVec3::new(0.0, 1.7, 0.0),
-        DVec3::new(0.0, 1.5, -10.0),
-        DVec3::Y,
+        [0.0, 1.7, 0.0],
+        [0.0, 1.5, -10.0],
+        [0.0, 1.0, 0.0],
         1.0,
         16.0 / 9.0,
         0.1,

@@ -4,7 +4,28 @@
 //! that a world far from zero loses nothing. Queries report a box that is not a volume as visible,
 //! since nothing can be proved about it.
 
-pub use foveal_bounds::Aabb;
+use glam::Vec3;
+
+/// An axis-aligned box, `min` to `max` inclusive, in metres.
+///
+/// A box with a NaN or infinity, or with `min > max` in some axis, is *not a volume*;
+/// [`is_valid`](Self::is_valid) tells. [`Aabb::EMPTY`] is one such box. The layout is six `f32` in
+/// a row: `min`, then `max`.
+///
+/// ```
+/// use foveal_cull::Aabb;
+///
+/// let both = Aabb::new([0.0; 3], [1.0; 3]).union(Aabb::of_points([[3.0, 0.5, 0.5]]));
+/// assert_eq!(both.max, [3.0, 1.0, 1.0]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Aabb {
+    /// The corner with the smallest coordinates.
+    pub min: [f32; 3],
+    /// The corner with the largest coordinates.
+    pub max: [f32; 3],
+}
 
 /// Kernels read a box as six numbers in a row.
 const _: () = {
@@ -12,3 +33,92 @@ const _: () = {
     assert!(core::mem::offset_of!(Aabb, min) == 0);
     assert!(core::mem::offset_of!(Aabb, max) == 3 * size_of::<f32>());
 };
+
+impl Default for Aabb {
+    /// [`Aabb::EMPTY`].
+    fn default() -> Self {
+        Self::EMPTY
+    }
+}
+
+impl Aabb {
+    /// The box that contains nothing: the identity of [`Aabb::union`].
+    pub const EMPTY: Self = Self {
+        min: [f32::INFINITY; 3],
+        max: [f32::NEG_INFINITY; 3],
+    };
+
+    /// A box from its smallest and largest corner.
+    #[inline]
+    #[must_use]
+    pub fn new(min: impl Into<[f32; 3]>, max: impl Into<[f32; 3]>) -> Self {
+        Self {
+            min: min.into(),
+            max: max.into(),
+        }
+    }
+
+    /// The smallest box around `points`; [`Aabb::EMPTY`] when there are none.
+    #[must_use]
+    pub fn of_points<P: Into<[f32; 3]>>(points: impl IntoIterator<Item = P>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |all, p| {
+            let p = p.into();
+            all.union(Self { min: p, max: p })
+        })
+    }
+
+    /// The smallest box around both.
+    #[inline]
+    #[must_use]
+    pub fn union(self, other: Self) -> Self {
+        Self {
+            min: core::array::from_fn(|k| self.min[k].min(other.min[k])),
+            max: core::array::from_fn(|k| self.max[k].max(other.max[k])),
+        }
+    }
+
+    /// Whether the box is a volume, or a flat or point-like one: finite, and `min <= max` in every
+    /// axis.
+    #[inline]
+    #[must_use]
+    pub fn is_valid(self) -> bool {
+        let (min, max) = (Vec3::from(self.min), Vec3::from(self.max));
+        min.is_finite() && max.is_finite() && min.cmple(max).all()
+    }
+
+    /// The centre.
+    #[inline]
+    pub(crate) fn center(self) -> Vec3 {
+        Vec3::from(self.min) * 0.5 + Vec3::from(self.max) * 0.5
+    }
+
+    /// Half the extent along each axis.
+    #[inline]
+    pub(crate) fn half_extent(self) -> Vec3 {
+        Vec3::from(self.max) * 0.5 - Vec3::from(self.min) * 0.5
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_empty_box_is_the_identity_of_union_and_no_volume() {
+        let one = Aabb::new([-1.0; 3], [1.0, 2.0, 3.0]);
+        assert_eq!(one.union(Aabb::EMPTY), one);
+        assert_eq!(Aabb::of_points([[0.0; 3]; 0]), Aabb::default());
+        assert!(!Aabb::EMPTY.is_valid());
+        assert_eq!(one.center() - one.half_extent(), Vec3::from(one.min));
+        assert_eq!(one.center() + one.half_extent(), Vec3::from(one.max));
+    }
+
+    #[test]
+    fn boxes_with_nan_or_inside_out_are_no_volumes() {
+        assert!(Aabb::new([0.0; 3], [0.0; 3]).is_valid(), "a point");
+        for bad in [f32::NAN, f32::INFINITY, -1.0] {
+            assert!(!Aabb::new([0.0; 3], [1.0, bad, 1.0]).is_valid(), "{bad}");
+        }
+        assert!(!Aabb::new([f32::NAN; 3], [0.0; 3]).is_valid());
+    }
+}

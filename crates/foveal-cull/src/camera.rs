@@ -1,6 +1,7 @@
 //! The camera: a checked view, reduced to one centre, one frustum and one radius.
 
 use crate::error::{CullError, Quantity, ViewError};
+use crate::transform::Affine;
 use crate::view::{Eye, Projection, View};
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
@@ -52,7 +53,7 @@ impl Camera {
         };
         let [l, r, b, t] = projection.extents();
         let [near, far] = projection.near_far_m();
-        let m = eye.world_from_eye.matrix3;
+        let m = eye.pose().matrix3;
         let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
         // Screen x in 0..width; perspective: ((x/d) - l) / (r - l) * width.
         let (sx, sy) = (width / (r - l), height / (t - b));
@@ -79,7 +80,7 @@ impl Camera {
             )
         };
         Ok(Self {
-            eye: eye.world_from_eye.translation,
+            eye: eye.position().into(),
             rows,
             orthographic: projection.is_orthographic(),
             forward,
@@ -154,11 +155,12 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
         return Err(CullError::BadView(ViewError::StereoNotPerspective));
     }
     let too_far_apart = CullError::BadView(ViewError::EyesTooFarApart);
-    let position = (a.position() + b.position()) * 0.5;
-    let to_second = (b.position() - a.position()) * 0.5;
+    let (from, to) = (DVec3::from(a.position()), DVec3::from(b.position()));
+    let position = (from + to) * 0.5;
+    let to_second = (to - from) * 0.5;
     // The orientation is the mean of both, made orthonormal again. (The eyes of a headset are
     // canted by some degrees at most.)
-    let (ma, mb) = (a.world_from_eye.matrix3, b.world_from_eye.matrix3);
+    let (ma, mb) = (a.pose().matrix3, b.pose().matrix3);
     let back = (ma.z_axis + mb.z_axis)
         .try_normalize()
         .ok_or(too_far_apart)?;
@@ -174,11 +176,11 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
         f64::NEG_INFINITY,
     ];
     let (mut near, mut far) = (0.0f64, 0.0f64);
-    for eye in [a, b] {
+    for (eye, m) in [(a, ma), (b, mb)] {
         let [l, r, bottom, top] = eye.projection.extents();
         let [n, f] = eye.projection.near_far_m();
         for (x, y) in [(l, bottom), (r, bottom), (l, top), (r, top)] {
-            let ray = rotation.transpose() * (eye.world_from_eye.matrix3 * DVec3::new(x, y, -1.0));
+            let ray = rotation.transpose() * (m * DVec3::new(x, y, -1.0));
             if ray.z > -0.05 {
                 return Err(too_far_apart);
             }
@@ -205,7 +207,7 @@ fn join_eyes(a: &Eye, b: &Eye) -> Result<(Eye, DVec3), CullError> {
     };
     Ok((
         Eye {
-            world_from_eye: DAffine3::from_mat3_translation(rotation, position),
+            world_from_eye: Affine::of(&DAffine3::from_mat3_translation(rotation, position)),
             projection,
         },
         to_second,
@@ -270,7 +272,7 @@ fn widen(projection: Projection, radius: f64) -> (Projection, f64) {
 pub(crate) fn frustum_planes(eye: &Eye, radius: f64, origin: DVec3) -> [[f32; 4]; 6] {
     let [l, r, b, t] = eye.projection.extents();
     let [near, far] = eye.projection.near_far_m();
-    let m = eye.world_from_eye.matrix3;
+    let m = eye.pose().matrix3;
     let (right, up, forward) = (m.x_axis, m.y_axis, -m.z_axis);
     let far_plane = if far.is_finite() {
         (-forward, far)
@@ -297,7 +299,7 @@ pub(crate) fn frustum_planes(eye: &Eye, radius: f64, origin: DVec3) -> [[f32; 4]
         ]
     };
     planes.map(|(n, d)| {
-        let from_eye = origin - eye.position();
+        let from_eye = origin - DVec3::from(eye.position());
         let push = n.length() * (radius + 1e-6 * from_eye.length());
         let d = d + n.dot(from_eye) + push;
         [

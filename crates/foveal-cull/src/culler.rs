@@ -119,12 +119,10 @@ impl Culler {
         options: &FrameOptions<'_>,
         threads: &dyn Threads,
     ) -> Result<(), CullError> {
-        self.view = None;
-        self.stats = CullStats::default();
         if options.occlusion {
             threads.wake();
         }
-        self.buffer.clear();
+        self.clear();
         let (width, height) = (self.buffer.width * SAMPLES, self.buffer.height * SAMPLES);
         let camera = Camera::new(view, f64::from(width), f64::from(height))?;
         if options.occlusion {
@@ -137,6 +135,13 @@ impl Culler {
             occlusion: options.occlusion,
         });
         Ok(())
+    }
+
+    /// Forgets the frame: everything is visible until the next one.
+    pub fn clear(&mut self) {
+        self.view = None;
+        self.stats = CullStats::default();
+        self.buffer.clear();
     }
 
     /// Fills the buffer.
@@ -270,6 +275,15 @@ impl Culler {
     /// # Errors
     /// [`CullError::LengthMismatch`] if `results` is not as long as `boxes`.
     pub fn query(
+        &self,
+        boxes: &[Aabb],
+        origin: impl Into<[f64; 3]>,
+        results: &mut [Visibility],
+    ) -> Result<(), CullError> {
+        self.query_from(boxes, DVec3::from(origin.into()), results)
+    }
+
+    fn query_from(
         &self,
         boxes: &[Aabb],
         origin: DVec3,

@@ -45,6 +45,8 @@ pub enum CullError {
     },
     /// The set has no occluder with this id, for instance since it was removed.
     UnknownOccluder,
+    /// The last row of a transform's matrix is not 0, 0, 0, 1.
+    NotAffine,
     /// A mesh has too many triangles for the 32-bit offsets of a baked mesh.
     #[non_exhaustive]
     TooManyTriangles {
@@ -65,6 +67,8 @@ pub enum Quantity {
     Transform,
     /// The pose of an eye.
     Pose,
+    /// A matrix from the world to clip space.
+    ClipMatrix,
     /// An extent or a distance of a projection. (A perspective far distance may be infinite.)
     Projection,
     /// The validity radius of a view. It must not be negative either.
@@ -89,6 +93,11 @@ pub enum ViewError {
     StereoNotPerspective,
     /// The two eyes look in directions that no common view covers.
     EyesTooFarApart,
+    /// A matrix to clip space is singular, or shows no volume.
+    NoVolume,
+    /// A matrix to clip space shears the picture, or its near plane is not perpendicular to the
+    /// view direction.
+    Oblique,
 }
 
 impl fmt::Display for CullError {
@@ -114,6 +123,7 @@ impl fmt::Display for CullError {
                 write!(f, "a slice has length {found} where {expected} is needed")
             }
             Self::UnknownOccluder => f.write_str("the set has no occluder with this id"),
+            Self::NotAffine => f.write_str("the last row of a transform must be 0, 0, 0, 1"),
             Self::TooManyTriangles { triangles, most } => {
                 write!(
                     f,
@@ -130,6 +140,7 @@ impl fmt::Display for Quantity {
             Self::Position => "a vertex position",
             Self::Transform => "the transform of an occluder",
             Self::Pose => "the pose of an eye",
+            Self::ClipMatrix => "a matrix from the world to clip space",
             Self::Projection => "a projection's extents and distances",
             Self::ValidityRadius => "the validity radius (which must not be negative)",
         })
@@ -148,6 +159,11 @@ impl fmt::Display for ViewError {
             Self::PoseNotRigid => "the pose must be a rotation and a translation only",
             Self::StereoNotPerspective => "both of two eyes must have perspective projections",
             Self::EyesTooFarApart => "two eyes look in directions that no common view covers",
+            Self::NoVolume => "the matrix to clip space is singular or shows no volume",
+            Self::Oblique => {
+                "the matrix to clip space must not shear, and its near plane must be \
+                 perpendicular to the view direction"
+            }
         })
     }
 }

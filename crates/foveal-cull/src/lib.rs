@@ -21,39 +21,43 @@
 //! Lengths are metres. Space is right-handed with y up, and eyes look along their own -z. World
 //! positions are `f64`. Boxes are `f32`, relative to an origin that the caller names in `f64`, so
 //! that worlds far from zero lose nothing. Triangles are counter-clockwise from outside. Pixels
-//! count from the top left. Depth is `near / distance`: 1 at the near plane, 0 at infinity. The
-//! types of [`glam`], which is re-exported, are part of the interface.
+//! count from the top left. Depth is `near / distance`: 1 at the near plane, 0 at infinity.
+//!
+//! The interface takes plain numbers: arrays, and whatever turns into them, such as vectors of glam,
+//! nalgebra or mint in any version. Matrices are column-major. An engine's own `clip_from_world`
+//! matrix makes a view by [`View::from_clip_from_world`], for any depth range and either handedness.
 //!
 //! # A static level
 //! ```
-//! use foveal_cull::glam::{DAffine3, DVec3, Vec3};
 //! use foveal_cull::*;
 //! use std::sync::Arc;
 //!
 //! // When the level loads: bake each mesh once and place it.
 //! // Here a wall, 4 m wide and 3 m high, 5 m in front of the eye.
-//! let wall = Aabb::new(Vec3::new(-2.0, -1.5, -5.2), Vec3::new(2.0, 1.5, -5.0));
+//! let wall = Aabb::new([-2.0, -1.5, -5.2], [2.0, 1.5, -5.0]);
 //! let mut occluders = OccluderSet::new();
-//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), DAffine3::IDENTITY)?;
+//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), Affine::IDENTITY)?;
 //! let boxes = [
 //!     // Behind the wall, in front of it, and behind the eye.
-//!     Aabb::new(Vec3::new(-0.5, -0.5, -9.0), Vec3::new(0.5, 0.5, -8.0)),
-//!     Aabb::new(Vec3::new(-0.5, -0.5, -4.0), Vec3::new(0.5, 0.5, -3.0)),
-//!     Aabb::new(Vec3::new(-0.5, -0.5, 8.0), Vec3::new(0.5, 0.5, 9.0)),
+//!     Aabb::new([-0.5, -0.5, -9.0], [0.5, 0.5, -8.0]),
+//!     Aabb::new([-0.5, -0.5, -4.0], [0.5, 0.5, -3.0]),
+//!     Aabb::new([-0.5, -0.5, 8.0], [0.5, 0.5, 9.0]),
 //! ];
-//! let tree = OccludeeTree::build(&boxes, DVec3::ZERO);
+//! let origin = [0.0; 3];
+//! let tree = OccludeeTree::build(&boxes, origin);
 //! let mut culler = Culler::new(640, 360)?;
 //! let mut results = [Visibility::Visible; 3];
 //!
-//! // In each frame: rasterize, then query.
-//! let view = View::perspective(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0, 16.0 / 9.0, 0.1);
+//! // In each frame: rasterize, then query. The eye is at the origin and looks along -z.
+//! let [eye, target, up] = [[0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
+//! let view = View::perspective(eye, target, up, 1.0, 16.0 / 9.0, 0.1);
 //! culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
 //! culler.query_tree(&tree, &mut results)?;
 //! let expected = [Visibility::Occluded, Visibility::Visible, Visibility::Outside];
 //! assert_eq!(results, expected);
 //!
 //! // Boxes without a tree, for instance of things that move.
-//! culler.query(&boxes[..1], DVec3::ZERO, &mut results[..1])?;
+//! culler.query(&boxes[..1], origin, &mut results[..1])?;
 //! assert_eq!(results[0], Visibility::Occluded);
 //! # Ok::<(), CullError>(())
 //! ```
@@ -63,13 +67,12 @@
 //! shown. The results hold for every eye position in the view region, and hide somewhat less than
 //! two exact tests.
 //! ```
-//! use foveal_cull::glam::{DAffine3, DVec3, Vec3};
 //! use foveal_cull::*;
 //! use std::sync::Arc;
 //!
-//! let wall = Aabb::new(Vec3::new(-2.0, -1.5, -5.2), Vec3::new(2.0, 1.5, -5.0));
+//! let wall = Aabb::new([-2.0, -1.5, -5.2], [2.0, 1.5, -5.0]);
 //! let mut occluders = OccluderSet::new();
-//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), DAffine3::IDENTITY)?;
+//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), Affine::IDENTITY)?;
 //!
 //! // The tangents of each eye's frustum, as the headset's runtime gives them.
 //! let eye = |x: f64, left: f64, right: f64| {
@@ -81,56 +84,46 @@
 //!         near_m: 0.1,
 //!         far_m: f64::INFINITY,
 //!     };
-//!     Eye::look_at(DVec3::X * x, DVec3::new(x, 0.0, -1.0), DVec3::Y, frustum)
+//!     Eye::new(Affine::from_translation([x, 0.0, 0.0]), frustum)
 //! };
 //! let (left, right) = (eye(-0.032, -1.2, 0.9), eye(0.032, -0.9, 1.2));
 //! let view = View::stereo(left, right).with_validity_radius(0.01);
 //! let mut culler = Culler::new(480, 480)?;
 //! culler.rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)?;
 //!
-//! let behind = [Aabb::new(Vec3::new(-0.5, -0.5, -9.0), Vec3::new(0.5, 0.5, -8.0))];
+//! let behind = [Aabb::new([-0.5, -0.5, -9.0], [0.5, 0.5, -8.0])];
 //! let mut results = [Visibility::Visible];
-//! culler.query(&behind, DVec3::ZERO, &mut results)?;
+//! culler.query(&behind, [0.0; 3], &mut results)?;
 //! assert_eq!(results, [Visibility::Occluded]);
 //! # Ok::<(), CullError>(())
 //! ```
 //!
 //! # Your own threads
 //! [`WorkerThreads`] are the crate's own, `Rayon` comes with the feature `rayon`, and any job
-//! system fits behind [`Threads`].
+//! system fits behind [`ThreadsFn`] or [`Threads`].
 //! ```
-//! use foveal_cull::glam::{DAffine3, DVec3, Vec3};
 //! use foveal_cull::*;
 //! use std::sync::Arc;
 //!
-//! /// Threads for each run: simple, but slower than threads that stay.
-//! struct Scoped(usize);
+//! // Threads for each run: simple, but slower than threads that stay.
+//! let jobs = ThreadsFn::new(4, |tasks, task| {
+//!     std::thread::scope(|scope| {
+//!         (0..tasks).for_each(|i| drop(scope.spawn(move || task(i))));
+//!     });
+//! });
 //!
-//! impl Threads for Scoped {
-//!     fn count(&self) -> usize {
-//!         self.0
-//!     }
-//!
-//!     fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync)) {
-//!         std::thread::scope(|scope| {
-//!             for i in 0..tasks {
-//!                 scope.spawn(move || task(i));
-//!             }
-//!         });
-//!     }
-//! }
-//!
-//! let pillar = Aabb::new(Vec3::new(-1.0, -9.0, -6.0), Vec3::new(1.0, 9.0, -5.0));
+//! let pillar = Aabb::new([-1.0, -9.0, -6.0], [1.0, 9.0, -5.0]);
 //! let mut occluders = OccluderSet::new();
-//! occluders.add(Arc::new(OccluderMesh::from_box(pillar)?), DAffine3::IDENTITY)?;
-//! let view = View::perspective(DVec3::ZERO, DVec3::NEG_Z, DVec3::Y, 1.0, 1.0, 0.1);
+//! occluders.add(Arc::new(OccluderMesh::from_box(pillar)?), Affine::IDENTITY)?;
+//! let [eye, target, up] = [[0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
+//! let view = View::perspective(eye, target, up, 1.0, 1.0, 0.1);
 //! let options = FrameOptions::default();
 //! let mut culler = Culler::new(256, 256)?;
 //! let mut depths = [vec![0.0; 256 * 256], vec![0.0; 256 * 256]];
 //!
 //! culler.rasterize(&view, &occluders, &options, &SingleThread)?;
 //! culler.read_depth(&mut depths[0])?;
-//! culler.rasterize(&view, &occluders, &options, &Scoped(4))?;
+//! culler.rasterize(&view, &occluders, &options, &jobs)?;
 //! culler.read_depth(&mut depths[1])?;
 //! assert_eq!(depths[0], depths[1]);
 //! # Ok::<(), CullError>(())
@@ -151,6 +144,8 @@
 //! uses plain arrays, which take up to ten times as long.
 //!
 //! # Features
+//! - `glam`: conversions of [`Affine`] and [`Matrix4`] from and to types of glam 0.34. Off by
+//!   default. Vectors need no feature.
 //! - `rayon`: [`Threads`] on the current rayon thread pool. Off by default.
 //! - `reference`: the slow, exact reference that results are compared with. Off by default.
 //!
@@ -166,6 +161,7 @@
 pub mod bench;
 mod bounds;
 mod camera;
+mod clip_space;
 mod culler;
 mod depth;
 mod error;
@@ -181,13 +177,14 @@ pub mod reference;
 mod simd;
 mod stats;
 mod threads;
+mod transform;
 mod view;
 mod visibility;
 
 pub use bounds::Aabb;
+pub use clip_space::ClipDepth;
 pub use culler::Culler;
 pub use error::{CullError, Quantity, ViewError};
-pub use glam;
 pub use limits::MAX_SIDE_PX;
 pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet};
 pub use options::{Budget, FrameOptions};
@@ -196,7 +193,8 @@ pub use simd::InstructionSet;
 pub use stats::CullStats;
 #[cfg(feature = "rayon")]
 pub use threads::Rayon;
-pub use threads::{SingleThread, Threads, WorkerThreads};
+pub use threads::{SingleThread, Threads, ThreadsFn, WorkerThreads};
+pub use transform::{Affine, Matrix4};
 pub use view::{Eye, Projection, View};
 pub use visibility::Visibility;
 
@@ -204,14 +202,17 @@ pub use visibility::Visibility;
 const _: () = {
     const fn send_and_sync<T: Send + Sync>() {}
     send_and_sync::<Aabb>();
+    send_and_sync::<Affine>();
     send_and_sync::<BakeOptions>();
     send_and_sync::<Budget<'_>>();
+    send_and_sync::<ClipDepth>();
     send_and_sync::<CullError>();
     send_and_sync::<CullStats>();
     send_and_sync::<Culler>();
     send_and_sync::<Eye>();
     send_and_sync::<FrameOptions<'_>>();
     send_and_sync::<InstructionSet>();
+    send_and_sync::<Matrix4>();
     send_and_sync::<OccludeeTree>();
     send_and_sync::<OccluderId>();
     send_and_sync::<OccluderMesh>();
@@ -219,6 +220,7 @@ const _: () = {
     send_and_sync::<Projection>();
     send_and_sync::<Quantity>();
     send_and_sync::<SingleThread>();
+    send_and_sync::<ThreadsFn<fn(usize, &(dyn Fn(usize) + Sync))>>();
     send_and_sync::<View>();
     send_and_sync::<ViewError>();
     send_and_sync::<Visibility>();

@@ -11,8 +11,9 @@ use crate::bounds::Aabb;
 use crate::camera::Camera;
 use crate::error::CullError;
 use crate::projection::clip::{ClipPolygon, NEAR};
+use crate::transform::Affine;
 use crate::view::{Eye, View};
-use glam::{DAffine3, DVec3, DVec4, Vec3};
+use glam::{DVec3, DVec4, Vec3};
 
 /// The reference's result for a box.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,20 +61,21 @@ impl Reference {
     /// Adds occluder triangles: positions in mesh space (metres), counter-clockwise from outside,
     /// and their placement in the world. Both sides occlude if `two_sided`. Triangles with an index
     /// out of range are left out.
-    pub fn add(
+    pub fn add<P: Copy + Into<[f32; 3]>>(
         &mut self,
-        positions: &[Vec3],
+        positions: &[P],
         indices: &[u32],
-        world_from_mesh: &DAffine3,
+        world_from_mesh: impl Into<Affine>,
         two_sided: bool,
     ) {
+        let world_from_mesh = world_from_mesh.into().to_glam();
         self.tiles.clear();
         let mirrored = world_from_mesh.matrix3.determinant() < 0.0;
         let clip: Vec<DVec4> = positions
             .iter()
-            .map(|p| {
-                let p =
-                    (world_from_mesh.transform_point3(p.as_dvec3()) - self.camera.eye).extend(1.0);
+            .map(|&p| {
+                let p = Vec3::from(p.into()).as_dvec3();
+                let p = (world_from_mesh.transform_point3(p) - self.camera.eye).extend(1.0);
                 DVec4::from_array(self.camera.rows.map(|r| r.dot(p)))
             })
             .collect();
@@ -199,12 +201,16 @@ impl Reference {
     /// Classifies one box, in metres relative to `origin` (world). O(samples of its screen
     /// rectangle).
     #[must_use]
-    pub fn seen(&self, bounds: &Aabb, origin: DVec3) -> Seen {
+    pub fn seen(&self, bounds: &Aabb, origin: impl Into<[f64; 3]>) -> Seen {
+        self.seen_from(bounds, DVec3::from(origin.into()))
+    }
+
+    fn seen_from(&self, bounds: &Aabb, origin: DVec3) -> Seen {
         if !bounds.is_valid() {
             return Seen::Visible;
         }
-        let lo = bounds.min.as_dvec3() + origin - self.camera.eye;
-        let hi = bounds.max.as_dvec3() + origin - self.camera.eye;
+        let lo = Vec3::from(bounds.min).as_dvec3() + origin - self.camera.eye;
+        let hi = Vec3::from(bounds.max).as_dvec3() + origin - self.camera.eye;
         let corners: [DVec4; 8] = core::array::from_fn(|i| {
             let pick = |bit: usize, a: f64, b: f64| if i & bit == 0 { a } else { b };
             let p = DVec3::new(

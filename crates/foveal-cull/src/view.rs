@@ -7,6 +7,7 @@
 //! plane, fall with distance, and are affine over the screen, so that they can be interpolated.
 
 use crate::error::{CullError, Quantity, ViewError};
+use crate::transform::Affine;
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The frustum of one eye, in its own space (x right, y up, -z forward).
@@ -143,16 +144,31 @@ impl Projection {
 pub struct Eye {
     /// Pose: the columns are the eye's right, up and backward axes and its position (world,
     /// metres). It must be rigid, a rotation and a translation only.
-    pub world_from_eye: DAffine3,
+    pub world_from_eye: Affine,
     /// Frustum.
     pub projection: Projection,
 }
 
 impl Eye {
+    /// An eye by its pose (rigid) and its frustum.
+    #[must_use]
+    pub fn new(world_from_eye: impl Into<Affine>, projection: Projection) -> Self {
+        Self {
+            world_from_eye: world_from_eye.into(),
+            projection,
+        }
+    }
+
     /// An eye at `position` that looks at `target`, both world metres. `up` need not be
     /// perpendicular to the view direction; if it is parallel to it, another axis is taken.
     #[must_use]
-    pub fn look_at(position: DVec3, target: DVec3, up: DVec3, projection: Projection) -> Self {
+    pub fn look_at(
+        position: impl Into<[f64; 3]>,
+        target: impl Into<[f64; 3]>,
+        up: impl Into<[f64; 3]>,
+        projection: Projection,
+    ) -> Self {
+        let [position, target, up] = [position.into(), target.into(), up.into()].map(DVec3::from);
         let back = (position - target).try_normalize().unwrap_or(DVec3::Z);
         let right = up
             .cross(back)
@@ -161,23 +177,28 @@ impl Eye {
             .unwrap_or_else(|| back.any_orthonormal_vector());
         let rotation = DMat3::from_cols(right, back.cross(right), back);
         Self {
-            world_from_eye: DAffine3::from_mat3_translation(rotation, position),
+            world_from_eye: Affine::of(&DAffine3::from_mat3_translation(rotation, position)),
             projection,
         }
     }
 
     /// Position, world metres.
     #[must_use]
-    pub fn position(&self) -> DVec3 {
+    pub fn position(&self) -> [f64; 3] {
         self.world_from_eye.translation
+    }
+
+    pub(crate) fn pose(&self) -> DAffine3 {
+        self.world_from_eye.to_glam()
     }
 
     pub(crate) fn check(&self) -> Result<(), CullError> {
         self.projection.check()?;
-        if !self.world_from_eye.is_finite() {
+        let pose = self.pose();
+        if !pose.is_finite() {
             return Err(CullError::NotFinite(Quantity::Pose));
         }
-        let m = self.world_from_eye.matrix3;
+        let m = pose.matrix3;
         let off = (m.transpose() * m) - DMat3::IDENTITY;
         let rigid = off.to_cols_array().iter().all(|v| v.abs() < 1e-4) && m.determinant() > 0.0;
         if rigid {
@@ -244,9 +265,9 @@ impl View {
     /// of view in radians, `aspect` width over height, and `near_m` the near distance in metres.
     #[must_use]
     pub fn perspective(
-        position: DVec3,
-        target: DVec3,
-        up: DVec3,
+        position: impl Into<[f64; 3]>,
+        target: impl Into<[f64; 3]>,
+        up: impl Into<[f64; 3]>,
         fov_y_rad: f64,
         aspect: f64,
         near_m: f64,

@@ -141,9 +141,9 @@ fn a_view_that_is_refused_says_why() {
     let flat = |near_m, far_m| eye(Projection::orthographic(2.0, 1.0, near_m, far_m));
     let good = perspective(0.1, 9.0);
     let mut scaled = good;
-    scaled.world_from_eye.matrix3 *= 2.0;
+    scaled.world_from_eye.y_axis[1] *= 2.0;
     let mut back = good;
-    back.world_from_eye = DAffine3::from_rotation_y(core::f64::consts::PI);
+    back.world_from_eye = DAffine3::from_rotation_y(core::f64::consts::PI).into();
     for (view, cause) in [
         (
             View::mono(perspective(0.0, 9.0)),

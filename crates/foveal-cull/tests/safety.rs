@@ -114,10 +114,8 @@ fn culls_nothing_visible_around(seed: u64) -> Result<(), TestCaseError> {
     let eyes = [0, 1, 2].map(|k| {
         let far = if k == 0 { 1.0 } else { r.next() };
         let step = r.vec(1.0).normalize() * (radius * far);
-        Eye {
-            world_from_eye: DAffine3::from_translation(step) * center.world_from_eye,
-            ..center
-        }
+        let pose = DAffine3::from_translation(step) * DAffine3::from(center.world_from_eye);
+        Eye::new(pose, center.projection)
     });
     see_nothing_culled(&scene, &eyes, size, &results)
 }
@@ -132,7 +130,7 @@ fn culls_nothing_that_either_eye_sees(seed: u64) -> Result<[usize; 2], TestCaseE
     let cant = DAffine3::from_rotation_y(r.range(-0.15, 0.15));
     let apart = DAffine3::from_translation(DVec3::new(0.063, 0.0, 0.0));
     let mut right = eye(&mut r, DVec3::ZERO, false);
-    right.world_from_eye = left.world_from_eye * apart * cant;
+    right.world_from_eye = (DAffine3::from(left.world_from_eye) * apart * cant).into();
     let size = size(&mut r);
     let results = answers_to_all(&scene, &View::stereo(left, right), size);
     see_nothing_culled(&scene, &[left, right], size, &results)?;

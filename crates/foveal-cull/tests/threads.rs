@@ -1,7 +1,14 @@
-//! The pool of threads.
+//! Threads: the crate's own, the caller's, and queries from many at once.
+#![allow(clippy::unwrap_used, reason = "tests")]
 
-use core::sync::atomic::{AtomicBool, AtomicU32, Ordering};
-use foveal_cull::{SingleThread, Threads, WorkerThreads};
+mod common;
+
+use common::{Random, answers, eye, occluders, scene};
+use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
+use foveal_cull::{
+    Culler, OccludeeTree, SingleThread, Threads, ThreadsFn, View, Visibility, WorkerThreads,
+};
+use glam::DVec3;
 
 #[test]
 fn whoever_is_woken_and_when_every_task_runs_once() {
@@ -30,4 +37,67 @@ fn whoever_is_woken_and_when_every_task_runs_once() {
         });
     }
     SingleThread.wake();
+}
+
+#[test]
+fn queries_from_many_threads_at_once_have_the_answers_of_one() {
+    let mut r = Random::new(11);
+    let scene = scene(&mut r, 8, 900, DVec3::ZERO);
+    let view = View::mono(eye(&mut r, DVec3::ZERO, false));
+    let set = occluders(&scene, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let mut culler = Culler::new(160, 90).unwrap();
+    let expected = answers(&mut culler, &view, &set, &scene, &SingleThread);
+    let tree = OccludeeTree::build(&scene.boxes, DVec3::ZERO);
+    let mut by_tree = vec![Visibility::Visible; 900];
+    culler.query_tree(&tree, &mut by_tree).unwrap();
+    let (culler, scene, tree) = (&culler, &scene, &tree);
+    std::thread::scope(|scope| {
+        for n in 0..8 {
+            let (expected, by_tree) = (&expected, &by_tree);
+            scope.spawn(move || {
+                let mut results = vec![Visibility::Visible; 900];
+                for round in 0..40 {
+                    // Each thread asks about other boxes at the same time.
+                    let first = (97 * n + 31 * round) % 800;
+                    let part = first..first + 100;
+                    let (boxes, results) = (&scene.boxes[part.clone()], &mut results[..]);
+                    culler
+                        .query(boxes, DVec3::ZERO, &mut results[..100])
+                        .unwrap();
+                    assert_eq!(results[..100], expected[part]);
+                    culler.query_tree(tree, results).unwrap();
+                    assert_eq!(results, by_tree);
+                }
+            });
+        }
+    });
+}
+
+#[test]
+fn a_job_system_behind_a_closure_draws_the_same_in_whatever_order_it_runs_tasks() {
+    let mut r = Random::new(5);
+    let scene = scene(&mut r, 8, 300, DVec3::ZERO);
+    let view = View::mono(eye(&mut r, DVec3::ZERO, false));
+    let set = occluders(&scene, &[0, 1, 2, 3, 4, 5, 6, 7]);
+    let mut culler = Culler::new(160, 90).unwrap();
+    let expected = answers(&mut culler, &view, &set, &scene, &SingleThread);
+    let runs = AtomicUsize::new(0);
+    let backwards = ThreadsFn::new(5, |tasks, task| {
+        runs.fetch_add(1, Ordering::Relaxed);
+        (0..tasks).rev().for_each(task);
+    });
+    assert_eq!(
+        answers(&mut culler, &view, &set, &scene, &backwards),
+        expected
+    );
+    assert!(runs.load(Ordering::Relaxed) > 0);
+    let spawning = ThreadsFn::new(3, |tasks, task| {
+        std::thread::scope(|scope| {
+            (0..tasks).for_each(|i| drop(scope.spawn(move || task(i))));
+        });
+    });
+    assert_eq!(
+        answers(&mut culler, &view, &set, &scene, &spawning),
+        expected
+    );
 }

@@ -266,7 +266,7 @@ mod tests {
         let eyes = eyes(&scene, &[Vec3::new(1.0, 2.0, 3.0), Vec3::ZERO], 1.5);
         assert_eq!(eyes.len(), 8);
         for pair in eyes[..4].windows(2) {
-            let [a, b] = [0, 1].map(|i| -pair[i].eye.world_from_eye.matrix3.z_axis);
+            let [a, b] = [0, 1].map(|i| -DVec3::from(pair[i].eye.world_from_eye.z_axis));
             assert!(a.y.abs() < 1e-9 && a.dot(b).abs() < 1e-9, "{a} {b}");
         }
     }

@@ -106,14 +106,14 @@ impl CameraReport {
 
 impl ViewReport {
     fn new(eye: &Eye) -> Self {
-        let axes = eye.world_from_eye.matrix3;
+        let pose = eye.world_from_eye;
         let [near, far] = eye.projection.near_far_m();
         // No "-0.0" in the file.
         let point = |p: DVec3| (p + DVec3::ZERO).to_array();
         Self {
-            eye: point(eye.position()),
-            forward: point(-axes.z_axis),
-            up: point(axes.y_axis),
+            eye: point(eye.position().into()),
+            forward: point(-DVec3::from(pose.z_axis)),
+            up: point(pose.y_axis.into()),
             orthographic: eye.projection.is_orthographic(),
             extents: eye.projection.extents(),
             near,

@@ -73,7 +73,16 @@ impl OccluderMesh {
     /// # Errors
     /// [`CullError::NotTriangles`], [`CullError::IndexOutOfRange`], [`CullError::NotFinite`] for a
     /// position in use, or [`CullError::TooManyTriangles`] for more than 2^29 - 1.
-    pub fn bake(
+    pub fn bake<P: Copy + Into<[f32; 3]>>(
+        positions: &[P],
+        indices: &[u32],
+        options: BakeOptions,
+    ) -> Result<Self, CullError> {
+        let positions: Vec<Vec3> = positions.iter().map(|&p| p.into().into()).collect();
+        Self::bake_list(&positions, indices, options)
+    }
+
+    fn bake_list(
         positions: &[Vec3],
         indices: &[u32],
         options: BakeOptions,
@@ -135,7 +144,7 @@ impl OccluderMesh {
     /// # Errors
     /// [`CullError::NotFinite`] for NaN or infinity.
     pub fn from_box(bounds: Aabb) -> Result<Self, CullError> {
-        let (a, b) = (bounds.min, bounds.max);
+        let (a, b) = (Vec3::from(bounds.min), Vec3::from(bounds.max));
         let p: [Vec3; 8] = core::array::from_fn(|i| {
             Vec3::new(
                 if i & 1 == 0 { a.x } else { b.x },
@@ -155,6 +164,6 @@ impl OccluderMesh {
             .iter()
             .flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]])
             .collect();
-        Self::bake(&p, &indices, BakeOptions::default())
+        Self::bake_list(&p, &indices, BakeOptions::default())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::mesh::{OccluderMesh, hash_words};
 use crate::error::{CullError, Quantity};
+use crate::transform::Affine;
 use core::num::NonZeroU32;
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
@@ -14,6 +15,24 @@ use std::sync::Arc;
 pub struct OccluderId {
     slot: u32,
     generation: NonZeroU32,
+}
+
+impl OccluderId {
+    /// The id as one number, never zero, for engines that keep ids of their own.
+    #[must_use]
+    pub fn to_bits(self) -> u64 {
+        u64::from(self.generation.get()) << 32 | u64::from(self.slot)
+    }
+
+    /// The id of [`to_bits`](Self::to_bits). Numbers that come from elsewhere name no occluder, or
+    /// another one.
+    #[must_use]
+    pub fn from_bits(bits: u64) -> Option<Self> {
+        Some(Self {
+            slot: bits as u32,
+            generation: NonZeroU32::new((bits >> 32) as u32)?,
+        })
+    }
 }
 
 /// The occluders of a scene: baked meshes placed in the world.
@@ -62,9 +81,9 @@ impl OccluderSet {
     pub fn add(
         &mut self,
         mesh: Arc<OccluderMesh>,
-        world_from_mesh: DAffine3,
+        world_from_mesh: impl Into<Affine>,
     ) -> Result<OccluderId, CullError> {
-        let instance = Instance::new(mesh, world_from_mesh)?;
+        let instance = Instance::new(mesh, world_from_mesh.into().to_glam())?;
         self.len += 1;
         if let Some(slot) = self.free.pop() {
             let to = &mut self.instances[slot as usize];
@@ -91,7 +110,7 @@ impl OccluderSet {
     pub fn set_transform(
         &mut self,
         id: OccluderId,
-        world_from_mesh: DAffine3,
+        world_from_mesh: impl Into<Affine>,
     ) -> Result<(), CullError> {
         let slot = self.slot(id)?;
         let mesh = slot.mesh.clone().ok_or(CullError::UnknownOccluder)?;
@@ -99,7 +118,7 @@ impl OccluderSet {
         *slot = Instance {
             enabled,
             generation,
-            ..Instance::new(mesh, world_from_mesh)?
+            ..Instance::new(mesh, world_from_mesh.into().to_glam())?
         };
         Ok(())
     }
@@ -216,6 +235,8 @@ mod tests {
         let second = set.add(mesh(), DAffine3::IDENTITY).unwrap();
         assert_eq!(first.slot, second.slot, "the slot is used again");
         assert_ne!(first, second);
+        assert_eq!(OccluderId::from_bits(second.to_bits()), Some(second));
+        assert_eq!(OccluderId::from_bits(7), None);
         assert!(!set.contains(first) && set.contains(second));
         let unknown = Err(CullError::UnknownOccluder);
         let moved = DAffine3::from_translation(DVec3::ONE);

@@ -17,11 +17,10 @@ use glam::{DVec3, Vec3};
 ///
 /// ```
 /// use foveal_cull::{Aabb, OccludeeTree};
-/// use foveal_cull::glam::{DVec3, Vec3};
 ///
-/// let boxes = [Aabb::new(Vec3::ZERO, Vec3::ONE), Aabb::new(Vec3::splat(4.0), Vec3::splat(5.0))];
-/// let mut tree = OccludeeTree::build(&boxes, DVec3::ZERO);
-/// let moved = boxes.map(|b| Aabb::new(b.min + 1.0, b.max + 1.0));
+/// let boxes = [Aabb::new([0.0; 3], [1.0; 3]), Aabb::new([4.0; 3], [5.0; 3])];
+/// let mut tree = OccludeeTree::build(&boxes, [0.0; 3]);
+/// let moved = boxes.map(|b| Aabb::new(b.min.map(|v| v + 1.0), b.max.map(|v| v + 1.0)));
 /// tree.refit(&moved)?;
 /// # Ok::<(), foveal_cull::CullError>(())
 /// ```
@@ -87,7 +86,11 @@ impl OccludeeTree {
     /// Builds a tree over boxes in metres relative to `origin` (world). A box that is not a volume
     /// is always visible.
     #[must_use]
-    pub fn build(boxes: &[Aabb], origin: DVec3) -> Self {
+    pub fn build(boxes: &[Aabb], origin: impl Into<[f64; 3]>) -> Self {
+        Self::build_from(boxes, DVec3::from(origin.into()))
+    }
+
+    fn build_from(boxes: &[Aabb], origin: DVec3) -> Self {
         let mut tree = Self {
             nodes: Vec::new(),
             order: (0..boxes.len() as u32).collect(),

@@ -3,7 +3,6 @@
 
 use super::{InstructionSet, Kernel, Lanes, Wide};
 use crate::Aabb;
-use glam::Vec3;
 
 /// Numbers at which instruction sets tend to differ.
 const ODD: [f32; 20] = [
@@ -88,7 +87,7 @@ fn array<T, const N: usize>(mut one: impl FnMut() -> T) -> [T; N] {
 impl Inputs {
     fn new(seed: u64) -> Self {
         let mut r = Random(seed);
-        let vec = |r: &mut Random| Vec3::from_array(array(|| r.between(-9.0, 9.0)));
+        let vec = |r: &mut Random| -> [f32; 3] { array(|| r.between(-9.0, 9.0)) };
         // Whether pixels are alike decides what a comparison is worth.
         let shift = r.below(15);
         // Here, or at the right edge of the widest buffer.

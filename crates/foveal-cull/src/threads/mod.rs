@@ -5,5 +5,5 @@ mod workers;
 
 #[cfg(feature = "rayon")]
 pub use run::Rayon;
-pub use run::{SingleThread, Threads};
+pub use run::{SingleThread, Threads, ThreadsFn};
 pub use workers::WorkerThreads;

@@ -30,6 +30,49 @@ impl Threads for SingleThread {
     }
 }
 
+/// Threads by a closure, for instance one that hands tasks to an engine's job system.
+///
+/// ```
+/// use foveal_cull::{Threads, ThreadsFn};
+///
+/// let scoped = ThreadsFn::new(4, |tasks, task| {
+///     std::thread::scope(|scope| {
+///         (0..tasks).for_each(|i| drop(scope.spawn(move || task(i))));
+///     });
+/// });
+/// assert_eq!(scoped.count(), 4);
+/// ```
+#[derive(Clone, Copy)]
+pub struct ThreadsFn<F> {
+    count: usize,
+    run: F,
+}
+
+impl<F: Fn(usize, &(dyn Fn(usize) + Sync)) + Sync> ThreadsFn<F> {
+    /// `count` tasks can run at once. `run(tasks, task)` does what [`Threads::run`] says.
+    pub fn new(count: usize, run: F) -> Self {
+        Self { count, run }
+    }
+}
+
+impl<F> core::fmt::Debug for ThreadsFn<F> {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        f.debug_struct("ThreadsFn")
+            .field("count", &self.count)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<F: Fn(usize, &(dyn Fn(usize) + Sync)) + Sync> Threads for ThreadsFn<F> {
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn run(&self, tasks: usize, task: &(dyn Fn(usize) + Sync)) {
+        (self.run)(tasks, task);
+    }
+}
+
 /// The current rayon thread pool. Needs the feature `rayon`.
 #[cfg(feature = "rayon")]
 #[derive(Clone, Copy, Debug, Default)]

@@ -275,7 +275,7 @@ pub fn answers(
 fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Reference {
     let mut exact = Reference::new(eye, w, h).unwrap();
     for o in &scene.objects {
-        exact.add(&o.positions, &o.indices, &o.transform, o.two_sided);
+        exact.add(&o.positions, &o.indices, o.transform, o.two_sided);
     }
     exact.finish();
     exact

@@ -78,8 +78,5 @@ pub(super) fn places(view: &View) -> Vec<Eye> {
 /// Moved along its own axes, metres.
 fn moved(eye: &Eye, step: [f64; 3]) -> Eye {
     let step = DAffine3::from_translation(DVec3::from_array(step));
-    Eye {
-        world_from_eye: eye.world_from_eye * step,
-        ..*eye
-    }
+    Eye::new(DAffine3::from(eye.world_from_eye) * step, eye.projection)
 }

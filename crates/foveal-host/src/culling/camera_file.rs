@@ -170,7 +170,7 @@ mod tests {
         ]"#;
         let cameras = parse(text, DEFAULTS).unwrap();
         assert_eq!(cameras[0].name, "camera 0");
-        assert_eq!(cameras[0].eye.position(), DVec3::new(0.0, 1.0, 5.0));
+        assert_eq!(cameras[0].eye.position(), [0.0, 1.0, 5.0]);
         assert_eq!(cameras[0].eye.projection.near_far_m(), [0.1, 100.0]);
         assert_eq!(cameras[1].name, "plan");
         assert!(cameras[1].eye.projection.is_orthographic());
@@ -270,7 +270,7 @@ mod tests {
                 return;
             };
             for camera in parse(text, defaults).unwrap_or_default() {
-                assert!(camera.eye.position().is_finite());
+                assert!(DVec3::from(camera.eye.position()).is_finite());
             }
         });
     }

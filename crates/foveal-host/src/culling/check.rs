@@ -75,7 +75,7 @@ fn reference(
         truth.add(
             &shape.positions,
             &shape.indices,
-            &world_from_mesh,
+            world_from_mesh,
             shape.two_sided,
         );
     }

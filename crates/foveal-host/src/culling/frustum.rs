@@ -1,12 +1,12 @@
 //! Where points and boxes lie in an eye's frustum, in `f64`.
 
 use foveal_cull::{Aabb, Eye};
-use glam::{DVec3, DVec4};
+use glam::{DAffine3, DVec3, DVec4, Vec3};
 
 /// Clip space with x and y in -w..w, and z >= 0 in front of the near plane.
 pub fn clip_position(eye: &Eye, world: DVec3) -> DVec4 {
-    let m = eye.world_from_eye.matrix3;
-    let p = m.transpose() * (world - eye.position());
+    let pose = DAffine3::from(eye.world_from_eye);
+    let p = pose.matrix3.transpose() * (world - pose.translation);
     let [l, r, b, t] = eye.projection.extents();
     let [near, _] = eye.projection.near_far_m();
     let w = if eye.projection.is_orthographic() {
@@ -43,7 +43,8 @@ pub(super) fn is_outside(eye: &Eye, bounds: &Aabb) -> bool {
 
 /// The eight corners; bit 0 of the number takes the larger x, bit 1 y, bit 2 z.
 pub fn corners(bounds: &Aabb) -> [DVec3; 8] {
-    let (lo, hi) = (bounds.min.as_dvec3(), bounds.max.as_dvec3());
+    let (lo, hi) = (bounds.min, bounds.max);
+    let [lo, hi] = [lo, hi].map(|corner| Vec3::from(corner).as_dvec3());
     std::array::from_fn(|i| {
         let pick = |bit: usize, a: f64, b: f64| if i & bit == 0 { a } else { b };
         DVec3::new(
@@ -58,7 +59,6 @@ pub fn corners(bounds: &Aabb) -> [DVec3; 8] {
 mod tests {
     use super::*;
     use foveal_cull::Projection;
-    use glam::Vec3;
 
     #[test]
     fn boxes_beyond_each_side_are_outside() {

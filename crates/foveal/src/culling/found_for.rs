@@ -1,6 +1,7 @@
 //! Whether an earlier frame's result still holds.
 
 use foveal_cull::Eye;
+use glam::DAffine3;
 
 /// What a result holds for: a pose of the scene, and eyes.
 #[derive(Clone, Copy, Debug)]
@@ -14,7 +15,7 @@ impl FoundFor {
     pub(super) fn holds_for(&self, other: &Self, radius_m: f64) -> bool {
         let near = |(a, b): (&Option<Eye>, &Option<Eye>)| match (a, b) {
             (Some(a), Some(b)) => {
-                let (p, q) = (a.world_from_eye, b.world_from_eye);
+                let [p, q] = [a, b].map(|eye| DAffine3::from(eye.world_from_eye));
                 a.projection == b.projection
                     && p.matrix3 == q.matrix3
                     && (p.translation - q.translation).length() < 0.999 * radius_m

@@ -141,9 +141,8 @@ impl CullingStage {
     ) -> CullingCounts {
         (self.rasterize_ms, self.test_ms) = (0.0, 0.0);
         let size = (width, height);
-        let eye = |world_from_view: Mat4, projection: Projection| Eye {
-            world_from_eye: affine(world_from_view),
-            projection,
+        let eye = |world_from_view: Mat4, projection: Projection| {
+            Eye::new(affine(world_from_view), projection)
         };
         let wanted = FoundFor {
             pose: scene.pose,

@@ -102,6 +102,7 @@ impl CullingScene {
     fn take_boxes(&mut self, scene: &Scene) {
         self.boxes.clear();
         let boxes = scene.objects.iter().map(|o| o.bounds);
+        let boxes = boxes.map(|b| foveal_cull::Aabb::new(b.min, b.max));
         self.boxes.extend(boxes);
     }
 }

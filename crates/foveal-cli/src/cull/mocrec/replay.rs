@@ -134,17 +134,15 @@ fn joined(runs: Vec<Run>) -> Vec<Run> {
 
 /// Tangents of ±1: the clip cube's own sides.
 fn eye(near: f64) -> Eye {
-    Eye {
-        world_from_eye: DAffine3::IDENTITY,
-        projection: Projection::Perspective {
-            left: -1.0,
-            right: 1.0,
-            bottom: -1.0,
-            top: 1.0,
-            near_m: near,
-            far_m: f64::INFINITY,
-        },
-    }
+    let projection = Projection::Perspective {
+        left: -1.0,
+        right: 1.0,
+        bottom: -1.0,
+        top: 1.0,
+        near_m: near,
+        far_m: f64::INFINITY,
+    };
+    Eye::new(DAffine3::IDENTITY, projection)
 }
 
 /// Queries with the same occluders before them.
@@ -281,8 +279,7 @@ fn triangles_box(triangles: &Triangles) -> Option<Aabb> {
         world_from_model.transform_point3(p).as_vec3()
     });
     let bounds = Aabb::of_points(points);
-    (bounds.min.is_finite() && bounds.max.is_finite() && bounds.min.cmple(bounds.max).all())
-        .then_some(bounds)
+    bounds.is_valid().then_some(bounds)
 }
 
 #[cfg(test)]

@@ -1,0 +1,128 @@
+// Culling from C++ with the program's own jobs: a door that opens, two eyes, tests on many threads.
+#include "foveal_cull.hpp"
+
+#include <atomic>
+#include <condition_variable>
+#include <cstdio>
+#include <mutex>
+#include <thread>
+
+namespace cull = foveal::cull;
+
+/// A job system as engines have them: threads that wait, and tasks that whoever is free takes.
+class Workers {
+public:
+    explicit Workers(unsigned count) {
+        for (unsigned i = 0; i < count; ++i) {
+            threads_.emplace_back([this] { work(); });
+        }
+    }
+    ~Workers() {
+        {
+            std::lock_guard<std::mutex> lock(mutex_);
+            stop_ = true;
+        }
+        changed_.notify_all();
+        for (auto &thread : threads_) {
+            thread.join();
+        }
+    }
+    void run(std::uint32_t tasks, const cull::JobSystem::Task &task) {
+        std::unique_lock<std::mutex> lock(mutex_);
+        task_ = &task;
+        tasks_ = tasks;
+        next_ = done_ = 0;
+        changed_.notify_all();
+        changed_.wait(lock, [&] { return done_ == tasks; });
+        task_ = nullptr;
+    }
+
+private:
+    void work() {
+        std::unique_lock<std::mutex> lock(mutex_);
+        for (;;) {
+            changed_.wait(lock, [&] { return stop_ || (task_ && next_ < tasks_); });
+            if (stop_) {
+                return;
+            }
+            const auto task = task_;
+            const auto index = next_++;
+            lock.unlock();
+            (*task)(index);
+            lock.lock();
+            ++done_;
+            changed_.notify_all();
+        }
+    }
+    std::vector<std::thread> threads_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    const cull::JobSystem::Task *task_ = nullptr;
+    std::uint32_t tasks_ = 0, next_ = 0, done_ = 0;
+    bool stop_ = false;
+};
+
+int main() try {
+    // A wall with a doorway 2 m wide, and a door in it. Indices of 16 bits.
+    const float wall[] = {-20, -3, -5, -1, -3, -5, -1, 4, -5, -20, 4, -5, 1, -3, -5, 20, -3, -5, 20, 4, -5, 1, 4, -5};
+    const std::uint16_t indices[] = {0, 1, 2, 0, 2, 3, 4, 5, 6, 4, 6, 7};
+    cull::Occluders occluders;
+    occluders.add(cull::Mesh(wall, 8, 3 * sizeof(float), indices, 12));
+    const cull::Mesh leaf = cull::Mesh::box({{-1.1f, -3, -0.1f}, {1.1f, 4, 0.1f}});
+    const auto at = [](double x) { return cull::Affine{1, 0, 0, 0, 1, 0, 0, 0, 1, x, 0, -5}; };
+    const cull::OccluderId door = occluders.add(leaf, at(0));
+
+    std::vector<cull::Box> boxes;
+    for (int i = 0; i < 1000; ++i) {
+        const float x = static_cast<float>(i % 40) - 20, z = -8 - static_cast<float>(i / 40);
+        boxes.push_back({{x, 0, z}, {x + 0.5f, 0.5f, z + 0.5f}});
+    }
+    const cull::Tree tree(boxes);
+    const auto eye = [](double x) {
+        return cull::look_at({x, 0.2, 0}, {x, 0.2, -1}, {0, 1, 0}, 0.9, 1.5, 0.1);
+    };
+    const cull::View view(eye(-0.032), eye(0.032), 0.005);
+
+    Workers workers(3);
+    cull::JobSystem jobs(3, [&](std::uint32_t tasks, const cull::JobSystem::Task &task) { workers.run(tasks, task); });
+    cull::Threads threads(2);
+    cull::Culler culler(480, 320);
+    std::size_t seen[2] = {0, 0};
+    for (int frame = 0; frame < 2; ++frame) {
+        culler.rasterize(view, occluders, jobs);
+        const auto depth = culler.depth();
+        culler.rasterize(view, occluders, threads);
+        if (depth != culler.depth()) {
+            throw std::logic_error("the depth depends on the threads");
+        }
+        const auto by_tree = culler.test(tree);
+        // Tests take a const culler: as many threads as one likes.
+        std::vector<cull::Visibility> results(boxes.size());
+        workers.run(4, [&](std::uint32_t i) { culler.test(&boxes[250 * i], 250, &results[250 * i]); });
+        for (std::size_t i = 0; i < boxes.size(); ++i) {
+            seen[frame] += by_tree[i] == cull::Visibility::visible;
+            if (by_tree[i] == cull::Visibility::visible && results[i] != by_tree[i]) {
+                throw std::logic_error("a tree sees less than it hides");
+            }
+        }
+        occluders.move(door, at(2.3));
+    }
+    std::printf("%zu boxes: %zu visible through the closed door, %zu through the open one\n", boxes.size(), seen[0],
+                seen[1]);
+
+    // Errors say what is wrong.
+    occluders.remove(door);
+    try {
+        occluders.move(door, at(0));
+        return 1;
+    } catch (const cull::Error &error) {
+        std::printf("moving a door that is gone: %s\n", error.what());
+        if (error.status() != FOVEAL_CULL_UNKNOWN_OCCLUDER) {
+            return 1;
+        }
+    }
+    return seen[0] < seen[1] && seen[1] < boxes.size() ? 0 : 1;
+} catch (const std::exception &error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+}

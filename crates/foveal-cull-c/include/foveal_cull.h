@@ -1,0 +1,385 @@
+/* foveal-cull: software occlusion culling on the CPU.
+ *
+ * Occluders are rasterized into a small occlusion buffer, and boxes are tested against it. What is
+ * reported as hidden is hidden: nothing is culled that the pixel centres of a picture of the buffer's
+ * size, or of four times its size per axis, would show. A buffer of a quarter of the picture's size per
+ * axis therefore fits a picture exactly.
+ *
+ * Space. Lengths are metres. Right-handed with y up, eyes look along their own -z; matrices of other
+ * worlds are taken by foveal_cull_eye_from_matrix. World positions are double, boxes float relative to
+ * an origin. The front of a triangle is the side that (b - a) x (c - a) points to.
+ *
+ * Errors. Functions return a FovealCullStatus. Noticed are null and misaligned pointers, wrong lengths,
+ * numbers that are not finite, ids of removed occluders and of other sets, unknown enumerators, structs
+ * of another version, and an object that another thread is changing. Not noticed, and undefined as in
+ * free(), are destroyed objects and arrays that are shorter than said. A function that fails leaves its
+ * result as it was or null, and its object unchanged, unless it says otherwise.
+ *
+ * Threads. Functions that take const objects may be called from many threads at once. Functions that
+ * change an object return FOVEAL_CULL_BUSY where another call uses it. Nothing waits.
+ *
+ * Structs begin with their size: set `size` to sizeof, or use the init function. New versions only add
+ * fields at the end. Strides and sizes are bytes.
+ *
+ * Memory is allocated by the library's own allocator, which cannot be replaced.
+ *
+ * Licence: MIT or Apache-2.0.
+ */
+#ifndef FOVEAL_CULL_H
+#define FOVEAL_CULL_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* The version of this header: major << 24 | minor << 12 | patch. */
+#define FOVEAL_CULL_VERSION 0x00001000u
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The result of a call. */
+typedef enum FovealCullStatus {
+    /* Done. */
+    FOVEAL_CULL_OK = 0,
+    /* A pointer is null that may not be. */
+    FOVEAL_CULL_NULL_POINTER = 1,
+    /* A struct's `size` is none that the library knows, or what is newer in it is not zero. */
+    FOVEAL_CULL_BAD_STRUCT_SIZE = 2,
+    /* A count, a stride, an enumerator or a pointer's alignment is not allowed. */
+    FOVEAL_CULL_BAD_ARGUMENT = 3,
+    /* A number is NaN or infinite that must be finite. */
+    FOVEAL_CULL_NOT_FINITE = 4,
+    /* A buffer side of 0 pixels, or of more than 4,096. */
+    FOVEAL_CULL_BAD_SIZE = 5,
+    /* A view cannot be culled for. */
+    FOVEAL_CULL_BAD_VIEW = 6,
+    /* A list of indices is not a list of triangles, or names a vertex that is not there. */
+    FOVEAL_CULL_BAD_INDICES = 7,
+    /* A mesh has too many triangles. */
+    FOVEAL_CULL_TOO_LARGE = 8,
+    /* Two lists that belong together differ in length. */
+    FOVEAL_CULL_WRONG_LENGTH = 9,
+    /* No occluder has this id, for instance since it was removed. */
+    FOVEAL_CULL_UNKNOWN_OCCLUDER = 10,
+    /* The id belongs to another set of occluders. */
+    FOVEAL_CULL_OTHER_SET = 11,
+    /* The object is in use by another call. */
+    FOVEAL_CULL_BUSY = 12,
+    /* An error inside the library. Please report it. The object stays usable. */
+    FOVEAL_CULL_INTERNAL = 13
+} FovealCullStatus;
+
+/* The result for one box, one byte each. Draw what is FOVEAL_CULL_VISIBLE. */
+typedef enum FovealCullVisibility {
+    /* May be seen. Also boxes that are not volumes, and everything after a frame that failed. */
+    FOVEAL_CULL_VISIBLE = 0,
+    /* Outside the view frustum. */
+    FOVEAL_CULL_OUTSIDE = 1,
+    /* Below the size threshold. */
+    FOVEAL_CULL_SMALL = 2,
+    /* Hidden behind occluders. */
+    FOVEAL_CULL_OCCLUDED = 3
+} FovealCullVisibility;
+
+/* The depths of the near and the far plane in clip space, z / w. */
+typedef enum FovealCullDepth {
+    /* 0 at the near plane, 1 at the far plane: Vulkan, Direct3D, Metal, WebGPU. */
+    FOVEAL_CULL_DEPTH_ZERO_TO_ONE = 0,
+    /* 1 at the near plane, 0 at the far plane or at infinity: reversed depth. */
+    FOVEAL_CULL_DEPTH_ONE_TO_ZERO = 1,
+    /* -1 at the near plane, 1 at the far plane: OpenGL. */
+    FOVEAL_CULL_DEPTH_MINUS_ONE_TO_ONE = 2
+} FovealCullDepth;
+
+/* A baked mesh. Never changes; any number of occluders may be made of it. */
+typedef struct FovealCullMesh FovealCullMesh;
+/* A set of occluders: baked meshes placed in the world. */
+typedef struct FovealCullOccluders FovealCullOccluders;
+/* A hierarchy over boxes that are tested in many frames. */
+typedef struct FovealCullTree FovealCullTree;
+/* A culler with its occlusion buffer: one per view that is tested at the same time. */
+typedef struct FovealCuller FovealCuller;
+/* Threads of the library. */
+typedef struct FovealCullThreads FovealCullThreads;
+
+/* The id of one occluder. The id of a removed occluder never names another one. All zero: none. */
+typedef struct FovealCullOccluderId {
+    /* The set that it belongs to. */
+    uint64_t set;
+    /* The occluder in it. */
+    uint64_t occluder;
+} FovealCullOccluderId;
+
+/* Triangles to be baked. */
+typedef struct FovealCullMeshSource {
+    /* sizeof(FovealCullMeshSource). */
+    uint32_t size;
+    /* Bytes of an index: 2 or 4. */
+    uint32_t index_bytes;
+    /* x, y and z of the first vertex, metres. Need not be aligned. */
+    const float *positions;
+    /* Number of vertices. */
+    size_t position_count;
+    /* Bytes from one vertex to the next, at least 12. */
+    size_t position_stride;
+    /* Three indices per triangle. Need not be aligned. */
+    const void *indices;
+    /* Number of indices. */
+    size_t index_count;
+    /* 1: triangles occlude from behind too. 0: only from the front. */
+    uint32_t two_sided;
+    /* 1: bake what results for two eyes or a radius need. 0: less memory and time. */
+    uint32_t adjacency;
+} FovealCullMeshSource;
+
+/* One eye: a rigid pose and a frustum. */
+typedef struct FovealCullEye {
+    /* Columns: the eye's right, up and backward axes and its position (world, metres). */
+    double world_from_eye[12];
+    /* Edges: tangents, or metres if orthographic. */
+    double left;
+    double right;
+    double bottom;
+    double top;
+    /* Near distance, metres. */
+    double near_m;
+    /* Far distance, metres; may be infinite unless orthographic. */
+    double far_m;
+    /* 1: rays are parallel. 0: they meet in the eye. */
+    uint32_t orthographic;
+    /* 0. */
+    uint32_t reserved;
+} FovealCullEye;
+
+/* The camera view of a frame. */
+typedef struct FovealCullView {
+    /* sizeof(FovealCullView). */
+    uint32_t size;
+    /* 1, or 2 with one result that holds for both eyes. */
+    uint32_t eye_count;
+    /* The eye, or the left and the right one. */
+    FovealCullEye eyes[2];
+    /* Distance that each eye may move while the results hold, metres; 0 for the given places. */
+    double validity_radius_m;
+} FovealCullView;
+
+/* Thresholds and switches of one frame. */
+typedef struct FovealCullFrameOptions {
+    /* sizeof(FovealCullFrameOptions). */
+    uint32_t size;
+    /* 1: occluders are drawn. 0: frustum and size only. */
+    uint32_t occlusion;
+    /* Occluders with radius^2 < distance * threshold^2 * tan(fov_y / 2) are left out. 0 takes all. */
+    float occluder_size_threshold;
+    /* Least screen area of a cluster, pixels per quad: 6 unless set. 0 takes all. */
+    float occluder_pixels_per_quad;
+    /* The same threshold for boxes (FOVEAL_CULL_SMALL). 0 culls none by size. */
+    float occludee_size_threshold;
+    /* 0. */
+    uint32_t reserved;
+    /* Reads a clock, nanoseconds; null for no time limit. Called from the threads of the jobs. */
+    uint64_t (*clock)(void *user);
+    /* Passed to `clock`. */
+    void *clock_user;
+    /* Clock reading at or after which no further cluster is begun. */
+    uint64_t deadline_ns;
+} FovealCullFrameOptions;
+
+/* A task of a batch: call it with the batch's context and a number. It does not fail. */
+typedef void (*FovealCullTask)(void *context, uint32_t index);
+
+/* Calls task(context, i) once for every i below `tasks`, in any order and on any threads, and returns
+ * when all are done. No task may be called after that. Must not throw. */
+typedef void (*FovealCullRun)(void *user, uint32_t tasks, FovealCullTask task, void *context);
+
+/* Announces that there will be work soon. Returns at once. Must not throw. */
+typedef void (*FovealCullWake)(void *user);
+
+/* A job system. Its functions are called from the thread that calls the library. */
+typedef struct FovealCullJobs {
+    /* sizeof(FovealCullJobs). */
+    uint32_t size;
+    /* Number of tasks that can run at once, 1 to 256. */
+    uint32_t count;
+    /* Passed to the functions. */
+    void *user;
+    /* Runs the tasks of a batch. */
+    FovealCullRun run;
+    /* May be null. */
+    FovealCullWake wake;
+} FovealCullJobs;
+
+/* Stats of a frame. */
+typedef struct FovealCullStats {
+    /* sizeof(FovealCullStats): set it before the call. */
+    uint32_t size;
+    /* 0. */
+    uint32_t reserved;
+    /* Enabled occluders in the set. */
+    uint64_t occluder_models;
+    /* Occluders of which at least one cluster was drawn. */
+    uint64_t occluder_models_rasterized;
+    /* Triangles of all enabled occluders. */
+    uint64_t occluder_triangles;
+    /* Triangles of the clusters that were drawn. */
+    uint64_t occluder_triangles_rasterized;
+    /* Convex polygons that survived set-up. */
+    uint64_t polygons_rasterized;
+    /* Clusters of all enabled occluders. */
+    uint64_t clusters;
+    /* Clusters that were drawn. */
+    uint64_t clusters_rasterized;
+    /* Clusters left out because the time was spent. */
+    uint64_t clusters_over_budget;
+} FovealCullStats;
+
+/* ---- Version and errors ---- */
+
+/* The version of the library: major << 24 | minor << 12 | patch. Below 1.0 a program must run with the
+ * minor version that it was compiled for. */
+uint32_t foveal_cull_version(void);
+
+/* The version of the library as text. */
+const char *foveal_cull_version_text(void);
+
+/* The text of a status, never null. */
+const char *foveal_cull_status_text(int32_t status);
+
+/* Copies the text of this thread's last failure, which says more than its status: at most `size` bytes
+ * with the final zero. Returns the bytes that all of it needs. `text` may be null. */
+size_t foveal_cull_last_error(char *text, size_t size);
+
+/* ---- Meshes: bake when a level loads, about 2.5 microseconds per triangle ---- */
+
+/* Fills a source with defaults: one-sided, with adjacency, 32-bit indices, stride 12, no triangles. */
+FovealCullStatus foveal_cull_mesh_source_init(FovealCullMeshSource *source);
+
+/* Bakes a mesh. The source's arrays are not needed afterwards. */
+FovealCullStatus foveal_cull_mesh_bake(const FovealCullMeshSource *source, FovealCullMesh **out);
+
+/* Bakes a box whose faces look outwards, min to max (three numbers each) in mesh space, metres. */
+FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, FovealCullMesh **out);
+
+/* Drops a mesh. Occluders that were made of it keep it. Null is nothing. */
+void foveal_cull_mesh_destroy(FovealCullMesh *mesh);
+
+/* The number of triangles, without degenerate ones; 0 for null. */
+size_t foveal_cull_mesh_triangle_count(const FovealCullMesh *mesh);
+
+/* ---- Occluders ---- */
+
+/* Makes an empty set. */
+FovealCullStatus foveal_cull_occluders_create(FovealCullOccluders **out);
+
+/* Drops a set with its occluders. Null is nothing. */
+void foveal_cull_occluders_destroy(FovealCullOccluders *occluders);
+
+/* Places a mesh in the world. `world_from_mesh` has twelve numbers: the columns x axis, y axis, z axis
+ * and translation; any affine map will do. Null is the identity. */
+FovealCullStatus foveal_cull_occluders_add(FovealCullOccluders *occluders, const FovealCullMesh *mesh,
+                                           const double *world_from_mesh, FovealCullOccluderId *out);
+
+/* Moves `count` occluders, with twelve numbers each. After an error none has moved. */
+FovealCullStatus foveal_cull_occluders_move(FovealCullOccluders *occluders, const FovealCullOccluderId *ids,
+                                            const double *world_from_mesh, size_t count);
+
+/* Switches an occluder off (0) or on (1). A new one is on. */
+FovealCullStatus foveal_cull_occluders_enable(FovealCullOccluders *occluders, FovealCullOccluderId id,
+                                              uint32_t enabled);
+
+/* Removes an occluder. Its id names nothing from then on. */
+FovealCullStatus foveal_cull_occluders_remove(FovealCullOccluders *occluders, FovealCullOccluderId id);
+
+/* Writes the number of occluders, whether on or off. */
+FovealCullStatus foveal_cull_occluders_count(const FovealCullOccluders *occluders, size_t *out);
+
+/* ---- Views ---- */
+
+/* The eye of a matrix from the world to clip space, 16 numbers, column-major. `depth` is a
+ * FovealCullDepth. The matrix may be perspective or orthographic, asymmetric, with the far plane at
+ * infinity, with y up or down, and for a right- or a left-handed world. In a left-handed world the rows
+ * of foveal_culler_read_depth count from the bottom. Refused are matrices that are singular or shear,
+ * and oblique near planes. */
+FovealCullStatus foveal_cull_eye_from_matrix(const double *clip_from_world, uint32_t depth, FovealCullEye *out);
+
+/* The same with a matrix of floats. It loses what the renderer's own loses far from the world's origin;
+ * add the way to the position where matrices are relative to the camera. */
+FovealCullStatus foveal_cull_eye_from_matrix_f32(const float *clip_from_world, uint32_t depth, FovealCullEye *out);
+
+/* A symmetric perspective eye without a far plane. Position, target and up have three numbers each,
+ * world metres. `fov_y_rad` is the vertical field of view, `aspect` width over height. */
+FovealCullStatus foveal_cull_eye_look_at(const double *position, const double *target, const double *up,
+                                         double fov_y_rad, double aspect, double near_m, FovealCullEye *out);
+
+/* A view of one eye at its exact place. For two eyes set `eye_count` and `eyes[1]`. */
+FovealCullStatus foveal_cull_view_init(const FovealCullEye *eye, FovealCullView *out);
+
+/* ---- Threads ---- */
+
+/* Starts `count` - 1 threads; the calling thread is the last one. 1 to 256. */
+FovealCullStatus foveal_cull_threads_create(uint32_t count, FovealCullThreads **out);
+
+/* Joins the threads. Null is nothing. */
+void foveal_cull_threads_destroy(FovealCullThreads *threads);
+
+/* The threads as a job system, which lives as long as they do. */
+FovealCullStatus foveal_cull_threads_jobs(const FovealCullThreads *threads, FovealCullJobs *out);
+
+/* ---- Trees of boxes ---- */
+
+/* Builds a tree over `count` boxes of six floats each (min, then max), metres relative to `origin` (three
+ * numbers; null is zero). */
+FovealCullStatus foveal_cull_tree_build(const float *boxes, size_t count, const double *origin,
+                                        FovealCullTree **out);
+
+/* Takes new boxes for the same objects, moved or resized. */
+FovealCullStatus foveal_cull_tree_refit(FovealCullTree *tree, const float *boxes, size_t count);
+
+/* Drops a tree. Null is nothing. */
+void foveal_cull_tree_destroy(FovealCullTree *tree);
+
+/* ---- Cullers ---- */
+
+/* Fills options with the defaults. */
+FovealCullStatus foveal_cull_frame_options_init(FovealCullFrameOptions *options);
+
+/* Makes a culler with an occlusion buffer of this size: a quarter of the picture's per axis is the
+ * natural choice. 1 to 4,096 pixels per side. */
+FovealCullStatus foveal_culler_create(uint32_t width_px, uint32_t height_px, FovealCuller **out);
+
+/* Drops a culler. Null is nothing. */
+void foveal_culler_destroy(FovealCuller *culler);
+
+/* Writes the size of the buffer, pixels. */
+FovealCullStatus foveal_culler_size(const FovealCuller *culler, uint32_t *width_px, uint32_t *height_px);
+
+/* Begins a frame: clears the buffer and draws the occluders that the view can see. `options` may be null
+ * for the defaults, `jobs` for the calling thread alone. After an error everything is visible until the
+ * next good frame, unless `culler` itself was busy. */
+FovealCullStatus foveal_culler_rasterize(FovealCuller *culler, const FovealCullView *view,
+                                         const FovealCullOccluders *occluders,
+                                         const FovealCullFrameOptions *options, const FovealCullJobs *jobs);
+
+/* Classifies `count` boxes of six floats each (min, then max), metres relative to `origin` (three numbers;
+ * null is zero), against the last frame. `results` gets a FovealCullVisibility per box, one byte each. */
+FovealCullStatus foveal_culler_test_boxes(const FovealCuller *culler, const float *boxes, size_t count,
+                                          const double *origin, uint8_t *results);
+
+/* Classifies the boxes of a tree. `count` is the number of its boxes. */
+FovealCullStatus foveal_culler_test_tree(const FovealCuller *culler, const FovealCullTree *tree,
+                                         uint8_t *results, size_t count);
+
+/* Copies the depth of the last frame, row by row from the top left, for pictures while debugging:
+ * near / distance, or 1 at the near to 0 at the far plane if orthographic; 0 where nothing is proven.
+ * `count` is width * height. */
+FovealCullStatus foveal_culler_read_depth(const FovealCuller *culler, float *pixels, size_t count);
+
+/* Writes the stats of the last frame. Set `size` before. */
+FovealCullStatus foveal_culler_stats(const FovealCuller *culler, FovealCullStats *out);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,367 @@
+// foveal-cull for C++17: objects that free themselves, and errors as exceptions.
+//
+// foveal_cull.h says what the functions do. Without exceptions (-fno-exceptions) an error calls
+// FOVEAL_CULL_FAIL(status, text), which aborts unless it is defined before this header is included.
+//
+// Licence: MIT or Apache-2.0.
+#ifndef FOVEAL_CULL_HPP
+#define FOVEAL_CULL_HPP
+
+#include "foveal_cull.h"
+
+#include <array>
+#include <cstdint>
+#include <cstdlib>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace foveal {
+namespace cull {
+
+/// A call that failed.
+class Error : public std::runtime_error {
+public:
+    Error(FovealCullStatus status, const std::string &text) : std::runtime_error(text), status_(status) {}
+    FovealCullStatus status() const noexcept { return status_; }
+
+private:
+    FovealCullStatus status_;
+};
+
+#ifndef FOVEAL_CULL_FAIL
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+#define FOVEAL_CULL_FAIL(status, text) throw ::foveal::cull::Error((status), (text))
+#else
+#define FOVEAL_CULL_FAIL(status, text) std::abort()
+#endif
+#endif
+
+/// Throws an Error unless the status is FOVEAL_CULL_OK.
+inline void check(FovealCullStatus status) {
+    if (status == FOVEAL_CULL_OK) {
+        return;
+    }
+    std::string text(foveal_cull_last_error(nullptr, 0), '\0');
+    foveal_cull_last_error(&text[0], text.size());
+    text.resize(text.size() - 1);
+    FOVEAL_CULL_FAIL(status, text);
+}
+
+using OccluderId = FovealCullOccluderId;
+using Eye = FovealCullEye;
+using Options = FovealCullFrameOptions;
+using Point = std::array<double, 3>;
+/// The columns x axis, y axis, z axis and translation.
+using Affine = std::array<double, 12>;
+
+/// A box in metres, relative to an origin.
+struct Box {
+    float min[3];
+    float max[3];
+};
+static_assert(sizeof(Box) == 6 * sizeof(float), "boxes are six floats in a row");
+
+/// The result for one box. The bytes of the C interface.
+enum class Visibility : std::uint8_t {
+    visible = FOVEAL_CULL_VISIBLE,
+    outside = FOVEAL_CULL_OUTSIDE,
+    small = FOVEAL_CULL_SMALL,
+    occluded = FOVEAL_CULL_OCCLUDED,
+};
+
+/// The affine part of a column-major 4x4 matrix.
+template <class Number> Affine affine(const Number *column_major) {
+    Affine columns{};
+    for (std::size_t i = 0; i < 12; ++i) {
+        columns[i] = column_major[i / 3 * 4 + i % 3];
+    }
+    return columns;
+}
+
+/// The eye of a column-major matrix from the world to clip space.
+inline Eye eye_from_matrix(const double *clip_from_world, FovealCullDepth depth) {
+    Eye eye;
+    check(foveal_cull_eye_from_matrix(clip_from_world, depth, &eye));
+    return eye;
+}
+
+/// The same with floats.
+inline Eye eye_from_matrix(const float *clip_from_world, FovealCullDepth depth) {
+    Eye eye;
+    check(foveal_cull_eye_from_matrix_f32(clip_from_world, depth, &eye));
+    return eye;
+}
+
+/// A symmetric perspective eye without a far plane.
+inline Eye look_at(const Point &position, const Point &target, const Point &up, double fov_y_rad, double aspect,
+                   double near_m) {
+    Eye eye;
+    check(foveal_cull_eye_look_at(position.data(), target.data(), up.data(), fov_y_rad, aspect, near_m, &eye));
+    return eye;
+}
+
+/// The camera view of a frame: one eye or two, and how far they may move while the results hold.
+class View {
+public:
+    View(const Eye &eye, double validity_radius_m = 0.0) {
+        check(foveal_cull_view_init(&eye, &view_));
+        view_.validity_radius_m = validity_radius_m;
+    }
+    View(const Eye &left, const Eye &right, double validity_radius_m = 0.0) : View(left, validity_radius_m) {
+        view_.eye_count = 2;
+        view_.eyes[1] = right;
+    }
+    const FovealCullView *get() const noexcept { return &view_; }
+
+private:
+    FovealCullView view_;
+};
+
+/// Options with the defaults.
+inline Options default_options() {
+    Options options;
+    check(foveal_cull_frame_options_init(&options));
+    return options;
+}
+
+namespace detail {
+template <class T, void (*destroy)(T *)> struct Destroy {
+    void operator()(T *object) const noexcept { destroy(object); }
+};
+template <class T, void (*destroy)(T *)> using Handle = std::unique_ptr<T, Destroy<T, destroy>>;
+} // namespace detail
+
+/// A baked mesh.
+class Mesh {
+public:
+    /// Bakes triangles: three floats per position, `stride` bytes apart.
+    template <class Index>
+    Mesh(const float *positions, std::size_t position_count, std::size_t stride, const Index *indices,
+         std::size_t index_count, bool two_sided = false, bool adjacency = true) {
+        static_assert(sizeof(Index) == 2 || sizeof(Index) == 4, "indices have 16 or 32 bits");
+        FovealCullMeshSource source;
+        check(foveal_cull_mesh_source_init(&source));
+        source.positions = positions;
+        source.position_count = position_count;
+        source.position_stride = stride;
+        source.indices = indices;
+        source.index_count = index_count;
+        source.index_bytes = sizeof(Index);
+        source.two_sided = two_sided ? 1 : 0;
+        source.adjacency = adjacency ? 1 : 0;
+        FovealCullMesh *mesh = nullptr;
+        check(foveal_cull_mesh_bake(&source, &mesh));
+        mesh_.reset(mesh);
+    }
+    /// A box whose faces look outwards.
+    static Mesh box(const Box &bounds) {
+        FovealCullMesh *mesh = nullptr;
+        check(foveal_cull_mesh_from_box(bounds.min, bounds.max, &mesh));
+        return Mesh(mesh);
+    }
+    std::size_t triangle_count() const noexcept { return foveal_cull_mesh_triangle_count(mesh_.get()); }
+    const FovealCullMesh *get() const noexcept { return mesh_.get(); }
+
+private:
+    explicit Mesh(FovealCullMesh *mesh) : mesh_(mesh) {}
+    detail::Handle<FovealCullMesh, foveal_cull_mesh_destroy> mesh_;
+};
+
+/// A set of occluders.
+class Occluders {
+public:
+    Occluders() {
+        FovealCullOccluders *set = nullptr;
+        check(foveal_cull_occluders_create(&set));
+        set_.reset(set);
+    }
+    OccluderId add(const Mesh &mesh) { return add(mesh, nullptr); }
+    OccluderId add(const Mesh &mesh, const Affine &world_from_mesh) { return add(mesh, world_from_mesh.data()); }
+    void move(OccluderId id, const Affine &world_from_mesh) {
+        check(foveal_cull_occluders_move(set_.get(), &id, world_from_mesh.data(), 1));
+    }
+    void move(const std::vector<OccluderId> &ids, const std::vector<Affine> &world_from_mesh) {
+        if (ids.size() != world_from_mesh.size()) {
+            FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many transforms as ids are needed");
+        }
+        const double *numbers = ids.empty() ? nullptr : world_from_mesh[0].data();
+        check(foveal_cull_occluders_move(set_.get(), ids.data(), numbers, ids.size()));
+    }
+    void enable(OccluderId id, bool enabled) {
+        check(foveal_cull_occluders_enable(set_.get(), id, enabled ? 1 : 0));
+    }
+    void remove(OccluderId id) { check(foveal_cull_occluders_remove(set_.get(), id)); }
+    std::size_t count() const {
+        std::size_t count = 0;
+        check(foveal_cull_occluders_count(set_.get(), &count));
+        return count;
+    }
+    const FovealCullOccluders *get() const noexcept { return set_.get(); }
+
+private:
+    OccluderId add(const Mesh &mesh, const double *world_from_mesh) {
+        OccluderId id;
+        check(foveal_cull_occluders_add(set_.get(), mesh.get(), world_from_mesh, &id));
+        return id;
+    }
+    detail::Handle<FovealCullOccluders, foveal_cull_occluders_destroy> set_;
+};
+static_assert(sizeof(Affine) == 12 * sizeof(double), "transforms are twelve doubles in a row");
+
+/// A hierarchy over boxes that are tested in many frames.
+class Tree {
+public:
+    explicit Tree(const std::vector<Box> &boxes, const Point &origin = {}) : count_(boxes.size()) {
+        FovealCullTree *tree = nullptr;
+        check(foveal_cull_tree_build(numbers(boxes), boxes.size(), origin.data(), &tree));
+        tree_.reset(tree);
+    }
+    void refit(const std::vector<Box> &boxes) {
+        check(foveal_cull_tree_refit(tree_.get(), numbers(boxes), boxes.size()));
+    }
+    std::size_t size() const noexcept { return count_; }
+    const FovealCullTree *get() const noexcept { return tree_.get(); }
+
+private:
+    static const float *numbers(const std::vector<Box> &boxes) { return boxes.empty() ? nullptr : boxes[0].min; }
+    std::size_t count_;
+    detail::Handle<FovealCullTree, foveal_cull_tree_destroy> tree_;
+};
+
+/// Work that a frame is done by. Lives while a frame is rasterized.
+class Jobs {
+public:
+    const FovealCullJobs *get() const noexcept { return &jobs_; }
+    virtual ~Jobs() = default;
+    /// Throws what a job system threw. The culler calls it after each frame.
+    virtual void rethrow() {}
+
+protected:
+    Jobs() = default;
+    Jobs(const Jobs &) = delete;
+    Jobs &operator=(const Jobs &) = delete;
+    FovealCullJobs jobs_{};
+};
+
+/// The engine's own job system: `run(tasks, task)` calls task(i) once for every i below `tasks`, in any
+/// order and on any threads, and returns when all are done.
+class JobSystem : public Jobs {
+public:
+    using Task = std::function<void(std::uint32_t)>;
+    using Run = std::function<void(std::uint32_t, const Task &)>;
+
+    JobSystem(std::uint32_t count, Run run) : run_(std::move(run)) {
+        jobs_.size = sizeof jobs_;
+        jobs_.count = count;
+        jobs_.user = this;
+        jobs_.run = [](void *user, std::uint32_t tasks, FovealCullTask task, void *context) {
+            static_cast<JobSystem *>(user)->all(tasks, task, context);
+        };
+    }
+    void rethrow() override {
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+        if (thrown_) {
+            std::rethrow_exception(std::exchange(thrown_, nullptr));
+        }
+#endif
+    }
+
+private:
+    // No exception may cross C: what was not run the library runs itself.
+    void all(std::uint32_t tasks, FovealCullTask task, void *context) noexcept {
+#if defined(__cpp_exceptions) || defined(_CPPUNWIND)
+        try {
+            run_(tasks, [=](std::uint32_t i) { task(context, i); });
+        } catch (...) {
+            thrown_ = std::current_exception();
+        }
+#else
+        run_(tasks, [=](std::uint32_t i) { task(context, i); });
+#endif
+    }
+    Run run_;
+    std::exception_ptr thrown_;
+};
+
+/// Threads of the library.
+class Threads : public Jobs {
+public:
+    explicit Threads(std::uint32_t count) {
+        FovealCullThreads *threads = nullptr;
+        check(foveal_cull_threads_create(count, &threads));
+        threads_.reset(threads);
+        check(foveal_cull_threads_jobs(threads, &jobs_));
+    }
+
+private:
+    detail::Handle<FovealCullThreads, foveal_cull_threads_destroy> threads_;
+};
+
+/// A culler with its occlusion buffer. Tests may run on many threads at once.
+class Culler {
+public:
+    Culler(std::uint32_t width_px, std::uint32_t height_px) {
+        FovealCuller *culler = nullptr;
+        check(foveal_culler_create(width_px, height_px, &culler));
+        culler_.reset(culler);
+    }
+    /// Begins a frame on the calling thread.
+    void rasterize(const View &view, const Occluders &occluders, const Options &options = default_options()) {
+        check(foveal_culler_rasterize(culler_.get(), view.get(), occluders.get(), &options, nullptr));
+    }
+    /// Begins a frame on the threads of `jobs`.
+    void rasterize(const View &view, const Occluders &occluders, Jobs &jobs,
+                   const Options &options = default_options()) {
+        const FovealCullStatus status =
+            foveal_culler_rasterize(culler_.get(), view.get(), occluders.get(), &options, jobs.get());
+        jobs.rethrow();
+        check(status);
+    }
+    void test(const Box *boxes, std::size_t count, Visibility *results, const Point &origin = {}) const {
+        const float *numbers = count == 0 ? nullptr : boxes->min;
+        check(foveal_culler_test_boxes(culler_.get(), numbers, count, origin.data(),
+                                       reinterpret_cast<std::uint8_t *>(results)));
+    }
+    std::vector<Visibility> test(const std::vector<Box> &boxes, const Point &origin = {}) const {
+        std::vector<Visibility> results(boxes.size());
+        test(boxes.data(), boxes.size(), results.data(), origin);
+        return results;
+    }
+    std::vector<Visibility> test(const Tree &tree) const {
+        std::vector<Visibility> results(tree.size());
+        check(foveal_culler_test_tree(culler_.get(), tree.get(), reinterpret_cast<std::uint8_t *>(results.data()),
+                                      results.size()));
+        return results;
+    }
+    std::pair<std::uint32_t, std::uint32_t> size() const {
+        std::uint32_t width = 0, height = 0;
+        check(foveal_culler_size(culler_.get(), &width, &height));
+        return {width, height};
+    }
+    /// Row by row from the top left; 0 where nothing is proven.
+    std::vector<float> depth() const {
+        const auto sides = size();
+        std::vector<float> pixels(static_cast<std::size_t>(sides.first) * sides.second);
+        check(foveal_culler_read_depth(culler_.get(), pixels.data(), pixels.size()));
+        return pixels;
+    }
+    FovealCullStats stats() const {
+        FovealCullStats stats{};
+        stats.size = sizeof stats;
+        check(foveal_culler_stats(culler_.get(), &stats));
+        return stats;
+    }
+
+private:
+    detail::Handle<FovealCuller, foveal_culler_destroy> culler_;
+};
+
+} // namespace cull
+} // namespace foveal
+
+#endif

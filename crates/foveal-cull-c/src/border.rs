@@ -1,0 +1,240 @@
+//! From pointers to references: the checks that every argument from C passes.
+#![allow(unsafe_code, reason = "pointers from C; see the SAFETY lines")]
+
+use crate::status::{Fault, FovealCullStatus};
+use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
+
+/// Types for which any bits that C can write are a value.
+///
+/// # Safety
+/// No bit pattern may be invalid.
+pub(crate) unsafe trait Plain: Copy {}
+
+// SAFETY: every pattern is a number.
+unsafe impl Plain for f32 {}
+// SAFETY: every pattern is a number.
+unsafe impl Plain for f64 {}
+// SAFETY: every pattern is a number.
+unsafe impl Plain for u8 {}
+// SAFETY: arrays of numbers.
+unsafe impl<T: Plain, const N: usize> Plain for [T; N] {}
+// SAFETY: six numbers.
+unsafe impl Plain for foveal_cull::Aabb {}
+
+/// Sizes above this are no size of a struct, but memory that was not initialized.
+const LARGEST_STRUCT: usize = 4096;
+
+fn check<T>(pointer: *const T, name: &str) -> Result<(), Fault> {
+    if pointer.is_null() {
+        return Err(Fault::new(
+            FovealCullStatus::NullPointer,
+            format!("'{name}' is null"),
+        ));
+    }
+    if !pointer.is_aligned() {
+        return Err(Fault::argument(format!("'{name}' is not aligned")));
+    }
+    Ok(())
+}
+
+/// An object by its handle.
+///
+/// # Safety
+/// The pointer is null, or names an object that nothing destroys or changes during `'a`.
+pub(crate) unsafe fn object<'a, T>(pointer: *const T, name: &str) -> Result<&'a T, Fault> {
+    check(pointer, name)?;
+    // SAFETY: not null and aligned, and the caller says that the object lives.
+    Ok(unsafe { &*pointer })
+}
+
+/// A list that is read.
+///
+/// # Safety
+/// The pointer is null, or names `length` values that nothing changes during `'a`.
+pub(crate) unsafe fn list<'a, T: Plain>(
+    pointer: *const T,
+    length: usize,
+    name: &str,
+) -> Result<&'a [T], Fault> {
+    if length == 0 {
+        return Ok(&[]);
+    }
+    check(pointer, name)?;
+    fits::<T>(length, name)?;
+    // SAFETY: not null, aligned, at most isize::MAX bytes; the caller says that the values are
+    // there, and any bits are a value.
+    Ok(unsafe { core::slice::from_raw_parts(pointer, length) })
+}
+
+/// A list that is written, filled with zeros first: C need not have initialized it.
+///
+/// # Safety
+/// The pointer is null, or `length` values can be written to it that nothing else uses during `'a`.
+/// Zero bytes are a value of `T`.
+pub(crate) unsafe fn zeroed_list<'a, T>(
+    pointer: *mut T,
+    length: usize,
+    name: &str,
+) -> Result<&'a mut [T], Fault> {
+    if length == 0 {
+        return Ok(&mut []);
+    }
+    check(pointer, name)?;
+    fits::<T>(length, name)?;
+    // SAFETY: not null, aligned, at most isize::MAX bytes, and the caller says that they can be
+    // written. After that they are values of `T`.
+    Ok(unsafe {
+        pointer.write_bytes(0, length);
+        core::slice::from_raw_parts_mut(pointer, length)
+    })
+}
+
+fn fits<T>(length: usize, name: &str) -> Result<(), Fault> {
+    if length > isize::MAX as usize / size_of::<T>().max(1) {
+        return Err(Fault::argument(format!("'{name}' has too many elements")));
+    }
+    Ok(())
+}
+
+/// Checks a place for a result.
+pub(crate) fn check_out<T>(pointer: *const T, name: &str) -> Result<(), Fault> {
+    check(pointer, name)
+}
+
+/// Writes a result.
+///
+/// # Safety
+/// The pointer is null, or a `T` can be written to it.
+pub(crate) unsafe fn put<T>(pointer: *mut T, value: T, name: &str) -> Result<(), Fault> {
+    check(pointer, name)?;
+    // SAFETY: not null and aligned; the caller says that it can be written.
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+/// Reads a struct that begins with its size in bytes, as the caller's version of the header has it.
+/// Fields that the caller's version lacks keep the value of `default`; fields that this version
+/// lacks must be zero.
+///
+/// # Safety
+/// The pointer is null, or names as many bytes as the struct's first field says.
+pub(crate) unsafe fn sized<T: Plain>(
+    pointer: *const T,
+    least: usize,
+    default: T,
+    name: &str,
+) -> Result<T, Fault> {
+    check(pointer, name)?;
+    // SAFETY: not null and aligned; the first field is a u32 that is there in every version.
+    let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    let wrong = |why: &str| {
+        let text = format!("'{name}' has the size {size}, {why}");
+        Err(Fault::new(FovealCullStatus::BadStructSize, text))
+    };
+    if size < least {
+        return wrong("which is too small: set it to sizeof");
+    }
+    if size > LARGEST_STRUCT {
+        return wrong("which is too large: set it to sizeof");
+    }
+    let known = size.min(size_of::<T>());
+    let mut value = default;
+    // SAFETY: `known` bytes are there by the caller's word, and fit into `value`, for which any
+    // bits are a value.
+    unsafe {
+        let to = (&raw mut value).cast::<u8>();
+        core::ptr::copy_nonoverlapping(pointer.cast::<u8>(), to, known);
+    }
+    // SAFETY: the caller says that `size` bytes are there.
+    let newer = unsafe { list(pointer.cast::<u8>().add(known), size - known, name) }?;
+    if newer.iter().any(|b| *b != 0) {
+        return wrong("and uses fields that this version of the library does not know");
+    }
+    Ok(value)
+}
+
+/// Writes a struct that begins with its size, as far as the caller's version of the header has it.
+///
+/// # Safety
+/// The pointer is null, or names as many bytes as the struct's first field says, which can be
+/// written.
+pub(crate) unsafe fn put_sized<T: Plain>(
+    pointer: *mut T,
+    least: usize,
+    value: &T,
+    name: &str,
+) -> Result<(), Fault> {
+    check(pointer, name)?;
+    // SAFETY: not null and aligned; the first field is a u32 that is there in every version.
+    let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    if !(least..=LARGEST_STRUCT).contains(&size) {
+        return Err(Fault::new(
+            FovealCullStatus::BadStructSize,
+            format!("'{name}' has the size {size}: set it to sizeof"),
+        ));
+    }
+    let header = size_of::<u32>();
+    let known = size.min(size_of::<T>());
+    // SAFETY: `size` bytes can be written by the caller's word; `known` of them are in `value`. The
+    // size stays the caller's.
+    unsafe {
+        let (from, to) = (
+            core::ptr::from_ref(value).cast::<u8>(),
+            pointer.cast::<u8>(),
+        );
+        core::ptr::copy_nonoverlapping(from.add(header), to.add(header), known - header);
+        to.add(known).write_bytes(0, size - known);
+    }
+    Ok(())
+}
+
+/// Hands an object over to C.
+///
+/// # Safety
+/// The pointer is null, or a pointer can be written to it.
+pub(crate) unsafe fn give<T>(
+    to: *mut *mut T,
+    make: impl FnOnce() -> Result<T, Fault>,
+) -> Result<(), Fault> {
+    check(to, "out")?;
+    // SAFETY: checked above, and the caller's word.
+    unsafe { to.write(core::ptr::null_mut()) };
+    let object = Box::into_raw(Box::new(make()?));
+    // SAFETY: as above.
+    unsafe { to.write(object) };
+    Ok(())
+}
+
+/// Takes an object back from C and drops it. Null is nothing.
+///
+/// # Safety
+/// The pointer is null, or comes from [`give`] and is used no more.
+pub(crate) unsafe fn take<T>(object: *mut T) {
+    if object.is_null() {
+        return;
+    }
+    crate::status::guard(|| {
+        // SAFETY: it comes from `Box::into_raw`, and nobody else has it.
+        drop(unsafe { Box::from_raw(object) });
+        Ok(())
+    });
+}
+
+/// Access to an object that changes nothing.
+pub(crate) fn read<T>(lock: &RwLock<T>) -> Result<RwLockReadGuard<'_, T>, Fault> {
+    match lock.try_read() {
+        Ok(guard) => Ok(guard),
+        // A call panicked; what it left is usable, see `Culler::rasterize`.
+        Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+        Err(TryLockError::WouldBlock) => Err(Fault::busy()),
+    }
+}
+
+/// Access to an object that changes it.
+pub(crate) fn write<T>(lock: &RwLock<T>) -> Result<RwLockWriteGuard<'_, T>, Fault> {
+    match lock.try_write() {
+        Ok(guard) => Ok(guard),
+        Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+        Err(TryLockError::WouldBlock) => Err(Fault::busy()),
+    }
+}

@@ -1,0 +1,224 @@
+//! Cullers: rasterize, then test.
+#![allow(unsafe_code, reason = "functions for C; see the SAFETY lines")]
+
+use crate::border;
+use crate::frame::{Clock, FovealCullFrameOptions, FovealCullStats};
+use crate::jobs::{CallerJobs, FovealCullJobs};
+use crate::occluders::FovealCullOccluders;
+use crate::place;
+use crate::status::{Fault, FovealCullStatus, guard};
+use crate::tree::FovealCullTree;
+use crate::view::{self, FovealCullView};
+use foveal_cull::{Aabb, Budget, Culler, Visibility};
+use std::sync::RwLock;
+
+/// A culler with its occlusion buffer.
+#[derive(Debug)]
+pub struct FovealCuller(RwLock<Culler>);
+
+/// The result for one box, one byte each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub enum FovealCullVisibility {
+    /// May be seen: draw it.
+    Visible = 0,
+    /// Outside the view frustum.
+    Outside = 1,
+    /// Below the size threshold.
+    Small = 2,
+    /// Hidden behind occluders.
+    Occluded = 3,
+}
+
+const _: () = {
+    assert!(FovealCullVisibility::Visible as u32 == Visibility::Visible as u32);
+    assert!(FovealCullVisibility::Outside as u32 == Visibility::Outside as u32);
+    assert!(FovealCullVisibility::Small as u32 == Visibility::Small as u32);
+    assert!(FovealCullVisibility::Occluded as u32 == Visibility::Occluded as u32);
+    assert!(size_of::<Visibility>() == 1);
+};
+
+/// Makes a culler with an occlusion buffer of this size.
+///
+/// # Safety
+/// `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_create(
+    width_px: u32,
+    height_px: u32,
+    out: *mut *mut FovealCuller,
+) -> FovealCullStatus {
+    let make = || Ok(FovealCuller(RwLock::new(Culler::new(width_px, height_px)?)));
+    // SAFETY: the caller's word.
+    guard(|| unsafe { border::give(out, make) })
+}
+
+/// Drops a culler. Null is nothing.
+///
+/// # Safety
+/// `culler` is null or comes from this library, and is used no more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_destroy(culler: *mut FovealCuller) {
+    // SAFETY: the caller's word.
+    unsafe { border::take(culler) };
+}
+
+/// Writes the size of the buffer, pixels.
+///
+/// # Safety
+/// `culler` is null or lives; the others are null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_size(
+    culler: *const FovealCuller,
+    width_px: *mut u32,
+    height_px: *mut u32,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let culler = border::object(culler, "culler")?;
+            let (width, height) = border::read(&culler.0)?.size();
+            border::put(width_px, width, "width_px")?;
+            border::put(height_px, height, "height_px")
+        }
+    })
+}
+
+/// Begins a frame: clears the buffer and draws the occluders that the view can see. After an error
+/// everything is visible until the next good frame, unless `culler` itself was busy.
+///
+/// # Safety
+/// Handles are null or live; structs are null or as described.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_rasterize(
+    culler: *mut FovealCuller,
+    view: *const FovealCullView,
+    occluders: *const FovealCullOccluders,
+    options: *const FovealCullFrameOptions,
+    jobs: *const FovealCullJobs,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        let culler = unsafe { border::object(culler, "culler") }?;
+        let mut culler = border::write(&culler.0)?;
+        let mut frame = || -> Result<(), Fault> {
+            // SAFETY: the caller's word.
+            let (view, occluders, options, jobs) = unsafe {
+                (
+                    view::view(view)?,
+                    border::object(occluders, "occluders")?,
+                    FovealCullFrameOptions::read(options)?,
+                    CallerJobs::read(jobs)?,
+                )
+            };
+            let set = border::read(&occluders.set)?;
+            let clock = options.clock.map(|read| Clock {
+                read,
+                user: options.clock_user,
+            });
+            let now = || clock.as_ref().map_or(0, Clock::now);
+            let budget = clock
+                .is_some()
+                .then(|| Budget::new(&now, options.deadline_ns));
+            let plain = options.plain().with_budget(budget);
+            culler.rasterize(&view, &set, &plain, CallerJobs::threads(&jobs))?;
+            Ok(())
+        };
+        let done = frame();
+        if done.is_err() {
+            culler.clear();
+        }
+        done
+    })
+}
+
+/// Classifies boxes against the last frame.
+///
+/// # Safety
+/// `culler` is null or lives; `boxes` is null or `6 * count` numbers; `origin` is null or three;
+/// `results` is null, or `count` bytes can be written to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_test_boxes(
+    culler: *const FovealCuller,
+    boxes: *const f32,
+    count: usize,
+    origin: *const f64,
+    results: *mut u8,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word; zero is `Visibility::Visible`.
+        let (culler, boxes, origin, results) = unsafe {
+            (
+                border::object(culler, "culler")?,
+                border::list(boxes.cast::<Aabb>(), count, "boxes")?,
+                place::origin(origin)?,
+                border::zeroed_list(results.cast::<Visibility>(), count, "results")?,
+            )
+        };
+        Ok(border::read(&culler.0)?.query(boxes, origin, results)?)
+    })
+}
+
+/// Classifies a tree of boxes against the last frame.
+///
+/// # Safety
+/// Handles are null or live; `results` is null, or `count` bytes can be written to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_test_tree(
+    culler: *const FovealCuller,
+    tree: *const FovealCullTree,
+    results: *mut u8,
+    count: usize,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word; zero is `Visibility::Visible`.
+        let (culler, tree, results) = unsafe {
+            (
+                border::object(culler, "culler")?,
+                border::object(tree, "tree")?,
+                border::zeroed_list(results.cast::<Visibility>(), count, "results")?,
+            )
+        };
+        let tree = border::read(&tree.0)?;
+        Ok(border::read(&culler.0)?.query_tree(&tree, results)?)
+    })
+}
+
+/// Copies the depth of the last frame, row by row from the top left.
+///
+/// # Safety
+/// `culler` is null or lives; `pixels` is null, or `count` floats can be written to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_read_depth(
+    culler: *const FovealCuller,
+    pixels: *mut f32,
+    count: usize,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let culler = border::object(culler, "culler")?;
+            let pixels = border::zeroed_list(pixels, count, "pixels")?;
+            Ok(border::read(&culler.0)?.read_depth(pixels)?)
+        }
+    })
+}
+
+/// Writes the stats of the last frame.
+///
+/// # Safety
+/// `culler` is null or lives; `out` is null or as described.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_stats(
+    culler: *const FovealCuller,
+    out: *mut FovealCullStats,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let culler = border::object(culler, "culler")?;
+            let stats = border::read(&culler.0)?.stats();
+            FovealCullStats::put(out, &stats)
+        }
+    })
+}

@@ -1,0 +1,173 @@
+//! Options and stats of a frame.
+#![allow(unsafe_code, reason = "functions for C; see the SAFETY lines")]
+
+use crate::border::{self, Plain};
+use crate::status::{Fault, FovealCullStatus, guard};
+use core::ffi::c_void;
+use foveal_cull::{CullStats, FrameOptions};
+
+/// Thresholds and switches of one frame.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct FovealCullFrameOptions {
+    /// sizeof(FovealCullFrameOptions).
+    pub size: u32,
+    /// 1: occluders are drawn. 0: frustum and size only.
+    pub occlusion: u32,
+    /// Size threshold for occluders, 0 takes all.
+    pub occluder_size_threshold: f32,
+    /// Least screen area of a cluster, pixels per quad, 0 takes all.
+    pub occluder_pixels_per_quad: f32,
+    /// Size threshold for occludees, 0 culls none by size.
+    pub occludee_size_threshold: f32,
+    /// 0.
+    pub reserved: u32,
+    /// Reads a clock, nanoseconds; null for no time limit. Called from the threads of the jobs.
+    pub clock: Option<extern "C" fn(user: *mut c_void) -> u64>,
+    /// Passed to `clock`.
+    pub clock_user: *mut c_void,
+    /// Clock reading at or after which no further cluster is begun.
+    pub deadline_ns: u64,
+}
+
+// SAFETY: numbers and pointers; C writes a function or null to `clock`.
+unsafe impl Plain for FovealCullFrameOptions {}
+
+/// Stats of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(C)]
+pub struct FovealCullStats {
+    /// sizeof(FovealCullStats).
+    pub size: u32,
+    /// 0.
+    pub reserved: u32,
+    /// Enabled occluders in the set.
+    pub occluder_models: u64,
+    /// Occluders of which at least one cluster was drawn.
+    pub occluder_models_rasterized: u64,
+    /// Triangles of all enabled occluders.
+    pub occluder_triangles: u64,
+    /// Triangles of the clusters that were drawn.
+    pub occluder_triangles_rasterized: u64,
+    /// Convex polygons that survived set-up.
+    pub polygons_rasterized: u64,
+    /// Clusters of all enabled occluders.
+    pub clusters: u64,
+    /// Clusters that were drawn.
+    pub clusters_rasterized: u64,
+    /// Clusters left out because the time was spent.
+    pub clusters_over_budget: u64,
+}
+
+// SAFETY: numbers.
+unsafe impl Plain for FovealCullStats {}
+
+/// Size of the first version of a struct: those may not be smaller.
+const FIRST_STATS: usize = size_of::<FovealCullStats>();
+const FIRST_OPTIONS: usize = size_of::<FovealCullFrameOptions>();
+
+impl FovealCullFrameOptions {
+    fn new() -> Self {
+        let default = FrameOptions::default();
+        Self {
+            size: size_of::<Self>() as u32,
+            occlusion: default.occlusion.into(),
+            occluder_size_threshold: default.occluder_size_threshold,
+            occluder_pixels_per_quad: default.occluder_pixels_per_quad,
+            occludee_size_threshold: default.occludee_size_threshold,
+            reserved: 0,
+            clock: None,
+            clock_user: core::ptr::null_mut(),
+            deadline_ns: 0,
+        }
+    }
+
+    /// Reads options; null gives the defaults.
+    ///
+    /// # Safety
+    /// The pointer is null, or names as many bytes as the struct says.
+    pub(crate) unsafe fn read(pointer: *const Self) -> Result<Self, Fault> {
+        if pointer.is_null() {
+            return Ok(Self::new());
+        }
+        // SAFETY: the caller's word.
+        let options = unsafe { border::sized(pointer, FIRST_OPTIONS, Self::new(), "options") }?;
+        if options.occlusion > 1 || options.reserved != 0 {
+            return Err(Fault::argument("'occlusion' or 'reserved' of the options"));
+        }
+        let thresholds = [
+            options.occluder_size_threshold,
+            options.occluder_pixels_per_quad,
+            options.occludee_size_threshold,
+        ];
+        if !thresholds.iter().all(|t| t.is_finite() && *t >= 0.0) {
+            return Err(Fault::new(
+                FovealCullStatus::NotFinite,
+                "a threshold of the options must be finite and not negative",
+            ));
+        }
+        Ok(options)
+    }
+
+    /// The options without the time limit.
+    pub(crate) fn plain(&self) -> FrameOptions<'static> {
+        FrameOptions::default()
+            .with_occlusion(self.occlusion == 1)
+            .with_occluder_size_threshold(self.occluder_size_threshold)
+            .with_occluder_pixels_per_quad(self.occluder_pixels_per_quad)
+            .with_occludee_size_threshold(self.occludee_size_threshold)
+    }
+}
+
+/// A clock of the caller's.
+pub(crate) struct Clock {
+    pub(crate) read: extern "C" fn(user: *mut c_void) -> u64,
+    pub(crate) user: *mut c_void,
+}
+
+// SAFETY: the header asks for a clock that may be read from any thread of the jobs.
+unsafe impl Sync for Clock {}
+
+impl Clock {
+    pub(crate) fn now(&self) -> u64 {
+        (self.read)(self.user)
+    }
+}
+
+impl FovealCullStats {
+    fn of(s: &CullStats) -> Self {
+        Self {
+            size: size_of::<Self>() as u32,
+            reserved: 0,
+            occluder_models: s.occluder_models,
+            occluder_models_rasterized: s.occluder_models_rasterized,
+            occluder_triangles: s.occluder_triangles,
+            occluder_triangles_rasterized: s.occluder_triangles_rasterized,
+            polygons_rasterized: s.polygons_rasterized,
+            clusters: s.clusters,
+            clusters_rasterized: s.clusters_rasterized,
+            clusters_over_budget: s.clusters_over_budget,
+        }
+    }
+
+    /// Writes stats.
+    ///
+    /// # Safety
+    /// The pointer is null, or names as many bytes as the struct says, which can be written.
+    pub(crate) unsafe fn put(to: *mut Self, stats: &CullStats) -> Result<(), Fault> {
+        // SAFETY: the caller's word.
+        unsafe { border::put_sized(to, FIRST_STATS, &Self::of(stats), "out") }
+    }
+}
+
+/// Fills options with the defaults.
+///
+/// # Safety
+/// `options` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_frame_options_init(
+    options: *mut FovealCullFrameOptions,
+) -> FovealCullStatus {
+    // SAFETY: the caller's word.
+    guard(|| unsafe { border::put(options, FovealCullFrameOptions::new(), "options") })
+}

@@ -1,0 +1,215 @@
+//! Baked meshes.
+#![allow(unsafe_code, reason = "functions for C; see the SAFETY lines")]
+
+use crate::border::{self, Plain};
+use crate::status::{Fault, FovealCullStatus, guard};
+use core::ffi::c_void;
+use foveal_cull::{Aabb, BakeOptions, OccluderMesh};
+use std::sync::Arc;
+
+/// A baked mesh.
+#[derive(Debug)]
+pub struct FovealCullMesh(pub(crate) Arc<OccluderMesh>);
+
+/// Triangles to be baked.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct FovealCullMeshSource {
+    /// sizeof(FovealCullMeshSource).
+    pub size: u32,
+    /// Bytes of an index: 2 or 4.
+    pub index_bytes: u32,
+    /// x, y and z of the first vertex, metres. Need not be aligned.
+    pub positions: *const f32,
+    /// Number of vertices.
+    pub position_count: usize,
+    /// Bytes from one vertex to the next, at least 12.
+    pub position_stride: usize,
+    /// Three indices per triangle. Need not be aligned.
+    pub indices: *const c_void,
+    /// Number of indices.
+    pub index_count: usize,
+    /// 1: triangles occlude from behind too. 0: only from the front.
+    pub two_sided: u32,
+    /// 1: bake what results for two eyes or a radius need. 0: less memory and time.
+    pub adjacency: u32,
+}
+
+// SAFETY: numbers and pointers.
+unsafe impl Plain for FovealCullMeshSource {}
+
+impl FovealCullMeshSource {
+    const DEFAULT: Self = Self {
+        size: size_of::<Self>() as u32,
+        index_bytes: 4,
+        positions: core::ptr::null(),
+        position_count: 0,
+        position_stride: 12,
+        indices: core::ptr::null(),
+        index_count: 0,
+        two_sided: 0,
+        adjacency: 1,
+    };
+}
+
+/// The bytes of `count` elements of `size` bytes, `stride` bytes apart.
+///
+/// # Safety
+/// The pointer is null, or that many bytes are there and nothing changes them during `'a`.
+unsafe fn bytes<'a>(
+    pointer: *const c_void,
+    count: usize,
+    stride: usize,
+    size: usize,
+    name: &str,
+) -> Result<&'a [u8], Fault> {
+    let all = count
+        .saturating_sub(1)
+        .checked_mul(stride)
+        .and_then(|before| before.checked_add(if count == 0 { 0 } else { size }))
+        .ok_or_else(|| Fault::argument(format!("'{name}' has too many elements")))?;
+    // SAFETY: the caller's word.
+    unsafe { border::list(pointer.cast::<u8>(), all, name) }
+}
+
+/// `N` bytes at an offset that is within the list.
+fn at<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
+    core::array::from_fn(|i| bytes[offset + i])
+}
+
+/// # Safety
+/// Arrays and counts of the source belong together.
+unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
+    if source.position_stride < 12 {
+        return Err(Fault::argument("'position_stride' is less than 12 bytes"));
+    }
+    let index_bytes = match source.index_bytes {
+        2 => 2,
+        4 => 4,
+        _ => return Err(Fault::argument("'index_bytes' is neither 2 nor 4")),
+    };
+    for (value, name) in [
+        (source.two_sided, "two_sided"),
+        (source.adjacency, "adjacency"),
+    ] {
+        if value > 1 {
+            return Err(Fault::argument(format!("'{name}' is neither 0 nor 1")));
+        }
+    }
+    let (count, stride) = (source.position_count, source.position_stride);
+    // SAFETY: the caller's word.
+    let vertices = unsafe { bytes(source.positions.cast(), count, stride, 12, "positions") }?;
+    // SAFETY: the caller's word.
+    let indices = unsafe {
+        bytes(
+            source.indices,
+            source.index_count,
+            index_bytes,
+            index_bytes,
+            "indices",
+        )
+    }?;
+    let positions: Vec<[f32; 3]> = (0..count)
+        .map(|i| [0, 4, 8].map(|axis| f32::from_ne_bytes(at(vertices, i * stride + axis))))
+        .collect();
+    let indices: Vec<u32> = if index_bytes == 2 {
+        indices
+            .chunks_exact(2)
+            .map(|c| u16::from_ne_bytes(at(c, 0)).into())
+            .collect()
+    } else {
+        indices
+            .chunks_exact(4)
+            .map(|c| u32::from_ne_bytes(at(c, 0)))
+            .collect()
+    };
+    let options = BakeOptions::default()
+        .with_two_sided(source.two_sided == 1)
+        .with_adjacency(source.adjacency == 1);
+    Ok(OccluderMesh::bake(&positions, &indices, options)?)
+}
+
+/// Fills a source with defaults: one-sided, with adjacency, 32-bit indices, no triangles.
+///
+/// # Safety
+/// `source` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_source_init(
+    source: *mut FovealCullMeshSource,
+) -> FovealCullStatus {
+    // SAFETY: the caller's word.
+    guard(|| unsafe { border::put(source, FovealCullMeshSource::DEFAULT, "source") })
+}
+
+/// Bakes a mesh.
+///
+/// # Safety
+/// `source` is null or as described, and its arrays are as long as it says. `out` is null or can be
+/// written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_bake(
+    source: *const FovealCullMeshSource,
+    out: *mut *mut FovealCullMesh,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            border::give(out, || {
+                let (default, least) = (
+                    FovealCullMeshSource::DEFAULT,
+                    size_of::<FovealCullMeshSource>(),
+                );
+                let source = border::sized(source, least, default, "source")?;
+                Ok(FovealCullMesh(Arc::new(bake(&source)?)))
+            })
+        }
+    })
+}
+
+/// Bakes a box whose faces look outwards, `min` to `max` in mesh space, metres.
+///
+/// # Safety
+/// `min` and `max` are null or three numbers each. `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_from_box(
+    min: *const f32,
+    max: *const f32,
+    out: *mut *mut FovealCullMesh,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            border::give(out, || {
+                let min = *border::object(min.cast::<[f32; 3]>(), "min")?;
+                let max = *border::object(max.cast::<[f32; 3]>(), "max")?;
+                if (0..3).any(|k| min[k] > max[k]) {
+                    return Err(Fault::argument("'min' is larger than 'max'"));
+                }
+                Ok(FovealCullMesh(Arc::new(OccluderMesh::from_box(Aabb {
+                    min,
+                    max,
+                })?)))
+            })
+        }
+    })
+}
+
+/// Drops a mesh. Occluders that were made of it keep it. Null is nothing.
+///
+/// # Safety
+/// `mesh` is null or comes from this library, and is used no more.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_destroy(mesh: *mut FovealCullMesh) {
+    // SAFETY: the caller's word.
+    unsafe { border::take(mesh) };
+}
+
+/// The number of triangles, without degenerate ones; 0 for null.
+///
+/// # Safety
+/// `mesh` is null or lives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_triangle_count(mesh: *const FovealCullMesh) -> usize {
+    // SAFETY: the caller's word.
+    unsafe { border::object(mesh, "mesh") }.map_or(0, |m| m.0.triangle_count())
+}

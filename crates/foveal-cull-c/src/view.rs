@@ -1,0 +1,262 @@
+//! Eyes and views.
+#![allow(unsafe_code, reason = "functions for C; see the SAFETY lines")]
+
+use crate::border::{self, Plain};
+use crate::status::{Fault, FovealCullStatus, guard};
+use foveal_cull::{Affine, ClipDepth, CullError, Eye, Matrix4, Projection, View};
+
+/// The depths of the near and the far plane in clip space, z / w.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(C)]
+pub enum FovealCullDepth {
+    /// 0 at the near plane, 1 at the far plane: Vulkan, Direct3D, Metal, WebGPU.
+    ZeroToOne = 0,
+    /// 1 at the near plane, 0 at the far plane or at infinity: reversed depth.
+    OneToZero = 1,
+    /// -1 at the near plane, 1 at the far plane: OpenGL.
+    MinusOneToOne = 2,
+}
+
+impl FovealCullDepth {
+    fn from_number(number: u32) -> Result<ClipDepth, Fault> {
+        Ok(match number {
+            0 => ClipDepth::ZeroToOne,
+            1 => ClipDepth::OneToZero,
+            2 => ClipDepth::MinusOneToOne,
+            _ => return Err(Fault::argument("'depth' is no FovealCullDepth")),
+        })
+    }
+}
+
+/// One eye: a rigid pose and a frustum.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct FovealCullEye {
+    /// Columns: the eye's right, up and backward axes and its position (world, metres).
+    pub world_from_eye: [f64; 12],
+    /// Edges: tangents, or metres if orthographic.
+    pub left: f64,
+    /// As `left`.
+    pub right: f64,
+    /// As `left`.
+    pub bottom: f64,
+    /// As `left`.
+    pub top: f64,
+    /// Near distance, metres.
+    pub near_m: f64,
+    /// Far distance, metres; may be infinite unless orthographic.
+    pub far_m: f64,
+    /// 1: rays are parallel. 0: they meet in the eye.
+    pub orthographic: u32,
+    /// 0.
+    pub reserved: u32,
+}
+
+// SAFETY: numbers.
+unsafe impl Plain for FovealCullEye {}
+
+/// The camera view of a frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct FovealCullView {
+    /// sizeof(FovealCullView).
+    pub size: u32,
+    /// 1 or 2.
+    pub eye_count: u32,
+    /// The eye, or the left and the right one.
+    pub eyes: [FovealCullEye; 2],
+    /// Distance that each eye may move while the results hold, metres; 0 for the given places.
+    pub validity_radius_m: f64,
+}
+
+// SAFETY: numbers.
+unsafe impl Plain for FovealCullView {}
+
+impl FovealCullEye {
+    const NONE: Self = Self {
+        world_from_eye: [0.0; 12],
+        left: 0.0,
+        right: 0.0,
+        bottom: 0.0,
+        top: 0.0,
+        near_m: 0.0,
+        far_m: 0.0,
+        orthographic: 0,
+        reserved: 0,
+    };
+
+    fn of(eye: &Eye) -> Self {
+        let a = eye.world_from_eye;
+        let columns = [a.x_axis, a.y_axis, a.z_axis, a.translation];
+        let [left, right, bottom, top] = eye.projection.extents();
+        let [near_m, far_m] = eye.projection.near_far_m();
+        Self {
+            world_from_eye: core::array::from_fn(|i| columns[i / 3][i % 3]),
+            left,
+            right,
+            bottom,
+            top,
+            near_m,
+            far_m,
+            orthographic: eye.projection.is_orthographic().into(),
+            reserved: 0,
+        }
+    }
+
+    fn eye(&self) -> Result<Eye, Fault> {
+        let &Self {
+            left,
+            right,
+            bottom,
+            top,
+            near_m,
+            far_m,
+            ..
+        } = self;
+        let projection = match (self.orthographic, self.reserved) {
+            (0, 0) => Projection::Perspective {
+                left,
+                right,
+                bottom,
+                top,
+                near_m,
+                far_m,
+            },
+            (1, 0) => Projection::Orthographic {
+                left,
+                right,
+                bottom,
+                top,
+                near_m,
+                far_m,
+            },
+            _ => return Err(Fault::argument("'orthographic' or 'reserved' of an eye")),
+        };
+        let m = &self.world_from_eye;
+        let pose: [[f64; 3]; 4] = core::array::from_fn(|c| core::array::from_fn(|r| m[3 * c + r]));
+        Ok(Eye::new(Affine::from(pose), projection))
+    }
+}
+
+/// Reads a view.
+///
+/// # Safety
+/// The pointer is null, or names as many bytes as the struct says.
+pub(crate) unsafe fn view(pointer: *const FovealCullView) -> Result<View, Fault> {
+    let default = FovealCullView {
+        size: 0,
+        eye_count: 0,
+        eyes: [FovealCullEye::NONE; 2],
+        validity_radius_m: 0.0,
+    };
+    // SAFETY: the caller's word.
+    let view = unsafe { border::sized(pointer, size_of::<FovealCullView>(), default, "view") }?;
+    let first = view.eyes[0].eye()?;
+    let eyes = match view.eye_count {
+        1 => View::mono(first),
+        2 => View::stereo(first, view.eyes[1].eye()?),
+        _ => return Err(Fault::argument("'eye_count' is neither 1 nor 2")),
+    };
+    Ok(eyes.with_validity_radius(view.validity_radius_m))
+}
+
+fn from_matrix(matrix: Matrix4, depth: u32) -> Result<FovealCullEye, Fault> {
+    let depth = FovealCullDepth::from_number(depth)?;
+    Ok(FovealCullEye::of(&Eye::from_clip_from_world(
+        matrix, depth,
+    )?))
+}
+
+/// The eye of a matrix from the world to clip space, column-major.
+///
+/// # Safety
+/// `clip_from_world` is null or 16 numbers; `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_eye_from_matrix(
+    clip_from_world: *const f64,
+    depth: u32,
+    out: *mut FovealCullEye,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let matrix = border::object(clip_from_world.cast::<[f64; 16]>(), "clip_from_world")?;
+            border::put(out, from_matrix((*matrix).into(), depth)?, "out")
+        }
+    })
+}
+
+/// The same with a matrix of floats.
+///
+/// # Safety
+/// `clip_from_world` is null or 16 numbers; `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_eye_from_matrix_f32(
+    clip_from_world: *const f32,
+    depth: u32,
+    out: *mut FovealCullEye,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let matrix = border::object(clip_from_world.cast::<[f32; 16]>(), "clip_from_world")?;
+            border::put(out, from_matrix((*matrix).into(), depth)?, "out")
+        }
+    })
+}
+
+/// A symmetric perspective eye without a far plane.
+///
+/// # Safety
+/// `position`, `target` and `up` are null or three numbers each; `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_eye_look_at(
+    position: *const f64,
+    target: *const f64,
+    up: *const f64,
+    fov_y_rad: f64,
+    aspect: f64,
+    near_m: f64,
+    out: *mut FovealCullEye,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let position = *border::object(position.cast::<[f64; 3]>(), "position")?;
+            let target = *border::object(target.cast::<[f64; 3]>(), "target")?;
+            let up = *border::object(up.cast::<[f64; 3]>(), "up")?;
+            let frustum = Projection::perspective(fov_y_rad, aspect, near_m, f64::INFINITY);
+            let all = [position, target, up].concat();
+            if !all.iter().all(|v| v.is_finite()) {
+                let pose = CullError::NotFinite(foveal_cull::Quantity::Pose);
+                return Err(pose.into());
+            }
+            let eye = Eye::look_at(position, target, up, frustum);
+            border::put(out, FovealCullEye::of(&eye), "out")
+        }
+    })
+}
+
+/// A view of one eye at its exact place.
+///
+/// # Safety
+/// `eye` is null or an eye; `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_view_init(
+    eye: *const FovealCullEye,
+    out: *mut FovealCullView,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let eye = *border::object(eye, "eye")?;
+            let view = FovealCullView {
+                size: size_of::<FovealCullView>() as u32,
+                eye_count: 1,
+                eyes: [eye, FovealCullEye::NONE],
+                validity_radius_m: 0.0,
+            };
+            border::put(out, view, "out")
+        }
+    })
+}

@@ -1,0 +1,207 @@
+// The shim as a program uses it that was written for Masked Occlusion Culling. Ends with 0 if all is well.
+#include "moc_shim.hpp"
+
+#include <cstdio>
+#include <thread>
+
+namespace {
+
+int failures = 0;
+
+void expect(bool well, const char *what) {
+    if (!well) {
+        std::fprintf(stderr, "failed: %s\n", what);
+        ++failures;
+    }
+}
+
+struct Random {
+    std::uint64_t state;
+    double number(double low, double high) {
+        state = state * 6364136223846793005u + 1442695040888963407u;
+        return low + (high - low) * static_cast<double>(state >> 11) / 9007199254740992.0;
+    }
+};
+
+// 90 degrees, eye at the origin, along -z; x to the right, y up. Column-major.
+const float clip_from_model[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 0, 0, -0.2f, 0};
+
+void calls() {
+    MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create(MaskedOcclusionCulling::AVX2);
+    expect(moc->TestRect(-1, -1, 1, 1, 5) == MaskedOcclusionCulling::VISIBLE, "visible without a resolution");
+    moc->SetResolution(320, 192);
+    moc->SetNearClipPlane(0.1f);
+    unsigned int width = 0, height = 0;
+    moc->GetResolution(width, height);
+    expect(width == 320 && height == 192 && moc->GetNearClipPlane() == 0.1f, "what was set is given back");
+    moc->ClearBuffer();
+    // Counter-clockwise from the eye, 5 m away, tightly packed.
+    float wall[] = {-3, -3, -5, 3, -3, -5, 3, 3, -5, -3, 3, -5};
+    const unsigned int indices[] = {0, 1, 2, 0, 2, 3};
+    const MaskedOcclusionCulling::VertexLayout layout(12, 4, 8);
+    const auto draw = [&](MaskedOcclusionCulling::BackfaceWinding winding) {
+        return moc->RenderTriangles(wall, indices, 2, clip_from_model, winding, MaskedOcclusionCulling::CLIP_PLANE_ALL,
+                                    layout);
+    };
+    const auto behind = [&] { return moc->TestRect(-0.3f, -0.3f, 0.3f, 0.3f, 8); };
+    draw(MaskedOcclusionCulling::BACKFACE_CW);
+    expect(behind() == MaskedOcclusionCulling::OCCLUDED, "a rectangle behind the wall is occluded");
+    expect(moc->TestRect(-0.3f, -0.3f, 0.3f, 0.3f, 4) == MaskedOcclusionCulling::VISIBLE, "before it visible");
+    expect(moc->TestRect(-0.3f, -0.3f, 0.9f, 0.3f, 8) == MaskedOcclusionCulling::VISIBLE, "past its edge visible");
+    expect(moc->TestRect(1.2f, -0.3f, 1.5f, 0.3f, 8) == MaskedOcclusionCulling::VIEW_CULLED, "beside the picture");
+    expect(moc->TestRect(-0.3f, -0.3f, 0.3f, 0.3f, 0.05f) == MaskedOcclusionCulling::VISIBLE, "before the near plane");
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    expect(moc->TestRect(nan, -0.3f, 0.3f, 0.3f, 8) == MaskedOcclusionCulling::VISIBLE, "nan is visible");
+    expect(moc->TestRect(-0.3f, -0.3f, 0.3f, 0.3f, nan) == MaskedOcclusionCulling::VISIBLE, "nan is visible");
+    // Triangles to test: in front of the wall, behind it, beside the picture, and back faces.
+    const auto triangle = [&](float x, float z, MaskedOcclusionCulling::BackfaceWinding winding) {
+        const float points[] = {x, 0, z, x + 0.5f, 0, z, x, 0.5f, z};
+        return moc->TestTriangles(points, indices, 1, clip_from_model, winding, MaskedOcclusionCulling::CLIP_PLANE_ALL,
+                                  layout);
+    };
+    expect(triangle(0, -4, MaskedOcclusionCulling::BACKFACE_CW) == MaskedOcclusionCulling::VISIBLE, "triangle before");
+    expect(triangle(0, -9, MaskedOcclusionCulling::BACKFACE_CW) == MaskedOcclusionCulling::OCCLUDED, "triangle behind");
+    expect(triangle(40, -9, MaskedOcclusionCulling::BACKFACE_CW) == MaskedOcclusionCulling::VIEW_CULLED, "beside");
+    expect(triangle(0, -4, MaskedOcclusionCulling::BACKFACE_CCW) == MaskedOcclusionCulling::VIEW_CULLED, "back face");
+    expect(triangle(0, -4, MaskedOcclusionCulling::BACKFACE_NONE) == MaskedOcclusionCulling::VISIBLE, "two-sided");
+    // 1 / w.
+    std::vector<float> depth(320 * 192);
+    moc->ComputePixelDepthBuffer(depth.data(), true);
+    expect(std::fabs(depth[96 * 320 + 160] - 0.2f) < 1e-3f && depth[0] == -1.0f, "depth is 1 / w");
+
+    moc->ClearBuffer();
+    expect(behind() == MaskedOcclusionCulling::VISIBLE, "nothing hides after a clear");
+    draw(MaskedOcclusionCulling::BACKFACE_CCW);
+    expect(behind() == MaskedOcclusionCulling::VISIBLE, "a back face hides nothing");
+    draw(MaskedOcclusionCulling::BACKFACE_NONE);
+    expect(behind() == MaskedOcclusionCulling::OCCLUDED, "draws and tests alternate; two-sided hides");
+    // The same memory with other content is another mesh.
+    moc->ClearBuffer();
+    for (int i = 2; i < 12; i += 3) {
+        wall[i] = -12;
+    }
+    draw(MaskedOcclusionCulling::BACKFACE_CW);
+    expect(behind() == MaskedOcclusionCulling::VISIBLE, "the wall is behind the rectangle now");
+    expect(moc->TestRect(-0.2f, -0.2f, 0.2f, 0.2f, 14) == MaskedOcclusionCulling::OCCLUDED, "and hides what is behind");
+    // The same mesh twice in a frame, once in the next; meshes that are not drawn are forgotten.
+    const float right[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, -1, -1, 6, 0, -0.2f, 0};
+    const auto right_rect = [&] { return moc->TestRect(0.3f, -0.1f, 0.6f, 0.1f, 14); };
+    moc->RenderTriangles(wall, indices, 2, right, MaskedOcclusionCulling::BACKFACE_CW,
+                         MaskedOcclusionCulling::CLIP_PLANE_ALL, layout);
+    expect(right_rect() == MaskedOcclusionCulling::OCCLUDED, "the second one hides too");
+    for (int frame = 0; frame < 130; ++frame) {
+        moc->ClearBuffer();
+        draw(MaskedOcclusionCulling::BACKFACE_CW);
+        expect(right_rect() == MaskedOcclusionCulling::VISIBLE, "and is gone in the next frame");
+    }
+    // Clip-space vertices (x, y, z, w) without a matrix; a static mesh; threads of the library.
+    FovealCullThreads *threads = nullptr;
+    FovealCullJobs jobs;
+    expect(foveal_cull_threads_create(3, &threads) == FOVEAL_CULL_OK, "threads");
+    expect(foveal_cull_threads_jobs(threads, &jobs) == FOVEAL_CULL_OK, "threads as jobs");
+    moc->SetJobs(&jobs);
+    moc->SetStaticMeshes(true);
+    const float clip[] = {-3, -3, 0, 5, 3, -3, 0, 5, 3, 3, 0, 5, -3, 3, 0, 5};
+    for (int frame = 0; frame < 3; ++frame) {
+        moc->ClearBuffer();
+        moc->RenderTriangles(clip, indices, 2);
+        expect(behind() == MaskedOcclusionCulling::OCCLUDED, "clip space");
+    }
+    moc->SetJobs(nullptr);
+    foveal_cull_threads_destroy(threads);
+    // Tests from many threads; the first of them rasterizes.
+    moc->ClearBuffer();
+    moc->RenderTriangles(clip, indices, 2);
+    std::atomic<int> occluded{0};
+    std::vector<std::thread> many;
+    for (int i = 0; i < 4; ++i) {
+        many.emplace_back([&] {
+            for (int k = 0; k < 100; ++k) {
+                occluded += behind() == MaskedOcclusionCulling::OCCLUDED;
+            }
+        });
+    }
+    for (auto &thread : many) {
+        thread.join();
+    }
+    expect(occluded == 400, "all threads get the same result");
+    expect(moc->GetLastStatus() == FOVEAL_CULL_OK, "no call has failed");
+    const unsigned int beyond[] = {0, 1, 2};
+    const float broken[] = {nan, 0, 0, 1, 0, 0, 0, 1, 0};
+    moc->RenderTriangles(broken, beyond, 1, clip_from_model, MaskedOcclusionCulling::BACKFACE_CW,
+                         MaskedOcclusionCulling::CLIP_PLANE_ALL, layout);
+    expect(moc->GetLastStatus() == FOVEAL_CULL_NOT_FINITE, "a mesh with nan is refused");
+    expect(behind() == MaskedOcclusionCulling::OCCLUDED, "and the others still hide");
+    MaskedOcclusionCulling::Destroy(moc);
+}
+
+// Random triangles in clip space: what is called occluded is covered, at every pixel centre of the picture.
+int random_frames() {
+    const int width = 72, height = 52;
+    Random r{7};
+    int occluded = 0;
+    MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create();
+    moc->SetResolution(width, height);
+    for (int frame = 0; frame < 150; ++frame) {
+        moc->ClearBuffer();
+        float v[30][4];
+        unsigned int indices[30];
+        for (unsigned int i = 0; i < 30; ++i) {
+            const double w = r.number(1, 6);
+            v[i][0] = static_cast<float>(r.number(-1.6, 1.6) * w);
+            v[i][1] = static_cast<float>(r.number(-1.6, 1.6) * w);
+            v[i][2] = 0;
+            v[i][3] = static_cast<float>(w);
+            indices[i] = i;
+        }
+        moc->RenderTriangles(v[0], indices, 10, nullptr, MaskedOcclusionCulling::BACKFACE_CW);
+        for (int query = 0; query < 40; ++query) {
+            const double x = r.number(-1, 0.9), y = r.number(-1, 0.9);
+            const double w = r.number(4, 9), size = r.number(0.01, 0.3);
+            const float rect[] = {static_cast<float>(x), static_cast<float>(y), static_cast<float>(x + size),
+                                  static_cast<float>(y + size)};
+            const float wmin = static_cast<float>(w);
+            if (moc->TestRect(rect[0], rect[1], rect[2], rect[3], wmin) != MaskedOcclusionCulling::OCCLUDED) {
+                continue;
+            }
+            ++occluded;
+            for (int py = 0; py < height; ++py) {
+                for (int px = 0; px < width; ++px) {
+                    const double sx = (px + 0.5) / width * 2 - 1, sy = (py + 0.5) / height * 2 - 1;
+                    if (sx < rect[0] || sx > rect[2] || sy < rect[1] || sy > rect[3]) {
+                        continue;
+                    }
+                    bool covered = false;
+                    for (int t = 0; t < 30; t += 3) {
+                        // Weights of the corners in clip space.
+                        double a[3], sum = 0, depth = 0;
+                        for (int k = 0; k < 3; ++k) {
+                            const float *p = v[t + (k + 1) % 3], *q = v[t + (k + 2) % 3];
+                            a[k] = sx * (static_cast<double>(p[1]) * q[3] - static_cast<double>(p[3]) * q[1]) +
+                                   sy * (static_cast<double>(p[3]) * q[0] - static_cast<double>(p[0]) * q[3]) +
+                                   (static_cast<double>(p[0]) * q[1] - static_cast<double>(p[1]) * q[0]);
+                            sum += a[k];
+                            depth += a[k] * v[t + k][3];
+                        }
+                        const double tolerance = 1e-5;
+                        covered |= a[0] >= -tolerance && a[1] >= -tolerance && a[2] >= -tolerance && sum > 0 &&
+                                   depth / sum <= wmin * (1 + 1e-5);
+                    }
+                    expect(covered, "what is occluded is covered");
+                }
+            }
+        }
+    }
+    MaskedOcclusionCulling::Destroy(moc);
+    expect(occluded > 100, "enough is occluded");
+    return occluded;
+}
+
+} // namespace
+
+int main() {
+    calls();
+    const int occluded = random_frames();
+    std::printf("shim: %d random rectangles occluded, %d failures\n", occluded, failures);
+    return failures == 0 ? 0 : 1;
+}

@@ -1,0 +1,440 @@
+//! Random calls with good and bad arguments: every call gives the code that a model expects, and
+//! nothing crashes.
+//!
+//! Two seconds from seed 0. Longer, with the seeds that follow a number:
+//! `FOVEAL_FUZZ_SECONDS=600 FOVEAL_FUZZ_SEED=1000000 cargo test --release -p foveal-cull-c fuzz_`
+#![allow(
+    unsafe_code,
+    clippy::unwrap_used,
+    reason = "tests call the functions as C does, with pointers to their own variables"
+)]
+
+use core::ffi::c_void;
+use core::ptr::{null, null_mut};
+use foveal_cull_c::*;
+use std::time::{Duration, Instant};
+
+use FovealCullStatus as Status;
+
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+    fn below(&mut self, n: usize) -> usize {
+        (self.next() % n as u64) as usize
+    }
+    fn one_in(&mut self, n: usize) -> bool {
+        self.below(n) == 0
+    }
+    /// Mostly a number of a world; now and then an odd one.
+    fn number(&mut self) -> f64 {
+        match self.below(400) {
+            0 => f64::NAN,
+            1 => f64::INFINITY,
+            2 => -f64::INFINITY,
+            3 => f64::MAX,
+            4 => 1e-320,
+            5 => f64::from_bits(self.next()),
+            6..30 => 0.0,
+            _ => (self.next() >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0,
+        }
+    }
+    fn numbers<const N: usize>(&mut self) -> [f64; N] {
+        core::array::from_fn(|_| self.number())
+    }
+    fn place(&mut self) -> [f64; 12] {
+        if self.one_in(3) {
+            return self.numbers();
+        }
+        let [x, y, z] = self.numbers();
+        [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, x, y, z]
+    }
+    /// Null now and then.
+    fn or_null<T>(&mut self, pointer: *mut T) -> *mut T {
+        if self.one_in(40) { null_mut() } else { pointer }
+    }
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Id {
+    Lives,
+    Removed,
+}
+
+/// Objects of one run, and what is known about them.
+#[derive(Default)]
+struct World {
+    meshes: Vec<*mut FovealCullMesh>,
+    sets: Vec<*mut FovealCullOccluders>,
+    /// Ids that were given out, with the set's place in the list.
+    ids: Vec<(FovealCullOccluderId, usize, Id)>,
+    trees: Vec<(*mut FovealCullTree, usize)>,
+    cullers: Vec<(*mut FovealCuller, usize)>,
+    calls: [u64; 2],
+}
+
+extern "C" fn run_some(user: *mut c_void, tasks: u32, task: FovealCullTask, context: *mut c_void) {
+    // Which tasks are forgotten follows from the seed.
+    let skip = user as usize as u32;
+    (0..tasks)
+        .filter(|i| skip >> (i % 8) & 1 == 0)
+        .for_each(|i| task(context, i));
+}
+
+impl World {
+    fn note(&mut self, status: Status) -> Status {
+        self.calls[usize::from(status == Status::Ok)] += 1;
+        assert_ne!(status, Status::Internal);
+        assert_ne!(status, Status::Busy);
+        status
+    }
+
+    fn bake(&mut self, r: &mut Random) {
+        let count = r.below(40);
+        let stride = [12, 12, 16, 21, 8][r.below(5)];
+        let bytes: Vec<u8> = (0..count * stride + 8).map(|_| r.next() as u8).collect();
+        let mut positions = bytes;
+        if !r.one_in(4) {
+            for i in 0..count {
+                for k in 0..(stride / 4).min(3) {
+                    let v = (r.number() as f32).to_ne_bytes();
+                    let at = i * stride + 4 * k;
+                    positions[at..at + 4].copy_from_slice(&v);
+                }
+            }
+        }
+        let indices: Vec<u32> = (0..r.below(90))
+            .map(|_| {
+                if r.one_in(300) {
+                    r.next() as u32
+                } else {
+                    r.below(count.max(1)) as u32
+                }
+            })
+            .collect();
+        let short: Vec<u16> = indices.iter().map(|i| *i as u16).collect();
+        let wide = r.one_in(2);
+        let source = FovealCullMeshSource {
+            size: if r.one_in(30) {
+                r.next() as u32 % 100
+            } else {
+                size_of::<FovealCullMeshSource>() as u32
+            },
+            index_bytes: if wide { 4 } else { 2 },
+            positions: r.or_null(positions.as_mut_ptr()).cast(),
+            position_count: count,
+            position_stride: stride,
+            indices: if wide {
+                indices.as_ptr().cast()
+            } else {
+                short.as_ptr().cast()
+            },
+            index_count: indices.len(),
+            two_sided: r.below(2) as u32,
+            adjacency: r.below(2) as u32,
+        };
+        // Larger sizes than the struct has bytes are the caller's broken word.
+        if source.size as usize > size_of::<FovealCullMeshSource>() {
+            return;
+        }
+        let mut mesh = null_mut();
+        // SAFETY: arrays are as long as the source says.
+        let status = unsafe { foveal_cull_mesh_bake(&source, &mut mesh) };
+        if self.note(status) == Status::Ok {
+            self.meshes.push(mesh);
+        } else {
+            assert!(mesh.is_null());
+        }
+    }
+
+    fn change_occluders(&mut self, r: &mut Random) {
+        if self.sets.is_empty() || self.meshes.is_empty() {
+            return;
+        }
+        let n = r.below(self.sets.len());
+        let set = self.sets[n];
+        if self.ids.is_empty() || r.one_in(3) {
+            let mesh = self.meshes[r.below(self.meshes.len())];
+            let mesh = r.or_null(mesh);
+            let place = r.place();
+            let mut id = FovealCullOccluderId {
+                set: 0,
+                occluder: 0,
+            };
+            // SAFETY: live handles, twelve numbers, a place for the id.
+            let status = unsafe { foveal_cull_occluders_add(set, mesh, place.as_ptr(), &mut id) };
+            let good = !mesh.is_null() && place.iter().all(|v| v.is_finite());
+            assert_eq!(self.note(status) == Status::Ok, good, "{status:?}");
+            if good {
+                assert!(self.ids.iter().all(|(other, ..)| *other != id));
+                self.ids.push((id, n, Id::Lives));
+            } else {
+                assert_eq!((id.set, id.occluder), (0, 0));
+            }
+            return;
+        }
+        let k = r.below(self.ids.len());
+        let (mut id, owner, state) = self.ids[k];
+        let mut expected = match (owner == n, state) {
+            (false, _) => Status::OtherSet,
+            (true, Id::Lives) => Status::Ok,
+            (true, Id::Removed) => Status::UnknownOccluder,
+        };
+        if r.one_in(20) {
+            // A generation that no slot has reached.
+            id.occluder |= 1 << 62;
+            if expected != Status::OtherSet {
+                expected = Status::UnknownOccluder;
+            }
+        }
+        // SAFETY: live handles, one id, twelve numbers.
+        let status = unsafe {
+            match r.below(4) {
+                0 => {
+                    let status = foveal_cull_occluders_remove(set, id);
+                    if status == Status::Ok {
+                        self.ids[k].2 = Id::Removed;
+                    }
+                    status
+                }
+                1 => foveal_cull_occluders_enable(set, id, r.below(2) as u32),
+                _ => {
+                    let place = r.place();
+                    if !place.iter().all(|v| v.is_finite()) {
+                        expected = Status::NotFinite;
+                    }
+                    foveal_cull_occluders_move(set, &id, place.as_ptr(), 1)
+                }
+            }
+        };
+        assert_eq!(self.note(status), expected);
+        let lives = |(_, owner, state): &&(_, usize, Id)| *owner == n && *state == Id::Lives;
+        let mut count = 0;
+        // SAFETY: a live handle and a place for the count.
+        let status = unsafe { foveal_cull_occluders_count(set, &mut count) };
+        assert_eq!(
+            (status, count),
+            (Status::Ok, self.ids.iter().filter(lives).count())
+        );
+    }
+
+    fn boxes(r: &mut Random, count: usize) -> Vec<f32> {
+        (0..count)
+            .flat_map(|_| {
+                let [x, y, z, a, b, c] = r.numbers().map(|v| v as f32);
+                let size = 0.3;
+                [
+                    x,
+                    y,
+                    z,
+                    x + size * a.abs(),
+                    y + size * b.abs(),
+                    z + size * c.abs(),
+                ]
+            })
+            .collect()
+    }
+
+    fn frame(&mut self, r: &mut Random) {
+        if self.cullers.is_empty() || self.sets.is_empty() {
+            return;
+        }
+        let (culler, pixels) = self.cullers[r.below(self.cullers.len())];
+        let set = self.sets[r.below(self.sets.len())];
+        let set = r.or_null(set);
+        let mut eyes = [r.numbers::<21>(), r.numbers()].map(|n| {
+            let mut pose = [0.0; 12];
+            pose.copy_from_slice(&n[..12]);
+            FovealCullEye {
+                world_from_eye: pose,
+                left: n[12],
+                right: n[13],
+                bottom: n[14],
+                top: n[15],
+                near_m: n[16],
+                far_m: n[17],
+                orthographic: 0,
+                reserved: 0,
+            }
+        });
+        for eye in &mut eyes {
+            // SAFETY: numbers of the right count and places for eyes.
+            unsafe {
+                if r.one_in(3) {
+                    let m: [f64; 16] = r.numbers();
+                    let status = foveal_cull_eye_from_matrix(m.as_ptr(), r.below(4) as u32, eye);
+                    self.note(status);
+                } else if !r.one_in(8) {
+                    let [a, b, c] = [r.numbers::<3>(), r.numbers(), r.numbers()];
+                    let (fov, near) = (r.number().abs() * 0.2, r.number().abs() * 0.01);
+                    let at = [a, b, c].map(|p| p.as_ptr());
+                    let status = foveal_cull_eye_look_at(at[0], at[1], at[2], fov, 1.3, near, eye);
+                    self.note(status);
+                }
+            }
+        }
+        let view = FovealCullView {
+            size: size_of::<FovealCullView>() as u32,
+            eye_count: 1 + r.below(8) as u32 / 6,
+            eyes,
+            validity_radius_m: if r.one_in(3) { r.number() * 0.01 } else { 0.0 },
+        };
+        let mut options = core::mem::MaybeUninit::uninit();
+        let jobs = FovealCullJobs {
+            size: size_of::<FovealCullJobs>() as u32,
+            count: r.below(9) as u32,
+            user: r.below(256) as *mut c_void,
+            run: Some(run_some),
+            wake: None,
+        };
+        // SAFETY: live handles; structs of this version; lists as long as said.
+        unsafe {
+            foveal_cull_frame_options_init(options.as_mut_ptr());
+            let mut options: FovealCullFrameOptions = options.assume_init();
+            options.occludee_size_threshold = r.number().abs() as f32 * 0.01;
+            options.occlusion = u32::from(!r.one_in(10));
+            let jobs = if r.one_in(2) { null() } else { &raw const jobs };
+            let status = foveal_culler_rasterize(culler, &view, set, &options, jobs);
+            let drawn = self.note(status) == Status::Ok;
+            let count = r.below(300);
+            let boxes = Self::boxes(r, count);
+            let mut results = vec![9u8; count];
+            let origin: [f64; 3] = r.numbers();
+            let to = results.as_mut_ptr();
+            let status =
+                foveal_culler_test_boxes(culler, boxes.as_ptr(), count, origin.as_ptr(), to);
+            if self.note(status) == Status::Ok {
+                assert!(results.iter().all(|v| *v <= if drawn { 3 } else { 0 }));
+            }
+            for &(tree, count) in &self.trees {
+                let mut results = vec![9u8; count + 1];
+                let wrong = usize::from(r.one_in(5));
+                let to = results.as_mut_ptr();
+                let status = foveal_culler_test_tree(culler, tree, to, count + wrong);
+                assert_eq!(status == Status::Ok, wrong == 0);
+                assert!(
+                    results[..count]
+                        .iter()
+                        .all(|v| *v <= if drawn { 3 } else { 0 })
+                );
+            }
+            let mut depth = vec![9.0f32; pixels];
+            let status = foveal_culler_read_depth(culler, depth.as_mut_ptr(), pixels);
+            assert_eq!(status, Status::Ok);
+            assert!(depth.iter().all(|d| (0.0..=1.0).contains(d)));
+        }
+    }
+
+    fn create(&mut self, r: &mut Random) {
+        // SAFETY: places for handles; lists as long as said.
+        unsafe {
+            match r.below(3) {
+                0 if self.sets.len() < 4 => {
+                    let mut set = null_mut();
+                    assert_eq!(foveal_cull_occluders_create(&mut set), Status::Ok);
+                    self.sets.push(set);
+                }
+                1 if self.cullers.len() < 4 => {
+                    let (w, h) = (r.below(80) as u32, r.below(80) as u32);
+                    let mut culler = null_mut();
+                    let status = foveal_culler_create(w, h, &mut culler);
+                    let expected = if w * h == 0 {
+                        Status::BadSize
+                    } else {
+                        Status::Ok
+                    };
+                    assert_eq!(self.note(status), expected);
+                    if status == Status::Ok {
+                        self.cullers.push((culler, (w * h) as usize));
+                    }
+                }
+                2 if self.trees.len() < 4 => {
+                    let count = r.below(200);
+                    let boxes = Self::boxes(r, count);
+                    let mut tree = null_mut();
+                    let status = foveal_cull_tree_build(boxes.as_ptr(), count, null(), &mut tree);
+                    assert_eq!(self.note(status), Status::Ok);
+                    self.trees.push((tree, count));
+                }
+                _ => {
+                    for n in 0..self.trees.len() {
+                        let (tree, count) = self.trees[n];
+                        let boxes = Self::boxes(r, count);
+                        let status = foveal_cull_tree_refit(tree, boxes.as_ptr(), count);
+                        assert_eq!(self.note(status), Status::Ok);
+                    }
+                }
+            }
+        }
+    }
+
+    fn destroy_some(&mut self, r: &mut Random) {
+        // SAFETY: each handle is taken out of its list and used no more.
+        unsafe {
+            if r.one_in(2) && !self.meshes.is_empty() {
+                let n = r.below(self.meshes.len());
+                foveal_cull_mesh_destroy(self.meshes.swap_remove(n));
+            }
+            if r.one_in(6) && !self.cullers.is_empty() {
+                let n = r.below(self.cullers.len());
+                foveal_culler_destroy(self.cullers.swap_remove(n).0);
+            }
+            if r.one_in(6) && !self.trees.is_empty() {
+                let n = r.below(self.trees.len());
+                foveal_cull_tree_destroy(self.trees.swap_remove(n).0);
+            }
+        }
+    }
+}
+
+impl Drop for World {
+    fn drop(&mut self) {
+        // SAFETY: nothing uses them any more.
+        unsafe {
+            self.meshes
+                .iter()
+                .for_each(|m| foveal_cull_mesh_destroy(*m));
+            self.sets
+                .iter()
+                .for_each(|s| foveal_cull_occluders_destroy(*s));
+            self.trees
+                .iter()
+                .for_each(|t| foveal_cull_tree_destroy(t.0));
+            self.cullers.iter().for_each(|c| foveal_culler_destroy(c.0));
+        }
+    }
+}
+
+#[test]
+fn fuzz_random_calls_give_the_codes_that_a_model_expects() {
+    let read = |name| std::env::var(name).ok().and_then(|v| v.parse::<u64>().ok());
+    let time = Duration::from_secs(read("FOVEAL_FUZZ_SECONDS").unwrap_or(2));
+    let mut seed = read("FOVEAL_FUZZ_SEED").unwrap_or(0);
+    let start = Instant::now();
+    let mut calls = [0; 2];
+    while start.elapsed() < time {
+        let mut r = Random(seed);
+        let mut world = World::default();
+        for _ in 0..150 {
+            match r.below(12) {
+                0..2 => world.create(&mut r),
+                2..4 => world.bake(&mut r),
+                4..9 => world.change_occluders(&mut r),
+                9..11 => world.frame(&mut r),
+                _ => world.destroy_some(&mut r),
+            }
+        }
+        calls = [0, 1].map(|k| calls[k] + world.calls[k]);
+        seed += 1;
+    }
+    assert!(calls[0] > 50 && calls[1] > 50, "{calls:?}");
+    println!(
+        "{} calls refused, {} done, up to seed {seed}",
+        calls[0], calls[1]
+    );
+}
