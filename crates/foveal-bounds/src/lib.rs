@@ -18,7 +18,7 @@ use glam::{Mat4, Vec3};
 
 /// An axis-aligned box, `min` to `max` inclusive.
 ///
-/// A box with a NaN or with `min > max` in some axis is *not a volume*;
+/// A box with a NaN or infinity, or with `min > max` in some axis is *invalid*;
 /// [`is_valid`](Self::is_valid) tells. [`Aabb::EMPTY`] is one such box. The layout is six `f32` in
 /// a row: `min`, then `max`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -77,7 +77,7 @@ impl Aabb {
         !self.min.cmple(self.max).all()
     }
 
-    /// Whether the box is a volume, or a flat or point-like one: finite, and `min <= max` in every
+    /// Whether the box is valid, flat and point-like ones included: finite, and `min <= max` in every
     /// axis.
     #[inline]
     #[must_use]

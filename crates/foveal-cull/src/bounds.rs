@@ -1,14 +1,14 @@
 //! The boxes that occludees are tested as and occluders are bounded by.
 //!
 //! Coordinates are metres, relative to an origin that the owner of the boxes names in `f64`, so
-//! that a world far from zero loses nothing. Queries report a box that is not a volume as visible,
+//! that a world far from zero loses nothing. Queries report a box that is invalid as visible,
 //! since nothing can be proved about it.
 
 use glam::Vec3;
 
 /// An axis-aligned box, `min` to `max` inclusive, in metres.
 ///
-/// A box with a NaN or infinity, or with `min > max` in some axis, is *not a volume*;
+/// A box with a NaN or infinity, or with `min > max` in some axis, is *invalid*;
 /// [`is_valid`](Self::is_valid) tells. [`Aabb::EMPTY`] is one such box. The layout is six `f32` in
 /// a row: `min`, then `max`.
 ///
@@ -77,7 +77,7 @@ impl Aabb {
         }
     }
 
-    /// Whether the box is a volume, or a flat or point-like one: finite, and `min <= max` in every
+    /// Whether the box is valid, flat and point-like ones included: finite, and `min <= max` in every
     /// axis.
     #[inline]
     #[must_use]

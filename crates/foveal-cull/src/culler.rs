@@ -55,8 +55,8 @@ impl Culler {
     /// A culler with an occlusion buffer of `width_px` x `height_px` pixels.
     ///
     /// A quarter of the picture's size per axis is the natural choice: coverage is sampled 4x4 per
-    /// pixel, which are then the picture's own pixel centres. Larger buffers keep fewer hidden
-    /// boxes and take longer.
+    /// pixel, which are then the picture's own pixel centres. Larger buffers report
+    /// fewer hidden boxes as visible and take longer.
     ///
     /// # Errors
     /// [`CullError::BadSize`] for a side of 0 or of more than [`MAX_SIDE_PX`] pixels.
@@ -107,11 +107,11 @@ impl Culler {
     /// that sleep from frame to frame, call [`Threads::wake`] 20 to 60 microseconds before.
     ///
     /// If a task or the clock panics on the way, the panic passes on, and everything is visible
-    /// until the next good frame.
+    /// until the next successful one.
     ///
     /// # Errors
     /// [`CullError::BadView`] or [`CullError::NotFinite`] for a bad view. Everything is then
-    /// visible until the next good frame.
+    /// visible until the next successful one.
     pub fn rasterize(
         &mut self,
         view: &View,
@@ -267,7 +267,7 @@ impl Culler {
 
     /// Classifies boxes against the frame, one result per box in order.
     ///
-    /// Boxes are in metres relative to `origin` (world metres). A box that is not a volume (NaN,
+    /// Boxes are in metres relative to `origin` (world metres). A box that is invalid (NaN,
     /// inside out) is visible. O(boxes): about 5 ns for a random box in a level, up to 100 ns for
     /// one that only single pixels decide. Where most boxes are hidden or outside in groups,
     /// [`query_tree`](Self::query_tree) is faster.
@@ -372,7 +372,8 @@ impl Culler {
     }
 
     /// Copies the depth, row by row from the top left: `near / distance` for perspective views, 1
-    /// at the near plane to 0 at the far plane for orthographic ones; 0 where nothing is proven.
+    /// at the near plane to 0 at the far plane for orthographic ones; 0 where no occluder covers the
+    /// pixel.
     ///
     /// # Errors
     /// [`CullError::LengthMismatch`] if `pixels` is not `width * height` long.

@@ -4,12 +4,12 @@
 //! needs no GPU, no scene format and no clock, and starts no threads unless you ask for them.
 //!
 //! # The promise
-//! What is reported as hidden *is* hidden. Coverage is sampled on a 4x4 grid in every pixel. A
-//! pixel counts only when every sample is covered, and its depth is the farthest of them, so that
-//! neither gaps thinner than a pixel nor grazing surfaces let a visible thing vanish. Precisely:
-//! nothing is culled that the pixel centres of a picture of the buffer's size, or of four times its
-//! size per axis, would show. What shows only between these samples may be culled. A buffer of a
-//! quarter of the picture's size per axis therefore fits a picture exactly.
+//! No box is reported hidden that is visible at a pixel centre of a picture of the buffer's size,
+//! or of four times its size per axis. A box that shows only between these points may be reported
+//! hidden. A buffer of a quarter of the picture's size per axis therefore fits a picture exactly.
+//!
+//! How: coverage is sampled on a 4x4 grid in every pixel. A pixel hides only where every sample is
+//! covered, at the depth of the farthest.
 //!
 //! The reverse is approximate: some hidden boxes are reported as visible (0.4 % of them in a castle
 //! at 640x360 pixels).

@@ -41,7 +41,8 @@ impl core::fmt::Debug for Budget<'_> {
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct FrameOptions<'a> {
-    /// Size threshold for occluders, without unit, as in Intel's sample (1.5 there). Occluders with
+    /// Size threshold for occluders, in square roots of a metre, as in Intel's sample (1.5 there):
+    /// what it leaves out depends on the scene's scale. Occluders with
     /// `radius² < distance * threshold² * tan(fov_y / 2)` are left out, where the radius is that of
     /// the bounding sphere and the distance is above 1 m. 0 (the default) takes all.
     pub occluder_size_threshold: f32,

@@ -39,7 +39,7 @@ fn boxes_that_are_no_volumes_are_visible() {
     let mut results = [Visibility::Outside; 6];
     culler.query(&boxes, DVec3::ZERO, &mut results).unwrap();
     assert_eq!(results[..5], [Visibility::Visible; 5]);
-    assert_eq!(results[5], Visibility::Occluded, "a point is a volume");
+    assert_eq!(results[5], Visibility::Occluded, "a point is valid");
     let mut results = [Visibility::Outside; 6];
     culler
         .query_tree(&OccludeeTree::build(&boxes, DVec3::ZERO), &mut results)

@@ -25,7 +25,7 @@ pub(crate) struct Projected8 {
     pub(crate) center: [[i32; 8]; 3],
     /// Bit per box: certainly outside the frustum.
     pub(crate) outside: u32,
-    /// Bit per box: in part nearer than the near plane, or not a volume. The other fields are then
+    /// Bit per box: in part nearer than the near plane, or invalid. The other fields are then
     /// meaningless.
     pub(crate) crossing: u32,
     /// Bit per box: certainly occluded, by the HiZ. Only set where the screen has one.

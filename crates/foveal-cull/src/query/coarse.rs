@@ -174,7 +174,7 @@ impl<'a> CoarseTest<'a> {
         centers
     }
 
-    /// Classifies boxes by centres and half extents, with a bit for each that is a volume; also
+    /// Classifies boxes by centres and half extents, with a bit for each that is valid; also
     /// returns the centres' clip rows.
     #[inline(always)]
     fn classify_extents<W: Wide>(

@@ -83,7 +83,7 @@ impl Node {
 }
 
 impl OccludeeTree {
-    /// Builds a tree over boxes in metres relative to `origin` (world). A box that is not a volume
+    /// Builds a tree over boxes in metres relative to `origin` (world). A box that is invalid
     /// is always visible.
     #[must_use]
     pub fn build(boxes: &[Aabb], origin: impl Into<[f64; 3]>) -> Self {
@@ -185,7 +185,7 @@ impl OccludeeTree {
                                 Vec3::from_array(below.boxes.center.map(|v| v[i])),
                                 Vec3::from_array(below.boxes.half.map(|v| v[i])),
                             );
-                            // NaN spreads upwards: a node with a box that is not a volume is never
+                            // NaN spreads upwards: a node with a box that is invalid is never
                             // culled as a whole.
                             Some(match all {
                                 None => (c, h),
