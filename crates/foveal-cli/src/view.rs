@@ -1,7 +1,10 @@
 //! `foveal view`: the window, with the program's scenes, files and flags behind it.
 
+mod folders;
+mod recordings;
+
 use foveal_generate as generate;
-use foveal_scene::Clip;
+use foveal_scene::{Clip, Scene};
 use foveal_view::{Host, Loaded};
 
 use foveal_host::camera::{CameraArgs, Viewpoint};
@@ -51,13 +54,22 @@ fn host(args: &Args) -> anyhow::Result<Host> {
     let (first, camera) = (args.scene.clone(), args.camera.clone());
     let point_lights = args.point_lights;
     let options = args.import.options();
-    let mut scene_flags = args.import.shown_flags();
-    if point_lights > 0 {
-        scene_flags.extend(["--point-lights".to_owned(), point_lights.to_string()]);
-    }
-    if let Some(adapter) = &args.adapter {
-        scene_flags.extend(["--adapter".to_owned(), adapter.clone()]);
-    }
+    let (shown, adapter) = (clipless(args.import.shown_flags()), args.adapter.clone());
+    let named = first.clone();
+    let scene_flags = move |name: &str| {
+        let mut flags = if name == named {
+            shown.clone()
+        } else {
+            Vec::new()
+        };
+        if point_lights > 0 {
+            flags.extend(["--point-lights".to_owned(), point_lights.to_string()]);
+        }
+        if let Some(adapter) = &adapter {
+            flags.extend(["--adapter".to_owned(), adapter.clone()]);
+        }
+        flags
+    };
     let load = move |name: &str| {
         // What was asked for by name holds for the first scene; limits hold for all.
         let mut options = options.clone();
@@ -76,7 +88,12 @@ fn host(args: &Args) -> anyhow::Result<Host> {
             CameraArgs::default()
         };
         let camera = Viewpoint::choose(&camera, &scene, name)?.at(&scene, 0.0);
-        Ok(Loaded { scene, camera })
+        let clip = numbered(&options.clip, &scene);
+        Ok(Loaded {
+            scene,
+            camera,
+            clip,
+        })
     };
     Ok(Host {
         scene: args.scene.clone(),
@@ -86,13 +103,41 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         adapter: args.adapter.clone(),
         window: args.window,
         load: Box::new(load),
+        files: Box::new(folders::Folders::new()),
+        record: Box::new(recordings::start),
+        no_video: recordings::no_video(),
         read_settings,
         rate_image,
         flags,
         exact_camera: command_line::exact_camera,
+        read_camera: |text| values::exact_camera(text).ok(),
         quoted: command_line::quoted,
-        scene_flags,
+        scene_flags: Box::new(scene_flags),
     })
+}
+
+/// Flags without `--clip`: the window says which one plays.
+fn clipless(flags: Vec<String>) -> Vec<String> {
+    let mut rest = Vec::new();
+    let mut flags = flags.into_iter();
+    while let Some(flag) = flags.next() {
+        if flag == "--clip" {
+            flags.next();
+        } else {
+            rest.push(flag);
+        }
+    }
+    rest
+}
+
+/// A clip by its number, where it has one.
+fn numbered(clip: &Clip, scene: &Scene) -> Clip {
+    let Clip::Named(name) = clip else {
+        return clip.clone();
+    };
+    let found = scene.clips().position(|(other, _)| other == name);
+    let number = found.and_then(|number| u32::try_from(number).ok());
+    number.map_or_else(|| clip.clone(), Clip::Number)
 }
 
 #[cfg(test)]

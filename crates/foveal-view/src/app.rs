@@ -1,22 +1,33 @@
 //! What the window knows, and what becomes of input: from the hands to the next request for a
 //! picture.
 
+mod capturing;
+mod drops;
 mod files;
 mod hands;
+#[cfg(test)]
+pub(crate) mod tests;
 
 use std::sync::Arc;
 
 use egui::{TextureHandle, TextureOptions};
-use foveal::{AdapterStats, Settings, Shading};
-use foveal_scene::Camera;
+use foveal::{AdapterStats, Settings};
+use foveal_scene::{Camera, Clip};
 use glam::Vec2;
 use toml::Table;
 
 use crate::Host;
+use crate::browser::Browser;
 use crate::history::History;
+use crate::memory::Memory;
 use crate::navigator::Navigator;
+use crate::needs::{self, Abilities};
+use crate::pick::Picked;
 use crate::worker::{LoadedScene, News, Quality, Request, Rgba, Shown, Worker};
 use crate::{panels, viewport};
+
+pub(crate) use crate::capture::Ended;
+pub(crate) use capturing::{Capture, Phase, Way};
 
 /// A line that tells the user something for a while, or until it is dismissed.
 #[derive(Debug)]
@@ -49,6 +60,8 @@ pub(crate) struct Display {
     pub(crate) vsync: bool,
     pub(crate) playing: bool,
     pub(crate) time_s: f32,
+    /// Which animation plays.
+    pub(crate) clip: Clip,
 }
 
 /// Everything behind the window.
@@ -66,10 +79,16 @@ pub(crate) struct App {
     pub(crate) display: Display,
     pub(crate) navigator: Option<Navigator>,
     pub(crate) bookmarks: [Option<Camera>; 9],
+    pub(crate) memory: Memory,
+    /// The open dialog.
+    pub(crate) browser: Option<Browser>,
+    pub(crate) selected: Option<Picked>,
+    pub(crate) capture: Capture,
     pub(crate) scene: Option<LoadedScene>,
     pub(crate) scene_name: String,
     pub(crate) loading: bool,
     pub(crate) adapter: Option<AdapterStats>,
+    pub(crate) abilities: Abilities,
     pub(crate) shown: Option<Box<Shown>>,
     /// Of the view and the settings that are asked for.
     pub(crate) quality: Option<Box<Quality>>,
@@ -91,8 +110,12 @@ impl App {
         let host = Arc::new(host);
         let worker = Worker::start(Arc::clone(&host), wake)?;
         worker.load(host.scene.clone());
+        Ok(Self::with(host, worker))
+    }
+
+    fn with(host: Arc<Host>, worker: Worker) -> Self {
         let settings = host.settings.clone();
-        Ok(Self {
+        let mut this = Self {
             worker,
             draft: Table::try_from(&settings).unwrap_or_default(),
             wrong: None,
@@ -112,13 +135,19 @@ impl App {
                 vsync: true,
                 playing: false,
                 time_s: 0.0,
+                clip: Clip::default(),
             },
             navigator: None,
             bookmarks: Default::default(),
+            memory: Memory::default(),
+            browser: None,
+            selected: None,
+            capture: Capture::default(),
             scene: None,
             scene_name: host.scene.clone(),
             loading: true,
             adapter: None,
+            abilities: Abilities::default(),
             shown: None,
             quality: None,
             picture: None,
@@ -132,15 +161,22 @@ impl App {
             loses_devices: false,
             settings,
             host,
-        })
+        };
+        match Memory::recalled(this.host.files.as_ref()) {
+            Ok(memory) => this.memory = memory,
+            Err(error) => this.complain(format!("{error:#}")),
+        }
+        this
     }
 
     /// One pass of the interface.
     pub(crate) fn show(&mut self, ui: &mut egui::Ui) {
         self.take_news(ui.ctx());
+        self.take_drops(ui.ctx());
         self.take_keys(ui.ctx());
         panels::show(self, ui);
         viewport::show(self, ui);
+        self.note_flight(ui.ctx());
         self.take_settings();
         self.ask();
         self.forget_messages(ui.ctx());
@@ -151,6 +187,13 @@ impl App {
         self.loading = true;
         self.worker.load(name.clone());
         self.scene_name = name;
+    }
+
+    /// Changes what is remembered from run to run.
+    pub(crate) fn remember(&mut self, change: impl FnOnce(&mut Memory)) {
+        if let Err(error) = self.memory.change(self.host.files.as_ref(), change) {
+            self.complain(format!("{error:#}"));
+        }
     }
 
     pub(crate) fn say(&mut self, context: &egui::Context, text: impl Into<String>) {
@@ -189,30 +232,18 @@ impl App {
         let news: Vec<News> = self.worker.news().collect();
         for news in news {
             match news {
-                News::Adapter(adapter) => {
+                News::Picked(picked) => self.selected = picked,
+                News::Captured(written, of) => self.capture.phase = Phase::Drawing(written, of),
+                News::CaptureEnded(ended) => self.take_capture_end(context, ended),
+                News::Adapter(adapter, abilities) => {
+                    self.abilities = abilities;
                     // Half the pixels a side where the processor draws.
                     if self.adapter.is_none() && adapter.kind == "cpu" {
                         self.display.scale = 0.5;
                     }
                     self.adapter = Some(adapter);
                 }
-                News::Scene(scene) => {
-                    self.loading = false;
-                    self.navigator = Some(Navigator::new(scene.start.clone(), scene.bounds));
-                    self.bookmarks = Default::default();
-                    self.display.playing = scene.is_animated;
-                    self.display.time_s = 0.0;
-                    self.asked = None;
-                    self.history.clear();
-                    if scene.warnings > 0 {
-                        let text = format!(
-                            "{}: {} warnings; 'foveal scene info' lists them",
-                            scene.name, scene.warnings
-                        );
-                        self.say(context, text);
-                    }
-                    self.scene = Some(*scene);
-                }
+                News::Scene(scene) => self.take_scene(context, *scene),
                 News::Picture(shown) => self.take_picture(context, shown),
                 News::Quality(quality) => {
                     let is_wanted = |asked: &Request| asked.shows_the_same(&quality.request);
@@ -227,6 +258,37 @@ impl App {
                 }
             }
         }
+    }
+
+    fn take_scene(&mut self, context: &egui::Context, scene: LoadedScene) {
+        self.loading = false;
+        self.navigator = Some(Navigator::new(scene.start.clone(), scene.bounds));
+        self.selected = None;
+        self.display.clip = scene.clip.clone();
+        self.display.playing = scene.duration_s(&scene.clip) > 0.0;
+        self.display.time_s = 0.0;
+        self.asked = None;
+        self.history.clear();
+        if scene.warnings > 0 {
+            let text = format!(
+                "{}: {} warnings; 'foveal scene info' lists them",
+                scene.name, scene.warnings
+            );
+            self.say(context, text);
+        }
+        let name = self.host.files.full_name(&scene.source);
+        self.remember(|memory| memory.opened(&name));
+        self.bookmarks = Default::default();
+        for (number, text) in self.memory.bookmarks(&name) {
+            let slot = self.bookmarks.get_mut(usize::from(number) - 1);
+            if let (Some(slot), Some(camera)) = (slot, (self.host.read_camera)(text)) {
+                *slot = Some(Camera {
+                    name: format!("bookmark {number}"),
+                    ..camera
+                });
+            }
+        }
+        self.scene = Some(scene);
     }
 
     fn take_picture(&mut self, context: &egui::Context, mut shown: Box<Shown>) {
@@ -290,24 +352,7 @@ impl App {
             self.draft
                 .insert("height".to_owned(), scaled(height).into());
         }
-        let limits = wgpu::Limits {
-            max_texture_dimension_2d: 16384,
-            max_buffer_size: u64::MAX,
-            max_storage_buffer_binding_size: u64::MAX,
-            ..wgpu::Limits::default()
-        };
-        let checked = self
-            .draft
-            .clone()
-            .try_into::<Settings>()
-            .map_err(|error| error.message().to_owned())
-            .and_then(|settings| {
-                settings
-                    .validate(&limits)
-                    .map(|()| settings)
-                    .map_err(|error| error.to_string())
-            });
-        match checked {
+        match needs::checked(&self.draft) {
             Ok(settings) => {
                 self.wrong = None;
                 self.settings = settings;
@@ -345,6 +390,7 @@ impl App {
             boxes: self.display.boxes,
             depth: self.display.depth,
             time_s: self.display.time_s,
+            clip: self.display.clip.clone(),
             always: self.display.always,
         };
         if self.asked.as_ref() != Some(&request) {
@@ -361,14 +407,8 @@ impl App {
         }
     }
 
-    /// Whether a stage does anything with these settings.
-    pub(crate) fn is_in_use(&self, stage: &str) -> bool {
-        match stage {
-            "Shading at a rate" => self.settings.shading.mode != Shading::Full,
-            "Eye" => self.settings.shading.mode != Shading::Full,
-            "Coarse shading" => self.settings.shading.mode == Shading::Coarse,
-            "Variable shading" => self.settings.shading.mode == Shading::Variable,
-            _ => true,
-        }
+    /// Why a setting has no effect beside the others; `None` where it has one.
+    pub(crate) fn missing(&self, key: &str) -> Option<&'static str> {
+        needs::missing(key, &self.settings, self.abilities, self.display.compare)
     }
 }

@@ -54,15 +54,37 @@ pub(crate) fn draw(
     nearest.sort_by_key(|(_, visibility)| *visibility == Visibility::Occluded);
     for (bounds, visibility) in nearest {
         let stroke = Stroke::new(1.0, color(*visibility));
-        for line in lines(&clip_from_world, bounds) {
-            let [a, b] = line.map(|[x, y]| {
-                Pos2::new(
-                    rect.left() + x * rect.width(),
-                    rect.top() + y * rect.height(),
-                )
-            });
-            painter.line_segment([a, b], stroke);
-        }
+        strokes(painter, rect, &clip_from_world, bounds, stroke);
+    }
+}
+
+/// Draws one box.
+pub(crate) fn outline(
+    painter: &egui::Painter,
+    rect: Rect,
+    camera: &Camera,
+    bounds: &Aabb,
+    color: Color32,
+) {
+    let clip_from_world = camera.clip_from_world(rect.width() / rect.height());
+    strokes(
+        painter,
+        rect,
+        &clip_from_world,
+        bounds,
+        Stroke::new(2.0, color),
+    );
+}
+
+fn strokes(painter: &egui::Painter, rect: Rect, clip: &Mat4, bounds: &Aabb, stroke: Stroke) {
+    for line in lines(clip, bounds) {
+        let [a, b] = line.map(|[x, y]| {
+            Pos2::new(
+                rect.left() + x * rect.width(),
+                rect.top() + y * rect.height(),
+            )
+        });
+        painter.line_segment([a, b], stroke);
     }
 }
 

@@ -3,18 +3,32 @@
 
 /// A key as it is written on it, what it does, and what it does in a word for the line below the
 /// picture; an empty word leaves it out there.
-pub(crate) const ALL: [(&str, &str, &str); 16] = [
+pub(crate) const ALL: [(&str, &str, &str); 25] = [
     ("F1", "this list", "all keys"),
-    (
-        "W A S D, arrows",
-        "move; with Shift four times as fast",
-        "move",
-    ),
+    ("Ctrl+O", "open a scene", "open"),
+    ("W A S D", "move; with Shift four times as fast", "move"),
     ("Q E, Page down/up", "move down and up", ""),
+    ("Arrows", "look around; in orbit turn", ""),
     ("Drag", "look around; in orbit turn", "look"),
-    ("Right drag", "in orbit shift the point that is orbited", ""),
+    (
+        "Middle drag",
+        "turn around the point ahead; with Shift shift it",
+        "turn",
+    ),
+    (
+        "Right drag",
+        "look around; in orbit shift the point ahead",
+        "",
+    ),
     ("Scroll", "speed; in orbit distance", ""),
     ("F", "fly or orbit", "fly/orbit"),
+    ("Click", "select an object; Esc selects none", "select"),
+    (".", "bring what is selected, or else all, into view", ""),
+    (
+        "Alt+1, 3, 7",
+        "front, right side, top; again: the opposite side",
+        "",
+    ),
     ("Home", "back to the first view", "start"),
     ("1 to 9", "go to a bookmark; with Ctrl set it", "bookmark"),
     ("X", "compare with the reference", "compare"),
@@ -22,12 +36,11 @@ pub(crate) const ALL: [(&str, &str, &str); 16] = [
     ("B", "boxes of objects", "boxes"),
     ("Z", "depth of the occluders", "depth"),
     ("C", "freeze culling", "freeze"),
-    (
-        "H, P",
-        "hide the panels; take a screenshot",
-        "panels, picture",
-    ),
+    ("H", "hide the panels", "panels"),
+    ("P, F12", "take a screenshot", "picture"),
+    ("V", "capture a sequence or a video", "capture"),
     ("Space", "let an animation run or rest", ""),
+    ("Esc", "close what is open", ""),
 ];
 
 /// The list as lines of text, for a program's help.

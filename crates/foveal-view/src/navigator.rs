@@ -1,12 +1,16 @@
 //! Moving the camera: flying through the scene, or orbiting around a point of it.
 
-use foveal_scene::{Aabb, Camera};
+use std::f32::consts::{FRAC_PI_2, PI};
+
+use foveal_scene::{Aabb, Camera, Projection};
 use glam::{Mat4, Vec2, Vec3};
 
 /// Radians that a drag over one point of the window turns.
 const TURN_RAD: f32 = 0.005;
 /// Steepest look up or down.
 const STEEPEST_RAD: f32 = 1.55;
+/// Radians a second that an arrow key turns.
+const KEY_TURN_RAD_S: f32 = 1.2;
 
 /// How the camera is moved.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,6 +20,28 @@ pub(crate) enum Mode {
     Orbit,
 }
 
+/// A side of the scene, by the direction that it faces.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    /// Seen from +z: where the front of a glTF model is.
+    Front,
+    /// Seen from +x.
+    Right,
+    /// Seen from +y, with +x on the right.
+    Top,
+}
+
+impl Side {
+    /// Yaw and pitch of the view, and of the one from the opposite side.
+    fn angles(self) -> [[f32; 2]; 2] {
+        match self {
+            Self::Front => [[0.0, 0.0], [PI, 0.0]],
+            Self::Right => [[FRAC_PI_2, 0.0], [-FRAC_PI_2, 0.0]],
+            Self::Top => [[0.0, -FRAC_PI_2], [0.0, FRAC_PI_2]],
+        }
+    }
+}
+
 /// What the hands do in a moment.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Hands {
@@ -23,6 +49,12 @@ pub(crate) struct Hands {
     pub(crate) push: Vec3,
     /// Pointer movement with the turning button down, in points.
     pub(crate) turn: Vec2,
+    /// Arrow keys: right and up; each -1 to 1.
+    pub(crate) keys_turn: Vec2,
+    /// Pointer movement that turns around the point ahead, in either mode.
+    pub(crate) orbit: Vec2,
+    /// Pointer movement that shifts the point ahead, in either mode.
+    pub(crate) pan: Vec2,
     /// Pointer movement with the shifting button down, in points.
     pub(crate) shift: Vec2,
     /// Notches of the wheel.
@@ -82,19 +114,73 @@ impl Navigator {
         &self.camera
     }
 
+    /// Moves, in the direction that it looks, to where all of `bounds` is in a picture of this
+    /// aspect; that is what is orbited then.
+    pub(crate) fn frame(&mut self, bounds: Aabb, aspect: f32) {
+        if bounds.is_empty() {
+            return;
+        }
+        let radius = (0.5 * bounds.size().length()).max(1e-4);
+        match &mut self.camera.projection {
+            Projection::Perspective { fov_y_rad, .. } => {
+                let half = 0.5 * *fov_y_rad;
+                let half = half.min((half.tan() * aspect).atan());
+                self.radius_m = radius / half.sin();
+            }
+            Projection::Orthographic {
+                height_m,
+                near_m,
+                far_m,
+            } => {
+                *height_m = 2.0 * radius / aspect.min(1.0);
+                *far_m = far_m.max(*near_m + 2.0 * radius);
+                self.radius_m = 0.5 * (*near_m + *far_m);
+            }
+        }
+        self.place(bounds.center() + self.turned().z_axis.truncate() * self.radius_m);
+    }
+
+    /// Looks at `bounds` from a side; from the opposite one if it looks from that side already.
+    pub(crate) fn look_from(&mut self, side: Side, bounds: Aabb, aspect: f32) {
+        let [this, opposite] = side.angles();
+        let is_there = [self.yaw_rad, self.pitch_rad] == this;
+        [self.yaw_rad, self.pitch_rad] = if is_there { opposite } else { this };
+        self.place(self.camera.eye());
+        self.frame(bounds, aspect);
+    }
+
     fn turned(&self) -> Mat4 {
         Mat4::from_rotation_y(self.yaw_rad) * Mat4::from_rotation_x(self.pitch_rad)
     }
 
     /// Moves; true if anything changed.
     pub(crate) fn step(&mut self, hands: &Hands) -> bool {
+        // A drag over a point turns as far as a key that is held for this long.
+        let keys = hands.keys_turn * (KEY_TURN_RAD_S * hands.elapsed_s / TURN_RAD);
+        let keys = Vec2::new(keys.x, -keys.y);
         match self.mode {
-            Mode::Fly => self.fly(hands),
-            Mode::Orbit => self.orbit(hands),
+            Mode::Fly => {
+                let around = Hands {
+                    turn: hands.orbit,
+                    shift: hands.pan,
+                    ..Hands::default()
+                };
+                let is_turned = self.orbit(&around);
+                let turn = hands.turn + keys;
+                self.fly(&Hands { turn, ..*hands }) || is_turned
+            }
+            Mode::Orbit => self.orbit(&Hands {
+                turn: hands.turn + hands.orbit + keys,
+                shift: hands.shift + hands.pan,
+                ..*hands
+            }),
         }
     }
 
     fn turn(&mut self, by: Vec2) {
+        if by == Vec2::ZERO {
+            return;
+        }
         self.yaw_rad -= by.x * TURN_RAD;
         let pitch = self.pitch_rad - by.y * TURN_RAD;
         self.pitch_rad = pitch.clamp(-STEEPEST_RAD, STEEPEST_RAD);
@@ -201,6 +287,84 @@ mod tests {
             let eye = navigator.camera().eye();
             assert!((eye.length() - distance).abs() < 1e-2, "{eye}");
             assert!((forward(&navigator) + eye.normalize()).length() < 1e-2);
+        }
+    }
+
+    #[test]
+    fn the_middle_button_orbits_while_flying() {
+        let mut flying = navigator();
+        let distance = flying.camera().eye().length();
+        let hands = Hands {
+            orbit: Vec2::new(80.0, 30.0),
+            ..Hands::default()
+        };
+        assert!(flying.step(&hands));
+        assert_eq!(flying.mode, Mode::Fly);
+        let eye = flying.camera().eye();
+        assert!((eye.length() - distance).abs() < 1e-2, "{eye}");
+        assert!((forward(&flying) + eye.normalize()).length() < 1e-2);
+    }
+
+    #[test]
+    fn arrow_keys_turn_and_do_not_move() {
+        let mut navigator = navigator();
+        let (eye, before) = (navigator.camera().eye(), forward(&navigator));
+        let hands = Hands {
+            keys_turn: Vec2::new(1.0, 1.0),
+            elapsed_s: 0.1,
+            ..Hands::default()
+        };
+        assert!(navigator.step(&hands));
+        assert_eq!(navigator.camera().eye(), eye);
+        let after = forward(&navigator);
+        let right = before.cross(Vec3::Y);
+        assert!(
+            after.y > before.y && after.dot(right) > 0.0,
+            "{before} {after}"
+        );
+    }
+
+    #[test]
+    fn what_is_framed_fills_the_picture_and_is_all_in_it() {
+        let bounds = Aabb {
+            min: Vec3::new(4.0, 0.0, -3.0),
+            max: Vec3::new(6.0, 1.0, -2.0),
+        };
+        for aspect in [0.5, 1.0, 2.0] {
+            let mut navigator = navigator();
+            let looks = forward(&navigator);
+            navigator.frame(bounds, aspect);
+            assert!((forward(&navigator) - looks).length() < 1e-4);
+            let clip = navigator.camera().clip_from_world(aspect);
+            let mut largest = 0.0f32;
+            for i in 0..8 {
+                let pick = |bit: usize| [bounds.min, bounds.max][i >> bit & 1][bit];
+                let at = clip * Vec3::new(pick(0), pick(1), pick(2)).extend(1.0);
+                largest = largest.max((at.x / at.w).abs()).max((at.y / at.w).abs());
+            }
+            assert!((0.4..=1.0).contains(&largest), "{aspect}: {largest}");
+        }
+    }
+
+    #[test]
+    fn sides_are_seen_straight_and_again_from_the_back() {
+        let bounds = Aabb {
+            min: Vec3::splat(-1.0),
+            max: Vec3::splat(1.0),
+        };
+        let mut navigator = navigator();
+        for (side, looks, right) in [
+            (Side::Front, Vec3::NEG_Z, Vec3::X),
+            (Side::Right, Vec3::NEG_X, Vec3::NEG_Z),
+            (Side::Top, Vec3::NEG_Y, Vec3::X),
+        ] {
+            navigator.look_from(side, bounds, 1.5);
+            let x = navigator.camera().world_from_view.x_axis.truncate();
+            assert!((forward(&navigator) - looks).length() < 1e-5, "{side:?}");
+            assert!((x - right).length() < 1e-5, "{side:?}");
+            assert!(navigator.camera().eye().dot(looks) < -1.0);
+            navigator.look_from(side, bounds, 1.5);
+            assert!((forward(&navigator) + looks).length() < 1e-5, "{side:?}");
         }
     }
 

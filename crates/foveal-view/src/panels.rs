@@ -2,9 +2,12 @@
 //! below.
 
 mod bar;
+mod capture;
 mod compare;
 mod culling;
 mod figures;
+mod open;
+mod playback;
 mod settings;
 mod timeline;
 
@@ -14,7 +17,7 @@ use crate::app::App;
 use crate::look;
 
 /// Widths of the side panels, in points.
-const SETTINGS_WIDTH: f32 = 268.0;
+const SETTINGS_WIDTH: f32 = 284.0;
 const FIGURES_WIDTH: f32 = 268.0;
 
 pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
@@ -24,8 +27,15 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
     Panel::bottom("keys")
         .frame(look::panel_frame())
         .show(ui, |ui| bar::keys(app, ui));
+    open::show(app, &ui.ctx().clone());
+    capture::show(app, &ui.ctx().clone());
     if !app.display.panels {
         return;
+    }
+    if playback::is_shown(app) {
+        Panel::bottom("playback")
+            .frame(look::panel_frame())
+            .show(ui, |ui| playback::show(app, ui));
     }
     Panel::left("settings")
         .exact_size(SETTINGS_WIDTH)
@@ -64,6 +74,21 @@ fn card<R>(ui: &mut egui::Ui, title: &str, contents: impl FnOnce(&mut egui::Ui) 
             contents(ui)
         })
         .inner
+}
+
+/// A switch that needs something else: greyed where that is missing, with the reason below and when
+/// it is pointed at.
+fn noted(
+    ui: &mut egui::Ui,
+    missing: Option<&str>,
+    switch: impl FnOnce(&mut egui::Ui) -> egui::Response,
+) {
+    let Some(why) = missing else {
+        switch(ui);
+        return;
+    };
+    ui.add_enabled_ui(false, |ui| switch(ui).on_disabled_hover_text(why));
+    ui.label(egui::RichText::new(why).small().color(look::FAINT));
 }
 
 /// A line of a name and a figure at the right edge.

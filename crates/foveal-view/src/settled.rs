@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use anyhow::{Context, bail};
 use foveal::Settings;
-use foveal_scene::Camera;
+use foveal_scene::{Camera, Clip};
 
 use crate::worker::{LoadedScene, News, Request, SETTLING_FRAMES, Worker};
 use crate::{Host, command};
@@ -24,6 +24,8 @@ pub struct Sight {
     pub camera: Option<Camera>,
     /// The moment of an animated scene, in seconds.
     pub time_s: f32,
+    /// The animation that plays; `None`: the one that plays first.
+    pub clip: Option<Clip>,
 }
 
 /// The picture on which the window settles.
@@ -91,6 +93,7 @@ impl Settler {
     /// What the window would complain about.
     pub fn settle(&self, sight: &Sight) -> anyhow::Result<Settled> {
         let camera = sight.camera.as_ref().unwrap_or(&self.scene.start);
+        let clip = sight.clip.as_ref().unwrap_or(&self.scene.clip);
         self.worker.draw(Request {
             settings: sight.settings.clone(),
             reference: None,
@@ -99,6 +102,7 @@ impl Settler {
             boxes: false,
             depth: false,
             time_s: sight.time_s,
+            clip: clip.clone(),
             always: false,
         });
         let mut frames = 0;
@@ -118,7 +122,7 @@ impl Settler {
                 &self.scene,
                 &sight.settings,
                 camera,
-                sight.time_s,
+                (clip, sight.time_s),
             ),
         })
     }

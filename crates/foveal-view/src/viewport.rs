@@ -49,7 +49,7 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
                 let place = (at - rect.min) / rect.size();
                 app.look_at(glam::Vec2::new(place.x, place.y));
             }
-            if app.display.gaze_follows && app.is_in_use("Coarse shading") {
+            if app.display.gaze_follows && app.missing("gaze").is_none() {
                 gaze(app, ui, rect);
             }
         }
@@ -59,9 +59,24 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
             let drag = glam::Vec2::new(drag.x, drag.y);
             if response.dragged_by(PointerButton::Primary) {
                 hands.turn = drag;
+            } else if response.dragged_by(PointerButton::Middle) {
+                if ui.input(|i| i.modifiers.shift) {
+                    hands.pan = drag;
+                } else {
+                    hands.orbit = drag;
+                }
             } else if response.dragged() {
                 hands.shift = drag;
             }
+        }
+        if let (true, Some(rect), Some(at)) =
+            (response.clicked(), rect, response.interact_pointer_pos())
+            && rect.contains(at)
+            && !over_split
+        {
+            let place = (at - rect.min) / rect.size();
+            let place = glam::Vec2::new(place.x, place.y);
+            app.select_at(&ui.ctx().clone(), place, rect.aspect_ratio());
         }
         if response.hovered() {
             hands.scroll = ui.input(|i| i.smooth_scroll_delta().y) / 50.0;
@@ -78,6 +93,7 @@ pub(crate) fn show(app: &mut App, ui: &mut egui::Ui) {
         app.steer(&context, hands);
         legends(app, ui, place);
         depth(app, ui, place);
+        drop_here(ui, place);
         messages(app, ui, place);
     });
 }
@@ -126,6 +142,16 @@ fn picture(app: &App, ui: &egui::Ui, place: Rect) -> Option<Rect> {
             rect,
             app.navigator.as_ref()?.camera(),
             &shown.boxes,
+        );
+    }
+    if let (Some(picked), Some(navigator)) = (&app.selected, &app.navigator) {
+        let camera = navigator.camera();
+        boxes::outline(
+            &ui.painter_at(rect),
+            rect,
+            camera,
+            &picked.bounds,
+            look::ACCENT,
         );
     }
     Some(rect)
@@ -221,6 +247,25 @@ fn depth(app: &App, ui: &egui::Ui, place: Rect) {
     let back = Rect::from_min_size(rect.min, galley.size() + Vec2::splat(8.0));
     painter.rect_filled(back, CornerRadius::ZERO, Color32::from_black_alpha(190));
     painter.galley(rect.min + Vec2::splat(4.0), galley, look::TEXT);
+}
+
+/// While files are held over the window.
+fn drop_here(ui: &egui::Ui, place: Rect) {
+    if ui.input(|i| i.raw.hovered_files.is_empty()) {
+        return;
+    }
+    let painter = ui.painter_at(place);
+    painter.rect_filled(place, CornerRadius::ZERO, Color32::from_black_alpha(150));
+    let frame = place.shrink(16.0);
+    let stroke = Stroke::new(2.0, look::ACCENT);
+    painter.rect_stroke(frame, CornerRadius::same(8), stroke, StrokeKind::Inside);
+    painter.text(
+        place.center(),
+        Align2::CENTER_CENTER,
+        "Drop scenes (.gltf, .glb) or settings (.toml)",
+        egui::FontId::proportional(16.0),
+        look::TEXT,
+    );
 }
 
 /// What is to be said, at the upper left.

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Context;
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
+use winit::dpi::{LogicalSize, PhysicalSize};
 use winit::event::WindowEvent;
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
 use winit::window::{Window, WindowId};
@@ -86,7 +86,6 @@ impl ApplicationHandler<Wake> for Handler {
                 return;
             }
             WindowEvent::Resized(size) => open.resize(size),
-            WindowEvent::DroppedFile(path) => open.app.open_scene(path.display().to_string()),
             WindowEvent::RedrawRequested => match open.redraw() {
                 Ok(after) if after.is_zero() => open.window.request_redraw(),
                 Ok(after) => match std::time::Instant::now().checked_add(after) {
@@ -126,7 +125,7 @@ impl Open {
         let attributes = Window::default_attributes()
             .with_title("Foveal")
             .with_inner_size(PhysicalSize::new(width, height))
-            .with_min_inner_size(PhysicalSize::new(960, 540));
+            .with_min_inner_size(LogicalSize::new(960.0, 540.0));
         let window = Arc::new(
             event_loop
                 .create_window(attributes)

@@ -5,6 +5,7 @@
 //! times, until what adapts from frame to frame has adapted. With a reference both sides are drawn
 //! in turn until they can be told apart, or have been drawn often enough to say that they cannot.
 
+mod capturing;
 mod drawing;
 mod inbox;
 mod judge;
@@ -16,9 +17,13 @@ use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use foveal::{AdapterStats, CullingStats, Error, FrameStats, SceneStats, Settings, Visibility};
-use foveal_scene::{Aabb, Camera};
+use foveal_scene::{Aabb, Camera, Clip};
 
 use crate::Host;
+use crate::capture::{Ended, Job};
+use crate::needs::Abilities;
+use crate::pick::{Picked, Ray};
+use capturing::Capturing;
 use drawing::Drawing;
 use inbox::{Inbox, Order};
 use judge::Judge;
@@ -43,6 +48,8 @@ pub(crate) struct Request {
     pub(crate) depth: bool,
     /// The moment of an animated scene, in seconds.
     pub(crate) time_s: f32,
+    /// Which of its animations plays.
+    pub(crate) clip: Clip,
     /// Whether to draw on without a change.
     pub(crate) always: bool,
 }
@@ -52,7 +59,7 @@ impl Request {
     pub(crate) fn shows_the_same(&self, other: &Self) -> bool {
         (&self.settings, &self.reference, &self.camera)
             == (&other.settings, &other.reference, &other.camera)
-            && self.time_s == other.time_s
+            && (self.time_s, &self.clip) == (other.time_s, &other.clip)
     }
 }
 
@@ -98,14 +105,37 @@ pub(crate) struct LoadedScene {
     pub(crate) start: Camera,
     pub(crate) cameras: Vec<Camera>,
     pub(crate) bounds: Aabb,
-    pub(crate) is_animated: bool,
+    /// Names of its animations and their lengths in seconds.
+    pub(crate) clips: Vec<(String, f32)>,
+    /// The one that plays at first.
+    pub(crate) clip: Clip,
     pub(crate) warnings: usize,
+}
+
+impl LoadedScene {
+    /// Length of a clip in seconds; 0 for what does not move.
+    pub(crate) fn duration_s(&self, clip: &Clip) -> f32 {
+        let longest = || self.clips.iter().map(|c| c.1).fold(0.0, f32::max);
+        match clip {
+            Clip::Number(number) => self.clips.get(*number as usize).map_or(0.0, |c| c.1),
+            Clip::Named(name) => {
+                let named = self.clips.iter().find(|c| c.0 == *name);
+                named.map_or(0.0, |c| c.1)
+            }
+            Clip::All => longest(),
+        }
+    }
 }
 
 /// What the thread tells the window.
 #[derive(Debug)]
 pub(crate) enum News {
-    Adapter(AdapterStats),
+    Adapter(AdapterStats, Abilities),
+    /// What is under the pointer.
+    Picked(Option<Picked>),
+    /// How many pictures of a capture are written, and of how many.
+    Captured(usize, usize),
+    CaptureEnded(Ended),
     Scene(Box<LoadedScene>),
     Picture(Box<Shown>),
     /// How visible the difference of two sides is that were drawn before.
@@ -118,6 +148,8 @@ pub(crate) struct Worker {
     inbox: Arc<Inbox>,
     news: Receiver<News>,
     thread: Option<std::thread::JoinHandle<()>>,
+    #[cfg(test)]
+    imagined: Sender<News>,
 }
 
 impl Worker {
@@ -130,6 +162,8 @@ impl Worker {
         let (sender, news) = channel();
         let theirs = Arc::clone(&inbox);
         let wake = Arc::new(Mutex::new(wake));
+        #[cfg(test)]
+        let imagined = sender.clone();
         let tell = Teller { sender, wake };
         let judged = tell.clone();
         let judge = Judge::start(move |quality| judged.tell(News::Quality(Box::new(quality))))?;
@@ -144,7 +178,26 @@ impl Worker {
             inbox,
             news,
             thread: Some(thread),
+            #[cfg(test)]
+            imagined,
         })
+    }
+
+    /// Without a thread: news are imagined.
+    #[cfg(test)]
+    pub(crate) fn idle() -> Self {
+        let (sender, news) = channel();
+        Self {
+            inbox: Arc::default(),
+            news,
+            thread: None,
+            imagined: sender,
+        }
+    }
+
+    #[cfg(test)]
+    pub(crate) fn imagine(&self, news: News) {
+        self.imagined.send(news).unwrap();
     }
 
     pub(crate) fn load(&self, scene: String) {
@@ -153,6 +206,21 @@ impl Worker {
 
     pub(crate) fn draw(&self, request: Request) {
         self.inbox.draw(request);
+    }
+
+    /// Asks which object a ray meets.
+    pub(crate) fn pick(&self, ray: Ray) {
+        self.inbox.pick(ray);
+    }
+
+    /// Starts a capture; other pictures wait for its end.
+    pub(crate) fn capture(&self, job: Job) {
+        self.inbox.capture(job);
+    }
+
+    /// Gives the capture up that runs.
+    pub(crate) fn cancel_capture(&self) {
+        self.inbox.cancel_capture();
     }
 
     /// Has the device lost, as a driver does that starts anew: to see that work goes on.
@@ -205,20 +273,25 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
     let mut settled = 0;
     let mut is_second_try = false;
     let mut wanted: Option<Request> = None;
+    let mut capturing: Option<Capturing> = None;
     loop {
-        let idle = wanted.as_ref().is_none_or(|request| {
+        let is_settled = wanted.as_ref().is_none_or(|request| {
             settled >= SETTLING_FRAMES && !request.always && drawing.is_measured()
         });
+        let idle = is_settled && capturing.is_none();
         match inbox.next(idle) {
             Order::Quit => return,
             Order::Load(name) => {
                 settled = 0;
+                if let Some(capturing) = capturing.take() {
+                    tell.tell(News::CaptureEnded(capturing.cancelled()));
+                }
                 let loaded = drawing
                     .open(host)
                     .map(|adapter| {
                         adapter
                             .into_iter()
-                            .for_each(|a| tell.tell(News::Adapter(a)))
+                            .for_each(|(a, can)| tell.tell(News::Adapter(a, can)))
                     })
                     .and_then(|()| drawing.load(host, &name));
                 match loaded {
@@ -235,11 +308,50 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
                 settled = 0;
                 wanted = Some(*request);
             }
+            Order::Pick(ray) => {
+                tell.tell(News::Picked(drawing.pick(ray)));
+                continue;
+            }
+            Order::Capture(job) => match Capturing::start(host, *job) {
+                Ok(started) => capturing = Some(started),
+                Err(error) => tell.tell(News::CaptureEnded(Ended::Failed(format!("{error:#}")))),
+            },
+            Order::CancelCapture => {
+                if let Some(capturing) = capturing.take() {
+                    tell.tell(News::CaptureEnded(capturing.cancelled()));
+                    settled = 0;
+                }
+                continue;
+            }
             Order::LoseDevice => {
                 drawing.lose_device();
                 settled = 0;
             }
             Order::Nothing => {}
+        }
+        if let Some(mut running) = capturing.take() {
+            match running.step(host, &mut drawing) {
+                Ok(shown) => {
+                    tell.tell(News::Captured(running.written(), running.of()));
+                    if let Some(shown) = shown {
+                        tell.tell(News::Picture(Box::new(shown)));
+                    }
+                    if running.is_done() {
+                        tell.tell(News::CaptureEnded(running.finished()));
+                        settled = 0;
+                    } else {
+                        capturing = Some(running);
+                    }
+                }
+                Err(error) => {
+                    tell.tell(News::CaptureEnded(running.failed(&error)));
+                    if error.is::<Error>() {
+                        drawing.give_up_device();
+                    }
+                    settled = 0;
+                }
+            }
+            continue;
         }
         let Some(request) = &wanted else { continue };
         match drawing.draw(host, request, settled) {

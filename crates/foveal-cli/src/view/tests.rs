@@ -4,7 +4,7 @@ use std::path::Path;
 
 use clap::Parser;
 use foveal::Settings;
-use foveal_scene::Camera;
+use foveal_scene::{Camera, Clip};
 use foveal_view::{Settler, Sight};
 use glam::{Mat4, Vec3};
 use toml::{Table, Value};
@@ -95,7 +95,10 @@ fn camera(lot: &mut Lot, start: &Camera) -> Option<Camera> {
     lot.of(&[None, Some(camera.clone()), Some(camera)]).clone()
 }
 
-/// Three triangles, of which one moves to and fro within two seconds.
+const CLIPS: [Clip; 3] = [Clip::Number(0), Clip::Number(1), Clip::All];
+
+/// Three triangles, of which one moves to and fro within two seconds; in the second clip another
+/// one does.
 fn write_animated(folder: &Path) -> String {
     let mut bytes = Vec::new();
     let mut push = |numbers: &[f32]| numbers.iter().for_each(|n| bytes.extend(n.to_le_bytes()));
@@ -106,7 +109,9 @@ fn write_animated(folder: &Path) -> String {
     let gltf = r#"{"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0, 1, 2]}],
         "nodes": [{"mesh": 0}, {"mesh": 0, "translation": [0.3, 0.2, -1]}, {"mesh": 0, "translation": [-1, 0, -0.5]}],
         "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-        "animations": [{"samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        "animations": [
+            {"name": "one", "samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]},
+            {"name": "two", "samplers": [{"input": 1, "output": 2}], "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}]}],
         "accessors": [
             {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
             {"bufferView": 1, "componentType": 5126, "count": 3, "type": "SCALAR", "min": [0], "max": [2]},
@@ -116,6 +121,28 @@ fn write_animated(folder: &Path) -> String {
     let path = folder.join("moving pictures.gltf");
     std::fs::write(&path, gltf).unwrap();
     path.display().to_string()
+}
+
+#[test]
+fn flags_of_one_scene_are_not_those_of_another_and_the_clip_is_the_windows() {
+    let words = [
+        "foveal",
+        "view",
+        "a.glb",
+        "--clip",
+        "Run",
+        "--variant",
+        "red",
+        "--point-lights",
+        "3",
+    ];
+    let Command::View(args) = Cli::try_parse_from(words).unwrap().command else {
+        panic!("these are words for the window");
+    };
+    let host = super::host(&args).unwrap();
+    let flags = |scene| (host.scene_flags)(scene).join(" ");
+    assert_eq!(flags("a.glb"), "--variant red --point-lights 3");
+    assert_eq!(flags("b.glb"), "--point-lights 3");
 }
 
 #[test]
@@ -136,6 +163,8 @@ fn the_copied_command_draws_what_the_window_shows() {
                 settings: settings(&mut lot),
                 camera: camera(&mut lot, settler.start()),
                 time_s: lot.number(0.0, 2.0),
+                // A generated scene has none to choose from.
+                clip: (scene == animated).then(|| lot.of(&CLIPS).clone()),
             };
             let shown = settler.settle(&sight).unwrap();
             let file = folder.path().join("picture.png");

@@ -10,6 +10,7 @@
 
 #[path = "../common/mod.rs"]
 mod common;
+mod kept;
 mod peer;
 mod screen;
 
@@ -181,7 +182,7 @@ fn files_are_dropped_saved_and_loaded_and_the_command_is_copied() {
     // A broken file that is dropped is complained about, and the old scene stays.
     let (name, middle) = ("it is broken.glb", (640, 360));
     std::fs::write(folder.join(name), b"glTF, but not really").unwrap();
-    peer.drop_file(screen.id, middle, &folder.join(name));
+    peer.drop_files(screen.id, middle, &[&folder.join(name)]);
     std::thread::sleep(Duration::from_millis(300));
     screen.until("the broken file is complained about", |s| {
         complains(&s.shot()).then_some(())
@@ -195,13 +196,16 @@ fn files_are_dropped_saved_and_loaded_and_the_command_is_copied() {
     // One that is not takes its place.
     let gltf = folder.join("triangle.gltf");
     std::fs::write(&gltf, triangle()).unwrap();
-    peer.drop_file(screen.id, middle, &gltf);
+    peer.drop_files(screen.id, middle, &[&gltf, &folder.join("another.glb")]);
     screen.until("the dropped scene is shown", |s| {
         let picture = s.shot().picture();
         (differing(&cornell.picture(), &picture) > 0.9 && colors(&picture) < 40).then_some(())
     });
     let dropped = screen.settled();
     screen.keep("dropped", &dropped);
+    // The second one is remembered.
+    let memory = std::fs::read_to_string(folder.join("config/foveal/window.toml")).unwrap();
+    assert!(memory.contains("another.glb"), "{memory}");
 }
 
 /// A glTF file with a triangle.

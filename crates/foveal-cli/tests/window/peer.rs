@@ -76,9 +76,12 @@ impl Peer {
         panic!("no {what} came");
     }
 
-    /// Drags a file to a place of the window and lets it go.
-    pub(crate) fn drop_file(&self, window: Window, (x, y): (u32, u32), file: &Path) {
-        let list = format!("file://{}\r\n", file.display());
+    /// Drags files to a place of the window and lets them go.
+    pub(crate) fn drop_files(&self, window: Window, (x, y): (u32, u32), files: &[&Path]) {
+        let lines = files
+            .iter()
+            .map(|file| format!("file://{}\r\n", file.display()));
+        let list: String = lines.collect();
         let (selection, uris) = (self.atom("XdndSelection"), self.atom("text/uri-list"));
         self.connection
             .set_selection_owner(self.own, selection, CURRENT_TIME)

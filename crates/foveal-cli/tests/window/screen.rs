@@ -131,29 +131,29 @@ impl Screen {
     pub(crate) fn open(size: (usize, usize), words: &[&str]) -> Self {
         let folder = common::folder();
         let (server, display) = start_server(folder.path(), size);
-        let window_size = format!("{}x{}", size.0, size.1);
-        let window = Command::new(env!("CARGO_BIN_EXE_foveal"))
-            .arg("view")
-            .args(words)
-            .args(["--window", &window_size])
-            .current_dir(folder.path())
-            .env("DISPLAY", &display)
-            .env_remove("WAYLAND_DISPLAY")
-            .env("XDG_RUNTIME_DIR", folder.path())
-            .stderr(Stdio::from(
-                std::fs::File::create(folder.path().join("stderr")).unwrap(),
-            ))
-            .spawn()
-            .unwrap();
+        let window = start_window(folder.path(), &display, size, words);
         let mut screen = Self {
-            window: Running(window),
+            window,
             _server: server,
             folder,
             display,
             id: 0,
             size,
         };
-        screen.id = screen.until("the window is there", |screen| {
+        screen.wait_for_picture();
+        screen
+    }
+
+    /// Ends the window and starts it anew with these words.
+    pub(crate) fn restart(&mut self, words: &[&str]) {
+        let _ = self.window.0.kill();
+        let _ = self.window.0.wait();
+        self.window = start_window(self.folder.path(), &self.display, self.size, words);
+        self.wait_for_picture();
+    }
+
+    fn wait_for_picture(&mut self) {
+        self.id = self.until("the window is there", |screen| {
             let id = screen.xdotool(&["search", "--name", "^Foveal$"])?;
             let id = id.lines().next()?.to_owned();
             // There is no window manager: nobody else places it or gives it the keys.
@@ -161,12 +161,11 @@ impl Screen {
             screen.xdotool(&["windowfocus", &id])?;
             id.parse().ok()
         });
-        screen.until("a picture is drawn", |screen| {
+        self.until("a picture is drawn", |screen| {
             let picture = screen.shot().picture();
             let empty = count(&picture, BACKGROUND, 1);
             (colors(&picture) > 12 && empty < picture.len() / 10).then_some(())
         });
-        screen
     }
 
     pub(crate) fn xdotool(&self, words: &[&str]) -> Option<String> {
@@ -286,6 +285,25 @@ impl Screen {
         )
         .unwrap();
     }
+}
+
+/// The window on this display, with its memory in the folder.
+fn start_window(folder: &Path, display: &str, size: (usize, usize), words: &[&str]) -> Running {
+    let window = Command::new(env!("CARGO_BIN_EXE_foveal"))
+        .arg("view")
+        .args(words)
+        .args(["--window", &format!("{}x{}", size.0, size.1)])
+        .current_dir(folder)
+        .env("DISPLAY", display)
+        .env_remove("WAYLAND_DISPLAY")
+        .env("XDG_RUNTIME_DIR", folder)
+        .env("XDG_CONFIG_HOME", folder.join("config"))
+        .stderr(Stdio::from(
+            std::fs::File::create(folder.join("stderr")).unwrap(),
+        ))
+        .spawn()
+        .unwrap();
+    Running(window)
 }
 
 /// A server that answers, and its display.

@@ -57,7 +57,7 @@ impl App {
             scene,
             &self.settings,
             navigator.camera(),
-            self.display.time_s,
+            (&self.display.clip, self.display.time_s),
         );
         let quoted: Vec<String> = words.iter().map(|word| (self.host.quoted)(word)).collect();
         Some(quoted.join(" "))

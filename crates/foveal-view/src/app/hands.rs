@@ -1,18 +1,44 @@
 //! What keys do, and where the camera goes by them.
 
+use std::path::Path;
+
 use egui::{Key, Modifiers};
-use glam::Vec3;
+use foveal::Output;
+use foveal_scene::Camera;
+use glam::{Vec2, Vec3};
 
 use super::App;
-use crate::navigator::{Hands, Mode};
+use crate::browser::Browser;
+use crate::navigator::{Hands, Mode, Side};
+use crate::pick::Ray;
 
 impl App {
     /// Keys, unless a text field takes them.
     pub(super) fn take_keys(&mut self, context: &egui::Context) {
-        if context.text_edit_focused() {
+        let with = |modifiers, key| context.input_mut(|i| i.consume_key(modifiers, key));
+        if with(Modifiers::COMMAND, Key::O) {
+            self.open_dialog();
+        }
+        if self.browser.is_some() || context.text_edit_focused() {
             return;
         }
-        let pressed = |key| context.input_mut(|i| i.consume_key(Modifiers::NONE, key));
+        let pressed = |key| with(Modifiers::NONE, key);
+        if with(Modifiers::CTRL | Modifiers::SHIFT, Key::F12) {
+            self.worker.lose_device();
+            self.loses_devices = true;
+        }
+        if pressed(Key::Escape) {
+            self.escape();
+        }
+        for (key, side) in [
+            (Key::Num1, Side::Front),
+            (Key::Num3, Side::Right),
+            (Key::Num7, Side::Top),
+        ] {
+            if with(Modifiers::ALT, key) {
+                self.look_from(side);
+            }
+        }
         let display = &mut self.display;
         for (key, switch) in [
             (Key::C, &mut display.frozen),
@@ -23,6 +49,7 @@ impl App {
             (Key::H, &mut display.panels),
             (Key::F1, &mut display.keys),
             (Key::Space, &mut display.playing),
+            (Key::V, &mut self.capture.is_open),
         ] {
             if pressed(key) {
                 *switch = !*switch;
@@ -36,17 +63,17 @@ impl App {
                 Mode::Orbit => Mode::Fly,
             };
         }
-        if pressed(Key::Home)
-            && let (Some(navigator), Some(scene)) = (&mut self.navigator, &self.scene)
-        {
-            navigator.go_to(scene.start.clone());
+        if pressed(Key::Home) {
+            self.go_to_start();
         }
-        if context.input_mut(|i| i.consume_key(Modifiers::CTRL | Modifiers::SHIFT, Key::F12)) {
-            self.worker.lose_device();
-            self.loses_devices = true;
+        if pressed(Key::Period) {
+            self.frame_selected();
         }
         if pressed(Key::P) || pressed(Key::F12) {
             self.take_screenshot(context);
+        }
+        if self.capture.is_open && pressed(Key::Enter) {
+            self.start_capture(context);
         }
         const DIGITS: [Key; 9] = [
             Key::Num1,
@@ -60,7 +87,7 @@ impl App {
             Key::Num9,
         ];
         for (index, key) in DIGITS.into_iter().enumerate() {
-            if context.input_mut(|i| i.consume_key(Modifiers::CTRL, key)) {
+            if with(Modifiers::CTRL, key) {
                 self.set_bookmark(index);
             } else if pressed(key) {
                 self.go_to_bookmark(index);
@@ -68,9 +95,99 @@ impl App {
         }
     }
 
+    /// Opens the dialog on the folder of the last file, or on the one that the host starts with.
+    pub(crate) fn open_dialog(&mut self) {
+        let files = self.host.files.as_ref();
+        let last = self.scene.as_ref().map(|scene| &scene.source);
+        let last = last.filter(|source| !self.host.generated.contains(source));
+        let folder = last.map(|source| files.full_name(source));
+        let folder = folder.as_ref().and_then(|name| Path::new(name).parent());
+        let folder = folder.filter(|folder| files.is_folder(folder));
+        let folder = folder.map_or_else(|| files.start(), Path::to_owned);
+        self.browser = Some(Browser::new(files, folder));
+    }
+
+    /// Closes or ends what is on top.
+    fn escape(&mut self) {
+        if self.display.keys {
+            self.display.keys = false;
+        } else if !self.capture.is_idle() {
+            self.cancel_capture();
+        } else if self.capture.is_open {
+            self.capture.is_open = false;
+        } else {
+            self.selected = None;
+        }
+    }
+
+    pub(crate) fn go_to_start(&mut self) {
+        if let (Some(navigator), Some(scene)) = (&mut self.navigator, &self.scene) {
+            navigator.go_to(scene.start.clone());
+        }
+    }
+
+    /// Width by height of the picture.
+    fn aspect(&self) -> f32 {
+        self.settings.picture.width as f32 / self.settings.picture.height.max(1) as f32
+    }
+
+    /// Brings what is selected, or else everything, into view.
+    pub(crate) fn frame_selected(&mut self) {
+        let (bounds, aspect) = (self.framed(), self.aspect());
+        if let Some(navigator) = &mut self.navigator {
+            navigator.frame(bounds, aspect);
+        }
+    }
+
+    /// Looks at what is selected, or else at everything, from a side.
+    pub(crate) fn look_from(&mut self, side: Side) {
+        let (bounds, aspect) = (self.framed(), self.aspect());
+        if let Some(navigator) = &mut self.navigator {
+            navigator.look_from(side, bounds, aspect);
+        }
+    }
+
+    /// Selects what is at a place of the picture, given as fractions of it from the top left.
+    pub(crate) fn select_at(&mut self, context: &egui::Context, place: Vec2, aspect: f32) {
+        let Some(navigator) = &self.navigator else {
+            return;
+        };
+        if self.settings.is_stereo() && self.settings.stereo.output != Output::Flat {
+            self.say(
+                context,
+                "Objects are selected in flat pictures alone: set Output to flat",
+            );
+            return;
+        }
+        let world_from_clip = navigator.camera().clip_from_world(aspect).inverse();
+        let at = |depth| {
+            let ndc = Vec3::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, depth);
+            world_from_clip.project_point3(ndc)
+        };
+        // Depth is reversed: the near plane, and a place twice as far.
+        let (origin, further) = (at(1.0), at(0.5));
+        self.worker.pick(Ray {
+            origin,
+            direction: further - origin,
+        });
+    }
+
     pub(crate) fn set_bookmark(&mut self, index: usize) {
         if let Some(navigator) = &self.navigator {
-            self.bookmarks[index] = Some(navigator.camera().clone());
+            let camera = Some(navigator.camera().clone());
+            self.keep_bookmark(index, camera);
+        }
+    }
+
+    /// Sets or removes a bookmark, now and for the next time that the scene is opened.
+    pub(crate) fn keep_bookmark(&mut self, index: usize, camera: Option<Camera>) {
+        let text = camera
+            .as_ref()
+            .map(|camera| (self.host.exact_camera)(camera));
+        self.bookmarks[index] = camera;
+        if let Some(scene) = &self.scene {
+            let name = self.host.files.full_name(&scene.source);
+            self.remember(|memory| memory.set_bookmark(&name, index as u8 + 1, text));
         }
     }
 
@@ -82,7 +199,7 @@ impl App {
 
     /// Moves the camera by the keys that are held and by what the pointer did over the picture.
     pub(crate) fn steer(&mut self, context: &egui::Context, mut hands: Hands) {
-        if !context.text_edit_focused() {
+        if !context.text_edit_focused() && self.browser.is_none() {
             context.input(|i| {
                 if i.modifiers.ctrl || i.modifiers.command {
                     return;
@@ -92,9 +209,13 @@ impl App {
                     f32::from(u8::from(down(more))) - f32::from(u8::from(down(less)))
                 };
                 hands.push = Vec3::new(
-                    axis(&[Key::D, Key::ArrowRight], &[Key::A, Key::ArrowLeft]),
+                    axis(&[Key::D], &[Key::A]),
                     axis(&[Key::E, Key::PageUp], &[Key::Q, Key::PageDown]),
-                    axis(&[Key::W, Key::ArrowUp], &[Key::S, Key::ArrowDown]),
+                    axis(&[Key::W], &[Key::S]),
+                );
+                hands.keys_turn = Vec2::new(
+                    axis(&[Key::ArrowRight], &[Key::ArrowLeft]),
+                    axis(&[Key::ArrowUp], &[Key::ArrowDown]),
                 );
                 hands.hurry = i.modifiers.shift;
             });
@@ -104,13 +225,14 @@ impl App {
         hands.elapsed_s = dt.min(0.1);
         if let Some(navigator) = &mut self.navigator
             && navigator.step(&hands)
-            && hands.push != Vec3::ZERO
+            && (hands.push != Vec3::ZERO || hands.keys_turn != Vec2::ZERO)
         {
             context.request_repaint();
         }
-        let animated = self.scene.as_ref().is_some_and(|scene| scene.is_animated);
-        if animated && self.display.playing {
-            self.display.time_s += hands.elapsed_s;
+        let scene = self.scene.as_ref();
+        let duration_s = scene.map_or(0.0, |scene| scene.duration_s(&self.display.clip));
+        if duration_s > 0.0 && self.display.playing {
+            self.display.time_s = (self.display.time_s + hands.elapsed_s) % duration_s;
             context.request_repaint();
         }
     }

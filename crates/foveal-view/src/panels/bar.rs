@@ -3,7 +3,7 @@
 use egui::{Align, Layout, RichText};
 
 use crate::app::App;
-use crate::navigator::Mode;
+use crate::navigator::{Mode, Side};
 use crate::{keys, look};
 
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
@@ -28,18 +28,39 @@ fn scene(app: &mut App, ui: &mut egui::Ui) {
     let response = ui.add(name).on_hover_text(
         "A glTF file's path or a generated scene's name; Enter loads it. Or drop a file onto the window.",
     );
-    let mut open = response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter));
-    open |= ui.button("Open").clicked();
-    if open {
+    if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
         let name = app.scene_name.trim().to_owned();
         app.open_scene(name);
     }
-    ui.menu_button("Generated", |ui| {
-        for name in app.host.generated.clone() {
-            if ui.button(&name).clicked() {
-                app.open_scene(name);
-                ui.close();
+    if ui
+        .button("Open")
+        .on_hover_text("Lists folders with scene files (Ctrl+O)")
+        .clicked()
+    {
+        app.open_dialog();
+    }
+    ui.menu_button("Scenes", |ui| {
+        let mut opens = None;
+        let files = app.host.files.as_ref();
+        ui.set_max_width(260.0);
+        if !app.memory.recent.is_empty() {
+            ui.label(RichText::new("Recent").color(look::FAINT));
+            for scene in &app.memory.recent {
+                if super::open::recent(ui, scene, files.is_there(scene)) {
+                    opens = Some(scene.clone());
+                }
             }
+            ui.separator();
+        }
+        ui.label(RichText::new("Generated").color(look::FAINT));
+        for name in &app.host.generated {
+            if ui.button(name).clicked() {
+                opens = Some(name.clone());
+            }
+        }
+        if let Some(scene) = opens {
+            app.open_scene(scene);
+            ui.close();
         }
     });
     if app.loading {
@@ -53,9 +74,9 @@ fn camera(app: &mut App, ui: &mut egui::Ui) {
         return;
     };
     ui.selectable_value(&mut navigator.mode, Mode::Fly, "Fly")
-        .on_hover_text("W A S D, Q E, drag to look, scroll for speed");
+        .on_hover_text("W A S D, Q E, drag to look, middle drag to orbit, scroll for speed (F)");
     ui.selectable_value(&mut navigator.mode, Mode::Orbit, "Orbit")
-        .on_hover_text("drag to turn, right drag to shift, scroll for distance");
+        .on_hover_text("drag to turn, right drag to shift, scroll for distance (F)");
     let mut chosen = None;
     egui::ComboBox::from_id_salt("camera")
         .width(96.0)
@@ -71,6 +92,43 @@ fn camera(app: &mut App, ui: &mut egui::Ui) {
     if let Some(camera) = chosen {
         navigator.go_to(camera);
     }
+    views(app, ui);
+    bookmarks(app, ui);
+}
+
+fn views(app: &mut App, ui: &mut egui::Ui) {
+    ui.menu_button("View", |ui| {
+        let mut item = |text: &str, keys: &str| {
+            let button = egui::Button::new(text).shortcut_text(keys);
+            let is_clicked = ui.add(button).clicked();
+            if is_clicked {
+                ui.close();
+            }
+            is_clicked
+        };
+        if item("Start", "Home") {
+            app.go_to_start();
+        }
+        let selected = app.selected.as_ref().map(|picked| picked.name.clone());
+        let frame = selected.map_or("All".to_owned(), |name| format!("Selected: {name}"));
+        if item(&frame, ".") {
+            app.frame_selected();
+        }
+        for (text, keys, side) in [
+            ("Front", "Alt+1", Side::Front),
+            ("Right side", "Alt+3", Side::Right),
+            ("Top", "Alt+7", Side::Top),
+        ] {
+            if item(text, keys) {
+                app.look_from(side);
+            }
+        }
+    })
+    .response
+    .on_hover_text("Of what is selected (click an object), or else of everything; a side again: from the opposite one");
+}
+
+fn bookmarks(app: &mut App, ui: &mut egui::Ui) {
     ui.menu_button("Bookmarks", |ui| {
         for index in 0..app.bookmarks.len() {
             ui.horizontal(|ui| {
@@ -84,13 +142,18 @@ fn camera(app: &mut App, ui: &mut egui::Ui) {
                     app.set_bookmark(index);
                     ui.close();
                 }
+                if ui.add_enabled(there, egui::Button::new("Clear")).clicked() {
+                    app.keep_bookmark(index, None);
+                }
             });
         }
-    });
+    })
+    .response
+    .on_hover_text("Views of this scene, kept from run to run (1 to 9; with Ctrl set)");
 }
 
 /// In windows narrower than this the files' buttons are a menu.
-const WIDE: f32 = 1150.0;
+const WIDE: f32 = 1240.0;
 
 /// From right to left.
 fn files(app: &mut App, ui: &mut egui::Ui) {
@@ -134,6 +197,13 @@ fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
     }
     let file = egui::TextEdit::singleline(&mut app.settings_file).desired_width(96.0);
     ui.add(file).on_hover_text("The settings file, TOML");
+    if ui
+        .button("Capture")
+        .on_hover_text("A turntable or a flight as pictures or a video (V)")
+        .clicked()
+    {
+        app.capture.is_open = !app.capture.is_open;
+    }
 }
 
 /// What the keys do, as many as fit, and where one is.
@@ -147,6 +217,15 @@ pub(super) fn keys(app: &mut App, ui: &mut egui::Ui) {
                     eye.x, eye.y, eye.z, navigator.speed_m_s
                 );
                 ui.label(RichText::new(text).small().color(look::FAINT));
+            }
+            if let Some(picked) = &app.selected {
+                let name: String = picked.name.chars().take(24).collect();
+                let text = format!("{name}: {} triangles", look::grouped(picked.triangles));
+                ui.label(RichText::new(text).small().color(look::ACCENT))
+                    .on_hover_text(format!(
+                        "Selected: {}, object {}",
+                        picked.name, picked.object
+                    ));
             }
             ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
                 ui.spacing_mut().item_spacing.x = 4.0;

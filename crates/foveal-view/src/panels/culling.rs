@@ -2,15 +2,26 @@
 
 use egui::RichText;
 
-use super::{card, figure};
+use super::{card, figure, noted};
 use crate::app::App;
 use crate::look::{self, grouped};
+use crate::needs::{Switch, of_culling};
 
 pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
     card(ui, "Culling", |ui| {
-        ui.checkbox(&mut app.display.boxes, "Boxes (B)");
-        ui.checkbox(&mut app.display.depth, "Occluders' depth (Z)");
-        ui.checkbox(&mut app.display.frozen, "Freeze (C)");
+        for (switch, on, text) in [
+            (Switch::Boxes, &mut app.display.boxes, "Boxes (B)"),
+            (
+                Switch::Depth,
+                &mut app.display.depth,
+                "Occluders' depth (Z)",
+            ),
+            (Switch::Freeze, &mut app.display.frozen, "Freeze (C)"),
+        ] {
+            noted(ui, of_culling(switch, &app.settings), |ui| {
+                ui.checkbox(on, text)
+            });
+        }
         let Some(shown) = &app.shown else { return };
         let Some(found) = &shown.culling else {
             ui.label(RichText::new("Culling is off: all is drawn").color(look::FAINT));

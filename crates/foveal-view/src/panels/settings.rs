@@ -6,9 +6,10 @@ use toml::{Table, Value};
 
 use crate::app::{App, Display};
 use crate::look;
+use crate::needs::refused;
 
 /// Width of the names, in points.
-const NAMES: f32 = 92.0;
+const NAMES: f32 = 108.0;
 
 /// Above the settings: what they are, and what is wrong with them.
 pub(super) fn head(app: &mut App, ui: &mut egui::Ui) {
@@ -36,34 +37,47 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         }
     }
     for stage in stages {
-        let in_use = app.is_in_use(stage);
+        let of_stage = || Settings::ALL.iter().filter(|s| s.stage == stage);
+        let in_use = of_stage().any(|setting| app.missing(setting.key).is_none());
+        let why = of_stage().find_map(|setting| app.missing(setting.key));
         let title = if in_use {
             RichText::new(stage).strong().color(look::ACCENT)
         } else {
             RichText::new(format!("{stage} (not in use)")).color(look::FAINT)
         };
         // Its identity changes with its use, so that it opens when it comes into use.
-        CollapsingHeader::new(title)
+        let header = CollapsingHeader::new(title)
             .id_salt((stage, in_use))
             .default_open(in_use)
             .show_unindented(ui, |ui| {
-                ui.add_enabled_ui(in_use, |ui| {
-                    for setting in Settings::ALL.iter().filter(|s| s.stage == stage) {
-                        row(ui, setting, &mut app.draft, &defaults, &app.display);
+                for setting in of_stage() {
+                    let missing = app.missing(setting.key);
+                    row(
+                        ui,
+                        setting,
+                        missing,
+                        &mut app.draft,
+                        &defaults,
+                        &app.display,
+                    );
+                }
+                match stage {
+                    "Picture" => size(&mut app.display, ui),
+                    "Eye" => {
+                        let missing = app.missing("gaze");
+                        let follows = &mut app.display.gaze_follows;
+                        ui.add_enabled_ui(missing.is_none(), |ui| {
+                            ui.checkbox(follows, "Gaze follows the pointer (G)")
+                                .on_disabled_hover_text(missing.unwrap_or_default());
+                        });
                     }
-                    match stage {
-                        "Picture" => size(&mut app.display, ui),
-                        "Coarse shading" => {
-                            ui.checkbox(
-                                &mut app.display.gaze_follows,
-                                "Gaze follows the pointer (G)",
-                            );
-                        }
-                        _ => {}
-                    }
-                });
+                    _ => {}
+                }
                 ui.add_space(4.0);
             });
+        if let (false, Some(why)) = (in_use, why) {
+            header.header_response.on_hover_text(why);
+        }
     }
 }
 
@@ -105,11 +119,14 @@ fn name(ui: &mut egui::Ui, text: &str, changed: bool) -> egui::Response {
 fn row(
     ui: &mut egui::Ui,
     setting: &Setting,
+    missing: Option<&str>,
     draft: &mut Table,
     defaults: &Table,
     display: &Display,
 ) {
     let key = setting.key;
+    // What a choice would make of the other settings.
+    let others = draft.clone();
     let (Some(value), Some(default)) = (draft.get_mut(key), defaults.get(key)) else {
         return;
     };
@@ -121,8 +138,20 @@ fn row(
                 "{}\n\nFlag: --{key}\nClick: back to {default}",
                 setting.help
             );
-            let reset = name(ui, setting.label, changed).on_hover_text(help);
-            ui.add_enabled_ui(!follows, |ui| edit(ui, setting.kind, value));
+            let reset = ui
+                .add_enabled_ui(missing.is_none(), |ui| {
+                    name(ui, setting.label, changed)
+                        .on_hover_text(&help)
+                        .on_disabled_hover_text(match missing {
+                            Some(why) => format!("{why}\n\n{help}"),
+                            None => help.clone(),
+                        })
+                })
+                .inner;
+            ui.add_enabled_ui(!follows && missing.is_none(), |ui| {
+                let refused = |choice: &str| refused(key, choice, &others);
+                edit(ui, setting.kind, value, refused);
+            });
             if changed && reset.clicked() {
                 *value = default.clone();
             }
@@ -130,7 +159,13 @@ fn row(
     });
 }
 
-fn edit(ui: &mut egui::Ui, kind: Kind, value: &mut Value) {
+/// `refused`: why a choice is impossible beside the other settings.
+fn edit(
+    ui: &mut egui::Ui,
+    kind: Kind,
+    value: &mut Value,
+    refused: impl Fn(&str) -> Option<String>,
+) {
     match (kind, value) {
         (Kind::Switch, Value::Boolean(on)) => {
             ui.checkbox(on, "");
@@ -141,7 +176,11 @@ fn edit(ui: &mut egui::Ui, kind: Kind, value: &mut Value) {
                 .selected_text(chosen.as_str())
                 .show_ui(ui, |ui| {
                     for name in names() {
-                        ui.selectable_value(chosen, (*name).to_owned(), *name);
+                        let why = refused(name);
+                        ui.add_enabled_ui(why.is_none(), |ui| {
+                            ui.selectable_value(chosen, (*name).to_owned(), *name)
+                                .on_disabled_hover_text(why.unwrap_or_default());
+                        });
                     }
                 });
         }
@@ -168,7 +207,7 @@ fn edit(ui: &mut egui::Ui, kind: Kind, value: &mut Value) {
                 }
             }
         }
-        (Kind::File, Value::String(path)) => {
+        (Kind::File | Kind::Text, Value::String(path)) => {
             ui.add(egui::TextEdit::singleline(path).desired_width(136.0));
         }
         (_, other) => {

@@ -1,17 +1,21 @@
 //! Device, scene and up to two renderers: the one that is asked about, and its reference.
 
 use foveal::{AdapterStats, FrameStats, Gpu, RateSource, Renderer, Settings};
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{Camera, Clip, Scene};
 use pollster::block_on;
 
 use super::measuring::Measuring;
 use super::{LoadedScene, OccluderDepth, Request, Rgba, SETTLING_FRAMES, Shown};
+use crate::needs::Abilities;
+use crate::pick::{Picked, Ray, pick};
 use crate::{Host, Loaded, clock};
 
 #[derive(Default)]
 pub(super) struct Drawing {
     gpu: Option<Gpu>,
     scene: Option<Scene>,
+    /// The animation that the scene plays.
+    clip: Clip,
     chosen: Option<Side>,
     reference: Option<Side>,
     /// The reference's last frame, with what it was drawn for.
@@ -24,6 +28,7 @@ struct ReferenceFrame {
     settings: Settings,
     camera: Camera,
     time_s: f32,
+    clip: Clip,
     picture: Rgba,
     stats: FrameStats,
 }
@@ -41,14 +46,21 @@ struct Side {
 
 impl Drawing {
     /// Opens the device, if there is none; says which it is if it is a new one.
-    pub(super) fn open(&mut self, host: &Host) -> anyhow::Result<Option<AdapterStats>> {
+    pub(super) fn open(
+        &mut self,
+        host: &Host,
+    ) -> anyhow::Result<Option<(AdapterStats, Abilities)>> {
         if self.gpu.is_some() {
             return Ok(None);
         }
         let gpu = block_on(Gpu::open(host.adapter.as_deref()))?;
         let adapter = gpu.adapter_stats();
+        let features = gpu.device.features();
+        let abilities = Abilities {
+            clip_distances: features.contains(wgpu::Features::CLIP_DISTANCES),
+        };
         self.gpu = Some(gpu);
-        Ok(Some(adapter))
+        Ok(Some((adapter, abilities)))
     }
 
     /// What a driver does that starts anew.
@@ -69,7 +81,11 @@ impl Drawing {
 
     /// Loads a scene; the old one stays where that fails.
     pub(super) fn load(&mut self, host: &Host, name: &str) -> anyhow::Result<LoadedScene> {
-        let Loaded { scene, camera } = (host.load)(name)?;
+        let Loaded {
+            scene,
+            camera,
+            clip,
+        } = (host.load)(name)?;
         let loaded = LoadedScene {
             name: scene.name.clone(),
             source: name.to_owned(),
@@ -83,10 +99,12 @@ impl Drawing {
             start: camera,
             cameras: scene.cameras.clone(),
             bounds: scene.bounds(),
-            is_animated: scene.is_animated(),
+            clips: scene.clips().map(|(n, s)| (n.to_owned(), s)).collect(),
+            clip: clip.clone(),
             warnings: scene.warnings.len(),
         };
         self.scene = Some(scene);
+        self.clip = clip;
         self.chosen = None;
         self.reference = None;
         self.reference_drawn = None;
@@ -102,6 +120,7 @@ impl Drawing {
         repeat: u32,
     ) -> anyhow::Result<Option<Shown>> {
         self.open(host)?;
+        self.play(&request.clip);
         let (Some(gpu), Some(scene)) = (&self.gpu, &mut self.scene) else {
             return Ok(None);
         };
@@ -127,7 +146,8 @@ impl Drawing {
             .get_or_insert_with(|| Measuring::new(settings, &request.settings, camera));
         // While settings change all the time, the picture of a reference that stays is good enough.
         let known = self.reference_drawn.as_ref().is_some_and(|drawn| {
-            drawn.settings == *settings && drawn.camera == *camera && drawn.time_s == *time_s
+            (&drawn.settings, &drawn.camera, &drawn.clip) == (settings, camera, &request.clip)
+                && drawn.time_s == *time_s
         });
         let draws_both = !known || repeat > 0 || request.always;
         let reference_first = draws_both && measuring.reference_first();
@@ -139,6 +159,7 @@ impl Drawing {
                 settings: settings.clone(),
                 camera: camera.clone(),
                 time_s: *time_s,
+                clip: request.clip.clone(),
                 picture,
                 stats,
             })
@@ -165,6 +186,27 @@ impl Drawing {
             shown.compared = Some(measuring.compared());
         }
         Ok(Some(shown))
+    }
+
+    /// Has the scene play another animation.
+    fn play(&mut self, clip: &Clip) {
+        let Some(scene) = self.scene.as_mut().filter(|_| self.clip != *clip) else {
+            return;
+        };
+        if scene.play(clip) {
+            scene.pose(0.0);
+        }
+        self.clip = clip.clone();
+        // What moves may be another part of the scene.
+        self.chosen = None;
+        self.reference = None;
+        self.reference_drawn = None;
+        self.measuring = None;
+    }
+
+    /// The object that a ray meets.
+    pub(super) fn pick(&self, ray: Ray) -> Option<Picked> {
+        pick(self.scene.as_ref()?, ray)
     }
 
     /// Whether drawing the same again can tell nothing more about two sides.

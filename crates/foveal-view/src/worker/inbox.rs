@@ -3,12 +3,19 @@
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 
 use super::Request;
+use crate::capture::Job;
+use crate::pick::Ray;
 
 /// What is to be done next.
 pub(super) enum Order {
     Quit,
     Load(String),
     Draw(Box<Request>),
+    /// Which object a ray meets.
+    Pick(Ray),
+    Capture(Box<Job>),
+    /// Gives a capture up.
+    CancelCapture,
     LoseDevice,
     Nothing,
 }
@@ -18,6 +25,9 @@ struct Orders {
     quit: bool,
     load: Option<String>,
     draw: Option<Request>,
+    pick: Option<Ray>,
+    capture: Option<Job>,
+    cancel_capture: bool,
     lose_device: bool,
 }
 
@@ -50,6 +60,23 @@ impl Inbox {
         self.changed.notify_one();
     }
 
+    pub(super) fn pick(&self, ray: Ray) {
+        self.orders().pick = Some(ray);
+        self.changed.notify_one();
+    }
+
+    pub(super) fn capture(&self, job: Job) {
+        self.orders().capture = Some(job);
+        self.changed.notify_one();
+    }
+
+    pub(super) fn cancel_capture(&self) {
+        let mut orders = self.orders();
+        orders.capture = None;
+        orders.cancel_capture = true;
+        self.changed.notify_one();
+    }
+
     pub(super) fn lose_device(&self) {
         self.orders().lose_device = true;
         self.changed.notify_one();
@@ -65,8 +92,17 @@ impl Inbox {
             if std::mem::take(&mut orders.lose_device) {
                 return Order::LoseDevice;
             }
+            if std::mem::take(&mut orders.cancel_capture) {
+                return Order::CancelCapture;
+            }
             if let Some(scene) = orders.load.take() {
                 return Order::Load(scene);
+            }
+            if let Some(ray) = orders.pick.take() {
+                return Order::Pick(ray);
+            }
+            if let Some(job) = orders.capture.take() {
+                return Order::Capture(Box::new(job));
             }
             if let Some(request) = orders.draw.take() {
                 return Order::Draw(Box::new(request));

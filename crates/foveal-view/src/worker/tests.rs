@@ -7,9 +7,30 @@ use anyhow::bail;
 use foveal::{Antialiasing, Culling, RateSource, Settings, Shading};
 use foveal_generate as generate;
 use foveal_measure::Finding;
+use foveal_scene::Clip;
 
 use super::{Compared, News, Request, Shown, Worker};
-use crate::{Host, Loaded};
+use crate::app::tests::host;
+use crate::capture::{Ended, Job, turntable};
+use crate::{Format, Host, Loaded, Recording};
+
+/// A recording that goes nowhere.
+struct Kept;
+
+impl Recording for Kept {
+    fn name(&self) -> String {
+        "nowhere".to_owned()
+    }
+
+    fn add(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
+        anyhow::ensure!(rgba.len() == 64 * 40 * 4, "of another size");
+        Ok(())
+    }
+
+    fn finish(self: Box<Self>) -> anyhow::Result<()> {
+        Ok(())
+    }
+}
 
 fn worker() -> Worker {
     let load = |name: &str| {
@@ -18,22 +39,17 @@ fn worker() -> Worker {
         }
         let scene = generate::cornell();
         let camera = scene.cameras[0].clone();
-        Ok(Loaded { scene, camera })
+        Ok(Loaded {
+            scene,
+            camera,
+            clip: Clip::default(),
+        })
     };
     let host = Host {
-        scene: "cornell".to_owned(),
-        generated: Vec::new(),
-        settings: Settings::default(),
         fit: false,
-        adapter: None,
-        window: (1, 1),
         load: Box::new(load),
-        read_settings: |_| bail!("no files here"),
-        rate_image: |_| Ok(None),
-        flags: |_| Vec::new(),
-        exact_camera: |_| String::new(),
-        quoted: str::to_owned,
-        scene_flags: Vec::new(),
+        record: Box::new(|_, _, _| Ok(Box::new(Kept))),
+        ..host()
     };
     Worker::start(Arc::new(host), || ()).expect("threads can be started")
 }
@@ -51,6 +67,7 @@ fn request() -> Request {
         boxes: true,
         depth: true,
         time_s: 0.0,
+        clip: Clip::default(),
         always: false,
     }
 }
@@ -260,4 +277,76 @@ fn the_eye_judges_both_sides_at_the_display_of_the_settings() {
     let found = judged(&coarse);
     assert_eq!(found.display, "fhd-24");
     assert!(found.jod < 9.9, "{}", found.jod);
+}
+
+/// A capture of a turn with these frames.
+fn job(frames: u32) -> Job {
+    let scene = generate::cornell();
+    let camera = &request().camera;
+    Job {
+        settings: request().settings,
+        clip: Clip::default(),
+        poses: turntable(camera, scene.bounds(), frames, (0.0, 30.0, false)),
+        format: Format::Pictures,
+        per_second: 30.0,
+    }
+}
+
+#[test]
+fn a_capture_tells_of_each_frame_and_of_its_end() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.capture(job(5));
+    let mut written = Vec::new();
+    let ended = next(&worker, |news| match news {
+        News::Captured(frames, of) => {
+            assert_eq!(of, 5);
+            written.push(frames);
+            None
+        }
+        News::CaptureEnded(ended) => Some(ended),
+        _ => None,
+    });
+    assert_eq!(ended, Ended::Done("nowhere".to_owned()));
+    written.retain(|frames| *frames > 0);
+    assert_eq!(written, [1, 2, 3, 4, 5]);
+    // What is asked for next is drawn again.
+    worker.draw(request());
+    assert_eq!(picture(&worker).camera, request().camera);
+}
+
+#[test]
+fn a_capture_is_cancelled_between_frames_and_the_view_comes_back() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.draw(request());
+    worker.capture(job(100_000));
+    next(&worker, |news| match news {
+        News::Captured(frames, _) => (frames >= 2).then_some(()),
+        _ => None,
+    });
+    worker.cancel_capture();
+    let ended = next(&worker, |news| match news {
+        News::CaptureEnded(ended) => Some(ended),
+        _ => None,
+    });
+    assert!(
+        matches!(&ended, Ended::Cancelled(text) if text.contains("of 100000")),
+        "{ended:?}"
+    );
+    assert_eq!(picture(&worker).camera, request().camera);
+}
+
+#[test]
+fn a_capture_that_cannot_be_written_says_why() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    let mut larger = job(3);
+    larger.settings.picture.width = 80;
+    worker.capture(larger);
+    let ended = next(&worker, |news| match news {
+        News::CaptureEnded(ended) => Some(ended),
+        _ => None,
+    });
+    assert_eq!(ended, Ended::Failed("of another size".to_owned()));
 }

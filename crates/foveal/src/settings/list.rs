@@ -106,11 +106,11 @@ settings! {
         edge_test => edge_test: EdgeTest = EdgeTest::default(), "Edge test", Kind::choice::<EdgeTest>();
     }
     /// The number of samples that are shaded.
-    "Shading rate" shading: ShadingSettings {
+    "Shading" shading: ShadingSettings {
         /// Number of lighting samples: full takes one per pixel (the reference), coarse one per
         /// block of pixels, larger away from the gaze, variable one per 1x1 to 2x2 pixels as
         /// the content allows.
-        shading => mode: Shading = Shading::default(), "Shading", Kind::choice::<Shading>();
+        shading => mode: Shading = Shading::default(), "Mode", Kind::choice::<Shading>();
     }
     /// The eye, its display, and the difference that it may see.
     "Eye" eye: EyeSettings {
@@ -179,12 +179,12 @@ settings! {
         /// the composite light and samples at centres, and not with the stencil backend.
         history => history: bool = true, "Keep light", Kind::Switch;
     }
-    /// Work that is done at a shading rate.
-    "Shading at a rate" rate: RateSettings {
+    /// The work that is done once per sample.
+    "Work per sample" rate: RateSettings {
         /// Work done once per sample instead of once per pixel: lighting, material (only with
         /// variable shading) or both. Materials need the visibility geometry. auto takes both
         /// where it is possible, else lighting.
-        rate_stage => stage: RateStage = RateStage::default(), "Stage", Kind::choice::<RateStage>();
+        rate_stage => stage: RateStage = RateStage::default(), "Work", Kind::choice::<RateStage>();
     }
     /// Samples of up to four by four pixels, by content.
     "Variable shading" variable: VariableSettings {

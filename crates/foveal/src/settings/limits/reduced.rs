@@ -7,7 +7,7 @@ use crate::settings::{Antialiasing, DebugView, Geometry, Setting, Settings, Shad
 /// Stages that are missing on such devices.
 const MISSING_STAGES: [&str; 4] = [
     "Anti-aliasing",
-    "Shading rate",
+    "Shading",
     "Coarse shading",
     "Variable shading",
 ];

@@ -1,0 +1,297 @@
+//! What a switch or a setting needs from the others before it does anything.
+
+use foveal::{
+    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView, EyeFrusta, Geometry,
+    Output, RateCombine, RateSource, Settings, Shading, Stereo,
+};
+use toml::{Table, Value};
+
+/// What of the device settings may ask for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Abilities {
+    pub(crate) clip_distances: bool,
+}
+
+/// Why the setting `key` has no effect beside these settings; `None` where it has one.
+/// `compares`: whether the reference is drawn beside.
+pub(crate) fn missing(
+    key: &str,
+    s: &Settings,
+    abilities: Abilities,
+    compares: bool,
+) -> Option<&'static str> {
+    let unless = |has_effect: bool, why| (!has_effect).then_some(why);
+    let shading = s.shading.mode;
+    let (coarse, variable) = (shading == Shading::Coarse, shading == Shading::Variable);
+    let stereo = s.is_stereo();
+    let occlusion = s.culling.mode == Culling::Occlusion;
+    match key {
+        "occluder-size" | "occlusion-scale" | "culling-threads" | "culling-budget" => {
+            unless(occlusion, "Needs Culling: occlusion")
+        }
+        "occludee-size" | "culling-radius" => unless(
+            s.culling.mode != Culling::Off,
+            "Needs Culling: frustum or occlusion",
+        ),
+        "culling-eyes" => unless(occlusion, "Needs Culling: occlusion")
+            .or(unless(stereo, "Needs Stereo, Eyes: other than off")),
+        "material-dispatch" => unless(
+            s.geometry.path == Geometry::Visibility,
+            "Needs Geometry, Path: visibility",
+        ),
+        "samples" | "pattern" => unless(
+            s.antialiasing.mode != Antialiasing::None,
+            "Needs Anti-aliasing, Mode: ssaa or msaa",
+        ),
+        "edge-test" => unless(
+            s.antialiasing.mode == Antialiasing::Msaa,
+            "Needs Anti-aliasing, Mode: msaa",
+        ),
+        "display" => unless(coarse || variable || compares, EYE),
+        "gaze" => unless(coarse || variable || compares, EYE),
+        "quality" => unless(shading != Shading::Full, "Needs Shading: coarse"),
+        "gaze-shift" => unless(stereo, EYES).or(unless(
+            shading != Shading::Full,
+            "Needs Shading: coarse or variable",
+        )),
+        "backend" | "coarsest-level" | "rate-balance" | "refine-edges" | "coarse-sample"
+        | "composite" => unless(coarse, "Needs Shading: coarse"),
+        "history" => unless(coarse, "Needs Shading: coarse").or(history(s)),
+        "rate" | "rate-other" | "rate-combine" | "rate-level" | "rate-image" | "fovea-inner"
+        | "fovea-outer" | "fovea-curve" => unless(
+            shading != Shading::Full,
+            "Needs Shading: coarse or variable",
+        )
+        .or(rate(key, s)),
+        "rate-stage" => unless(
+            shading != Shading::Full,
+            "Needs Shading: coarse or variable",
+        ),
+        "contrast" | "contrast-threshold" | "velocity-gain" => {
+            unless(variable, "Needs Shading: variable").or(unless(
+                uses(s, RateSource::Content),
+                "Needs Coarse shading, Rate from: content",
+            ))
+        }
+        "rate-4x4" | "force-rate" => unless(variable, "Needs Shading: variable"),
+        "ipd" | "eye-tangents" | "show" => unless(stereo, EYES),
+        "eye-clipping" => unless(stereo, EYES).or(clipping(s, abilities)),
+        "convergence" => unless(stereo, EYES).or(unless(
+            s.stereo.frusta == EyeFrusta::Camera,
+            "Needs empty Frusta: they have their own convergence",
+        )),
+        "lens" => unless(stereo, EYES).or(unless(
+            s.stereo.output == Output::Headset,
+            "Needs Output: headset",
+        )),
+        _ => None,
+    }
+}
+
+const EYES: &str = "Needs Stereo, Eyes: other than off";
+const EYE: &str = "Needs Shading: coarse or variable, or a comparison (X)";
+
+/// Whether one of the sources of the rate is this one.
+fn uses(s: &Settings, source: RateSource) -> bool {
+    s.coarse.source == source
+        || s.coarse.combine != RateCombine::First && s.coarse.other_source == source
+}
+
+fn rate(key: &str, s: &Settings) -> Option<&'static str> {
+    let (has_effect, why) = match key {
+        "rate-other" => (
+            s.coarse.combine != RateCombine::First,
+            "Needs Combine: coarser or finer",
+        ),
+        "rate-level" => (uses(s, RateSource::Constant), "Needs Rate from: constant"),
+        "rate-image" => (uses(s, RateSource::Image), "Needs Rate from: image"),
+        "fovea-inner" | "fovea-outer" | "fovea-curve" => {
+            (uses(s, RateSource::Radii), "Needs Rate from: radii")
+        }
+        _ => (true, ""),
+    };
+    (!has_effect).then_some(why)
+}
+
+fn history(s: &Settings) -> Option<&'static str> {
+    if s.coarse.composite != Composite::Light {
+        Some("Needs Composite: light")
+    } else if s.coarse.sample != CoarseSample::Center {
+        Some("Needs Sample: center")
+    } else if s.coarse.backend == CoarseBackend::Stencil {
+        Some("Needs Backend: other than stencil")
+    } else if s.picture.view != DebugView::Final {
+        Some("Needs View: final")
+    } else {
+        None
+    }
+}
+
+fn clipping(s: &Settings, abilities: Abilities) -> Option<&'static str> {
+    if !abilities.clip_distances {
+        Some("Needs a device with clip distances; this one has none, and discards")
+    } else if s.geometry.path != Geometry::Gbuffer {
+        Some("Needs Geometry, Path: gbuffer")
+    } else if s.stereo.mode == Stereo::Multiview {
+        Some("Needs Eyes: other than multiview")
+    } else {
+        None
+    }
+}
+
+/// Why `value` is impossible for the setting `key` beside the others of `draft`.
+pub(crate) fn refused(key: &str, value: &str, draft: &Table) -> Option<String> {
+    let mut table = draft.clone();
+    table.insert(key.to_owned(), Value::from(value));
+    match checked(&table) {
+        Ok(_) => None,
+        // What is wrong already is no fault of this value.
+        Err(_) if checked(draft).is_err() => None,
+        Err(cause) => Some(cause),
+    }
+}
+
+/// The settings of a draft, where they make sense.
+pub(crate) fn checked(draft: &Table) -> Result<Settings, String> {
+    let limits = wgpu::Limits {
+        max_texture_dimension_2d: 16384,
+        max_buffer_size: u64::MAX,
+        max_storage_buffer_binding_size: u64::MAX,
+        ..wgpu::Limits::default()
+    };
+    let settings = draft.clone().try_into::<Settings>();
+    let settings = settings.map_err(|error| error.message().to_owned())?;
+    match settings.validate(&limits) {
+        Ok(()) => Ok(settings),
+        Err(error) => Err(error.to_string()),
+    }
+}
+
+/// What boxes, depth and a culling that is kept need.
+pub(crate) fn of_culling(switch: Switch, s: &Settings) -> Option<&'static str> {
+    match (switch, s.culling.mode) {
+        (Switch::Boxes | Switch::Freeze, Culling::Off) => {
+            Some("Needs Culling: frustum or occlusion")
+        }
+        (Switch::Depth, Culling::Off | Culling::Frustum) => Some("Needs Culling: occlusion"),
+        _ => None,
+    }
+}
+
+/// A switch of the culling card.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Switch {
+    Boxes,
+    Depth,
+    Freeze,
+}
+
+#[cfg(test)]
+mod tests {
+    use foveal::EyeClipping;
+
+    use super::*;
+
+    const CLIPS: Abilities = Abilities {
+        clip_distances: true,
+    };
+
+    fn none(key: &str, s: &Settings) -> Option<&'static str> {
+        missing(key, s, CLIPS, false)
+    }
+
+    #[test]
+    fn every_rule_is_of_a_setting_and_can_be_met() {
+        let s = Settings::default();
+        let noted: Vec<&str> = (Settings::ALL.iter())
+            .map(|setting| setting.key)
+            .filter(|key| none(key, &s).is_some())
+            .collect();
+        // Most settings of stages that are switched off by default.
+        assert!(noted.len() > 25, "{noted:?}");
+        let all_on = [
+            Settings::default().with(|s| {
+                s.culling.mode = Culling::Occlusion;
+                s.antialiasing.mode = Antialiasing::Msaa;
+                s.shading.mode = Shading::Coarse;
+                s.coarse.source = RateSource::Radii;
+                s.coarse.combine = RateCombine::Finer;
+                s.stereo.mode = Stereo::Instanced;
+                s.stereo.output = Output::Headset;
+            }),
+            Settings::default().with(|s| {
+                s.geometry.path = Geometry::Visibility;
+                s.shading.mode = Shading::Variable;
+                s.coarse.source = RateSource::Content;
+            }),
+            Settings::default().with(|s| {
+                s.shading.mode = Shading::Coarse;
+                s.coarse.source = RateSource::Image;
+            }),
+        ];
+        for key in noted {
+            let met = all_on.iter().any(|s| none(key, s).is_none());
+            assert!(met, "{key}");
+        }
+    }
+
+    #[test]
+    fn notes_name_settings_and_stages_as_the_panel_does() {
+        let names: Vec<&str> = (Settings::ALL.iter())
+            .flat_map(|setting| [setting.label, setting.stage])
+            .collect();
+        for setting in Settings::ALL {
+            let Some(note) = none(setting.key, &Settings::default()) else {
+                continue;
+            };
+            let name = note
+                .strip_prefix("Needs ")
+                .and_then(|n| n.split([':', ',']).next());
+            assert!(name.is_some_and(|n| names.contains(&n)), "{note}");
+        }
+    }
+
+    #[test]
+    fn views_of_what_is_switched_off_are_refused_with_the_reason() {
+        let draft = Table::try_from(Settings::default()).unwrap();
+        for view in ["rate", "blocks", "shaded", "unknown", "edges", "samples"] {
+            assert!(refused("view", view, &draft).is_some(), "{view}");
+        }
+        assert_eq!(refused("view", "depth", &draft), None);
+        let coarse = Settings::default().with(|s| s.shading.mode = Shading::Coarse);
+        let draft = Table::try_from(coarse).unwrap();
+        assert_eq!(refused("view", "rate", &draft), None);
+        assert!(refused("rate", "content", &draft).is_some());
+    }
+
+    #[test]
+    fn clip_planes_are_noted_where_the_device_has_none() {
+        let s = Settings::default().with(|s| s.stereo.mode = Stereo::Instanced);
+        assert_eq!(none("eye-clipping", &s), None);
+        let note = missing("eye-clipping", &s, Abilities::default(), false);
+        assert!(
+            note.is_some_and(|n| n.contains("clip distances")),
+            "{note:?}"
+        );
+        let discards = s.with(|s| s.stereo.clipping = EyeClipping::Discard);
+        assert!(missing("eye-clipping", &discards, Abilities::default(), false).is_some());
+    }
+
+    #[test]
+    fn depth_needs_occlusion_culling_and_boxes_any() {
+        let s = Settings::default();
+        assert_eq!(s.culling.mode, Culling::Frustum);
+        assert!(of_culling(Switch::Depth, &s).is_some());
+        assert_eq!(of_culling(Switch::Boxes, &s), None);
+        let off = s.with(|s| s.culling.mode = Culling::Off);
+        assert!(of_culling(Switch::Boxes, &off).is_some());
+        assert!(of_culling(Switch::Freeze, &off).is_some());
+    }
+
+    #[test]
+    fn the_eye_counts_while_sides_are_compared() {
+        let s = Settings::default();
+        assert!(missing("display", &s, CLIPS, false).is_some());
+        assert_eq!(missing("display", &s, CLIPS, true), None);
+    }
+}

@@ -1,0 +1,71 @@
+//! The animation: which clip plays, where in it one is.
+
+use egui::{Slider, Ui};
+use foveal_scene::Clip;
+
+use crate::app::App;
+
+/// A clip's name for people.
+fn name(number: usize, name: &str) -> String {
+    if name.is_empty() {
+        format!("clip {number}")
+    } else {
+        name.to_owned()
+    }
+}
+
+pub(super) fn is_shown(app: &App) -> bool {
+    let scene = app.scene.as_ref();
+    scene.is_some_and(|scene| scene.duration_s(&Clip::All) > 0.0)
+}
+
+pub(super) fn show(app: &mut App, ui: &mut Ui) {
+    let Some(scene) = &app.scene else { return };
+    let duration_s = scene.duration_s(&app.display.clip);
+    ui.horizontal(|ui| {
+        let text = if app.display.playing { "Pause" } else { "Play" };
+        if ui
+            .add_sized([52.0, 22.0], egui::Button::new(text))
+            .on_hover_text("Lets the animation run or rest (Space)")
+            .clicked()
+        {
+            app.display.playing = !app.display.playing;
+        }
+        if scene.clips.len() > 1 {
+            let chosen = match &app.display.clip {
+                Clip::Number(number) => {
+                    let clip = scene.clips.get(*number as usize);
+                    clip.map_or(String::new(), |c| name(*number as usize, &c.0))
+                }
+                Clip::Named(name) => name.clone(),
+                Clip::All => "all".to_owned(),
+            };
+            let before = app.display.clip.clone();
+            egui::ComboBox::from_id_salt("clip")
+                .width(120.0)
+                .truncate()
+                .selected_text(chosen)
+                .show_ui(ui, |ui| {
+                    for (number, (clip, _)) in scene.clips.iter().enumerate() {
+                        let value = Clip::Number(number as u32);
+                        ui.selectable_value(&mut app.display.clip, value, name(number, clip));
+                    }
+                    ui.selectable_value(&mut app.display.clip, Clip::All, "all")
+                        .on_hover_text("All at once, each looped over its own length");
+                })
+                .response
+                .on_hover_text("The animation that plays");
+            if app.display.clip != before {
+                app.display.time_s = 0.0;
+            }
+        }
+        // Its number stands to the right of a slider.
+        ui.spacing_mut().slider_width = (ui.available_width() - 130.0).max(60.0);
+        let slider = Slider::new(&mut app.display.time_s, 0.0..=duration_s.max(1e-3))
+            .fixed_decimals(2)
+            .suffix(format!(" of {duration_s:.2} s"));
+        if ui.add(slider).dragged() {
+            app.display.playing = false;
+        }
+    });
+}
