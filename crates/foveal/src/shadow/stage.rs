@@ -251,7 +251,9 @@ impl Drawing {
                     .map(|(number, _)| number)
                     .collect()
             });
-            let seen = casters.iter().copied().filter(|&i| meets(i));
+            let is_resolved = |i: u32| want.volume.resolves(bounds(i), side);
+            let seen = casters.iter().copied();
+            let seen = seen.filter(|&i| is_resolved(i) && meets(i));
             self.draws.push(TileDraw {
                 tile,
                 clip_from_world: want.volume.clip_from_world(side),

@@ -117,6 +117,19 @@ impl Volume {
         }
     }
 
+    /// Whether a box is as large as a texel of a tile of this side, so that a shadow of it could be
+    /// seen.
+    pub(super) fn resolves(&self, b: &Aabb, side: f32) -> bool {
+        let texel = match *self {
+            Self::Pyramid { apex, tangent, .. } => {
+                let nearest = apex.clamp(b.min, b.max).distance(apex);
+                2.0 * tangent * nearest / (side - 2.0 * BORDER)
+            }
+            Self::Column { radius, .. } => 2.0 * radius / side,
+        };
+        b.size().length() >= texel
+    }
+
     /// Points whose convex hull holds all of it.
     fn corners(&self) -> Vec<Vec3> {
         match *self {
@@ -229,6 +242,17 @@ mod tests {
         assert!(!cube(4).meets(&Aabb::new(behind, behind + 0.1), 64.0));
         let all = Aabb::new(Vec3::splat(-9.0), Vec3::splat(9.0));
         assert!((0..6).all(|side| cube(side).meets(&all, 64.0)));
+    }
+
+    #[test]
+    fn what_is_smaller_than_a_texel_is_not_resolved() {
+        let at = |distance: f32| Vec3::new(1.0, 2.0, 3.0 + distance);
+        let ball = |distance: f32| Aabb::new(at(distance) - 0.01, at(distance) + 0.01);
+        assert!(cube(4).resolves(&ball(1.0), 128.0));
+        assert!(!cube(4).resolves(&ball(4.0), 128.0));
+        assert!(cube(4).resolves(&ball(4.0), 512.0));
+        let wire = Aabb::new(at(4.0), at(4.0) + Vec3::X);
+        assert!(cube(4).resolves(&wire, 128.0));
     }
 
     #[test]
