@@ -24,7 +24,7 @@ impl Tile {
     /// As `shadow_tile` in `shadow/lookup.wgsl` reads it.
     pub(super) fn word(self) -> u32 {
         let unit = 1 << LEAST_LEVEL;
-        1 << 31 | self.level << 20 | (self.y / unit) << 10 | self.x / unit
+        1 << 31 | self.level << 20 | (self.y / unit) << 10 | (self.x / unit)
     }
 }
 

@@ -111,8 +111,8 @@ impl Volume {
                     (axis.dot(center) - at).abs() > axis.abs().dot(half) + reach
                 };
                 let middle = 0.5 * (begin + end);
-                !(apart(x, u, radius) || apart(y, v, radius))
-                    && !apart(z, middle, 0.5 * (end - begin) * 1.0001)
+                let half_length = 0.5 * (end - begin) * 1.0001;
+                !(apart(x, u, radius) || apart(y, v, radius) || apart(z, middle, half_length))
             }
         }
     }
