@@ -28,6 +28,7 @@ mod scene;
 mod settings;
 mod shader;
 mod shading;
+mod shadow;
 mod stats;
 mod stereo;
 mod targets;
@@ -53,11 +54,13 @@ pub use settings::{
     EdgeTest, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings, Kind, Lens,
     LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch, Output,
     PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges, SamplePattern,
-    Setting, Settings, Shading, ShadingSettings, Stereo, StereoSettings, ToneMap, VariableSettings,
+    Setting, Settings, Shading, ShadingSettings, Shadows, Stereo, StereoSettings, ToneMap,
+    VariableSettings,
 };
 
 pub use stats::{
-    AdapterStats, CoarseStats, FrameStats, SceneStats, StereoStats, Timing, VariableStats,
+    AdapterStats, CoarseStats, FrameStats, SceneStats, ShadowStats, StereoStats, Timing,
+    VariableStats,
 };
 
 /// Renderers and devices may be given to other threads.

@@ -18,6 +18,7 @@ use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, Vi
 use crate::rate::{RateImage, RateMapPass};
 use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
 use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
+use crate::shadow::ShadowStage;
 use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, SceneStats, Settings};
@@ -118,6 +119,7 @@ struct Stages {
     culling: Option<CullingStage>,
     targets: Targets,
     lights: LightAssigner,
+    shadows: ShadowStage,
     geometry: GeometryPass,
     shading: ShadingPass,
     antialias: Option<AntialiasStage>,
@@ -340,15 +342,17 @@ impl Renderer {
     /// [`Error::OutOfMemory`].
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
-        let (moves, lights_before) = self.scene.update_pose(&self.gpu, scene);
+        let change = self.scene.update_pose(&self.gpu, scene);
+        let shadows = self.stages.shadows.scene_moved(&change.boxes, &self.scene);
         if let Some(variable) = &mut self.stages.variable {
             variable.scene_moved();
         }
         if let Some(history) = self.stages.history() {
-            if moves {
+            if change.moves {
                 history.scene_moved();
             }
-            history.lights_changed(&lights_before, &self.scene.lights);
+            history.lights_changed(&change.lights_before, &self.scene.lights);
+            history.shadows_changed(&shadows);
         }
         self.frame_bindings
             .write_instances(&self.gpu, self.scene.instance_uniforms())?;

@@ -12,7 +12,7 @@ mod variable;
 
 pub use choices::{
     Antialiasing, Culling, CullingEyes, DebugView, EdgeTest, LightAssignment, LightingModel,
-    MaterialDispatch, SamplePattern, ToneMap,
+    MaterialDispatch, SamplePattern, Shadows, ToneMap,
 };
 
 pub use coarse::{

@@ -121,6 +121,29 @@ pub struct StereoStats {
     pub reason: String,
 }
 
+/// What shadows did in a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(Serialize))]
+#[non_exhaustive]
+pub struct ShadowStats {
+    /// Tiles of the atlas that the frame may look into.
+    pub tiles: u64,
+    /// Tiles that were drawn in this frame; all others were kept.
+    pub tiles_drawn: u64,
+    /// Instances that were submitted to draw them, counted once per tile.
+    pub casters: u64,
+    /// Triangles of these.
+    pub triangles: u64,
+    /// Texels of the tiles that the frame may look into.
+    pub texels: u64,
+    /// Bytes of the atlas.
+    pub atlas_bytes: u64,
+    /// Lights that the atlas has no room for: they shine through everything, in part or wholly.
+    pub lights_left_out: u64,
+    /// Powers of two by which tiles are smaller than the view asks for, for lack of room.
+    pub shrunk_by: f32,
+}
+
 /// One frame's figures.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(Serialize))]
@@ -167,6 +190,9 @@ pub struct FrameStats {
     /// With variable shading.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub variable: Option<VariableStats>,
+    /// With shadows.
+    #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
+    pub shadows: Option<ShadowStats>,
     /// With two eyes.
     #[cfg_attr(feature = "serde", serde(skip_serializing_if = "Option::is_none"))]
     pub stereo: Option<StereoStats>,

@@ -5,14 +5,14 @@
 mod common;
 
 use common::{drawn, mean_flip};
-use foveal::{Antialiasing, Geometry, Gpu, Output, RateSource, Settings, Shading, Stereo};
+use foveal::{Antialiasing, Geometry, Gpu, Output, RateSource, Settings, Shading, Shadows, Stereo};
 use foveal_generate as generate;
 
 /// Until rates that follow the picture have settled.
 const FRAMES: u32 = 4;
 
 /// All shadings and geometries for one anti-aliasing.
-fn compare(aa: Antialiasing, stereo: Stereo) {
+fn compare(aa: Antialiasing, stereo: Stereo, shadows: Shadows) {
     let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
     let mut scene = generate::cornell();
     generate::add_point_lights(&mut scene, 8, 3);
@@ -20,6 +20,7 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
         s.picture.width = 160;
         s.picture.height = 90;
         s.antialiasing.mode = aa;
+        s.lighting.shadows = shadows;
         s.stereo.mode = stereo;
         s.stereo.output = match stereo {
             Stereo::Off => Output::Flat,
@@ -41,7 +42,7 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
                 s.coarse.coarsest_level = 2;
             });
             let error = mean_flip(&reference, &drawn(&gpu, &scene, &settings, FRAMES));
-            println!("{geometry:?}, {shading:?}, {aa:?}, {stereo:?}: {error:.4}");
+            println!("{geometry:?}, {shading:?}, {aa:?}, {stereo:?}, {shadows:?}: {error:.4}");
             // Over a visibility buffer a pixel's materials are averaged by surface, not by
             // sub-sample.
             let most = match shading {
@@ -59,25 +60,35 @@ fn compare(aa: Antialiasing, stereo: Stereo) {
 
 #[test]
 fn all_shadings_without_antialiasing() {
-    compare(Antialiasing::None, Stereo::Off);
+    compare(Antialiasing::None, Stereo::Off, Shadows::Off);
 }
 
 #[test]
 fn all_shadings_with_msaa() {
-    compare(Antialiasing::Msaa, Stereo::Off);
+    compare(Antialiasing::Msaa, Stereo::Off, Shadows::Off);
 }
 
 #[test]
 fn all_shadings_with_ssaa() {
-    compare(Antialiasing::Ssaa, Stereo::Off);
+    compare(Antialiasing::Ssaa, Stereo::Off, Shadows::Off);
 }
 
 #[test]
 fn all_shadings_for_two_eyes() {
-    compare(Antialiasing::None, Stereo::Instanced);
+    compare(Antialiasing::None, Stereo::Instanced, Shadows::Off);
 }
 
 #[test]
 fn all_shadings_for_two_eyes_with_msaa() {
-    compare(Antialiasing::Msaa, Stereo::Instanced);
+    compare(Antialiasing::Msaa, Stereo::Instanced, Shadows::Off);
+}
+
+#[test]
+fn all_shadings_with_shadows() {
+    compare(Antialiasing::None, Stereo::Off, Shadows::Soft);
+}
+
+#[test]
+fn all_shadings_for_two_eyes_with_msaa_and_shadows() {
+    compare(Antialiasing::Msaa, Stereo::Instanced, Shadows::Soft);
 }

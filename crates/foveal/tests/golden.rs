@@ -6,7 +6,7 @@
 
 use std::path::PathBuf;
 
-use foveal::{DebugView, Frame, Gpu, LightingModel, Renderer, Settings};
+use foveal::{DebugView, Frame, Gpu, LightingModel, Renderer, Settings, Shadows};
 use foveal_generate as generate;
 
 /// Two adapters that draw the same picture differ by less, a missing light or texture by far more.
@@ -97,6 +97,13 @@ fn metals_and_roughness_look_as_they_should() {
 #[test]
 fn masks_blending_and_mirroring_look_as_they_should() {
     assert_golden("alpha", "alpha", Settings::default());
+}
+
+#[test]
+fn shadows_look_as_they_should() {
+    let settings = Settings::default().with(|s| s.lighting.shadows = Shadows::Soft);
+    assert_golden("cornell-shadows", "cornell", settings.clone());
+    assert_golden("alpha-shadows", "alpha", settings);
 }
 
 #[test]

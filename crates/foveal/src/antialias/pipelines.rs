@@ -84,7 +84,7 @@ impl AntialiasPipelines {
         );
         let combination = shader::module(gpu, "combination", shader::ANTIALIAS_COMBINE);
 
-        let [model, brute] = lighting_constants(settings);
+        let lighting = lighting_constants(gpu, settings);
         // Views of the G-buffer show averages.
         let mirror = (
             "MIRROR",
@@ -102,7 +102,7 @@ impl AntialiasPipelines {
                 &shader::module(gpu, "edge shading", shader::ANTIALIAS_SHADE),
                 "shade_entries",
                 &[frame, shading_input, &shade_layout],
-                &[model, brute, count, side, mirror, ("ALL", all)],
+                &[&lighting[..], &[count, side, mirror, ("ALL", all)]].concat(),
             ),
             combine: shader::compute(
                 gpu,

@@ -80,7 +80,7 @@ impl TriangleStage {
             compute,
             &[read, read, write, uint, uint, uint],
         );
-        let [model, brute] = lighting_constants(settings);
+        let lighting = lighting_constants(gpu, settings);
         let [count, side] = Pattern::of(settings).constants();
         let coarse = f64::from(u8::from(settings.shading.mode == Shading::Coarse));
         let geometry = geometry_layout(gpu);
@@ -131,7 +131,7 @@ impl TriangleStage {
                 &shader::module(gpu, "further shading", shader::ANTIALIAS_SHADE_FURTHER),
                 "shade_further",
                 &[frame, shading_input, &shade_layout],
-                &[model, brute, count, ("COARSE", coarse)],
+                &[&lighting[..], &[count, ("COARSE", coarse)]].concat(),
             ),
             candidates_layout,
             sort_layout,

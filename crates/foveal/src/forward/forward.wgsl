@@ -23,6 +23,9 @@ override SAMPLED: bool = false;
 #else
 @group(2) @binding(0) var<storage, read> lights: Lights;
 @group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
+@group(2) @binding(2) var<storage, read> shadow_rows: array<vec4u>;
+@group(2) @binding(3) var shadow_atlas: texture_depth_2d;
+@group(2) @binding(4) var shadow_sampler: sampler_comparison;
 #endif
 
 // A fragment's position in pixels of the target.

@@ -7,7 +7,7 @@ use crate::geometry::{
     DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window,
 };
 
-use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
+use crate::gpu::{Gpu, bind_group, bind_group_layout};
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, drawn_over, overwritten};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
@@ -49,9 +49,9 @@ impl ForwardPass {
             &gpu.device,
             "forward lights",
             wgpu::ShaderStages::FRAGMENT,
-            &[Table::binding_type(gpu); 2],
+            &SceneLights::binding_types(gpu),
         );
-        let mut constants = lighting_constants(settings).to_vec();
+        let mut constants = lighting_constants(gpu, settings);
         constants.extend(submission.constants());
         let layered = submission == Submission::Multiview;
         constants.push(("LAYERED", f64::from(u8::from(layered))));

@@ -131,6 +131,39 @@ impl DrawList {
         }
     }
 
+    /// Lists the draws of instances of which only the depth matters; `key` is the pipeline's for a
+    /// material's class, and whether alpha cuts holes.
+    pub(crate) fn of_casters(
+        scene: &SceneOnGpu,
+        instances: impl Iterator<Item = u32>,
+        key: impl Fn(u32, bool) -> PipelineKey,
+    ) -> Self {
+        let mut casters: Vec<_> = instances
+            .map(|index| {
+                let instance = &scene.instances[index as usize];
+                let masked = matches!(instance.alpha_mode, AlphaMode::Mask { .. });
+                // What has no holes is drawn alike whatever its material.
+                let material = if masked { instance.material } else { 0 };
+                let key = key(instance.material_class, masked);
+                (key, material, instance.mesh, index)
+            })
+            .collect();
+        casters.sort_unstable();
+        let mut list = Self::default();
+        for (key, material, mesh, index) in casters {
+            let batch = Batch {
+                key,
+                material,
+                mesh,
+                first: 0,
+                count: index,
+            };
+            let (solid, drawn, triangles) = (&mut list.solid, &mut list.drawn, &mut list.triangles);
+            Self::push(solid, drawn, scene, true, triangles, batch);
+        }
+        list
+    }
+
     /// Appends one instance (`batch.count` is its number), to the last draw where that is alike.
     fn push(
         list: &mut Vec<Batch>,

@@ -14,7 +14,7 @@ mod window;
 
 pub(crate) use crate::formats::{DEPTH_FORMAT, IDENTITY_FORMAT, SURFACE_FORMAT, TRIANGLE_FORMAT};
 pub(crate) use crate::scene::geometry_layout;
-pub(crate) use draw_list::{DrawList, Draws};
+pub(crate) use draw_list::{Batch, DrawList, Draws};
 pub(crate) use face_normals::FaceNormals;
 pub(crate) use gbuffer::GeometryPass;
 pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};

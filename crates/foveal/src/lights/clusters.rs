@@ -4,9 +4,11 @@ use super::ClusterGrid;
 
 use super::{LightTables, LightUniform};
 use crate::frame::FrameUniform;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, storage_read, storage_write};
+use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, sampled, storage_read, storage_write};
+
 use crate::recorder::Recorder;
 use crate::shader;
+use crate::shadow::ShadowStage;
 
 /// Fills the clusters' bits.
 #[derive(Debug)]
@@ -32,18 +34,35 @@ pub(crate) struct SceneLights<'a> {
     /// Without tables, the lights.
     pub(crate) buffer: &'a wgpu::Buffer,
     pub(crate) assigner: &'a LightAssigner,
+    pub(crate) shadows: &'a ShadowStage,
 }
 
 impl<'a> SceneLights<'a> {
-    /// What lighting binds: the lights, and the clusters' bits.
-    pub(crate) fn resources(self) -> [wgpu::BindingResource<'a>; 2] {
+    /// What lighting binds: the lights, the clusters' bits and, where there are shadows, what it
+    /// looks up of them.
+    pub(crate) fn resources(self) -> Vec<wgpu::BindingResource<'a>> {
         match &self.assigner.means {
-            Means::Pass(..) => [
-                self.buffer.as_entire_binding(),
-                self.assigner.bits.as_entire_binding(),
-            ],
-            Means::Tables(tables) => [tables.lights.resource(), tables.clusters.resource()],
+            Means::Pass(..) => {
+                let lights = self.buffer.as_entire_binding();
+                let [rows, atlas, sampler] = self.shadows.resources();
+                let bits = self.assigner.bits.as_entire_binding();
+                vec![lights, bits, rows, atlas, sampler]
+            }
+            Means::Tables(tables) => vec![tables.lights.resource(), tables.clusters.resource()],
         }
+    }
+
+    /// What a layout says of [`SceneLights::resources`].
+    pub(crate) fn binding_types(gpu: &Gpu) -> Vec<wgpu::BindingType> {
+        let mut types = vec![Table::binding_type(gpu); 2];
+        if !gpu.is_reduced() {
+            types.extend([
+                storage_read(),
+                sampled(wgpu::TextureSampleType::Depth),
+                wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
+            ]);
+        }
+        types
     }
 }
 

@@ -59,6 +59,7 @@ impl Renderer {
             culling_reused: culled.reused,
             draws: draws * submission.passes(),
             triangles: self.draw_list.triangles * u64::from(EyeLayout::of(settings).eyes),
+            shadows: self.stages.shadows.stats(),
             stereo: settings.is_stereo().then(|| submission.stats(reason)),
             target_bytes: self.stages.targets.bytes()
                 + self.upscale.as_ref().map_or(0, Upscale::bytes),

@@ -12,6 +12,7 @@ use crate::output::{EyesPass, OverlayPass, ToneMapPass, ViewPass};
 use crate::rate::{RateImage, RateMapPass};
 use crate::scene::FrameBindings;
 use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
+use crate::shadow::ShadowStage;
 use crate::stereo::{EyeLayout, LensFit, Submission, Trials, eyes};
 use crate::targets::Targets;
 use crate::{Error, Settings, Shading};
@@ -65,6 +66,7 @@ impl Stages {
         if let Some(variable) = &mut self.variable {
             variable.forget();
         }
+        self.shadows.forget();
         if let Some(history) = self.history() {
             history.forget();
         }
@@ -84,11 +86,13 @@ impl Stages {
         let frame = frame_bindings.layout();
         let shading = ShadingPass::new(gpu, settings, frame);
         let layout = EyeLayout::of(settings);
+        let shadows = ShadowStage::new(gpu, settings, frame, material_layout);
         let stages = Self {
             settings: settings.clone(),
             culling: CullingStage::new(settings)?,
             targets: Targets::new(gpu, settings, submission),
             lights: LightAssigner::new(gpu, layout.eyes, frame),
+            shadows,
             geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             coarse: (settings.shading.mode == Shading::Coarse)

@@ -28,6 +28,8 @@ impl Renderer {
         cpu.stage("draw list");
         let clusters = self.upload(frame, seen);
         cpu.stage("upload");
+        self.find_shadows(seen);
+        cpu.stage("shadows");
         self.encode_frame(frame, seen, target, &clusters, cpu);
         self.submitted(culled, cpu)
     }
@@ -100,6 +102,17 @@ impl Renderer {
         clusters
     }
 
+    /// Finds the tiles of the shadow atlas that the frame needs and has not.
+    fn find_shadows(&mut self, seen: &Seen) {
+        let Stages {
+            settings, shadows, ..
+        } = &mut self.stages;
+        if settings.picture.view.is_lit() {
+            let scene = (&self.scene, &self.draw_list);
+            shadows.prepare(&self.gpu, settings, scene, &seen.eyes);
+        }
+    }
+
     /// Encodes and submits the frame's passes.
     fn encode_frame(
         &mut self,
@@ -125,6 +138,7 @@ impl Renderer {
         stages
             .lights
             .assign(recorder, &draws.scene.light_buffer, clusters);
+        stages.shadows.draw(recorder, draws.scene);
         stages.fill_gbuffer(recorder, draws, &plan);
         stages.find_rates(recorder, draws, (frame, seen), &plan);
         if plan.is_lit {
@@ -158,6 +172,7 @@ impl Stages {
         SceneLights {
             buffer: &draws.scene.light_buffer,
             assigner: &self.lights,
+            shadows: &self.shadows,
         }
     }
 

@@ -86,6 +86,10 @@ impl Renderer {
         (&self.stages.lights, &self.scene.lights)
     }
 
+    pub(crate) fn shadows(&self) -> &crate::shadow::ShadowStage {
+        &self.stages.shadows
+    }
+
     /// What shaders are told of a frame.
     pub(crate) fn frame_uniform(&self, camera: &Camera) -> FrameUniform {
         let settings = &self.stages.settings;
@@ -127,6 +131,7 @@ impl Renderer {
             let lights = SceneLights {
                 buffer: &scene.light_buffer,
                 assigner: &stages.lights,
+                shadows: &stages.shadows,
             };
             let input = shading.input(recorder.gpu, &targets.gbuffer, lights);
             let samples = Samples::List(&list);

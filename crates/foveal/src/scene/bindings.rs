@@ -52,6 +52,11 @@ impl FrameBindings {
         &self.group
     }
 
+    /// The same group with another list of drawn instances.
+    pub(crate) fn group_of(&self, gpu: &Gpu, drawn: &Table) -> wgpu::BindGroup {
+        group(gpu, &self.layout, &self.frame, &self.instances, drawn)
+    }
+
     /// Uploads the frame's uniform block.
     pub(crate) fn write_frame(&self, gpu: &Gpu, uniform: &FrameUniform) {
         gpu.queue

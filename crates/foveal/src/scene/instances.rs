@@ -38,4 +38,13 @@ impl InstanceUniform {
             ..Self::still(world_from_object)
         }
     }
+
+    /// Whether it is elsewhere than a frame ago.
+    pub(crate) fn is_elsewhere(&self) -> bool {
+        let (now, before) = (
+            [self.world_x, self.world_y, self.world_z],
+            [self.previous_x, self.previous_y, self.previous_z],
+        );
+        now != before
+    }
 }

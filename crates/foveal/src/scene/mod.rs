@@ -41,6 +41,8 @@ pub(crate) struct DrawnInstance {
     pub(crate) mirrored: bool,
     pub(crate) alpha_mode: AlphaMode,
     pub(crate) double_sided: bool,
+    /// Its material emits light.
+    pub(crate) glows: bool,
     /// [`material_class`].
     pub(crate) material_class: u32,
 }
@@ -54,9 +56,21 @@ pub(crate) struct SceneOnGpu {
     pub(crate) lights: Vec<LightUniform>,
     pub(crate) light_buffer: wgpu::Buffer,
     pub(crate) environment: Environment,
+    /// The box around all instances.
+    pub(crate) bounds: Aabb,
     pub(crate) stats: SceneStats,
     pub(crate) culling: CullingScene,
     uniforms: Vec<InstanceUniform>,
+}
+
+/// What a new pose differs in from the one before.
+#[derive(Debug)]
+pub(crate) struct PoseChange {
+    /// Anything has moved, now or a pose before.
+    pub(crate) moves: bool,
+    /// Around each instance that has moved or may have changed its shape: where it was and is.
+    pub(crate) boxes: Vec<Aabb>,
+    pub(crate) lights_before: Vec<LightUniform>,
 }
 
 impl SceneOnGpu {
@@ -94,6 +108,7 @@ impl SceneOnGpu {
             lights,
             light_buffer,
             environment: scene.environment,
+            bounds: scene.bounds(),
             culling: CullingScene::new(scene, settings.culling.mode),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
@@ -113,22 +128,31 @@ impl SceneOnGpu {
         })
     }
 
-    /// Takes over a new pose of the same scene; the pose so far becomes the previous one. Says
-    /// whether anything has moved, and gives the lights so far.
-    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) -> (bool, Vec<LightUniform>) {
+    /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
+    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) -> PoseChange {
         let mut moves = self.geometry.deforms();
-        for (uniform, instance) in self.uniforms.iter_mut().zip(&scene.instances) {
+        let mut boxes = Vec::new();
+        let pairs = self.uniforms.iter_mut().zip(&scene.instances);
+        for ((uniform, instance), before) in pairs.zip(&self.instances) {
             let moved = uniform.moved_to(instance.world_from_object);
             moves |= bytemuck::bytes_of(&moved) != bytemuck::bytes_of(uniform);
+            if moved.is_elsewhere() || scene.meshes[instance.mesh as usize].deforms {
+                boxes.push(before.bounds.union(instance.bounds));
+            }
             *uniform = moved;
         }
+        self.bounds = scene.bounds();
         self.instances = drawn_instances(scene);
         let lights = scene.lights.iter().map(LightUniform::new).collect();
-        let before = std::mem::replace(&mut self.lights, lights);
+        let lights_before = std::mem::replace(&mut self.lights, lights);
         write_lights(gpu, &self.light_buffer, &self.lights);
         self.geometry.update_pose(gpu, scene);
         self.culling.update_pose(scene);
-        (moves, before)
+        PoseChange {
+            moves,
+            boxes,
+            lights_before,
+        }
     }
 
     /// The instances as the vertex shader reads them.
@@ -163,6 +187,7 @@ fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
                 mirrored: is_mirrored(i.world_from_object),
                 alpha_mode: material.alpha_mode,
                 double_sided: material.double_sided,
+                glows: material.emissive != glam::Vec3::ZERO,
                 material_class: classes[i.material as usize],
             }
         })

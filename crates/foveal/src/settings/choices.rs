@@ -36,6 +36,23 @@ pub enum CullingEyes {
     Shared,
 }
 
+/// Shadows of lights.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum Shadows {
+    /// Light passes through everything.
+    #[default]
+    Off,
+    /// One comparison per light and sample.
+    Hard,
+    /// Nine comparisons, each blended between texels.
+    Soft,
+}
+
 /// Content of the picture: the finished frame or a debug view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(

@@ -85,6 +85,16 @@ settings! {
         /// Lights that a sample evaluates: clustered takes those that reach its part of the
         /// view, brute takes all (the reference). The picture is the same.
         lights => assignment: LightAssignment = LightAssignment::default(), "Lights", Kind::choice::<LightAssignment>();
+        /// Shadows of all lights: off lets light pass through everything, hard compares once per
+        /// light and sample, soft nine times, which smooths edges over three texels.
+        shadows => shadows: Shadows = Shadows::default(), "Shadows", Kind::choice::<Shadows>();
+        /// Side of the shadow atlas in texels, rounded down to a power of two. It takes 4 bytes a
+        /// texel: 4096 takes 64 MiB. Where it is full, all shadows become coarser alike.
+        shadow_atlas => shadow_atlas: u32 = 4096, "Shadow atlas", Kind::Integer { least: 256, most: 8192 };
+        /// Offset of surfaces along their normals before they are compared with the atlas, in
+        /// texels. Raise it where surfaces show stripes, lower it where shadows begin away from
+        /// what casts them.
+        shadow_bias => shadow_bias: f32 = 1.5, "Shadow bias", Kind::Number { least: 0.0, most: 8.0 };
         /// Largest anisotropy of texture filtering, 1 to 16. Higher values keep textures sharp
         /// at flat angles. Lavapipe always takes 1: its own anisotropic filter can take minutes
         /// for one triangle.

@@ -23,6 +23,9 @@ fn gbuffer_depth_at(texel: vec2u) -> f32 {
 @group(1) @binding(1) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(2) var<storage, read> lights: Lights;
 @group(1) @binding(3) var<storage, read> cluster_lights: array<u32>;
+@group(1) @binding(4) var<storage, read> shadow_rows: array<vec4u>;
+@group(1) @binding(5) var shadow_atlas: texture_depth_2d;
+@group(1) @binding(6) var shadow_sampler: sampler_comparison;
 
 fn gbuffer_words_at(texel: vec2u) -> vec4u {
     return load_words(gbuffer_surface, texel);

@@ -3,16 +3,22 @@
 use super::{SampleList, Samples};
 use crate::formats::RADIANCE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{
-    Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
-};
+use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
 
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, overwritten};
 use crate::{LightAssignment, LightingModel, Settings, shader};
 
-/// Settings that change the lighting shaders.
-pub(crate) fn lighting_constants(settings: &Settings) -> [(&'static str, f64); 2] {
+/// Settings that change the lighting shaders. The reduced ones have no shadows.
+pub(crate) fn lighting_constants(gpu: &Gpu, settings: &Settings) -> Vec<(&'static str, f64)> {
+    let mut constants = model_constants(settings).to_vec();
+    if !gpu.is_reduced() {
+        constants.push(("SHADOWS", f64::from(settings.lighting.shadows as u8)));
+    }
+    constants
+}
+
+fn model_constants(settings: &Settings) -> [(&'static str, f64); 2] {
     [
         (
             "BLINN_PHONG",
@@ -50,16 +56,13 @@ impl ShadingPass {
         } else {
             (sampled_layers, wgpu::TextureSampleType::Depth)
         };
+        let mut types = vec![read(wgpu::TextureSampleType::Uint), read(depth_type)];
+        types.extend(SceneLights::binding_types(gpu));
         let input_layout = bind_group_layout(
             &gpu.device,
             "shading input",
             wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
-            &[
-                read(wgpu::TextureSampleType::Uint),
-                read(depth_type),
-                Table::binding_type(gpu),
-                Table::binding_type(gpu),
-            ],
+            &types,
         );
         let listed = [
             storage_read(),
@@ -81,7 +84,7 @@ impl ShadingPass {
         } else {
             shader::SHADING_EVERY_PIXEL
         };
-        let constants = lighting_constants(settings);
+        let constants = lighting_constants(gpu, settings);
         let every_pixel = shader::full_screen(
             gpu,
             "shading",
@@ -121,24 +124,18 @@ impl ShadingPass {
         gbuffer: &GBuffer,
         lights: SceneLights<'_>,
     ) -> wgpu::BindGroup {
-        let [light_list, cluster_bits] = lights.resources();
         // The reduced G-buffer holds depth where others hold identity, and is no array.
         let (surface, depth) = if gpu.is_reduced() {
             (&gbuffer.surface_view, &gbuffer.identity_view)
         } else {
             (&gbuffer.surface_layers, &gbuffer.depth_layers)
         };
-        bind_group(
-            &gpu.device,
-            "shading input",
-            &self.input_layout,
-            &[
-                wgpu::BindingResource::TextureView(surface),
-                wgpu::BindingResource::TextureView(depth),
-                light_list,
-                cluster_bits,
-            ],
-        )
+        let mut resources = vec![
+            wgpu::BindingResource::TextureView(surface),
+            wgpu::BindingResource::TextureView(depth),
+        ];
+        resources.extend(lights.resources());
+        bind_group(&gpu.device, "shading input", &self.input_layout, &resources)
     }
 
     /// Encodes the pass: shades `samples` into the same texels of `target`.

@@ -179,8 +179,18 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
     color.dot(Vec3::new(0.2126, 0.7152, 0.0722))
 }
 
+/// Which part of a light reaches a surface: the light with its number, the surface, and the cosine
+/// of the angle between its normal and the light's direction.
+pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) -> f32;
+
 /// A light's part.
-fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) -> Lit {
+fn from_light(
+    model: LightingModel,
+    s: &Surface,
+    v: Vec3,
+    (number, light): (usize, &LightUniform),
+    passing: Passing<'_>,
+) -> Lit {
     let radiant = Vec3::from(light.radiant);
     let (direction, irradiance) = if light.kind == 0 {
         (-Vec3::from(light.direction), radiant)
@@ -201,6 +211,7 @@ fn from_light(model: LightingModel, s: &Surface, v: Vec3, light: &LightUniform) 
     if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
         return Lit::default();
     }
+    let irradiance = irradiance * passing((number, light), s, n_dot_l);
     let [left, mirrored] = reflect(model, s, v, direction, n_dot_l);
     let arriving = irradiance * n_dot_l;
     let diffuse = left * (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
@@ -222,12 +233,23 @@ pub(crate) fn light_surface(
     s: &Surface,
     v: Vec3,
 ) -> Lit {
+    light_surface_with(scene, lights, model, (s, v), &|_, _, _| 1.0)
+}
+
+/// The same where not all light arrives.
+pub(crate) fn light_surface_with(
+    scene: &Scene,
+    lights: &[LightUniform],
+    model: LightingModel,
+    (s, v): (&Surface, Vec3),
+    passing: Passing<'_>,
+) -> Lit {
     let mut sum = Lit {
         radiance: s.emissive + ambient(scene, s, v),
         ..Lit::default()
     };
-    for light in lights {
-        let part = from_light(model, s, v, light);
+    for light in lights.iter().enumerate() {
+        let part = from_light(model, s, v, light, passing);
         sum.radiance += part.radiance;
         sum.diffuse += part.diffuse;
         sum.mirrored += part.mirrored;

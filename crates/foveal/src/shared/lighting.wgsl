@@ -7,6 +7,8 @@
 #import shared/surroundings.wgsl
 #ifdef REDUCED
 #import reduced/missing.wgsl
+#else
+#import shadow/lookup.wgsl
 #endif
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.
@@ -79,12 +81,22 @@ fn reflect_blinn_phong(s: Surface, v: vec3f, l: vec3f) -> Reflection {
 }
 
 // A light's part in the radiance of a surface, and in the light that falls on it.
-fn add_light(sum: Lit, s: Surface, v: vec3f, light: Light) -> Lit {
-    let a = arriving(light, s.position);
+fn add_light(sum: Lit, s: Surface, v: vec3f, index: u32) -> Lit {
+    let light = light_at(index);
+    var a = arriving(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
     if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
         return sum;
     }
+#ifndef REDUCED
+    if SHADOWS != 0u {
+        let passing = light_passing(index, light, s.position, s.normal, n_dot_l);
+        if passing <= 0.0 {
+            return sum;
+        }
+        a.irradiance *= passing;
+    }
+#endif
     var r: Reflection;
     if BLINN_PHONG {
         r = reflect_blinn_phong(s, v, a.direction);
@@ -127,7 +139,7 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
         while bits != 0u {
             let bit = firstTrailingBit(bits);
             bits &= bits - 1u;
-            sum = add_light(sum, s, v, light_at(word * 32u + bit));
+            sum = add_light(sum, s, v, word * 32u + bit);
         }
     }
     return sum;

@@ -60,6 +60,21 @@ impl Settings {
                 expected: "between 1 and 16",
             });
         }
+        let atlas = self.lighting.shadow_atlas;
+        if !(256..=8192).contains(&atlas) {
+            return Err(Error::Setting {
+                name: "shadow-atlas",
+                value: atlas.to_string(),
+                expected: "between 256 and 8192",
+            });
+        }
+        if !(0.0..=8.0).contains(&self.lighting.shadow_bias) {
+            return Err(Error::Setting {
+                name: "shadow-bias",
+                value: self.lighting.shadow_bias.to_string(),
+                expected: "between 0 and 8",
+            });
+        }
         for (name, value) in [
             ("occluder-size", self.culling.occluder_size),
             ("occludee-size", self.culling.occludee_size),

@@ -2,7 +2,7 @@
 //! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
 use crate::Error;
-use crate::settings::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading};
+use crate::settings::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading, Shadows};
 
 /// Stages that are missing on such devices.
 const MISSING_STAGES: [&str; 4] = [
@@ -13,7 +13,14 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 3] = ["view", "geometry", "material-dispatch"];
+const MISSING_KEYS: [&str; 6] = [
+    "view",
+    "geometry",
+    "material-dispatch",
+    "shadows",
+    "shadow-atlas",
+    "shadow-bias",
+];
 
 impl Setting {
     /// Whether the setting has an effect on devices that offer only
@@ -30,6 +37,7 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("view", s.picture.view == DebugView::Final, "final"),
         ("geometry", s.geometry.path == Geometry::Gbuffer, "gbuffer"),
         ("aa", s.antialiasing.mode == Antialiasing::None, "none"),
+        ("shadows", s.lighting.shadows == Shadows::Off, "off"),
         ("shading", s.shading.mode == Shading::Full, "full"),
     ];
     match requests.into_iter().find(|(_, is_met, _)| !is_met) {

@@ -75,6 +75,12 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
         ]
     );
     assert_same_layout!(
+        SHADOW_CASTER,
+        "TileView",
+        crate::shadow::TileUniform,
+        [clip_from_world]
+    );
+    assert_same_layout!(
         ANTIALIAS_MERGE,
         "Band",
         crate::antialias::BandUniform,

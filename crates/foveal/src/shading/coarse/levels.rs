@@ -1,5 +1,6 @@
 //! Levels of coarse shading, and what they ask for.
 
+use crate::gpu::Gpu;
 use crate::shading::lighting_constants;
 use crate::{CoarseBackend, CoarseSample, Composite, Settings};
 
@@ -13,8 +14,9 @@ pub(super) fn needs_lists(settings: &Settings) -> bool {
 }
 
 /// Settings that change the shading shaders.
-pub(super) fn shading_constants(settings: &Settings) -> [(&'static str, f64); 3] {
-    let [model, assignment] = lighting_constants(settings);
+pub(super) fn shading_constants(gpu: &Gpu, settings: &Settings) -> Vec<(&'static str, f64)> {
+    let mut constants = lighting_constants(gpu, settings);
     let typical = settings.coarse.sample == CoarseSample::Typical;
-    [model, assignment, ("TYPICAL", f64::from(u8::from(typical)))]
+    constants.push(("TYPICAL", f64::from(u8::from(typical))));
+    constants
 }

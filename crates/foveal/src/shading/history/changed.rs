@@ -1,6 +1,7 @@
 //! Where lights have changed from one frame to the next.
 
 use crate::lights::LightUniform;
+use crate::shadow::Place;
 
 /// Most places that are told apart.
 const MOST: usize = 16;
@@ -46,11 +47,33 @@ impl Changed {
                 places.push(place);
             }
         }
-        *self = match places.len() {
+        *self = Self::of(places);
+    }
+
+    /// Adds these spheres.
+    pub(super) fn add_places(&mut self, added: &[Place]) {
+        let mut places = match std::mem::take(self) {
+            Self::Nowhere => Vec::new(),
+            Self::Within(places) => places,
+            Self::Everywhere => {
+                *self = Self::Everywhere;
+                return;
+            }
+        };
+        for place in added {
+            if !places.contains(place) {
+                places.push(*place);
+            }
+        }
+        *self = Self::of(places);
+    }
+
+    fn of(places: Vec<Place>) -> Self {
+        match places.len() {
             0 => Self::Nowhere,
             n if n <= MOST => Self::Within(places),
             _ => Self::Everywhere,
-        };
+        }
     }
 }
 

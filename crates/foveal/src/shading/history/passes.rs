@@ -141,7 +141,7 @@ impl HistoryPasses {
                 "shade_samples",
                 Some(input),
                 &[read, read, light, radiance, write],
-                &lighting_constants(settings),
+                &lighting_constants(gpu, settings),
             ),
             gather: pass(
                 "gathering light",

@@ -11,6 +11,7 @@ use crate::rate::RateTargets;
 use crate::recorder::Recorder;
 use crate::shading::coarse::UsedBackend;
 use crate::shading::history::targets;
+use crate::shadow::Place;
 use crate::targets::Targets;
 use crate::{CoarseStats, Settings};
 use foveal_scene::Camera;
@@ -33,7 +34,7 @@ pub(crate) struct HistoryStage {
     rested: u32,
     pub(super) lit: Lit,
     /// What the last frame's passes were told.
-    pub(super) told: HistoryParameters,
+    pub(crate) told: HistoryParameters,
 }
 
 impl HistoryStage {
@@ -70,6 +71,11 @@ impl HistoryStage {
     /// The next frame's lights are other ones.
     pub(crate) fn lights_changed(&mut self, before: &[LightUniform], now: &[LightUniform]) {
         self.changed.add(before, now);
+    }
+
+    /// The next frame's shadows differ within these spheres.
+    pub(crate) fn shadows_changed(&mut self, places: &[Place]) {
+        self.changed.add_places(places);
     }
 
     /// Decides what the frame does.

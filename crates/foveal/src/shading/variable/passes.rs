@@ -118,7 +118,7 @@ impl RatePasses {
                 mapped_at_creation: false,
             })
         };
-        let [model, assignment] = lighting_constants(settings);
+        let lighting = lighting_constants(gpu, settings);
         let one_surface = f64::from(u8::from(settings.stage().has_material()));
         Self {
             reproject: looks_around(settings).then(|| {
@@ -149,7 +149,7 @@ impl RatePasses {
                 shader::SHADING_VARIABLE_SHADE,
                 "shade_samples",
                 &[frame, input, &shade_layout],
-                &[model, assignment, ("ONE_SURFACE", one_surface)],
+                &[&lighting[..], &[("ONE_SURFACE", one_surface)]].concat(),
             ),
             find_layout,
             size_layout,

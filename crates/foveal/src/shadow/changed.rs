@@ -1,0 +1,190 @@
+//! Where light changes when a thing that casts shadows has moved.
+
+use foveal_scene::Aabb;
+use glam::Vec3;
+
+use crate::lights::LightUniform;
+
+/// Most places that are told apart; nearer ones are put together.
+const MOST: usize = 12;
+const DIRECTIONAL: u32 = 0;
+
+/// A sphere: centre and radius in metres, world space.
+pub(crate) type Place = [f32; 4];
+
+/// Spheres that hold all shadows of the boxes by lights whose shadows are in tiles; `scene` is the
+/// box around everything.
+pub(super) fn changed_places(
+    lights: &[LightUniform],
+    boxes: &[Aabb],
+    scene: &Aabb,
+    mut has_shadows: impl FnMut(usize) -> bool,
+) -> Vec<Place> {
+    let mut places: Vec<Place> = Vec::new();
+    for (number, light) in lights.iter().enumerate() {
+        let reached = boxes.iter().filter(|b| reaches(light, b));
+        let reached: Vec<&Aabb> = reached.collect();
+        if reached.is_empty() || !has_shadows(number) {
+            continue;
+        }
+        for b in reached {
+            let place = shadow_of(light, b, scene);
+            match places.iter_mut().find(|p| holds(**p, place)) {
+                Some(_) => {}
+                None => places.push(place),
+            }
+            if places.len() > MOST {
+                join_nearest(&mut places);
+            }
+        }
+    }
+    places
+}
+
+fn reaches(light: &LightUniform, b: &Aabb) -> bool {
+    let at = Vec3::from(light.position);
+    light.kind == DIRECTIONAL
+        || at.clamp(b.min, b.max).distance_squared(at) < light.range * light.range
+}
+
+/// A sphere around a box and its shadow.
+fn shadow_of(light: &LightUniform, b: &Aabb, scene: &Aabb) -> Place {
+    let (center, radius) = (b.center(), b.half_extent().length());
+    if light.kind == DIRECTIONAL {
+        // The ray ends where the scene does.
+        let along = Vec3::from(light.direction);
+        let beyond = scene.center() - center;
+        let reach = along.dot(beyond) + along.abs().dot(scene.half_extent());
+        let half = 0.5 * reach.max(0.0);
+        return (center + along * half).extend(half + radius).to_array();
+    }
+    let apex = Vec3::from(light.position);
+    let to = center - apex;
+    let distance = to.length();
+    if distance <= radius {
+        return apex.extend(light.range).to_array();
+    }
+    // The shadow is a cone's part between the box and the range.
+    let (near, far) = ((distance - radius).max(0.0), light.range);
+    let sine = radius / distance;
+    let cosine = (1.0 - sine * sine).sqrt();
+    let middle = 0.5 * (near + far);
+    let rim = |r: f32| (r * cosine - middle).hypot(r * sine);
+    let reach = rim(near).max(rim(far)).max(far - middle).max(middle - near);
+    (apex + to * (middle / distance)).extend(reach).to_array()
+}
+
+fn holds([x, y, z, r]: Place, [a, b, c, s]: Place) -> bool {
+    Vec3::new(x, y, z).distance(Vec3::new(a, b, c)) + s <= r
+}
+
+/// The smallest sphere around two.
+fn join([x, y, z, r]: Place, [a, b, c, s]: Place) -> Place {
+    let (p, q) = (Vec3::new(x, y, z), Vec3::new(a, b, c));
+    let distance = p.distance(q);
+    if distance + s <= r {
+        return [x, y, z, r];
+    }
+    if distance + r <= s {
+        return [a, b, c, s];
+    }
+    let radius = 0.5 * (distance + r + s);
+    let center = p + (q - p) * ((radius - r) / distance);
+    // Rounding may err, but never to the small side.
+    center.extend(radius * 1.0001).to_array()
+}
+
+/// Puts those two together whose common sphere is smallest.
+fn join_nearest(places: &mut Vec<Place>) {
+    let pairs = (0..places.len()).flat_map(|i| (i + 1..places.len()).map(move |j| (i, j)));
+    let size = |&(i, j): &(usize, usize)| join(places[i], places[j])[3];
+    let Some((i, j)) = pairs.min_by(|a, b| size(a).total_cmp(&size(b))) else {
+        return;
+    };
+    let joined = join(places[i], places[j]);
+    places.swap_remove(j);
+    places[i] = joined;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scene() -> Aabb {
+        Aabb::new(Vec3::splat(-10.0), Vec3::splat(10.0))
+    }
+
+    fn is_in(place: Place, p: Vec3) -> bool {
+        let [x, y, z, r] = place;
+        Vec3::new(x, y, z).distance(p) <= r * 1.0001
+    }
+
+    fn light(kind: u32) -> LightUniform {
+        LightUniform {
+            position: [1.0, 3.0, 0.5],
+            range: 6.0,
+            radiant: [1.0; 3],
+            kind,
+            direction: Vec3::new(0.4, -0.8, 0.1).normalize().to_array(),
+            ..LightUniform::default()
+        }
+    }
+
+    #[test]
+    fn a_place_holds_the_box_and_its_shadow() {
+        let b = Aabb::new(Vec3::new(0.2, 0.9, -0.4), Vec3::new(0.8, 1.6, 0.1));
+        for kind in [0, 1] {
+            let light = light(kind);
+            let place = shadow_of(&light, &b, &scene());
+            for corner in b.corners() {
+                assert!(is_in(place, corner));
+                for step in 0..100 {
+                    let (p, ends) = if kind == 0 {
+                        let p = corner + Vec3::from(light.direction) * (step as f32 * 0.3);
+                        (
+                            p,
+                            !scene().corners().is_empty() && p.abs().max_element() > 10.0,
+                        )
+                    } else {
+                        let apex = Vec3::from(light.position);
+                        let along = (corner - apex) * (1.0 + step as f32 * 0.1);
+                        (apex + along, along.length() > light.range)
+                    };
+                    if ends {
+                        break;
+                    }
+                    assert!(is_in(place, p), "kind {kind}, step {step}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_the_light_does_not_reach_changes_nothing() {
+        let far = Aabb::new(Vec3::splat(8.0), Vec3::splat(9.0));
+        assert!(changed_places(&[light(1)], &[far], &scene(), |_| true).is_empty());
+        let near = Aabb::new(Vec3::splat(1.0), Vec3::splat(1.5));
+        assert_eq!(
+            changed_places(&[light(1)], &[near], &scene(), |_| true).len(),
+            1
+        );
+        assert!(changed_places(&[light(1)], &[near], &scene(), |_| false).is_empty());
+    }
+
+    #[test]
+    fn many_places_are_put_together_and_hold_what_they_held() {
+        let boxes: Vec<Aabb> = (0..60)
+            .map(|i| Vec3::new(i as f32 * 0.05 - 1.0, 1.0, (i % 7) as f32 * 0.2))
+            .map(|at| Aabb::new(at, at + 0.1))
+            .collect();
+        let places = changed_places(&[light(1), light(0)], &boxes, &scene(), |_| true);
+        assert!(places.len() <= MOST);
+        for b in &boxes {
+            assert!(
+                places
+                    .iter()
+                    .any(|&p| b.corners().iter().all(|&c| is_in(p, c)))
+            );
+        }
+    }
+}

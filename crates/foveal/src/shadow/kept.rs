@@ -1,0 +1,215 @@
+//! Tiles that are kept from frame to frame: where they lie, and whether what they hold is right.
+
+use std::collections::BTreeMap;
+
+use foveal_scene::Aabb;
+
+use super::atlas::{Atlas, Tile};
+use super::plan::Wanted;
+use super::volume::Volume;
+
+/// A tile with its place in the atlas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Kept {
+    pub(super) tile: Tile,
+    pub(super) volume: Volume,
+    /// It holds the shadows of the pose.
+    pub(super) is_drawn: bool,
+    /// The frame that wanted it last.
+    wanted_in: u64,
+}
+
+/// The tiles in the atlas, by slot.
+#[derive(Debug)]
+pub(super) struct KeptTiles {
+    atlas_level: u32,
+    atlas: Atlas,
+    tiles: BTreeMap<u32, Kept>,
+    frame: u64,
+}
+
+impl KeptTiles {
+    pub(super) fn new(atlas_level: u32) -> Self {
+        Self {
+            atlas_level,
+            atlas: Atlas::new(atlas_level),
+            tiles: BTreeMap::new(),
+            frame: 0,
+        }
+    }
+
+    /// Nothing is known any more.
+    pub(super) fn forget(&mut self) {
+        *self = Self {
+            frame: self.frame,
+            ..Self::new(self.atlas_level)
+        };
+    }
+
+    pub(super) fn get(&self, slot: u32) -> Option<&Kept> {
+        self.tiles.get(&slot)
+    }
+
+    /// The tile has been drawn.
+    pub(super) fn drawn(&mut self, slot: u32) {
+        if let Some(kept) = self.tiles.get_mut(&slot) {
+            kept.is_drawn = true;
+        }
+    }
+
+    /// Tiles that see any of these boxes must be drawn again.
+    pub(super) fn disturb(&mut self, boxes: &[Aabb]) {
+        for kept in self.tiles.values_mut().filter(|kept| kept.is_drawn) {
+            let side = kept.tile.side() as f32;
+            kept.is_drawn = !boxes.iter().any(|b| kept.volume.meets(b, side));
+        }
+    }
+
+    /// Gives each wanted tile a place. A tile stays where it is while its size is right; tiles that
+    /// no frame has wanted for the longest time make room; where squares are scattered so that one
+    /// does not fit, all are placed anew.
+    pub(super) fn place(&mut self, wanted: &[Wanted]) {
+        self.frame += 1;
+        let mut missing = Vec::new();
+        for want in wanted {
+            match self.tiles.get_mut(&want.slot) {
+                Some(kept) if kept.tile.level == want.level => {
+                    kept.wanted_in = self.frame;
+                    kept.is_drawn &= kept.volume == want.volume;
+                    kept.volume = want.volume;
+                }
+                Some(kept) => {
+                    let tile = kept.tile;
+                    self.atlas.give(tile);
+                    self.tiles.remove(&want.slot);
+                    missing.push(*want);
+                }
+                None => missing.push(*want),
+            }
+        }
+        missing.sort_by_key(|want| (std::cmp::Reverse(want.level), want.slot));
+        for want in &missing {
+            if !self.fit(want) {
+                return self.place_anew(wanted);
+            }
+        }
+    }
+
+    /// Finds room for one tile, where tiles that this frame does not want may give way.
+    fn fit(&mut self, want: &Wanted) -> bool {
+        loop {
+            if let Some(tile) = self.atlas.take(want.level) {
+                self.insert(want, tile);
+                return true;
+            }
+            let unwanted = self.tiles.iter().filter(|(_, k)| k.wanted_in < self.frame);
+            let oldest = unwanted
+                .min_by_key(|(_, k)| k.wanted_in)
+                .map(|(&slot, _)| slot);
+            let Some(kept) = oldest.and_then(|slot| self.tiles.remove(&slot)) else {
+                return false;
+            };
+            self.atlas.give(kept.tile);
+        }
+    }
+
+    fn insert(&mut self, want: &Wanted, tile: Tile) {
+        let kept = Kept {
+            tile,
+            volume: want.volume,
+            is_drawn: false,
+            wanted_in: self.frame,
+        };
+        self.tiles.insert(want.slot, kept);
+    }
+
+    /// From the largest to the smallest all fit.
+    fn place_anew(&mut self, wanted: &[Wanted]) {
+        self.forget();
+        let mut wanted = wanted.to_vec();
+        wanted.sort_by_key(|want| (std::cmp::Reverse(want.level), want.slot));
+        for want in &wanted {
+            if let Some(tile) = self.atlas.take(want.level) {
+                self.insert(want, tile);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shadow::volume::cube_axes;
+    use glam::Vec3;
+
+    fn want(slot: u32, level: u32) -> Wanted {
+        let volume = Volume::Pyramid {
+            apex: Vec3::new(slot as f32, 0.0, 0.0),
+            axes: cube_axes(slot % 6),
+            tangent: 1.0,
+            range: 2.0,
+            near: 0.01,
+        };
+        Wanted {
+            slot,
+            level,
+            volume,
+        }
+    }
+
+    fn place_of(kept: &KeptTiles, slot: u32) -> Option<Tile> {
+        kept.get(slot).map(|k| k.tile)
+    }
+
+    #[test]
+    fn a_tile_keeps_its_place_and_what_it_holds() {
+        let mut kept = KeptTiles::new(8);
+        kept.place(&[want(0, 6), want(7, 5)]);
+        let places = [0, 7].map(|slot| place_of(&kept, slot));
+        kept.drawn(0);
+        kept.drawn(7);
+        // One frame does not want it, one wants others beside it.
+        kept.place(&[want(7, 5)]);
+        kept.place(&[want(0, 6), want(7, 5), want(9, 5)]);
+        assert_eq!([0, 7].map(|slot| place_of(&kept, slot)), places);
+        assert!(kept.get(0).unwrap().is_drawn && !kept.get(9).unwrap().is_drawn);
+        kept.place(&[want(0, 5), want(7, 5)]);
+        assert!(!kept.get(0).unwrap().is_drawn, "its size has changed");
+        assert!(kept.get(7).unwrap().is_drawn);
+    }
+
+    #[test]
+    fn the_tile_that_was_wanted_last_of_all_gives_way_first() {
+        let mut kept = KeptTiles::new(6);
+        kept.place(&[want(0, 5), want(1, 5)]);
+        kept.place(&[want(1, 5), want(2, 5), want(3, 5)]);
+        kept.place(&[want(4, 5)]);
+        assert!(kept.get(0).is_none());
+        assert!([1, 2, 3, 4].iter().all(|&slot| kept.get(slot).is_some()));
+    }
+
+    #[test]
+    fn scattered_squares_are_put_together() {
+        let mut kept = KeptTiles::new(6);
+        kept.place(&(0..16).map(|slot| want(slot, 4)).collect::<Vec<_>>());
+        // Four small ones stay, one in each quarter: no large one fits beside them.
+        let stay: Vec<_> = [0, 4, 8, 12].map(|slot| want(slot, 4)).to_vec();
+        let mut more = stay.clone();
+        more.extend([20, 21, 22].map(|slot| want(slot, 5)));
+        kept.place(&more);
+        assert!(more.iter().all(|w| kept.get(w.slot).is_some()));
+    }
+
+    #[test]
+    fn what_moves_disturbs_the_tiles_that_see_it_alone() {
+        let mut kept = KeptTiles::new(8);
+        // Side 0 looks along x from 0, side 1 against it.
+        kept.place(&[want(0, 5), want(1, 5)]);
+        kept.drawn(0);
+        kept.drawn(1);
+        let at = Vec3::new(1.5, 0.0, 0.0);
+        kept.disturb(&[Aabb::new(at, at + 0.1)]);
+        assert!(!kept.get(0).unwrap().is_drawn);
+        assert!(kept.get(1).unwrap().is_drawn);
+    }
+}

@@ -1,0 +1,167 @@
+// Whether a light's rays reach a place: a look into the light's tiles of the atlas. CPU twin:
+// `shadow/twin.rs`.
+
+#import shared/light.wgsl
+#expects shadow_rows, shadow_atlas, shadow_sampler
+
+// 0: lights shine through everything; 1: one comparison; 2: nine, blended between texels.
+override SHADOWS: u32 = 0u;
+
+const SHADOWS_SOFT: u32 = 2u;
+// Rows of a light's record. Rust: `shadow/records.rs`.
+const SHADOW_ROWS: u32 = 4u;
+// As `BORDER` in `shadow/volume.rs`.
+const SHADOW_BORDER: f32 = 4.0;
+
+fn shadow_row(row: u32) -> vec4f {
+    return bitcast<vec4f>(shadow_rows[row]);
+}
+
+// A tile in texels of the atlas: its upper left corner, and its side, which is 0 where there is
+// none.
+struct ShadowTile {
+    corner: vec2f,
+    side: f32,
+}
+
+fn shadow_tile(word: u32) -> ShadowTile {
+    let corner = vec2f(vec2u(word, word >> 10u) & vec2u(0x3ffu)) * 16.0;
+    return ShadowTile(corner, select(0.0, f32(1u << ((word >> 20u) & 31u)), word != 0u));
+}
+
+// Part of the light that passes at a place in the tile, in texels, with a reversed depth.
+fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
+    if SHADOWS != SHADOWS_SOFT {
+        let inside = clamp(floor(at), vec2f(0.0), vec2f(tile.side - 1.0));
+        let nearest = textureLoad(shadow_atlas, vec2u(tile.corner + inside), 0);
+        return select(0.0, 1.0, depth >= nearest);
+    }
+    // Three by three comparisons a texel apart, each blended between four texels: together four
+    // by four texels, in four quads.
+    let inside = clamp(at, vec2f(2.0), vec2f(tile.side - 2.0)) - 0.5;
+    let first = min(floor(inside), vec2f(tile.side - 3.0));
+    let f = inside - first;
+    let texel = 1.0 / f32(textureDimensions(shadow_atlas).x);
+    let low = (tile.corner + first) * texel;
+    let high = low + 2.0 * texel;
+    let a = textureGatherCompare(shadow_atlas, shadow_sampler, low, depth);
+    let b = textureGatherCompare(shadow_atlas, shadow_sampler, vec2f(high.x, low.y), depth);
+    let c = textureGatherCompare(shadow_atlas, shadow_sampler, vec2f(low.x, high.y), depth);
+    let d = textureGatherCompare(shadow_atlas, shadow_sampler, high, depth);
+    // Of a quad: x lower left, y lower right, z upper right, w upper left.
+    let g = 1.0 - f;
+    let upper = g.y * (g.x * a.w + a.z + b.w + f.x * b.z) + (g.x * a.x + a.y + b.x + f.x * b.y);
+    let lower = (g.x * c.w + c.z + d.w + f.x * d.z) + f.y * (g.x * c.x + c.y + d.x + f.x * d.y);
+    return (upper + lower) / 9.0;
+}
+
+// Metres by which a place is moved along its normal before it is compared, so that a surface does
+// not shade itself: a texel's width, times what the filter and the slope ask for.
+fn shadow_offset(texel_m: f32, n_dot_l: f32) -> f32 {
+    let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
+    return texel_m * shadow_row(0u).x * (0.4 + slope);
+}
+
+// The side of a cube that a direction from its centre points to.
+fn cube_side(d: vec3f) -> u32 {
+    let a = abs(d);
+    if a.x >= a.y && a.x >= a.z {
+        return select(0u, 1u, d.x < 0.0);
+    } else if a.y >= a.z {
+        return select(2u, 3u, d.y < 0.0);
+    }
+    return select(4u, 5u, d.z < 0.0);
+}
+
+// A position from the centre, across, up and along a side.
+fn in_cube_side(side: u32, d: vec3f) -> vec3f {
+    let along = select(d, -d, (side & 1u) != 0u);
+    if side < 2u {
+        return vec3f(d.yz, along.x);
+    } else if side < 4u {
+        return vec3f(d.zx, along.y);
+    }
+    return vec3f(d.xy, along.z);
+}
+
+// A position in a pyramid, across, up and along, in texels of its tile.
+fn pyramid_texel(at: vec3f, tangent: f32, side: f32) -> vec2f {
+    let half_inner = 0.5 * side - SHADOW_BORDER;
+    return 0.5 * side + vec2f(at.x, -at.y) * (half_inner / (at.z * tangent));
+}
+
+// Part of a point light's rays that reach a surface.
+fn point_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+    let from_light = position - light.position;
+    let side = cube_side(from_light);
+    let words = shadow_rows[first + side / 4u];
+    let tile = shadow_tile(words[side % 4u]);
+    if tile.side == 0.0 {
+        return 1.0;
+    }
+    let texel_m = 2.0 * in_cube_side(side, from_light).z / (tile.side - 2.0 * SHADOW_BORDER);
+    let at = in_cube_side(side, from_light + normal * shadow_offset(texel_m, n_dot_l));
+    let near = shadow_row(first + 1u).z;
+    if at.z <= near {
+        return 1.0;
+    }
+    return shadow_passing(tile, pyramid_texel(at, 1.0, tile.side), near / at.z);
+}
+
+// The same for a spot light whose cone fits into one tile.
+fn spot_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+    let tile = shadow_tile(shadow_rows[first].x);
+    if tile.side == 0.0 {
+        return 1.0;
+    }
+    let near = shadow_row(first + 1u).z;
+    let tangent = shadow_row(first + 1u).w;
+    let from_light = position - light.position;
+    let texel_m = 2.0 * tangent * dot(light.direction, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
+    let moved = from_light + normal * shadow_offset(texel_m, n_dot_l);
+    let across = shadow_row(first + 2u).xyz;
+    let up = shadow_row(first + 3u).xyz;
+    let at = vec3f(dot(across, moved), dot(up, moved), dot(light.direction, moved));
+    if at.z <= near {
+        return 1.0;
+    }
+    return shadow_passing(tile, pyramid_texel(at, tangent, tile.side), near / at.z);
+}
+
+// The same for a directional light: in the finest cascade that holds the place.
+fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+    let across = shadow_row(first + 2u).xyz;
+    let up = shadow_row(first + 3u).xyz;
+    let words = shadow_rows[first];
+    let cascades = shadow_rows[first + 1u].x;
+    for (var i = 0u; i < 4u; i++) {
+        let tile = shadow_tile(words[i]);
+        // Centre across and up, half the width.
+        let cascade = shadow_row(cascades + i);
+        let away = abs(vec2f(dot(across, position), dot(up, position)) - cascade.xy);
+        let texel_m = 2.0 * cascade.z / max(tile.side, 1.0);
+        if tile.side == 0.0 || max(away.x, away.y) > cascade.z - 4.0 * texel_m {
+            continue;
+        }
+        let moved = position + normal * shadow_offset(texel_m, n_dot_l);
+        let at = (vec2f(dot(across, moved), dot(up, moved)) - cascade.xy) / texel_m;
+        // End along the rays, and one by the length.
+        let span = shadow_row(first + 1u).zw;
+        let depth = (span.x - dot(light.direction, moved)) * span.y;
+        return shadow_passing(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth);
+    }
+    return 1.0;
+}
+
+// Part of a light's rays that reach a surface, 0 to 1.
+fn light_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+    let first = 1u + index * SHADOW_ROWS;
+    if light.kind == LIGHT_DIRECTIONAL {
+        return sun_passing(first, light, position, normal, n_dot_l);
+    }
+    // A tangent of 0 stands for a cube.
+    if shadow_row(first + 1u).w > 0.0 {
+        return spot_light_passing(first, light, position, normal, n_dot_l);
+    }
+    return point_light_passing(first, light, position, normal, n_dot_l);
+}

@@ -1,0 +1,25 @@
+//! Shadows: which of a light's rays reach a surface.
+//!
+//! An atlas of depth holds a square tile per light and side: six sides of a cube around a point
+//! light, one for a spot light, a few cascades for a directional one. A frame's tiles and their
+//! sizes follow from lights, view and settings alone ([`plan`]); tiles are kept from frame to frame
+//! ([`kept`]) and drawn again where a thing that casts shadows has moved, or their size has changed.
+//! Lighting looks into the atlas at each sample (`shadow/lookup.wgsl`).
+
+mod atlas;
+mod changed;
+mod kept;
+mod pass;
+mod plan;
+mod records;
+mod stage;
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+mod twin;
+mod volume;
+
+pub(crate) use changed::Place;
+#[cfg(test)]
+pub(crate) use pass::TileUniform;
+pub(crate) use stage::ShadowStage;

@@ -1,0 +1,360 @@
+//! Which tiles a frame wants, and how large: a function of lights, view and settings alone, so that
+//! the picture does not depend on what was drawn before, nor on culling.
+
+use foveal_scene::Aabb;
+use glam::{Mat4, Vec3, Vec4};
+
+use super::atlas::LEAST_LEVEL;
+use super::volume::{BORDER, Volume, axes_along, cube_axes, frustum_planes};
+use crate::lights::LightUniform;
+use crate::stereo::Eye;
+
+/// Tiles that a light may have: the sides of a cube, or cascades.
+pub(super) const TILES_PER_LIGHT: usize = 6;
+/// Cascades of a directional light.
+pub(super) const CASCADES: usize = 4;
+/// Each cascade is wider by this factor than the one before.
+const CASCADE_STEP: i32 = 2;
+/// Cascades move in steps of this part of their radius, and hold everything within
+/// `1 - CASCADE_MOVE / 2` of it around the eye.
+const CASCADE_MOVE: f32 = 0.25;
+/// Largest tiles, as powers of two: a cube's side, a spot light's, a cascade.
+const LARGEST_SIDE: u32 = 9;
+const LARGEST_SPOT: u32 = 10;
+const LARGEST_CASCADE: u32 = 10;
+/// Cones wider than this have a cube's sides (tangent of the half angle).
+const WIDEST_SPOT: f32 = 2.0;
+/// Picture pixels that a texel may cover where most of a light's shadows are seen.
+const PIXELS_PER_TEXEL: f32 = 2.0;
+/// Distance from the light, as part of its range, where most of its shadows are seen.
+const TYPICAL_DISTANCE: f32 = 0.3;
+/// Sizes shrink by a quarter of a power of two until all fit.
+const SHRINK_STEP: f32 = 0.25;
+
+/// A tile that a frame wants.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Wanted {
+    /// Light and its tile: `light * TILES_PER_LIGHT + tile`.
+    pub(super) slot: u32,
+    pub(super) level: u32,
+    pub(super) volume: Volume,
+}
+
+/// What the wanted tiles follow from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct ViewOfPlan {
+    clip_from_world: [Mat4; 2],
+    /// Between the eyes.
+    center: Vec3,
+    /// Metres per pixel at a distance of one metre, or at any where rays are parallel.
+    pixel: f32,
+    orthographic: bool,
+}
+
+impl ViewOfPlan {
+    pub(super) fn new(eyes: &[Eye; 2], height: u32) -> Self {
+        Self {
+            clip_from_world: [eyes[0].clip_from_world(), eyes[1].clip_from_world()],
+            center: 0.5 * (eyes[0].position() + eyes[1].position()),
+            pixel: 2.0 * eyes[0].view_from_ndc()[1].abs() / height as f32,
+            orthographic: eyes[0].orthographic,
+        }
+    }
+
+    fn pixel_at(&self, distance: f32) -> f32 {
+        if self.orthographic {
+            self.pixel
+        } else {
+            self.pixel * distance
+        }
+    }
+}
+
+/// The tiles that a frame wants, in an atlas of `2^atlas_level` texels a side.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Plan {
+    /// By slot.
+    pub(super) wanted: Vec<Wanted>,
+    /// Lights that some tile would have held, had there been room.
+    pub(super) lights_left_out: u32,
+    /// By how many powers of two tiles are smaller than the view asks for.
+    pub(super) shrunk_by: f32,
+}
+
+/// A tile before its size is settled.
+struct Request {
+    slot: u32,
+    /// Power of two, not whole.
+    level: f32,
+    largest: u32,
+    volume: Volume,
+}
+
+impl Plan {
+    /// `scene`: the box around everything.
+    pub(super) fn new(
+        lights: &[LightUniform],
+        view: &ViewOfPlan,
+        scene: &Aabb,
+        atlas_level: u32,
+    ) -> Self {
+        let planes = view.clip_from_world.map(frustum_planes);
+        let mut requests = Vec::new();
+        for (number, light) in (0..).zip(lights) {
+            let slot = number * TILES_PER_LIGHT as u32;
+            if light.kind == 0 {
+                cascades(light, view, scene, slot, &mut requests);
+            } else {
+                sides(light, view, &planes, slot, &mut requests);
+            }
+        }
+        settle(requests, atlas_level)
+    }
+}
+
+fn unit_area(level: u32) -> u64 {
+    1 << (2 * level)
+}
+
+/// Finds the sizes at which all fit: all shrink alike; where not even the smallest fit, the tiles
+/// that would have been the smallest are left out.
+fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
+    let room = unit_area(atlas_level);
+    // No tile takes more than a sixteenth.
+    let most = atlas_level - 2;
+    let level_of = |r: &Request, shrunk: f32| {
+        let level = (r.level - shrunk + 0.5).floor().max(LEAST_LEVEL as f32) as u32;
+        level.min(r.largest.min(most).max(LEAST_LEVEL))
+    };
+    let area = |requests: &[Request], shrunk: f32| -> u64 {
+        requests
+            .iter()
+            .map(|r| unit_area(level_of(r, shrunk)))
+            .sum()
+    };
+    let mut shrunk_by = 0.0;
+    while area(&requests, shrunk_by) > room && shrunk_by < 16.0 {
+        shrunk_by += SHRINK_STEP;
+    }
+    let mut left_out = Vec::new();
+    if area(&requests, shrunk_by) > room {
+        requests.sort_by(|a, b| b.level.total_cmp(&a.level).then(a.slot.cmp(&b.slot)));
+        let fitting = (room / unit_area(LEAST_LEVEL)) as usize;
+        let out = requests.split_off(fitting.min(requests.len()));
+        left_out = out
+            .iter()
+            .map(|r| r.slot / TILES_PER_LIGHT as u32)
+            .collect();
+        left_out.sort_unstable();
+        left_out.dedup();
+        requests.sort_by_key(|r| r.slot);
+    }
+    Plan {
+        wanted: requests
+            .iter()
+            .map(|r| Wanted {
+                slot: r.slot,
+                level: level_of(r, shrunk_by),
+                volume: r.volume,
+            })
+            .collect(),
+        lights_left_out: left_out.len() as u32,
+        shrunk_by,
+    }
+}
+
+/// The nearest distance from which things are drawn into a light's tiles.
+pub(super) fn near_of(light: &LightUniform) -> f32 {
+    (light.range * 1e-3).clamp(1e-4, 0.02)
+}
+
+/// Half the width of a spot light's tile at distance 1; `None` where it needs a cube's sides.
+pub(super) fn spot_tangent(light: &LightUniform) -> Option<f32> {
+    let tangent = light.cone_sin / light.cone_cos.max(1e-6);
+    (light.kind == 2 && tangent <= WIDEST_SPOT).then_some(tangent.max(1e-3))
+}
+
+/// The tiles of a point or spot light that may be seen.
+fn sides(
+    light: &LightUniform,
+    view: &ViewOfPlan,
+    planes: &[[Vec4; 6]; 2],
+    slot: u32,
+    requests: &mut Vec<Request>,
+) {
+    if light.radiant.iter().all(|&c| c <= 0.0) || !(light.range > 0.0 && light.range.is_finite()) {
+        return;
+    }
+    let apex = Vec3::from(light.position);
+    // Where most of its shadows are seen, seen from as near as they may be.
+    let typical = TYPICAL_DISTANCE * light.range;
+    let away = (apex.distance(view.center) - typical).max(0.5 * typical);
+    let wanted_texel = view.pixel_at(away) * PIXELS_PER_TEXEL;
+    let spot = spot_tangent(light);
+    let tangent = spot.unwrap_or(1.0);
+    let level = (2.0 * tangent * typical / wanted_texel + 2.0 * BORDER)
+        .max(1.0)
+        .log2();
+    let pyramid = |axes| Volume::Pyramid {
+        apex,
+        axes,
+        tangent,
+        range: light.range,
+        near: near_of(light),
+    };
+    let in_view = |volume: &Volume| planes.iter().any(|p| volume.is_in_view(p));
+    let volumes: Vec<(u32, Volume)> = match spot {
+        Some(_) => vec![(0, pyramid(axes_along(light.direction.into())))],
+        None => (0..6)
+            .map(|side| (side, pyramid(cube_axes(side))))
+            .collect(),
+    };
+    for (tile, volume) in volumes {
+        if in_view(&volume) {
+            requests.push(Request {
+                slot: slot + tile,
+                level,
+                largest: if spot.is_some() {
+                    LARGEST_SPOT
+                } else {
+                    LARGEST_SIDE
+                },
+                volume,
+            });
+        }
+    }
+}
+
+/// The cascades of a directional light: squares around the eye, each four times as wide as the one
+/// before; the last one holds the scene as far as it can be seen. They move in steps, so that they
+/// stay as they are while the eye turns or moves a little.
+fn cascades(
+    light: &LightUniform,
+    view: &ViewOfPlan,
+    scene: &Aabb,
+    slot: u32,
+    requests: &mut Vec<Request>,
+) {
+    if light.radiant.iter().all(|&c| c <= 0.0) || !scene.is_valid() {
+        return;
+    }
+    let axes = axes_along(light.direction.into());
+    let (center, half) = (scene.center(), scene.half_extent());
+    let extent = |axis: Vec3| (axis.dot(center), axis.abs().dot(half));
+    let (along, reach) = extent(axes[2]);
+    // Whole steps: as boxes of moving things grow and shrink, most frames have the same.
+    let step = 2.0_f32.powi((reach.max(1e-3) * 0.125).log2().ceil() as i32);
+    let begin = ((along - reach) / step).floor() * step - 0.01 * step;
+    let end = ((along + reach) / step).ceil() * step + 0.01 * step;
+    let farthest = (0..2)
+        .map(|i| {
+            let (at, reach) = extent(axes[i]);
+            (axes[i].dot(view.center) - at).abs() + reach
+        })
+        .fold(0.0, f32::max);
+    let held = 1.0 - 0.5 * CASCADE_MOVE - 0.05;
+    let last = (farthest.max(1e-2) / held).log2().ceil() as i32;
+    for cascade in 0..CASCADES {
+        let radius = 2.0_f32.powi(last - CASCADE_STEP * (CASCADES - 1 - cascade) as i32);
+        let step = radius * CASCADE_MOVE;
+        let snapped = |axis: Vec3| (axis.dot(view.center) / step).round() * step;
+        requests.push(Request {
+            slot: slot + cascade as u32,
+            level: LARGEST_CASCADE as f32,
+            largest: LARGEST_CASCADE,
+            volume: Volume::Column {
+                axes,
+                center: [snapped(axes[0]), snapped(axes[1])],
+                radius,
+                span: [begin, end],
+            },
+        });
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use foveal_scene::Camera;
+
+    fn lamp(x: f32, range: f32) -> LightUniform {
+        LightUniform {
+            position: [x, 0.0, 0.0],
+            range,
+            radiant: [1.0; 3],
+            kind: 1,
+            ..LightUniform::default()
+        }
+    }
+
+    fn view_from(x: f32, y: f32, z: f32) -> ViewOfPlan {
+        let camera = Camera::look_at(Vec3::new(x, y, z), Vec3::ZERO, Vec3::Y, 1.0);
+        let settings = crate::testing::small(1280, 720);
+        let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
+        ViewOfPlan::new(&eyes, 720)
+    }
+
+    fn room() -> Aabb {
+        Aabb::new(Vec3::splat(-20.0), Vec3::splat(20.0))
+    }
+
+    fn area(plan: &Plan) -> u64 {
+        plan.wanted.iter().map(|w| unit_area(w.level)).sum()
+    }
+
+    #[test]
+    fn a_light_has_larger_tiles_the_nearer_it_is() {
+        let level = |z| {
+            let plan = Plan::new(&[lamp(0.0, 4.0)], &view_from(0.0, 0.0, z), &room(), 12);
+            plan.wanted.iter().map(|w| w.level).max().unwrap()
+        };
+        assert!(level(6.0) > level(24.0));
+        assert!(level(24.0) > level(96.0));
+        assert!(level(1e5) == LEAST_LEVEL);
+    }
+
+    #[test]
+    fn all_tiles_fit_whatever_the_number_of_lights() {
+        for count in [1, 10, 200, 3_000, 16_000] {
+            let lights: Vec<_> = (0..count).map(|i| lamp(i as f32 * 1e-3, 6.0)).collect();
+            for atlas_level in [8, 12] {
+                let plan = Plan::new(&lights, &view_from(0.0, 0.0, 5.0), &room(), atlas_level);
+                assert!(area(&plan) <= unit_area(atlas_level), "{count} lights");
+                assert!(plan.wanted.is_sorted_by_key(|w| w.slot));
+                let least = count as usize * 4 * usize::from(plan.lights_left_out == 0);
+                assert!(plan.wanted.len() >= least, "{count} lights");
+                let is_full = area(&plan) == unit_area(atlas_level);
+                assert!(plan.lights_left_out == 0 || is_full);
+            }
+        }
+    }
+
+    #[test]
+    fn all_lights_shrink_alike() {
+        let lights: Vec<_> = (0..400).map(|i| lamp(i as f32 * 1e-3, 6.0)).collect();
+        let plan = Plan::new(&lights, &view_from(0.0, 0.0, 5.0), &room(), 11);
+        let levels = || plan.wanted.iter().map(|w| w.level);
+        assert_eq!(levels().min(), levels().max());
+        assert!(plan.shrunk_by > 0.0);
+    }
+
+    #[test]
+    fn cascades_hold_the_scene_and_stay_while_the_eye_moves_a_little() {
+        let sun = LightUniform {
+            kind: 0,
+            direction: Vec3::new(0.3, -0.8, 0.2).normalize().to_array(),
+            ..lamp(0.0, 0.0)
+        };
+        let plan = |x| Plan::new(&[sun], &view_from(x, 1.0, 9.0), &room(), 12).wanted;
+        let wanted = plan(0.0);
+        assert_eq!(wanted.len(), CASCADES);
+        let last = wanted[CASCADES - 1].volume.clip_from_world(1024.0);
+        for corner in room().corners() {
+            let clip = last * corner.extend(1.0);
+            assert!(clip.truncate().truncate().abs().max_element() < 1.0);
+            assert!(clip.z > 0.0 && clip.z < 1.0);
+        }
+        let moves = (0..100).filter(|&i| plan(i as f32 * 1e-3) != plan((i + 1) as f32 * 1e-3));
+        assert!(moves.count() <= 3);
+    }
+}

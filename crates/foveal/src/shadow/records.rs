@@ -1,0 +1,77 @@
+//! What shaders know of tiles: `shadow_rows` in `shadow/lookup.wgsl`.
+//!
+//! Row 0: texels by which places are moved along their normals. Then four rows
+//! per light: the words of tiles 0 to 3; words 4 and 5, the near distance and the cone's tangent (0
+//! for a cube); the axis across; the axis up. A directional light has in place of words 4 and 5 the
+//! number of its first cascade's row, and then the end of its rays and one by their length. After
+//! all lights a row per cascade: centre across and up, and half the width.
+
+use glam::Vec3;
+
+use super::kept::KeptTiles;
+use super::plan::{CASCADES, Plan, TILES_PER_LIGHT, near_of, spot_tangent};
+use super::volume::{Volume, axes_along};
+use crate::lights::LightUniform;
+
+/// Rows of a light: `SHADOW_ROWS` in the shader.
+const ROWS: usize = 4;
+const DIRECTIONAL: u32 = 0;
+
+/// One row.
+pub(super) type Row = [u32; 4];
+
+/// The rows of a frame.
+pub(super) fn rows(
+    lights: &[LightUniform],
+    plan: &Plan,
+    kept: &KeptTiles,
+    texels_moved: f32,
+) -> Vec<Row> {
+    let mut rows = vec![[0; 4]; 1 + lights.len() * ROWS];
+    rows[0][0] = texels_moved.to_bits();
+    let first_row = |light: usize| 1 + light * ROWS;
+    for (number, light) in lights.iter().enumerate() {
+        let first = first_row(number);
+        let [across, up, _] = axes_along(light.direction.into());
+        rows[first + 1][2] = near_of(light).to_bits();
+        rows[first + 1][3] = spot_tangent(light).unwrap_or(0.0).to_bits();
+        rows[first + 2] = words(across);
+        rows[first + 3] = words(up);
+    }
+    for want in &plan.wanted {
+        let number = want.slot as usize / TILES_PER_LIGHT;
+        let tile = want.slot as usize % TILES_PER_LIGHT;
+        let Some(kept) = kept.get(want.slot).filter(|kept| kept.is_drawn) else {
+            // Nobody sees what it would shade.
+            continue;
+        };
+        let first = first_row(number);
+        rows[first + tile / 4][tile % 4] = kept.tile.word();
+        let Volume::Column {
+            center,
+            radius,
+            span: [begin, end],
+            ..
+        } = want.volume
+        else {
+            continue;
+        };
+        if rows[first + 1][3] == 0 {
+            rows[first + 1] = [
+                rows.len() as u32,
+                0,
+                end.to_bits(),
+                (1.0 / (end - begin)).to_bits(),
+            ];
+            rows.resize(rows.len() + CASCADES, [0; 4]);
+        }
+        debug_assert_eq!(lights[number].kind, DIRECTIONAL);
+        let cascades = rows[first + 1][0] as usize;
+        rows[cascades + tile] = [center[0], center[1], radius, 0.0].map(f32::to_bits);
+    }
+    rows
+}
+
+fn words(axis: Vec3) -> Row {
+    axis.extend(0.0).to_array().map(f32::to_bits)
+}

@@ -1,0 +1,469 @@
+//! Shadows in pictures: against the twin, against rays, and from frame to frame.
+
+use foveal_generate as generate;
+use foveal_scene::{Camera, Light, LightKind, Scene};
+use glam::{Mat4, Vec2, Vec3};
+
+use super::twin::Lookup;
+use crate::shading::twin::{light_surface_with, position_at, to_eye, unpack_surface};
+use crate::testing::{Film, f32_of_half, picture, rendered, small, texels};
+use crate::{
+    Antialiasing, Geometry, LightAssignment, RateSource, Renderer, Settings, Shading, Shadows,
+    Stereo,
+};
+
+const WIDTH: u32 = 97;
+const HEIGHT: u32 = 65;
+
+fn shadowed(shadows: Shadows) -> Settings {
+    small(WIDTH, HEIGHT).with(|s| {
+        s.lighting.shadows = shadows;
+        s.lighting.shadow_atlas = 2048;
+    })
+}
+
+/// Cornell's room with all kinds of lights, of which one shines upwards.
+fn room() -> Scene {
+    let mut scene = generate::cornell();
+    scene.lights.push(Light {
+        kind: LightKind::Spot {
+            inner_rad: 1.1,
+            outer_rad: 1.4,
+        },
+        color: Vec3::new(1.0, 0.4, 0.3),
+        intensity: 3.0,
+        position: Vec3::new(1.2, 0.4, 0.9),
+        direction: Vec3::new(-0.3, 0.9, -0.5).normalize(),
+        range_m: Some(5.0),
+        node: None,
+    });
+    scene
+}
+
+fn lookup(renderer: &Renderer, shadows: Shadows) -> Lookup {
+    let stage = renderer.shadows();
+    Lookup {
+        rows: stage.rows().to_vec(),
+        atlas: texels(stage.atlas()),
+        side: stage.atlas().texture().width(),
+        shadows,
+    }
+}
+
+/// What a pixel shows.
+struct Seen {
+    radiance: Vec3,
+    surface: crate::shading::twin::Surface,
+}
+
+/// Every pixel that shows a surface.
+fn seen(renderer: &Renderer, camera: &Camera) -> Vec<Seen> {
+    let (width, height) = renderer.settings().picture_size();
+    let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
+    let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);
+    let radiance: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);
+    let size = Vec2::new(width as f32, height as f32);
+    (0..width * height)
+        .filter(|&i| depth[i as usize] > 0.0)
+        .map(|pixel| {
+            let i = pixel as usize;
+            let at = Vec2::new((pixel % width) as f32, (pixel / width) as f32) + 0.5;
+            let [r, g, b, _] = radiance[i].map(f32_of_half);
+            let surface = unpack_surface(words[i], position_at(camera, size, at, depth[i]));
+            Seen {
+                radiance: Vec3::new(r, g, b),
+                surface,
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn shading_with_shadows_equals_its_twin() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    for shadows in [Shadows::Hard, Shadows::Soft] {
+        let settings = shadowed(shadows);
+        let renderer = rendered(&scene, camera, &settings);
+        let lookup = lookup(&renderer, shadows);
+        let lights = renderer.lights().1;
+        let pixels = seen(&renderer, camera);
+        assert!(pixels.len() > 3_000);
+        let mut off = 0;
+        let mut dark = 0;
+        for Seen {
+            radiance, surface, ..
+        } in &pixels
+        {
+            let v = to_eye(camera, surface.position);
+            let lit = |passing: crate::shading::twin::Passing<'_>| {
+                let model = settings.lighting.model;
+                light_surface_with(&scene, lights, model, (surface, v), passing).radiance
+            };
+            let cpu = lit(&|(number, light), s, n_dot_l| {
+                lookup.light_passing(number, light, (s.position, s.normal, n_dot_l))
+            });
+            let bright = lit(&|_, _, _| 1.0);
+            dark += u32::from(cpu.max_element() < 0.8 * bright.max_element());
+            let tolerance = 0.01 * cpu.max_element().max(0.02);
+            off += u32::from((radiance - cpu).abs().max_element() > tolerance);
+        }
+        // Where a comparison is a matter of the last bit, device and twin may differ.
+        assert!(
+            off as usize * 200 < pixels.len(),
+            "{shadows:?}: {off} of {} pixels differ",
+            pixels.len()
+        );
+        assert!(dark > 300, "{shadows:?}: only {dark} pixels lie in shadow");
+    }
+}
+
+/// A scene's opaque triangles, world space.
+fn triangles(scene: &Scene) -> Vec<[Vec3; 3]> {
+    let mut all = Vec::new();
+    for instance in &scene.instances {
+        let mesh = &scene.meshes[instance.mesh as usize];
+        let at = |i: &u32| {
+            let position = Vec3::from(mesh.vertices[*i as usize].position);
+            instance.world_from_object.transform_point3(position)
+        };
+        let corners = mesh.indices.as_chunks::<3>().0;
+        all.extend(corners.iter().map(|[a, b, c]| [at(a), at(b), at(c)]));
+    }
+    all
+}
+
+/// Whether any triangle lies between two points (Moeller and Trumbore 1997).
+fn is_blocked(triangles: &[[Vec3; 3]], from: Vec3, to: Vec3) -> bool {
+    let ray = to - from;
+    triangles.iter().any(|&[a, b, c]| {
+        let (ab, ac) = (b - a, c - a);
+        let p = ray.cross(ac);
+        let determinant = ab.dot(p);
+        if determinant.abs() < 1e-12 {
+            return false;
+        }
+        let s = from - a;
+        let u = s.dot(p) / determinant;
+        let q = s.cross(ab);
+        let v = ray.dot(q) / determinant;
+        let t = ac.dot(q) / determinant;
+        u >= 0.0 && v >= 0.0 && u + v <= 1.0 && t > 0.0 && t < 1.0
+    })
+}
+
+#[test]
+fn shadows_are_those_of_rays() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let settings = shadowed(Shadows::Hard).with(|s| {
+        s.picture.width = 640;
+        s.picture.height = 480;
+    });
+    let renderer = rendered(&scene, camera, &settings);
+    let lookup = lookup(&renderer, Shadows::Hard);
+    let triangles = triangles(&scene);
+    let lights = renderer.lights().1;
+    let (mut looked, mut wrong, mut blocked) = (0, 0, 0);
+    for Seen { surface: s, .. } in seen(&renderer, camera).into_iter().step_by(41) {
+        for (number, light) in lights.iter().enumerate() {
+            let to = match light.kind {
+                0 => s.position - 100.0 * Vec3::from(light.direction),
+                _ => light.position.into(),
+            };
+            let towards = (to - s.position).normalize();
+            let n_dot_l = s.normal.dot(towards);
+            let is_in_cone = light.kind != 2
+                || -Vec3::from(light.direction).dot(towards) > light.cone_cos + 0.01;
+            // What grazes a surface is lit by next to nothing.
+            if n_dot_l < 0.05 || !is_in_cone || to.distance(s.position) < 0.05 {
+                continue;
+            }
+            let is_dark = is_blocked(&triangles, s.position + 2e-3 * s.normal, to);
+            let passing = lookup.light_passing(number, light, (s.position, s.normal, n_dot_l));
+            looked += 1;
+            blocked += u32::from(is_dark);
+            wrong += u32::from((passing > 0.5) == is_dark);
+        }
+    }
+    assert!(
+        looked > 10_000 && blocked * 20 > looked,
+        "{looked}, {blocked}"
+    );
+    // A shadow's edge runs through some pixels.
+    assert!(wrong * 100 <= looked, "{wrong} of {looked} differ");
+}
+
+#[test]
+fn with_shadows_clustered_and_brute_lighting_give_the_same_bytes() {
+    let mut scene = room();
+    generate::add_point_lights(&mut scene, 60, 7);
+    let camera = &scene.cameras[0];
+    let settings = shadowed(Shadows::Soft);
+    let clustered = rendered(&scene, camera, &settings);
+    let brute = settings.with(|s| s.lighting.assignment = LightAssignment::Brute);
+    assert_eq!(
+        picture(&clustered),
+        picture(&rendered(&scene, camera, &brute))
+    );
+}
+
+#[test]
+fn coarse_and_variable_shading_at_every_pixel_give_the_bytes_of_full_shading() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let full = picture(&rendered(&scene, camera, &shadowed(Shadows::Soft)));
+    for shading in [Shading::Coarse, Shading::Variable] {
+        for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
+            let settings = shadowed(Shadows::Soft).with(|s| {
+                s.shading.mode = shading;
+                s.geometry.path = geometry;
+                s.coarse.source = match shading {
+                    Shading::Variable => RateSource::Content,
+                    _ => RateSource::Constant,
+                };
+                s.coarse.constant_level = 0;
+                s.variable.force = true;
+                s.variable.threshold = 0.0;
+            });
+            let reference = match geometry {
+                Geometry::Gbuffer => full.clone(),
+                Geometry::Visibility => {
+                    let full = shadowed(Shadows::Soft).with(|s| s.geometry.path = geometry);
+                    picture(&rendered(&scene, camera, &full))
+                }
+            };
+            let drawn = picture(&rendered(&scene, camera, &settings));
+            assert_eq!(drawn, reference, "{shading:?}, {geometry:?}");
+        }
+    }
+}
+
+#[test]
+fn at_rest_no_tile_is_drawn_and_the_picture_stays() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let mut film = Film::new(&scene, &shadowed(Shadows::Soft));
+    let first = film.draw(camera).shadows.unwrap();
+    assert!(first.tiles_drawn > 0 && first.tiles_drawn == first.tiles);
+    let before = picture(&film.renderer);
+    for _ in 0..3 {
+        let next = film.draw(camera).shadows.unwrap();
+        assert_eq!((next.tiles_drawn, next.casters), (0, 0));
+        assert_eq!(next.tiles, first.tiles);
+        assert_eq!(picture(&film.renderer), before);
+    }
+}
+
+/// Tiles may lie elsewhere, and the rasterizer's last bit depends on where: a texel at an edge may
+/// turn.
+fn assert_nearly_same(a: &Renderer, b: &Renderer) {
+    let (a, b) = (picture(a), picture(b));
+    let differ = a.iter().zip(&b).filter(|(a, b)| a != b).count();
+    assert!(
+        differ * 500 <= a.len(),
+        "{differ} of {} bytes differ",
+        a.len()
+    );
+}
+
+/// A camera that has turned to the side and back.
+fn turned(camera: &Camera, angle: f32) -> Camera {
+    let mut camera = camera.clone();
+    camera.world_from_view *= Mat4::from_rotation_y(angle);
+    camera
+}
+
+#[test]
+fn tiles_that_are_kept_show_what_a_new_renderer_draws() {
+    let scene = room();
+    let camera = scene.cameras[0].clone();
+    let settings = shadowed(Shadows::Soft);
+    let mut film = Film::new(&scene, &settings);
+    for step in 0..12 {
+        let mut camera = turned(&camera, 0.1 * (step as f32).sin());
+        camera.world_from_view.w_axis.z -= 0.2 * step as f32;
+        film.draw(&camera);
+        if step % 4 == 3 {
+            let fresh = rendered(&scene, &camera, &settings);
+            assert_nearly_same(&film.renderer, &fresh);
+        }
+    }
+}
+
+#[test]
+fn a_thing_that_moves_takes_its_shadow_along() {
+    let mut scene = room();
+    let camera = scene.cameras[0].clone();
+    let settings = shadowed(Shadows::Soft);
+    let mut film = Film::new(&scene, &settings);
+    let all = film.draw(&camera).shadows.unwrap();
+    let block = scene.instances.len() - 1;
+    for step in 1..4 {
+        let shift = Mat4::from_translation(Vec3::new(-0.05 * step as f32, 0.1, 0.0));
+        let instance = &mut scene.instances[block];
+        instance.world_from_object = shift * instance.world_from_object;
+        instance.bounds = instance.bounds.transformed(shift);
+        pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+        let stats = film.draw(&camera).shadows.unwrap();
+        assert!(stats.tiles_drawn > 0 && stats.tiles_drawn < all.tiles);
+        let fresh = rendered(&scene, &camera, &settings);
+        assert_nearly_same(&film.renderer, &fresh);
+    }
+}
+
+#[test]
+fn a_light_that_moves_has_its_own_tiles_drawn_again() {
+    let mut scene = room();
+    let camera = scene.cameras[0].clone();
+    let settings = shadowed(Shadows::Soft);
+    let mut film = Film::new(&scene, &settings);
+    film.draw(&camera);
+    scene.lights[0].position += Vec3::new(0.2, -0.3, 0.1);
+    pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+    let stats = film.draw(&camera).shadows.unwrap();
+    assert!(
+        (1..=6).contains(&stats.tiles_drawn),
+        "{}",
+        stats.tiles_drawn
+    );
+    let fresh = rendered(&scene, &camera, &settings);
+    assert_nearly_same(&film.renderer, &fresh);
+    // Another colour moves no shadow.
+    scene.lights[1].color = Vec3::X;
+    pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+    assert_eq!(film.draw(&camera).shadows.unwrap().tiles_drawn, 0);
+}
+
+#[test]
+fn light_that_is_kept_is_told_where_shadows_have_moved() {
+    for shadows in [Shadows::Off, Shadows::Soft] {
+        let mut scene = room();
+        scene
+            .lights
+            .retain(|light| light.kind != LightKind::Directional);
+        let camera = scene.cameras[0].clone();
+        let settings = shadowed(shadows).with(|s| {
+            s.shading.mode = Shading::Coarse;
+            s.coarse.history = true;
+        });
+        let mut film = Film::new(&scene, &settings);
+        film.draw(&camera);
+        film.draw(&camera);
+        let shift = Mat4::from_translation(Vec3::new(-0.1, 0.1, 0.1));
+        let block = scene.instances.last_mut().unwrap();
+        block.world_from_object = shift * block.world_from_object;
+        block.bounds = block.bounds.transformed(shift);
+        let bounds = block.bounds;
+        pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
+        film.draw(&camera);
+        let told = film.renderer.history().told;
+        let places = &told.changed[..told.changed_count as usize];
+        assert_eq!(
+            (told.reset, places.is_empty()),
+            (0, shadows == Shadows::Off)
+        );
+        let holds = |&[x, y, z, r]: &[f32; 4]| {
+            let center = Vec3::new(x, y, z);
+            bounds
+                .corners()
+                .iter()
+                .all(|c| c.distance(center) <= r * 1.001)
+        };
+        assert!(shadows == Shadows::Off || places.iter().any(holds));
+    }
+}
+
+#[test]
+fn culling_changes_no_shadow() {
+    use crate::Culling;
+    let mut scene = room();
+    generate::add_point_lights(&mut scene, 20, 3);
+    let camera = &scene.cameras[0];
+    let drawn = |mode| {
+        let settings = shadowed(Shadows::Soft).with(|s| s.culling.mode = mode);
+        picture(&rendered(&scene, camera, &settings))
+    };
+    let all = drawn(Culling::Off);
+    assert_eq!(drawn(Culling::Frustum), all);
+    assert_eq!(drawn(Culling::Occlusion), all);
+}
+
+#[test]
+fn a_full_atlas_makes_shadows_coarser_and_leaves_no_light_out_before_it_must() {
+    let mut scene = room();
+    generate::add_point_lights(&mut scene, 300, 3);
+    let camera = scene.cameras[0].clone();
+    let settings = shadowed(Shadows::Soft).with(|s| s.lighting.shadow_atlas = 512);
+    let mut film = Film::new(&scene, &settings);
+    let stats = film.draw(&camera).shadows.unwrap();
+    assert!(stats.shrunk_by > 0.0 && stats.texels <= 512 * 512);
+    scene.lights.clear();
+    generate::add_point_lights(&mut scene, 2_000, 3);
+    let mut film = Film::new(&scene, &settings);
+    let stats = film.draw(&camera).shadows.unwrap();
+    assert!(stats.lights_left_out > 0 && stats.texels <= 512 * 512);
+}
+
+#[test]
+fn both_eyes_see_the_same_shadows_from_one_atlas() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let of = |mode| {
+        let settings = shadowed(Shadows::Soft).with(|s| {
+            s.stereo.mode = mode;
+            s.stereo.output = crate::Output::SideBySide;
+        });
+        let mut film = Film::new(&scene, &settings);
+        let stats = film.draw(camera).shadows.unwrap();
+        (stats.tiles, picture(&film.renderer))
+    };
+    let (tiles, two) = of(Stereo::TwoPass);
+    assert!(tiles > 0);
+    let (_, instanced) = of(Stereo::Instanced);
+    let differ = two.iter().zip(&instanced).filter(|(a, b)| a != b).count();
+    assert!(differ * 500 < two.len(), "{differ} of {}", two.len());
+}
+
+#[test]
+fn antialiasing_lights_sub_samples_with_shadows() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let dark = |mode, shadows| {
+        let settings = shadowed(shadows).with(|s| s.antialiasing.mode = mode);
+        let bytes = picture(&rendered(&scene, camera, &settings));
+        bytes.iter().map(|&b| u64::from(b)).sum::<u64>() as f64
+    };
+    let full = dark(Antialiasing::None, Shadows::Soft);
+    for mode in [Antialiasing::Ssaa, Antialiasing::Msaa] {
+        let ratio = dark(mode, Shadows::Soft) / full;
+        assert!((ratio - 1.0).abs() < 0.02, "{mode:?}: {ratio}");
+        assert!(dark(mode, Shadows::Soft) < 0.98 * dark(mode, Shadows::Off));
+    }
+}
+
+#[test]
+fn holes_of_masked_materials_let_light_through_and_blended_things_cast_nothing() {
+    let scene = generate::alpha();
+    let camera = &scene.cameras[0];
+    let bytes = |scene: &Scene| picture(&rendered(scene, camera, &shadowed(Shadows::Hard)));
+    let drawn = bytes(&scene);
+    // The same without holes: more shadow.
+    let mut solid = scene.clone();
+    for material in &mut solid.materials {
+        if matches!(material.alpha_mode, foveal_scene::AlphaMode::Mask { .. }) {
+            material.alpha_mode = foveal_scene::AlphaMode::Opaque;
+        }
+    }
+    assert_ne!(drawn, bytes(&solid));
+    let mut without = scene.clone();
+    let materials = &scene.materials;
+    without
+        .instances
+        .retain(|i| materials[i.material as usize].alpha_mode != foveal_scene::AlphaMode::Blend);
+    let tiles = |scene: &Scene| {
+        let renderer = rendered(scene, camera, &shadowed(Shadows::Hard));
+        renderer.shadows().stats().unwrap().casters
+    };
+    assert_eq!(tiles(&scene), tiles(&without));
+}

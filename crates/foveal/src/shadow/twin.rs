@@ -1,0 +1,155 @@
+//! The CPU twin of `shadow/lookup.wgsl`.
+
+use glam::{Vec2, Vec3};
+
+use super::records::Row;
+use super::volume::BORDER;
+use crate::Shadows;
+use crate::lights::LightUniform;
+
+/// What the shader looks up.
+pub(crate) struct Lookup {
+    pub(crate) rows: Vec<Row>,
+    /// Texels of the atlas, row by row.
+    pub(crate) atlas: Vec<f32>,
+    pub(crate) side: u32,
+    pub(crate) shadows: Shadows,
+}
+
+struct ShadowTile {
+    corner: [u32; 2],
+    side: u32,
+}
+
+fn tile_of(word: u32) -> Option<ShadowTile> {
+    (word != 0).then(|| ShadowTile {
+        corner: [(word & 0x3ff) * 16, (word >> 10 & 0x3ff) * 16],
+        side: 1 << (word >> 20 & 31),
+    })
+}
+
+impl Lookup {
+    fn row(&self, row: usize) -> [f32; 4] {
+        self.rows[row].map(f32::from_bits)
+    }
+
+    fn axis(&self, row: usize) -> Vec3 {
+        let [x, y, z, _] = self.row(row);
+        Vec3::new(x, y, z)
+    }
+
+    fn passes(&self, tile: &ShadowTile, x: u32, y: u32, depth: f32) -> f32 {
+        let [left, top] = tile.corner;
+        let nearest = self.atlas[((top + y) * self.side + left + x) as usize];
+        f32::from(u8::from(depth >= nearest))
+    }
+
+    fn passing(&self, tile: &ShadowTile, at: Vec2, depth: f32) -> f32 {
+        let side = tile.side as f32;
+        if self.shadows == Shadows::Hard {
+            let inside = at.floor().clamp(Vec2::ZERO, Vec2::splat(side - 1.0));
+            return self.passes(tile, inside.x as u32, inside.y as u32, depth);
+        }
+        // The mean of three by three comparisons a texel apart, each blended between four texels.
+        let inside = at.clamp(Vec2::splat(2.0), Vec2::splat(side - 2.0));
+        let mut sum = 0.0;
+        for (i, j) in (0..9).map(|k| (k % 3, k / 3)) {
+            let p = inside + Vec2::new(i as f32, j as f32) - 1.5;
+            let low = p.floor();
+            let f = p - low;
+            let at = |x: u32, y: u32| {
+                // A texel beyond the last has no weight.
+                let [x, y] = [low.x as u32 + x, low.y as u32 + y].map(|v| v.min(tile.side - 1));
+                self.passes(tile, x, y, depth)
+            };
+            let upper = at(0, 0) * (1.0 - f.x) + at(1, 0) * f.x;
+            let lower = at(0, 1) * (1.0 - f.x) + at(1, 1) * f.x;
+            sum += upper * (1.0 - f.y) + lower * f.y;
+        }
+        sum / 9.0
+    }
+
+    fn offset(&self, texel_m: f32, n_dot_l: f32) -> f32 {
+        let slope = (1.0 - n_dot_l * n_dot_l).max(0.0).sqrt();
+        texel_m * self.row(0)[0] * (0.4 + slope)
+    }
+
+    /// `light_passing` in the shader.
+    pub(crate) fn light_passing(
+        &self,
+        index: usize,
+        light: &LightUniform,
+        (position, normal, n_dot_l): (Vec3, Vec3, f32),
+    ) -> f32 {
+        let first = 1 + index * 4;
+        let direction = Vec3::from(light.direction);
+        if light.kind == 0 {
+            return self.sun_passing(first, direction, (position, normal, n_dot_l));
+        }
+        let from_light = position - Vec3::from(light.position);
+        let [_, _, near, spot] = self.row(first + 1);
+        let axes = if spot > 0.0 {
+            [self.axis(first + 2), self.axis(first + 3), direction]
+        } else {
+            let away = from_light.abs();
+            let axis = if away.x >= away.y && away.x >= away.z {
+                0
+            } else if away.y >= away.z {
+                1
+            } else {
+                2
+            };
+            super::volume::cube_axes(2 * axis + u32::from(from_light[axis as usize] < 0.0))
+        };
+        let number = if spot > 0.0 {
+            0
+        } else {
+            (0..6)
+                .find(|&s| super::volume::cube_axes(s) == axes)
+                .unwrap()
+        };
+        let word = self.rows[first + number as usize / 4][number as usize % 4];
+        let Some(tile) = tile_of(word) else {
+            return 1.0;
+        };
+        let tangent = if spot > 0.0 { spot } else { 1.0 };
+        let inner = tile.side as f32 - 2.0 * BORDER;
+        let texel_m = 2.0 * tangent * axes[2].dot(from_light) / inner;
+        let moved = from_light + normal * self.offset(texel_m, n_dot_l);
+        let at = Vec3::from(axes.map(|axis| axis.dot(moved)));
+        if at.z <= near {
+            return 1.0;
+        }
+        let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
+        self.passing(&tile, place + 0.5 * tile.side as f32, near / at.z)
+    }
+
+    fn sun_passing(
+        &self,
+        first: usize,
+        direction: Vec3,
+        (position, normal, n_dot_l): (Vec3, Vec3, f32),
+    ) -> f32 {
+        let (across, up) = (self.axis(first + 2), self.axis(first + 3));
+        let [_, _, end, per_length] = self.row(first + 1);
+        let on_plane = |p: Vec3| Vec2::new(across.dot(p), up.dot(p));
+        for cascade in 0..4 {
+            let Some(tile) = tile_of(self.rows[first][cascade]) else {
+                continue;
+            };
+            let [u, v, radius, _] = self.row(self.rows[first + 1][0] as usize + cascade);
+            let center = Vec2::new(u, v);
+            let texel_m = 2.0 * radius / tile.side as f32;
+            let away = (on_plane(position) - center).abs();
+            if away.max_element() > radius - 4.0 * texel_m {
+                continue;
+            }
+            let moved = position + normal * self.offset(texel_m, n_dot_l);
+            let at = (on_plane(moved) - center) / texel_m;
+            let depth = (end - direction.dot(moved)) * per_length;
+            let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
+            return self.passing(&tile, place, depth);
+        }
+        1.0
+    }
+}
