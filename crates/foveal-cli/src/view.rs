@@ -77,11 +77,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
             options.clip = Clip::default();
             options.variant = None;
         }
-        let mut scene = scene_source::load_with(name, &options)?;
-        if point_lights > 0 {
-            scene_source::add_point_lights(&mut scene, point_lights, 0);
-        }
-        scene.light_by_default();
+        let scene = scene_source::load_with(name, &options)?;
         let camera = if name == first {
             camera.clone()
         } else {
@@ -95,6 +91,12 @@ fn host(args: &Args) -> anyhow::Result<Host> {
             clip,
         })
     };
+    let light = move |scene: &mut Scene| {
+        if point_lights > 0 {
+            scene_source::add_point_lights(scene, point_lights, 0);
+        }
+        scene.light_by_default();
+    };
     Ok(Host {
         scene: args.scene.clone(),
         generated: generate::NAMES.map(str::to_owned).to_vec(),
@@ -103,6 +105,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         adapter: args.adapter.clone(),
         window: args.window,
         load: Box::new(load),
+        light: Box::new(light),
         files: Box::new(folders::Folders::new()),
         record: Box::new(recordings::start),
         no_video: recordings::no_video(),

@@ -8,7 +8,7 @@ use foveal_scene::{Camera, Clip, Scene};
 /// A scene and where it is first seen from.
 #[derive(Debug)]
 pub struct Loaded {
-    /// The scene, lit.
+    /// The scene with its own lights, posed at time 0.
     pub scene: Scene,
     /// The first view.
     pub camera: Camera,
@@ -18,6 +18,9 @@ pub struct Loaded {
 
 /// Loads the scene of this path or name.
 pub type LoadScene = dyn Fn(&str) -> anyhow::Result<Loaded> + Send + Sync;
+
+/// Lights a scene that is posed at time 0.
+pub type LightScene = dyn Fn(&mut Scene) + Send + Sync;
 
 /// Flags for the scene of this path or name.
 pub type SceneFlags = dyn Fn(&str) -> Vec<String> + Send + Sync;
@@ -112,6 +115,9 @@ pub struct Host {
     pub window: (u32, u32),
     /// Loads or generates a scene.
     pub load: Box<LoadScene>,
+    /// Adds the lights that a scene has besides its own. They may depend on its pose, so that it is
+    /// called again when another animation plays.
+    pub light: Box<LightScene>,
     /// Folders, and what is kept from run to run.
     pub files: Box<dyn Files>,
     /// Starts recordings.

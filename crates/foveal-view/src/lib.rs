@@ -28,7 +28,9 @@ mod viewport;
 mod window;
 mod worker;
 
-pub use host::{Files, Format, Host, Listing, LoadScene, Loaded, Record, Recording, SceneFlags};
+pub use host::{
+    Files, Format, Host, LightScene, Listing, LoadScene, Loaded, Record, Recording, SceneFlags,
+};
 pub use keys::help as keys_help;
 pub use settled::{Settled, Settler, Sight};
 

@@ -196,7 +196,9 @@ fn files_are_dropped_saved_and_loaded_and_the_command_is_copied() {
     // One that is not takes its place.
     let gltf = folder.join("triangle.gltf");
     std::fs::write(&gltf, triangle()).unwrap();
-    peer.drop_files(screen.id, middle, &[&gltf, &folder.join("another.glb")]);
+    let another = folder.join("another.glb");
+    std::fs::write(&another, b"not opened").unwrap();
+    peer.drop_files(screen.id, middle, &[&gltf, &another]);
     screen.until("the dropped scene is shown", |s| {
         let picture = s.shot().picture();
         (differing(&cornell.picture(), &picture) > 0.9 && colors(&picture) < 40).then_some(())

@@ -22,6 +22,7 @@ pub(crate) fn host() -> Host {
         adapter: None,
         window: (1, 1),
         load: Box::new(|_| bail!("no scenes here")),
+        light: Box::new(|_| ()),
         files: Box::new(Imagined::default()),
         record: Box::new(|_, _, _| bail!("no recordings here")),
         no_video: Some("there is no ffmpeg".to_owned()),

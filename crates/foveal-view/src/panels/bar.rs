@@ -248,12 +248,17 @@ pub(super) fn keys(app: &mut App, ui: &mut egui::Ui) {
         .resizable(false)
         .anchor(egui::Align2::CENTER_CENTER, egui::Vec2::ZERO)
         .show(ui.ctx(), |ui| {
-            egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
-                for (key, does, _) in keys::ALL {
-                    ui.label(RichText::new(key).strong().color(look::TEXT));
-                    ui.label(RichText::new(does).color(look::FAINT));
-                    ui.end_row();
-                }
+            // In a small window the list is longer than the screen.
+            let most = ui.ctx().content_rect().height() - 120.0;
+            let list = egui::ScrollArea::vertical().max_height(most);
+            list.show(ui, |ui| {
+                egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
+                    for (key, does, _) in keys::ALL {
+                        ui.label(RichText::new(key).strong().color(look::TEXT));
+                        ui.label(RichText::new(does).color(look::FAINT));
+                        ui.end_row();
+                    }
+                });
             });
         });
     app.display.keys = is_open;

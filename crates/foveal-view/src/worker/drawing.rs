@@ -16,6 +16,8 @@ pub(super) struct Drawing {
     scene: Option<Scene>,
     /// The animation that the scene plays.
     clip: Clip,
+    /// How many lights are its own.
+    own_lights: usize,
     chosen: Option<Side>,
     reference: Option<Side>,
     /// The reference's last frame, with what it was drawn for.
@@ -82,10 +84,12 @@ impl Drawing {
     /// Loads a scene; the old one stays where that fails.
     pub(super) fn load(&mut self, host: &Host, name: &str) -> anyhow::Result<LoadedScene> {
         let Loaded {
-            scene,
+            mut scene,
             camera,
             clip,
         } = (host.load)(name)?;
+        let own_lights = scene.lights.len();
+        (host.light)(&mut scene);
         let loaded = LoadedScene {
             name: scene.name.clone(),
             source: name.to_owned(),
@@ -105,6 +109,7 @@ impl Drawing {
         };
         self.scene = Some(scene);
         self.clip = clip;
+        self.own_lights = own_lights;
         self.chosen = None;
         self.reference = None;
         self.reference_drawn = None;
@@ -120,7 +125,7 @@ impl Drawing {
         repeat: u32,
     ) -> anyhow::Result<Option<Shown>> {
         self.open(host)?;
-        self.play(&request.clip);
+        self.play(host, &request.clip);
         let (Some(gpu), Some(scene)) = (&self.gpu, &mut self.scene) else {
             return Ok(None);
         };
@@ -189,12 +194,15 @@ impl Drawing {
     }
 
     /// Has the scene play another animation.
-    fn play(&mut self, clip: &Clip) {
+    fn play(&mut self, host: &Host, clip: &Clip) {
         let Some(scene) = self.scene.as_mut().filter(|_| self.clip != *clip) else {
             return;
         };
         if scene.play(clip) {
+            // As if it had been loaded with this one.
+            scene.lights.truncate(self.own_lights);
             scene.pose(0.0);
+            (host.light)(scene);
         }
         self.clip = clip.clone();
         // What moves may be another part of the scene.
