@@ -215,9 +215,12 @@ const SIZES: [Vec2; 3] = [
     Vec2::new(1280.0, 720.0),
 ];
 
+/// A name, and what brings the window there.
+type State = (&'static str, fn(&mut App));
+
 #[test]
 fn no_text_is_cut_off_or_over_another_whatever_is_switched_on() {
-    let all_on: [(&str, fn(&mut App)); 7] = [
+    let all_on: [State; 7] = [
         ("defaults", |_| ()),
         ("coarse", |app| {
             let settings = Settings::default().with(|s| {

@@ -6,7 +6,7 @@
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 @group(2) @binding(0) var<uniform> band: Band;
 @group(2) @binding(1) var sample_identity: texture_2d<u32>;
@@ -29,7 +29,7 @@ fn facet_at(pixel: vec2u, index: u32) -> Facet {
     return Facet(instance, index, position, face_normal(load_words(gbuffer_surface, texel).w));
 }
 
-// What is mirrored of the surroundings is averaged too, not found for the average: it changes too
+// The environment's specular radiance is averaged too, not found for the average: it changes too
 // fast with the normal.
 override MIRROR: bool = false;
 
@@ -64,7 +64,7 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         sum.occlusion += s.occlusion;
         sum.emissive += s.emissive;
         if MIRROR {
-            sum.emissive += s.occlusion * mirrored(s, direction_to_eye(view_at(at), s.position));
+            sum.emissive += s.occlusion * environment_specular(s, direction_to_eye(view_at(at), s.position));
         }
         depth += sample_depth;
         position += at;

@@ -13,7 +13,7 @@
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 #expects gbuffer_depth, sampled_at, light_of
 
 // Beyond this rise over distance a sample lies on another plane than the pixel, and below the
@@ -42,10 +42,10 @@ fn depth_slope(texel: vec2u, axis: u32, depth: f32) -> f32 {
 struct Gathered {
     // Light on the pixel's own surface.
     diffuse: vec3f,
-    mirrored: vec3f,
+    specular: vec3f,
     // Where it comes from.
     direction: vec3f,
-    mirrored_direction: vec3f,
+    specular_direction: vec3f,
     spread: f32,
     weight: f32,
 }
@@ -86,11 +86,11 @@ fn gather(texel: vec2u, own: Tile, s: Surface, v: vec3f, depth: f32) -> Gathered
         let alike = mix(LEAST_ALIKE, 1.0, cosine * cosine * cosine * cosine);
         let weight = select(0.0, near.x * near.y * same_plane * alike, sample_depth > 0.0);
         let diffuse = sampled.diffuse * max(dot(s.normal, sampled.direction), LEAST_COSINE);
-        let mirror = sampled.mirrored * highlight(s.normal, v, sampled.mirrored_direction, a2 + sampled.spread);
+        let mirror = sampled.specular * highlight(s.normal, v, sampled.specular_direction, a2 + sampled.spread);
         sum.diffuse += weight * diffuse;
-        sum.mirrored += weight * mirror;
+        sum.specular += weight * mirror;
         sum.direction += weight * luminance(diffuse) * sampled.direction;
-        sum.mirrored_direction += weight * luminance(mirror) * sampled.mirrored_direction;
+        sum.specular_direction += weight * luminance(mirror) * sampled.specular_direction;
         sum.spread += weight * sampled.spread;
         sum.weight += weight;
     }

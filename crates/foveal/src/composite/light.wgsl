@@ -9,7 +9,7 @@
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 @group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(3) var gbuffer_depth: texture_depth_2d_array;
@@ -62,6 +62,6 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
         unlit[atomicAdd(&counts[0], 1u)] = texel.x | (texel.y << 16u);
         return;
     }
-    let lights = (diffuse_color(s) / PI * found.diffuse + environment_reflectance(s, v) * found.mirrored) / found.weight;
+    let lights = (diffuse_color(s) / PI * found.diffuse + environment_reflectance(s, v) * found.specular) / found.weight;
     textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lights, vec3f(65504.0)), 1.0));
 }

@@ -27,9 +27,9 @@ const LEAST_WEIGHT: f32 = 0.02;
 /// A sample's light; directions are unit.
 struct SampleLight {
     diffuse: Vec3,
-    mirrored: Vec3,
+    specular: Vec3,
     direction: Vec3,
-    mirrored_direction: Vec3,
+    specular_direction: Vec3,
     spread: f32,
     normal: Vec3,
 }
@@ -47,9 +47,9 @@ fn unpack_light(words: [u32; 4]) -> SampleLight {
     let root = (words[2] >> 20 & 0xff) as f32 / 255.0;
     SampleLight {
         diffuse: unpack_shared_exponent(words[0]),
-        mirrored: unpack_shared_exponent(words[1]),
+        specular: unpack_shared_exponent(words[1]),
         direction: unit(words[2], [0, 10], 511),
-        mirrored_direction: unit(words[3], [0, 10], 511),
+        specular_direction: unit(words[3], [0, 10], 511),
         spread: root * root,
         normal: unit(words[3], [20, 26], 31),
     }
@@ -171,17 +171,17 @@ impl<'a> Inputs<'a> {
         let v = to_eye(self.camera, s.position);
         let lit = light_surface(self.scene, self.lights, self.settings.lighting.model, &s, v);
         let direction = lit.direction.try_normalize().unwrap_or(s.normal);
-        let mirrored_direction = lit.mirrored_direction.try_normalize().unwrap_or(s.normal);
-        let together = lit.mirrored_direction.length() / luminance(lit.mirrored).max(1e-30);
+        let specular_direction = lit.specular_direction.try_normalize().unwrap_or(s.normal);
+        let together = lit.specular_direction.length() / luminance(lit.specular).max(1e-30);
         let spread = SPREAD * (1.0 - together.min(1.0));
-        let lobe = highlight(s.normal, v, mirrored_direction, squared_alpha(&s) + spread);
+        let lobe = highlight(s.normal, v, specular_direction, squared_alpha(&s) + spread);
         s.roughness = a2.powf(0.25);
         let reflectance = environment_reflectance(&s, v).max(Vec3::splat(1e-3));
         SampleLight {
             diffuse: lit.diffuse / s.normal.dot(direction).max(LEAST_COSINE),
-            mirrored: lit.mirrored / (reflectance * lobe.max(1e-6)),
+            specular: lit.specular / (reflectance * lobe.max(1e-6)),
             direction,
-            mirrored_direction,
+            specular_direction,
             spread,
             normal: s.normal,
         }
@@ -215,7 +215,7 @@ impl<'a> Inputs<'a> {
         let scale = self
             .camera
             .clip_from_view(self.size.x as f32 / self.size.y as f32);
-        let (mut diffuse, mut mirrored, mut sum) = (Vec3::ZERO, Vec3::ZERO, 0.0);
+        let (mut diffuse, mut specular, mut sum) = (Vec3::ZERO, Vec3::ZERO, 0.0);
         for step in [IVec2::ZERO, IVec2::X, IVec2::Y, IVec2::ONE] {
             let block = (place.floor().as_ivec2() + step).clamp(IVec2::ZERO, last);
             let point = self.sample(block.as_uvec2(), level, 0);
@@ -245,15 +245,15 @@ impl<'a> Inputs<'a> {
             let weight = near.x * near.y * same_plane * alike;
             diffuse += weight * light.diffuse * s.normal.dot(light.direction).max(LEAST_COSINE);
             let a2 = squared_alpha(&s) + light.spread;
-            mirrored +=
-                weight * light.mirrored * highlight(s.normal, v, light.mirrored_direction, a2);
+            specular +=
+                weight * light.specular * highlight(s.normal, v, light.specular_direction, a2);
             sum += weight;
         }
         if sum < LEAST_WEIGHT {
             return (None, sum);
         }
         let color = (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
-        let lamps = (color * diffuse + environment_reflectance(&s, v) * mirrored) / sum;
+        let lamps = (color * diffuse + environment_reflectance(&s, v) * specular) / sum;
         (Some(s.emissive + ambient(self.scene, &s, v) + lamps), sum)
     }
 }
@@ -315,11 +315,11 @@ fn samples_hold_the_lamps_light() {
         let s = inputs.surface(texel);
         let v = to_eye(camera, s.position);
         let shown = |l: &SampleLight| {
-            l.mirrored
+            l.specular
                 * highlight(
                     s.normal,
                     v,
-                    l.mirrored_direction,
+                    l.specular_direction,
                     squared_alpha(&s) + l.spread,
                 )
         };

@@ -126,7 +126,7 @@ fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
     }
 }
 
-/// What is left for diffuse reflection, and the mirrored part.
+/// What is left for diffuse reflection, and the specular part.
 fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) -> [Vec3; 2] {
     use std::f32::consts::PI;
     let h = (v + l).normalize();
@@ -148,12 +148,12 @@ fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) ->
     }
 }
 
-/// `squared_alpha` in `shared/surroundings.wgsl`.
+/// `squared_alpha` in `shared/environment.wgsl`.
 pub(crate) fn squared_alpha(s: &Surface) -> f32 {
     (s.roughness * s.roughness).max(0.002).powi(2)
 }
 
-/// `ggx_lobe` in `shared/surroundings.wgsl`.
+/// `ggx_lobe` in `shared/environment.wgsl`.
 pub(crate) fn ggx_lobe(n: Vec3, v: Vec3, l: Vec3, n_dot_l: f32, a2: f32) -> f32 {
     let n_dot_v = n.dot(v).max(1e-4);
     let n_dot_h = n.dot((v + l).normalize()).clamp(0.0, 1.0);
@@ -170,9 +170,9 @@ pub(crate) fn ggx_lobe(n: Vec3, v: Vec3, l: Vec3, n_dot_l: f32, a2: f32) -> f32 
 pub(crate) struct Lit {
     pub(crate) radiance: Vec3,
     pub(crate) diffuse: Vec3,
-    pub(crate) mirrored: Vec3,
+    pub(crate) specular: Vec3,
     pub(crate) direction: Vec3,
-    pub(crate) mirrored_direction: Vec3,
+    pub(crate) specular_direction: Vec3,
 }
 
 pub(crate) fn luminance(color: Vec3) -> f32 {
@@ -212,20 +212,20 @@ fn from_light(
         return Lit::default();
     }
     let irradiance = irradiance * passing((number, light), s, n_dot_l);
-    let [left, mirrored] = reflect(model, s, v, direction, n_dot_l);
-    let arriving = irradiance * n_dot_l;
-    let diffuse = left * (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
+    let [diffuse_weight, specular] = reflect(model, s, v, direction, n_dot_l);
+    let incident = irradiance * n_dot_l;
+    let diffuse = diffuse_weight * (1.0 - s.metallic) * s.base_color / std::f32::consts::PI;
     Lit {
-        radiance: (diffuse + mirrored) * arriving,
-        diffuse: left * arriving,
-        mirrored: mirrored * arriving,
+        radiance: (diffuse + specular) * incident,
+        diffuse: diffuse_weight * incident,
+        specular: specular * incident,
         direction: direction * luminance(irradiance),
-        mirrored_direction: direction * luminance(mirrored * arriving),
+        specular_direction: direction * luminance(specular * incident),
     }
 }
 
 /// What all lights send to a surface; the radiance holds what it emits and reflects of its
-/// surroundings too.
+/// environment too.
 pub(crate) fn light_surface(
     scene: &Scene,
     lights: &[LightUniform],
@@ -252,9 +252,9 @@ pub(crate) fn light_surface_with(
         let part = from_light(model, s, v, light, passing);
         sum.radiance += part.radiance;
         sum.diffuse += part.diffuse;
-        sum.mirrored += part.mirrored;
+        sum.specular += part.specular;
         sum.direction += part.direction;
-        sum.mirrored_direction += part.mirrored_direction;
+        sum.specular_direction += part.specular_direction;
     }
     sum
 }
@@ -267,7 +267,7 @@ pub(crate) fn to_eye(camera: &Camera, position: Vec3) -> Vec3 {
     }
 }
 
-/// `environment_reflectance` in `shared/surroundings.wgsl`.
+/// `environment_reflectance` in `shared/environment.wgsl`.
 pub(crate) fn environment_reflectance(s: &Surface, v: Vec3) -> Vec3 {
     let n_dot_v = s.normal.dot(v).clamp(0.0, 1.0);
     let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);

@@ -197,12 +197,19 @@ impl ShadowStage {
     }
 }
 
-/// Whether an instance keeps a light that is there from what is beyond. What glows and holds the
-/// light within its box is the light's own lamp.
-fn casts(instance: &DrawnInstance, apex: Option<Vec3>) -> bool {
+/// A light's own lamp is no larger than this part of its range.
+const LARGEST_LAMP: f32 = 0.5;
+
+/// Whether an instance keeps a light, given by its place and range, from what is beyond. What glows,
+/// is small, and holds the light within its box is the light's own lamp.
+fn casts(instance: &DrawnInstance, light: Option<(Vec3, f32)>) -> bool {
     let b = &instance.bounds;
-    let is_own_lamp =
-        instance.glows && apex.is_some_and(|at| at.cmpge(b.min).all() && at.cmple(b.max).all());
+    let is_own_lamp = instance.glows
+        && light.is_some_and(|(at, range)| {
+            at.cmpge(b.min).all()
+                && at.cmple(b.max).all()
+                && b.size().length() <= LARGEST_LAMP * range
+        });
     instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
 }
 
@@ -244,10 +251,9 @@ impl Drawing {
                 continue;
             }
             let casters = casters.get_or_insert_with(|| {
-                let apex = sphere.map(|(apex, _)| apex);
                 (0..)
                     .zip(&scene.instances)
-                    .filter(|(_, i)| casts(i, apex) && is_near(&i.bounds))
+                    .filter(|(_, i)| casts(i, sphere) && is_near(&i.bounds))
                     .map(|(number, _)| number)
                     .collect()
             });

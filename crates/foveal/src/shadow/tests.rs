@@ -467,3 +467,37 @@ fn holes_of_masked_materials_let_light_through_and_blended_things_cast_nothing()
     };
     assert_eq!(tiles(&scene), tiles(&without));
 }
+
+#[test]
+fn a_lamp_lets_its_own_light_out_and_a_wall_that_glows_does_not() {
+    let mut scene = room();
+    let camera = scene.cameras[0].clone();
+    let is_block = |i: &foveal_scene::Instance| {
+        let size = i.bounds.size();
+        scene.materials[i.material as usize].emissive == Vec3::ZERO
+            && size.min_element() > 0.3
+            && size.max_element() < 2.5
+    };
+    let number = scene.instances.iter().position(is_block).unwrap();
+    let block = scene.instances[number].bounds;
+    let material = scene.instances[number].material as usize;
+    scene.lights.truncate(1);
+    scene.lights[0].position = block.center();
+    let brightness = |scene: &Scene| {
+        let bytes = picture(&rendered(scene, &camera, &shadowed(Shadows::Hard)));
+        bytes.iter().map(|&b| u64::from(b)).sum::<u64>()
+    };
+    scene.materials.push(scene.materials[material].clone());
+    let glowing = scene.materials.len() - 1;
+    scene.materials[glowing].emissive = Vec3::splat(1e-6);
+    // Of a block around the light, in parts of the light's range.
+    let mut with_block = |size: f32, material: usize| {
+        scene.lights[0].range_m = Some(block.size().length() / size);
+        scene.instances[number].material = material as u32;
+        brightness(&scene)
+    };
+    let [dark, lamp] = [material, glowing].map(|m| with_block(0.3, m));
+    assert!(lamp > dark + dark / 50, "{lamp}, {dark}");
+    let [dark, wall] = [material, glowing].map(|m| with_block(0.6, m));
+    assert_eq!(wall, dark);
+}

@@ -114,7 +114,7 @@ fn direction_to_eye(view: u32, position: vec3f) -> vec3f {
     return select(normalize(v), -frame.views[view].forward, frame.orthographic != 0u);
 }
 
-// Radiance of the surroundings in a direction: the backdrop and the ambient term.
+// Radiance of the environment in a direction: the backdrop and the ambient term.
 fn environment(direction: vec3f) -> vec3f {
     if direction.y >= 0.0 {
         return mix(frame.horizon, frame.zenith, sqrt(direction.y));

@@ -4,7 +4,7 @@
 #import shared/light.wgsl
 #import shared/light_list.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 #ifdef REDUCED
 #import reduced/missing.wgsl
 #else
@@ -16,8 +16,8 @@ override BLINN_PHONG: bool = false;
 // Every light at every sample, else those of the sample's cluster.
 override BRUTE: bool = false;
 
-// Light arriving at a position: unit direction to the light, and irradiance on a facing surface.
-struct Arriving {
+// Light incident at a position: unit direction to the light, and irradiance on a facing surface.
+struct IncidentLight {
     direction: vec3f,
     irradiance: vec3f,
 }
@@ -27,17 +27,17 @@ struct Lit {
     radiance: vec3f,
     // Irradiance that is left for diffuse reflection.
     diffuse: vec3f,
-    // Mirrored radiance.
-    mirrored: vec3f,
+    // Specular radiance.
+    specular: vec3f,
     // Sum of the unit directions to the lights, weighted by their luminance.
     direction: vec3f,
-    // The same, weighted by the luminance of what is mirrored.
-    mirrored_direction: vec3f,
+    // The same, weighted by the luminance of specular radiance.
+    specular_direction: vec3f,
 }
 
-fn arriving(light: Light, position: vec3f) -> Arriving {
+fn incident(light: Light, position: vec3f) -> IncidentLight {
     if light.kind == LIGHT_DIRECTIONAL {
-        return Arriving(-light.direction, light.radiant);
+        return IncidentLight(-light.direction, light.radiant);
     }
     let to_light = light.position - position;
     let squared = max(dot(to_light, to_light), 1e-4);
@@ -49,14 +49,14 @@ fn arriving(light: Light, position: vec3f) -> Arriving {
         let cone = saturate(-dot(light.direction, direction) * light.spot_scale + light.spot_offset);
         attenuation *= cone * cone;
     }
-    return Arriving(direction, light.radiant * attenuation);
+    return IncidentLight(direction, light.radiant * attenuation);
 }
 
 // What a surface makes of light from one direction: the part that is left for diffuse reflection,
-// and the mirrored part.
+// and the specular part.
 struct Reflection {
-    left: vec3f,
-    mirrored: vec3f,
+    diffuse_weight: vec3f,
+    specular: vec3f,
 }
 
 // Lambert and GGX: glTF 2.0 appendix B, with the height-correlated visibility term (Heitz 2014).
@@ -83,7 +83,7 @@ fn reflect_blinn_phong(s: Surface, v: vec3f, l: vec3f) -> Reflection {
 // A light's part in the radiance of a surface, and in the light that falls on it.
 fn add_light(sum: Lit, s: Surface, v: vec3f, index: u32) -> Lit {
     let light = light_at(index);
-    var a = arriving(light, s.position);
+    var a = incident(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
     if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
         return sum;
@@ -103,13 +103,13 @@ fn add_light(sum: Lit, s: Surface, v: vec3f, index: u32) -> Lit {
     } else {
         r = reflect_ggx(s, v, a.direction, n_dot_l);
     }
-    let reflected = r.left * (1.0 - s.metallic) * s.base_color / PI + r.mirrored;
+    let reflected = r.diffuse_weight * (1.0 - s.metallic) * s.base_color / PI + r.specular;
     return Lit(
         sum.radiance + reflected * a.irradiance * n_dot_l,
-        sum.diffuse + r.left * a.irradiance * n_dot_l,
-        sum.mirrored + r.mirrored * a.irradiance * n_dot_l,
+        sum.diffuse + r.diffuse_weight * a.irradiance * n_dot_l,
+        sum.specular + r.specular * a.irradiance * n_dot_l,
         sum.direction + a.direction * luminance(a.irradiance),
-        sum.mirrored_direction + a.direction * (luminance(r.mirrored * a.irradiance) * n_dot_l),
+        sum.specular_direction + a.direction * (luminance(r.specular * a.irradiance) * n_dot_l),
     );
 }
 

@@ -13,7 +13,7 @@ struct Surface {
     metallic: f32,
     // Perceptual.
     roughness: f32,
-    // Negative: what the surface mirrors of its surroundings is in the emissive already.
+    // Negative: what the surface mirrors of its environment is in the emissive already.
     occlusion: f32,
     emissive: vec3f,
 }

@@ -6,7 +6,7 @@ mod reduced;
 mod stereo;
 mod variable;
 
-use super::{Composite, Settings, Shading};
+use super::{Composite, Settings, Shading, Shadows};
 use crate::Error;
 
 impl Settings {
@@ -66,6 +66,14 @@ impl Settings {
                 name: "shadow-atlas",
                 value: atlas.to_string(),
                 expected: "between 256 and 8192",
+            });
+        }
+        if self.lighting.shadows != Shadows::Off && atlas > most {
+            return Err(Error::Limit {
+                what: "the side of the shadow atlas in texels".to_owned(),
+                value: u64::from(atlas),
+                limit: u64::from(most),
+                hint: String::new(),
             });
         }
         if !(0.0..=8.0).contains(&self.lighting.shadow_bias) {

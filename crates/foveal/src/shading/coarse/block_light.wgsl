@@ -8,7 +8,7 @@
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 // By how much lights in all directions widen a highlight. Found by measurement: 0.5, which follows
 // from half-way directions' turning by half as much as the lights, makes rough stones too bright.
@@ -77,16 +77,16 @@ fn light_block(block: vec2u, level: u32) -> LitBlock {
     let lit = light_surface(s, pixel, distance);
     let v = direction_to_eye(view_at(pixel), s.position);
     let direction = unit_or(lit.direction, s.normal);
-    let mirrored_direction = unit_or(lit.mirrored_direction, s.normal);
-    let together = saturate(length(lit.mirrored_direction) / max(luminance(lit.mirrored), 1e-30));
+    let specular_direction = unit_or(lit.specular_direction, s.normal);
+    let together = saturate(length(lit.specular_direction) / max(luminance(lit.specular), 1e-30));
     let spread = SPREAD * (1.0 - together);
-    let lobe = highlight(s.normal, v, mirrored_direction, squared_alpha(s) + spread);
+    let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
     s.roughness = roughness;
     let light = SampleLight(
         lit.diffuse / max(dot(s.normal, direction), LEAST_COSINE),
-        lit.mirrored / (max(environment_reflectance(s, v), vec3f(1e-3)) * max(lobe, 1e-6)),
+        lit.specular / (max(environment_reflectance(s, v), vec3f(1e-3)) * max(lobe, 1e-6)),
         direction,
-        mirrored_direction,
+        specular_direction,
         spread,
         s.normal,
     );

@@ -2,12 +2,12 @@
 // surface's own colour, so that other surfaces can be put into it (composite/light.wgsl). Rust:
 // `composite/light_twin.rs`.
 //
-// Diffuse light is that of one light in the direction that light comes from on the whole, mirrored
+// Diffuse light is that of one light in the direction that light comes from on the whole, specular
 // light that of one in the direction that it mostly comes from, spread out as the lights are: so
 // that each pixel's own normal and roughness shape both.
 
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 // Least cosine between a normal and a direction of light: light that grazes a surface tells little
 // of light on another.
@@ -17,10 +17,10 @@ struct SampleLight {
     // Irradiance on a surface that faces `direction`.
     diffuse: vec3f,
     // Radiance per `environment_reflectance` and `highlight`.
-    mirrored: vec3f,
+    specular: vec3f,
     // Unit directions, world space.
     direction: vec3f,
-    mirrored_direction: vec3f,
+    specular_direction: vec3f,
     // Added to a surface's squared alpha.
     spread: f32,
     // The sample's mean normal, world space.
@@ -46,15 +46,15 @@ fn direction_from_bits(bits: u32) -> vec3f {
     return unit_from_octahedral(vec2f(vec2u(bits, bits >> 10u) & vec2u(0x3ffu)) / 511.0 - 1.0);
 }
 
-// x: diffuse, y: mirrored, as shared exponents; z and w: directions as 2 x 10 bits; above them in z
+// x: diffuse, y: specular, as shared exponents; z and w: directions as 2 x 10 bits; above them in z
 // the square root of the spread in 8 bits; above them in w the normal as 2 x 6 bits.
 fn pack_light(l: SampleLight) -> vec4u {
     let normal = snorm_bits(octahedral_from_unit(l.normal), 31.0);
     return vec4u(
         pack_shared_exponent(l.diffuse),
-        pack_shared_exponent(l.mirrored),
+        pack_shared_exponent(l.specular),
         direction_bits(l.direction) | (u32(sqrt(saturate(l.spread)) * 255.0 + 0.5) << 20u),
-        direction_bits(l.mirrored_direction) | (normal.x << 20u) | (normal.y << 26u),
+        direction_bits(l.specular_direction) | (normal.x << 20u) | (normal.y << 26u),
     );
 }
 

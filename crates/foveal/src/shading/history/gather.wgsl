@@ -8,7 +8,7 @@
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
@@ -56,19 +56,19 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
         return;
     }
     let diffuse = found.diffuse / found.weight;
-    let mirror = found.mirrored / found.weight;
+    let mirror = found.specular / found.weight;
     let lights = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
     textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lights, vec3f(65504.0)), 1.0));
     // As light from one direction each, which gives the same on this surface.
     let direction = unit_or(found.direction, s.normal);
-    let mirrored_direction = unit_or(found.mirrored_direction, s.normal);
+    let specular_direction = unit_or(found.specular_direction, s.normal);
     let spread = found.spread / found.weight;
-    let lobe = highlight(s.normal, v, mirrored_direction, squared_alpha(s) + spread);
+    let lobe = highlight(s.normal, v, specular_direction, squared_alpha(s) + spread);
     textureStore(gathered, texel, pack_light(SampleLight(
         diffuse / max(dot(s.normal, direction), LEAST_COSINE),
         mirror / max(lobe, 1e-6),
         direction,
-        mirrored_direction,
+        specular_direction,
         spread,
         s.normal,
     )));

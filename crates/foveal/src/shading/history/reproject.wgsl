@@ -8,7 +8,7 @@
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
@@ -157,7 +157,7 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
         let words = memory.light;
         let l = unpack_light(words);
         let diffuse = l.diffuse * max(dot(s.normal, l.direction), LEAST_COSINE);
-        let mirror = l.mirrored * highlight(s.normal, v, l.mirrored_direction, squared_alpha(s) + l.spread);
+        let mirror = l.specular * highlight(s.normal, v, l.specular_direction, squared_alpha(s) + l.spread);
         let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
         let sum = min(s.emissive + ambient(s, v) + lamps, vec3f(65504.0));
         if is_renewed {

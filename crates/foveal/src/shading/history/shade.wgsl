@@ -4,7 +4,7 @@
 #import shading/history/measured.wgsl
 #import shading/history/layout.wgsl
 #import shared/frame.wgsl
-#import shared/surroundings.wgsl
+#import shared/environment.wgsl
 
 @group(2) @binding(0) var<storage, read> dispatch: Dispatch;
 @group(2) @binding(1) var<storage, read> samples_listed: array<vec2u>;

@@ -1,4 +1,4 @@
-// What a surface reflects of its surroundings, lights aside.
+// What a surface reflects of its environment, lights aside.
 
 #import shared/frame.wgsl
 #import shared/surface.wgsl
@@ -47,15 +47,15 @@ fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
     return f0 * scale_bias.x + scale_bias.y;
 }
 
-// The surroundings' light in a rough mirror.
-fn mirrored(s: Surface, v: vec3f) -> vec3f {
+// The environment's light in a rough mirror.
+fn environment_specular(s: Surface, v: vec3f) -> vec3f {
     let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
     return environment_reflectance(s, v) * environment(normalize(mirror));
 }
 
-// The surroundings' light: a cosine-weighted look along the normal, and the mirror.
+// The environment's light: a cosine-weighted look along the normal, and the mirror.
 fn ambient(s: Surface, v: vec3f) -> vec3f {
     let irradiance = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);
     let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
-    return (diffuse + select(mirrored(s, v), vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
+    return (diffuse + select(environment_specular(s, v), vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
 }
