@@ -3,7 +3,7 @@
 
 /// A key as it is written on it, what it does, and what it does in a word for the line below the
 /// picture; an empty word leaves it out there.
-pub(crate) const ALL: [(&str, &str, &str); 25] = [
+pub(crate) const ALL: [(&str, &str, &str); 26] = [
     ("F1", "this list", "all keys"),
     ("Ctrl+O", "open a scene", "open"),
     ("W A S D", "move; with Shift four times as fast", "move"),
@@ -40,7 +40,12 @@ pub(crate) const ALL: [(&str, &str, &str); 25] = [
     ("P, F12", "take a screenshot", "picture"),
     ("V", "capture a sequence or a video", "capture"),
     ("Space", "let an animation run or rest", ""),
-    ("Esc", "close what is open", ""),
+    ("Esc", "close or end what is on top", ""),
+    (
+        "Ctrl+Shift+F12",
+        "lose the graphics devices: the window goes on",
+        "",
+    ),
 ];
 
 /// The list as lines of text, for a program's help.

@@ -1,6 +1,6 @@
 //! Which object is under the pointer: the nearest triangle that a ray meets.
 
-use foveal_scene::{Aabb, Mesh, Scene};
+use foveal_scene::{Aabb, Camera, Mesh, Scene};
 use glam::Vec3;
 
 /// A half line through the scene.
@@ -73,6 +73,19 @@ pub(crate) fn pick(scene: &Scene, ray: Ray) -> Option<Picked> {
 }
 
 impl Ray {
+    /// Through a place of a picture of this aspect, given as fractions from its top left corner.
+    pub(crate) fn through(camera: &Camera, [x, y]: [f32; 2], aspect: f32) -> Self {
+        let world_from_clip = camera.clip_from_world(aspect).inverse();
+        let at =
+            |depth| world_from_clip.project_point3(Vec3::new(2.0 * x - 1.0, 1.0 - 2.0 * y, depth));
+        // Depth is reversed: the near plane, and a place twice as far.
+        let (origin, further) = (at(1.0), at(0.5));
+        Self {
+            origin,
+            direction: further - origin,
+        }
+    }
+
     /// Where it enters a box, in lengths of its direction; 0 from within.
     fn enters(&self, bounds: Aabb) -> Option<f32> {
         if bounds.is_empty() {
@@ -125,6 +138,7 @@ impl Ray {
 mod tests {
     use super::*;
     use foveal_generate as generate;
+    use foveal_scene::Projection;
 
     #[test]
     fn the_nearest_surface_is_met_not_the_nearest_box() {
@@ -146,6 +160,29 @@ mod tests {
         }
         // The room's box surrounds all; still other things are met.
         assert!(met.len() > 2, "{met:?}");
+    }
+
+    #[test]
+    fn what_is_clicked_is_what_is_seen_there() {
+        let scene = generate::cornell();
+        let mut parallel = scene.cameras[0].clone();
+        parallel.projection = Projection::Orthographic {
+            height_m: 3.0,
+            near_m: 0.1,
+            far_m: 50.0,
+        };
+        for camera in [&scene.cameras[0], &parallel] {
+            let named = |place| {
+                let picked = pick(&scene, Ray::through(camera, place, 1.5));
+                picked.map(|picked| picked.name)
+            };
+            assert_eq!(named([0.4, 0.5]).as_deref(), Some("tall block"));
+        }
+        // Only a pinhole's rays reach what runs along the view.
+        for (place, name) in [([0.5, 0.97], "floor"), ([0.1, 0.5], "left wall")] {
+            let ray = Ray::through(&scene.cameras[0], place, 1.5);
+            assert_eq!(pick(&scene, ray).unwrap().name, name);
+        }
     }
 
     #[test]

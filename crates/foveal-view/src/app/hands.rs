@@ -159,17 +159,9 @@ impl App {
             );
             return;
         }
-        let world_from_clip = navigator.camera().clip_from_world(aspect).inverse();
-        let at = |depth| {
-            let ndc = Vec3::new(2.0 * place.x - 1.0, 1.0 - 2.0 * place.y, depth);
-            world_from_clip.project_point3(ndc)
-        };
-        // Depth is reversed: the near plane, and a place twice as far.
-        let (origin, further) = (at(1.0), at(0.5));
-        self.worker.pick(Ray {
-            origin,
-            direction: further - origin,
-        });
+        let place = [place.x, place.y];
+        self.worker
+            .pick(Ray::through(navigator.camera(), place, aspect));
     }
 
     pub(crate) fn set_bookmark(&mut self, index: usize) {

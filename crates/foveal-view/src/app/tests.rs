@@ -208,9 +208,11 @@ fn faults(output: &egui::FullOutput, size: Vec2) -> Vec<String> {
     faults
 }
 
-/// Sizes in points: the smallest window, the usual one, a large screen at twice the size.
-const SIZES: [Vec2; 3] = [
+/// Sizes in points: the smallest window, as wide with all that its panels scroll to, the usual one,
+/// a large screen at twice the size.
+const SIZES: [Vec2; 4] = [
     Vec2::new(960.0, 540.0),
+    Vec2::new(960.0, 4000.0),
     Vec2::new(1280.0, 800.0),
     Vec2::new(1280.0, 720.0),
 ];

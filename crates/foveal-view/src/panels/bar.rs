@@ -220,7 +220,9 @@ pub(super) fn keys(app: &mut App, ui: &mut egui::Ui) {
             }
             if let Some(picked) = &app.selected {
                 let name: String = picked.name.chars().take(24).collect();
-                let text = format!("{name}: {} triangles", look::grouped(picked.triangles));
+                let many = if picked.triangles == 1 { "" } else { "s" };
+                let triangles = look::grouped(picked.triangles);
+                let text = format!("{name}: {triangles} triangle{many}");
                 ui.label(RichText::new(text).small().color(look::ACCENT))
                     .on_hover_text(format!(
                         "Selected: {}, object {}",
@@ -252,7 +254,11 @@ pub(super) fn keys(app: &mut App, ui: &mut egui::Ui) {
             let most = ui.ctx().content_rect().height() - 120.0;
             let list = egui::ScrollArea::vertical().max_height(most);
             list.show(ui, |ui| {
-                egui::Grid::new("keys").num_columns(2).show(ui, |ui| {
+                let grid = egui::Grid::new("keys")
+                    .num_columns(2)
+                    .spacing([14.0, 2.0])
+                    .min_row_height(16.0);
+                grid.show(ui, |ui| {
                     for (key, does, _) in keys::ALL {
                         ui.label(RichText::new(key).strong().color(look::TEXT));
                         ui.label(RichText::new(does).color(look::FAINT));
