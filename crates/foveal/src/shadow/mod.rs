@@ -3,14 +3,16 @@
 //! An atlas of depth holds a square tile per light and side: six sides of a cube around a point
 //! light, one for a spot light, a few cascades for a directional one. A frame's tiles and their
 //! sizes follow from lights, view and settings alone ([`plan`]); tiles are kept from frame to frame
-//! ([`kept`]) and drawn again where a thing that casts shadows has moved, or their size has changed.
-//! Lighting looks into the atlas at each sample (`shadow/lookup.wgsl`).
+//! ([`kept`]) and drawn again where a thing that casts shadows has moved, or their size has
+//! changed. Lighting looks into the atlas at each sample (`shadow/lookup.wgsl`).
 
 mod atlas;
 mod changed;
 mod kept;
 mod pass;
 mod plan;
+#[cfg(test)]
+mod rays;
 mod records;
 mod stage;
 #[cfg(test)]

@@ -200,8 +200,8 @@ impl ShadowStage {
 /// A light's own lamp is no larger than this part of its range.
 const LARGEST_LAMP: f32 = 0.5;
 
-/// Whether an instance keeps a light, given by its place and range, from what is beyond. What glows,
-/// is small, and holds the light within its box is the light's own lamp.
+/// Whether an instance keeps a light, given by its place and range, from what is beyond. What
+/// glows, is small, and holds the light within its box is the light's own lamp.
 fn casts(instance: &DrawnInstance, light: Option<(Vec3, f32)>) -> bool {
     let b = &instance.bounds;
     let is_own_lamp = instance.glows
