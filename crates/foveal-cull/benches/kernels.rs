@@ -8,8 +8,8 @@ use divan::Bencher;
 use divan::counter::ItemsCount;
 use foveal_cull::bench::{self, BlockUpdates, FullBuffer};
 use foveal_cull::{
-    Aabb, BakeOptions, Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, OccluderMesh,
-    OccluderSet, Projection, SingleThread, View, Visibility,
+    Aabb, BakeOptions, Culler, Eye, FrameOptions, InstructionSet, OccludeeId, OccludeeSet,
+    OccludeeTree, OccluderMesh, OccluderSet, Projection, SingleThread, View, Visibility,
 };
 use glam::{DAffine3, DQuat, DVec3, Vec3};
 use std::sync::Arc;
@@ -176,6 +176,133 @@ fn refit_tree(bencher: Bencher<'_, '_>) {
     bencher
         .counter(ItemsCount::new(boxes.len()))
         .bench_local(|| tree.refit(&boxes));
+}
+
+/// Moving 1,000 occluders.
+#[divan::bench]
+fn move_occluders(bencher: Bencher<'_, '_>) {
+    let bounds = Aabb::new([-1.0, 0.0, -1.0], [1.0, 8.0, 1.0]);
+    let mesh = Arc::new(OccluderMesh::from_box(bounds).unwrap());
+    let mut set = OccluderSet::new();
+    let place = |i: f64, t: f64| {
+        let turn = DQuat::from_rotation_y(t);
+        DAffine3::from_rotation_translation(turn, DVec3::new(i, t, 0.1 * i))
+    };
+    let mut ids = Vec::new();
+    for i in 0..1000 {
+        ids.push(set.add(Arc::clone(&mesh), place(i.into(), 0.0)).unwrap());
+    }
+    let places = [0.1, 0.2].map(|t| [0, 1, 2, 3, 4, 5, 6, 7].map(|i| place(i.into(), t)));
+    let mut frame = 0;
+    bencher.counter(ItemsCount::new(ids.len())).bench_local(|| {
+        frame += 1;
+        for (i, id) in ids.iter().enumerate() {
+            set.set_transform(*id, places[frame % 2][i % 8]).unwrap();
+        }
+    });
+}
+
+/// A set of many objects, of which every `1 / part` moves a little in each frame.
+struct Moving {
+    set: OccludeeSet,
+    ids: Vec<OccludeeId>,
+    boxes: Vec<Aabb>,
+    frame: usize,
+}
+
+impl Moving {
+    fn new(count: usize) -> Self {
+        let boxes = boxes(count);
+        let mut set = OccludeeSet::new(DVec3::ZERO);
+        let ids = boxes.iter().map(|b| set.insert(*b)).collect();
+        set.rebuild();
+        Self {
+            set,
+            ids,
+            boxes,
+            frame: 0,
+        }
+    }
+
+    fn step(&mut self, moved: usize) {
+        self.frame += 1;
+        let by = if self.frame.is_multiple_of(2) {
+            0.1
+        } else {
+            -0.1
+        };
+        let stride = self.ids.len() / moved;
+        for k in 0..moved {
+            let i = k * stride;
+            let bounds = &mut self.boxes[i];
+            bounds.min[0] += by;
+            bounds.max[0] += by;
+            self.set.set_bounds(self.ids[i], *bounds).unwrap();
+        }
+        self.set.refit();
+    }
+}
+
+/// Moving 10,000 of so many objects, and fitting their hierarchy; items are moved objects.
+#[divan::bench(args = [10_000, 25_000, 100_000])]
+fn move_objects(bencher: Bencher<'_, '_>, count: usize) {
+    let mut moving = Moving::new(count);
+    bencher
+        .counter(ItemsCount::new(10_000usize))
+        .bench_local(|| moving.step(10_000));
+}
+
+/// Building that hierarchy again.
+#[divan::bench(args = [10_000, 25_000, 100_000], max_time = 1)]
+fn rebuild_set(bencher: Bencher<'_, '_>, count: usize) {
+    let mut moving = Moving::new(count);
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| moving.set.rebuild());
+}
+
+const COUNTS: [usize; 4] = [100, 1000, 10_000, 25_000];
+
+/// So many boxes as a set that has moved, from inside.
+#[divan::bench(args = COUNTS)]
+fn query_moved_set(bencher: Bencher<'_, '_>, count: usize) {
+    let (culler, mut moving) = (rasterized("inside"), Moving::new(count));
+    moving.step(count / 2);
+    let mut results = vec![Visibility::Visible; moving.set.result_count()];
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| culler.query_set(&moving.set, &mut results));
+}
+
+/// 10,000 boxes as a set in which every object has moved by up to so many metres along each axis,
+/// and the hierarchy was not built again.
+#[divan::bench(args = [0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 60.0])]
+fn query_spread_set(bencher: Bencher<'_, '_>, reach_m: f32) {
+    let count = 10_000;
+    let (culler, mut moving) = (rasterized("inside"), Moving::new(count));
+    let mut r = Random(5);
+    for (bounds, id) in moving.boxes.iter_mut().zip(&moving.ids) {
+        let by = r.point(Vec3::splat(-reach_m), Vec3::splat(reach_m));
+        let [min, max] = [bounds.min, bounds.max].map(|corner| Vec3::from(corner) + by);
+        *bounds = Aabb::new(min, max);
+        moving.set.set_bounds(*id, *bounds).unwrap();
+    }
+    moving.set.refit();
+    let mut results = vec![Visibility::Visible; moving.set.result_count()];
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| culler.query_set(&moving.set, &mut results));
+}
+
+/// The same boxes as a list.
+#[divan::bench(args = COUNTS)]
+fn query_moved_list(bencher: Bencher<'_, '_>, count: usize) {
+    let (culler, mut moving) = (rasterized("inside"), Moving::new(count));
+    moving.step(count / 2);
+    let mut results = vec![Visibility::Visible; count];
+    bencher
+        .counter(ItemsCount::new(count))
+        .bench_local(|| culler.query(&moving.boxes, DVec3::ZERO, &mut results));
 }
 
 /// Polygons that cover a part of one block.

@@ -12,6 +12,7 @@ use crate::occluder::set::OccluderSet;
 use crate::options::{Budget, FrameOptions};
 use crate::query::classify::{Frame, Query};
 use crate::query::flat::Flat;
+use crate::query::moving::OccludeeSet;
 use crate::query::tree::OccludeeTree;
 use crate::query::walk::Walk;
 use crate::raster::candidates::FrameScratch;
@@ -340,6 +341,54 @@ impl Culler {
             tree,
             results,
         });
+        Ok(())
+    }
+
+    /// Classifies a set of occludees that move, one result per [`OccludeeId::index`].
+    ///
+    /// `results` has [`OccludeeSet::result_count`] elements. Results equal those of
+    /// [`query`](Self::query) as those of [`query_tree`](Self::query_tree) do.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] if `results` has another length.
+    ///
+    /// [`OccludeeId::index`]: crate::OccludeeId::index
+    pub fn query_set(
+        &self,
+        set: &OccludeeSet,
+        results: &mut [Visibility],
+    ) -> Result<(), CullError> {
+        if results.len() != set.result_count() {
+            return Err(CullError::LengthMismatch {
+                expected: set.result_count(),
+                found: results.len(),
+            });
+        }
+        let (Some(frame), Some(tree)) = (self.view, set.tree()) else {
+            return self.query_from(set.boxes(), set.origin(), results);
+        };
+        let query = Query::new(&self.buffer, &frame, set.origin());
+        self.instruction_set.run(Walk {
+            query: &query,
+            tree,
+            results,
+        });
+        // Objects outside the tree, a list at a time.
+        const LIST: usize = 128;
+        let (mut boxes, mut listed) = ([Aabb::EMPTY; LIST], [Visibility::Visible; LIST]);
+        for slots in set.loose().chunks(LIST) {
+            for (bounds, &slot) in boxes.iter_mut().zip(slots) {
+                *bounds = set.boxes()[slot as usize];
+            }
+            self.instruction_set.run(Flat {
+                query: &query,
+                boxes: &boxes[..slots.len()],
+                results: &mut listed[..slots.len()],
+            });
+            for (&slot, result) in slots.iter().zip(listed) {
+                results[slot as usize] = result;
+            }
+        }
         Ok(())
     }
 

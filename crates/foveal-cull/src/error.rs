@@ -45,6 +45,8 @@ pub enum CullError {
     },
     /// The set has no occluder with this id, for instance since it was removed.
     UnknownOccluder,
+    /// The set has no occludee with this id, for instance since it was removed.
+    UnknownOccludee,
     /// The last row of a transform's matrix is not 0, 0, 0, 1.
     NotAffine,
     /// A mesh has too many triangles for the 32-bit offsets of a baked mesh.
@@ -123,6 +125,7 @@ impl fmt::Display for CullError {
                 write!(f, "a slice has length {found} where {expected} is needed")
             }
             Self::UnknownOccluder => f.write_str("the set has no occluder with this id"),
+            Self::UnknownOccludee => f.write_str("the set has no occludee with this id"),
             Self::NotAffine => f.write_str("the last row of a transform must be 0, 0, 0, 1"),
             Self::TooManyTriangles { triangles, most } => {
                 write!(

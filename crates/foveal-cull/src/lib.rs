@@ -62,6 +62,55 @@
 //! # Ok::<(), CullError>(())
 //! ```
 //!
+//! # A moving world
+//! Occluders move by their transforms. Occludees that come, move and go are an [`OccludeeSet`]: a
+//! hierarchy that follows them, and that is built again now and then, on another thread if one
+//! likes.
+//! ```
+//! use foveal_cull::*;
+//! use std::sync::Arc;
+//!
+//! // A door in front of the eye, and a cart behind it.
+//! let leaf = OccluderMesh::from_box(Aabb::new([-2.0, -2.0, -0.1], [2.0, 2.0, 0.1]))?;
+//! let mut occluders = OccluderSet::new();
+//! let door = occluders.add(Arc::new(leaf), Affine::from_translation([0.0, 0.0, -5.0]))?;
+//! let mut objects = OccludeeSet::new([0.0; 3]);
+//! let cart = objects.insert(Aabb::new([-0.5, -0.5, -9.0], [0.5, 0.5, -8.0]));
+//! objects.rebuild();
+//!
+//! let [eye, target, up] = [[0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]];
+//! let view = View::perspective(eye, target, up, 1.0, 16.0 / 9.0, 0.1);
+//! let mut culler = Culler::new(640, 360)?;
+//! let mut frame = |occluders: &OccluderSet, objects: &OccludeeSet| {
+//!     culler.rasterize(&view, occluders, &FrameOptions::default(), &SingleThread)?;
+//!     let mut results = vec![Visibility::Visible; objects.result_count()];
+//!     culler.query_set(objects, &mut results)?;
+//!     Ok::<_, CullError>(results[cart.index()])
+//! };
+//! assert_eq!(frame(&occluders, &objects)?, Visibility::Occluded);
+//!
+//! // The cart drives to the right, out from behind the door.
+//! objects.set_bounds(cart, Aabb::new([3.5, -0.5, -9.0], [4.5, 0.5, -8.0]))?;
+//! objects.refit();
+//! assert_eq!(frame(&occluders, &objects)?, Visibility::Visible);
+//!
+//! // It drives back, and the door opens.
+//! objects.set_bounds(cart, Aabb::new([-0.5, -0.5, -9.0], [0.5, 0.5, -8.0]))?;
+//! objects.refit();
+//! occluders.set_transform(door, Affine::from_translation([4.0, 0.0, -5.0]))?;
+//! assert_eq!(frame(&occluders, &objects)?, Visibility::Visible);
+//!
+//! // Built again on another thread when it is worth it, while frames go on.
+//! if objects.wants_rebuild() {
+//!     let snapshot = objects.snapshot();
+//!     let built = std::thread::spawn(|| snapshot.build());
+//!     if let Ok(hierarchy) = built.join() {
+//!         objects.adopt(hierarchy);
+//!     }
+//! }
+//! # Ok::<(), CullError>(())
+//! ```
+//!
 //! # Two eyes
 //! One conservative test serves both eyes of a headset, and head movement until the picture is
 //! shown. The results hold for every eye position in the view region, and hide somewhat less than
@@ -188,6 +237,7 @@ pub use error::{CullError, Quantity, ViewError};
 pub use limits::MAX_SIDE_PX;
 pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet};
 pub use options::{Budget, FrameOptions};
+pub use query::moving::{OccludeeId, OccludeeRebuild, OccludeeSet, OccludeeSnapshot};
 pub use query::tree::OccludeeTree;
 pub use simd::InstructionSet;
 pub use stats::CullStats;
@@ -213,6 +263,10 @@ const _: () = {
     send_and_sync::<FrameOptions<'_>>();
     send_and_sync::<InstructionSet>();
     send_and_sync::<Matrix4>();
+    send_and_sync::<OccludeeId>();
+    send_and_sync::<OccludeeRebuild>();
+    send_and_sync::<OccludeeSet>();
+    send_and_sync::<OccludeeSnapshot>();
     send_and_sync::<OccludeeTree>();
     send_and_sync::<OccluderId>();
     send_and_sync::<OccluderMesh>();

@@ -75,6 +75,24 @@ impl Node {
         self.below + (u32::from(self.lanes & !self.objects) & before).count_ones()
     }
 
+    /// Lanes with a child.
+    #[inline(always)]
+    pub(super) fn children(&self) -> impl Iterator<Item = usize> + use<> {
+        let lanes = self.lanes;
+        (0..8).filter(move |lane| lanes >> lane & 1 != 0)
+    }
+
+    pub(super) fn is_object(&self, lane: usize) -> bool {
+        self.objects >> lane & 1 != 0
+    }
+
+    /// Takes out an object.
+    pub(super) fn remove(&mut self, lane: usize) {
+        self.lanes &= !(1 << lane);
+        self.objects &= !(1 << lane);
+        self.boxes.set(lane, Vec3::NAN, Vec3::NAN);
+    }
+
     /// The run of the order that a child covers.
     #[inline(always)]
     pub(super) fn run(&self, lane: usize) -> core::ops::Range<usize> {
@@ -90,7 +108,7 @@ impl OccludeeTree {
         Self::build_from(boxes, DVec3::from(origin.into()))
     }
 
-    fn build_from(boxes: &[Aabb], origin: DVec3) -> Self {
+    pub(super) fn build_from(boxes: &[Aabb], origin: DVec3) -> Self {
         let mut tree = Self {
             nodes: Vec::new(),
             order: (0..boxes.len() as u32).collect(),
@@ -123,6 +141,18 @@ impl OccludeeTree {
         tree.order = order;
         tree.refit_all(boxes);
         tree
+    }
+
+    /// Gives objects other numbers.
+    pub(super) fn rename(&mut self, number: impl Fn(u32) -> u32) {
+        for object in &mut self.order {
+            *object = number(*object);
+        }
+    }
+
+    #[inline(always)]
+    pub(super) fn node_mut(&mut self, n: u32) -> &mut Node {
+        &mut self.nodes[n as usize]
     }
 
     pub(crate) fn origin(&self) -> DVec3 {
@@ -209,7 +239,7 @@ impl OccludeeTree {
     }
 }
 
-fn grown(b: &Aabb) -> (Vec3, Vec3) {
+pub(super) fn grown(b: &Aabb) -> (Vec3, Vec3) {
     if !b.is_valid() {
         return (Vec3::NAN, Vec3::NAN);
     }

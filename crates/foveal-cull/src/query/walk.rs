@@ -302,7 +302,7 @@ impl<'a> Walk<'a> {
             work.top -= 1;
             let node = self.node(work.stack[work.top]);
             let p = project(l, &self.query.screen, &node.boxes);
-            for lane in 0..node.lanes.count_ones() as usize {
+            for lane in node.children() {
                 let object = node.objects >> lane & 1 != 0;
                 let result = self.query.classify(l, &p, lane, &node.boxes, object);
                 if object || result != Visibility::Visible {

@@ -1,0 +1,488 @@
+//! Occludees that come, move and go, in a hierarchy that follows them.
+//!
+//! The structure is an [`OccludeeTree`] of the time of the last rebuild. A moved object changes its
+//! box in its leaf and marks the node; [`OccludeeSet::refit`] then fits the marked nodes and those
+//! above them, children before parents. New objects wait outside the tree, where they are tested
+//! one by one, until it is built again.
+
+use super::tree::{OccludeeTree, grown};
+use crate::bounds::Aabb;
+use crate::error::CullError;
+use crate::projection::boxes::Boxes8;
+use crate::simd::{InstructionSet, Kernel, Lanes};
+use core::num::NonZeroU32;
+use glam::{DVec3, Vec3};
+
+/// The id of one occludee of an [`OccludeeSet`].
+///
+/// Generational, as [`OccluderId`](crate::OccluderId): the id of a removed occludee never names
+/// another one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct OccludeeId {
+    slot: u32,
+    generation: NonZeroU32,
+}
+
+impl OccludeeId {
+    /// The place of its result in the results of
+    /// [`Culler::query_set`](crate::Culler::query_set). It does not change.
+    #[must_use]
+    pub fn index(self) -> usize {
+        self.slot as usize
+    }
+}
+
+/// Occludees that are inserted, moved and removed while running.
+///
+/// In each frame: change what has changed, [`refit`](Self::refit), then
+/// [`Culler::query_set`](crate::Culler::query_set). Now and then, when
+/// [`wants_rebuild`](Self::wants_rebuild) says so, [`rebuild`](Self::rebuild), or build on another
+/// thread: [`snapshot`](Self::snapshot), [`OccludeeSnapshot::build`], [`adopt`](Self::adopt).
+///
+/// ```
+/// use foveal_cull::{Aabb, OccludeeSet};
+///
+/// let mut set = OccludeeSet::new([0.0; 3]);
+/// let cart = set.insert(Aabb::new([0.0; 3], [1.0; 3]));
+/// set.rebuild();
+/// set.set_bounds(cart, Aabb::new([2.0, 0.0, 0.0], [3.0, 1.0, 1.0]))?;
+/// set.refit();
+/// set.remove(cart)?;
+/// assert!(set.set_bounds(cart, Aabb::EMPTY).is_err());
+/// # Ok::<(), foveal_cull::CullError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct OccludeeSet {
+    tree: OccludeeTree,
+    /// Per node of the tree: eight times its parent, plus the lane; [`NOWHERE`] for the root.
+    parents: Vec<u32>,
+    /// Bit per node: boxes in it have changed.
+    marked: Vec<u64>,
+    any_marked: bool,
+    /// By slot.
+    bounds: Vec<Aabb>,
+    slots: Vec<Slot>,
+    free: Vec<u32>,
+    /// Slots of objects outside the tree.
+    loose: Vec<u32>,
+    /// Objects in the tree.
+    placed: usize,
+    /// Sum of half the surfaces of all groups, now and when the tree was built.
+    area: f64,
+    area_built: f64,
+    origin: DVec3,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Slot {
+    /// Eight times the node, plus the lane; [`LOOSE`] plus the place in the list; or [`NOWHERE`].
+    place: u32,
+    generation: NonZeroU32,
+}
+
+const LOOSE: u32 = 1 << 31;
+const NOWHERE: u32 = u32::MAX;
+
+/// Up to so many objects a list takes no longer than a tree.
+const FEW: usize = 1000;
+
+/// So many objects may be outside the tree before it is built again, and this part of all.
+const LOOSE_AT_LEAST: usize = 64;
+const LOOSE_PART: usize = 8;
+/// Growth of the groups' surfaces at which the tree is built again.
+const GROWTH: f64 = 2.0;
+
+impl OccludeeSet {
+    /// An empty set, for boxes in metres relative to `origin` (world).
+    #[must_use]
+    pub fn new(origin: impl Into<[f64; 3]>) -> Self {
+        let origin = DVec3::from(origin.into());
+        Self {
+            tree: OccludeeTree::build_from(&[], origin),
+            parents: Vec::new(),
+            marked: Vec::new(),
+            any_marked: false,
+            bounds: Vec::new(),
+            slots: Vec::new(),
+            free: Vec::new(),
+            loose: Vec::new(),
+            placed: 0,
+            area: 0.0,
+            area_built: 0.0,
+            origin,
+        }
+    }
+
+    /// Inserts an object. O(1). Up to 2^28 objects.
+    pub fn insert(&mut self, bounds: Aabb) -> OccludeeId {
+        let slot = self.free.pop().unwrap_or_else(|| {
+            self.bounds.push(bounds);
+            self.slots.push(Slot {
+                place: NOWHERE,
+                generation: NonZeroU32::MIN,
+            });
+            self.slots.len() as u32 - 1
+        });
+        self.bounds[slot as usize] = bounds;
+        self.loosen(slot);
+        OccludeeId {
+            slot,
+            generation: self.slots[slot as usize].generation,
+        }
+    }
+
+    /// Moves or resizes an object. O(1). A box that is not a volume is always visible.
+    ///
+    /// # Errors
+    /// [`CullError::UnknownOccludee`].
+    #[inline]
+    pub fn set_bounds(&mut self, id: OccludeeId, bounds: Aabb) -> Result<(), CullError> {
+        let place = self.place(id)?;
+        self.bounds[id.slot as usize] = bounds;
+        if place & LOOSE != 0 {
+            return Ok(());
+        }
+        if bounds.is_valid() {
+            let (center, half) = grown(&bounds);
+            let (node, lane) = (place / 8, place % 8);
+            self.tree
+                .node_mut(node)
+                .boxes
+                .set(lane as usize, center, half);
+            self.mark(node);
+        } else {
+            // The tree has volumes only.
+            self.take_out(place);
+            self.loosen(id.slot);
+        }
+        Ok(())
+    }
+
+    /// Removes an object. Its id names nothing from then on. O(1).
+    ///
+    /// # Errors
+    /// [`CullError::UnknownOccludee`].
+    pub fn remove(&mut self, id: OccludeeId) -> Result<(), CullError> {
+        let place = self.place(id)?;
+        if place & LOOSE == 0 {
+            self.take_out(place);
+        } else {
+            let at = (place & !LOOSE) as usize;
+            self.loose.swap_remove(at);
+            if let Some(&moved) = self.loose.get(at) {
+                self.slots[moved as usize].place = LOOSE | at as u32;
+            }
+        }
+        let slot = &mut self.slots[id.slot as usize];
+        slot.place = NOWHERE;
+        self.bounds[id.slot as usize] = Aabb::EMPTY;
+        // A slot that has used up all generations stays empty.
+        if let Some(next) = slot.generation.checked_add(1) {
+            slot.generation = next;
+            self.free.push(id.slot);
+        }
+        Ok(())
+    }
+
+    /// Whether an id names an object of this set. O(1).
+    #[must_use]
+    pub fn contains(&self, id: OccludeeId) -> bool {
+        self.place(id).is_ok()
+    }
+
+    /// The box of an object.
+    ///
+    /// # Errors
+    /// [`CullError::UnknownOccludee`].
+    pub fn bounds(&self, id: OccludeeId) -> Result<Aabb, CullError> {
+        self.place(id).map(|_| self.bounds[id.index()])
+    }
+
+    /// Number of objects.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.placed + self.loose.len()
+    }
+
+    /// Whether there are no objects.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Length of the results of a query: more than the largest [`OccludeeId::index`]. Results at
+    /// places that no object has mean nothing.
+    #[must_use]
+    pub fn result_count(&self) -> usize {
+        self.slots.len()
+    }
+
+    /// Fits the hierarchy to what has moved since the last time. Call it once before the queries of
+    /// a frame; without it queries test box by box, which is as right but slower. So they do where
+    /// there are few objects, and where groups have spread until they are built again. Cost grows with
+    /// the nodes of eight that have changed.
+    pub fn refit(&mut self) {
+        if core::mem::take(&mut self.any_marked) {
+            InstructionSet::detect().run(Refit(self));
+        }
+    }
+
+    /// Whether the hierarchy is so much worse than a new one that it is worth building it again: many
+    /// objects are new, or groups have grown.
+    #[must_use]
+    pub fn wants_rebuild(&self) -> bool {
+        self.loose.len() > LOOSE_AT_LEAST.max(self.len() / LOOSE_PART) || self.has_spread()
+    }
+
+    /// Builds the hierarchy again, on this thread. O(n log n), about half a microsecond per object.
+    pub fn rebuild(&mut self) {
+        self.adopt(self.snapshot().build());
+    }
+
+    /// The objects of now, for [`OccludeeSnapshot::build`] on another thread. O(n).
+    #[must_use]
+    pub fn snapshot(&self) -> OccludeeSnapshot {
+        let live =
+            |slot: &usize| self.slots[*slot].place != NOWHERE && self.bounds[*slot].is_valid();
+        let slots: Vec<usize> = (0..self.slots.len()).filter(live).collect();
+        OccludeeSnapshot {
+            boxes: slots.iter().map(|&slot| self.bounds[slot]).collect(),
+            ids: slots
+                .iter()
+                .map(|&slot| OccludeeId {
+                    slot: slot as u32,
+                    generation: self.slots[slot].generation,
+                })
+                .collect(),
+            origin: self.origin,
+        }
+    }
+
+    /// Takes over a hierarchy that was built from a snapshot of this set, fits it to what has moved
+    /// since, and leaves out what was removed since. O(n).
+    pub fn adopt(&mut self, rebuild: OccludeeRebuild) {
+        let OccludeeRebuild { tree, ids } = rebuild;
+        self.tree = tree;
+        self.tree
+            .rename(|n| ids.get(n as usize).map_or(0, |id| id.slot));
+        let nodes = self.tree.nodes().len();
+        self.parents.clear();
+        self.parents.resize(nodes, NOWHERE);
+        self.marked.clear();
+        self.marked.resize(nodes.div_ceil(64), 0);
+        self.any_marked = false;
+        for slot in self.slots.iter_mut().filter(|s| s.place != NOWHERE) {
+            slot.place = LOOSE;
+        }
+        self.placed = 0;
+        for n in 0..nodes as u32 {
+            self.place_children(n, &ids);
+        }
+        self.loose.clear();
+        for (slot, number) in self.slots.iter_mut().zip(0..) {
+            if slot.place == LOOSE {
+                slot.place |= self.loose.len() as u32;
+                self.loose.push(number);
+            }
+        }
+        self.area = 0.0;
+        for n in (0..nodes as u32).rev() {
+            self.fit(n);
+        }
+        self.marked.fill(0);
+        self.area_built = self.area;
+    }
+
+    /// Finds the objects of a node's leaves by the ids of the snapshot, and notes where its groups
+    /// are.
+    fn place_children(&mut self, n: u32, ids: &[OccludeeId]) {
+        let node = self.tree.nodes()[n as usize];
+        for lane in node.children() {
+            let place = n * 8 + lane as u32;
+            let bounds = if node.is_object(lane) {
+                let slot = self.tree.order()[node.run(lane).start];
+                let id = ids.binary_search_by_key(&slot, |id| id.slot);
+                id.ok()
+                    .and_then(|k| self.place(ids[k]).ok())
+                    .map(|_| (slot, self.bounds[slot as usize]))
+                    .filter(|(_, bounds)| bounds.is_valid())
+            } else {
+                self.parents[node.child(lane) as usize] = place;
+                // Fitted afterwards, and its surface counted.
+                self.tree.node_mut(n).boxes.set(lane, Vec3::NAN, Vec3::NAN);
+                continue;
+            };
+            let node = self.tree.node_mut(n);
+            let Some((slot, bounds)) = bounds else {
+                node.remove(lane);
+                continue;
+            };
+            let (center, half) = grown(&bounds);
+            node.boxes.set(lane, center, half);
+            self.slots[slot as usize].place = place;
+            self.placed += 1;
+        }
+    }
+
+    /// The tree. None while it does not fit, or where a list is as fast.
+    pub(crate) fn tree(&self) -> Option<&OccludeeTree> {
+        let worth_it = self.slots.len() > FEW && !self.has_spread();
+        (worth_it && !self.any_marked).then_some(&self.tree)
+    }
+
+    /// Whether objects have moved so far from their groups that a tree takes longer than a list.
+    fn has_spread(&self) -> bool {
+        self.area > GROWTH * self.area_built
+    }
+
+    /// Slots of objects outside the tree.
+    pub(crate) fn loose(&self) -> &[u32] {
+        &self.loose
+    }
+
+    /// Boxes by slot.
+    pub(crate) fn boxes(&self) -> &[Aabb] {
+        &self.bounds
+    }
+
+    pub(crate) fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    #[inline]
+    fn place(&self, id: OccludeeId) -> Result<u32, CullError> {
+        let slot = self.slots.get(id.index());
+        slot.filter(|s| s.generation == id.generation && s.place != NOWHERE)
+            .map(|s| s.place)
+            .ok_or(CullError::UnknownOccludee)
+    }
+
+    fn loosen(&mut self, slot: u32) {
+        self.slots[slot as usize].place = LOOSE | self.loose.len() as u32;
+        self.loose.push(slot);
+    }
+
+    fn take_out(&mut self, place: u32) {
+        self.tree.node_mut(place / 8).remove((place % 8) as usize);
+        self.mark(place / 8);
+        self.placed -= 1;
+    }
+
+    #[inline]
+    fn mark(&mut self, node: u32) {
+        self.marked[node as usize / 64] |= 1 << (node % 64);
+        self.any_marked = true;
+    }
+
+    /// Fits the group that a node is, and marks the node above it.
+    #[inline(always)]
+    fn fit(&mut self, node: u32) {
+        let parent = self.parents[node as usize];
+        if parent == NOWHERE {
+            return;
+        }
+        let (center, half) = around(&self.tree.nodes()[node as usize].boxes);
+        let lane = (parent % 8) as usize;
+        let above = self.tree.node_mut(parent / 8);
+        let before = Vec3::from_array(above.boxes.half.map(|half| half[lane]));
+        above.boxes.set(lane, center, half);
+        self.area += half_area(half) - half_area(before);
+        self.marked[parent as usize / 512] |= 1 << (parent / 8 % 64);
+    }
+}
+
+/// Fits the marked nodes. A kernel for the sake of wide registers: there is no arithmetic here that
+/// could give other bits.
+struct Refit<'a>(&'a mut OccludeeSet);
+
+impl Kernel for Refit<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, _: L) {
+        let set = self.0;
+        for word in (0..set.marked.len()).rev() {
+            // Parents come before their children, so that bits that are set here are lower ones.
+            while set.marked[word] != 0 {
+                let bit = 63 - set.marked[word].leading_zeros();
+                set.marked[word] &= !(1 << bit);
+                set.fit(word as u32 * 64 + bit);
+            }
+        }
+    }
+}
+
+/// Half the surface of a box; 0 for an empty group.
+#[inline(always)]
+fn half_area(half: Vec3) -> f64 {
+    let half = half.as_dvec3();
+    let area = half.x * half.y + half.y * half.z + half.z * half.x;
+    if area.is_nan() { 0.0 } else { area }
+}
+
+/// Centre and half extent of the box around the children of a node, grown for rounding; NaN where
+/// there are none. Children are volumes; NaN in lanes without one is skipped.
+#[inline(always)]
+fn around(boxes: &Boxes8) -> (Vec3, Vec3) {
+    let (mut center, mut half) = (Vec3::NAN, Vec3::NAN);
+    for axis in 0..3 {
+        let (c, h) = (&boxes.center[axis], &boxes.half[axis]);
+        // Comparisons with NaN are false.
+        let mut low: [f32; 8] = core::array::from_fn(|i| {
+            let v = c[i] - h[i];
+            if v < f32::INFINITY { v } else { f32::INFINITY }
+        });
+        let mut high: [f32; 8] = core::array::from_fn(|i| {
+            let v = c[i] + h[i];
+            if v > f32::NEG_INFINITY {
+                v
+            } else {
+                f32::NEG_INFINITY
+            }
+        });
+        for step in [4, 2, 1] {
+            for i in 0..step {
+                let (a, b) = (low[i], low[i + step]);
+                low[i] = if b < a { b } else { a };
+                let (a, b) = (high[i], high[i + step]);
+                high[i] = if b > a { b } else { a };
+            }
+        }
+        let (low, high) = (low[0], high[0]);
+        center[axis] = (low + high) * 0.5;
+        half[axis] = (high - low) * 0.5 * (1.0 + 1e-6) + (low.abs() + high.abs()) * 1e-7;
+    }
+    // An empty group is infinity less infinity.
+    if center.is_nan() {
+        (Vec3::NAN, Vec3::NAN)
+    } else {
+        (center, half)
+    }
+}
+
+/// The objects of an [`OccludeeSet`] at one moment.
+#[derive(Clone, Debug)]
+pub struct OccludeeSnapshot {
+    boxes: Vec<Aabb>,
+    /// In the order of slots.
+    ids: Vec<OccludeeId>,
+    origin: DVec3,
+}
+
+/// A hierarchy over the objects of a snapshot.
+#[derive(Clone, Debug)]
+pub struct OccludeeRebuild {
+    tree: OccludeeTree,
+    ids: Vec<OccludeeId>,
+}
+
+impl OccludeeSnapshot {
+    /// Builds the hierarchy. O(n log n); on any thread.
+    #[must_use]
+    pub fn build(self) -> OccludeeRebuild {
+        OccludeeRebuild {
+            tree: OccludeeTree::build_from(&self.boxes, self.origin),
+            ids: self.ids,
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! Occludees that come, move and go have the answers of a plain list.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{Random, answers, eye, occluders, scene, wrongly_culled};
+use foveal_cull::{
+    Aabb, CullError, Culler, OccludeeId, OccludeeSet, SingleThread, View, Visibility,
+};
+use glam::{DVec3, Vec3};
+
+fn moved(r: &mut Random, bounds: Aabb, reach: f64) -> Aabb {
+    let by = r.vec(reach).as_vec3();
+    Aabb::new(Vec3::from(bounds.min) + by, Vec3::from(bounds.max) + by)
+}
+
+/// Results of a set: what the list shows it shows, but for groups that are hidden as a whole.
+fn assert_as_a_list(culler: &Culler, set: &OccludeeSet, ids: &[OccludeeId]) -> [usize; 2] {
+    let boxes: Vec<Aabb> = ids.iter().map(|id| set.bounds(*id).unwrap()).collect();
+    let mut list = vec![Visibility::Visible; ids.len()];
+    culler.query(&boxes, DVec3::ZERO, &mut list).unwrap();
+    let mut results = vec![Visibility::Visible; set.result_count()];
+    culler.query_set(set, &mut results).unwrap();
+    let (mut culled, mut more) = (0, 0);
+    for ((id, bounds), of_list) in ids.iter().zip(&boxes).zip(list) {
+        let of_set = results[id.index()];
+        culled += usize::from(!of_set.is_visible());
+        more += usize::from(of_list.is_visible() && !of_set.is_visible());
+        assert!(!of_set.is_visible() || of_list.is_visible(), "{bounds:?}");
+        assert!(bounds.is_valid() || of_set.is_visible(), "{bounds:?}");
+    }
+    [culled, more]
+}
+
+#[test]
+fn sets_that_change_have_the_answers_of_a_list() {
+    let (mut culled, mut more, mut rebuilt) = (0, 0, 0);
+    for seed in 0..24 {
+        let mut r = Random::new(seed);
+        let scene = scene(&mut r, 6, 600, DVec3::ZERO);
+        let view = View::mono(eye(&mut r, DVec3::ZERO, seed % 4 == 3));
+        let view = if seed % 6 == 1 {
+            view.with_validity_radius(0.02)
+        } else {
+            view
+        };
+        let occluders = occluders(&scene, &[0, 1, 2, 3, 4, 5]);
+        let mut culler = Culler::new(96, 64).unwrap();
+        answers(&mut culler, &view, &occluders, &scene, &SingleThread);
+        let mut set = OccludeeSet::new(DVec3::ZERO);
+        let mut ids: Vec<OccludeeId> = Vec::new();
+        let mut gone = Vec::new();
+        let mut waiting = None;
+        for step in 0..30 {
+            let new = if step == 0 { 1200 } else { r.below(60) };
+            for _ in 0..new {
+                ids.push(set.insert(scene.boxes[r.below(600)]));
+            }
+            for _ in 0..r.below(80).min(ids.len()) {
+                let id = ids[r.below(ids.len())];
+                let bounds = match r.below(40) {
+                    0 => Aabb::new([f32::NAN; 3], [1.0; 3]),
+                    1 => scene.boxes[r.below(600)],
+                    _ => moved(&mut r, set.bounds(id).unwrap(), 0.4),
+                };
+                set.set_bounds(id, bounds).unwrap();
+            }
+            for _ in 0..r.below(30).min(ids.len()) {
+                let id = ids.swap_remove(r.below(ids.len()));
+                set.remove(id).unwrap();
+                gone.push(id);
+            }
+            // Without a refit too.
+            if r.below(5) > 0 {
+                set.refit();
+            }
+            // Built again at once, or while other things go on.
+            match r.below(6) {
+                0 => set.rebuild(),
+                1 => waiting = Some(set.snapshot()),
+                2 => {
+                    if let Some(snapshot) = waiting.take() {
+                        set.adopt(snapshot.build());
+                        rebuilt += 1;
+                    }
+                }
+                _ => {}
+            }
+            assert_eq!(
+                (set.len(), set.is_empty()),
+                (ids.len(), ids.is_empty()),
+                "{step}"
+            );
+            let [c, m] = assert_as_a_list(&culler, &set, &ids);
+            (culled, more) = (culled + c, more + m);
+        }
+        for id in gone {
+            let unknown = CullError::UnknownOccludee;
+            assert!(!set.contains(id));
+            assert_eq!(set.remove(id), Err(unknown));
+            assert_eq!(set.set_bounds(id, Aabb::EMPTY), Err(unknown));
+            assert_eq!(set.bounds(id), Err(unknown));
+        }
+        let mut short = vec![Visibility::Visible; set.result_count() + 1];
+        assert!(culler.query_set(&set, &mut short).is_err());
+    }
+    assert!(rebuilt > 20 && culled > 50_000, "{rebuilt} {culled}");
+    assert!(more * 100 < culled, "{more} of {culled}");
+}
+
+#[test]
+fn nothing_that_the_reference_sees_is_culled_after_moves_and_refits() {
+    let mut hidden = 0;
+    for seed in 0..40 {
+        let mut r = Random::new(seed + 500);
+        let mut scene = scene(&mut r, 6, 1300, DVec3::ZERO);
+        let eye = eye(&mut r, DVec3::ZERO, seed % 4 == 3);
+        let occluders = occluders(&scene, &[0, 1, 2, 3, 4, 5]);
+        let mut set = OccludeeSet::new(DVec3::ZERO);
+        let ids: Vec<OccludeeId> = scene.boxes.iter().map(|b| set.insert(*b)).collect();
+        set.rebuild();
+        for (id, bounds) in ids.iter().zip(&mut scene.boxes) {
+            if r.below(2) == 0 {
+                *bounds = moved(&mut r, *bounds, 0.6);
+                set.set_bounds(*id, *bounds).unwrap();
+            }
+        }
+        set.refit();
+        assert!(!set.wants_rebuild(), "the hierarchy is used");
+        let mut culler = Culler::new(64, 48).unwrap();
+        answers(
+            &mut culler,
+            &View::mono(eye),
+            &occluders,
+            &scene,
+            &SingleThread,
+        );
+        let mut results = vec![Visibility::Visible; set.result_count()];
+        culler.query_set(&set, &mut results).unwrap();
+        let results: Vec<Visibility> = ids.iter().map(|id| results[id.index()]).collect();
+        for n in [1, 4] {
+            let wrong = wrongly_culled(&scene, &eye, (64, 48), n, &results);
+            assert!(wrong.is_empty(), "{seed}, {n}: {wrong:?}");
+        }
+        hidden += results
+            .iter()
+            .filter(|v| **v == Visibility::Occluded)
+            .count();
+    }
+    assert!(hidden > 500, "{hidden}");
+}
+
+#[test]
+fn a_set_wants_to_be_built_again_when_much_is_new_or_has_spread() {
+    let mut r = Random::new(3);
+    let scene = scene(&mut r, 1, 600, DVec3::ZERO);
+    let mut set = OccludeeSet::new(DVec3::ZERO);
+    let ids: Vec<OccludeeId> = scene.boxes.iter().map(|b| set.insert(*b)).collect();
+    assert!(set.wants_rebuild(), "all are new");
+    set.rebuild();
+    assert!(!set.wants_rebuild());
+    for id in &ids {
+        let bounds = set.bounds(*id).unwrap();
+        set.set_bounds(*id, moved(&mut r, bounds, 0.05)).unwrap();
+    }
+    set.refit();
+    assert!(!set.wants_rebuild(), "hardly anything has moved");
+    for id in &ids {
+        let bounds = set.bounds(*id).unwrap();
+        set.set_bounds(*id, moved(&mut r, bounds, 40.0)).unwrap();
+    }
+    set.refit();
+    assert!(set.wants_rebuild(), "groups have spread");
+    set.rebuild();
+    assert!(!set.wants_rebuild());
+}
