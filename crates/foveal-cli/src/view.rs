@@ -8,6 +8,7 @@ use foveal_scene::{Clip, Scene};
 use foveal_view::{Host, Loaded};
 
 use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
 use foveal_host::rate_image::rate_image;
 use foveal_host::settings::{SettingsArgs, flags, read as read_settings};
@@ -49,6 +50,9 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn host(args: &Args) -> anyhow::Result<Host> {
+    if args.scene == "-" {
+        return usage("a window does not read its scene from standard input; name a file");
+    }
     let settings = args.settings.resolve()?;
     gpu::check(args.adapter.as_deref())?;
     let (first, camera) = (args.scene.clone(), args.camera.clone());

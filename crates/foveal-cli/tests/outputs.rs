@@ -142,7 +142,12 @@ fn stand_in(folder: &Path, script: &str) -> String {
     use std::os::unix::fs::PermissionsExt;
     let bin = folder.join("bin");
     fs::create_dir_all(&bin).unwrap();
-    fs::write(bin.join("ffmpeg"), format!("#!/bin/sh\n{script}\n")).unwrap();
+    let listed = "[ \"$2\" != -encoders ] || { echo libx264; exit 0; }";
+    fs::write(
+        bin.join("ffmpeg"),
+        format!("#!/bin/sh\n{listed}\n{script}\n"),
+    )
+    .unwrap();
     fs::set_permissions(bin.join("ffmpeg"), fs::Permissions::from_mode(0o755)).unwrap();
     format!("{}:{}", bin.display(), std::env::var("PATH").unwrap())
 }

@@ -174,3 +174,56 @@ fn a_set_wants_to_be_built_again_when_much_is_new_or_has_spread() {
     set.rebuild();
     assert!(!set.wants_rebuild());
 }
+
+#[test]
+fn a_huge_box_takes_nobody_out_of_the_hierarchy() {
+    for size in [1e38, 2e38, f32::MAX] {
+        for axes in [[1.0, 1.0, 1.0], [1.0, 0.0, 0.0]] {
+            let mut r = Random::new(11);
+            let scene = scene(&mut r, 6, 1500, DVec3::ZERO);
+            let view = View::mono(eye(&mut r, DVec3::ZERO, false));
+            let occluders = occluders(&scene, &[0, 1, 2, 3, 4, 5]);
+            let mut culler = Culler::new(96, 64).unwrap();
+            answers(&mut culler, &view, &occluders, &scene, &SingleThread);
+            let mut set = OccludeeSet::new(DVec3::ZERO);
+            let ids: Vec<OccludeeId> = scene.boxes.iter().map(|b| set.insert(*b)).collect();
+            let half = axes.map(|axis| (axis * size).max(0.1));
+            let huge = Aabb::new(half.map(|h| -h), half);
+            let of_huge = |culler: &Culler, set: &OccludeeSet| {
+                let mut results = vec![Visibility::Occluded; set.result_count()];
+                culler.query_set(set, &mut results).unwrap();
+                assert_as_a_list(culler, set, &ids);
+                results[ids[700].index()]
+            };
+            // Built with it, and grown later.
+            set.set_bounds(ids[700], huge).unwrap();
+            set.rebuild();
+            assert_eq!(of_huge(&culler, &set), Visibility::Visible);
+            set.set_bounds(ids[700], scene.boxes[700]).unwrap();
+            set.rebuild();
+            set.set_bounds(ids[700], huge).unwrap();
+            set.refit();
+            assert_eq!(of_huge(&culler, &set), Visibility::Visible);
+        }
+    }
+}
+
+#[test]
+fn invalid_boxes_and_rebuilds_of_other_sets_do_no_harm() {
+    let mut set = OccludeeSet::new(DVec3::ZERO);
+    for _ in 0..300 {
+        set.insert(Aabb::EMPTY);
+    }
+    set.rebuild();
+    assert!(
+        !set.wants_rebuild(),
+        "building again would place none of them"
+    );
+    let mut other = OccludeeSet::new(DVec3::ZERO);
+    for i in 0..2000 {
+        let at = [i as f32, 0.0, 0.0];
+        other.insert(Aabb::new(at, at.map(|v| v + 1.0)));
+    }
+    set.adopt(other.snapshot().build());
+    assert_eq!(set.len(), 300);
+}

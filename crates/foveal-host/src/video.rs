@@ -23,12 +23,25 @@ pub struct Video {
     complaints: Option<JoinHandle<String>>,
     size: (u32, u32),
     path: PathBuf,
-    file: Pending,
+    /// Taken when the video is finished.
+    file: Option<Pending>,
+}
+
+/// Whether ffmpeg is there.
+pub fn is_available() -> bool {
+    let found = Command::new(FFMPEG)
+        .arg("-version")
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status();
+    found.is_ok_and(|status| status.success())
 }
 
 impl Video {
     /// Starts the encoder. The end of the file's name (.mp4, .mkv, .webm, .mov, .gif ..) chooses the
-    /// container, ffmpeg the codec; H.264 at a visually lossless rate for .mp4, .mkv and .mov.
+    /// container, ffmpeg the codec; H.264 at a visually lossless rate for .mp4, .mkv and .mov,
+    /// where ffmpeg has it.
     ///
     /// # Errors
     /// Names the file and the cause: no ffmpeg, a folder that is not there.
@@ -38,7 +51,7 @@ impl Video {
         let file = Pending::new(path, &format!(".{ending}"))?;
         let mut command = Command::new(FFMPEG);
         command
-            .args(arguments((width, height), fps, &ending))
+            .args(arguments((width, height), fps, &ending, has_x264()))
             .arg(file.path())
             .stdin(Stdio::piped())
             .stdout(Stdio::null())
@@ -59,7 +72,7 @@ impl Video {
             complaints,
             size: (width, height),
             path: path.to_owned(),
-            file,
+            file: Some(file),
         })
     }
 
@@ -75,10 +88,12 @@ impl Video {
             Some(frames) => frames.write_all(&picture.rgb_bytes()),
             None => Ok(()),
         };
-        match written {
-            Ok(()) => Ok(()),
-            Err(_) => self.wait(),
+        if written.is_ok() {
+            return Ok(());
         }
+        // Its own words say more than a closed pipe.
+        self.wait()?;
+        bail!("ffmpeg stopped before the end of '{}'", self.path.display())
     }
 
     /// Ends the video and puts it under its name.
@@ -87,7 +102,7 @@ impl Video {
     /// What ffmpeg said; the disk is full.
     pub fn finish(mut self) -> anyhow::Result<()> {
         self.wait()?;
-        self.file.finish()
+        self.file.take().map_or(Ok(()), Pending::finish)
     }
 
     /// Waits until ffmpeg has ended; an error where it did not succeed.
@@ -114,6 +129,27 @@ impl Video {
     }
 }
 
+impl Drop for Video {
+    /// Given up: half a video is none.
+    fn drop(&mut self) {
+        // Nobody waits for one that is finished, or that has failed.
+        if self.frames.take().is_some() {
+            let _ = self.encoder.kill();
+            let _ = self.encoder.wait();
+        }
+    }
+}
+
+/// Whether this ffmpeg was built with the usual encoder for H.264.
+fn has_x264() -> bool {
+    let listed = Command::new(FFMPEG)
+        .args(["-hide_banner", "-encoders"])
+        .stdin(Stdio::null())
+        .stderr(Stdio::null())
+        .output();
+    listed.is_ok_and(|output| String::from_utf8_lossy(&output.stdout).contains("libx264"))
+}
+
 /// The end of the file's name, lower case.
 fn extension(path: &Path) -> anyhow::Result<String> {
     match path.extension().and_then(|e| e.to_str()) {
@@ -126,7 +162,7 @@ fn extension(path: &Path) -> anyhow::Result<String> {
 }
 
 /// What ffmpeg is told before the file's name: raw RGB rows on its standard input.
-fn arguments((width, height): (u32, u32), fps: f32, ending: &str) -> Vec<OsString> {
+fn arguments((width, height): (u32, u32), fps: f32, ending: &str, has_x264: bool) -> Vec<OsString> {
     let size = format!("{width}x{height}");
     let rate = fps.to_string();
     let mut words = vec![
@@ -148,14 +184,10 @@ fn arguments((width, height): (u32, u32), fps: f32, ending: &str) -> Vec<OsStrin
     ];
     if matches!(ending, "mp4" | "mkv" | "mov") {
         // Colour of half resolution, which every player shows, needs even sizes.
-        words.extend([
-            "-vf",
-            "pad=ceil(iw/2)*2:ceil(ih/2)*2",
-            "-c:v",
-            "libx264",
-            "-crf",
-            "16",
-        ]);
+        words.extend(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]);
+        if has_x264 {
+            words.extend(["-c:v", "libx264", "-crf", "16"]);
+        }
         words.extend(["-pix_fmt", "yuv420p", "-movflags", "+faststart"]);
     }
     words.into_iter().map(OsString::from).collect()
@@ -176,7 +208,7 @@ mod tests {
 
     #[test]
     fn ffmpeg_is_told_size_rate_and_format() {
-        let words = arguments((3, 2), 29.97, "mp4");
+        let words = arguments((3, 2), 29.97, "mp4", true);
         let text: Vec<_> = words.iter().map(|w| w.to_str().unwrap()).collect();
         let text = text.join(" ");
         assert!(
@@ -184,11 +216,10 @@ mod tests {
             "{text}"
         );
         assert!(text.contains("libx264"), "{text}");
-        assert!(
-            !arguments((3, 2), 30.0, "webm")
-                .iter()
-                .any(|word| word == "libx264")
-        );
+        for (ending, has_x264) in [("webm", true), ("mp4", false)] {
+            let words = arguments((3, 2), 30.0, ending, has_x264);
+            assert!(!words.iter().any(|word| word == "libx264"), "{ending}");
+        }
     }
 
     #[test]

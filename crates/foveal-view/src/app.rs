@@ -184,6 +184,8 @@ impl App {
 
     /// Loads another scene in place of this one.
     pub(crate) fn open_scene(&mut self, name: String) {
+        // Its poses belong to the scene that goes.
+        self.cancel_capture();
         self.loading = true;
         self.worker.load(name.clone());
         self.scene_name = name;

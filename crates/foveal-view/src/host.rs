@@ -44,6 +44,9 @@ pub trait Recording: Send {
     /// Name of the file or folder that it becomes.
     fn name(&self) -> String;
 
+    /// Whether what was added is kept where the recording is given up.
+    fn keeps_parts(&self) -> bool;
+
     /// Adds a picture: sRGB RGBA8 rows, top to bottom, of the size that was agreed.
     ///
     /// # Errors

@@ -317,10 +317,12 @@ fn work<W: Fn()>(host: &Host, inbox: &Inbox, judge: &Judge, tell: &Teller<W>) {
                 Err(error) => tell.tell(News::CaptureEnded(Ended::Failed(format!("{error:#}")))),
             },
             Order::CancelCapture => {
-                if let Some(capturing) = capturing.take() {
-                    tell.tell(News::CaptureEnded(capturing.cancelled()));
-                    settled = 0;
-                }
+                let ended = match capturing.take() {
+                    Some(capturing) => capturing.cancelled(),
+                    None => Ended::Cancelled("Capture cancelled before its first frame".to_owned()),
+                };
+                tell.tell(News::CaptureEnded(ended));
+                settled = 0;
                 continue;
             }
             Order::LoseDevice => {

@@ -43,9 +43,9 @@ pub use culling::CullingStats;
 pub use error::Error;
 pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
-pub use output::Target;
+pub use output::{RadianceImage, Target};
 pub use rate::{MinPyramid, RateImage};
-pub use renderer::{Frame, RadianceImage, Renderer, RendererOptions};
+pub use renderer::{Frame, Renderer, RendererOptions};
 #[cfg(feature = "serde")]
 pub use settings::variant_names;
 pub use settings::{

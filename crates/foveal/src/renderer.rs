@@ -1,17 +1,14 @@
 //! The renderer as its host sees it; `submit.rs` tells the frame.
 
 use crate::{Clock, Target};
-use foveal_cull::Visibility;
 use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
 use crate::composite::CompositePass;
-use crate::culling::{CullingStage, CullingStats};
+use crate::culling::CullingStage;
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
-use crate::gpu::{
-    CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, read_texture, submitted_work_done,
-};
+use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, submitted_work_done};
 
 use crate::lights::LightAssigner;
 use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
@@ -21,14 +18,13 @@ use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
 use crate::shadow::ShadowStage;
 use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
-use crate::{Error, FrameStats, SceneStats, Settings};
+use crate::{Error, FrameStats, Settings};
 use in_flight::{Counts, InFlight};
-pub use radiance::RadianceImage;
 
 mod figures;
 mod in_flight;
 mod plan;
-mod radiance;
+mod results;
 mod stages;
 mod submit;
 #[cfg(test)]
@@ -343,7 +339,11 @@ impl Renderer {
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
         let change = self.scene.update_pose(&self.gpu, scene);
-        let shadows = self.stages.shadows.scene_moved(&change.boxes, &self.scene);
+        let wants_places = self.stages.history().is_some();
+        let shadows = self
+            .stages
+            .shadows
+            .scene_moved(&change.boxes, &self.scene, wants_places);
         if let Some(variable) = &mut self.stages.variable {
             variable.scene_moved();
         }
@@ -369,7 +369,7 @@ impl Renderer {
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
         let submitted = self.submit(frame, &seen, None, &mut cpu);
-        trap.finish().await?;
+        self.finish_frame(trap).await?;
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
         let gpu_ms = self.timer.collect(&self.gpu);
@@ -414,64 +414,22 @@ impl Renderer {
         if self.in_flight.is_none() {
             self.in_flight = Some(InFlight::new(&self.gpu, submitted, &self.counters(), cpu));
         }
-        trap.finish().await?;
+        self.finish_frame(trap).await?;
         Ok(finished)
     }
 
-    /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
-    /// [`Settings::picture_size`], alpha 255.
-    ///
-    /// # Errors
-    /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
-    pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
-        let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
-        let bytes = read_texture(&self.gpu, self.picture().texture()).await;
-        trap.finish().await?;
-        bytes
+    /// What a frame that failed has left in the targets is not carried on to the next one.
+    async fn finish_frame(&mut self, trap: ErrorTrap) -> Result<(), Error> {
+        let finished = trap.finish().await;
+        if finished.is_err() {
+            self.stages.forget();
+        }
+        finished
     }
 
     /// Whether frames draw what culling found last, whatever their camera sees: to look at a result
     /// from elsewhere.
     pub fn freeze_culling(&mut self, frozen: bool) {
         self.frozen = frozen;
-    }
-
-    /// What the culler found in the last frame; `None` without culling.
-    #[must_use]
-    pub fn culling(&self) -> Option<CullingStats> {
-        self.stages.culling.as_ref().map(CullingStage::figures)
-    }
-
-    /// What became of each of the scene's objects in the last frame; empty without culling.
-    #[must_use]
-    pub fn visibility(&self) -> &[Visibility] {
-        match &self.stages.culling {
-            Some(culling) => culling.visibility(),
-            None => &[],
-        }
-    }
-
-    /// The last frame's occlusion buffer: width, height, and rows from the top, near / distance (0:
-    /// nothing proven), for orthographic cameras 1 at the near plane to 0 at the far one. `None`
-    /// without culling.
-    #[must_use]
-    pub fn occluder_depth(&self) -> Option<(u32, u32, Vec<f32>)> {
-        self.stages.culling.as_ref().map(CullingStage::depth)
-    }
-
-    /// The last frame's picture on the device, as [`Renderer::read_picture`] gives it: sRGB-encoded
-    /// [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after [`Renderer::set_settings`].
-    #[must_use]
-    pub fn picture(&self) -> &wgpu::TextureView {
-        match &self.upscale {
-            Some(upscale) => upscale.picture_view(),
-            None => self.stages.targets.shown(),
-        }
-    }
-
-    /// Counts of the scene that was set last.
-    #[must_use]
-    pub fn scene_stats(&self) -> SceneStats {
-        self.scene.stats
     }
 }

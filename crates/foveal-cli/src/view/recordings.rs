@@ -1,26 +1,17 @@
 //! What the window captures, on its way to files: a folder of PNGs, or a video by `ffmpeg`.
 
-use std::fs;
-use std::io::{ErrorKind, Read, Write};
+use std::fs::{self, File};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Stdio};
 
 use anyhow::{Context, bail};
 use foveal_host::picture::Picture;
+use foveal_host::video;
 use foveal_view::{Format, Recording};
 
 /// Why videos cannot be made; `None` where they can.
 pub(super) fn no_video() -> Option<String> {
-    let found = Command::new("ffmpeg")
-        .arg("-version")
-        .stdin(Stdio::null())
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .status();
-    match found {
-        Ok(status) if status.success() => None,
-        _ => Some("Needs the program ffmpeg, which is not there".to_owned()),
-    }
+    (!video::is_available()).then(|| "Needs the program ffmpeg, which is not there".to_owned())
 }
 
 /// Starts a recording in the current folder under the next free name.
@@ -82,6 +73,10 @@ impl Recording for Pictures {
         self.folder.display().to_string()
     }
 
+    fn keeps_parts(&self) -> bool {
+        true
+    }
+
     fn add(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
         let (width, height) = self.size;
         let name = format!("frame-{:04}.png", self.written);
@@ -96,64 +91,34 @@ impl Recording for Pictures {
 }
 
 struct Video {
+    /// Taken, under a name that nobody else takes, until the video stands there.
     file: PathBuf,
+    size: (u32, u32),
     /// `None` once it has ended.
-    encoder: Option<Child>,
+    encoder: Option<video::Video>,
 }
 
 impl Video {
-    fn new(within: &Path, (width, height): (u32, u32), per_second: f32) -> anyhow::Result<Self> {
-        let files = names(within).map(|name| name.with_extension("mp4"));
-        let Some(file) = files.into_iter().find(|file| !file.exists()) else {
-            bail!("there is no free name for a video");
-        };
-        let size = format!("{width}x{height}");
-        let rate = per_second.to_string();
-        let encoder = Command::new("ffmpeg")
-            .args([
-                "-loglevel",
-                "error",
-                "-n",
-                "-f",
-                "rawvideo",
-                "-pix_fmt",
-                "rgba",
-            ])
-            .args(["-s", &size, "-framerate", &rate, "-i", "-"])
-            // Players want whole pairs of pixels.
-            .args([
-                "-vf",
-                "crop=trunc(iw/2)*2:trunc(ih/2)*2",
-                "-pix_fmt",
-                "yuv420p",
-            ])
-            .args(["-movflags", "+faststart"])
-            .arg(&file)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::null())
-            .stderr(Stdio::piped())
-            .spawn()
-            .context("cannot start ffmpeg")?;
-        Ok(Self {
-            file,
-            encoder: Some(encoder),
-        })
-    }
-
-    /// Waits for the encoder; what it said where it failed.
-    fn end(&mut self) -> anyhow::Result<()> {
-        let Some(mut encoder) = self.encoder.take() else {
-            return Ok(());
-        };
-        drop(encoder.stdin.take());
-        let mut said = String::new();
-        if let Some(mut stderr) = encoder.stderr.take() {
-            let _ = stderr.read_to_string(&mut said);
+    fn new(within: &Path, size: (u32, u32), per_second: f32) -> anyhow::Result<Self> {
+        for file in names(within).map(|name| name.with_extension("mp4")) {
+            match File::create_new(&file) {
+                Ok(_) => {
+                    let mut video = Self {
+                        file,
+                        size,
+                        encoder: None,
+                    };
+                    video.encoder = Some(video::Video::create(&video.file, size, per_second)?);
+                    return Ok(video);
+                }
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+                Err(error) => {
+                    let file = file.display();
+                    return Err(error).with_context(|| format!("cannot make '{file}'"));
+                }
+            }
         }
-        if encoder.wait().context("ffmpeg was lost")?.success() {
-            return Ok(());
-        }
-        bail!("ffmpeg cannot write '{}': {}", self.name(), said.trim())
+        bail!("there is no free name for a video")
     }
 }
 
@@ -162,28 +127,35 @@ impl Recording for Video {
         self.file.display().to_string()
     }
 
+    fn keeps_parts(&self) -> bool {
+        false
+    }
+
     fn add(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
-        let pipe = self.encoder.as_mut().and_then(|e| e.stdin.as_mut());
-        let written = pipe.map(|pipe| pipe.write_all(rgba));
-        if written.is_some_and(|written| written.is_ok()) {
-            return Ok(());
+        let (width, height) = self.size;
+        let picture = Picture::from_rgba(width, height, rgba)?;
+        match &mut self.encoder {
+            Some(encoder) => encoder.push(&picture),
+            None => Ok(()),
         }
-        // Its own words say more than a closed pipe.
-        self.end()?;
-        bail!("ffmpeg stopped before the end of '{}'", self.name())
     }
 
     fn finish(mut self: Box<Self>) -> anyhow::Result<()> {
-        self.end()
+        let Some(encoder) = self.encoder.take() else {
+            return Ok(());
+        };
+        let finished = encoder.finish();
+        if finished.is_err() {
+            let _ = fs::remove_file(&self.file);
+        }
+        finished
     }
 }
 
 impl Drop for Video {
-    /// Given up: half a video is none.
+    /// Given up: the name is free again.
     fn drop(&mut self) {
-        if let Some(mut encoder) = self.encoder.take() {
-            let _ = encoder.kill();
-            let _ = encoder.wait();
+        if self.encoder.take().is_some() || fs::metadata(&self.file).is_ok_and(|m| m.len() == 0) {
             let _ = fs::remove_file(&self.file);
         }
     }
@@ -210,7 +182,8 @@ mod tests {
 
     #[test]
     fn a_video_is_there_when_it_is_finished_and_not_when_it_is_given_up() {
-        if no_video().is_some() {
+        if let Some(cause) = no_video() {
+            println!("skipped: {cause}");
             return;
         }
         let folder = tempfile::tempdir().unwrap();
@@ -229,17 +202,9 @@ mod tests {
     }
 
     #[test]
-    fn what_ffmpeg_says_is_in_the_error() {
-        if no_video().is_some() {
-            return;
-        }
-        let mut video =
-            start_in(Path::new("/no/such/folder"), Format::Video, (4, 4), 30.0).unwrap();
-        let failed = (0..200).find_map(|_| video.add(&[0; 64]).err());
-        let error = failed.or_else(|| video.finish().err()).unwrap();
-        assert!(
-            format!("{error:#}").contains("/no/such/folder"),
-            "{error:#}"
-        );
+    fn a_folder_that_is_missing_is_named() {
+        let error = start_in(Path::new("/no/such/folder"), Format::Video, (4, 4), 30.0).err();
+        let error = format!("{:#}", error.unwrap());
+        assert!(error.contains("/no/such/folder"), "{error}");
     }
 }

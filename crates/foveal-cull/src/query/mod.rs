@@ -6,6 +6,7 @@ mod coarse;
 mod compaction;
 mod faces;
 pub(crate) mod flat;
+mod groups;
 pub(crate) mod moving;
 mod plane_lanes;
 mod rect;

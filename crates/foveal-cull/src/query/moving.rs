@@ -5,10 +5,10 @@
 //! above them, children before parents. New objects wait outside the tree, where they are tested
 //! one by one, until it is built again.
 
+use super::groups::{around, half_area};
 use super::tree::{OccludeeTree, grown};
 use crate::bounds::Aabb;
 use crate::error::CullError;
-use crate::projection::boxes::Boxes8;
 use crate::simd::{InstructionSet, Kernel, Lanes};
 use core::num::NonZeroU32;
 use glam::{DVec3, Vec3};
@@ -231,7 +231,13 @@ impl OccludeeSet {
     /// objects are new, or groups have grown.
     #[must_use]
     pub fn wants_rebuild(&self) -> bool {
-        self.loose.len() > LOOSE_AT_LEAST.max(self.len() / LOOSE_PART) || self.has_spread()
+        let most = LOOSE_AT_LEAST.max(self.len() / LOOSE_PART);
+        // Invalid boxes stay outside, however often it is built.
+        let would_be_placed = || {
+            let boxes = self.loose.iter().map(|&slot| self.bounds[slot as usize]);
+            boxes.filter(|bounds| bounds.is_valid()).count()
+        };
+        (self.loose.len() > most && would_be_placed() > most) || self.has_spread()
     }
 
     /// Builds the hierarchy again, on this thread. O(n log n), about half a microsecond per object.
@@ -262,6 +268,9 @@ impl OccludeeSet {
     /// since, and leaves out what was removed since. O(n).
     pub fn adopt(&mut self, rebuild: OccludeeRebuild) {
         let OccludeeRebuild { tree, ids } = rebuild;
+        if ids.last().is_some_and(|id| id.index() >= self.slots.len()) {
+            return;
+        }
         self.tree = tree;
         self.tree
             .rename(|n| ids.get(n as usize).map_or(0, |id| id.slot));
@@ -409,54 +418,6 @@ impl Kernel for Refit<'_> {
                 set.fit(word as u32 * 64 + bit);
             }
         }
-    }
-}
-
-/// Half the surface of a box; 0 for an empty group.
-#[inline(always)]
-fn half_area(half: Vec3) -> f64 {
-    let half = half.as_dvec3();
-    let area = half.x * half.y + half.y * half.z + half.z * half.x;
-    if area.is_nan() { 0.0 } else { area }
-}
-
-/// Centre and half extent of the box around the children of a node, grown for rounding; NaN where
-/// there are none. Children are volumes; NaN in lanes without one is skipped.
-#[inline(always)]
-fn around(boxes: &Boxes8) -> (Vec3, Vec3) {
-    let (mut center, mut half) = (Vec3::NAN, Vec3::NAN);
-    for axis in 0..3 {
-        let (c, h) = (&boxes.center[axis], &boxes.half[axis]);
-        // Comparisons with NaN are false.
-        let mut low: [f32; 8] = core::array::from_fn(|i| {
-            let v = c[i] - h[i];
-            if v < f32::INFINITY { v } else { f32::INFINITY }
-        });
-        let mut high: [f32; 8] = core::array::from_fn(|i| {
-            let v = c[i] + h[i];
-            if v > f32::NEG_INFINITY {
-                v
-            } else {
-                f32::NEG_INFINITY
-            }
-        });
-        for step in [4, 2, 1] {
-            for i in 0..step {
-                let (a, b) = (low[i], low[i + step]);
-                low[i] = if b < a { b } else { a };
-                let (a, b) = (high[i], high[i + step]);
-                high[i] = if b > a { b } else { a };
-            }
-        }
-        let (low, high) = (low[0], high[0]);
-        center[axis] = (low + high) * 0.5;
-        half[axis] = (high - low) * 0.5 * (1.0 + 1e-6) + (low.abs() + high.abs()) * 1e-7;
-    }
-    // An empty group is infinity less infinity.
-    if center.is_nan() {
-        (Vec3::NAN, Vec3::NAN)
-    } else {
-        (center, half)
     }
 }
 

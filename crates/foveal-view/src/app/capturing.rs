@@ -120,6 +120,10 @@ impl App {
     }
 
     pub(super) fn take_capture_end(&mut self, context: &Context, ended: Ended) {
+        if !matches!(self.capture.phase, Phase::Drawing(..)) {
+            // It had ended before it was told to.
+            return;
+        }
         self.capture.phase = Phase::Idle;
         match &ended {
             Ended::Done(name) => self.say(context, format!("Captured: {name}")),

@@ -81,12 +81,15 @@ impl Capturing {
     }
 
     pub(super) fn cancelled(self) -> Ended {
-        Ended::Cancelled(format!(
-            "Capture cancelled after {} of {} frames: {}",
+        let mut text = format!(
+            "Capture cancelled after {} of {} frames",
             self.written,
-            self.of(),
-            self.recording.name()
-        ))
+            self.of()
+        );
+        if self.recording.keeps_parts() {
+            text = format!("{text}: {}", self.recording.name());
+        }
+        Ended::Cancelled(text)
     }
 
     pub(super) fn failed(&self, error: &anyhow::Error) -> Ended {

@@ -22,6 +22,10 @@ impl Recording for Kept {
         "nowhere".to_owned()
     }
 
+    fn keeps_parts(&self) -> bool {
+        true
+    }
+
     fn add(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
         anyhow::ensure!(rgba.len() == 64 * 40 * 4, "of another size");
         Ok(())
@@ -334,6 +338,21 @@ fn a_capture_is_cancelled_between_frames_and_the_view_comes_back() {
         matches!(&ended, Ended::Cancelled(text) if text.contains("of 100000")),
         "{ended:?}"
     );
+    assert_eq!(picture(&worker).camera, request().camera);
+}
+
+#[test]
+fn a_capture_that_is_cancelled_before_it_begins_ends_too() {
+    let worker = worker();
+    worker.load("cornell".to_owned());
+    worker.capture(job(3));
+    worker.cancel_capture();
+    let ended = next(&worker, |news| match news {
+        News::CaptureEnded(ended) => Some(ended),
+        _ => None,
+    });
+    assert!(matches!(ended, Ended::Cancelled(_)), "{ended:?}");
+    worker.draw(request());
     assert_eq!(picture(&worker).camera, request().camera);
 }
 

@@ -3,6 +3,7 @@
 mod eyes;
 mod overlay;
 mod present;
+mod radiance;
 mod tone_map;
 #[cfg(test)]
 mod twin;
@@ -16,6 +17,7 @@ pub(crate) use eyes::ShownUniform;
 pub(crate) use overlay::OverlayPass;
 pub(crate) use present::PresentPass;
 pub use present::Target;
+pub use radiance::RadianceImage;
 pub(crate) use tone_map::ToneMapPass;
 pub(crate) use upscale::Upscale;
 pub(crate) use view::ViewPass;

@@ -136,8 +136,10 @@ impl SceneOnGpu {
         for ((uniform, instance), before) in pairs.zip(&self.instances) {
             let moved = uniform.moved_to(instance.world_from_object);
             moves |= bytemuck::bytes_of(&moved) != bytemuck::bytes_of(uniform);
-            if moved.is_elsewhere() || scene.meshes[instance.mesh as usize].deforms {
-                boxes.push(before.bounds.union(instance.bounds));
+            let is_elsewhere = moved.is_elsewhere() || scene.meshes[instance.mesh as usize].deforms;
+            let around = before.bounds.union(instance.bounds);
+            if is_elsewhere && before.alpha_mode != AlphaMode::Blend && around.is_valid() {
+                boxes.push(around);
             }
             *uniform = moved;
         }

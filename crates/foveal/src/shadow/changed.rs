@@ -22,12 +22,10 @@ pub(super) fn changed_places(
 ) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
     for (number, light) in lights.iter().enumerate() {
-        let reached = boxes.iter().filter(|b| reaches(light, b));
-        let reached: Vec<&Aabb> = reached.collect();
-        if reached.is_empty() || !has_shadows(number) {
+        if !has_shadows(number) {
             continue;
         }
-        for b in reached {
+        for b in boxes.iter().filter(|b| reaches(light, b)) {
             let place = shadow_of(light, b, scene);
             match places.iter_mut().find(|p| holds(**p, place)) {
                 Some(_) => {}

@@ -140,7 +140,9 @@ fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l
         let cascade = shadow_row(cascades + i);
         let away = abs(vec2f(dot(across, position), dot(up, position)) - cascade.xy);
         let texel_m = 2.0 * cascade.z / max(tile.side, 1.0);
-        if tile.side == 0.0 || max(away.x, away.y) > cascade.z - 4.0 * texel_m {
+        // The last one holds the scene: there is none to go on to.
+        let margin = select(4.0 * texel_m, 0.0, i == 3u);
+        if tile.side == 0.0 || max(away.x, away.y) > cascade.z - margin {
             continue;
         }
         let moved = position + normal * shadow_offset(texel_m, n_dot_l);

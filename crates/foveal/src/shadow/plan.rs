@@ -171,7 +171,7 @@ pub(super) fn near_of(light: &LightUniform) -> f32 {
 /// Half the width of a spot light's tile at distance 1; `None` where it needs a cube's sides.
 pub(super) fn spot_tangent(light: &LightUniform) -> Option<f32> {
     let tangent = light.cone_sin / light.cone_cos.max(1e-6);
-    (light.kind == 2 && tangent <= WIDEST_SPOT).then_some(tangent.max(1e-3))
+    (light.kind == 2 && light.cone_cos > 0.0 && tangent <= WIDEST_SPOT).then_some(tangent.max(1e-3))
 }
 
 /// The tiles of a point or spot light that may be seen.

@@ -127,7 +127,14 @@ impl ShadowStage {
 
     /// Things that cast shadows have moved: into, within or out of these boxes. Gives the places
     /// where that changes light.
-    pub(crate) fn scene_moved(&mut self, boxes: &[Aabb], scene: &SceneOnGpu) -> Vec<Place> {
+    ///
+    /// `wants_places`: whether anybody asks for them; they cost time with many lights and boxes.
+    pub(crate) fn scene_moved(
+        &mut self,
+        boxes: &[Aabb],
+        scene: &SceneOnGpu,
+        wants_places: bool,
+    ) -> Vec<Place> {
         let Some(drawing) = &mut self.drawing else {
             return Vec::new();
         };
@@ -137,6 +144,9 @@ impl ShadowStage {
             return Vec::new();
         }
         drawing.kept.disturb(boxes);
+        if !wants_places {
+            return Vec::new();
+        }
         let kept = &drawing.kept;
         changed_places(&scene.lights, boxes, &scene.bounds, |light| {
             let first = (light * TILES_PER_LIGHT) as u32;

@@ -119,6 +119,24 @@ fn shading_with_shadows_equals_its_twin() {
 }
 
 #[test]
+fn the_last_cascade_holds_the_scene_however_small_its_tile() {
+    let mut scene = room();
+    scene
+        .lights
+        .retain(|l| matches!(l.kind, LightKind::Directional));
+    let settings = shadowed(Shadows::Hard).with(|s| s.lighting.shadow_atlas = 256);
+    let mut camera = scene.cameras[0].clone();
+    for _ in 0..6 {
+        // Cascades move in steps: the scene lies elsewhere in them each time.
+        camera.world_from_view.w_axis.z += 0.31;
+        let lookup = lookup(&rendered(&scene, &camera, &settings), Shadows::Hard);
+        for corner in scene.bounds().corners() {
+            assert!(lookup.cascade_at(1, corner).is_some(), "{corner}");
+        }
+    }
+}
+
+#[test]
 fn with_shadows_clustered_and_brute_lighting_give_the_same_bytes() {
     let mut scene = room();
     generate::add_point_lights(&mut scene, 60, 7);

@@ -16,7 +16,7 @@ pub(crate) struct Lookup {
     pub(crate) shadows: Shadows,
 }
 
-struct ShadowTile {
+pub(super) struct ShadowTile {
     corner: [u32; 2],
     side: u32,
 }
@@ -130,26 +130,37 @@ impl Lookup {
         direction: Vec3,
         (position, normal, n_dot_l): (Vec3, Vec3, f32),
     ) -> f32 {
-        let (across, up) = (self.axis(first + 2), self.axis(first + 3));
+        let Some((tile, center, texel_m)) = self.cascade_at(first, position) else {
+            return 1.0;
+        };
         let [_, _, end, per_length] = self.row(first + 1);
-        let on_plane = |p: Vec3| Vec2::new(across.dot(p), up.dot(p));
-        for cascade in 0..4 {
-            let Some(tile) = tile_of(self.rows[first][cascade]) else {
-                continue;
-            };
+        let moved = position + normal * self.offset(texel_m, n_dot_l);
+        let at = (self.on_plane(first, moved) - center) / texel_m;
+        let depth = (end - direction.dot(moved)) * per_length;
+        let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
+        self.passing(&tile, place, depth)
+    }
+
+    /// Across and up, seen along a directional light's rays.
+    fn on_plane(&self, first: usize, p: Vec3) -> Vec2 {
+        let (across, up) = (self.axis(first + 2), self.axis(first + 3));
+        Vec2::new(across.dot(p), up.dot(p))
+    }
+
+    /// The finest cascade that holds a place: its tile, its centre, and metres per texel.
+    pub(super) fn cascade_at(
+        &self,
+        first: usize,
+        position: Vec3,
+    ) -> Option<(ShadowTile, Vec2, f32)> {
+        (0..4).find_map(|cascade| {
+            let tile = tile_of(self.rows[first][cascade])?;
             let [u, v, radius, _] = self.row(self.rows[first + 1][0] as usize + cascade);
             let center = Vec2::new(u, v);
             let texel_m = 2.0 * radius / tile.side as f32;
-            let away = (on_plane(position) - center).abs();
-            if away.max_element() > radius - 4.0 * texel_m {
-                continue;
-            }
-            let moved = position + normal * self.offset(texel_m, n_dot_l);
-            let at = (on_plane(moved) - center) / texel_m;
-            let depth = (end - direction.dot(moved)) * per_length;
-            let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
-            return self.passing(&tile, place, depth);
-        }
-        1.0
+            let away = (self.on_plane(first, position) - center).abs();
+            let margin = if cascade == 3 { 0.0 } else { 4.0 * texel_m };
+            (away.max_element() <= radius - margin).then_some((tile, center, texel_m))
+        })
     }
 }

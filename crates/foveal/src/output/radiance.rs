@@ -2,10 +2,9 @@
 
 use half::f16;
 
-use super::Renderer;
-use crate::gpu::{ErrorTrap, read_texture};
+use crate::Error;
+use crate::gpu::{Gpu, read_texture};
 use crate::stereo::EyeLayout;
-use crate::{DebugView, Error};
 
 /// Linear light with the primaries and the white of sRGB.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,29 +19,15 @@ pub struct RadianceImage {
     pub rgb: Vec<[f32; 3]>,
 }
 
-impl Renderer {
-    /// The last frame's radiance, at the size at which the frame was drawn
-    /// ([`PictureSettings::render_scale`](crate::PictureSettings::render_scale) makes it smaller). Two eyes lie side by side,
-    /// without lenses; eyes that see the same are one picture.
-    ///
-    /// # Errors
-    /// [`Error::Setting`] where a debug view was drawn; [`Error::DeviceLost`],
-    /// [`Error::OutOfMemory`].
-    pub async fn read_radiance(&self) -> Result<RadianceImage, Error> {
-        let settings = &self.stages.settings;
-        if settings.picture.view != DebugView::Final {
-            return Err(Error::Setting {
-                name: "view",
-                value: "a debug view".to_owned(),
-                expected: "final: debug views have no radiance",
-            });
-        }
-        let layout = EyeLayout::of(settings);
-        let texture = self.stages.targets.radiance_view.texture();
-        let trap = ErrorTrap::new(&self.gpu, "reading the radiance back");
-        let bytes = read_texture(&self.gpu, texture).await;
-        trap.finish().await?;
-        let texels: Vec<[f16; 4]> = bytes?
+impl RadianceImage {
+    /// Reads a texture of half floats back, in which eyes lie as `layout` says.
+    pub(crate) async fn read(
+        gpu: &Gpu,
+        texture: &wgpu::Texture,
+        layout: &EyeLayout,
+    ) -> Result<Self, Error> {
+        let bytes = read_texture(gpu, texture).await?;
+        let texels: Vec<[f16; 4]> = bytes
             .as_chunks::<8>()
             .0
             .iter()
@@ -61,7 +46,7 @@ impl Renderer {
                 [r, g, b].map(|v| v.to_f32().max(0.0))
             })
             .collect();
-        Ok(RadianceImage {
+        Ok(Self {
             width: layout.eyes * layout.width,
             height: layout.height,
             rgb,

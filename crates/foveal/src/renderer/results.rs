@@ -1,0 +1,86 @@
+//! What can be asked of a renderer about its last frame.
+
+use foveal_cull::Visibility;
+
+use super::Renderer;
+use crate::culling::{CullingStage, CullingStats};
+use crate::gpu::{ErrorTrap, read_texture};
+use crate::output::RadianceImage;
+use crate::stereo::EyeLayout;
+use crate::{DebugView, Error, SceneStats};
+
+impl Renderer {
+    /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
+    /// [`Settings::picture_size`], alpha 255.
+    ///
+    /// # Errors
+    /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
+    pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
+        let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
+        let bytes = read_texture(&self.gpu, self.picture().texture()).await;
+        trap.finish().await?;
+        bytes
+    }
+
+    /// The last frame's radiance, at the size at which the frame was drawn
+    /// ([`PictureSettings::render_scale`](crate::PictureSettings::render_scale) makes it smaller).
+    /// Two eyes lie side by side, without lenses; eyes that see the same are one picture.
+    ///
+    /// # Errors
+    /// [`Error::Setting`] where a debug view was drawn; [`Error::DeviceLost`],
+    /// [`Error::OutOfMemory`].
+    pub async fn read_radiance(&self) -> Result<RadianceImage, Error> {
+        let settings = &self.stages.settings;
+        if settings.picture.view != DebugView::Final {
+            return Err(Error::Setting {
+                name: "view",
+                value: "a debug view".to_owned(),
+                expected: "final: debug views have no radiance",
+            });
+        }
+        let texture = self.stages.targets.radiance_view.texture();
+        let trap = ErrorTrap::new(&self.gpu, "reading the radiance back");
+        let image = RadianceImage::read(&self.gpu, texture, &EyeLayout::of(settings)).await;
+        trap.finish().await?;
+        image
+    }
+
+    /// What the culler found in the last frame; `None` without culling.
+    #[must_use]
+    pub fn culling(&self) -> Option<CullingStats> {
+        self.stages.culling.as_ref().map(CullingStage::figures)
+    }
+
+    /// What became of each of the scene's objects in the last frame; empty without culling.
+    #[must_use]
+    pub fn visibility(&self) -> &[Visibility] {
+        match &self.stages.culling {
+            Some(culling) => culling.visibility(),
+            None => &[],
+        }
+    }
+
+    /// The last frame's occlusion buffer: width, height, and rows from the top, near / distance (0:
+    /// nothing proven), for orthographic cameras 1 at the near plane to 0 at the far one. `None`
+    /// without culling.
+    #[must_use]
+    pub fn occluder_depth(&self) -> Option<(u32, u32, Vec<f32>)> {
+        self.stages.culling.as_ref().map(CullingStage::depth)
+    }
+
+    /// The last frame's picture on the device, as [`Renderer::read_picture`] gives it: sRGB-encoded
+    /// [`wgpu::TextureFormat::Rgba8Unorm`]. It is another one after [`Renderer::set_settings`].
+    #[must_use]
+    pub fn picture(&self) -> &wgpu::TextureView {
+        match &self.upscale {
+            Some(upscale) => upscale.picture_view(),
+            None => self.stages.targets.shown(),
+        }
+    }
+
+    /// Counts of the scene that was set last.
+    #[must_use]
+    pub fn scene_stats(&self) -> SceneStats {
+        self.scene.stats
+    }
+}
