@@ -76,17 +76,25 @@ pub(crate) unsafe fn zeroed_list<'a, T>(
     length: usize,
     name: &str,
 ) -> Result<&'a mut [T], Fault> {
+    check_list(pointer, length, name)?;
     if length == 0 {
         return Ok(&mut []);
     }
-    check(pointer, name)?;
-    fits::<T>(length, name)?;
     // SAFETY: not null, aligned, at most isize::MAX bytes, and the caller says that they can be
     // written. After that they are values of `T`.
     Ok(unsafe {
         pointer.write_bytes(0, length);
         core::slice::from_raw_parts_mut(pointer, length)
     })
+}
+
+/// Checks a list for results without writing to it: a call that fails leaves it as it was.
+pub(crate) fn check_list<T>(pointer: *const T, length: usize, name: &str) -> Result<(), Fault> {
+    if length == 0 {
+        return Ok(());
+    }
+    check(pointer, name)?;
+    fits::<T>(length, name)
 }
 
 fn fits<T>(length: usize, name: &str) -> Result<(), Fault> {

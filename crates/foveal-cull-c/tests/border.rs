@@ -400,3 +400,28 @@ fn meshes_with_wrong_sizes_or_numbers_are_refused() {
     };
     assert_eq!(bake(empty), (Status::Ok, 0));
 }
+
+#[test]
+fn results_of_calls_that_fail_stay_as_they_were() {
+    let culler = culler();
+    let mut tree = null_mut();
+    let (mut results, mut pixels) = ([9u8; 2], [9.0f32; 2]);
+    let mut width = 9;
+    // SAFETY: live handles; pointers are null or to variables of the right size.
+    unsafe {
+        let built = foveal_cull_tree_build(BEHIND.as_ptr(), 1, null(), &mut tree);
+        assert_eq!(built, Status::Ok);
+        let status = foveal_culler_test_tree(culler, tree, results.as_mut_ptr(), 2);
+        assert_eq!((status, results), (Status::WrongLength, [9; 2]));
+        let status = foveal_culler_read_depth(culler, pixels.as_mut_ptr(), 2);
+        assert_eq!((status, pixels), (Status::WrongLength, [9.0; 2]));
+        let nan = [f64::NAN; 3];
+        let to = results.as_mut_ptr();
+        let status = foveal_culler_test_boxes(culler, BEHIND.as_ptr(), 1, nan.as_ptr(), to);
+        assert_eq!((status, results), (Status::NotFinite, [9; 2]));
+        let status = foveal_culler_size(culler, &mut width, null_mut());
+        assert_eq!((status, width), (Status::NullPointer, 9));
+        foveal_cull_tree_destroy(tree);
+        foveal_culler_destroy(culler);
+    }
+}

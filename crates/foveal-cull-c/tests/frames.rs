@@ -255,8 +255,16 @@ extern "C" fn run_badly(user: *mut c_void, tasks: u32, task: FovealCullTask, con
         let culler = user.cast::<FovealCuller>();
         let (mut w, mut h) = (0, 0);
         assert_eq!(foveal_culler_size(culler, &mut w, &mut h), Status::Busy);
+        assert_eq!((w, h), (0, 0));
         let again = foveal_culler_rasterize(culler, null(), null(), null(), null());
         assert_eq!(again, Status::Busy);
+        // Tests that fail leave what was there.
+        let (mut results, mut pixels) = ([9u8], [9.0f32]);
+        let to = results.as_mut_ptr();
+        let status = foveal_culler_test_boxes(culler, BEHIND.as_ptr(), 1, null(), to);
+        assert_eq!((status, results), (Status::Busy, [9]));
+        let status = foveal_culler_read_depth(culler, pixels.as_mut_ptr(), 1);
+        assert_eq!((status, pixels), (Status::Busy, [9.0]));
     }
     CALLS.fetch_add(1, Ordering::Relaxed);
 }
