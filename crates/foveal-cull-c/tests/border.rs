@@ -63,7 +63,10 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
         assert_eq!(foveal_cull_mesh_bake(null(), null_mut()), null_pointer);
         let mut out = null_mut();
         assert_eq!(foveal_cull_mesh_bake(null(), &mut out), null_pointer);
-        assert_eq!(foveal_cull_mesh_source_init(null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_mesh_source_init_sized(null_mut(), 56),
+            null_pointer
+        );
         let min = [0.0f32; 3];
         let (some, none) = (min.as_ptr(), null());
         assert_eq!(
@@ -125,9 +128,15 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             look_at(null(), at, at, 1.0, 1.0, 0.1, &mut eye),
             null_pointer
         );
-        assert_eq!(foveal_cull_view_init(null(), null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_view_init_sized(null(), null_mut(), 400),
+            null_pointer
+        );
         assert_eq!(foveal_cull_threads_create(2, null_mut()), null_pointer);
-        assert_eq!(foveal_cull_threads_jobs(null(), null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_threads_jobs_sized(null(), null_mut(), 32),
+            null_pointer
+        );
         let mut tree = null_mut();
         assert_eq!(
             foveal_cull_tree_build(null(), 1, null(), &mut tree),
@@ -138,7 +147,10 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             null_pointer
         );
         assert_eq!(foveal_cull_tree_refit(null_mut(), null(), 0), null_pointer);
-        assert_eq!(foveal_cull_frame_options_init(null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_frame_options_init_sized(null_mut(), 48),
+            null_pointer
+        );
         assert_eq!(foveal_culler_create(8, 8, null_mut()), null_pointer);
         assert_eq!(
             foveal_culler_size(null(), null_mut(), null_mut()),
@@ -257,7 +269,10 @@ fn meshes_with_wrong_sizes_or_numbers_are_refused() {
     // SAFETY: a place for the source, which is written.
     let good = unsafe {
         assert_eq!(
-            foveal_cull_mesh_source_init(source.as_mut_ptr()),
+            foveal_cull_mesh_source_init_sized(
+                source.as_mut_ptr(),
+                size_of::<FovealCullMeshSource>()
+            ),
             Status::Ok
         );
         FovealCullMeshSource {

@@ -99,7 +99,10 @@ fn bad_views_options_and_jobs_are_refused_and_leave_everything_visible() {
             Status::Ok
         );
         assert_eq!(
-            foveal_cull_frame_options_init(options.as_mut_ptr()),
+            foveal_cull_frame_options_init_sized(
+                options.as_mut_ptr(),
+                size_of::<FovealCullFrameOptions>()
+            ),
             Status::Ok
         );
         options.assume_init()
@@ -297,7 +300,7 @@ fn a_job_system_that_forgets_repeats_and_invents_tasks_gives_the_same_frame() {
         );
         assert_eq!(foveal_cull_threads_create(3, &mut threads), Status::Ok);
         assert_eq!(
-            foveal_cull_threads_jobs(threads, own.as_mut_ptr()),
+            foveal_cull_threads_jobs_sized(threads, own.as_mut_ptr(), size_of::<FovealCullJobs>()),
             Status::Ok
         );
         let badly = FovealCullJobs {
@@ -354,7 +357,10 @@ fn a_clock_that_has_run_out_draws_nothing_and_hides_nothing() {
             Status::Ok
         );
         assert_eq!(
-            foveal_cull_frame_options_init(options.as_mut_ptr()),
+            foveal_cull_frame_options_init_sized(
+                options.as_mut_ptr(),
+                size_of::<FovealCullFrameOptions>()
+            ),
             Status::Ok
         );
         let options = FovealCullFrameOptions {

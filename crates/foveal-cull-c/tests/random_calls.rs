@@ -294,7 +294,10 @@ impl World {
         };
         // SAFETY: live handles; structs of this version; lists as long as said.
         unsafe {
-            foveal_cull_frame_options_init(options.as_mut_ptr());
+            foveal_cull_frame_options_init_sized(
+                options.as_mut_ptr(),
+                size_of::<FovealCullFrameOptions>(),
+            );
             let mut options: FovealCullFrameOptions = options.assume_init();
             options.occludee_size_threshold = r.number().abs() as f32 * 0.01;
             options.occlusion = u32::from(!r.one_in(10));
