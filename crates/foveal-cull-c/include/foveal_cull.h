@@ -182,7 +182,8 @@ typedef struct FovealCullFrameOptions {
     float occludee_size_threshold;
     /* 0. */
     uint32_t reserved;
-    /* Reads a clock, nanoseconds; null for no time limit. Called from the threads of the jobs. */
+    /* Reads a clock, nanoseconds; null for no time limit. Called from the threads of the jobs. Must
+     * not throw. */
     uint64_t (*clock)(void *user);
     /* Passed to `clock`. */
     void *clock_user;
