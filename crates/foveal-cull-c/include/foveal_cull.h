@@ -15,11 +15,15 @@
  * free(), are destroyed objects and arrays that are shorter than said. A function that fails leaves its
  * result as it was or null, and its object unchanged, unless it says otherwise.
  *
- * Threads. Functions that take const objects may be called from many threads at once. Functions that
- * change an object return FOVEAL_CULL_BUSY where another call uses it. Nothing waits.
+ * Threads. Functions that take const objects may be called from many threads at once. A function that
+ * changes an object returns FOVEAL_CULL_BUSY while another call uses it, and so do calls that use an
+ * object while another one changes it: tests of a culler that is rasterizing, for instance. No function
+ * waits for an object. Cullers that rasterize on the same FovealCullThreads take turns with them.
  *
  * Structs begin with their size: set `size` to sizeof, or use the init function. New versions only add
- * fields at the end. Strides and sizes are bytes.
+ * fields at the end. Functions named _sized take the size of the struct that the caller has and write no
+ * more; the functions without the word pass the sizeof of this header. FovealCullEye and
+ * FovealCullOccluderId have no size and never change. Strides and sizes are bytes.
  *
  * Memory is allocated by the library's own allocator, which cannot be replaced.
  *
@@ -178,7 +182,8 @@ typedef struct FovealCullFrameOptions {
     float occludee_size_threshold;
     /* 0. */
     uint32_t reserved;
-    /* Reads a clock, nanoseconds; null for no time limit. Called from the threads of the jobs. */
+    /* Reads a clock, nanoseconds; null for no time limit. Called from the threads of the jobs. Must
+     * not throw. */
     uint64_t (*clock)(void *user);
     /* Passed to `clock`. */
     void *clock_user;
@@ -253,7 +258,10 @@ size_t foveal_cull_last_error(char *text, size_t size);
 /* ---- Meshes: bake when a level loads, about 2.5 microseconds per triangle ---- */
 
 /* Fills a source with defaults: one-sided, with adjacency, 32-bit indices, stride 12, no triangles. */
-FovealCullStatus foveal_cull_mesh_source_init(FovealCullMeshSource *source);
+FovealCullStatus foveal_cull_mesh_source_init_sized(FovealCullMeshSource *source, size_t size);
+static inline FovealCullStatus foveal_cull_mesh_source_init(FovealCullMeshSource *source) {
+    return foveal_cull_mesh_source_init_sized(source, sizeof(FovealCullMeshSource));
+}
 
 /* Bakes a mesh. The source's arrays are not needed afterwards. */
 FovealCullStatus foveal_cull_mesh_bake(const FovealCullMeshSource *source, FovealCullMesh **out);
@@ -313,7 +321,10 @@ FovealCullStatus foveal_cull_eye_look_at(const double *position, const double *t
                                          double fov_y_rad, double aspect, double near_m, FovealCullEye *out);
 
 /* A view of one eye at its exact place. For two eyes set `eye_count` and `eyes[1]`. */
-FovealCullStatus foveal_cull_view_init(const FovealCullEye *eye, FovealCullView *out);
+FovealCullStatus foveal_cull_view_init_sized(const FovealCullEye *eye, FovealCullView *out, size_t size);
+static inline FovealCullStatus foveal_cull_view_init(const FovealCullEye *eye, FovealCullView *out) {
+    return foveal_cull_view_init_sized(eye, out, sizeof(FovealCullView));
+}
 
 /* ---- Threads ---- */
 
@@ -324,7 +335,11 @@ FovealCullStatus foveal_cull_threads_create(uint32_t count, FovealCullThreads **
 void foveal_cull_threads_destroy(FovealCullThreads *threads);
 
 /* The threads as a job system, which lives as long as they do. */
-FovealCullStatus foveal_cull_threads_jobs(const FovealCullThreads *threads, FovealCullJobs *out);
+FovealCullStatus foveal_cull_threads_jobs_sized(const FovealCullThreads *threads, FovealCullJobs *out,
+                                                size_t size);
+static inline FovealCullStatus foveal_cull_threads_jobs(const FovealCullThreads *threads, FovealCullJobs *out) {
+    return foveal_cull_threads_jobs_sized(threads, out, sizeof(FovealCullJobs));
+}
 
 /* ---- Trees of boxes ---- */
 
@@ -342,7 +357,10 @@ void foveal_cull_tree_destroy(FovealCullTree *tree);
 /* ---- Cullers ---- */
 
 /* Fills options with the defaults. */
-FovealCullStatus foveal_cull_frame_options_init(FovealCullFrameOptions *options);
+FovealCullStatus foveal_cull_frame_options_init_sized(FovealCullFrameOptions *options, size_t size);
+static inline FovealCullStatus foveal_cull_frame_options_init(FovealCullFrameOptions *options) {
+    return foveal_cull_frame_options_init_sized(options, sizeof(FovealCullFrameOptions));
+}
 
 /* Makes a culler with an occlusion buffer of this size: a quarter of the picture's per axis is the
  * natural choice. 1 to 4,096 pixels per side. */

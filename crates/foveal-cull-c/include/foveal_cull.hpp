@@ -1,7 +1,8 @@
 // foveal-cull for C++17: objects that free themselves, and errors as exceptions.
 //
 // foveal_cull.h says what the functions do. Without exceptions (-fno-exceptions) an error calls
-// FOVEAL_CULL_FAIL(status, text), which aborts unless it is defined before this header is included.
+// FOVEAL_CULL_FAIL(status, text), which aborts unless it is defined before this header is included. It
+// must not return: what follows it has no object to work on.
 //
 // Licence: MIT or Apache-2.0.
 #ifndef FOVEAL_CULL_HPP
@@ -42,7 +43,7 @@ private:
 #endif
 
 /// Throws an Error unless the status is FOVEAL_CULL_OK.
-inline void check(FovealCullStatus status) {
+inline void expect_ok(FovealCullStatus status) {
     if (status == FOVEAL_CULL_OK) {
         return;
     }
@@ -70,7 +71,7 @@ static_assert(sizeof(Box) == 6 * sizeof(float), "boxes are six floats in a row")
 enum class Visibility : std::uint8_t {
     visible = FOVEAL_CULL_VISIBLE,
     outside = FOVEAL_CULL_OUTSIDE,
-    small = FOVEAL_CULL_SMALL,
+    too_small = FOVEAL_CULL_SMALL,
     occluded = FOVEAL_CULL_OCCLUDED,
 };
 
@@ -85,23 +86,23 @@ template <class Number> Affine affine(const Number *column_major) {
 
 /// The eye of a column-major matrix from the world to clip space.
 inline Eye eye_from_matrix(const double *clip_from_world, FovealCullDepth depth) {
-    Eye eye;
-    check(foveal_cull_eye_from_matrix(clip_from_world, depth, &eye));
+    Eye eye{};
+    expect_ok(foveal_cull_eye_from_matrix(clip_from_world, depth, &eye));
     return eye;
 }
 
 /// The same with floats.
 inline Eye eye_from_matrix(const float *clip_from_world, FovealCullDepth depth) {
-    Eye eye;
-    check(foveal_cull_eye_from_matrix_f32(clip_from_world, depth, &eye));
+    Eye eye{};
+    expect_ok(foveal_cull_eye_from_matrix_f32(clip_from_world, depth, &eye));
     return eye;
 }
 
 /// A symmetric perspective eye without a far plane.
 inline Eye look_at(const Point &position, const Point &target, const Point &up, double fov_y_rad, double aspect,
                    double near_m) {
-    Eye eye;
-    check(foveal_cull_eye_look_at(position.data(), target.data(), up.data(), fov_y_rad, aspect, near_m, &eye));
+    Eye eye{};
+    expect_ok(foveal_cull_eye_look_at(position.data(), target.data(), up.data(), fov_y_rad, aspect, near_m, &eye));
     return eye;
 }
 
@@ -109,7 +110,7 @@ inline Eye look_at(const Point &position, const Point &target, const Point &up, 
 class View {
 public:
     View(const Eye &eye, double validity_radius_m = 0.0) {
-        check(foveal_cull_view_init(&eye, &view_));
+        expect_ok(foveal_cull_view_init(&eye, &view_));
         view_.validity_radius_m = validity_radius_m;
     }
     View(const Eye &left, const Eye &right, double validity_radius_m = 0.0) : View(left, validity_radius_m) {
@@ -119,13 +120,13 @@ public:
     const FovealCullView *get() const noexcept { return &view_; }
 
 private:
-    FovealCullView view_;
+    FovealCullView view_{};
 };
 
 /// Options with the defaults.
 inline Options default_options() {
-    Options options;
-    check(foveal_cull_frame_options_init(&options));
+    Options options{};
+    expect_ok(foveal_cull_frame_options_init(&options));
     return options;
 }
 
@@ -144,8 +145,8 @@ public:
     Mesh(const float *positions, std::size_t position_count, std::size_t stride, const Index *indices,
          std::size_t index_count, bool two_sided = false, bool adjacency = true) {
         static_assert(sizeof(Index) == 2 || sizeof(Index) == 4, "indices have 16 or 32 bits");
-        FovealCullMeshSource source;
-        check(foveal_cull_mesh_source_init(&source));
+        FovealCullMeshSource source{};
+        expect_ok(foveal_cull_mesh_source_init(&source));
         source.positions = positions;
         source.position_count = position_count;
         source.position_stride = stride;
@@ -155,13 +156,13 @@ public:
         source.two_sided = two_sided ? 1 : 0;
         source.adjacency = adjacency ? 1 : 0;
         FovealCullMesh *mesh = nullptr;
-        check(foveal_cull_mesh_bake(&source, &mesh));
+        expect_ok(foveal_cull_mesh_bake(&source, &mesh));
         mesh_.reset(mesh);
     }
     /// A box whose faces look outwards.
     static Mesh box(const Box &bounds) {
         FovealCullMesh *mesh = nullptr;
-        check(foveal_cull_mesh_from_box(bounds.min, bounds.max, &mesh));
+        expect_ok(foveal_cull_mesh_from_box(bounds.min, bounds.max, &mesh));
         return Mesh(mesh);
     }
     std::size_t triangle_count() const noexcept { return foveal_cull_mesh_triangle_count(mesh_.get()); }
@@ -177,36 +178,36 @@ class Occluders {
 public:
     Occluders() {
         FovealCullOccluders *set = nullptr;
-        check(foveal_cull_occluders_create(&set));
+        expect_ok(foveal_cull_occluders_create(&set));
         set_.reset(set);
     }
     OccluderId add(const Mesh &mesh) { return add(mesh, nullptr); }
     OccluderId add(const Mesh &mesh, const Affine &world_from_mesh) { return add(mesh, world_from_mesh.data()); }
     void move(OccluderId id, const Affine &world_from_mesh) {
-        check(foveal_cull_occluders_move(set_.get(), &id, world_from_mesh.data(), 1));
+        expect_ok(foveal_cull_occluders_move(set_.get(), &id, world_from_mesh.data(), 1));
     }
     void move(const std::vector<OccluderId> &ids, const std::vector<Affine> &world_from_mesh) {
         if (ids.size() != world_from_mesh.size()) {
             FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many transforms as ids are needed");
         }
         const double *numbers = ids.empty() ? nullptr : world_from_mesh[0].data();
-        check(foveal_cull_occluders_move(set_.get(), ids.data(), numbers, ids.size()));
+        expect_ok(foveal_cull_occluders_move(set_.get(), ids.data(), numbers, ids.size()));
     }
     void enable(OccluderId id, bool enabled) {
-        check(foveal_cull_occluders_enable(set_.get(), id, enabled ? 1 : 0));
+        expect_ok(foveal_cull_occluders_enable(set_.get(), id, enabled ? 1 : 0));
     }
-    void remove(OccluderId id) { check(foveal_cull_occluders_remove(set_.get(), id)); }
+    void remove(OccluderId id) { expect_ok(foveal_cull_occluders_remove(set_.get(), id)); }
     std::size_t count() const {
         std::size_t count = 0;
-        check(foveal_cull_occluders_count(set_.get(), &count));
+        expect_ok(foveal_cull_occluders_count(set_.get(), &count));
         return count;
     }
     const FovealCullOccluders *get() const noexcept { return set_.get(); }
 
 private:
     OccluderId add(const Mesh &mesh, const double *world_from_mesh) {
-        OccluderId id;
-        check(foveal_cull_occluders_add(set_.get(), mesh.get(), world_from_mesh, &id));
+        OccluderId id{};
+        expect_ok(foveal_cull_occluders_add(set_.get(), mesh.get(), world_from_mesh, &id));
         return id;
     }
     detail::Handle<FovealCullOccluders, foveal_cull_occluders_destroy> set_;
@@ -218,11 +219,11 @@ class Tree {
 public:
     explicit Tree(const std::vector<Box> &boxes, const Point &origin = {}) : count_(boxes.size()) {
         FovealCullTree *tree = nullptr;
-        check(foveal_cull_tree_build(numbers(boxes), boxes.size(), origin.data(), &tree));
+        expect_ok(foveal_cull_tree_build(numbers(boxes), boxes.size(), origin.data(), &tree));
         tree_.reset(tree);
     }
     void refit(const std::vector<Box> &boxes) {
-        check(foveal_cull_tree_refit(tree_.get(), numbers(boxes), boxes.size()));
+        expect_ok(foveal_cull_tree_refit(tree_.get(), numbers(boxes), boxes.size()));
     }
     std::size_t size() const noexcept { return count_; }
     const FovealCullTree *get() const noexcept { return tree_.get(); }
@@ -249,7 +250,9 @@ protected:
 };
 
 /// The engine's own job system: `run(tasks, task)` calls task(i) once for every i below `tasks`, in any
-/// order and on any threads, and returns when all are done.
+/// order and on any threads, and returns when all are done. One JobSystem serves one culler at a time: two
+/// frames at once need two. Where `run` throws, rasterize finishes the frame and throws the same; `run` must
+/// have seen to it that none of the tasks that it queued is called after that.
 class JobSystem : public Jobs {
 public:
     using Task = std::function<void(std::uint32_t)>;
@@ -293,9 +296,9 @@ class Threads : public Jobs {
 public:
     explicit Threads(std::uint32_t count) {
         FovealCullThreads *threads = nullptr;
-        check(foveal_cull_threads_create(count, &threads));
+        expect_ok(foveal_cull_threads_create(count, &threads));
         threads_.reset(threads);
-        check(foveal_cull_threads_jobs(threads, &jobs_));
+        expect_ok(foveal_cull_threads_jobs(threads, &jobs_));
     }
 
 private:
@@ -307,12 +310,12 @@ class Culler {
 public:
     Culler(std::uint32_t width_px, std::uint32_t height_px) {
         FovealCuller *culler = nullptr;
-        check(foveal_culler_create(width_px, height_px, &culler));
+        expect_ok(foveal_culler_create(width_px, height_px, &culler));
         culler_.reset(culler);
     }
     /// Begins a frame on the calling thread.
     void rasterize(const View &view, const Occluders &occluders, const Options &options = default_options()) {
-        check(foveal_culler_rasterize(culler_.get(), view.get(), occluders.get(), &options, nullptr));
+        expect_ok(foveal_culler_rasterize(culler_.get(), view.get(), occluders.get(), &options, nullptr));
     }
     /// Begins a frame on the threads of `jobs`.
     void rasterize(const View &view, const Occluders &occluders, Jobs &jobs,
@@ -320,11 +323,11 @@ public:
         const FovealCullStatus status =
             foveal_culler_rasterize(culler_.get(), view.get(), occluders.get(), &options, jobs.get());
         jobs.rethrow();
-        check(status);
+        expect_ok(status);
     }
     void test(const Box *boxes, std::size_t count, Visibility *results, const Point &origin = {}) const {
         const float *numbers = count == 0 ? nullptr : boxes->min;
-        check(foveal_culler_test_boxes(culler_.get(), numbers, count, origin.data(),
+        expect_ok(foveal_culler_test_boxes(culler_.get(), numbers, count, origin.data(),
                                        reinterpret_cast<std::uint8_t *>(results)));
     }
     std::vector<Visibility> test(const std::vector<Box> &boxes, const Point &origin = {}) const {
@@ -334,26 +337,26 @@ public:
     }
     std::vector<Visibility> test(const Tree &tree) const {
         std::vector<Visibility> results(tree.size());
-        check(foveal_culler_test_tree(culler_.get(), tree.get(), reinterpret_cast<std::uint8_t *>(results.data()),
+        expect_ok(foveal_culler_test_tree(culler_.get(), tree.get(), reinterpret_cast<std::uint8_t *>(results.data()),
                                       results.size()));
         return results;
     }
     std::pair<std::uint32_t, std::uint32_t> size() const {
         std::uint32_t width = 0, height = 0;
-        check(foveal_culler_size(culler_.get(), &width, &height));
+        expect_ok(foveal_culler_size(culler_.get(), &width, &height));
         return {width, height};
     }
     /// Row by row from the top left; 0 where nothing is proven.
     std::vector<float> depth() const {
         const auto sides = size();
         std::vector<float> pixels(static_cast<std::size_t>(sides.first) * sides.second);
-        check(foveal_culler_read_depth(culler_.get(), pixels.data(), pixels.size()));
+        expect_ok(foveal_culler_read_depth(culler_.get(), pixels.data(), pixels.size()));
         return pixels;
     }
     FovealCullStats stats() const {
         FovealCullStats stats{};
         stats.size = sizeof stats;
-        check(foveal_culler_stats(culler_.get(), &stats));
+        expect_ok(foveal_culler_stats(culler_.get(), &stats));
         return stats;
     }
 

@@ -5,16 +5,19 @@
 // - RenderTriangles collects; the frame is rasterized by the first test after it. Alternating draws and
 //   tests gives right answers, but each first test rasterizes everything that was drawn since ClearBuffer.
 // - Meshes are baked when they are seen first, about 2.5 microseconds per triangle, and known again by a
-//   hash of their content. SetStaticMeshes(true) knows them by their addresses instead, without hashing.
-//   Vertices that are given in clip space change in every frame and are baked in every frame: pass model
-//   vertices and a matrix.
+//   hash of their content. SetStaticMeshes(true) knows them by their addresses instead, without hashing:
+//   call it again after freeing meshes. Vertices that are given in clip space change in every frame and are
+//   baked in every frame: pass model vertices and a matrix.
+// - Tests that run on the job system that was given to SetJobs need a Finish() before: the first test would
+//   wait for workers that wait for the first test.
 // - RenderTriangles always returns VISIBLE, which is the safe answer. Clip planes are found without the mask.
 // - The picture of SetResolution is sampled at its own pixel centres, as by MOC; the buffer behind it has
 //   a quarter of its size per axis.
 // - A near clip plane of 0 is one of 0.0001.
 // - There are no bins (BinTriangles, RenderTrilist, CullingThreadpool) and no MergeBuffer: SetJobs gives the
-//   frame to a job system.
-// - After an error everything is VISIBLE; GetLastStatus says which.
+//   frame to a job system. GetImplementation, GetStatistics and TransformVertices are missing too.
+// - Errors hide nothing: a mesh that cannot be baked or placed is not drawn, and where a frame or a test
+//   fails the answer is VISIBLE. GetLastStatus says which error was the last.
 //
 // Tests may run on many threads at once, but not while another thread draws or clears.
 //
@@ -97,11 +100,10 @@ public:
         for (auto known = meshes_.begin(); known != meshes_.end();) {
             Known &mesh = known->second;
             mesh.drawn = 0;
-            if (frame_ - mesh.last_frame > FRAMES_KEPT) {
-                for (const FovealCullOccluderId id : mesh.ids) {
-                    note(foveal_cull_occluders_remove(occluders_, id));
-                }
-                foveal_cull_mesh_destroy(mesh.mesh);
+            // Content that was there in one frame only is that of clip-space vertices: it does not come back.
+            const bool once = mesh.first_frame == mesh.last_frame && !static_meshes_;
+            if (frame_ - mesh.last_frame > (once ? 1 : FRAMES_KEPT)) {
+                forget(mesh);
                 known = meshes_.erase(known);
             } else {
                 ++known;
@@ -127,13 +129,19 @@ public:
         mesh->last_frame = frame_;
         if (mesh->drawn < mesh->ids.size()) {
             const FovealCullOccluderId id = mesh->ids[mesh->drawn];
-            note(foveal_cull_occluders_move(occluders_, &id, place, 1));
+            // An occluder that stayed at its old place counts as not drawn: the next frame switches it off.
+            dirty_ = true;
+            if (!note(foveal_cull_occluders_move(occluders_, &id, place, 1))) {
+                return VISIBLE;
+            }
             if (mesh->drawn >= mesh->enabled) {
-                note(foveal_cull_occluders_enable(occluders_, id, 1));
+                if (!note(foveal_cull_occluders_enable(occluders_, id, 1))) {
+                    return VISIBLE;
+                }
                 mesh->enabled = mesh->drawn + 1;
             }
         } else {
-            FovealCullOccluderId id;
+            FovealCullOccluderId id{};
             if (!note(foveal_cull_occluders_add(occluders_, mesh->mesh, place, &id))) {
                 return VISIBLE;
             }
@@ -185,8 +193,12 @@ public:
                 continue;
             }
             for (int axis = 0; axis < 3; ++axis) {
-                const double low = std::min({corner[0][axis], corner[1][axis], corner[2][axis]});
-                const double high = std::max({corner[0][axis], corner[1][axis], corner[2][axis]});
+                // Without std::min and std::max, which windows.h makes macros of.
+                double low = corner[0][axis], high = low;
+                for (int k = 1; k < 3; ++k) {
+                    low = corner[k][axis] < low ? corner[k][axis] : low;
+                    high = corner[k][axis] > high ? corner[k][axis] : high;
+                }
                 // Rounded outwards.
                 boxes[boxed][axis] = std::nextafter(static_cast<float>(low), -INFINITY);
                 boxes[boxed][axis + 3] = std::nextafter(static_cast<float>(high), INFINITY);
@@ -224,8 +236,18 @@ public:
 
     // ---- Not of Masked Occlusion Culling ----
 
-    /// Meshes are known by their addresses: their content must not change while they are drawn.
-    void SetStaticMeshes(bool are_static) { static_meshes_ = are_static; }
+    /// Meshes are known by their addresses: their content must not change. Forgets all meshes and what was
+    /// drawn since ClearBuffer. Call it again after freeing meshes, since other meshes may get their memory.
+    void SetStaticMeshes(bool are_static) {
+        static_meshes_ = are_static;
+        for (auto &entry : meshes_) {
+            forget(entry.second);
+        }
+        meshes_.clear();
+        dirty_ = true;
+    }
+    /// The number of baked meshes that are kept.
+    std::size_t GetMeshCount() const { return meshes_.size(); }
     /// The job system that frames are rasterized by; null for the calling thread. It is copied.
     void SetJobs(const FovealCullJobs *jobs) {
         has_jobs_ = jobs != nullptr;
@@ -233,6 +255,9 @@ public:
             jobs_ = *jobs;
         }
     }
+    /// Rasterizes what was drawn since the last test. Call it after the draws and before tests that run on
+    /// the job system of SetJobs.
+    void Finish() const { finish(); }
     /// The last error, FOVEAL_CULL_OK if there was none.
     FovealCullStatus GetLastStatus() const { return static_cast<FovealCullStatus>(status_.load()); }
 
@@ -240,7 +265,7 @@ public:
     MaskedOcclusionCulling &operator=(const MaskedOcclusionCulling &) = delete;
 
 private:
-    /// Frames after which a mesh is forgotten that was not drawn.
+    /// Frames after which a mesh is forgotten that was drawn in several frames, or is static.
     static constexpr std::uint64_t FRAMES_KEPT = 120;
 
     struct Source {
@@ -257,6 +282,7 @@ private:
         std::vector<FovealCullOccluderId> ids;
         std::size_t drawn = 0;
         std::size_t enabled = 0;
+        std::uint64_t first_frame = 0;
         std::uint64_t last_frame = 0;
     };
 
@@ -286,6 +312,13 @@ private:
         }
         foveal_cull_occluders_destroy(occluders_);
         foveal_culler_destroy(culler_);
+    }
+
+    void forget(const Known &mesh) {
+        for (const FovealCullOccluderId id : mesh.ids) {
+            note(foveal_cull_occluders_remove(occluders_, id));
+        }
+        foveal_cull_mesh_destroy(mesh.mesh);
     }
 
     bool note(FovealCullStatus status) const {
@@ -334,7 +367,8 @@ private:
         std::memcpy(point + 2, at + layout.mOffsetZ, sizeof(float));
     }
 
-    Key key_of(const Source &s, unsigned int vertices) const {
+    /// By content: the corners of the triangles. Vertices that no index names may lie outside of memory.
+    Key key_of(const Source &s) const {
         Hash hash;
         hash.add(static_cast<std::uint64_t>(s.count) << 2 | (s.turn ? 2u : 0u) | (s.two_sided ? 1u : 0u));
         if (static_meshes_) {
@@ -344,13 +378,10 @@ private:
             hash.add(static_cast<std::uint64_t>(s.layout.mOffsetZ));
             return hash.key;
         }
-        for (int i = 0; i < 3 * s.count; ++i) {
-            hash.add(s.triangles[i]);
-        }
-        for (unsigned int i = 0; i < vertices; ++i) {
+        for (std::size_t i = 0; i < 3 * static_cast<std::size_t>(s.count); ++i) {
             float point[3];
             std::uint32_t bits[3];
-            read(s.vertices, i, s.layout, point);
+            read(s.vertices, s.triangles[i], s.layout, point);
             std::memcpy(bits, point, sizeof bits);
             hash.add(static_cast<std::uint64_t>(bits[0]) << 32 | bits[1]);
             hash.add(bits[2]);
@@ -360,33 +391,37 @@ private:
 
     /// A mesh that was baked before, or is baked now; null if it cannot be.
     Known *known(const Source &s) {
-        unsigned int vertices = 0;
-        if (!static_meshes_) {
-            vertices = 1 + *std::max_element(s.triangles, s.triangles + 3 * static_cast<std::size_t>(s.count));
-        }
-        const Key key = key_of(s, vertices);
+        const Key key = key_of(s);
         const auto found = meshes_.find(key);
         if (found != meshes_.end()) {
             return &found->second;
         }
         std::vector<unsigned int> triangles(s.triangles, s.triangles + 3 * static_cast<std::size_t>(s.count));
-        vertices = 1 + *std::max_element(triangles.begin(), triangles.end());
-        std::vector<float> points(3 * static_cast<std::size_t>(vertices));
-        for (unsigned int i = 0; i < vertices; ++i) {
-            read(s.vertices, i, s.layout, &points[3 * static_cast<std::size_t>(i)]);
+        // Only vertices that are named, in the order of their numbers.
+        std::vector<unsigned int> named(triangles);
+        std::sort(named.begin(), named.end());
+        named.erase(std::unique(named.begin(), named.end()), named.end());
+        std::vector<float> points(3 * named.size());
+        for (std::size_t i = 0; i < named.size(); ++i) {
+            read(s.vertices, named[i], s.layout, &points[3 * i]);
+        }
+        for (unsigned int &index : triangles) {
+            const auto at = std::lower_bound(named.begin(), named.end(), index);
+            index = static_cast<unsigned int>(at - named.begin());
         }
         for (std::size_t t = 0; s.turn && t < triangles.size(); t += 3) {
             std::swap(triangles[t + 1], triangles[t + 2]);
         }
-        FovealCullMeshSource source;
+        FovealCullMeshSource source{};
         note(foveal_cull_mesh_source_init(&source));
         source.positions = points.data();
-        source.position_count = vertices;
+        source.position_count = named.size();
         source.indices = triangles.data();
         source.index_count = triangles.size();
         source.two_sided = s.two_sided ? 1 : 0;
         source.adjacency = 0;
         Known mesh;
+        mesh.first_frame = frame_;
         if (!note(foveal_cull_mesh_bake(&source, &mesh.mesh))) {
             return nullptr;
         }
@@ -423,7 +458,7 @@ private:
         eye.bottom = 1.0 - 2.0 * static_cast<double>((height_ + 3) / 4 * 4) / height_;
         eye.near_m = static_cast<double>(used_near());
         eye.far_m = std::numeric_limits<double>::infinity();
-        FovealCullView view;
+        FovealCullView view{};
         return note(foveal_cull_view_init(&eye, &view)) &&
                note(foveal_culler_rasterize(culler_, &view, occluders_, nullptr, has_jobs_ ? &jobs_ : nullptr));
     }

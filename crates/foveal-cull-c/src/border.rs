@@ -76,17 +76,25 @@ pub(crate) unsafe fn zeroed_list<'a, T>(
     length: usize,
     name: &str,
 ) -> Result<&'a mut [T], Fault> {
+    check_list(pointer, length, name)?;
     if length == 0 {
         return Ok(&mut []);
     }
-    check(pointer, name)?;
-    fits::<T>(length, name)?;
     // SAFETY: not null, aligned, at most isize::MAX bytes, and the caller says that they can be
     // written. After that they are values of `T`.
     Ok(unsafe {
         pointer.write_bytes(0, length);
         core::slice::from_raw_parts_mut(pointer, length)
     })
+}
+
+/// Checks a list for results without writing to it: a call that fails leaves it as it was.
+pub(crate) fn check_list<T>(pointer: *const T, length: usize, name: &str) -> Result<(), Fault> {
+    if length == 0 {
+        return Ok(());
+    }
+    check(pointer, name)?;
+    fits::<T>(length, name)
 }
 
 fn fits<T>(length: usize, name: &str) -> Result<(), Fault> {
@@ -167,6 +175,23 @@ pub(crate) unsafe fn put_sized<T: Plain>(
     check(pointer, name)?;
     // SAFETY: not null and aligned; the first field is a u32 that is there in every version.
     let size = unsafe { pointer.cast::<u32>().read() } as usize;
+    // SAFETY: the caller's word.
+    unsafe { init_sized(pointer, size, least, value, name) }
+}
+
+/// Fills a struct that begins with its size, of which the caller's version of the header has `size`
+/// bytes: no more are written, and its first field becomes `size`.
+///
+/// # Safety
+/// The pointer is null, or `size` bytes can be written to it.
+pub(crate) unsafe fn init_sized<T: Plain>(
+    pointer: *mut T,
+    size: usize,
+    least: usize,
+    value: &T,
+    name: &str,
+) -> Result<(), Fault> {
+    check(pointer, name)?;
     if !(least..=LARGEST_STRUCT).contains(&size) {
         return Err(Fault::new(
             FovealCullStatus::BadStructSize,
@@ -176,8 +201,9 @@ pub(crate) unsafe fn put_sized<T: Plain>(
     let header = size_of::<u32>();
     let known = size.min(size_of::<T>());
     // SAFETY: `size` bytes can be written by the caller's word; `known` of them are in `value`. The
-    // size stays the caller's.
+    // first field is a u32 that is there in every version.
     unsafe {
+        pointer.cast::<u32>().write(size as u32);
         let (from, to) = (
             core::ptr::from_ref(value).cast::<u8>(),
             pointer.cast::<u8>(),
@@ -236,5 +262,46 @@ pub(crate) fn write<T>(lock: &RwLock<T>) -> Result<RwLockWriteGuard<'_, T>, Faul
         Ok(guard) => Ok(guard),
         Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
         Err(TryLockError::WouldBlock) => Err(Fault::busy()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The second version of a struct that once ended with `first`.
+    #[derive(Clone, Copy)]
+    #[repr(C)]
+    struct Grown {
+        size: u32,
+        first: u32,
+        second: u64,
+    }
+
+    // SAFETY: numbers.
+    unsafe impl Plain for Grown {}
+
+    #[test]
+    fn a_struct_of_an_older_header_is_filled_and_nothing_beyond_it() {
+        let known = Grown {
+            size: 16,
+            first: 7,
+            second: 8,
+        };
+        for (size, second) in [(8, u64::MAX), (16, 8)] {
+            let mut memory = Grown {
+                size: u32::MAX,
+                first: u32::MAX,
+                second: u64::MAX,
+            };
+            // SAFETY: at most the struct's bytes are written, and read back.
+            let again = unsafe {
+                init_sized(&mut memory, size, 8, &known, "memory").unwrap();
+                sized(&memory, 8, known, "memory").unwrap()
+            };
+            assert_eq!(memory.size as usize, size);
+            assert_eq!((memory.first, memory.second), (7, second));
+            assert_eq!((again.first, again.second), (7, 8));
+        }
     }
 }

@@ -77,6 +77,8 @@ pub unsafe extern "C" fn foveal_culler_size(
         // SAFETY: the caller's word.
         unsafe {
             let culler = border::object(culler, "culler")?;
+            border::check_out(width_px, "width_px")?;
+            border::check_out(height_px, "height_px")?;
             let (width, height) = border::read(&culler.0)?.size();
             border::put(width_px, width, "width_px")?;
             border::put(height_px, height, "height_px")
@@ -132,6 +134,17 @@ pub unsafe extern "C" fn foveal_culler_rasterize(
     })
 }
 
+/// Compares the length of a list for results before anything is written to it.
+fn same_length(expected: usize, found: usize) -> Result<(), Fault> {
+    if expected != found {
+        return Err(Fault::new(
+            FovealCullStatus::WrongLength,
+            format!("results have {found} elements, {expected} are needed"),
+        ));
+    }
+    Ok(())
+}
+
 /// Classifies boxes against the last frame.
 ///
 /// # Safety
@@ -146,16 +159,20 @@ pub unsafe extern "C" fn foveal_culler_test_boxes(
     results: *mut u8,
 ) -> FovealCullStatus {
     guard(|| {
-        // SAFETY: the caller's word; zero is `Visibility::Visible`.
-        let (culler, boxes, origin, results) = unsafe {
+        // SAFETY: the caller's word.
+        let (culler, boxes, origin) = unsafe {
             (
                 border::object(culler, "culler")?,
                 border::list(boxes.cast::<Aabb>(), count, "boxes")?,
                 place::origin(origin)?,
-                border::zeroed_list(results.cast::<Visibility>(), count, "results")?,
             )
         };
-        Ok(border::read(&culler.0)?.query(boxes, origin, results)?)
+        border::check_list(results, count, "results")?;
+        let culler = border::read(&culler.0)?;
+        // SAFETY: the caller's word; zero is `Visibility::Visible`.
+        let results =
+            unsafe { border::zeroed_list(results.cast::<Visibility>(), count, "results") }?;
+        Ok(culler.query(boxes, origin, results)?)
     })
 }
 
@@ -171,16 +188,21 @@ pub unsafe extern "C" fn foveal_culler_test_tree(
     count: usize,
 ) -> FovealCullStatus {
     guard(|| {
-        // SAFETY: the caller's word; zero is `Visibility::Visible`.
-        let (culler, tree, results) = unsafe {
+        // SAFETY: the caller's word.
+        let (culler, tree) = unsafe {
             (
                 border::object(culler, "culler")?,
                 border::object(tree, "tree")?,
-                border::zeroed_list(results.cast::<Visibility>(), count, "results")?,
             )
         };
+        border::check_list(results, count, "results")?;
         let tree = border::read(&tree.0)?;
-        Ok(border::read(&culler.0)?.query_tree(&tree, results)?)
+        let culler = border::read(&culler.0)?;
+        same_length(tree.len(), count)?;
+        // SAFETY: the caller's word; zero is `Visibility::Visible`.
+        let results =
+            unsafe { border::zeroed_list(results.cast::<Visibility>(), count, "results") }?;
+        Ok(culler.query_tree(&tree, results)?)
     })
 }
 
@@ -198,8 +220,12 @@ pub unsafe extern "C" fn foveal_culler_read_depth(
         // SAFETY: the caller's word.
         unsafe {
             let culler = border::object(culler, "culler")?;
+            border::check_list(pixels, count, "pixels")?;
+            let culler = border::read(&culler.0)?;
+            let (width, height) = culler.size();
+            same_length(width as usize * height as usize, count)?;
             let pixels = border::zeroed_list(pixels, count, "pixels")?;
-            Ok(border::read(&culler.0)?.read_depth(pixels)?)
+            Ok(culler.read_depth(pixels)?)
         }
     })
 }

@@ -4,6 +4,7 @@
 use crate::border::{self, Plain};
 use crate::status::{Fault, FovealCullStatus, guard};
 use core::ffi::c_void;
+use core::mem::offset_of;
 use foveal_cull::{CullStats, FrameOptions};
 
 /// Thresholds and switches of one frame.
@@ -62,9 +63,10 @@ pub struct FovealCullStats {
 // SAFETY: numbers.
 unsafe impl Plain for FovealCullStats {}
 
-/// Size of the first version of a struct: those may not be smaller.
-const FIRST_STATS: usize = size_of::<FovealCullStats>();
-const FIRST_OPTIONS: usize = size_of::<FovealCullFrameOptions>();
+/// Sizes of the first versions: structs may not be smaller. They end with the last field that version
+/// had and stay as they are when fields are added.
+const FIRST_STATS: usize = offset_of!(FovealCullStats, clusters_over_budget) + size_of::<u64>();
+const FIRST_OPTIONS: usize = offset_of!(FovealCullFrameOptions, deadline_ns) + size_of::<u64>();
 
 impl FovealCullFrameOptions {
     fn new() -> Self {
@@ -160,14 +162,16 @@ impl FovealCullStats {
     }
 }
 
-/// Fills options with the defaults.
+/// Fills options with the defaults. `size` is the caller's sizeof(FovealCullFrameOptions).
 ///
 /// # Safety
-/// `options` is null or can be written.
+/// `options` is null, or `size` bytes can be written to it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn foveal_cull_frame_options_init(
+pub unsafe extern "C" fn foveal_cull_frame_options_init_sized(
     options: *mut FovealCullFrameOptions,
+    size: usize,
 ) -> FovealCullStatus {
+    let default = FovealCullFrameOptions::new();
     // SAFETY: the caller's word.
-    guard(|| unsafe { border::put(options, FovealCullFrameOptions::new(), "options") })
+    guard(|| unsafe { border::init_sized(options, size, FIRST_OPTIONS, &default, "options") })
 }

@@ -38,6 +38,10 @@ pub struct FovealCullJobs {
 // SAFETY: numbers and pointers; C writes functions or null.
 unsafe impl Plain for FovealCullJobs {}
 
+/// Size of the first version, which ends with the last field that it had.
+const FIRST_JOBS: usize =
+    core::mem::offset_of!(FovealCullJobs, wake) + size_of::<Option<FovealCullWake>>();
+
 /// Threads of the library.
 #[derive(Debug)]
 pub struct FovealCullThreads(WorkerThreads);
@@ -76,9 +80,8 @@ impl CallerJobs {
             run: None,
             wake: None,
         };
-        let least = size_of::<FovealCullJobs>();
         // SAFETY: the caller's word.
-        let jobs = unsafe { border::sized(pointer, least, default, "jobs") }?;
+        let jobs = unsafe { border::sized(pointer, FIRST_JOBS, default, "jobs") }?;
         if !(1..=MAX_THREADS).contains(&jobs.count) {
             return Err(Fault::argument("'count' of the jobs is not 1 to 256"));
         }
@@ -202,14 +205,16 @@ pub unsafe extern "C" fn foveal_cull_threads_destroy(threads: *mut FovealCullThr
     unsafe { border::take(threads) };
 }
 
-/// The threads as a job system.
+/// The threads as a job system. `size` is the caller's sizeof(FovealCullJobs).
 ///
 /// # Safety
-/// `threads` is null or lives as long as `out` is used; `out` is null or can be written.
+/// `threads` is null or lives as long as `out` is used; `out` is null, or `size` bytes can be written
+/// to it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn foveal_cull_threads_jobs(
+pub unsafe extern "C" fn foveal_cull_threads_jobs_sized(
     threads: *const FovealCullThreads,
     out: *mut FovealCullJobs,
+    size: usize,
 ) -> FovealCullStatus {
     guard(|| {
         // SAFETY: the caller's word.
@@ -222,7 +227,7 @@ pub unsafe extern "C" fn foveal_cull_threads_jobs(
                 run: Some(run_on_workers),
                 wake: Some(wake_workers),
             };
-            border::put(out, jobs, "out")
+            border::init_sized(out, size, FIRST_JOBS, &jobs, "out")
         }
     })
 }
@@ -240,7 +245,7 @@ extern "C" fn run_on_workers(
     context: *mut c_void,
 ) {
     guard(|| {
-        // SAFETY: `user` is what `foveal_cull_threads_jobs` wrote, and the header asks that the
+        // SAFETY: `user` is what `foveal_cull_threads_jobs_sized` wrote, and the header asks that the
         // threads live as long.
         let workers = unsafe { border::object(user.cast::<FovealCullThreads>(), "threads") }?;
         let context = Context(context);

@@ -38,6 +38,10 @@ pub struct FovealCullMeshSource {
 // SAFETY: numbers and pointers.
 unsafe impl Plain for FovealCullMeshSource {}
 
+/// Size of the first version, which ends with the last field that it had.
+const FIRST_SOURCE: usize =
+    core::mem::offset_of!(FovealCullMeshSource, adjacency) + size_of::<u32>();
+
 impl FovealCullMeshSource {
     const DEFAULT: Self = Self {
         size: size_of::<Self>() as u32,
@@ -129,16 +133,19 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
     Ok(OccluderMesh::bake(&positions, &indices, options)?)
 }
 
-/// Fills a source with defaults: one-sided, with adjacency, 32-bit indices, no triangles.
+/// Fills a source with defaults: one-sided, with adjacency, 32-bit indices, no triangles. `size` is
+/// the caller's sizeof(FovealCullMeshSource).
 ///
 /// # Safety
-/// `source` is null or can be written.
+/// `source` is null, or `size` bytes can be written to it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn foveal_cull_mesh_source_init(
+pub unsafe extern "C" fn foveal_cull_mesh_source_init_sized(
     source: *mut FovealCullMeshSource,
+    size: usize,
 ) -> FovealCullStatus {
+    let default = FovealCullMeshSource::DEFAULT;
     // SAFETY: the caller's word.
-    guard(|| unsafe { border::put(source, FovealCullMeshSource::DEFAULT, "source") })
+    guard(|| unsafe { border::init_sized(source, size, FIRST_SOURCE, &default, "source") })
 }
 
 /// Bakes a mesh.
@@ -155,11 +162,8 @@ pub unsafe extern "C" fn foveal_cull_mesh_bake(
         // SAFETY: the caller's word.
         unsafe {
             border::give(out, || {
-                let (default, least) = (
-                    FovealCullMeshSource::DEFAULT,
-                    size_of::<FovealCullMeshSource>(),
-                );
-                let source = border::sized(source, least, default, "source")?;
+                let default = FovealCullMeshSource::DEFAULT;
+                let source = border::sized(source, FIRST_SOURCE, default, "source")?;
                 Ok(FovealCullMesh(Arc::new(bake(&source)?)))
             })
         }

@@ -72,6 +72,10 @@ pub struct FovealCullView {
 // SAFETY: numbers.
 unsafe impl Plain for FovealCullView {}
 
+/// Size of the first version, which ends with the last field that it had.
+const FIRST_VIEW: usize =
+    core::mem::offset_of!(FovealCullView, validity_radius_m) + size_of::<f64>();
+
 impl FovealCullEye {
     const NONE: Self = Self {
         world_from_eye: [0.0; 12],
@@ -150,7 +154,7 @@ pub(crate) unsafe fn view(pointer: *const FovealCullView) -> Result<View, Fault>
         validity_radius_m: 0.0,
     };
     // SAFETY: the caller's word.
-    let view = unsafe { border::sized(pointer, size_of::<FovealCullView>(), default, "view") }?;
+    let view = unsafe { border::sized(pointer, FIRST_VIEW, default, "view") }?;
     let first = view.eyes[0].eye()?;
     let eyes = match view.eye_count {
         1 => View::mono(first),
@@ -237,14 +241,15 @@ pub unsafe extern "C" fn foveal_cull_eye_look_at(
     })
 }
 
-/// A view of one eye at its exact place.
+/// A view of one eye at its exact place. `size` is the caller's sizeof(FovealCullView).
 ///
 /// # Safety
-/// `eye` is null or an eye; `out` is null or can be written.
+/// `eye` is null or an eye; `out` is null, or `size` bytes can be written to it.
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn foveal_cull_view_init(
+pub unsafe extern "C" fn foveal_cull_view_init_sized(
     eye: *const FovealCullEye,
     out: *mut FovealCullView,
+    size: usize,
 ) -> FovealCullStatus {
     guard(|| {
         // SAFETY: the caller's word.
@@ -256,7 +261,7 @@ pub unsafe extern "C" fn foveal_cull_view_init(
                 eyes: [eye, FovealCullEye::NONE],
                 validity_radius_m: 0.0,
             };
-            border::put(out, view, "out")
+            border::init_sized(out, size, FIRST_VIEW, &view, "out")
         }
     })
 }

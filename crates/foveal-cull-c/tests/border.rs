@@ -63,7 +63,10 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
         assert_eq!(foveal_cull_mesh_bake(null(), null_mut()), null_pointer);
         let mut out = null_mut();
         assert_eq!(foveal_cull_mesh_bake(null(), &mut out), null_pointer);
-        assert_eq!(foveal_cull_mesh_source_init(null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_mesh_source_init_sized(null_mut(), 56),
+            null_pointer
+        );
         let min = [0.0f32; 3];
         let (some, none) = (min.as_ptr(), null());
         assert_eq!(
@@ -125,9 +128,15 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             look_at(null(), at, at, 1.0, 1.0, 0.1, &mut eye),
             null_pointer
         );
-        assert_eq!(foveal_cull_view_init(null(), null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_view_init_sized(null(), null_mut(), 400),
+            null_pointer
+        );
         assert_eq!(foveal_cull_threads_create(2, null_mut()), null_pointer);
-        assert_eq!(foveal_cull_threads_jobs(null(), null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_threads_jobs_sized(null(), null_mut(), 32),
+            null_pointer
+        );
         let mut tree = null_mut();
         assert_eq!(
             foveal_cull_tree_build(null(), 1, null(), &mut tree),
@@ -138,7 +147,10 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             null_pointer
         );
         assert_eq!(foveal_cull_tree_refit(null_mut(), null(), 0), null_pointer);
-        assert_eq!(foveal_cull_frame_options_init(null_mut()), null_pointer);
+        assert_eq!(
+            foveal_cull_frame_options_init_sized(null_mut(), 48),
+            null_pointer
+        );
         assert_eq!(foveal_culler_create(8, 8, null_mut()), null_pointer);
         assert_eq!(
             foveal_culler_size(null(), null_mut(), null_mut()),
@@ -257,7 +269,10 @@ fn meshes_with_wrong_sizes_or_numbers_are_refused() {
     // SAFETY: a place for the source, which is written.
     let good = unsafe {
         assert_eq!(
-            foveal_cull_mesh_source_init(source.as_mut_ptr()),
+            foveal_cull_mesh_source_init_sized(
+                source.as_mut_ptr(),
+                size_of::<FovealCullMeshSource>()
+            ),
             Status::Ok
         );
         FovealCullMeshSource {
@@ -399,4 +414,29 @@ fn meshes_with_wrong_sizes_or_numbers_are_refused() {
         ..good
     };
     assert_eq!(bake(empty), (Status::Ok, 0));
+}
+
+#[test]
+fn results_of_calls_that_fail_stay_as_they_were() {
+    let culler = culler();
+    let mut tree = null_mut();
+    let (mut results, mut pixels) = ([9u8; 2], [9.0f32; 2]);
+    let mut width = 9;
+    // SAFETY: live handles; pointers are null or to variables of the right size.
+    unsafe {
+        let built = foveal_cull_tree_build(BEHIND.as_ptr(), 1, null(), &mut tree);
+        assert_eq!(built, Status::Ok);
+        let status = foveal_culler_test_tree(culler, tree, results.as_mut_ptr(), 2);
+        assert_eq!((status, results), (Status::WrongLength, [9; 2]));
+        let status = foveal_culler_read_depth(culler, pixels.as_mut_ptr(), 2);
+        assert_eq!((status, pixels), (Status::WrongLength, [9.0; 2]));
+        let nan = [f64::NAN; 3];
+        let to = results.as_mut_ptr();
+        let status = foveal_culler_test_boxes(culler, BEHIND.as_ptr(), 1, nan.as_ptr(), to);
+        assert_eq!((status, results), (Status::NotFinite, [9; 2]));
+        let status = foveal_culler_size(culler, &mut width, null_mut());
+        assert_eq!((status, width), (Status::NullPointer, 9));
+        foveal_cull_tree_destroy(tree);
+        foveal_culler_destroy(culler);
+    }
 }

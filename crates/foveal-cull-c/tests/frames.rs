@@ -99,7 +99,10 @@ fn bad_views_options_and_jobs_are_refused_and_leave_everything_visible() {
             Status::Ok
         );
         assert_eq!(
-            foveal_cull_frame_options_init(options.as_mut_ptr()),
+            foveal_cull_frame_options_init_sized(
+                options.as_mut_ptr(),
+                size_of::<FovealCullFrameOptions>()
+            ),
             Status::Ok
         );
         options.assume_init()
@@ -255,8 +258,16 @@ extern "C" fn run_badly(user: *mut c_void, tasks: u32, task: FovealCullTask, con
         let culler = user.cast::<FovealCuller>();
         let (mut w, mut h) = (0, 0);
         assert_eq!(foveal_culler_size(culler, &mut w, &mut h), Status::Busy);
+        assert_eq!((w, h), (0, 0));
         let again = foveal_culler_rasterize(culler, null(), null(), null(), null());
         assert_eq!(again, Status::Busy);
+        // Tests that fail leave what was there.
+        let (mut results, mut pixels) = ([9u8], [9.0f32]);
+        let to = results.as_mut_ptr();
+        let status = foveal_culler_test_boxes(culler, BEHIND.as_ptr(), 1, null(), to);
+        assert_eq!((status, results), (Status::Busy, [9]));
+        let status = foveal_culler_read_depth(culler, pixels.as_mut_ptr(), 1);
+        assert_eq!((status, pixels), (Status::Busy, [9.0]));
     }
     CALLS.fetch_add(1, Ordering::Relaxed);
 }
@@ -289,7 +300,7 @@ fn a_job_system_that_forgets_repeats_and_invents_tasks_gives_the_same_frame() {
         );
         assert_eq!(foveal_cull_threads_create(3, &mut threads), Status::Ok);
         assert_eq!(
-            foveal_cull_threads_jobs(threads, own.as_mut_ptr()),
+            foveal_cull_threads_jobs_sized(threads, own.as_mut_ptr(), size_of::<FovealCullJobs>()),
             Status::Ok
         );
         let badly = FovealCullJobs {
@@ -346,7 +357,10 @@ fn a_clock_that_has_run_out_draws_nothing_and_hides_nothing() {
             Status::Ok
         );
         assert_eq!(
-            foveal_cull_frame_options_init(options.as_mut_ptr()),
+            foveal_cull_frame_options_init_sized(
+                options.as_mut_ptr(),
+                size_of::<FovealCullFrameOptions>()
+            ),
             Status::Ok
         );
         let options = FovealCullFrameOptions {

@@ -26,6 +26,20 @@ fn code(text: &str) -> String {
     code.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
+/// Code without the functions that the header defines, and those: name and body.
+fn without_inline(code: &str) -> (String, BTreeMap<String, String>) {
+    let mut parts = code.split("static inline FovealCullStatus ");
+    let mut rest = parts.next().unwrap().to_owned();
+    let mut inline = BTreeMap::new();
+    for part in parts {
+        let (function, after) = part.split_once('}').unwrap();
+        let (name, body) = function.split_once('(').unwrap();
+        inline.insert(name.to_owned(), body.to_owned());
+        rest.push_str(after);
+    }
+    (rest, inline)
+}
+
 /// The C spelling of a Rust type, with a place for the name.
 fn c_type(rust: &str, name: &str) -> String {
     if let Some(to) = rust.strip_prefix("*const ") {
@@ -78,7 +92,7 @@ fn functions() -> BTreeMap<String, String> {
 
 #[test]
 fn the_header_declares_exactly_the_functions_that_the_library_has() {
-    let code = code(&header());
+    let (code, inline) = without_inline(&code(&header()));
     let functions = functions();
     assert!(functions.len() > 25, "{}", functions.len());
     for prototype in functions.values() {
@@ -94,7 +108,29 @@ fn the_header_declares_exactly_the_functions_that_the_library_has() {
         .filter(|name| name.starts_with("foveal_cull"))
         .collect();
     assert_eq!(declared.len(), functions.len(), "{declared:?}");
+    assert!(inline.keys().all(|name| !functions.contains_key(name)));
     assert!(declared.iter().all(|name| functions.contains_key(*name)));
+}
+
+#[test]
+fn structs_are_filled_as_far_as_the_caller_s_header_has_them() {
+    let (code, inline) = without_inline(&code(&header()));
+    let mut sized = 0;
+    for name in functions().keys().filter(|name| name.ends_with("_sized")) {
+        let body = &inline[name.strip_suffix("_sized").unwrap()];
+        let parameters = code.split_once(&format!("{name}(")).unwrap().1;
+        let parameters = parameters.split_once(", size_t size)").unwrap().0;
+        let last = parameters.rsplit(", ").next().unwrap();
+        let (filled, variable) = last.split_once(" *").unwrap();
+        assert!(body.starts_with(&format!("{parameters}) {{")), "{body}");
+        assert!(body.contains(&format!("return {name}(")), "{body}");
+        assert!(
+            body.contains(&format!("{variable}, sizeof({filled}));")),
+            "{body}"
+        );
+        sized += 1;
+    }
+    assert_eq!((sized, inline.len()), (4, 4));
 }
 
 /// Enumerators with their numbers, from the Rust sources.

@@ -94,6 +94,7 @@ void calls() {
         draw(MaskedOcclusionCulling::BACKFACE_CW);
         expect(right_rect() == MaskedOcclusionCulling::VISIBLE, "and is gone in the next frame");
     }
+    expect(moc->GetMeshCount() == 1, "only the mesh that is drawn is kept");
     // Clip-space vertices (x, y, z, w) without a matrix; a static mesh; threads of the library.
     FovealCullThreads *threads = nullptr;
     FovealCullJobs jobs;
@@ -132,6 +133,94 @@ void calls() {
                          MaskedOcclusionCulling::CLIP_PLANE_ALL, layout);
     expect(moc->GetLastStatus() == FOVEAL_CULL_NOT_FINITE, "a mesh with nan is refused");
     expect(behind() == MaskedOcclusionCulling::OCCLUDED, "and the others still hide");
+    MaskedOcclusionCulling::Destroy(moc);
+}
+
+const unsigned int quad[] = {0, 1, 2, 0, 2, 3};
+
+// Two workers that run one batch at a time.
+struct Workers {
+    std::mutex busy;
+    template <class Task> void run(std::uint32_t tasks, Task task) {
+        const std::lock_guard<std::mutex> lock(busy);
+        std::atomic<std::uint32_t> next{0};
+        const auto work = [&] {
+            for (std::uint32_t i = next++; i < tasks; i = next++) {
+                task(i);
+            }
+        };
+        std::thread one(work), two(work);
+        one.join();
+        two.join();
+    }
+};
+
+// Tests on the very workers that rasterize.
+void tests_on_the_job_system() {
+    Workers workers;
+    FovealCullJobs jobs{};
+    jobs.size = sizeof jobs;
+    jobs.count = 2;
+    jobs.user = &workers;
+    jobs.run = [](void *user, std::uint32_t tasks, FovealCullTask task, void *context) {
+        static_cast<Workers *>(user)->run(tasks, [=](std::uint32_t i) { task(context, i); });
+    };
+    MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create();
+    moc->SetResolution(320, 192);
+    moc->SetJobs(&jobs);
+    moc->ClearBuffer();
+    const float clip[] = {-3, -3, 0, 5, 3, -3, 0, 5, 3, 3, 0, 5, -3, 3, 0, 5};
+    moc->RenderTriangles(clip, quad, 2);
+    moc->Finish();
+    std::atomic<int> occluded{0};
+    workers.run(50, [&](std::uint32_t) {
+        occluded += moc->TestRect(-0.3f, -0.3f, 0.3f, 0.3f, 8) == MaskedOcclusionCulling::OCCLUDED;
+    });
+    expect(occluded == 50 && moc->GetLastStatus() == FOVEAL_CULL_OK, "after Finish workers may test");
+    MaskedOcclusionCulling::Destroy(moc);
+}
+
+// Which meshes are kept, and what is read of them.
+void meshes() {
+    MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create();
+    moc->SetResolution(320, 192);
+    float clip[] = {-3, -3, 0, 5, 3, -3, 0, 5, 3, 3, 0, 5, -3, 3, 0, 5};
+    const auto behind = [&] { return moc->TestRect(-0.3f, -0.3f, 0.3f, 0.3f, 8); };
+    for (int frame = 0; frame < 200; ++frame) {
+        moc->ClearBuffer();
+        clip[0] -= 0.001f;
+        moc->RenderTriangles(clip, quad, 2);
+        expect(behind() == MaskedOcclusionCulling::OCCLUDED, "vertices that change hide");
+        expect(moc->GetMeshCount() <= 2, "and are kept for one frame");
+    }
+    // Memory that is used again, once the shim has been told.
+    moc->SetStaticMeshes(true);
+    expect(moc->GetMeshCount() == 0, "all is forgotten");
+    moc->ClearBuffer();
+    moc->RenderTriangles(clip, quad, 2);
+    expect(behind() == MaskedOcclusionCulling::OCCLUDED, "a static mesh hides");
+    for (int i = 0; i < 16; i += 4) {
+        clip[i] += 40;
+    }
+    moc->SetStaticMeshes(true);
+    moc->ClearBuffer();
+    moc->RenderTriangles(clip, quad, 2);
+    expect(behind() == MaskedOcclusionCulling::VISIBLE, "other content at the same address is another mesh");
+    // Only the vertices that indices name are there: the last four of many.
+    moc->SetStaticMeshes(false);
+    const unsigned int last[] = {1000000, 1000001, 1000002, 1000000, 1000002, 1000003};
+    for (int i = 0; i < 16; i += 4) {
+        clip[i] -= 40;
+    }
+    const MaskedOcclusionCulling::VertexLayout layout(16, 4, 12);
+    std::vector<float> end(clip, clip + 16);
+    const auto before =
+        reinterpret_cast<const float *>(reinterpret_cast<std::uintptr_t>(end.data()) - std::uintptr_t{16000000});
+    moc->ClearBuffer();
+    moc->RenderTriangles(before, last, 2, nullptr, MaskedOcclusionCulling::BACKFACE_CW,
+                         MaskedOcclusionCulling::CLIP_PLANE_ALL, layout);
+    expect(behind() == MaskedOcclusionCulling::OCCLUDED, "vertices that no index names are not read");
+    expect(moc->GetLastStatus() == FOVEAL_CULL_OK, "no call has failed");
     MaskedOcclusionCulling::Destroy(moc);
 }
 
@@ -201,6 +290,8 @@ int random_frames() {
 
 int main() {
     calls();
+    tests_on_the_job_system();
+    meshes();
     const int occluded = random_frames();
     std::printf("shim: %d random rectangles occluded, %d failures\n", occluded, failures);
     return failures == 0 ? 0 : 1;

@@ -8,10 +8,11 @@ use common::{Language, compiler, crate_dir, done, library_dir, program, scratch}
 use std::path::Path;
 use std::process::Command;
 
-const EXAMPLES: [(&str, Language); 3] = [
+const EXAMPLES: [(&str, Language); 4] = [
     ("examples/street.c", Language::C),
     ("examples/jobs.cpp", Language::Cpp),
     ("tests/moc_shim.cpp", Language::Cpp),
+    ("tests/macros.cpp", Language::Cpp),
 ];
 
 fn run(program: &Path) -> String {

@@ -60,7 +60,9 @@ pub fn view() -> FovealCullView {
         let eye = eye.as_mut_ptr();
         let status = foveal_cull_eye_look_at(position, target, up, 1.0, 1.0, 0.1, eye);
         assert_eq!(status, Status::Ok);
-        assert_eq!(foveal_cull_view_init(eye, view.as_mut_ptr()), Status::Ok);
+        let size = size_of::<FovealCullView>();
+        let status = foveal_cull_view_init_sized(eye, view.as_mut_ptr(), size);
+        assert_eq!(status, Status::Ok);
         view.assume_init()
     }
 }

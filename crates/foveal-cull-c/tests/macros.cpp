@@ -1,0 +1,50 @@
+// The headers after macros that other headers define (windows.h, Unreal Engine), and with failures that
+// return although they must not: what is handed out then is zero, not memory that was never written. Ends
+// with 0 if all is well.
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <exception>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#define small char
+#define near
+#define far
+#define min(a, b) (((a) < (b)) ? (a) : (b))
+#define max(a, b) (((a) > (b)) ? (a) : (b))
+#define check(expression) static_assert(false, "a macro of the engine")
+#define require(assertion, label) static_assert(false, "a macro of the system")
+#define verify(expression) static_assert(false, "a macro of the engine")
+
+static int failures = 0;
+#define FOVEAL_CULL_FAIL(status, text) (++failures, static_cast<void>(status), static_cast<void>(text))
+
+#include "foveal_cull.hpp"
+#include "moc_shim.hpp"
+
+int main() {
+    const double flat[16] = {};
+    const foveal::cull::Eye eye = foveal::cull::eye_from_matrix(flat, FOVEAL_CULL_DEPTH_ZERO_TO_ONE);
+    const double nan = std::numeric_limits<double>::quiet_NaN();
+    const foveal::cull::Eye other = foveal::cull::look_at({nan, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1.0, 1.0, 0.1);
+    const foveal::cull::Eye none{};
+    const bool zero = std::memcmp(&eye, &none, sizeof eye) == 0 && std::memcmp(&other, &none, sizeof other) == 0;
+    MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create();
+    MaskedOcclusionCulling::Destroy(moc);
+    std::printf("%d failures, zero: %d\n", failures, zero);
+    return failures == 2 && zero ? 0 : 1;
+}
