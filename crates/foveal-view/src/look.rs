@@ -77,6 +77,8 @@ pub(crate) fn apply(context: &egui::Context) {
         visuals.selection.bg_fill = Color32::from_rgb(0x2d, 0x5a, 0x88);
         visuals.hyperlink_color = ACCENT;
         visuals.override_text_color = None;
+        // A window at rest draws nothing.
+        visuals.text_cursor.blink = false;
         visuals.widgets.noninteractive.fg_stroke = Stroke::new(1.0, TEXT);
         visuals.widgets.noninteractive.bg_stroke = Stroke::new(1.0, CARD);
         visuals.widgets.inactive.fg_stroke = Stroke::new(1.0, TEXT);
