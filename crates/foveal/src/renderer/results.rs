@@ -11,7 +11,7 @@ use crate::{DebugView, Error, SceneStats};
 
 impl Renderer {
     /// The last frame's picture: sRGB RGBA8 rows, top to bottom, `width * height * 4` bytes with
-    /// [`Settings::picture_size`], alpha 255.
+    /// [`Settings::picture_size`](crate::Settings::picture_size), alpha 255.
     ///
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
