@@ -45,7 +45,9 @@ function ratioCell(compare, left, right, found) {
   }
   if (!compare || !(left > 0 && right > 0)) return cell('td', '');
   const told = found?.[compare];
-  const made = cell('td', told ? told.text : 'measuring', COLOUR_OF_FINDING[told?.finding] ?? 'grey');
+  const [, ratio, interval] = (told?.text ?? 'measuring').match(/^([^(]*)(\(.*)?$/);
+  const made = cell('td', ratio, COLOUR_OF_FINDING[told?.finding] ?? 'grey');
+  if (interval) made.append(cell('small', interval));
   made.title = 'Reference / chosen, over frames that both sides draw in turn, by lot; in brackets the interval that holds the true ratio in 998 of 1,000 cases.';
   return made;
 }
