@@ -109,7 +109,9 @@ th, td { text-align: right; padding: 4px 8px; border-bottom: 1px solid var(--lin
 th:first-child, td:first-child { text-align: left; white-space: normal; min-width: 9em; position: sticky; left: 0;
   background: var(--card); } td { vertical-align: top; } small { color: var(--faint); } th { color: var(--faint); font-weight: 600; }
 code { font: 13px ui-monospace, monospace; overflow-wrap: anywhere; background: var(--back); border-radius: 4px; padding: 1px 5px; }
-.columns { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(400px, 100%), 1fr)); gap: 18px; }
+.columns, .pair { display: grid; gap: 18px; } .columns { grid-template-columns: repeat(auto-fill, minmax(min(300px, 100%), 1fr)); }
+.columns h3, .pair h3 { margin-top: 6px; }
+.pair { grid-template-columns: repeat(auto-fit, minmax(min(400px, 100%), 1fr)); }
 .compare { position: relative; display: grid; overflow: hidden; border-radius: 6px; touch-action: pan-y; }
 .compare img { grid-area: 1 / 1; width: 100%; display: block; }
 .compare .after { clip-path: inset(0 0 0 var(--at, 50%)); }

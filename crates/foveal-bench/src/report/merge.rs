@@ -1,5 +1,7 @@
 //! Several passes of a bench become one table: medians, and how far the passes lay apart.
 
+use std::path::Path;
+
 use serde_json::{Map, Value, json};
 
 use super::bench::Bench;
@@ -64,6 +66,11 @@ fn label(bench: &Bench, row: &Map<String, Value>) -> String {
             (_, "height") if has_size => {}
             (Some(count), "threads" | "lights" | "occluder_triangles") => {
                 parts.push(format!("{count} {}", key.replace('_', " ")));
+            }
+            // A scene's file without its folders, which have no end.
+            (Some(Value::String(file)), "scene") => {
+                let name = Path::new(file).file_name();
+                parts.push(name.map_or(file.clone(), |name| name.to_string_lossy().into_owned()));
             }
             (Some(Value::String(text)), _) => parts.push(text.clone()),
             (Some(value), _) => parts.push(value.to_string()),

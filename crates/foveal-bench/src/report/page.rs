@@ -9,6 +9,9 @@ use super::plan::BENCHES;
 use super::tables::{commands, table};
 use super::{plots, verdict};
 
+/// Plots of a bench that stand beside what the original method publishes; more are folded.
+const PLOTS_IN_SIGHT: usize = 2;
+
 /// The whole page.
 pub(super) fn of(report: &Value) -> String {
     let f = Figures(report);
@@ -58,6 +61,12 @@ fn section(f: &Figures<'_>, index: usize, bench: &Bench) -> Markup {
     let at = format!("/benches/{index}");
     let status = f.text(&format!("{at}/status"));
     let has_rows = f.len(&format!("{at}/rows")) > 0;
+    let mut first = if has_rows {
+        all_plots(f, &at, bench)
+    } else {
+        Vec::new()
+    };
+    let further = first.split_off(first.len().min(PLOTS_IN_SIGHT));
     html! {
         section id=(bench.name) {
             h2 { (f.text(&format!("{at}/title"))) }
@@ -69,45 +78,47 @@ fn section(f: &Figures<'_>, index: usize, bench: &Bench) -> Markup {
             }
             .columns {
                 (published(f, &at))
-                @if has_rows {
-                    (all_plots(f, &at, bench))
-                }
-            }
-            @if has_rows || f.len(&format!("{at}/pictures")) > 0 {
-                details {
-                    summary { "Figures and pictures" }
-                    (table(f, &at, bench.columns))
-                    (pictures(f, &at))
-                }
+                (titled(&first))
             }
             @if status != "skipped" {
-                h3 { "To measure it again" }
-                (commands(f, &format!("{at}/commands")))
+                details {
+                    summary { "Figures, pictures, commands" }
+                    .columns { (titled(&further)) }
+                    @if has_rows || f.len(&format!("{at}/pictures")) > 0 {
+                        (table(f, &at, bench.columns))
+                        (pictures(f, &at))
+                    }
+                    h3 { "To measure it again" }
+                    (commands(f, &format!("{at}/commands")))
+                }
             }
         }
     }
 }
 
-fn all_plots(f: &Figures<'_>, at: &str, bench: &Bench) -> Markup {
-    let mut all: Vec<(String, Option<Markup>)> = Vec::new();
-    if bench.name == "baseline" {
-        all.push((
-            "The frame's timeline".to_owned(),
-            Some(plots::timeline(f, at)),
-        ));
+/// What a bench measured, as plots with their titles; those that say most come first.
+fn all_plots(f: &Figures<'_>, at: &str, bench: &Bench) -> Vec<(String, Markup)> {
+    let cost = if bench.name == "baseline" {
+        Some(("The frame's timeline", plots::timeline(f, at)))
     } else {
-        all.push(("Cost, ms".to_owned(), plots::cost(f, at, bench)));
-    }
-    all.push(("Cost against load".to_owned(), plots::load(f, at, bench)));
-    for (part, svg) in plots::quality(f, at, bench) {
+        plots::cost(f, at, bench).map(|svg| ("Cost, ms", svg))
+    };
+    let load = plots::load(f, at, bench).map(|svg| ("Cost against load", svg));
+    let of_cost = [cost, load].into_iter().flatten();
+    let of_quality = plots::quality(f, at, bench).into_iter().map(|(part, svg)| {
         let comma = if part.is_empty() { "" } else { ", " };
-        all.push((format!("Quality against speed{comma}{part}"), Some(svg)));
-    }
+        (format!("Quality against speed{comma}{part}"), svg)
+    });
+    of_cost
+        .map(|(title, svg)| (title.to_owned(), svg))
+        .chain(of_quality)
+        .collect()
+}
+
+fn titled(plots: &[(String, Markup)]) -> Markup {
     html! {
-        @for (title, svg) in all {
-            @if let Some(svg) = svg {
-                div { h3 { (title) } (svg) }
-            }
+        @for (title, svg) in plots {
+            div { h3 { (title) } (svg) }
         }
     }
 }
@@ -164,7 +175,7 @@ fn picture(f: &Figures<'_>, at: &str) -> Markup {
     let of = |key: &str| f.text(&format!("{at}/{key}"));
     html! {
         h3 { (of("title")) }
-        .columns {
+        .pair {
             figure {
                 .compare {
                     img src=(of("before")) alt="before";

@@ -250,3 +250,19 @@ fn the_markdown_has_a_file_per_measured_bench_and_says_what_was_measured() {
         assert!(cells.all(|count| count == head), "{name}");
     }
 }
+
+#[test]
+fn two_plots_of_a_bench_are_in_sight_and_commands_are_folded() {
+    let page = page::of(&report());
+    for section in page.split("<section id=\"").skip(2) {
+        let (in_sight, folded) = section.split_once("<details>").unwrap_or((section, ""));
+        assert!(in_sight.matches("<svg").count() <= 2, "{in_sight}");
+        assert!(!in_sight.contains("To measure it again"), "{in_sight}");
+        let is_skipped = in_sight.contains("skipped: ");
+        assert_eq!(
+            folded.contains("To measure it again"),
+            !is_skipped,
+            "{section}"
+        );
+    }
+}

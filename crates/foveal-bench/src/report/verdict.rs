@@ -31,11 +31,17 @@ pub(super) fn show(f: &Figures<'_>) -> Markup {
             @if status != "measured" {
                 p.bad { "No verdict. " (status) ": " (f.text(&format!("{at}/cause"))) }
             } @else {
-                (decisions(f, &at))
-                (command(f, &at))
-                @if let Some(svg) = plots::ratios(f, &at) {
-                    h3 { "Plain frame / this, with the interval of each" }
-                    (svg)
+                .pair {
+                    div {
+                        (decisions(f, &at))
+                        (command(f, &at))
+                    }
+                    @if let Some(svg) = plots::ratios(f, &at) {
+                        div {
+                            h3 { "Plain frame / this, with the interval of each" }
+                            (svg)
+                        }
+                    }
                 }
                 p.faint {
                     "The ratio is the plain frame's time by the other's: above one is faster. The interval holds the \

@@ -9,6 +9,21 @@ use crate::svg::{COLORS, WIDTH, at, error_bar, tick_text, ticks};
 /// More bars than these are not legible: other plots say it better, and the table has all rows.
 const MOST_BARS: usize = 16;
 
+/// Characters of a label that surely fit the plot's width.
+const MOST_CHARACTERS: usize = 54;
+
+/// The label, without its middle where it is too long.
+fn fitting(label: &str) -> String {
+    let count = label.chars().count();
+    if count <= MOST_CHARACTERS {
+        return label.to_owned();
+    }
+    let half = (MOST_CHARACTERS - 1) / 2;
+    let ends = label.chars().take(half);
+    let end = label.chars().skip(count - half);
+    ends.chain(['\u{2026}']).chain(end).collect()
+}
+
 /// A bar per row, where they are few, with the passes' range.
 pub(crate) fn cost(f: &Figures<'_>, bench_at: &str, bench: &Bench) -> Option<Markup> {
     let rows = f.len(&format!("{bench_at}/rows"));
@@ -32,7 +47,7 @@ pub(crate) fn cost(f: &Figures<'_>, bench_at: &str, bench: &Bench) -> Option<Mar
         let range = end(row, 0).zip(end(row, 1));
         let beside = range.map_or(width, |(_, most)| x(most));
         html! {
-            text.faint x="0" y=(at(y + 12.0)) { (f.text(&format!("{bench_at}/rows/{row}/label"))) }
+            text.faint x="0" y=(at(y + 12.0)) { (fitting(f.text(&format!("{bench_at}/rows/{row}/label")))) }
             rect x="0" y=(at(y + 17.0)) width=(at(width)) height="12" rx="2" fill=(COLORS[row % COLORS.len()]) {}
             @if let Some((least, most)) = range {
                 (error_bar(x(least), x(most), y + 23.0))
@@ -56,4 +71,17 @@ pub(crate) fn cost(f: &Figures<'_>, bench_at: &str, bench: &Bench) -> Option<Mar
             }
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_label_that_is_too_long_keeps_its_ends() {
+        assert_eq!(fitting("smooth, compute"), "smooth, compute");
+        let long = fitting(&format!("a scene {} frame, mono", "\u{e9}".repeat(90)));
+        assert_eq!(long.chars().count(), MOST_CHARACTERS - 1);
+        assert!(long.starts_with("a scene ") && long.ends_with(" frame, mono"));
+    }
 }
