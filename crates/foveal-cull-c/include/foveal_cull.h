@@ -71,7 +71,9 @@ typedef enum FovealCullStatus {
     /* The object is in use by another call. */
     FOVEAL_CULL_BUSY = 12,
     /* An error inside the library. Please report it. The object stays usable. */
-    FOVEAL_CULL_INTERNAL = 13
+    FOVEAL_CULL_INTERNAL = 13,
+    /* Bytes are not a baked mesh of this version. */
+    FOVEAL_CULL_BAD_MESH_BYTES = 14
 } FovealCullStatus;
 
 /* The result for one box, one byte each. Draw what is FOVEAL_CULL_VISIBLE. */
@@ -255,7 +257,7 @@ const char *foveal_cull_status_text(int32_t status);
  * with the final zero. Returns the bytes that all of it needs. `text` may be null. */
 size_t foveal_cull_last_error(char *text, size_t size);
 
-/* ---- Meshes: bake when a level loads, about 2.5 microseconds per triangle ---- */
+/* ---- Meshes: bake when a level loads, about 1.3 microseconds per triangle ---- */
 
 /* Fills a source with defaults: one-sided, with adjacency, 32-bit indices, stride 12, no triangles. */
 FovealCullStatus foveal_cull_mesh_source_init_sized(FovealCullMeshSource *source, size_t size);
@@ -268,6 +270,14 @@ FovealCullStatus foveal_cull_mesh_bake(const FovealCullMeshSource *source, Fovea
 
 /* Bakes a box whose faces look outwards, min to max (three numbers each) in mesh space, metres. */
 FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, FovealCullMesh **out);
+
+/* Copies a baked mesh as bytes, for a file: all of them, or none if they are more than `size`. Returns how
+ * many it has; 0 for null. `bytes` may be null to ask for that. The same on every machine. */
+size_t foveal_cull_mesh_to_bytes(const FovealCullMesh *mesh, uint8_t *bytes, size_t size);
+
+/* The mesh of foveal_cull_mesh_to_bytes, without baking. Bytes that were changed, or come from elsewhere or
+ * from another version of the format, are FOVEAL_CULL_BAD_MESH_BYTES. They are not needed afterwards. */
+FovealCullStatus foveal_cull_mesh_from_bytes(const uint8_t *bytes, size_t size, FovealCullMesh **out);
 
 /* Drops a mesh. Occluders that were made of it keep it. Null is nothing. */
 void foveal_cull_mesh_destroy(FovealCullMesh *mesh);

@@ -165,6 +165,18 @@ public:
         expect_ok(foveal_cull_mesh_from_box(bounds.min, bounds.max, &mesh));
         return Mesh(mesh);
     }
+    /// A mesh that was written by to_bytes.
+    static Mesh from_bytes(const std::vector<std::uint8_t> &bytes) {
+        FovealCullMesh *mesh = nullptr;
+        expect_ok(foveal_cull_mesh_from_bytes(bytes.data(), bytes.size(), &mesh));
+        return Mesh(mesh);
+    }
+    /// The mesh as bytes, for a file.
+    std::vector<std::uint8_t> to_bytes() const {
+        std::vector<std::uint8_t> bytes(foveal_cull_mesh_to_bytes(get(), nullptr, 0));
+        foveal_cull_mesh_to_bytes(get(), bytes.data(), bytes.size());
+        return bytes;
+    }
     std::size_t triangle_count() const noexcept { return foveal_cull_mesh_triangle_count(mesh_.get()); }
     const FovealCullMesh *get() const noexcept { return mesh_.get(); }
 

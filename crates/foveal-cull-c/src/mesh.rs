@@ -198,6 +198,53 @@ pub unsafe extern "C" fn foveal_cull_mesh_from_box(
     })
 }
 
+/// Copies a baked mesh as bytes, for a file: at most `size` of them, or none of them if they are
+/// more. Returns how many it has; 0 for null. `bytes` may be null to ask for that.
+///
+/// # Safety
+/// `mesh` is null or lives. `bytes` is null, or `size` bytes can be written to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_to_bytes(
+    mesh: *const FovealCullMesh,
+    bytes: *mut u8,
+    size: usize,
+) -> usize {
+    let mut needed = 0;
+    guard(|| {
+        // SAFETY: the caller's word.
+        let all = unsafe { border::object(mesh, "mesh") }?.0.to_bytes();
+        needed = all.len();
+        if !bytes.is_null() && needed <= size {
+            // SAFETY: the caller says that there are `size` bytes.
+            let to = unsafe { border::zeroed_list(bytes, needed, "bytes") }?;
+            to.copy_from_slice(&all);
+        }
+        Ok(())
+    });
+    needed
+}
+
+/// The mesh of foveal_cull_mesh_to_bytes. The bytes are checked, and not needed afterwards.
+///
+/// # Safety
+/// `bytes` is null or `size` bytes. `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_from_bytes(
+    bytes: *const u8,
+    size: usize,
+    out: *mut *mut FovealCullMesh,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            border::give(out, || {
+                let bytes = border::list(bytes, size, "bytes")?;
+                Ok(FovealCullMesh(Arc::new(OccluderMesh::from_bytes(bytes)?)))
+            })
+        }
+    })
+}
+
 /// Drops a mesh. Occluders that were made of it keep it. Null is nothing.
 ///
 /// # Safety

@@ -38,10 +38,12 @@ pub enum FovealCullStatus {
     Busy = 12,
     /// An error inside the library. Please report it. The object stays usable.
     Internal = 13,
+    /// Bytes are not a baked mesh of this version.
+    BadMeshBytes = 14,
 }
 
 impl FovealCullStatus {
-    pub(crate) const ALL: [Self; 14] = [
+    pub(crate) const ALL: [Self; 15] = [
         Self::Ok,
         Self::NullPointer,
         Self::BadStructSize,
@@ -56,6 +58,7 @@ impl FovealCullStatus {
         Self::OtherSet,
         Self::Busy,
         Self::Internal,
+        Self::BadMeshBytes,
     ];
 
     pub(crate) const fn text(self) -> &'static CStr {
@@ -74,6 +77,7 @@ impl FovealCullStatus {
             Self::OtherSet => c"the id belongs to another set of occluders",
             Self::Busy => c"the object is in use by another call",
             Self::Internal => c"an error inside the library",
+            Self::BadMeshBytes => c"the bytes are not a baked mesh of this version",
         }
     }
 }
@@ -118,6 +122,7 @@ impl From<CullError> for Fault {
             CullError::TooManyTriangles { .. } => Status::TooLarge,
             CullError::LengthMismatch { .. } => Status::WrongLength,
             CullError::UnknownOccluder => Status::UnknownOccluder,
+            CullError::BadMeshBytes(_) => Status::BadMeshBytes,
             _ => Status::BadArgument,
         };
         let text = match std::error::Error::source(&error) {

@@ -21,7 +21,7 @@ fn every_status_has_a_text_and_failures_have_one_of_their_own() {
         let text = unsafe { CStr::from_ptr(foveal_cull_status_text(status)) };
         assert_eq!(
             text == c"an unknown status",
-            !(0..14).contains(&status),
+            !(0..15).contains(&status),
             "{status}"
         );
     }
@@ -82,6 +82,16 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             null_pointer
         );
         assert_eq!(foveal_cull_mesh_triangle_count(null()), 0);
+        assert_eq!(foveal_cull_mesh_to_bytes(null(), null_mut(), 8), 0);
+        assert_eq!(
+            foveal_cull_mesh_from_bytes(null(), 8, &mut out),
+            null_pointer
+        );
+        let bytes = [0u8; 8];
+        assert_eq!(
+            foveal_cull_mesh_from_bytes(bytes.as_ptr(), 8, null_mut()),
+            null_pointer
+        );
         assert_eq!(foveal_cull_occluders_create(null_mut()), null_pointer);
         let mut given = id;
         let add = foveal_cull_occluders_add;
@@ -439,4 +449,45 @@ fn results_of_calls_that_fail_stay_as_they_were() {
         foveal_cull_tree_destroy(tree);
         foveal_culler_destroy(culler);
     }
+}
+
+#[test]
+fn meshes_go_through_bytes_and_other_bytes_are_refused() {
+    let mesh = wall();
+    // SAFETY: a live mesh, and as many bytes as are said.
+    let bytes = unsafe {
+        let needed = foveal_cull_mesh_to_bytes(mesh, null_mut(), 0);
+        let mut bytes = vec![7u8; needed];
+        let short = foveal_cull_mesh_to_bytes(mesh, bytes.as_mut_ptr(), needed - 1);
+        assert_eq!(short, needed);
+        assert!(bytes.iter().all(|b| *b == 7), "too few: nothing is written");
+        let all = foveal_cull_mesh_to_bytes(mesh, bytes.as_mut_ptr(), needed);
+        assert_eq!(all, needed);
+        bytes
+    };
+    let read = |bytes: &[u8]| {
+        let mut again = core::ptr::dangling_mut();
+        // SAFETY: as many bytes as are said, and a place for the mesh.
+        let status =
+            unsafe { foveal_cull_mesh_from_bytes(bytes.as_ptr(), bytes.len(), &mut again) };
+        assert_eq!(again.is_null(), status != Status::Ok);
+        (status, again)
+    };
+    let (status, again) = read(&bytes);
+    assert_eq!(status, Status::Ok);
+    // SAFETY: live meshes.
+    unsafe {
+        let count = foveal_cull_mesh_triangle_count(again);
+        assert_eq!(count, foveal_cull_mesh_triangle_count(mesh));
+        foveal_cull_mesh_destroy(mesh);
+        foveal_cull_mesh_destroy(again);
+    }
+    let mut wrong = bytes.clone();
+    wrong[100] ^= 1;
+    for wrong in [&wrong[..], &bytes[1..], &[], b"a picture"] {
+        assert_eq!(read(wrong).0, Status::BadMeshBytes);
+    }
+    assert_eq!(read(&wrong).0, Status::BadMeshBytes);
+    let text = last_error();
+    assert!(text.contains("checksum"), "{text}");
 }

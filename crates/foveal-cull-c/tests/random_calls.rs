@@ -152,6 +152,41 @@ impl World {
         }
     }
 
+    /// Writes a mesh and reads it again, now and then with wrong bytes.
+    fn reload(&mut self, r: &mut Random) {
+        if self.meshes.is_empty() {
+            return;
+        }
+        let n = r.below(self.meshes.len());
+        // SAFETY: a live mesh, and as many bytes as are said.
+        let mut bytes = unsafe {
+            let needed = foveal_cull_mesh_to_bytes(self.meshes[n], null_mut(), 0);
+            let mut bytes = vec![0u8; needed];
+            foveal_cull_mesh_to_bytes(self.meshes[n], bytes.as_mut_ptr(), needed);
+            bytes
+        };
+        let mut expected = Status::Ok;
+        if r.one_in(3) {
+            let at = r.below(bytes.len());
+            bytes[at] ^= 1 << r.below(8);
+            expected = Status::BadMeshBytes;
+        }
+        let size = bytes.len() - usize::from(r.one_in(5));
+        if size < bytes.len() {
+            expected = Status::BadMeshBytes;
+        }
+        let mut mesh = null_mut();
+        // SAFETY: at least as many bytes as are said.
+        let status = unsafe { foveal_cull_mesh_from_bytes(bytes.as_ptr(), size, &mut mesh) };
+        assert_eq!(self.note(status), expected);
+        assert_eq!(mesh.is_null(), expected != Status::Ok);
+        if !mesh.is_null() {
+            let old = core::mem::replace(&mut self.meshes[n], mesh);
+            // SAFETY: a live mesh that is used no more.
+            unsafe { foveal_cull_mesh_destroy(old) };
+        }
+    }
+
     fn change_occluders(&mut self, r: &mut Random) {
         if self.sets.is_empty() || self.meshes.is_empty() {
             return;
@@ -427,11 +462,12 @@ fn fuzz_random_calls_give_the_codes_that_a_model_expects() {
         let mut r = Random(seed);
         let mut world = World::default();
         for _ in 0..150 {
-            match r.below(12) {
+            match r.below(13) {
                 0..2 => world.create(&mut r),
                 2..4 => world.bake(&mut r),
                 4..9 => world.change_occluders(&mut r),
                 9..11 => world.frame(&mut r),
+                11 => world.reload(&mut r),
                 _ => world.destroy_some(&mut r),
             }
         }

@@ -57,6 +57,36 @@ pub enum CullError {
         /// Largest number that can be baked.
         most: usize,
     },
+    /// Bytes are not a baked mesh.
+    BadMeshBytes(MeshBytesError),
+}
+
+/// The reason why bytes are not a baked mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum MeshBytesError {
+    /// They do not begin as a baked mesh does.
+    NotAMesh,
+    /// They were written in another version of the format. Bake the mesh again.
+    #[non_exhaustive]
+    OtherVersion {
+        /// The version that they were written in.
+        found: u32,
+        /// The version that this library reads.
+        known: u32,
+    },
+    /// Some are missing, or there are too many.
+    #[non_exhaustive]
+    WrongLength {
+        /// Number of bytes that the mesh has.
+        expected: u64,
+        /// Number that was given.
+        found: u64,
+    },
+    /// The checksum says that they were changed.
+    Corrupt,
+    /// The checksum is right, but they do not describe a mesh. The text says why.
+    Invalid(&'static str),
 }
 
 /// An input that must be finite.
@@ -133,6 +163,7 @@ impl fmt::Display for CullError {
                     "a mesh of {triangles} triangles: at most {most} can be baked"
                 )
             }
+            Self::BadMeshBytes(_) => f.write_str("the bytes are not a baked mesh"),
         }
     }
 }
@@ -171,12 +202,33 @@ impl fmt::Display for ViewError {
     }
 }
 
+impl fmt::Display for MeshBytesError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::NotAMesh => f.write_str("they do not begin as a baked mesh does"),
+            Self::OtherVersion { found, known } => write!(
+                f,
+                "they have version {found} of the format, and this library reads version {known}: \
+                 bake the mesh again"
+            ),
+            Self::WrongLength { expected, found } => {
+                write!(f, "there are {found} of them where {expected} are needed")
+            }
+            Self::Corrupt => f.write_str("their checksum is wrong, so they were changed"),
+            Self::Invalid(what) => f.write_str(what),
+        }
+    }
+}
+
+impl core::error::Error for MeshBytesError {}
+
 impl core::error::Error for ViewError {}
 
 impl core::error::Error for CullError {
     fn source(&self) -> Option<&(dyn core::error::Error + 'static)> {
         match self {
             Self::BadView(cause) => Some(cause),
+            Self::BadMeshBytes(cause) => Some(cause),
             _ => None,
         }
     }

@@ -4,22 +4,46 @@
 //! normal, so that clusters are compact, large quads lie apart from small ones, and normal cones
 //! are narrow. Each cluster has its own vertex list, whose numbers fit a byte.
 
-use super::mesh::{Cluster, OccluderMesh, hash_words};
-use super::neighbors::{self, Neighbors};
+use super::in_parts::{in_parts, part_range, parts_of};
+use super::mesh::{Cluster, OccluderMesh, bounds_of, hash_words};
+use super::neighbors::{self, LocalNumbers, Neighbors};
 use super::quads::Quad;
-use crate::projection::boxes::Boxes8;
-use glam::Vec3;
+use crate::threads::Threads;
+use glam::{Vec3, Vec4};
+use std::sync::Mutex;
 
 const MAX_QUADS: usize = 64;
 
+/// Fewest quads that are worth a part of their own.
+const LEAST_QUADS: usize = 2048;
+
+/// A quad with its bounds and its normal.
 struct Item {
     quad: Quad,
-    lo: Vec3,
-    hi: Vec3,
-    normal: Vec3,
+    lo: Vec4,
+    hi: Vec4,
+    normal: Vec4,
 }
 
 impl Item {
+    fn new(points: &[Vec3], quad: Quad) -> Self {
+        let p = quad.map(|i| points[i as usize]);
+        let (lo, hi) = p
+            .iter()
+            .fold((p[0], p[0]), |(lo, hi), &q| (lo.min(q), hi.max(q)));
+        let normal = quad_normals(p)
+            .into_iter()
+            .flatten()
+            .sum::<Vec3>()
+            .normalize_or_zero();
+        Self {
+            quad,
+            lo: lo.extend(0.0),
+            hi: hi.extend(0.0),
+            normal: normal.extend(0.0),
+        }
+    }
+
     fn key(&self, axis: usize) -> f32 {
         if axis < 3 {
             self.lo[axis] + self.hi[axis]
@@ -29,53 +53,74 @@ impl Item {
     }
 }
 
-pub(crate) fn build(
+/// What clusters are built from.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    points: &'a [Vec3],
+    near: Option<&'a Neighbors<'a>>,
+}
+
+pub(super) fn build(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
     near: Option<&Neighbors<'_>>,
-    quads: Vec<Quad>,
+    quads: &[Quad],
+    threads: &dyn Threads,
 ) {
-    let mut items: Vec<Item> = quads
-        .into_iter()
-        .map(|quad| {
-            let p = quad.map(|i| points[i as usize]);
-            let (lo, hi) = p
-                .iter()
-                .fold((p[0], p[0]), |(lo, hi), &q| (lo.min(q), hi.max(q)));
-            let normal = quad_normals(p)
-                .into_iter()
-                .flatten()
-                .sum::<Vec3>()
-                .normalize_or_zero();
-            Item {
-                quad,
-                lo,
-                hi,
-                normal,
+    let source = Source { points, near };
+    let parts = parts_of(threads, quads.len(), LEAST_QUADS);
+    let items = in_parts(threads, parts, &|i| {
+        let quads = &quads[part_range(quads.len(), parts, i)];
+        let item = |&quad: &Quad| Item::new(points, quad);
+        quads.iter().map(item).collect::<Vec<_>>()
+    });
+    let mut items: Vec<Item> = items.into_iter().flatten().collect();
+    let ranges = cut_apart(&mut items, parts, threads);
+    let ranges: Vec<_> = ranges.into_iter().map(|r| Mutex::new(Some(r))).collect();
+    let empty = mesh.clone();
+    let built = in_parts(threads, ranges.len(), &|i| {
+        let mut part = empty.clone();
+        let range = ranges[i].lock().ok().and_then(|mut r| r.take());
+        let mut local = LocalNumbers::new(points.len());
+        split(&mut part, source, &mut local, range.unwrap_or_default());
+        part
+    });
+    for part in built {
+        mesh.append(part);
+    }
+    mesh.finish();
+}
+
+/// Cuts quads until there are `parts` ranges, as [`split`] would.
+fn cut_apart<'a>(
+    items: &'a mut [Item],
+    parts: usize,
+    threads: &dyn Threads,
+) -> Vec<&'a mut [Item]> {
+    let mut ranges = vec![items];
+    while ranges.len() < parts {
+        let before = ranges.len();
+        let whole: Vec<_> = ranges.into_iter().map(|r| Mutex::new(Some(r))).collect();
+        ranges = in_parts(threads, before, &|i| {
+            let range = whole[i].lock().ok().and_then(|mut r| r.take());
+            let range = range.unwrap_or_default();
+            if range.len() < LEAST_QUADS {
+                return [Some(range), None];
             }
+            let best = cut(range);
+            let at = part(range, best);
+            let (left, right) = range.split_at_mut(at);
+            [Some(left), Some(right)]
         })
+        .into_iter()
+        .flatten()
+        .flatten()
         .collect();
-    split(mesh, points, near, &mut items);
-    mesh.half = mesh
-        .clusters
-        .iter()
-        .fold(Vec3::ZERO, |h, c| h.max(c.center.abs() + c.half));
-    mesh.bounds8 = mesh
-        .clusters
-        .chunks(8)
-        .map(|eight| {
-            let mut boxes = Boxes8::NONE;
-            eight
-                .iter()
-                .enumerate()
-                .for_each(|(i, c)| boxes.set(i, c.center, c.half));
-            boxes
-        })
-        .collect();
-    mesh.hash = hash_words(
-        mesh.quads.len() as u32,
-        mesh.clusters.iter().map(|c| c.hash),
-    );
+        if ranges.len() == before {
+            break;
+        }
+    }
+    ranges
 }
 
 /// Unit normals of the quad's one or two triangles.
@@ -89,8 +134,8 @@ fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
 
 fn split(
     mesh: &mut OccluderMesh,
-    points: &[Vec3],
-    near: Option<&Neighbors<'_>>,
+    source: Source<'_>,
+    local: &mut LocalNumbers,
     items: &mut [Item],
 ) {
     if items.is_empty() {
@@ -98,15 +143,21 @@ fn split(
     }
     let cut = cut(items);
     let cheaper = cut.cost < WORTH_A_CUT * Part::of(items).cost();
-    if items.len() <= MAX_QUADS && !cheaper && emit(mesh, points, near, items) {
+    if items.len() <= MAX_QUADS && !cheaper && emit(mesh, source, local, items) {
         return;
     }
+    let at = part(items, cut);
+    let (left, right) = items.split_at_mut(at);
+    split(mesh, source, local, left);
+    split(mesh, source, local, right);
+}
+
+/// Brings the quads of a cut's first part to the front; returns their number.
+fn part(items: &mut [Item], cut: Cut) -> usize {
     items.select_nth_unstable_by(cut.at, |a, b| {
         (a.key(cut.axis).total_cmp(&b.key(cut.axis))).then_with(|| a.quad.cmp(&b.quad))
     });
-    let (left, right) = items.split_at_mut(cut.at);
-    split(mesh, points, near, left);
-    split(mesh, points, near, right);
+    cut.at
 }
 
 /// A split: the first `at` quads in the order of an axis (three of position, three of the normal).
@@ -127,26 +178,33 @@ const BINS: usize = 32;
 
 /// The cheapest split between bins along the six axes, by the surface-area heuristic.
 fn cut(items: &[Item]) -> Cut {
+    let (mut lo, mut hi) = ([Vec4::INFINITY; 2], [Vec4::NEG_INFINITY; 2]);
+    for item in items {
+        for (k, key) in [item.lo + item.hi, item.normal].into_iter().enumerate() {
+            (lo[k], hi[k]) = (lo[k].min(key), hi[k].max(key));
+        }
+    }
+    let scale = [0, 1].map(|k| Vec4::splat(BINS as f32) / (hi[k] - lo[k]));
+    let mut bins = [[Part::NONE; BINS]; 6];
+    for item in items {
+        let part = Part::one(item);
+        for (k, key) in [item.lo + item.hi, item.normal].into_iter().enumerate() {
+            // Where the scale is not finite, any bin will do.
+            let bin = ((key - lo[k]) * scale[k]).to_array();
+            for axis in 0..3 {
+                let bin = &mut bins[3 * k + axis][(bin[axis] as usize).min(BINS - 1)];
+                *bin = bin.with(&part);
+            }
+        }
+    }
     let mut best = Cut {
         cost: f32::INFINITY,
         axis: 0,
         at: items.len() / 2,
     };
-    for axis in 0..6 {
-        let (lo, hi) = items
-            .iter()
-            .map(|i| i.key(axis))
-            .fold((f32::INFINITY, f32::NEG_INFINITY), |(lo, hi), v| {
-                (lo.min(v), hi.max(v))
-            });
-        let scale = BINS as f32 / (hi - lo);
-        if !scale.is_finite() {
+    for (axis, bins) in bins.iter().enumerate() {
+        if !scale[axis / 3][axis % 3].is_finite() {
             continue;
-        }
-        let mut bins = [Part::NONE; BINS];
-        for item in items {
-            let bin = ((item.key(axis) - lo) * scale) as usize;
-            bins[bin.min(BINS - 1)].add(item);
         }
         let mut after = [Part::NONE; BINS + 1];
         for k in (0..BINS).rev() {
@@ -171,35 +229,35 @@ fn cut(items: &[Item]) -> Cut {
 #[derive(Clone, Copy)]
 struct Part {
     count: usize,
-    lo: Vec3,
-    hi: Vec3,
-    normal_lo: Vec3,
-    normal_hi: Vec3,
+    lo: Vec4,
+    hi: Vec4,
+    normal_lo: Vec4,
+    normal_hi: Vec4,
 }
 
 impl Part {
     const NONE: Self = Self {
         count: 0,
-        lo: Vec3::INFINITY,
-        hi: Vec3::NEG_INFINITY,
-        normal_lo: Vec3::INFINITY,
-        normal_hi: Vec3::NEG_INFINITY,
+        lo: Vec4::INFINITY,
+        hi: Vec4::NEG_INFINITY,
+        normal_lo: Vec4::INFINITY,
+        normal_hi: Vec4::NEG_INFINITY,
     };
 
-    fn of(items: &[Item]) -> Self {
-        let mut part = Self::NONE;
-        items.iter().for_each(|i| part.add(i));
-        part
-    }
-
-    fn add(&mut self, item: &Item) {
-        *self = self.with(&Self {
+    fn one(item: &Item) -> Self {
+        Self {
             count: 1,
             lo: item.lo,
             hi: item.hi,
             normal_lo: item.normal,
             normal_hi: item.normal,
-        });
+        }
+    }
+
+    fn of(items: &[Item]) -> Self {
+        let mut part = Self::NONE;
+        items.iter().for_each(|i| part = part.with(&Self::one(i)));
+        part
     }
 
     fn with(&self, other: &Self) -> Self {
@@ -216,10 +274,11 @@ impl Part {
     /// the part of all directions from which any of them faces the eye), times what set-up then
     /// takes.
     fn cost(&self) -> f32 {
-        let size = self.hi - self.lo;
+        let size = (self.hi - self.lo).truncate();
         let surface = size.dot(Vec3::new(size.y, size.z, size.x));
         // At least the sine of the half angle of the cone of normals.
-        let spread = ((self.normal_hi - self.normal_lo).length() * 0.5).min(1.0);
+        let normals = (self.normal_hi - self.normal_lo).truncate();
+        let spread = (normals.length() * 0.5).min(1.0);
         surface * (0.5 + 0.5 * spread) * (self.count.next_multiple_of(8) as f32 + COST_OF_CLUSTER)
     }
 }
@@ -267,8 +326,8 @@ fn creased(
 /// Appends one cluster; false if it has more than 256 vertices.
 fn emit(
     mesh: &mut OccluderMesh,
-    points: &[Vec3],
-    near: Option<&Neighbors<'_>>,
+    Source { points, near }: Source<'_>,
+    local: &mut LocalNumbers,
     items: &[Item],
 ) -> bool {
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
@@ -276,6 +335,10 @@ fn emit(
     used.dedup();
     if used.len() > 256 {
         return false;
+    }
+    local.next_cluster();
+    for (n, &v) in (0..=u8::MAX).zip(&used) {
+        local.set(v, n);
     }
     let first_vertex = mesh.vertices.x.len() as u32;
     let first_group = mesh.quads.len() as u32;
@@ -303,8 +366,8 @@ fn emit(
         .extend(core::iter::repeat_n([[0u8; 8]; 4], items.len().div_ceil(8)));
     for (i, item) in items.iter().enumerate() {
         for corner in 0..4 {
-            let local = used.binary_search(&item.quad[corner]).unwrap_or(0) as u8;
-            mesh.quads[first_group as usize + i / 8][corner][i % 8] = local;
+            let number = local.get(item.quad[corner]).unwrap_or(0);
+            mesh.quads[first_group as usize + i / 8][corner][i % 8] = number;
         }
         triangles += if item.quad[2] == item.quad[3] { 1 } else { 2 };
         normals.extend(
@@ -321,10 +384,10 @@ fn emit(
         items.iter().map(|i| i.quad.map(|v| points[v as usize])),
         hi - lo,
     );
-    let [lo, hi] = [lo, hi].map(|p| (p.as_dvec3() - mesh.center).as_vec3());
+    let (center, half) = bounds_of(mesh.center, lo, hi);
     mesh.clusters.push(Cluster {
-        center: (lo + hi) * 0.5,
-        half: (hi - lo) * 0.5 * (1.0 + 1e-6) + (lo.abs().max(hi.abs())) * 1e-6,
+        center,
+        half,
         cone_axis: axis,
         cone_sin: (1.0 - cos * cos).max(0.0).sqrt(),
         cone_cos: cos,
@@ -343,7 +406,7 @@ fn emit(
         ),
     });
     if let Some(near) = near {
-        neighbors::build(mesh, near, &used, items.iter().map(|i| i.quad));
+        neighbors::build(mesh, near, local, &used, items.iter().map(|i| i.quad));
     }
     true
 }

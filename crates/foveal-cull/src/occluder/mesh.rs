@@ -97,6 +97,53 @@ impl OccluderMesh {
     pub fn cluster_count(&self) -> usize {
         self.clusters.len()
     }
+
+    /// Sets what follows from the clusters.
+    pub(super) fn finish(&mut self) {
+        let reach = |h: Vec3, c: &Cluster| h.max(c.center.abs() + c.half);
+        self.half = self.clusters.iter().fold(Vec3::ZERO, reach);
+        self.bounds8 = bounds8(&self.clusters);
+        let hashes = self.clusters.iter().map(|c| c.hash);
+        self.hash = hash_words(self.quads.len() as u32, hashes);
+    }
+
+    /// Appends the clusters of another part of the same mesh.
+    pub(super) fn append(&mut self, part: Self) {
+        if self.clusters.is_empty() {
+            *self = part;
+            return;
+        }
+        let first_vertex = self.vertices.x.len() as u32;
+        let first_group = self.quads.len() as u32;
+        self.clusters
+            .extend(part.clusters.into_iter().map(|c| Cluster {
+                first_vertex: first_vertex + c.first_vertex,
+                first_group: first_group + c.first_group,
+                ..c
+            }));
+        self.vertices.append(part.vertices);
+        self.quads.extend(part.quads);
+        self.one_rings.append(part.one_rings);
+    }
+}
+
+/// Centre and half extent of a cluster between two corners, relative to the mesh's centre.
+pub(super) fn bounds_of(mesh_center: DVec3, lo: Vec3, hi: Vec3) -> (Vec3, Vec3) {
+    let [lo, hi] = [lo, hi].map(|p| (p.as_dvec3() - mesh_center).as_vec3());
+    let half = (hi - lo) * 0.5 * (1.0 + 1e-6) + (lo.abs().max(hi.abs())) * 1e-6;
+    ((lo + hi) * 0.5, half)
+}
+
+/// The boxes of clusters, eight at a time.
+fn bounds8(clusters: &[Cluster]) -> Vec<Boxes8> {
+    let eight = |eight: &[Cluster]| {
+        let mut boxes = Boxes8::NONE;
+        for (i, c) in eight.iter().enumerate() {
+            boxes.set(i, c.center, c.half);
+        }
+        boxes
+    };
+    clusters.chunks(8).map(eight).collect()
 }
 
 /// FNV-1a over 32-bit words, folded to 32 bits.

@@ -1,10 +1,15 @@
 //! Occluders: baked meshes, and the set of placed ones.
 //!
-//! `weld`, `quads`, `neighbors` and `cluster` are the steps of `bake`; `mesh`, `vertices` and
-//! `one_ring` hold its result; `set` places meshes in the world.
+//! `weld`, `half_edges`, `quads`, `neighbors` and `cluster` are the steps of `bake`; `mesh`,
+//! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
+//! what was read is a mesh; `set` places meshes in the world.
 
 mod bake;
+mod bytes;
+mod check;
 mod cluster;
+mod half_edges;
+mod in_parts;
 pub(crate) mod mesh;
 mod neighbors;
 pub(crate) mod one_ring;
@@ -12,6 +17,7 @@ mod quads;
 pub(crate) mod set;
 pub(crate) mod vertices;
 mod weld;
+mod word_hash;
 
 pub use bake::BakeOptions;
 pub use mesh::OccluderMesh;

@@ -1,9 +1,11 @@
 //! Adjacency of a welded mesh, and the one-ring of each cluster that is built from it.
 
+use super::half_edges::HalfEdges;
 use super::mesh::OccluderMesh;
 use super::one_ring::{Edge, FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
 use super::quads::Quad;
-use glam::Vec3;
+use super::word_hash::{WordHash, Words3};
+use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
 /// Most triangles of a one-ring, so that their numbers, from [`FIRST_OF_RING`] on, stay below
@@ -19,90 +21,90 @@ const SMOOTH: f64 = 0.94;
 pub(super) struct Neighbors<'a> {
     points: &'a [Vec3],
     triangles: &'a [[u32; 3]],
-    /// The triangle of each directed edge; `None` where several have it.
-    edges: HashMap<(u32, u32), Option<u32>>,
-    /// Triangles by vertex: where each vertex's list begins, and the lists.
-    starts: Vec<u32>,
-    around: Vec<u32>,
+    edges: &'a HalfEdges,
+    hash: WordHash,
 }
 
 impl<'a> Neighbors<'a> {
-    pub(super) fn new(points: &'a [Vec3], triangles: &'a [[u32; 3]]) -> Self {
-        let mut edges = HashMap::with_capacity(triangles.len() * 3);
-        let mut starts = vec![0u32; points.len() + 1];
-        for (i, t) in (0u32..).zip(triangles) {
-            for e in 0..3 {
-                edges
-                    .entry((t[e], t[(e + 1) % 3]))
-                    .and_modify(|several| *several = None)
-                    .or_insert(Some(i));
-                starts[t[e] as usize + 1] += 1;
-            }
-        }
-        let mut sum = 0;
-        for start in &mut starts {
-            sum += *start;
-            *start = sum;
-        }
-        let mut next = starts.clone();
-        let mut around = vec![0; triangles.len() * 3];
-        for (i, t) in (0u32..).zip(triangles) {
-            for v in t {
-                let at = &mut next[*v as usize];
-                around[*at as usize] = i;
-                *at += 1;
-            }
-        }
+    pub(super) fn new(points: &'a [Vec3], triangles: &'a [[u32; 3]], edges: &'a HalfEdges) -> Self {
         Self {
             points,
             triangles,
             edges,
-            starts,
-            around,
+            hash: WordHash::default(),
         }
-    }
-
-    fn around(&self, vertex: u32) -> &[u32] {
-        let v = vertex as usize;
-        &self.around[self.starts[v] as usize..self.starts[v + 1] as usize]
     }
 
     /// The triangle beyond the edge from `a` to `b`, if the edge and its reverse have at most one
     /// triangle each.
     fn beyond(&self, a: u32, b: u32) -> Option<u32> {
-        let here = self.edges.get(&(a, b)).copied().flatten();
-        here?;
-        self.edges.get(&(b, a)).copied().flatten()
+        self.edges.only(a, b)?;
+        self.edges.only(b, a)
     }
 
     /// Whether the mesh continues beyond an edge and hardly bends there.
     pub(super) fn is_smooth(&self, a: u32, b: u32) -> bool {
-        let normal = |triangle: Option<u32>| {
-            let t = self.triangles[triangle? as usize];
+        let normal = |triangle: u32| {
+            let t = self.triangles[triangle as usize];
             let [a, b, c] = t.map(|v| self.points[v as usize].as_dvec3());
             (b - a).cross(c - a).try_normalize()
         };
-        let sides = [self.beyond(b, a), self.beyond(a, b)].map(normal);
-        matches!(sides, [Some(m), Some(n)] if m.dot(n) > SMOOTH)
+        let sides = (self.edges.only(a, b)).zip(self.edges.only(b, a));
+        let normals = sides.and_then(|(one, other)| normal(one).zip(normal(other)));
+        normals.is_some_and(|(m, n): (DVec3, DVec3)| m.dot(n) > SMOOTH)
     }
 }
 
 /// A name for a triangle: its vertices from the smallest on.
-fn name([a, b, c]: [u32; 3]) -> [u32; 3] {
-    if a < b && a < c {
+fn name([a, b, c]: [u32; 3]) -> Words3 {
+    Words3(if a < b && a < c {
         [a, b, c]
     } else if b < c {
         [b, c, a]
     } else {
         [c, a, b]
+    })
+}
+
+/// Local numbers of vertices, for one cluster after the other.
+pub(super) struct LocalNumbers {
+    /// By vertex: the last cluster that has it, and its number there.
+    clusters: Vec<u32>,
+    numbers: Vec<u8>,
+    cluster: u32,
+}
+
+impl LocalNumbers {
+    pub(super) fn new(points: usize) -> Self {
+        Self {
+            clusters: vec![0; points],
+            numbers: vec![0; points],
+            cluster: 0,
+        }
+    }
+
+    /// Forgets all numbers.
+    pub(super) fn next_cluster(&mut self) {
+        self.cluster += 1;
+    }
+
+    pub(super) fn set(&mut self, vertex: u32, number: u8) {
+        self.clusters[vertex as usize] = self.cluster;
+        self.numbers[vertex as usize] = number;
+    }
+
+    pub(super) fn get(&self, vertex: u32) -> Option<u8> {
+        let known = self.clusters[vertex as usize] == self.cluster;
+        known.then(|| self.numbers[vertex as usize])
     }
 }
 
 /// Appends the one-ring of the cluster that was appended last. `own` are its vertices in their
-/// order.
+/// order, whose local numbers are known.
 pub(super) fn build(
     mesh: &mut OccluderMesh,
     near: &Neighbors<'_>,
+    local: &mut LocalNumbers,
     own: &[u32],
     quads: impl Iterator<Item = Quad>,
 ) {
@@ -112,51 +114,52 @@ pub(super) fn build(
         rings.triangles.len() as u32,
         rings.edges.len() as u32,
     );
-    let mut numbers: HashMap<[u32; 3], u16> = HashMap::new();
+    let mut numbers: HashMap<Words3, u16, WordHash> =
+        HashMap::with_capacity_and_hasher(512, near.hash);
+    // All triangles with their numbers.
+    let mut all: Vec<([u32; 3], u16)> = Vec::with_capacity(512);
     let mut twice = false;
     for (n, [a, b, c, d]) in (0u16..).zip(quads) {
-        twice |= numbers.insert(name([a, b, c]), n).is_some();
-        if c != d {
-            twice |= numbers
-                .insert(name([a, c, d]), n + FIRST_OF_SECOND as u16)
-                .is_some();
+        let second = (c != d).then_some(([a, c, d], n + FIRST_OF_SECOND as u16));
+        for (corners, number) in [([a, b, c], n)].into_iter().chain(second) {
+            twice |= numbers.insert(name(corners), number).is_some();
+            all.push((name(corners).0, number));
         }
     }
     let base = own.len().next_multiple_of(8);
     let mut others: Vec<u32> = Vec::new();
     let mut around: Vec<[u32; 3]> = Vec::new();
-    let is_own = |v: u32| own.binary_search(&v).is_ok();
-    // Triangles that occur twice have no edge of their own. Without a number their edges only
-    // become silhouette edges.
+    let is_own = |local: &LocalNumbers, v: u32| local.get(v).is_some_and(|n| usize::from(n) < base);
+    // Triangles that occur twice have no neighbours: their edges are silhouette edges.
     if !twice {
-        for &t in own.iter().flat_map(|&v| near.around(v)) {
-            let corners = near.triangles[t as usize];
+        for edge in own.iter().flat_map(|&v| near.edges.leaving(v)) {
+            let corners = near.triangles[edge.triangle as usize];
             if numbers.contains_key(&name(corners)) || around.len() == MAX_TRIANGLES {
                 continue;
             }
-            let new: Vec<u32> = corners
-                .into_iter()
-                .filter(|&v| !is_own(v) && !others.contains(&v))
-                .collect();
-            if base + (others.len() + new.len()).next_multiple_of(8) > MAX_VERTICES {
+            let new = corners.iter().filter(|&&v| local.get(v).is_none()).count();
+            if base + (others.len() + new).next_multiple_of(8) > MAX_VERTICES {
                 continue;
             }
-            others.extend(new);
-            numbers.insert(name(corners), (FIRST_OF_RING + around.len()) as u16);
+            for v in corners {
+                if local.get(v).is_none() {
+                    local.set(v, (base + others.len()) as u8);
+                    others.push(v);
+                }
+            }
+            let number = (FIRST_OF_RING + around.len()) as u16;
+            numbers.insert(name(corners), number);
+            all.push((name(corners).0, number));
             around.push(corners);
         }
     }
-    let local = |v: u32| {
-        let there = || others.iter().position(|&o| o == v).map(|i| base + i);
-        own.binary_search(&v).ok().or_else(there).unwrap_or(0) as u8
-    };
-    let mut edges = Vec::new();
-    let mut all: Vec<([u32; 3], u16)> = numbers.iter().map(|(&t, &n)| (t, n)).collect();
+    let local = &*local;
+    let place = |v: u32| local.get(v).unwrap_or(0);
     all.sort_unstable_by_key(|&(_, n)| n);
     for &(t, n) in &all {
         for e in 0..3 {
             let (a, b) = (t[e], t[(e + 1) % 3]);
-            if !is_own(a) && !is_own(b) {
+            if !is_own(local, a) && !is_own(local, b) {
                 continue;
             }
             let beyond = near
@@ -164,9 +167,9 @@ pub(super) fn build(
                 .and_then(|i| numbers.get(&name(near.triangles[i as usize])));
             let other = beyond.copied().unwrap_or(NO_TRIANGLE);
             if n < other {
-                edges.push(Edge {
+                rings.edges.push(Edge {
                     triangles: [n, other],
-                    vertices: [local(a), local(b)],
+                    vertices: [place(a), place(b)],
                 });
             }
         }
@@ -174,12 +177,12 @@ pub(super) fn build(
     for corners in around.chunks(8) {
         let mut group = [[0u8; 8]; 3];
         for (i, &t) in corners.iter().enumerate() {
-            let on = t.map(is_own);
+            let on = t.map(|v| is_own(local, v));
             let odd = (0..3)
                 .find(|&k| on[k] != on[(k + 1) % 3] && on[k] != on[(k + 2) % 3])
                 .unwrap_or(0);
             for (k, corner) in group.iter_mut().enumerate() {
-                corner[i] = local(t[(odd + k) % 3]);
+                corner[i] = place(t[(odd + k) % 3]);
             }
         }
         rings.triangles.push(group);
@@ -202,7 +205,6 @@ pub(super) fn build(
         first_group,
         triangle_count: around.len() as u16,
         first_edge,
-        edges: edges.len() as u16,
+        edges: (rings.edges.len() - first_edge as usize) as u16,
     });
-    rings.edges.extend(edges);
 }

@@ -45,3 +45,22 @@ pub(crate) struct OneRings {
     pub(crate) triangles: Vec<[[u8; 8]; 3]>,
     pub(crate) edges: Vec<Edge>,
 }
+
+impl OneRings {
+    /// Appends the one-rings of further clusters.
+    pub(super) fn append(&mut self, other: Self) {
+        let first_vertex = self.vertices.x.len() as u32;
+        let first_group = self.triangles.len() as u32;
+        let first_edge = self.edges.len() as u32;
+        self.clusters
+            .extend(other.clusters.into_iter().map(|c| OneRing {
+                first_vertex: first_vertex + c.first_vertex,
+                first_group: first_group + c.first_group,
+                first_edge: first_edge + c.first_edge,
+                ..c
+            }));
+        self.vertices.append(other.vertices);
+        self.triangles.extend(other.triangles);
+        self.edges.extend(other.edges);
+    }
+}

@@ -5,9 +5,11 @@
 //! every view and lowers the depth by it; the tolerance is about cost, not safety. Candidates are
 //! taken best first, and triangles with few other partners before those with many.
 
+use super::half_edges::HalfEdges;
+use super::in_parts::{in_parts, part_range, parts_of};
 use super::weld::Welded;
+use crate::threads::Threads;
 use glam::DVec3;
-use std::collections::HashMap;
 
 /// Vertices of a quad. A single triangle repeats its third.
 pub(crate) type Quad = [u32; 4];
@@ -15,66 +17,31 @@ pub(crate) type Quad = [u32; 4];
 /// Largest height of the fold, as a part of the shared edge's length.
 const MAX_FOLD: f64 = 0.08;
 
-pub(crate) fn pair(mesh: &Welded) -> Vec<Quad> {
+/// Fewest triangles that are worth a part.
+const LEAST_TRIANGLES: usize = 4096;
+
+pub(super) fn pair(mesh: &Welded, edges: &HalfEdges, threads: &dyn Threads) -> Vec<Quad> {
     let triangles = &mesh.triangles;
-    let mut half_edges: HashMap<(u32, u32), u32> = HashMap::with_capacity(triangles.len() * 3);
-    for (i, t) in triangles.iter().enumerate() {
-        for e in 0..3 {
-            // Where several triangles use one directed edge, the first keeps it.
-            half_edges.entry((t[e], t[(e + 1) % 3])).or_insert(i as u32);
-        }
-    }
-    let mut candidates: Vec<(f64, u32, u32, u8)> = Vec::new();
-    let mut partners = vec![0u8; triangles.len()];
-    for (i, t) in triangles.iter().enumerate() {
-        for e in 0..3u8 {
-            let (a, b, c) = (
-                t[usize::from(e)],
-                t[usize::from((e + 1) % 3)],
-                t[usize::from((e + 2) % 3)],
-            );
-            let Some(&j) = half_edges.get(&(b, a)) else {
-                continue;
-            };
-            if j as usize == i || half_edges.get(&(a, b)) != Some(&(i as u32)) {
-                continue;
-            }
-            let Some(d) = triangles[j as usize]
-                .iter()
-                .copied()
-                .find(|&v| v != a && v != b)
-            else {
-                continue;
-            };
-            if d == c {
-                continue;
-            }
-            if let Some(score) = fold(mesh, [a, b, c, d]) {
-                partners[i] = partners[i].saturating_add(1);
-                if (i as u32) < j {
-                    candidates.push((score, i as u32, j, e));
-                }
-            }
-        }
-    }
-    candidates.sort_by(|x, y| {
-        let lonely = |c: &(f64, u32, u32, u8)| partners[c.1 as usize].min(partners[c.2 as usize]);
-        let key = |c: &(f64, u32, u32, u8)| (c.0 * 50.0).floor();
-        key(x)
-            .total_cmp(&key(y))
-            .then(lonely(x).cmp(&lonely(y)))
-            .then(x.0.total_cmp(&y.0))
-            .then((x.1, x.2).cmp(&(y.1, y.2)))
+    let parts = parts_of(threads, triangles.len(), LEAST_TRIANGLES);
+    let found = in_parts(threads, parts, &|i| {
+        Found::of(mesh, edges, part_range(triangles.len(), parts, i))
     });
+    let partners: Vec<u8> = found.iter().flat_map(|f| &f.partners).copied().collect();
+    let mut order: Vec<u128> = found
+        .iter()
+        .flat_map(|f| &f.candidates)
+        .map(|c| c.key(&partners))
+        .collect();
+    drop(found);
+    order.sort_unstable();
     let mut taken = vec![false; triangles.len()];
     let mut quads = Vec::with_capacity(triangles.len() / 2 + 1);
-    for (_, i, j, e) in candidates {
-        let (i, j) = (i as usize, j as usize);
+    for key in order {
+        let [i, j, e] = places(key);
         if taken[i] || taken[j] {
             continue;
         }
         let t = triangles[i];
-        let e = usize::from(e);
         let (a, b, c) = (t[e], t[(e + 1) % 3], t[(e + 2) % 3]);
         let Some(d) = triangles[j].iter().copied().find(|&v| v != a && v != b) else {
             continue;
@@ -89,6 +56,97 @@ pub(crate) fn pair(mesh: &Welded) -> Vec<Quad> {
         [a, b, c, c]
     }));
     quads
+}
+
+/// Two triangles that can be joined: the first, its edge that both share, and the second.
+struct Candidate {
+    score: f64,
+    first: u32,
+    second: u32,
+    edge: u8,
+}
+
+/// Bits of the parts of a candidate's key, from the lowest: edge, triangles, score. The score is
+/// below [`MAX_FOLD`], so that the two highest bits of its 64 are zero.
+const EDGE_BITS: u32 = 2;
+const TRIANGLE_BITS: u32 = 29;
+const SCORE_BITS: u32 = 62;
+
+impl Candidate {
+    /// A number by which candidates are ordered: flatter ones in some steps first, then those with
+    /// few other partners, then flatter ones exactly, then by number. No two are equal.
+    fn key(&self, partners: &[u8]) -> u128 {
+        let step = (self.score * 50.0) as u128;
+        // At most three.
+        let lonely = partners[self.first as usize].min(partners[self.second as usize]);
+        let head = (step << 2) | u128::from(lonely);
+        let head = (head << SCORE_BITS) | u128::from(self.score.to_bits());
+        let head = (head << TRIANGLE_BITS) | u128::from(self.first);
+        let head = (head << TRIANGLE_BITS) | u128::from(self.second);
+        (head << EDGE_BITS) | u128::from(self.edge)
+    }
+}
+
+/// The two triangles and the edge of a key.
+fn places(key: u128) -> [usize; 3] {
+    let low = |shift: u32, bits: u32| (key >> shift) as usize & ((1 << bits) - 1);
+    [
+        low(EDGE_BITS + TRIANGLE_BITS, TRIANGLE_BITS),
+        low(EDGE_BITS, TRIANGLE_BITS),
+        low(0, EDGE_BITS),
+    ]
+}
+
+/// Candidates whose first triangle is in a range, and how many partners each triangle of it has.
+struct Found {
+    candidates: Vec<Candidate>,
+    partners: Vec<u8>,
+}
+
+impl Found {
+    fn of(mesh: &Welded, edges: &HalfEdges, range: core::ops::Range<usize>) -> Self {
+        let triangles = &mesh.triangles;
+        let mut found = Self {
+            candidates: Vec::with_capacity(range.len()),
+            partners: vec![0; range.len()],
+        };
+        for (i, partners) in range.zip(&mut found.partners) {
+            let t = triangles[i];
+            for e in 0..3u8 {
+                let (a, b, c) = (
+                    t[usize::from(e)],
+                    t[usize::from((e + 1) % 3)],
+                    t[usize::from((e + 2) % 3)],
+                );
+                // Where several triangles have one directed edge, the first keeps it.
+                let Some((j, _)) = edges.find(b, a) else {
+                    continue;
+                };
+                if j as usize == i || edges.find(a, b).map(|f| f.0) != Some(i as u32) {
+                    continue;
+                }
+                let third = triangles[j as usize].iter().copied();
+                let Some(d) = third.into_iter().find(|&v| v != a && v != b) else {
+                    continue;
+                };
+                if d == c {
+                    continue;
+                }
+                if let Some(score) = fold(mesh, [a, b, c, d]) {
+                    *partners += 1;
+                    if (i as u32) < j {
+                        found.candidates.push(Candidate {
+                            score,
+                            first: i as u32,
+                            second: j,
+                            edge: e,
+                        });
+                    }
+                }
+            }
+        }
+        found
+    }
 }
 
 /// Fold of the pair (a, b, c) and (b, a, d), 0 if flat; `None` if the two cannot be joined.

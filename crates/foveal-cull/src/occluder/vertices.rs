@@ -7,3 +7,11 @@ pub(crate) struct Vertices {
     pub(crate) y: Vec<f32>,
     pub(crate) z: Vec<f32>,
 }
+
+impl Vertices {
+    pub(super) fn append(&mut self, other: Self) {
+        self.x.extend(other.x);
+        self.y.extend(other.y);
+        self.z.extend(other.z);
+    }
+}

@@ -1,0 +1,242 @@
+use super::*;
+use crate::reference::{Reference, Seen};
+use crate::{
+    Aabb, Affine, BakeOptions, Culler, Eye, FrameOptions, OccluderSet, Projection, SingleThread,
+    View, Visibility,
+};
+use std::sync::Arc;
+
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, n: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 33) as usize % n
+    }
+
+    fn unit(&mut self) -> f32 {
+        self.below(1 << 20) as f32 / (1 << 20) as f32
+    }
+}
+
+/// A bumpy wall of 12 x 12 quads, 4 m wide, with a hole, some triangles twice, and some in a soup.
+fn wall(r: &mut Random, options: BakeOptions) -> OccluderMesh {
+    let n = 12u32;
+    let mut points: Vec<Vec3> = (0..=n * (n + 2))
+        .map(|i| {
+            let (x, y) = ((i % (n + 1)) as f32, (i / (n + 1)) as f32);
+            Vec3::new(
+                x / 3.0 - 2.0,
+                y / 3.0 - 2.0,
+                0.2 * (x * 0.7).sin() * (y * 0.5).cos(),
+            )
+        })
+        .collect();
+    let mut indices: Vec<u32> = (0..n * n)
+        .map(|q| q / n * (n + 1) + q % n)
+        .filter(|a| !(60..63).contains(a))
+        .flat_map(|a| {
+            let b = a + n + 1;
+            [a, a + 1, b + 1, a, b + 1, b]
+        })
+        .collect();
+    for _ in 0..r.below(3) {
+        let t = 3 * r.below(indices.len() / 3);
+        indices.extend_from_within(t..t + 3);
+    }
+    for _ in 0..r.below(4) {
+        let at = points.len() as u32;
+        points.extend((0..3).map(|_| Vec3::new(r.unit(), r.unit(), r.unit()) * 2.0 - 1.0));
+        indices.extend([at, at + 1, at + 2]);
+    }
+    OccluderMesh::bake(&points, &indices, options).unwrap()
+}
+
+fn options(r: &mut Random) -> BakeOptions {
+    BakeOptions::default()
+        .with_two_sided(r.below(4) == 0)
+        .with_adjacency(r.below(4) != 0)
+}
+
+#[test]
+fn every_mesh_comes_back_as_it_was() {
+    let mut r = Random(7);
+    let empty = OccluderMesh::bake(&[[0.0f32; 3]], &[], BakeOptions::default()).unwrap();
+    let solid = OccluderMesh::from_box(Aabb::new([0.0; 3], [1.0; 3])).unwrap();
+    let large: Vec<[f32; 3]> = (0..300)
+        .map(|i| [3e38 * [1.0, -1.0][i % 2], 0.0, 1e38 * (i % 3) as f32])
+        .collect();
+    let soup: Vec<u32> = (0..298).flat_map(|i| [i, i + 1, i + 2]).collect();
+    let large = OccluderMesh::bake(&large, &soup, BakeOptions::default()).unwrap();
+    let mut meshes = vec![empty, solid, large];
+    for _ in 0..60 {
+        let options = options(&mut r);
+        meshes.push(wall(&mut r, options));
+    }
+    for mesh in meshes {
+        let bytes = mesh.to_bytes();
+        assert_eq!(bytes.capacity(), bytes.len(), "the length is known before");
+        let again = OccluderMesh::from_bytes(&bytes).unwrap();
+        // Boxes after the last cluster are NaN, which is never equal.
+        assert_eq!(format!("{again:?}"), format!("{mesh:?}"));
+    }
+}
+
+#[test]
+fn any_wrong_byte_is_noticed() {
+    let mut r = Random(3);
+    let bytes = wall(&mut r, BakeOptions::default()).to_bytes();
+    let reason = |bytes: &[u8]| match OccluderMesh::from_bytes(bytes) {
+        Err(CullError::BadMeshBytes(reason)) => reason,
+        other => panic!("{other:?}"),
+    };
+    for i in 0..bytes.len() {
+        let mut wrong = bytes.clone();
+        wrong[i] ^= 1 << r.below(8);
+        let reason = reason(&wrong);
+        let expected = match i {
+            0..8 => reason == MeshBytesError::NotAMesh,
+            8..12 => matches!(reason, MeshBytesError::OtherVersion { known: 1, .. }),
+            16..24 => matches!(reason, MeshBytesError::WrongLength { .. }),
+            _ => reason == MeshBytesError::Corrupt,
+        };
+        assert!(expected, "byte {i}: {reason:?}");
+    }
+    for length in (0..200).chain(bytes.len() - 50..bytes.len()) {
+        let reason = reason(&bytes[..length]);
+        let short = matches!(reason, MeshBytesError::WrongLength { .. });
+        assert!(short || length < 8 && reason == MeshBytesError::NotAMesh);
+    }
+    let longer = [&bytes[..], &[0]].concat();
+    assert!(matches!(
+        reason(&longer),
+        MeshBytesError::WrongLength { .. }
+    ));
+    // Nothing is allocated for lists that are not there.
+    let mut header = bytes[..HEADER].to_vec();
+    header[16..24].copy_from_slice(&(HEADER as u64).to_le_bytes());
+    header[56..80].fill(0xff);
+    seal(&mut header);
+    assert!(matches!(reason(&header), MeshBytesError::Invalid(_)));
+}
+
+/// The triangles of a mesh, as they are drawn.
+fn triangles(mesh: &OccluderMesh) -> (Vec<Vec3>, Vec<u32>) {
+    let v = &mesh.vertices;
+    let points = (0..v.x.len()).map(|i| Vec3::new(v.x[i], v.y[i], v.z[i]));
+    let mut indices = Vec::new();
+    for c in &mesh.clusters {
+        for q in 0..usize::from(c.quad_count) {
+            let group = &mesh.quads[c.first_group as usize + q / 8];
+            let corner = |k: usize| c.first_vertex + u32::from(group[k][q % 8]);
+            indices.extend([0, 1, 2, 0, 2, 3].map(corner));
+        }
+    }
+    (points.collect(), indices)
+}
+
+/// Bytes with right checksums and wrong contents are refused, or are another mesh, behind whose own
+/// triangles nothing visible is culled: neither for one eye nor for a view region.
+#[test]
+fn wrong_bytes_with_a_right_checksum_cull_nothing_that_is_visible() {
+    let mut r = Random(11);
+    let boxes: Vec<Aabb> = (0..60)
+        .map(|_| {
+            let [x, y, z] = [0; 3].map(|_| r.unit() * 6.0 - 3.0);
+            let h = 0.02 + 0.3 * r.unit();
+            Aabb::new([x - h, y - h, z - 3.0 - h], [x + h, y + h, z - 3.0 + h])
+        })
+        .collect();
+    let eye = |x: f64, y: f64| {
+        let position = [x, y, 4.0];
+        let target = [x, y, 0.0];
+        let projection = Projection::perspective(1.0, 4.0 / 3.0, 0.1, f64::INFINITY);
+        Eye::look_at(position, target, [0.0, 1.0, 0.0], projection)
+    };
+    let radius = 0.05;
+    let (mut accepted, mut refused, mut culled) = (0, 0, 0);
+    for _ in 0..1500 {
+        let options = options(&mut r);
+        let mut bytes = wall(&mut r, options).to_bytes();
+        for _ in 0..1 + r.below(3) {
+            // Half of them in the last lists, which are those of adjacency.
+            let from = if r.below(2) == 0 {
+                HEADER
+            } else {
+                bytes.len() * 2 / 3
+            };
+            let at = from + r.below(bytes.len() - from);
+            bytes[at] = match r.below(3) {
+                0 => r.below(256) as u8,
+                1 => bytes[at].wrapping_add(1),
+                _ => bytes[from + r.below(bytes.len() - from)],
+            };
+        }
+        seal(&mut bytes);
+        let mesh = match OccluderMesh::from_bytes(&bytes) {
+            Ok(mesh) => mesh,
+            Err(CullError::BadMeshBytes(MeshBytesError::Invalid(_))) => {
+                refused += 1;
+                continue;
+            }
+            Err(other) => panic!("{other}"),
+        };
+        accepted += 1;
+        let (points, indices) = triangles(&mesh);
+        let two_sided = mesh.two_sided;
+        let mut set = OccluderSet::new();
+        set.add(Arc::new(mesh), Affine::IDENTITY).unwrap();
+        let mut culler = Culler::new(64, 48).unwrap();
+        for views in [
+            &[[0.0, 0.0]][..],
+            &[[radius * 0.999, 0.0], [0.0, -radius * 0.999]],
+        ] {
+            let region = if views.len() == 1 { 0.0 } else { radius };
+            let view = View::mono(eye(0.0, 0.0)).with_validity_radius(region);
+            let frame = FrameOptions::default();
+            culler
+                .rasterize(&view, &set, &frame, &SingleThread)
+                .unwrap();
+            let mut results = vec![Visibility::Visible; boxes.len()];
+            culler.query(&boxes, [0.0; 3], &mut results).unwrap();
+            for &[x, y] in views {
+                let mut exact = Reference::new(&eye(x, y), 64, 48).unwrap();
+                exact.add(&points, &indices, Affine::IDENTITY, two_sided);
+                exact.finish();
+                for (b, result) in boxes.iter().zip(&results) {
+                    if *result == Visibility::Occluded {
+                        culled += 1;
+                        assert_ne!(exact.seen(b, [0.0; 3]), Seen::Visible, "{b:?}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(accepted > 100 && refused > 100, "{accepted} {refused}");
+    assert!(culled > 10_000, "{culled}");
+}
+
+#[test]
+fn threads_bake_the_same_mesh() {
+    // Enough for several parts.
+    let n = 200u32;
+    let points: Vec<Vec3> = (0..n * n)
+        .map(|i| {
+            let (x, z) = ((i % n) as f32, (i / n) as f32);
+            Vec3::new(x, 3.0 * (x * 0.1).sin() * (z * 0.13).cos(), z)
+        })
+        .collect();
+    let indices: Vec<u32> = (0..(n - 1) * (n - 1))
+        .map(|q| q / (n - 1) * n + q % (n - 1))
+        .flat_map(|a| [a, a + n, a + 1, a + 1, a + n, a + n + 1])
+        .collect();
+    let options = BakeOptions::default();
+    let one = OccluderMesh::bake(&points, &indices, options).unwrap();
+    for count in [2, 5] {
+        let threads = crate::WorkerThreads::new(count);
+        let many = OccluderMesh::bake_on(&points, &indices, options, &threads).unwrap();
+        assert!(many.to_bytes() == one.to_bytes(), "{count} threads");
+    }
+}

@@ -1,0 +1,34 @@
+//! Point lights with shadows in a house: casters that are hidden from a light are not drawn for
+//! it.
+//!
+//! `cargo run --example lights` opens a window: 1, 2, 3 and 4 switch the way of culling (the frustum
+//! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), space stops the walk.
+//! `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
+//! `--side 12` (rooms along each side), `--furniture 30` (pieces a room) and `--lights 2` (with
+//! shadows) change the scene.
+
+mod shared;
+
+use bevy::prelude::UVec2;
+use shared::arguments::Arguments;
+use shared::house::House;
+use shared::modes::Mode;
+use shared::{figures, window};
+
+fn main() {
+    let arguments = Arguments::read();
+    let house = House {
+        side: arguments.number("side", 8),
+        furniture: arguments.number("furniture", 30),
+        doors: false,
+        lights: arguments.number("lights", 2),
+    };
+    let size = arguments.size(UVec2::new(640, 360));
+    match arguments.frames() {
+        Some(frames) => {
+            let modes = [Mode::Frustum, Mode::Gpu, Mode::Camera, Mode::All];
+            figures::print(house, size, frames, &modes);
+        }
+        None => window::run("lights", house, size),
+    }
+}

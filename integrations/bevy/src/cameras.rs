@@ -1,0 +1,112 @@
+//! Cameras: hidden meshes leave `VisibleEntities`.
+
+use crate::components::CpuOcclusionCulling;
+use crate::cull::{Boxes, Outcome, ViewCuller};
+use crate::occluders::{Occluders, Range};
+use crate::stats::CpuOcclusionStats;
+use crate::tasks::ComputeTasks;
+use crate::view::{Fit, clip_from_world};
+use bevy_camera::visibility::{RenderLayers, VisibleEntities, VisibleEntityRanges};
+use bevy_camera::{Camera, MainPassResolutionOverride};
+use bevy_ecs::change_detection::{Res, ResMut};
+use bevy_ecs::entity::{Entity, EntityHashMap};
+use bevy_ecs::system::{Local, Query};
+use bevy_mesh::Mesh3d;
+use bevy_platform::time::Instant;
+use bevy_transform::components::GlobalTransform;
+use core::any::TypeId;
+
+#[cfg(feature = "bevy_pbr")]
+type Multisampling = Option<&'static bevy_render::view::Msaa>;
+/// Unknown without Bevy's renderer.
+#[cfg(not(feature = "bevy_pbr"))]
+type Multisampling = ();
+
+#[cfg(feature = "bevy_pbr")]
+fn samples(multisampling: Option<&bevy_render::view::Msaa>) -> u32 {
+    multisampling.copied().unwrap_or_default().samples()
+}
+
+/// Bevy's default.
+#[cfg(not(feature = "bevy_pbr"))]
+fn samples((): ()) -> u32 {
+    4
+}
+
+pub(crate) fn cull(
+    mut occluders: ResMut<Occluders>,
+    mut stats: ResMut<CpuOcclusionStats>,
+    mut cullers: Local<EntityHashMap<ViewCuller>>,
+    boxes: Boxes,
+    ranges: Option<Res<VisibleEntityRanges>>,
+    mut cameras: Query<(
+        Entity,
+        &Camera,
+        &GlobalTransform,
+        &CpuOcclusionCulling,
+        &mut VisibleEntities,
+        Option<&RenderLayers>,
+        Option<&MainPassResolutionOverride>,
+        Multisampling,
+    )>,
+) {
+    let begin = Instant::now();
+    cullers.retain(|camera, _| cameras.contains(*camera));
+    for (entity, camera, transform, culling, mut visible, layers, resolution, multisampling) in
+        &mut cameras
+    {
+        let picture = resolution
+            .map(|size| size.0)
+            .or_else(|| camera.physical_viewport_size());
+        let Some(picture) = picture.filter(|_| camera.is_active) else {
+            continue;
+        };
+        let Some(fit) = Fit::new(culling.buffer_size, picture, samples(multisampling)) else {
+            continue;
+        };
+        let list = visible.get_mut(TypeId::of::<Mesh3d>());
+        let layers = layers.unwrap_or_default();
+        let on = occluders.enable(|occluder, entry| {
+            layers.intersects(&entry.layers)
+                && match entry.range {
+                    Range::None => true,
+                    Range::Abrupt => ranges
+                        .as_ref()
+                        .is_some_and(|r| r.entity_is_in_range_of_view(occluder, entity)),
+                    Range::Fading => false,
+                }
+        });
+        let mut outcome = Outcome {
+            listed: list.len(),
+            ..Outcome::default()
+        };
+        // Faces are told by their winding in the world: a pose that mirrors needs the opposite test.
+        let affine = transform.affine();
+        let mirrors = affine.matrix3.determinant() < 0.0;
+        if mirrors != camera.invert_culling {
+            outcome.refused = true;
+        } else if on > 0 {
+            let Some(culler) = of_size(&mut cullers, entity, fit.size) else {
+                continue;
+            };
+            let matrix = clip_from_world(camera.clip_from_view(), affine);
+            outcome = culler.cull(list, &boxes, &occluders.set, &ComputeTasks, |_| {
+                fit.view(matrix)
+            });
+        }
+        outcome.add_to(&mut stats, false);
+    }
+    stats.camera_time = begin.elapsed();
+}
+
+/// The camera's culler, made anew where the size of its buffer has changed.
+fn of_size(
+    cullers: &mut EntityHashMap<ViewCuller>,
+    camera: Entity,
+    size: (u32, u32),
+) -> Option<&mut ViewCuller> {
+    if cullers.get(&camera).is_none_or(|c| c.size() != size) {
+        cullers.insert(camera, ViewCuller::new(size).ok()?);
+    }
+    cullers.get_mut(&camera)
+}

@@ -1,0 +1,244 @@
+//! Lights: shadow casters that are hidden from the light leave the lists of its shadow maps.
+//!
+//! What is hidden from the light behind other casters changes no texel of the shadow map.
+
+use crate::components::CpuOcclusionCulling;
+use crate::cull::{Boxes, Outcome, ViewCuller};
+use crate::occluders::{Occluders, Range};
+use crate::stats::CpuOcclusionStats;
+use crate::tasks::for_each;
+use crate::view::{Fit, clip_from_world};
+use bevy_camera::primitives::CUBE_MAP_FACES;
+use bevy_camera::visibility::{
+    CascadesVisibleEntities, CubemapVisibleEntities, RenderLayers, ViewVisibility,
+    VisibleMeshEntities,
+};
+use bevy_ecs::change_detection::{Res, ResMut};
+use bevy_ecs::entity::Entity;
+use bevy_ecs::query::With;
+use bevy_ecs::system::{Local, Query};
+use bevy_light::cascade::Cascades;
+use bevy_light::{
+    DirectionalLight, DirectionalLightShadowMap, NotShadowCaster, PointLight, PointLightShadowMap,
+    SpotLight, spot_light_clip_from_view, spot_light_world_from_view,
+};
+use bevy_math::{Affine3A, DMat4, DVec3, Mat4};
+use bevy_platform::collections::HashMap;
+use bevy_platform::time::Instant;
+use bevy_transform::components::{GlobalTransform, Transform};
+use foveal_cull::{Aabb, SingleThread};
+
+/// Cullers by the size of their buffers.
+type Cullers = HashMap<(u32, u32), Vec<ViewCuller>>;
+
+/// A shadow map of a light.
+struct Face<'a> {
+    clip_from_world: DMat4,
+    /// Casters before the near plane are drawn onto it.
+    casters_before_near: bool,
+    list: &'a mut Vec<Entity>,
+    outcome: Outcome,
+}
+
+impl<'a> Face<'a> {
+    fn new(clip_from_world: DMat4, casters: &'a mut VisibleMeshEntities) -> Self {
+        Self {
+            clip_from_world,
+            casters_before_near: false,
+            list: &mut casters.entities,
+            outcome: Outcome::default(),
+        }
+    }
+}
+
+pub(crate) fn cull(
+    mut occluders: ResMut<Occluders>,
+    mut stats: ResMut<CpuOcclusionStats>,
+    mut cullers: Local<Cullers>,
+    boxes: Boxes,
+    not_casters: Query<(), With<NotShadowCaster>>,
+    map_sizes: (
+        Option<Res<PointLightShadowMap>>,
+        Option<Res<DirectionalLightShadowMap>>,
+    ),
+    mut point_lights: Query<(
+        &PointLight,
+        &GlobalTransform,
+        &ViewVisibility,
+        &CpuOcclusionCulling,
+        &mut CubemapVisibleEntities,
+        Option<&RenderLayers>,
+    )>,
+    mut spot_lights: Query<(
+        &SpotLight,
+        &GlobalTransform,
+        &ViewVisibility,
+        &CpuOcclusionCulling,
+        &mut VisibleMeshEntities,
+        Option<&RenderLayers>,
+    )>,
+    mut directional_lights: Query<(
+        &DirectionalLight,
+        &Cascades,
+        &ViewVisibility,
+        &CpuOcclusionCulling,
+        &mut CascadesVisibleEntities,
+        Option<&RenderLayers>,
+    )>,
+) {
+    let begin = Instant::now();
+    let mut cull_faces = |culling: &CpuOcclusionCulling,
+                          side: Option<usize>,
+                          layers: Option<&RenderLayers>,
+                          faces: &mut [Face<'_>]| {
+        let Some(fit) = side.and_then(|side| Fit::of_shadow_map(culling.buffer_size, side)) else {
+            return;
+        };
+        let layers = layers.unwrap_or_default();
+        let on = occluders.enable(|entity, entry| {
+            layers.intersects(&entry.layers)
+                && entry.range == Range::None
+                && entry.shadows
+                && !not_casters.contains(entity)
+        });
+        if on > 0 {
+            cull_light(faces, &fit, &mut cullers, &boxes, &occluders);
+        } else {
+            for face in &mut *faces {
+                face.outcome.listed = face.list.len();
+            }
+        }
+        for face in faces {
+            face.outcome.add_to(&mut stats, true);
+        }
+    };
+    let point_side = map_sizes.0.map(|map| map.size);
+    let other_side = map_sizes.1.map(|map| map.size);
+
+    // Bevy fills the lists of lights with shadows that a camera sees; those of others are old.
+    for (light, transform, visibility, culling, mut casters, layers) in &mut point_lights {
+        if !(light.shadow_maps_enabled && visibility.get()) {
+            continue;
+        }
+        let near = light.shadow_map_near_z;
+        let clip_from_view =
+            Mat4::perspective_infinite_reverse_rh(core::f32::consts::FRAC_PI_2, 1.0, near);
+        let place = Transform::from_translation(transform.translation());
+        let mut faces: Vec<Face> = CUBE_MAP_FACES
+            .iter()
+            .zip(casters.iter_mut())
+            .map(|(face, casters)| {
+                let rotation = Transform::IDENTITY.looking_at(face.target, face.up);
+                let pose: Affine3A = (place * rotation).compute_affine();
+                Face::new(clip_from_world(clip_from_view, pose), casters)
+            })
+            .collect();
+        cull_faces(culling, point_side, layers, &mut faces);
+    }
+    for (light, transform, visibility, culling, mut casters, layers) in &mut spot_lights {
+        if !(light.shadow_maps_enabled && visibility.get()) {
+            continue;
+        }
+        let clip_from_view = spot_light_clip_from_view(light.outer_angle, light.shadow_map_near_z);
+        let pose = spot_light_world_from_view(transform);
+        let mut face = [Face::new(
+            clip_from_world(clip_from_view, pose),
+            &mut casters,
+        )];
+        cull_faces(culling, other_side, layers, &mut face);
+    }
+    for (light, cascades, visibility, culling, mut casters, layers) in &mut directional_lights {
+        if !(light.shadow_maps_enabled && visibility.get()) {
+            continue;
+        }
+        let mut faces: Vec<Face> = Vec::new();
+        for (camera, lists) in &mut casters.entities {
+            let of_camera = cascades.cascades.get(camera).into_iter().flatten();
+            for (cascade, casters) in of_camera.zip(lists) {
+                faces.push(Face {
+                    casters_before_near: true,
+                    ..Face::new(cascade.clip_from_world.as_dmat4(), casters)
+                });
+            }
+        }
+        cull_faces(culling, other_side, layers, &mut faces);
+    }
+    stats.light_time = begin.elapsed();
+}
+
+/// Culls the shadow maps of one light, at the same time.
+fn cull_light(
+    faces: &mut [Face<'_>],
+    fit: &Fit,
+    cullers: &mut Cullers,
+    boxes: &Boxes<'_, '_>,
+    occluders: &Occluders,
+) {
+    let cullers = cullers.entry(fit.size).or_default();
+    while cullers.len() < faces.len() {
+        match ViewCuller::new(fit.size) {
+            Ok(culler) => cullers.push(culler),
+            Err(_) => return,
+        }
+    }
+    for_each(faces.iter_mut().zip(cullers), |(face, culler)| {
+        let matrix = face.clip_from_world;
+        face.outcome = culler.cull(face.list, boxes, &occluders.set, &SingleThread, |casters| {
+            fit.view(if face.casters_before_near {
+                with_near_before(matrix, casters)
+            } else {
+                matrix
+            })
+        });
+    });
+}
+
+/// An orthographic matrix of reversed depth whose near plane lies before all casters.
+fn with_near_before(clip_from_world: DMat4, casters: &[Aabb]) -> DMat4 {
+    let depth = clip_from_world.row(2);
+    let (along, offset) = (depth.truncate(), depth.w);
+    let nearest = casters
+        .iter()
+        .filter(|bounds| bounds.is_valid())
+        .map(|bounds| {
+            let (min, max) = (bounds.min.map(f64::from), bounds.max.map(f64::from));
+            let (min, max) = (DVec3::from(min), DVec3::from(max));
+            along.dot((min + max) * 0.5) + along.abs().dot((max - min) * 0.5) + offset
+        })
+        .fold(1.0, f64::max);
+    // Depth 1 moves there, and 0, the far plane, stays.
+    let scale = 1.0 / (nearest * 1.001);
+    DMat4::from_cols(
+        bevy_math::DVec4::X,
+        bevy_math::DVec4::Y,
+        bevy_math::DVec4::Z * scale,
+        bevy_math::DVec4::W,
+    ) * clip_from_world
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::components::OcclusionBufferSize;
+    use bevy_math::{DVec4, Vec3};
+
+    #[test]
+    fn the_near_plane_of_a_cascade_moves_before_its_casters() {
+        // 20 m wide, from z = 0 down to -100, with reversed depth.
+        let clip = Mat4::orthographic_rh(-10.0, 10.0, -10.0, 10.0, 100.0, 0.0).as_dmat4();
+        let depth = |m: DMat4, z: f64| (m * DVec4::new(0.0, 0.0, z, 1.0)).z;
+        assert!((depth(clip, 0.0) - 1.0).abs() < 1e-6 && depth(clip, -100.0).abs() < 1e-6);
+        let casters = [
+            Aabb::new(Vec3::splat(-1.0), Vec3::new(1.0, 1.0, 50.0)),
+            Aabb::EMPTY,
+        ];
+        let moved = with_near_before(clip, &casters);
+        assert!(depth(moved, 50.0) < 1.0 && depth(moved, 51.0) > 1.0);
+        assert!(depth(moved, -100.0).abs() < 1e-6);
+        let fit = Fit::of_shadow_map(OcclusionBufferSize::Exact, 1024).unwrap();
+        assert!(fit.view(moved).unwrap().eye.projection.is_orthographic());
+        // Nothing before it: it stays.
+        let behind = [Aabb::new(Vec3::splat(-50.0), Vec3::splat(-40.0))];
+        assert!((depth(with_near_before(clip, &behind), 0.0) - 1.0).abs() < 2e-3);
+    }
+}

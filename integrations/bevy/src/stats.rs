@@ -1,0 +1,79 @@
+//! The stats of the last frame, and Bevy's diagnostics of them.
+
+use crate::plugin::CpuOcclusionPlugin;
+use bevy_app::App;
+use bevy_diagnostic::{Diagnostic, DiagnosticPath, Diagnostics, RegisterDiagnostic};
+use bevy_ecs::resource::Resource;
+use bevy_ecs::system::Res;
+use core::time::Duration;
+
+/// What the culler did in the last frame, over all cameras and lights.
+#[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CpuOcclusionStats {
+    /// Occluders that are visible and whose material may occlude.
+    pub occluders: usize,
+    /// Views of cameras that were culled.
+    pub cameras: usize,
+    /// Meshes in the frusta of these, as Bevy found them.
+    pub meshes: usize,
+    /// Of these, hidden.
+    pub meshes_hidden: usize,
+    /// Views of lights that were culled: six of a point light, one of a spot light, one for each
+    /// cascade of a directional light.
+    pub light_views: usize,
+    /// Shadow casters in the frusta of these, as Bevy found them.
+    pub casters: usize,
+    /// Of these, hidden from the light.
+    pub casters_hidden: usize,
+    /// Views that cannot be culled for, and kept everything.
+    pub refused_views: usize,
+    /// Time for keeping occluders up to date, baking included.
+    pub update_time: Duration,
+    /// Time for all cameras.
+    pub camera_time: Duration,
+    /// Time for all lights.
+    pub light_time: Duration,
+}
+
+impl CpuOcclusionPlugin {
+    /// Meshes in the frusta of culled cameras.
+    pub const MESHES: DiagnosticPath = DiagnosticPath::const_new("cpu_occlusion/meshes");
+    /// Of these, hidden.
+    pub const MESHES_HIDDEN: DiagnosticPath =
+        DiagnosticPath::const_new("cpu_occlusion/meshes_hidden");
+    /// Shadow casters in the frusta of culled lights.
+    pub const CASTERS: DiagnosticPath = DiagnosticPath::const_new("cpu_occlusion/casters");
+    /// Of these, hidden from the light.
+    pub const CASTERS_HIDDEN: DiagnosticPath =
+        DiagnosticPath::const_new("cpu_occlusion/casters_hidden");
+    /// Time of all of it together.
+    pub const TIME: DiagnosticPath = DiagnosticPath::const_new("cpu_occlusion/time");
+}
+
+pub(crate) fn register(app: &mut App) {
+    for path in [
+        CpuOcclusionPlugin::MESHES,
+        CpuOcclusionPlugin::MESHES_HIDDEN,
+        CpuOcclusionPlugin::CASTERS,
+        CpuOcclusionPlugin::CASTERS_HIDDEN,
+    ] {
+        app.register_diagnostic(Diagnostic::new(path));
+    }
+    app.register_diagnostic(Diagnostic::new(CpuOcclusionPlugin::TIME).with_suffix(" ms"));
+}
+
+pub(crate) fn measure(stats: Res<CpuOcclusionStats>, mut diagnostics: Diagnostics) {
+    let mut add = |path, value: f64| diagnostics.add_measurement(&path, || value);
+    add(CpuOcclusionPlugin::MESHES, stats.meshes as f64);
+    add(
+        CpuOcclusionPlugin::MESHES_HIDDEN,
+        stats.meshes_hidden as f64,
+    );
+    add(CpuOcclusionPlugin::CASTERS, stats.casters as f64);
+    add(
+        CpuOcclusionPlugin::CASTERS_HIDDEN,
+        stats.casters_hidden as f64,
+    );
+    let time = stats.update_time + stats.camera_time + stats.light_time;
+    add(CpuOcclusionPlugin::TIME, time.as_secs_f64() * 1e3);
+}

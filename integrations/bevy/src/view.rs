@@ -1,0 +1,111 @@
+//! From Bevy's matrices to the culler's views and buffer sizes.
+
+use crate::components::OcclusionBufferSize;
+use bevy_math::{Affine3A, DMat4, DVec4, Mat4, UVec2};
+use foveal_cull::{ClipDepth, CullError, MAX_SIDE_PX, View};
+
+/// The size of a buffer, and how much of the buffer the picture takes per axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Fit {
+    pub(crate) size: (u32, u32),
+    /// Above 0, at most 1: the rest of the buffer lies to the right of the picture and below it.
+    share: [f64; 2],
+}
+
+impl Fit {
+    /// For a picture of so many pixels, with so many samples in each.
+    pub(crate) fn new(mode: OcclusionBufferSize, picture: UVec2, samples: u32) -> Option<Self> {
+        if picture.min_element() == 0 {
+            return None;
+        }
+        // The sample positions of 1, 2, 4 and 8 samples lie on the centres of a grid of as many
+        // cells per axis. A buffer pixel has a grid of 4.
+        let mut per_picture_px = match mode {
+            OcclusionBufferSize::Exact => f64::from(samples) / 4.0,
+            OcclusionBufferSize::Quarter => 0.25,
+            OcclusionBufferSize::Fixed(size) => {
+                let size = size.clamp(UVec2::ONE, UVec2::splat(MAX_SIDE_PX));
+                return Some(Self {
+                    size: size.into(),
+                    share: [1.0; 2],
+                });
+            }
+        };
+        while f64::from(picture.max_element()) * per_picture_px > f64::from(MAX_SIDE_PX) {
+            per_picture_px *= 0.5;
+        }
+        let fit = |px: u32| {
+            let exact = f64::from(px) * per_picture_px;
+            (exact.ceil() as u32, exact / exact.ceil())
+        };
+        let ((width, x), (height, y)) = (fit(picture.x), fit(picture.y));
+        Some(Self {
+            size: (width, height),
+            share: [x, y],
+        })
+    }
+
+    /// For a square shadow map.
+    pub(crate) fn of_shadow_map(mode: OcclusionBufferSize, side: usize) -> Option<Self> {
+        Self::new(mode, UVec2::splat(u32::try_from(side).ok()?), 1)
+    }
+
+    /// The view of a matrix, widened to whole pixels of the buffer.
+    pub(crate) fn view(&self, clip_from_world: DMat4) -> Result<View, CullError> {
+        let [x, y] = self.share;
+        let widened = DMat4::from_cols(
+            DVec4::new(x, 0.0, 0.0, 0.0),
+            DVec4::new(0.0, y, 0.0, 0.0),
+            DVec4::Z,
+            DVec4::new(x - 1.0, 1.0 - y, 0.0, 1.0),
+        ) * clip_from_world;
+        View::from_clip_from_world(widened.to_cols_array(), ClipDepth::OneToZero)
+    }
+}
+
+/// The matrix of a pose and a projection, without the rounding of `f32`.
+pub(crate) fn clip_from_world(clip_from_view: Mat4, world_from_view: Affine3A) -> DMat4 {
+    clip_from_view.as_dmat4() * Mat4::from(world_from_view).as_dmat4().inverse()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bevy_math::{DVec3, Vec3};
+
+    #[test]
+    fn a_picture_of_odd_size_keeps_its_pixel_centres() {
+        let picture = UVec2::new(317, 181);
+        let fit = Fit::new(OcclusionBufferSize::Exact, picture, 1).unwrap();
+        assert_eq!(fit.size, (80, 46));
+        let clip_from_view = Mat4::perspective_infinite_reverse_rh(1.0, 317.0 / 181.0, 0.1);
+        let pose = Affine3A::look_at_rh(Vec3::new(1.0, 2.0, 3.0), Vec3::ZERO, Vec3::Y).inverse();
+        let matrix = clip_from_world(clip_from_view, pose);
+        let view = fit.view(matrix).unwrap();
+        let [left, right, bottom, top] = view.eye.projection.extents();
+        // The centre of pixel (10, 20), by the matrix and by the buffer's sample of that number.
+        let (x, y) = (10.5 / 317.0 * 2.0 - 1.0, 1.0 - 20.5 / 181.0 * 2.0);
+        let world = matrix.inverse().project_point3(DVec3::new(x, y, 0.5));
+        let eye =
+            DMat4::from_cols_array_2d(&Mat4::from(pose).as_dmat4().inverse().to_cols_array_2d())
+                .transform_point3(world);
+        let sample_x = left + 10.5 / 320.0 * (right - left);
+        let sample_y = top - 20.5 / 184.0 * (top - bottom);
+        assert!((eye.x / -eye.z - sample_x).abs() < 1e-6, "{eye} {sample_x}");
+        assert!((eye.y / -eye.z - sample_y).abs() < 1e-6, "{eye} {sample_y}");
+    }
+
+    #[test]
+    fn buffers_follow_the_samples_and_stay_within_the_limit() {
+        let size = |mode, w, h, samples| Fit::new(mode, UVec2::new(w, h), samples).unwrap().size;
+        use OcclusionBufferSize::{Exact, Fixed, Quarter};
+        assert_eq!(size(Exact, 640, 360, 1), (160, 90));
+        assert_eq!(size(Exact, 640, 360, 2), (320, 180));
+        assert_eq!(size(Exact, 640, 360, 4), (640, 360));
+        assert_eq!(size(Exact, 640, 360, 8), (1280, 720));
+        assert_eq!(size(Quarter, 640, 360, 4), (160, 90));
+        assert_eq!(size(Exact, 7680, 4320, 4), (3840, 2160));
+        assert_eq!(size(Fixed(UVec2::new(0, 9999)), 640, 360, 1), (1, 4096));
+        assert_eq!(Fit::new(Exact, UVec2::new(0, 5), 1), None);
+    }
+}

@@ -1,0 +1,198 @@
+//! What leaves the lists of shadow maps and what stays, without a renderer.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod world;
+
+use bevy::camera::visibility::{
+    CascadesVisibleEntities, CubemapVisibleEntities, RenderLayers, VisibleMeshEntities,
+};
+use bevy::light::NotShadowCaster;
+use bevy::prelude::*;
+use bevy_foveal_cull::{CpuOcclusionCulling, CpuOcclusionStats, NoOcclusionCulling, Occluder};
+use world::TestWorld;
+
+/// Faces of a point light's cube map that list the entity.
+fn faces(t: &TestWorld, light: Entity, entity: Entity) -> Vec<usize> {
+    let lists = t.app.world().get::<CubemapVisibleEntities>(light).unwrap();
+    lists
+        .iter()
+        .enumerate()
+        .filter(|(_, list)| list.entities.contains(&entity))
+        .map(|(face, _)| face)
+        .collect()
+}
+
+/// Towards -z, by Bevy's order of cube map faces.
+const FORWARD: usize = 4;
+const BACKWARD: usize = 5;
+
+fn point_light() -> PointLight {
+    PointLight {
+        shadow_maps_enabled: true,
+        range: 30.0,
+        ..default()
+    }
+}
+
+#[test]
+fn casters_behind_casters_leave_the_faces_of_a_point_light() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let hidden = t.ball(-9.0);
+    let before = t.ball(-3.0);
+    let other_side = t.ball(9.0);
+    let light = t
+        .app
+        .world_mut()
+        .spawn((point_light(), CpuOcclusionCulling::default()))
+        .id();
+    t.update();
+    assert!(faces(&t, light, wall).contains(&FORWARD));
+    assert_eq!(faces(&t, light, hidden), []);
+    assert_eq!(faces(&t, light, before), [FORWARD]);
+    assert_eq!(faces(&t, light, other_side), [BACKWARD]);
+    let stats = *t.app.world().resource::<CpuOcclusionStats>();
+    assert_eq!((stats.light_views, stats.casters_hidden), (6, 1));
+    for list in t
+        .app
+        .world()
+        .get::<CubemapVisibleEntities>(light)
+        .unwrap()
+        .iter()
+    {
+        assert!(list.entities.is_sorted());
+    }
+
+    // A wall that casts no shadow hides nothing from lights, and still hides from cameras.
+    t.app.world_mut().entity_mut(wall).insert(NotShadowCaster);
+    t.update();
+    assert_eq!(faces(&t, light, hidden), [FORWARD]);
+    assert!(!t.sees(hidden));
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .remove::<NotShadowCaster>();
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(RenderLayers::layer(1));
+    t.update();
+    assert_eq!(faces(&t, light, hidden), [FORWARD], "on another layer");
+    t.app.world_mut().entity_mut(wall).remove::<RenderLayers>();
+    t.update();
+    assert_eq!(faces(&t, light, hidden), []);
+
+    // The light moves to the other side of the wall.
+    t.app
+        .world_mut()
+        .entity_mut(light)
+        .insert(Transform::from_xyz(0.0, 0.0, -15.0));
+    t.update();
+    assert_eq!(faces(&t, light, hidden), [BACKWARD]);
+    assert_eq!(faces(&t, light, before), []);
+
+    t.app
+        .world_mut()
+        .entity_mut(light)
+        .remove::<CpuOcclusionCulling>();
+    t.update();
+    assert_eq!(faces(&t, light, before), [BACKWARD], "Bevy's list");
+}
+
+#[test]
+fn marked_casters_stay() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let kept = t.spawn_ball(Vec3::new(0.0, 0.0, -9.0), NoOcclusionCulling);
+    let light = t
+        .app
+        .world_mut()
+        .spawn((point_light(), CpuOcclusionCulling::default()))
+        .id();
+    t.update();
+    assert_eq!(faces(&t, light, kept), [FORWARD]);
+}
+
+#[test]
+fn casters_behind_casters_leave_a_spot_light() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let hidden = t.ball(-9.0);
+    let before = t.ball(-3.0);
+    let light = SpotLight {
+        shadow_maps_enabled: true,
+        range: 30.0,
+        ..default()
+    };
+    let light = t
+        .app
+        .world_mut()
+        .spawn((light, CpuOcclusionCulling::default()))
+        .id();
+    let listed = |t: &TestWorld| {
+        let list = t.app.world().get::<VisibleMeshEntities>(light).unwrap();
+        list.entities.clone()
+    };
+    t.update();
+    assert_eq!(listed(&t), world::sorted([wall, before]));
+    *t.get_mut::<Transform>(wall) = Transform::from_xyz(0.0, 20.0, -5.0);
+    t.update();
+    assert!(listed(&t).contains(&hidden), "the wall has moved away");
+}
+
+#[test]
+fn casters_behind_casters_leave_the_cascades_of_the_sun() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let hidden = t.ball(-9.0);
+    let before = t.ball(-3.0);
+    // Behind the camera, where cascades have no near plane: another wall, and what it hides.
+    let far_wall = t.wall(Occluder::default());
+    *t.get_mut::<Transform>(far_wall) = Transform::from_xyz(0.0, 0.0, 40.0);
+    let behind_far_wall = t.ball(30.0);
+    let before_far_wall = t.ball(50.0);
+    let sun = t
+        .app
+        .world_mut()
+        .spawn((
+            DirectionalLight {
+                shadow_maps_enabled: true,
+                ..default()
+            },
+            CpuOcclusionCulling::default(),
+        ))
+        .id();
+    let cascades_with = |t: &TestWorld, entity: Entity| {
+        let casters = t.app.world().get::<CascadesVisibleEntities>(sun).unwrap();
+        let lists = &casters.entities[&t.camera];
+        assert_eq!(lists.len(), 4);
+        lists
+            .iter()
+            .filter(|list| list.entities.contains(&entity))
+            .count()
+    };
+    t.update();
+    assert!(cascades_with(&t, far_wall) > 0);
+    assert!(cascades_with(&t, before_far_wall) > 0);
+    for entity in [hidden, before, behind_far_wall] {
+        assert_eq!(cascades_with(&t, entity), 0, "all behind the far wall");
+    }
+    t.app.world_mut().despawn(far_wall);
+    t.update();
+    assert!(cascades_with(&t, behind_far_wall) > 0);
+    assert!(cascades_with(&t, wall) > 0 && cascades_with(&t, before) > 0);
+    assert_eq!(cascades_with(&t, hidden), 0);
+    assert_eq!(t.app.world().resource::<CpuOcclusionStats>().light_views, 4);
+}
+
+#[test]
+fn lights_without_shadows_are_left_alone() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    t.app
+        .world_mut()
+        .spawn((PointLight::default(), CpuOcclusionCulling::default()));
+    t.update();
+    assert_eq!(t.app.world().resource::<CpuOcclusionStats>().light_views, 0);
+}

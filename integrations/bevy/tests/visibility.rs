@@ -1,0 +1,460 @@
+//! What leaves a camera's list and what stays, without a renderer.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod world;
+
+use bevy::camera::visibility::{NoFrustumCulling, RenderLayers, VisibilityRange, VisibleEntities};
+use bevy::diagnostic::DiagnosticsStore;
+use bevy::mesh::VertexAttributeValues;
+use bevy::mesh::morph::MeshMorphWeights;
+use bevy::mesh::skinning::SkinnedMesh;
+use bevy::prelude::*;
+use bevy_foveal_cull::{
+    AutomaticOccluder, AutomaticOccluders, CpuOcclusionCulling, CpuOcclusionPlugin,
+    CpuOcclusionStats, NoOcclusionCulling, Occluder, OcclusionBufferSize,
+};
+use world::{TestWorld, sorted};
+
+#[test]
+fn the_hidden_leave_and_the_visible_stay() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let behind = t.ball(-9.0);
+    let before = t.ball(-3.0);
+    *t.get_mut::<Transform>(wall) = Transform::from_xyz(-2.0, 0.0, -5.0);
+    let beside = t.spawn_ball(Vec3::new(4.0, 0.0, -9.0), ());
+    t.update();
+    assert_eq!(t.visible(), sorted([wall, before, beside]));
+    let stats = *t.app.world().resource::<CpuOcclusionStats>();
+    assert_eq!((stats.occluders, stats.cameras), (1, 1));
+    assert_eq!(
+        (stats.meshes, stats.meshes_hidden, stats.refused_views),
+        (4, 1, 0)
+    );
+
+    // Bevy's list again without the component.
+    t.app
+        .world_mut()
+        .entity_mut(t.camera)
+        .remove::<CpuOcclusionCulling>();
+    t.update();
+    assert_eq!(t.visible(), sorted([wall, behind, before, beside]));
+}
+
+#[test]
+fn doors_open_and_walls_come_and_go() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.update();
+    assert!(!t.sees(ball));
+
+    *t.get_mut::<Transform>(wall) = Transform::from_xyz(20.0, 0.0, -5.0);
+    t.update();
+    assert!(t.sees(ball), "the wall has moved away");
+    *t.get_mut::<Transform>(wall) = Transform::from_xyz(0.0, 0.0, -5.0);
+    t.update();
+    assert!(!t.sees(ball));
+
+    *t.get_mut::<Visibility>(wall) = Visibility::Hidden;
+    t.update();
+    assert!(t.sees(ball), "the wall is not drawn");
+    *t.get_mut::<Visibility>(wall) = Visibility::Inherited;
+    t.update();
+    assert!(!t.sees(ball));
+
+    t.app.world_mut().entity_mut(wall).remove::<Occluder>();
+    t.update();
+    assert!(t.sees(ball), "the wall is no occluder");
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(Occluder::default());
+    t.update();
+    assert!(!t.sees(ball));
+
+    t.app.world_mut().despawn(wall);
+    t.update();
+    assert!(t.sees(ball), "the wall is gone");
+}
+
+#[test]
+fn children_of_hidden_and_moved_parents_occlude_as_they_are_drawn() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    let parent = t
+        .app
+        .world_mut()
+        .spawn((Transform::default(), Visibility::default()))
+        .add_child(wall)
+        .id();
+    t.update();
+    assert!(!t.sees(ball));
+    *t.get_mut::<Visibility>(parent) = Visibility::Hidden;
+    t.update();
+    assert!(t.sees(ball));
+    *t.get_mut::<Visibility>(parent) = Visibility::Inherited;
+    *t.get_mut::<Transform>(parent) = Transform::from_xyz(30.0, 0.0, 0.0);
+    t.update();
+    assert!(t.sees(ball));
+}
+
+#[test]
+fn changed_meshes_occlude_as_they_are_now() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.update();
+    assert!(!t.sees(ball));
+
+    let handle = t.get_mut::<Mesh3d>(wall).0.clone();
+    let scale = |t: &mut TestWorld, by: f32| {
+        let mut meshes = t.app.world_mut().resource_mut::<Assets<Mesh>>();
+        let mut mesh = meshes.get_mut(&handle).unwrap();
+        let positions = mesh.attribute_mut(Mesh::ATTRIBUTE_POSITION).unwrap();
+        let VertexAttributeValues::Float32x3(positions) = positions else {
+            panic!("positions");
+        };
+        for p in positions {
+            *p = p.map(|v| v * by);
+        }
+    };
+    scale(&mut t, 0.01);
+    t.update();
+    assert!(t.sees(ball), "the asset has shrunk");
+    scale(&mut t, 100.0);
+    t.update();
+    assert!(!t.sees(ball));
+
+    let small = t.add_mesh(Cuboid::new(0.1, 0.1, 0.1));
+    t.get_mut::<Mesh3d>(wall).0 = small;
+    t.update();
+    assert!(t.sees(ball), "the entity has another mesh");
+}
+
+#[test]
+fn a_mesh_that_is_loaded_later_occludes_from_then_on() {
+    let mut t = TestWorld::new();
+    let handle = t.app.world().resource::<Assets<Mesh>>().reserve_handle();
+    let wall = t.wall(Occluder::default());
+    t.get_mut::<Mesh3d>(wall).0 = handle.clone();
+    let ball = t.ball(-9.0);
+    t.update();
+    assert!(t.sees(ball));
+    let mesh = Mesh::from(Cuboid::new(8.0, 8.0, 0.2));
+    t.app
+        .world_mut()
+        .resource_mut::<Assets<Mesh>>()
+        .insert(&handle, mesh)
+        .unwrap();
+    t.update();
+    assert!(!t.sees(ball));
+}
+
+#[test]
+fn occluders_on_other_layers_hide_nothing() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.spawn_ball(
+        Vec3::new(0.0, 0.0, -9.0),
+        RenderLayers::from_layers(&[0, 1]),
+    );
+    let layer = |n: usize| RenderLayers::layer(n);
+    t.app.world_mut().entity_mut(wall).insert(layer(1));
+    t.update();
+    assert!(t.sees(ball), "the camera does not draw the wall");
+    t.app.world_mut().entity_mut(t.camera).insert(layer(1));
+    t.update();
+    assert!(!t.sees(ball));
+    t.app.world_mut().entity_mut(wall).remove::<RenderLayers>();
+    t.update();
+    assert!(t.sees(ball), "the wall is back on layer 0");
+}
+
+#[test]
+fn what_must_stay_stays() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let at = Vec3::new(0.0, 0.0, -9.0);
+    let kept = [
+        t.spawn_ball(at, NoOcclusionCulling),
+        t.spawn_ball(at, NoFrustumCulling),
+        t.spawn_ball(at, SkinnedMesh::default()),
+        t.spawn_ball(at, MeshMorphWeights::Value { weights: vec![] }),
+    ];
+    let culled = t.ball(-9.0);
+    t.update();
+    for entity in kept {
+        assert!(t.sees(entity));
+    }
+    assert!(!t.sees(culled));
+}
+
+#[test]
+fn skinned_and_morphing_meshes_do_not_occlude() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(SkinnedMesh::default());
+    t.update();
+    assert!(t.sees(ball));
+    // A box inside it does.
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(Occluder::from_box(
+            Vec3::new(-4.0, -4.0, -0.1),
+            Vec3::new(4.0, 4.0, 0.1),
+        ));
+    t.update();
+    assert!(!t.sees(ball));
+}
+
+#[test]
+fn transparent_materials_do_not_occlude() {
+    let mut t = TestWorld::new();
+    let glass = t.add_material(StandardMaterial {
+        alpha_mode: AlphaMode::Blend,
+        ..default()
+    });
+    let wall = t.wall(Occluder::default());
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(MeshMaterial3d(glass.clone()));
+    let ball = t.ball(-9.0);
+    t.update();
+    assert!(t.sees(ball), "through glass");
+    t.app
+        .world_mut()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .get_mut(&glass)
+        .unwrap()
+        .alpha_mode = AlphaMode::Opaque;
+    t.update();
+    assert!(!t.sees(ball), "the material has become opaque");
+    t.app
+        .world_mut()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .remove(&glass);
+    t.update();
+    assert!(t.sees(ball), "without a material it is not drawn");
+}
+
+#[test]
+fn occluders_that_fade_or_are_out_of_range_hide_nothing() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    for (range, hides) in [
+        (VisibilityRange::abrupt(0.0, 50.0), true),
+        (VisibilityRange::abrupt(20.0, 50.0), false),
+        (
+            VisibilityRange {
+                start_margin: 0.0..0.0,
+                end_margin: 3.0..50.0,
+                use_aabb: false,
+            },
+            false,
+        ),
+    ] {
+        t.app.world_mut().entity_mut(wall).insert(range);
+        t.update();
+        assert_eq!(!t.sees(ball), hides);
+    }
+}
+
+#[test]
+fn planes_hide_from_behind_only_if_two_sided() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let plane = t.add_mesh(Rectangle::new(8.0, 8.0));
+    t.get_mut::<Mesh3d>(wall).0 = plane;
+    let ball = t.ball(-9.0);
+    t.update();
+    assert!(!t.sees(ball), "its front");
+    t.get_mut::<Transform>(wall).rotate_y(core::f32::consts::PI);
+    t.update();
+    assert!(t.sees(ball), "its back, which is not drawn");
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(Occluder::two_sided());
+    t.update();
+    assert!(!t.sees(ball));
+    // A material that culls back faces has the last word.
+    let one_sided = t.add_material(StandardMaterial::default());
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(MeshMaterial3d(one_sided));
+    t.update();
+    assert!(t.sees(ball));
+}
+
+#[test]
+fn boxes_and_proxies_stand_for_meshes() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::from_box(Vec3::splat(-0.05), Vec3::splat(0.05)));
+    let ball = t.ball(-9.0);
+    t.update();
+    assert!(t.sees(ball), "the box is smaller than the mesh");
+    let proxy = t.add_mesh(Cuboid::new(7.0, 7.0, 0.1));
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(Occluder::from_proxy(proxy));
+    t.update();
+    assert!(!t.sees(ball));
+    // A box needs no mesh at all.
+    t.app.world_mut().despawn(wall);
+    t.app.world_mut().spawn((
+        Transform::from_xyz(0.0, 0.0, -5.0),
+        Occluder::from_box(Vec3::new(-4.0, -4.0, -0.1), Vec3::new(4.0, 4.0, 0.1)),
+    ));
+    t.update();
+    assert!(!t.sees(ball));
+}
+
+#[test]
+fn orthographic_cameras_cull_and_oblique_ones_keep_everything() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.look_through(Projection::Orthographic(OrthographicProjection {
+        scale: 0.02,
+        ..OrthographicProjection::default_3d()
+    }));
+    t.update();
+    assert!(!t.sees(ball));
+
+    t.look_through(Projection::Perspective(PerspectiveProjection {
+        near_clip_plane: Vec4::new(0.5, 0.0, -1.0, -0.2),
+        ..default()
+    }));
+    t.update();
+    assert!(t.sees(ball));
+    let stats = t.app.world().resource::<CpuOcclusionStats>();
+    assert_eq!((stats.refused_views, stats.meshes_hidden), (1, 0));
+}
+
+#[test]
+fn poses_that_mirror_are_culled_only_with_inverted_faces() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.get_mut::<Transform>(t.camera).scale.x = -1.0;
+    t.update();
+    assert!(t.sees(ball));
+    t.get_mut::<Camera>(t.camera).invert_culling = true;
+    t.update();
+    assert!(!t.sees(ball));
+}
+
+#[test]
+fn every_buffer_size_finds_what_is_wholly_hidden() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    for buffer_size in [
+        OcclusionBufferSize::Exact,
+        OcclusionBufferSize::Quarter,
+        OcclusionBufferSize::Fixed(UVec2::new(64, 40)),
+    ] {
+        for msaa in [Msaa::Off, Msaa::Sample2, Msaa::Sample4, Msaa::Sample8] {
+            t.app
+                .world_mut()
+                .entity_mut(t.camera)
+                .insert((CpuOcclusionCulling { buffer_size }, msaa));
+            t.update();
+            assert!(!t.sees(ball), "{buffer_size:?} {msaa:?}");
+        }
+    }
+}
+
+#[test]
+fn inactive_cameras_and_cameras_without_a_target_are_left_alone() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.get_mut::<Camera>(t.camera).computed.target_info = None;
+    t.update();
+    assert!(t.sees(ball));
+    assert_eq!(t.app.world().resource::<CpuOcclusionStats>().cameras, 0);
+}
+
+#[test]
+fn each_camera_has_its_own_list() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    let other = t.add_camera(Transform::from_xyz(0.0, 0.0, -20.0).looking_at(Vec3::ZERO, Vec3::Y));
+    let before = t.ball(-3.0);
+    t.update();
+    assert_eq!(t.visible(), sorted([wall, before]));
+    let list = t.app.world().get::<VisibleEntities>(other).unwrap();
+    let list = list.get(core::any::TypeId::of::<Mesh3d>());
+    assert_eq!(list, sorted([wall, ball]), "from behind");
+}
+
+#[test]
+fn large_opaque_things_that_stand_still_are_found() {
+    let mut t = TestWorld::new();
+    t.app.insert_resource(AutomaticOccluders {
+        still_frames: 2,
+        ..default()
+    });
+    let gray = t.add_material(StandardMaterial::default());
+    let glass = t.add_material(StandardMaterial {
+        alpha_mode: AlphaMode::Blend,
+        ..default()
+    });
+    let wall = t.wall(Occluder::default());
+    t.app.world_mut().entity_mut(wall).remove::<Occluder>();
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(MeshMaterial3d(glass));
+    let ball = t.ball(-9.0);
+    let chosen = |t: &TestWorld| t.app.world().get::<AutomaticOccluder>(wall).is_some();
+    for _ in 0..6 {
+        t.update();
+    }
+    assert!(t.sees(ball) && !chosen(&t), "glass");
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(MeshMaterial3d(gray));
+    for _ in 0..6 {
+        t.update();
+    }
+    assert!(!t.sees(ball) && chosen(&t));
+    assert!(t.app.world().get::<Occluder>(ball).is_none(), "too small");
+
+    t.get_mut::<Transform>(wall).translation.y = 0.1;
+    t.update();
+    assert!(!chosen(&t), "it moves");
+    for _ in 0..6 {
+        t.update();
+    }
+    assert!(!t.sees(ball) && chosen(&t), "it stands again");
+}
+
+#[test]
+fn the_stats_are_diagnostics_too() {
+    let mut t = TestWorld::new();
+    t.wall(Occluder::default());
+    t.ball(-9.0);
+    t.update();
+    t.update();
+    let store = t.app.world().resource::<DiagnosticsStore>();
+    let of = |path| store.get(&path).and_then(|d| d.value());
+    assert_eq!(of(CpuOcclusionPlugin::MESHES), Some(2.0));
+    assert_eq!(of(CpuOcclusionPlugin::MESHES_HIDDEN), Some(1.0));
+    assert!(of(CpuOcclusionPlugin::TIME).is_some_and(|ms| ms > 0.0));
+}
