@@ -101,9 +101,10 @@ fn finished_frames_are_left_out_and_the_rest_is_whole() {
         "3",
         "--skip-existing",
     ];
-    fs::write(here.join("f1.png"), "finished elsewhere").unwrap();
-    // As a crash might leave it behind; it is not finished.
-    fs::write(here.join("f2.png"), "").unwrap();
+    let elsewhere = b"finished elsewhere, with the end of a PNG file\0\0\0\0IEND\xaeB`\x82";
+    fs::write(here.join("f1.png"), elsewhere).unwrap();
+    // As a crash or a full disk might leave it behind; it is not finished.
+    fs::write(here.join("f2.png"), b"\x89PNG\r\n").unwrap();
     let output = succeed(here, &[&words[..], &SIZE].concat());
     assert!(
         stderr(&output).contains("1 were there already"),
@@ -117,7 +118,7 @@ fn finished_frames_are_left_out_and_the_rest_is_whole() {
         stderr(&output)
     );
     assert_eq!(names(here), ["f0.png", "f1.png", "f2.png"]);
-    assert_eq!(bytes(here, "f1.png"), b"finished elsewhere");
+    assert_eq!(bytes(here, "f1.png"), elsewhere);
     // A still camera before a still scene.
     assert!(bytes(here, "f0.png") == bytes(here, "f2.png"));
     let output = succeed(here, &[&words[..], &SIZE].concat());
@@ -203,4 +204,107 @@ fn flags_change_the_picture() {
         render("a.png", &["--point-lights", "8"])
             != render("b.png", &["--point-lights", "8", "--light-seed", "1"])
     );
+}
+
+/// Four jobs on one sequence, of which two are killed while they draw.
+#[test]
+fn jobs_that_share_a_sequence_draw_each_frame_once_and_lose_none() {
+    const FRAMES: usize = 24;
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    let words = |output: &'static str| {
+        let words = [
+            "render",
+            "triangle.gltf",
+            "--fps",
+            "8",
+            "--frames",
+            "24",
+            "-q",
+            "-o",
+            output,
+        ];
+        [&words[..], &SIZE].concat()
+    };
+    succeed(here, &words("alone_##.png"));
+    let share = |stats: &'static str| {
+        let more = ["--share", "--share-expiry", "2", "--stats", stats];
+        let words = [&words("shared_##.png")[..], &more].concat();
+        spawn_in(here, &words)
+    };
+    let drawn = || {
+        let is_drawn = |name: &String| name.starts_with("shared_");
+        names(here).into_iter().filter(is_drawn).count()
+    };
+    let mut killed = [share("k0.json"), share("k1.json")];
+    let start = Instant::now();
+    while drawn() < 2 {
+        assert!(
+            start.elapsed() < Duration::from_secs(300),
+            "no frame is drawn"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    for job in &mut killed {
+        job.kill().unwrap();
+        job.wait().unwrap();
+    }
+    let before = drawn();
+    // What a job that is killed at the worst moment leaves: a claim, and a picture without its end.
+    fs::write(here.join(".shared_23.png.claim-0"), "..").unwrap();
+    fs::write(here.join("shared_22.png"), b"\x89PNG").unwrap();
+    for mut job in [share("a.json"), share("b.json")] {
+        assert!(job.wait().unwrap().success());
+    }
+    let mut frames = Vec::new();
+    for stats in ["a.json", "b.json"] {
+        let Ok(text) = fs::read_to_string(here.join(stats)) else {
+            continue;
+        };
+        let stats: serde_json::Value = serde_json::from_str(&text).unwrap();
+        let drawn = stats["frames"].as_array().unwrap().iter();
+        frames.extend(drawn.map(|frame| frame["frame"].as_u64().unwrap()));
+    }
+    frames.sort_unstable();
+    let count = frames.len();
+    frames.dedup();
+    assert_eq!((count, frames.len()), (FRAMES - before, FRAMES - before));
+    for frame in 0..FRAMES {
+        let of = |name: &str| bytes(here, &format!("{name}_{frame:02}.png"));
+        assert!(of("alone") == of("shared"), "{frame}");
+    }
+    let claims = names(here)
+        .into_iter()
+        .filter(|name| name.contains("claim"));
+    assert_eq!(claims.collect::<Vec<_>>(), Vec::<String>::new());
+}
+
+#[test]
+fn parts_of_a_sequence_are_drawn_by_number() {
+    let folder = folder();
+    let here = folder.path();
+    moving_triangle(here);
+    for part in ["0/2", "1/2"] {
+        let words = [
+            "render",
+            "triangle.gltf",
+            "-o",
+            "f_#.png",
+            "--frames",
+            "3..6",
+            "--part",
+            part,
+        ];
+        succeed(here, &[&words[..], &SIZE].concat());
+        let drawn = names(here)
+            .into_iter()
+            .filter(|name| name.starts_with("f_"));
+        let expected: &[&str] = if part == "0/2" {
+            &["f_3.png"]
+        } else {
+            &["f_3.png", "f_4.png", "f_5.png"]
+        };
+        assert_eq!(drawn.collect::<Vec<_>>(), expected);
+    }
 }

@@ -4,9 +4,12 @@
 //! renamed. Nobody ever sees half a file under the final name: not after Ctrl-C, not after a power
 //! cut, and not another process that works in the same folder.
 
+use std::collections::HashSet;
+use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{ErrorKind, Write};
+use std::io::{ErrorKind, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Context, bail};
 
@@ -99,9 +102,63 @@ impl Pending {
     }
 }
 
-/// True when a finished file is there.
+/// True when a finished file is there. A PNG file whose end is missing is not finished: another
+/// program may have cut it off.
 pub fn is_finished(path: &Path) -> bool {
-    fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() > 0)
+    let is_there = fs::metadata(path).is_ok_and(|m| m.is_file() && m.len() > 0);
+    let is_png = path
+        .extension()
+        .is_some_and(|e| e.eq_ignore_ascii_case("png"));
+    is_there && (!is_png || has_png_end(path).unwrap_or(false))
+}
+
+/// The last chunk of every PNG file: no bytes, its name, its checksum.
+const PNG_END: [u8; 12] = *b"\0\0\0\0IEND\xaeB`\x82";
+
+fn has_png_end(path: &Path) -> std::io::Result<bool> {
+    let mut file = File::open(path)?;
+    file.seek(SeekFrom::End(-(PNG_END.len() as i64)))?;
+    let mut end = [0; PNG_END.len()];
+    file.read_exact(&mut end)?;
+    Ok(end == PNG_END)
+}
+
+/// Age from which a temporary file is abandoned: far more than writing one takes.
+const ABANDONED: Duration = Duration::from_secs(600);
+
+/// Removes what jobs that were killed left while they wrote `files`, all in one folder: temporary
+/// files that nobody has written to for ten minutes, by the folder's own clock.
+pub fn remove_abandoned<'a>(files: impl IntoIterator<Item = &'a Path>) {
+    let names: HashSet<_> = files.into_iter().collect();
+    let Some(folder) = names.iter().next().map(|file| folder_of(file).to_owned()) else {
+        return;
+    };
+    let names: HashSet<_> = names.iter().filter_map(|file| file.file_name()).collect();
+    let now = tempfile::NamedTempFile::new_in(&folder)
+        .and_then(|probe| probe.as_file().metadata()?.modified());
+    let (Ok(now), Ok(entries)) = (now, fs::read_dir(&folder)) else {
+        return;
+    };
+    for entry in entries.flatten() {
+        let is_ours = entry
+            .file_name()
+            .to_str()
+            .and_then(destination_name)
+            .is_some_and(|name| names.contains(OsStr::new(name)));
+        let modified = entry.metadata().and_then(|metadata| metadata.modified());
+        let age = modified.ok().and_then(|time| now.duration_since(time).ok());
+        if is_ours && age.is_some_and(|age| age > ABANDONED) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// The name of the file that a temporary file is to become: of `.frame.png.a1B2c3.tmp`, `frame.png`.
+fn destination_name(temporary: &str) -> Option<&str> {
+    let (rest, _ending) = temporary.strip_prefix('.')?.rsplit_once('.')?;
+    let (name, random) = rest.rsplit_once('.')?;
+    let is_random = random.len() == 6 && random.bytes().all(|b| b.is_ascii_alphanumeric());
+    (is_random && !name.is_empty()).then_some(name)
 }
 
 /// Where the bytes really go: behind links, so that a link stays a link; never over a device or a
@@ -173,6 +230,71 @@ mod tests {
         write(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(names(folder.path()), ["a.bin"]);
+    }
+
+    #[test]
+    fn a_picture_without_its_end_is_not_finished() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.png");
+        let mut whole = b"picture".to_vec();
+        whole.extend(PNG_END);
+        fs::write(&path, &whole).unwrap();
+        assert!(is_finished(&path));
+        for length in [0, 3, whole.len() - 1] {
+            fs::write(&path, &whole[..length]).unwrap();
+            assert!(!is_finished(&path), "{length}");
+        }
+        // What has no such end is finished when it has bytes.
+        let other = folder.path().join("a.exr");
+        fs::write(&other, b"x").unwrap();
+        assert!(is_finished(&other));
+    }
+
+    #[test]
+    fn abandoned_files_are_removed_and_no_others() {
+        let folder = tempfile::tempdir().unwrap();
+        let old = std::time::SystemTime::now() - 2 * ABANDONED;
+        let make = |name: &str, is_old: bool| {
+            let file = File::create(folder.path().join(name)).unwrap();
+            if is_old {
+                file.set_modified(old).unwrap();
+            }
+        };
+        for name in [
+            ".f1.png.a1B2c3.tmp",
+            ".f2.png.a1B2c3.tmp",
+            ".f1.png.claim-0",
+            "f1.png",
+        ] {
+            make(name, true);
+        }
+        make(".f1.png.d4E5f6.tmp", false);
+        remove_abandoned([folder.path().join("f1.png").as_path()]);
+        let left = [
+            ".f1.png.claim-0",
+            ".f1.png.d4E5f6.tmp",
+            ".f2.png.a1B2c3.tmp",
+            "f1.png",
+        ];
+        assert_eq!(names(folder.path()), left);
+    }
+
+    #[test]
+    fn a_temporary_file_is_known_by_its_name() {
+        let path = Path::new("a.b.png");
+        let made = tempfile::tempdir().unwrap();
+        let file = temporary(&made.path().join(path), ".tmp").unwrap();
+        let name = file.path().file_name().unwrap().to_str().unwrap();
+        assert_eq!(destination_name(name), Some("a.b.png"));
+        for other in [
+            "a.b.png",
+            ".a",
+            ".a.tmp",
+            ".hidden.file.tmp",
+            "..abcdef.tmp",
+        ] {
+            assert_eq!(destination_name(other), None, "{other}");
+        }
     }
 
     #[test]

@@ -8,6 +8,7 @@
 
 pub mod atomic_file;
 pub mod camera;
+pub mod claims;
 pub mod clock;
 pub mod command_line;
 pub mod console;

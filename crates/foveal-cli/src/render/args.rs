@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use foveal::Settings;
 use foveal_host::camera::CameraArgs;
@@ -10,6 +11,8 @@ use foveal_host::import_args::ImportArgs;
 use foveal_host::linear_picture::PictureFormat;
 use foveal_host::settings::SettingsArgs;
 use foveal_host::values;
+
+use super::sharing::Part;
 
 /// The name that means standard output.
 const STDOUT: &str = "-";
@@ -105,6 +108,38 @@ pub(crate) struct FrameArgs {
     /// Skip frames whose file exists already
     #[arg(long, requires = "frames")]
     pub(super) skip_existing: bool,
+
+    /// Draw one of N equal parts of the range: I from 0 to N - 1; `auto`: the part of this job in a
+    /// Slurm array, a Kubernetes indexed job or an AWS Batch array (see docs/program.md)
+    #[arg(long, value_name = "I/N|auto", requires = "frames", value_parser = Part::parse)]
+    part: Option<Part>,
+
+    /// Share the frames with all jobs that run the same command in the same folder: each draws
+    /// frames that are missing and that no other job is drawing, and ends when all are there
+    #[arg(long, requires = "frames", conflicts_with = "video")]
+    pub(super) share: bool,
+
+    /// Time in seconds after which the frame of a shared job that gives no sign of life is drawn by
+    /// another
+    #[arg(long, value_name = "S", requires = "share", value_parser = values::positive, default_value_t = 120.0)]
+    share_expiry: f32,
+}
+
+impl FrameArgs {
+    /// The frames of this job.
+    pub(super) fn range(&self) -> anyhow::Result<Option<Range<u32>>> {
+        match (&self.frames, self.part) {
+            (Some(range), Some(part)) => {
+                let variable = |name: &str| std::env::var(name).ok();
+                Ok(Some(part.of(range, variable)?))
+            }
+            (range, _) => Ok(range.clone()),
+        }
+    }
+
+    pub(super) fn share_expiry(&self) -> Duration {
+        Duration::from_secs_f32(self.share_expiry.clamp(0.1, 1e6))
+    }
 }
 
 impl Args {

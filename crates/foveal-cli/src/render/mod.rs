@@ -6,6 +6,7 @@
 
 mod args;
 mod frame_files;
+mod sharing;
 mod stats;
 mod summary;
 
@@ -18,6 +19,7 @@ use foveal::{AdapterStats, FrameStats, Renderer, Settings, Timing};
 use pollster::block_on;
 
 use foveal_host::camera::Viewpoint;
+use foveal_host::claims;
 use foveal_host::clock::{now_ms, now_ns, timed};
 use foveal_host::drawing::Drawing;
 use foveal_host::linear_picture::{self, PictureFormat};
@@ -28,6 +30,7 @@ use foveal_host::{atomic_file, console, gpu, scene_source};
 
 pub(crate) use args::Args;
 use frame_files::{FrameJob, FramePattern};
+use sharing::Turns;
 use stats::{CommandStats, MedianStats, NamedSceneStats, NumberedFrameStats, RunStats};
 
 /// Draws what the arguments ask for.
@@ -37,24 +40,32 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let settings = args.settings()?;
     let wanted = jobs(args)?;
     let total = wanted.len();
-    let jobs: Vec<FrameJob> = wanted
-        .into_iter()
-        .filter(|job| {
-            let is_there = || job.file.as_deref().is_some_and(atomic_file::is_finished);
-            !(args.frames.skip_existing && is_there())
-        })
-        .collect();
-    let skipped_frames = (total - jobs.len()) as u64;
+    let skips = args.frames.skip_existing || args.frames.share;
+    let is_there = |job: &FrameJob| job.file.as_deref().is_some_and(atomic_file::is_finished);
+    let (done, jobs): (Vec<_>, Vec<_>) = wanted.into_iter().partition(|job| skips && is_there(job));
+    for file in done.iter().filter_map(|job| job.file.as_deref()) {
+        claims::remove_all(file);
+    }
     let first = jobs.first().and_then(|job| job.file.as_ref());
     let first = first.filter(|_| !args.is_piped());
     for file in first.into_iter().chain(&args.video).chain(&args.stats) {
         atomic_file::check_writable(file)?;
     }
+    atomic_file::remove_abandoned(jobs.iter().filter_map(|job| job.file.as_deref()));
     if jobs.is_empty() {
         if !args.quiet {
-            eprintln!("all {total} frames are there already; nothing to draw");
+            match total {
+                0 => eprintln!("this part of the range has no frames; nothing to draw"),
+                _ => eprintln!("all {total} frames are there already; nothing to draw"),
+            }
         }
         return Ok(());
+    }
+    if args.frames.share && !args.quiet && follows_on(&settings) {
+        console::warn(
+            "frames with kept light or variable shading follow on the ones before, and shared frames do not: neighbours \
+             may differ; --part keeps them together",
+        );
     }
 
     let mut load_ms = Vec::new();
@@ -81,10 +92,28 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         video,
         video_name: args.output_name(),
     };
-    let (frames, first_picture_ms) =
-        draw_all(&mut drawing, &jobs, &mut load_ms, &mut written, args.quiet)?;
+    let open = jobs.len();
+    let turns = if args.frames.share {
+        Turns::shared(jobs, args.frames.share_expiry())
+    } else {
+        Turns::alone(jobs)
+    };
+    let (frames, first_picture_ms) = draw_all(
+        &mut drawing,
+        turns,
+        open,
+        &mut load_ms,
+        &mut written,
+        args.quiet,
+    )?;
     if let Some(video) = written.video {
         video.finish()?;
+    }
+    if frames.is_empty() {
+        if !args.quiet {
+            eprintln!("other jobs drew all {open} frames");
+        }
+        return Ok(());
     }
 
     let run = RunStats {
@@ -104,7 +133,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         scene,
         load_ms,
         first_picture_ms,
-        skipped_frames,
+        skipped_frames: (total - frames.len()) as u64,
         median: MedianStats::of(&frames),
         frames,
     };
@@ -120,10 +149,19 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     Ok(())
 }
 
+/// Whether a frame's picture depends on the frames before.
+fn follows_on(settings: &Settings) -> bool {
+    match settings.shading.mode {
+        foveal::Shading::Full => false,
+        foveal::Shading::Variable => true,
+        foveal::Shading::Coarse => settings.coarse.history,
+    }
+}
+
 /// The pictures to draw.
 fn jobs(args: &Args) -> anyhow::Result<Vec<FrameJob>> {
     let fps = args.frames.fps;
-    match &args.frames.frames {
+    match &args.frames.range()? {
         Some(range) => {
             let pattern = args.output().map(FramePattern::parse).transpose()?;
             Ok(frame_files::sequence(range.clone(), fps, pattern.as_ref()))
@@ -252,20 +290,22 @@ fn draw(drawing: &mut Drawing, job: &FrameJob) -> anyhow::Result<FrameStats> {
 /// Draws and writes each frame; gives the figures and when the first picture was on the disk.
 fn draw_all(
     drawing: &mut Drawing,
-    jobs: &[FrameJob],
+    mut turns: Turns,
+    open: usize,
     load_ms: &mut Vec<Timing>,
     written: &mut Written,
     quiet: bool,
 ) -> anyhow::Result<(Vec<NumberedFrameStats>, f64)> {
-    let progress = progress_bar(jobs.len() as u64, "frames", quiet);
-    let mut frames = Vec::with_capacity(jobs.len());
+    let progress = progress_bar(open as u64, "frames", quiet);
+    let mut frames = Vec::with_capacity(open);
     let mut first_picture_ms = 0.0;
     let mut noticed = quiet;
-    for job in jobs {
+    while let Some((job, claim)) = turns.next()? {
         let mut stages = Vec::new();
-        let figures = timed(&mut stages, "first_frame", || draw(drawing, job))
+        let figures = timed(&mut stages, "first_frame", || draw(drawing, &job))
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
         written.write(drawing, &figures, job.file.as_deref(), &mut stages)?;
+        drop(claim);
         if let Some(variable) = &figures.variable
             && !variable.notice.is_empty()
             && !std::mem::replace(&mut noticed, true)
