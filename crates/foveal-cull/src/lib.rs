@@ -7,6 +7,7 @@
 //! No box is reported hidden that is visible at a pixel centre of a picture of the buffer's size,
 //! or of four times its size per axis. A box that shows only between these points may be reported
 //! hidden. A buffer of a quarter of the picture's size per axis therefore fits a picture exactly.
+//! [`View::with_validity_radius`] with a tiny radius holds at every point of a picture of any size.
 //!
 //! How: coverage is sampled on a 4x4 grid in every pixel. A pixel hides only where every sample is
 //! covered, at the depth of the farthest.

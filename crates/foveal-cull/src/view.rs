@@ -252,6 +252,10 @@ impl View {
     }
 
     /// The same view with results that hold while each eye moves less than `radius_m` metres.
+    ///
+    /// Any radius above zero, a thousandth of a millimetre for instance, also makes them hold at
+    /// every point of the picture, between the buffer's samples too. Rasterizing then takes 1.2 to
+    /// 1.7 times as long from inside a level, and 4 to 18 % of the hidden boxes more are kept.
     #[must_use]
     pub fn with_validity_radius(self, radius_m: f64) -> Self {
         Self {

@@ -331,3 +331,29 @@ fn random_scenes_do_hide_something() {
         .fold([0; 2], |[a, b], [c, d]| [a + c, b + d]);
     assert!(both > 100 && both > one / 2, "{both} of {one}");
 }
+
+/// Where no sample of the buffer lies: pictures of three and seven times its size. A view of one
+/// exact place promises nothing there; with any validity radius every point of the picture counts.
+#[test]
+fn with_a_small_validity_radius_nothing_is_culled_between_samples() {
+    let (mut exactly_wrong, mut culled) = (0, [0; 2]);
+    for seed in 0..300 {
+        let mut r = Random::new(seed);
+        let objects = 1 + r.below(7);
+        let scene = scene(&mut r, objects, 150, DVec3::ZERO);
+        let eye = eye(&mut r, DVec3::ZERO, seed % 5 == 0);
+        let size = size(&mut r);
+        let exact = View::mono(eye);
+        let views = [exact, exact.with_validity_radius(1e-6)];
+        let results = views.map(|v| answers_to_all(&scene, &v, size));
+        for n in [3, 7] {
+            exactly_wrong += wrongly_culled(&scene, &eye, size, n, &results[0]).len();
+            let wrong = wrongly_culled(&scene, &eye, size, n, &results[1]);
+            assert!(wrong.is_empty(), "seed {seed}, {n}x: {wrong:?}");
+        }
+        culled = [0, 1].map(|k| culled[k] + hidden(&results[k]));
+    }
+    println!("{exactly_wrong} boxes show between the samples of exact views; {culled:?} culled");
+    assert!(exactly_wrong > 0, "the scenes show nothing between samples");
+    assert!(culled[1] > 1000, "{culled:?}");
+}
