@@ -14,6 +14,7 @@ pub mod console;
 pub mod culling;
 pub mod difference;
 pub mod drawing;
+pub mod environment;
 pub mod failure;
 pub mod gpu;
 pub mod import_args;
