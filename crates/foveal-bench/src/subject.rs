@@ -4,6 +4,7 @@
 use foveal::{AdapterStats, Gpu, Renderer, RendererOptions, Settings};
 use foveal_host::clock::now_ns;
 use foveal_host::command_line::quoted;
+use foveal_host::environment::environment;
 use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 use serde::Serialize;
@@ -37,6 +38,9 @@ pub(super) fn timed_renderer(
 ) -> anyhow::Result<Renderer> {
     let options = RendererOptions::default().with_clock(now_ns);
     let mut renderer = block_on(Renderer::new(gpu, settings, options))?;
+    if let Some(map) = environment(settings)? {
+        block_on(renderer.set_environment(map))?;
+    }
     block_on(renderer.set_scene(scene))?;
     Ok(renderer)
 }

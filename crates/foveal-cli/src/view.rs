@@ -8,6 +8,7 @@ use foveal_scene::{Clip, Scene};
 use foveal_view::{Host, Loaded};
 
 use foveal_host::camera::{CameraArgs, Viewpoint};
+use foveal_host::environment::environment;
 use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
 use foveal_host::rate_image::rate_image;
@@ -115,6 +116,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         no_video: recordings::no_video(),
         read_settings,
         rate_image,
+        environment,
         flags,
         exact_camera: command_line::exact_camera,
         read_camera: |text| values::exact_camera(text).ok(),

@@ -18,6 +18,7 @@ mod lights;
 mod materials_grid;
 mod names;
 mod registry;
+mod surroundings;
 mod texture;
 mod trig;
 
@@ -30,6 +31,7 @@ pub use lights::add_point_lights;
 pub use materials_grid::materials_grid;
 pub use names::NAMES;
 pub use registry::by_name;
+pub use surroundings::surroundings;
 
 #[cfg(test)]
 mod tests;

@@ -15,6 +15,7 @@ pub mod console;
 pub mod culling;
 pub mod difference;
 pub mod drawing;
+pub mod environment;
 pub mod failure;
 pub mod gpu;
 pub mod import_args;

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use foveal::{RateImage, Settings};
+use foveal::{EnvironmentMap, RateImage, Settings};
 use foveal_scene::{Camera, Clip, Scene};
 
 /// A scene and where it is first seen from.
@@ -131,6 +131,8 @@ pub struct Host {
     pub read_settings: fn(&Path) -> anyhow::Result<Settings>,
     /// The picture that the settings name as the source of their rate map.
     pub rate_image: fn(&Settings) -> anyhow::Result<Option<RateImage>>,
+    /// The environment that the settings name the file of.
+    pub environment: fn(&Settings) -> anyhow::Result<Option<EnvironmentMap>>,
     /// The flags that make these settings out of the defaults.
     pub flags: fn(&Settings) -> Vec<String>,
     /// A camera to the last bit, as `foveal render --exact-camera` takes it.

@@ -1,8 +1,8 @@
 //! What a switch or a setting needs from the others before it does anything.
 
 use foveal::{
-    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView, EyeFrusta, Geometry,
-    Output, RateCombine, RateSource, Settings, Shading, Stereo,
+    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView, EnvironmentSource,
+    EyeFrusta, Geometry, Output, RateCombine, RateSource, Settings, Shading, Stereo,
 };
 use toml::{Table, Value};
 
@@ -35,6 +35,18 @@ pub(crate) fn missing(
         ),
         "culling-eyes" => unless(occlusion, "Needs Culling: occlusion")
             .or(unless(stereo, "Needs Stereo, Eyes: other than off")),
+        "environment-image" => unless(
+            s.lighting.environment == EnvironmentSource::Image,
+            "Needs Environment: image",
+        ),
+        "environment-rotation" => unless(
+            s.lighting.environment == EnvironmentSource::Image,
+            "Needs Environment: image; the others look the same from all sides",
+        ),
+        "environment-intensity" | "background" => unless(
+            s.lighting.environment != EnvironmentSource::None,
+            "Needs Environment: other than none",
+        ),
         "material-dispatch" => unless(
             s.geometry.path == Geometry::Visibility,
             "Needs Geometry, Path: visibility",

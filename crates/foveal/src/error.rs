@@ -42,6 +42,12 @@ pub enum Error {
         /// What it must be.
         expected: &'static str,
     },
+    /// A picture that is no environment.
+    #[error("the environment cannot be used: {cause}")]
+    Environment {
+        /// What is wrong with it.
+        cause: String,
+    },
     /// The device ran out of memory.
     #[error("the graphics device ran out of memory while {doing}")]
     OutOfMemory {

@@ -1,10 +1,11 @@
 //! What every pass knows of the frame: the uniform block of `shared/frame.wgsl`.
 
 use bytemuck::{Pod, Zeroable};
-use foveal_scene::{Camera, Environment, Projection};
+use foveal_scene::{Camera, Projection};
 use glam::{Mat4, Vec3};
 
 use crate::Settings;
+use crate::environment::EnvironmentTerms;
 use crate::lights::ClusterGrid;
 use crate::stereo::{Eye, EyeLayout};
 
@@ -59,6 +60,12 @@ pub(crate) struct FrameUniform {
     pub(crate) eye_stride: u32,
     pub(crate) exposure: f32,
     pub(crate) orthographic: u32,
+    pub(crate) irradiance: [[f32; 4]; 9],
+    pub(crate) environment_turn: [f32; 2],
+    pub(crate) environment_intensity: f32,
+    pub(crate) reserved_0: f32,
+    pub(crate) environment_levels: [f32; 3],
+    pub(crate) reserved_1: f32,
 }
 
 impl FrameUniform {
@@ -67,23 +74,27 @@ impl FrameUniform {
         camera: &Camera,
         eyes: &[Eye; 2],
         previous: &[Eye; 2],
-        environment: &Environment,
+        environment: EnvironmentTerms<'_>,
         clusters: &ClusterGrid,
     ) -> Self {
         let layout = EyeLayout::of(settings);
         let (target_width, target_height) = layout.target_size();
         let view = |i: usize| ViewUniform::new(&eyes[i], &previous[i], clusters.shifts[i]);
+        let EnvironmentTerms { sky, map } = environment;
+        let intensity = settings.lighting.environment_intensity;
+        let turn = settings.lighting.environment_rotation_deg.to_radians();
+        let irradiance = map.map_or([Vec3::ZERO; 9], |map| *map.irradiance());
         let (orthographic, near, depth_range) = match camera.projection {
             Projection::Perspective { near_m, .. } => (0, near_m, 0.0),
             Projection::Orthographic { near_m, far_m, .. } => (1, near_m, far_m - near_m),
         };
         Self {
             views: [view(0), view(1)],
-            zenith: environment.zenith.to_array(),
+            zenith: (intensity * sky.zenith).to_array(),
             near,
-            horizon: environment.horizon.to_array(),
+            horizon: (intensity * sky.horizon).to_array(),
             depth_range,
-            nadir: environment.nadir.to_array(),
+            nadir: (intensity * sky.nadir).to_array(),
             cluster_near: clusters.near_m,
             cluster_counts: clusters.counts,
             cluster_scale: clusters.slices_per_doubling,
@@ -97,6 +108,15 @@ impl FrameUniform {
             },
             exposure: settings.picture.exposure_stops.exp2(),
             orthographic,
+            irradiance: irradiance.map(|c| (intensity * c).extend(0.0).to_array()),
+            environment_turn: [turn.cos(), turn.sin()],
+            environment_intensity: intensity,
+            reserved_0: 0.0,
+            environment_levels: map.map_or([0.0; 3], |map| {
+                let levels = map.levels();
+                [levels.last, levels.per_doubling, levels.sharpness]
+            }),
+            reserved_1: 0.0,
         }
     }
 }

@@ -12,6 +12,7 @@ mod antialias;
 mod clock;
 mod composite;
 mod culling;
+mod environment;
 mod error;
 mod formats;
 mod forward;
@@ -40,6 +41,7 @@ pub use {foveal_cull, foveal_scene, glam, wgpu};
 
 pub use clock::Clock;
 pub use culling::CullingStats;
+pub use environment::EnvironmentMap;
 pub use error::Error;
 pub use foveal_cull::{CullStats, Visibility};
 pub use gpu::Gpu;
@@ -49,13 +51,13 @@ pub use renderer::{Frame, Renderer, RendererOptions};
 #[cfg(feature = "serde")]
 pub use settings::variant_names;
 pub use settings::{
-    Antialiasing, AntialiasingSettings, COARSEST_LEVEL, CoarseBackend, CoarseSample,
+    Antialiasing, AntialiasingSettings, Background, COARSEST_LEVEL, CoarseBackend, CoarseSample,
     CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,
-    EdgeTest, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings, Kind, Lens,
-    LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch, Output,
-    PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges, SamplePattern,
-    Setting, Settings, Shading, ShadingSettings, Shadows, Stereo, StereoSettings, ToneMap,
-    VariableSettings,
+    EdgeTest, EnvironmentSource, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings,
+    Kind, Lens, LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch,
+    Output, PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges,
+    SamplePattern, Setting, Settings, Shading, ShadingSettings, Shadows, Stereo, StereoSettings,
+    ToneMap, VariableSettings,
 };
 
 pub use stats::{
@@ -67,6 +69,7 @@ pub use stats::{
 #[cfg(not(target_arch = "wasm32"))]
 const _: () = {
     const fn is_send_and_sync<T: Send + Sync>() {}
+    is_send_and_sync::<EnvironmentMap>();
     is_send_and_sync::<Error>();
     is_send_and_sync::<FrameStats>();
     is_send_and_sync::<Gpu>();

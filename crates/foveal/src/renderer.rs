@@ -6,6 +6,7 @@ use foveal_scene::{Camera, Scene};
 use crate::antialias::AntialiasStage;
 use crate::composite::CompositePass;
 use crate::culling::CullingStage;
+use crate::environment::{EnvironmentMap, EnvironmentStage};
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, submitted_work_done};
@@ -91,6 +92,7 @@ pub struct Renderer {
     /// How each way of drawing two eyes did on this device.
     trials: Trials,
     rate_image: Option<RateImage>,
+    environment: EnvironmentStage,
     scene: SceneOnGpu,
     draw_list: DrawList,
     present: PresentPass,
@@ -141,7 +143,8 @@ struct CoarseStages {
 }
 
 impl Renderer {
-    /// Builds the pipelines and the targets for `settings`; the scene is empty.
+    /// Builds the pipelines and the targets for `settings`; the scene is empty, and an environment
+    /// that is filtered black.
     ///
     /// # Errors
     /// [`Error::Limit`] where the device offers less than [`Gpu::required_limits`]; that or
@@ -187,6 +190,7 @@ impl Renderer {
             stages,
             trials,
             rate_image: None,
+            environment: EnvironmentStage::default(),
             scene,
             draw_list: DrawList::default(),
             present: PresentPass::new(gpu),
@@ -204,7 +208,8 @@ impl Renderer {
     }
 
     /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
-    /// history, so that a host with an eye tracker calls this before each frame. A change of size
+    /// history, so that a host with an eye tracker calls this before each frame. A change of the
+    /// environment's intensity and rotation gives up the light history alone. A change of size
     /// alone rebuilds the targets alone; any other makes all pipelines anew. A change of
     /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
@@ -255,6 +260,16 @@ impl Renderer {
             self.stages.settings = settings.clone();
             return Ok(());
         }
+        let lit = old.clone().with(|s| {
+            s.lighting.environment_intensity = settings.lighting.environment_intensity;
+            s.lighting.environment_rotation_deg = settings.lighting.environment_rotation_deg;
+            s.lighting.environment_image = settings.lighting.environment_image.clone();
+        });
+        if lit == *settings {
+            self.stages.settings = settings.clone();
+            self.stages.forget_light();
+            return Ok(());
+        }
         // Its counts are read from targets that go.
         self.in_flight = None;
         if sized == *settings {
@@ -280,6 +295,29 @@ impl Renderer {
             (&mut self.trials, self.clock),
         )
         .await?;
+        self.choose_environment().await
+    }
+
+    /// Takes over the map of [`EnvironmentSource::Image`](crate::EnvironmentSource::Image) in place
+    /// of the last one; until there is one, the scene's sky stands for it.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub async fn set_environment(&mut self, map: EnvironmentMap) -> Result<(), Error> {
+        self.environment.set_image(map);
+        self.choose_environment().await
+    }
+
+    /// Binds the environment that settings and scene ask for.
+    async fn choose_environment(&mut self) -> Result<(), Error> {
+        let sky = &self.scene.environment;
+        if self.environment.choose(&self.stages.settings, sky) {
+            let trap = ErrorTrap::new(&self.gpu, "uploading the environment");
+            let map = self.environment.map();
+            self.frame_bindings.set_environment(&self.gpu, map);
+            self.stages.forget_light();
+            trap.finish().await?;
+        }
         Ok(())
     }
 
@@ -328,7 +366,7 @@ impl Renderer {
         written?;
         self.scene = uploaded;
         self.stages.forget();
-        Ok(())
+        self.choose_environment().await
     }
 
     /// Takes over a new pose of the same scene (after [`Scene::pose`]). The pose before it becomes

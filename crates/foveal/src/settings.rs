@@ -11,8 +11,8 @@ mod stereo;
 mod variable;
 
 pub use choices::{
-    Antialiasing, Culling, CullingEyes, DebugView, EdgeTest, LightAssignment, LightingModel,
-    MaterialDispatch, SamplePattern, Shadows, ToneMap,
+    Antialiasing, Background, Culling, CullingEyes, DebugView, EdgeTest, EnvironmentSource,
+    LightAssignment, LightingModel, MaterialDispatch, SamplePattern, Shadows, ToneMap,
 };
 
 pub use coarse::{

@@ -5,7 +5,10 @@
 mod common;
 
 use common::{drawn, mean_flip};
-use foveal::{Antialiasing, Geometry, Gpu, Output, RateSource, Settings, Shading, Shadows, Stereo};
+use foveal::{
+    Antialiasing, EnvironmentSource, Geometry, Gpu, Output, RateSource, Settings, Shading, Shadows,
+    Stereo,
+};
 use foveal_generate as generate;
 
 /// Until rates that follow the picture have settled.
@@ -13,6 +16,11 @@ const FRAMES: u32 = 4;
 
 /// All shadings and geometries for one anti-aliasing.
 fn compare(aa: Antialiasing, stereo: Stereo, shadows: Shadows) {
+    compare_in(EnvironmentSource::Gradient, aa, stereo, shadows);
+}
+
+/// The same in another environment.
+fn compare_in(environment: EnvironmentSource, aa: Antialiasing, stereo: Stereo, shadows: Shadows) {
     let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
     let mut scene = generate::cornell();
     generate::add_point_lights(&mut scene, 8, 3);
@@ -21,6 +29,7 @@ fn compare(aa: Antialiasing, stereo: Stereo, shadows: Shadows) {
         s.picture.height = 90;
         s.antialiasing.mode = aa;
         s.lighting.shadows = shadows;
+        s.lighting.environment = environment;
         s.stereo.mode = stereo;
         s.stereo.output = match stereo {
             Stereo::Off => Output::Flat,
@@ -91,4 +100,16 @@ fn all_shadings_with_shadows() {
 #[test]
 fn all_shadings_for_two_eyes_with_msaa_and_shadows() {
     compare(Antialiasing::Msaa, Stereo::Instanced, Shadows::Soft);
+}
+
+#[test]
+fn all_shadings_in_a_filtered_sky() {
+    let sky = EnvironmentSource::Sky;
+    compare_in(sky, Antialiasing::None, Stereo::Off, Shadows::Off);
+}
+
+#[test]
+fn all_shadings_for_two_eyes_with_msaa_in_a_filtered_sky() {
+    let sky = EnvironmentSource::Sky;
+    compare_in(sky, Antialiasing::Msaa, Stereo::Instanced, Shadows::Off);
 }

@@ -6,7 +6,10 @@
 
 use std::path::PathBuf;
 
-use foveal::{DebugView, Frame, Gpu, LightingModel, Renderer, Settings, Shadows};
+use foveal::{
+    DebugView, EnvironmentMap, EnvironmentSource, Frame, Gpu, LightingModel, Renderer, Settings,
+    Shadows,
+};
 use foveal_generate as generate;
 
 /// Two adapters that draw the same picture differ by less, a missing light or texture by far more.
@@ -27,6 +30,11 @@ fn draw(scene: &str, settings: &Settings) -> Vec<u8> {
         let mut renderer = Renderer::new(&gpu, settings, foveal::RendererOptions::default())
             .await
             .expect("settings fit");
+        if settings.lighting.environment == EnvironmentSource::Image {
+            let (width, height, rgb) = generate::surroundings(512);
+            let map = EnvironmentMap::new(width, height, &rgb).expect("an environment");
+            renderer.set_environment(map).await.expect("it fits");
+        }
         renderer.set_scene(&scene).await.expect("scene fits");
         let frame = Frame::new(&scene.cameras[0]);
         renderer.render(&frame).await.expect("drawn");
@@ -92,6 +100,18 @@ fn blinn_phong_looks_as_it_should() {
 #[test]
 fn metals_and_roughness_look_as_they_should() {
     assert_golden("materials-grid", "materials-grid", Settings::default());
+}
+
+#[test]
+fn surroundings_light_metals_as_they_should() {
+    let settings = Settings::default().with(|s| s.lighting.environment = EnvironmentSource::Image);
+    assert_golden("materials-grid-surroundings", "materials-grid", settings);
+}
+
+#[test]
+fn a_filtered_sky_has_no_horizon_in_rough_metal() {
+    let settings = Settings::default().with(|s| s.lighting.environment = EnvironmentSource::Sky);
+    assert_golden("materials-grid-sky", "materials-grid", settings);
 }
 
 #[test]

@@ -15,13 +15,14 @@ use std::rc::Rc;
 use std::thread;
 
 use anyhow::{Context, anyhow};
-use foveal::{AdapterStats, FrameStats, Renderer, Settings, Timing};
+use foveal::{AdapterStats, EnvironmentSource, FrameStats, Renderer, Settings, Timing};
 use pollster::block_on;
 
 use foveal_host::camera::Viewpoint;
 use foveal_host::claims;
 use foveal_host::clock::{now_ms, now_ns, timed};
 use foveal_host::drawing::Drawing;
+use foveal_host::environment::environment;
 use foveal_host::linear_picture::{self, PictureFormat};
 use foveal_host::progress::progress_bar;
 use foveal_host::rate_image::rate_image;
@@ -195,9 +196,13 @@ fn prepare(
         .context("cannot start a thread")?;
 
     let rate_image = rate_image(settings)?;
+    let mut device_ms = Vec::new();
+    let environment = match settings.lighting.environment {
+        EnvironmentSource::Image => timed(&mut device_ms, "environment", || environment(settings))?,
+        _ => None,
+    };
     // Fails before the scene is there where the size is beyond the device: the thread then ends
     // with the program.
-    let mut device_ms = Vec::new();
     let gpu = timed(&mut device_ms, "device", || {
         gpu::open(args.adapter.as_deref())
     })?;
@@ -211,6 +216,9 @@ fn prepare(
 
     if let Some(image) = rate_image {
         renderer.set_rate_image(image);
+    }
+    if let Some(environment) = environment {
+        block_on(renderer.set_environment(environment))?;
     }
 
     let (mut scene, scene_ms) = loading

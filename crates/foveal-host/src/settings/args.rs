@@ -1,7 +1,7 @@
 //! The settings as flags, made from their table: `--tone-map aces` for the key `tone-map`.
 //!
-//! Two flags are spelled otherwise: `--size WxH` is width and height, and `--rate FILE.png` names
-//! the image source and its file at once.
+//! Three flags are spelled otherwise: `--size WxH` is width and height; `--rate FILE.png` and
+//! `--environment FILE.hdr` name the source `image` and its file at once.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -23,6 +23,13 @@ pub struct SettingsArgs {
     /// What the flags say, under the keys of a settings file.
     pub(super) given: Table,
 }
+
+/// Settings that choose a source, of which one is a file: the key, the key of the file's name, and
+/// what files end with.
+const SOURCES: [(&str, &str, &[&str]); 2] = [
+    ("rate", "rate-image", &[".png"]),
+    ("environment", "environment-image", &[".hdr", ".exr"]),
+];
 
 /// Whether `--size` stands for this setting.
 fn is_part_of_size(key: &str) -> bool {
@@ -65,7 +72,8 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
         _ => String::new(),
     };
     let (value_name, parser) = match setting.kind {
-        _ if setting.key == "rate" => ("SOURCE|FILE.png", source_parser(setting.kind)),
+        _ if setting.key == "rate" => ("SOURCE|FILE.png", source_parser(setting)),
+        _ if setting.key == "environment" => ("SOURCE|FILE.hdr|FILE.exr", source_parser(setting)),
         Kind::Switch => (
             "BOOL",
             ValueParser::new(BoolValueParser::new().map(Value::from)),
@@ -98,7 +106,10 @@ fn flag(setting: &Setting, default: Option<&Value>) -> Arg {
             ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
         ),
         Kind::File => (
-            "FILE.png",
+            match setting.key {
+                "environment-image" => "FILE.hdr|FILE.exr",
+                _ => "FILE.png",
+            },
             ValueParser::new(|text: &str| Ok::<_, String>(Value::from(text))),
         ),
     };
@@ -146,17 +157,26 @@ fn lens(text: &str) -> Result<Value, String> {
     Ok(Value::from(numbers.join(",")))
 }
 
-/// What `--rate` names.
-fn source_parser(kind: Kind) -> ValueParser {
-    let names = match kind {
+/// Whether a name ends like one of these.
+fn is_file(name: &str, ends: &[&str]) -> bool {
+    let name = name.to_lowercase();
+    ends.iter().any(|end| name.ends_with(end))
+}
+
+/// What `--rate` or `--environment` names.
+fn source_parser(setting: &Setting) -> ValueParser {
+    let names = match setting.kind {
         Kind::Choice(names) => names(),
         _ => &[],
     };
+    let of_key = |(key, ..): &&(&str, &str, _)| *key == setting.key;
+    let ends = SOURCES.iter().find(of_key).map_or(&[][..], |s| s.2);
     ValueParser::new(move |text: &str| {
-        if names.contains(&text) || text.to_lowercase().ends_with(".png") {
+        if names.contains(&text) || is_file(text, ends) {
             Ok(Value::from(text))
         } else {
-            Err(format!("neither {}, nor a .png file", names.join(", ")))
+            let (names, ends) = (names.join(", "), ends.join(" or "));
+            Err(format!("neither {names}, nor a {ends} file"))
         }
     })
 }
@@ -194,7 +214,7 @@ impl clap::FromArgMatches for SettingsArgs {
                 self.given.insert(setting.key.to_owned(), value.clone());
             }
         }
-        self.split_rate();
+        self.split_sources();
         Ok(())
     }
 }
@@ -210,15 +230,17 @@ impl SettingsArgs {
         self.given.insert(key.to_owned(), value.into());
     }
 
-    /// A file's name given for `rate` goes where it belongs, unless that is given too.
-    fn split_rate(&mut self) {
-        let Some(Value::String(rate)) = self.given.get("rate") else {
-            return;
-        };
-        if rate.to_lowercase().ends_with(".png") {
-            let file = Value::from(rate.as_str());
-            self.given.insert("rate".to_owned(), Value::from("image"));
-            self.given.entry("rate-image").or_insert(file);
+    /// A file's name given for a source goes where it belongs, unless that is given too.
+    fn split_sources(&mut self) {
+        for (key, file_key, ends) in SOURCES {
+            let Some(Value::String(name)) = self.given.get(key) else {
+                continue;
+            };
+            if is_file(name, ends) {
+                let file = Value::from(name.as_str());
+                self.given.insert(key.to_owned(), Value::from("image"));
+                self.given.entry(file_key).or_insert(file);
+            }
         }
     }
 }

@@ -28,6 +28,7 @@ pub(crate) fn host() -> Host {
         no_video: Some("there is no ffmpeg".to_owned()),
         read_settings: |_| bail!("no settings here"),
         rate_image: |_| Ok(None),
+        environment: |_| Ok(None),
         flags: |_| Vec::new(),
         exact_camera: |camera| format!("{:?}", camera.eye().to_array()),
         read_camera: |text| {

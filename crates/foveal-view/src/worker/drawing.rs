@@ -1,6 +1,6 @@
 //! Device, scene and up to two renderers: the one that is asked about, and its reference.
 
-use foveal::{AdapterStats, FrameStats, Gpu, RateSource, Renderer, Settings};
+use foveal::{AdapterStats, EnvironmentSource, FrameStats, Gpu, RateSource, Renderer, Settings};
 use foveal_scene::{Camera, Clip, Scene};
 use pollster::block_on;
 
@@ -282,7 +282,20 @@ impl Side {
                 && !before
                     .is_some_and(|b| uses(b) && b.coarse.image_name == settings.coarse.image_name)
         };
+        let new_environment = |before: Option<&Settings>| {
+            let named = |s: &Settings| {
+                let lighting = &s.lighting;
+                let is_image = lighting.environment == EnvironmentSource::Image;
+                is_image.then(|| lighting.environment_image.clone())
+            };
+            before.and_then(named) != named(settings)
+        };
         let before = slot.as_ref().map(|side| side.renderer.settings().clone());
+        let environment = if new_environment(before.as_ref()) {
+            (host.environment)(settings)?
+        } else {
+            None
+        };
         let image = if new_image(before.as_ref()) {
             (host.rate_image)(settings)?
         } else {
@@ -290,15 +303,21 @@ impl Side {
         };
         let side = match slot {
             Some(side) => {
+                if let Some(map) = environment {
+                    block_on(side.renderer.set_environment(map))?;
+                }
                 block_on(side.renderer.set_settings(settings))?;
                 side
             }
             None => {
-                let renderer = block_on(Renderer::new(
+                let mut renderer = block_on(Renderer::new(
                     gpu,
                     settings,
                     foveal::RendererOptions::default().with_clock(clock::now_ns),
                 ))?;
+                if let Some(map) = environment {
+                    block_on(renderer.set_environment(map))?;
+                }
                 slot.insert(Self {
                     renderer,
                     before: None,

@@ -1,5 +1,6 @@
 //! The pipelines of anti-aliasing.
 
+use crate::environment::environment_constants;
 use crate::geometry::{DEPTH_FORMAT, IDENTITY_FORMAT, SURFACE_FORMAT};
 use crate::gpu::{Gpu, bind_group_layout, sampled, storage_read, storage_write, uniform};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
@@ -94,7 +95,11 @@ impl AntialiasPipelines {
             merge: merge(
                 gpu,
                 &[frame, shading_input, &merge_layout],
-                &[count, side, mirror, ("EDGES", f64::from(edges as u8))],
+                &[
+                    &environment_constants(settings)[..],
+                    &[count, side, mirror, ("EDGES", f64::from(edges as u8))],
+                ]
+                .concat(),
             ),
             shade: shader::compute(
                 gpu,

@@ -4,6 +4,7 @@
 //! Pixels that no sample speaks for are listed; the caller shades them.
 
 use super::LightTargets;
+use crate::environment::environment_constants;
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     written,
@@ -58,7 +59,11 @@ impl LightComposite {
                 &shader::module(gpu, "light composite", shader::COMPOSITE_LIGHT),
                 "join",
                 &[frame_layout, &join_layout],
-                &[("TYPICAL", f64::from(u8::from(typical)))],
+                &[
+                    &environment_constants(settings)[..],
+                    &[("TYPICAL", f64::from(u8::from(typical)))],
+                ]
+                .concat(),
             ),
             size: shader::compute(
                 gpu,

@@ -53,7 +53,7 @@ fn join(@builtin(global_invocation_id) id: vec3u) {
     let position = world_position(pixel, select(view_distance(depth), 1.0, depth == 0.0));
     let v = direction_to_eye(view_at(pixel), position);
     if depth == 0.0 {
-        textureStore(radiance, texel, vec4f(environment(-v), 1.0));
+        textureStore(radiance, texel, vec4f(background(-v), 1.0));
         return;
     }
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);

@@ -14,7 +14,7 @@ use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;
 use crate::shader::{self, Shader};
 use crate::testing::{gpu, picture, rendered, rendered_on, small};
-use crate::{Culling, Gpu, Output, Renderer, Settings, Stereo};
+use crate::{Culling, EnvironmentSource, Gpu, Output, Renderer, Settings, Stereo};
 
 /// A device that was asked for no more than WebGL 2 has.
 fn reduced_gpu() -> &'static Gpu {
@@ -60,7 +60,8 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
     });
     for name in ["cornell", "alpha", "materials-grid", "demo:1000"] {
         let scene = generate::by_name(name).expect("it is generated");
-        for settings in [small(161, 99), stereo.clone()] {
+        let sky = small(161, 99).with(|s| s.lighting.environment = EnvironmentSource::Sky);
+        for settings in [small(161, 99), stereo.clone(), sky] {
             let camera = &scene.cameras[0];
             let full = picture(&rendered(&scene, camera, &settings));
             let ours = pollster::block_on(reduced(&scene, camera, &settings).read_picture());

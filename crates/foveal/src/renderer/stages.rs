@@ -61,15 +61,20 @@ impl Stages {
         self.coarse.as_mut()?.history.as_mut()
     }
 
-    /// The next frame follows none: what is known belongs to another scene or size.
-    pub(super) fn forget(&mut self) {
+    /// What is known of the light is out of date.
+    pub(super) fn forget_light(&mut self) {
         if let Some(variable) = &mut self.variable {
             variable.forget();
         }
-        self.shadows.forget();
         if let Some(history) = self.history() {
             history.forget();
         }
+    }
+
+    /// The next frame follows none: what is known belongs to another scene or size.
+    pub(super) fn forget(&mut self) {
+        self.shadows.forget();
+        self.forget_light();
     }
 
     pub(super) async fn new(

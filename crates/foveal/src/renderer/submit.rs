@@ -93,7 +93,7 @@ impl Renderer {
             frame.camera,
             &seen.eyes,
             &seen.eyes_before,
-            &scene.environment,
+            self.environment.terms(&scene.environment),
             &clusters,
         );
         self.frame_bindings.write_frame(gpu, &uniform);

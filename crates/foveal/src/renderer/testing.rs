@@ -96,7 +96,7 @@ impl Renderer {
         let eyes = eyes(settings, camera).expect("a camera that makes sense");
         let lights = &self.scene.lights;
         let grid = ClusterGrid::new(&EyeLayout::of(settings), &eyes, camera, lights);
-        let environment = &self.scene.environment;
+        let environment = self.environment.terms(&self.scene.environment);
         FrameUniform::new(settings, camera, &eyes, &eyes, environment, &grid)
     }
 

@@ -1,7 +1,9 @@
-//! Bind group 0: the frame's uniform block, the instances, and which of them are drawn.
+//! Bind group 0: the frame's uniform block, the instances, which of them are drawn, and the
+//! environment.
 
 use super::InstanceUniform;
 use crate::Error;
+use crate::environment::{EnvironmentBinding, EnvironmentMap};
 use crate::frame::FrameUniform;
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, uniform};
 
@@ -13,16 +15,19 @@ pub(crate) struct FrameBindings {
     frame: wgpu::Buffer,
     instances: Table,
     drawn: Table,
+    environment: EnvironmentBinding,
 }
 
 impl FrameBindings {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let table = Table::binding_type(gpu);
+        let [map, reflectances, sampler] = EnvironmentBinding::TYPES;
+        let types = [uniform(), table, table, map, reflectances, sampler];
         let layout = bind_group_layout(
             &gpu.device,
             "frame",
             wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
-            &[uniform(), table, table],
+            &types,
         );
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
@@ -34,13 +39,16 @@ impl FrameBindings {
         // A binding must hold one instance, even where there is none.
         instances.write(gpu, &[0; size_of::<InstanceUniform>()]);
         let drawn = Table::new(gpu, "drawn");
-        let group = group(gpu, &layout, &frame, &instances, &drawn);
+        let environment = EnvironmentBinding::new(gpu, None);
+        let tables = (&instances, &drawn);
+        let group = group(gpu, &layout, &frame, tables, &environment);
         Self {
             layout,
             group,
             frame,
             instances,
             drawn,
+            environment,
         }
     }
 
@@ -54,7 +62,14 @@ impl FrameBindings {
 
     /// The same group with another list of drawn instances.
     pub(crate) fn group_of(&self, gpu: &Gpu, drawn: &Table) -> wgpu::BindGroup {
-        group(gpu, &self.layout, &self.frame, &self.instances, drawn)
+        let tables = (&self.instances, drawn);
+        group(gpu, &self.layout, &self.frame, tables, &self.environment)
+    }
+
+    /// Binds another environment; without a map, one that is black.
+    pub(crate) fn set_environment(&mut self, gpu: &Gpu, map: Option<&EnvironmentMap>) {
+        self.environment = EnvironmentBinding::new(gpu, map);
+        self.group = self.group_of(gpu, &self.drawn);
     }
 
     /// Uploads the frame's uniform block.
@@ -75,7 +90,7 @@ impl FrameBindings {
         let what = "the scene's number of instances";
         Table::check(gpu, what, uniforms.len(), size_of::<InstanceUniform>())?;
         if self.instances.write(gpu, bytemuck::cast_slice(uniforms)) {
-            self.group = group(gpu, &self.layout, &self.frame, &self.instances, &self.drawn);
+            self.group = self.group_of(gpu, &self.drawn);
         }
         Ok(())
     }
@@ -83,7 +98,7 @@ impl FrameBindings {
     /// Uploads the list of drawn instances.
     pub(crate) fn write_drawn(&mut self, gpu: &Gpu, drawn: &[u32]) {
         if self.drawn.write(gpu, bytemuck::cast_slice(drawn)) {
-            self.group = group(gpu, &self.layout, &self.frame, &self.instances, &self.drawn);
+            self.group = self.group_of(gpu, &self.drawn);
         }
     }
 }
@@ -92,9 +107,10 @@ fn group(
     gpu: &Gpu,
     layout: &wgpu::BindGroupLayout,
     frame: &wgpu::Buffer,
-    instances: &Table,
-    drawn: &Table,
+    (instances, drawn): (&Table, &Table),
+    environment: &EnvironmentBinding,
 ) -> wgpu::BindGroup {
+    let [map, reflectances, sampler] = environment.resources();
     bind_group(
         &gpu.device,
         "frame",
@@ -103,6 +119,9 @@ fn group(
             frame.as_entire_binding(),
             instances.resource(),
             drawn.resource(),
+            map,
+            reflectances,
+            sampler,
         ],
     )
 }

@@ -53,6 +53,43 @@ pub enum Shadows {
     Soft,
 }
 
+/// Light from everywhere besides the lights of the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum EnvironmentSource {
+    /// The scene's sky as a formula: rough surfaces mirror it unfiltered.
+    #[default]
+    Gradient,
+    /// The scene's sky, filtered by roughness.
+    Sky,
+    /// A picture, which hosts give to [`Renderer::set_environment`](crate::Renderer::set_environment);
+    /// until then [`EnvironmentSource::Sky`].
+    Image,
+    /// No light, and black behind all surfaces.
+    None,
+}
+
+/// What is seen behind all surfaces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum Background {
+    /// The environment.
+    #[default]
+    Environment,
+    /// The environment as a mirror of roughness 0.5 reflects it.
+    Blurred,
+    /// Black.
+    None,
+}
+
 /// Content of the picture: the finished frame or a debug view.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(

@@ -51,7 +51,7 @@ pub enum Kind {
     },
     /// A place in the picture: two fractions of its size from the top left corner.
     Place,
-    /// The path of a PNG file.
+    /// The path of a file, as the help text says.
     File,
     /// Words or numbers, as the help text says.
     Text,

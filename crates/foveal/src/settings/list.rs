@@ -95,6 +95,22 @@ settings! {
         /// texels. Raise it where surfaces show stripes, lower it where shadows begin away from
         /// what casts them.
         shadow_bias => shadow_bias: f32 = 1.5, "Shadow bias", Kind::Number { least: 0.0, most: 8.0 };
+        /// Light from all around: gradient is the sky of the scene as a formula, sky the same
+        /// filtered by roughness, image a picture of all directions, none is black. On the command
+        /// line also the name of a .hdr or .exr file. With gradient rough metals mirror a hard
+        /// horizon.
+        environment => environment: EnvironmentSource = EnvironmentSource::default(), "Environment", Kind::choice::<EnvironmentSource>();
+        /// Picture of the environment image: an equirectangular .hdr or .exr file that the program
+        /// opens. Hosts of the library pass its radiance to the renderer themselves.
+        environment_image => environment_image: String = String::new(), "Environment file", Kind::File;
+        /// Factor by which the radiance of the environment is multiplied, background included.
+        environment_intensity => environment_intensity: f32 = 1.0, "Environment light", Kind::Number { least: 0.0, most: 8.0 };
+        /// Angle in degrees by which the environment is turned about the vertical axis,
+        /// counter-clockwise as seen from above. Gradient and sky look the same from all sides.
+        environment_rotation => environment_rotation_deg: f32 = 0.0, "Environment turn", Kind::Number { least: -180.0, most: 180.0 };
+        /// What is seen behind all surfaces: environment, blurred (as in a rough mirror; a gradient
+        /// stays as it is) or none (black). Light and reflections stay the same.
+        background => background: Background = Background::default(), "Background", Kind::choice::<Background>();
         /// Largest anisotropy of texture filtering, 1 to 16. Higher values keep textures sharp
         /// at flat angles. Lavapipe always takes 1: its own anisotropic filter can take minutes
         /// for one triangle.

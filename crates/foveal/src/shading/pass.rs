@@ -1,6 +1,7 @@
 //! The shading pass.
 
 use super::{SampleList, Samples};
+use crate::environment::environment_constants;
 use crate::formats::RADIANCE_FORMAT;
 use crate::geometry::GBuffer;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read};
@@ -12,6 +13,7 @@ use crate::{LightAssignment, LightingModel, Settings, shader};
 /// Settings that change the lighting shaders. The reduced ones have no shadows.
 pub(crate) fn lighting_constants(gpu: &Gpu, settings: &Settings) -> Vec<(&'static str, f64)> {
     let mut constants = model_constants(settings).to_vec();
+    constants.extend(environment_constants(settings));
     if !gpu.is_reduced() {
         constants.push(("SHADOWS", f64::from(settings.lighting.shadows as u8)));
     }

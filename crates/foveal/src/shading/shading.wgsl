@@ -2,6 +2,7 @@
 // samples are shaded is the caller's choice: the fragments of a draw, or a list.
 
 #import shading/input.wgsl
+#import shared/environment.wgsl
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
 #import shared/surface.wgsl
@@ -10,7 +11,7 @@
 fn radiance_at(pixel: vec2f, depth: f32, words: vec4u) -> vec4f {
     if depth == 0.0 {
         let far = world_position(pixel, 1.0);
-        return vec4f(environment(-direction_to_eye(view_at(pixel), far)), 1.0);
+        return vec4f(background(-direction_to_eye(view_at(pixel), far)), 1.0);
     }
     let distance = view_distance(depth);
     let position = world_position(pixel, distance);

@@ -1,9 +1,85 @@
-// What a surface reflects of its environment, lights aside.
+// The environment: what is seen behind all surfaces, and what a surface reflects of it, lights
+// aside. CPU twin: `environment/twin.rs`.
 
 #import shared/frame.wgsl
 #import shared/surface.wgsl
 
+// Where its light comes from: `ENVIRONMENT_GRADIENT`, `ENVIRONMENT_MAP`, or 2 for no light at all.
+override ENVIRONMENT: u32 = 0u;
+// What is seen behind all surfaces: `BACKGROUND_SHARP`, `BACKGROUND_BLURRED`, or 2 for nothing.
+override BACKGROUND: u32 = 0u;
+
+const ENVIRONMENT_GRADIENT: u32 = 0u;
+const ENVIRONMENT_MAP: u32 = 1u;
+const BACKGROUND_SHARP: u32 = 0u;
+const BACKGROUND_BLURRED: u32 = 1u;
+// Roughness of the mirror in which a blurred background is seen.
+const BLURRED_ROUGHNESS: f32 = 0.5;
+
 const PI: f32 = 3.14159265;
+
+// Level 0: radiance; the others: what rougher and rougher mirrors reflect of it.
+@group(0) @binding(3) var environment_map: texture_cube<f32>;
+// What a mirror reflects of light that comes from everywhere alike: the reflectance at right angles
+// times the first, plus the second; by the cosine between normal and view, and the roughness.
+@group(0) @binding(4) var environment_reflectances: texture_2d<f32>;
+@group(0) @binding(5) var environment_sampler: sampler;
+
+// Radiance of the scene's own sky in a direction.
+fn gradient(direction: vec3f) -> vec3f {
+    if direction.y >= 0.0 {
+        return mix(frame.horizon, frame.zenith, sqrt(direction.y));
+    }
+    return mix(frame.horizon, frame.nadir, min(1.0, -4.0 * direction.y));
+}
+
+// A direction as the map has it, before it is turned.
+fn in_map(d: vec3f) -> vec3f {
+    let turn = frame.environment_turn;
+    return vec3f(turn.x * d.x - turn.y * d.z, d.y, turn.y * d.x + turn.x * d.z);
+}
+
+// The level of the map that shows what a mirror of this roughness reflects.
+fn environment_level(roughness: f32) -> f32 {
+    let r = max(roughness, 1e-3);
+    let levels = frame.environment_levels;
+    return max(levels.x + levels.y * log2(r), min(r * r * levels.z, 1.0));
+}
+
+// What a mirror of this roughness reflects that looks in a unit direction.
+fn environment(direction: vec3f, roughness: f32) -> vec3f {
+    if ENVIRONMENT == ENVIRONMENT_MAP {
+        let level = environment_level(roughness);
+        let radiance = textureSampleLevel(environment_map, environment_sampler, in_map(direction), level).rgb;
+        return frame.environment_intensity * radiance;
+    }
+    if ENVIRONMENT == ENVIRONMENT_GRADIENT {
+        return gradient(direction);
+    }
+    return vec3f(0.0);
+}
+
+// Radiance behind all surfaces, in the unit direction of a ray from the eye.
+fn background(direction: vec3f) -> vec3f {
+    if BACKGROUND == BACKGROUND_SHARP {
+        return environment(direction, 0.0);
+    }
+    if BACKGROUND == BACKGROUND_BLURRED {
+        return environment(direction, BLURRED_ROUGHNESS);
+    }
+    return vec3f(0.0);
+}
+
+// Irradiance of the map over pi (Ramamoorthi and Hanrahan 2001).
+fn irradiance(normal: vec3f) -> vec3f {
+    let n = in_map(normal);
+    let c = frame.irradiance;
+    var sum = c[0] + c[1] * n.y + c[2] * n.z + c[3] * n.x;
+    sum += c[4] * (n.x * n.y) + c[5] * (n.y * n.z) + c[7] * (n.x * n.z);
+    sum += c[6] * (3.0 * n.z * n.z - 1.0) + c[8] * (n.x * n.x - n.y * n.y);
+    // Order 2 overshoots on the far side of a small, bright source.
+    return max(sum.rgb, vec3f(0.0));
+}
 
 fn reflectance_at_normal(s: Surface) -> vec3f {
     return mix(vec3f(0.04), s.base_color, s.metallic);
@@ -47,15 +123,37 @@ fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
     return f0 * scale_bias.x + scale_bias.y;
 }
 
+// The same as the lights' own reflection has it, from the table.
+fn map_reflectance(s: Surface, v: vec3f) -> vec3f {
+    let at = vec2f(saturate(dot(s.normal, v)), s.roughness);
+    let terms = textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0);
+    return reflectance_at_normal(s) * terms.x + terms.y;
+}
+
 // The environment's light in a rough mirror.
 fn environment_specular(s: Surface, v: vec3f) -> vec3f {
     let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
-    return environment_reflectance(s, v) * environment(normalize(mirror));
+    if ENVIRONMENT == ENVIRONMENT_MAP {
+        return map_reflectance(s, v) * environment(normalize(mirror), s.roughness);
+    }
+    return environment_reflectance(s, v) * environment(normalize(mirror), s.roughness);
 }
 
-// The environment's light: a cosine-weighted look along the normal, and the mirror.
+// What a surface scatters of the environment's light.
+fn environment_diffuse(s: Surface, v: vec3f) -> vec3f {
+    if ENVIRONMENT == ENVIRONMENT_MAP {
+        // What it mirrors is not left.
+        return diffuse_color(s) * (1.0 - map_reflectance(s, v)) * irradiance(s.normal);
+    }
+    if ENVIRONMENT == ENVIRONMENT_GRADIENT {
+        let around = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);
+        return s.base_color * (1.0 - s.metallic) * around;
+    }
+    return vec3f(0.0);
+}
+
+// The environment's light.
 fn ambient(s: Surface, v: vec3f) -> vec3f {
-    let irradiance = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);
-    let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
+    let diffuse = environment_diffuse(s, v);
     return (diffuse + select(environment_specular(s, v), vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
 }

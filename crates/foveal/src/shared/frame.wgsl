@@ -49,6 +49,15 @@ struct Frame {
     exposure: f32,
     // 0 perspective, 1 orthographic.
     orthographic: u32,
+    // Of the environment's map: see `shared/environment.wgsl`.
+    irradiance: array<vec4f, 9>,
+    // Cosine and sine of the angle by which the environment is turned about +y.
+    environment_turn: vec2f,
+    environment_intensity: f32,
+    reserved_0: f32,
+    // Its last level, levels per doubling of the roughness, one over level 1's squared roughness.
+    environment_levels: vec3f,
+    reserved_1: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;
@@ -112,12 +121,4 @@ fn world_position(pixel: vec2f, distance: f32) -> vec3f {
 fn direction_to_eye(view: u32, position: vec3f) -> vec3f {
     let v = frame.views[view].eye - position;
     return select(normalize(v), -frame.views[view].forward, frame.orthographic != 0u);
-}
-
-// Radiance of the environment in a direction: the backdrop and the ambient term.
-fn environment(direction: vec3f) -> vec3f {
-    if direction.y >= 0.0 {
-        return mix(frame.horizon, frame.zenith, sqrt(direction.y));
-    }
-    return mix(frame.horizon, frame.nadir, min(1.0, -4.0 * direction.y));
 }

@@ -125,6 +125,21 @@ fn a_rate_may_be_a_file() {
 }
 
 #[test]
+fn an_environment_may_be_a_file() {
+    for flags in [
+        &["--environment", "a.HDR"][..],
+        &["--environment", "image", "--environment-image", "a.HDR"],
+    ] {
+        let lighting = from_flags(flags).lighting;
+        assert_eq!(lighting.environment, foveal::EnvironmentSource::Image);
+        assert_eq!(lighting.environment_image, "a.HDR");
+    }
+    let sky = from_flags(&["--environment", "sky"]).lighting;
+    assert_eq!(sky.environment, foveal::EnvironmentSource::Sky);
+    assert!(Line::try_parse_from(["x", "--environment", "a.png"]).is_err());
+}
+
+#[test]
 fn settings_survive_the_file_format() {
     let settings = Settings::default().with(|s| {
         s.picture.exposure_stops = -0.1;

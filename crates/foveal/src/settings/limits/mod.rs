@@ -83,6 +83,21 @@ impl Settings {
                 expected: "between 0 and 8",
             });
         }
+        let lighting = &self.lighting;
+        if !(0.0..=1e4).contains(&lighting.environment_intensity) {
+            return Err(Error::Setting {
+                name: "environment-intensity",
+                value: lighting.environment_intensity.to_string(),
+                expected: "between 0 and 10000",
+            });
+        }
+        if !(-360.0..=360.0).contains(&lighting.environment_rotation_deg) {
+            return Err(Error::Setting {
+                name: "environment-rotation",
+                value: lighting.environment_rotation_deg.to_string(),
+                expected: "between -360 and 360",
+            });
+        }
         for (name, value) in [
             ("occluder-size", self.culling.occluder_size),
             ("occludee-size", self.culling.occludee_size),

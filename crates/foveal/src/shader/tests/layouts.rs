@@ -57,6 +57,12 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             eye_stride,
             exposure,
             orthographic,
+            irradiance,
+            environment_turn,
+            environment_intensity,
+            reserved_0,
+            environment_levels,
+            reserved_1,
         ]
     );
     assert_same_layout!(

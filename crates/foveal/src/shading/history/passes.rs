@@ -5,6 +5,7 @@ use bytemuck::{Pod, Zeroable};
 use super::lit::{Lit, ROUND};
 use super::targets::{HistoryTargets, List, SEEN_FORMAT};
 use crate::composite::LIGHT_FORMAT;
+use crate::environment::environment_constants;
 use crate::gpu::{
     Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
     written,
@@ -86,6 +87,7 @@ impl HistoryPasses {
             }
         };
         let tiles = [read, write, write, write];
+        let environment = environment_constants(settings);
         Self {
             keep: pass(
                 "kept tiles",
@@ -125,7 +127,7 @@ impl HistoryPasses {
                     write,
                     write,
                 ],
-                &[],
+                &environment,
             ),
             size: pass(
                 "list dispatches",
@@ -151,7 +153,7 @@ impl HistoryPasses {
                 &[
                     uint, words, depth, uint, radiance, write, read, write, light, read,
                 ],
-                &[],
+                &environment,
             ),
             scatter: pass(
                 "gathered light",

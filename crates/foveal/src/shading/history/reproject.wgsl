@@ -118,7 +118,7 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let v = direction_to_eye(view_at(pixel), position);
     if depth == 0.0 {
         textureStore(seen, texel, vec4u(0u));
-        textureStore(radiance, texel, vec4f(environment(-v), 1.0));
+        textureStore(radiance, texel, vec4f(background(-v), 1.0));
         return;
     }
     let own = tile_at(texel);

@@ -3,6 +3,7 @@
 
 #import shading/input.wgsl
 #import shading/variable/rates.wgsl
+#import shared/environment.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/lighting.wgsl
@@ -24,7 +25,7 @@ fn shade_together(first: vec2u, last: vec2u) -> vec4f {
     let depth = 0.5 * (load_depth(gbuffer_depth, first) + load_depth(gbuffer_depth, last));
     let pixel = 0.5 * vec2f(first + last) + 0.5;
     if depth == 0.0 {
-        return vec4f(environment(-direction_to_eye(view_at(pixel), world_position(pixel, 1.0))), 1.0);
+        return vec4f(background(-direction_to_eye(view_at(pixel), world_position(pixel, 1.0))), 1.0);
     }
     let distance = view_distance(depth);
     var surface = unpack_surface(load_words(gbuffer_surface, first), world_position(pixel, distance));

@@ -1,0 +1,85 @@
+//! Which part of light from everywhere a rough mirror reflects: the second sum of the split-sum
+//! approximation (Karis 2013, 'Real Shading in Unreal Engine 4'), as a table.
+
+use std::f32::consts::{PI, TAU};
+use std::sync::OnceLock;
+
+#[cfg(test)]
+use glam::Vec2;
+use glam::Vec3;
+
+/// Entries along each axis.
+pub(super) const SIDE: usize = 32;
+
+/// Samples per entry.
+const SAMPLES: u32 = 512;
+
+/// The base-2 radical inverse.
+pub(super) fn radical_inverse(i: u32) -> f32 {
+    i.reverse_bits() as f32 / 4_294_967_296.0
+}
+
+/// Half vectors around z as GGX's distribution of normals has them, with the cosine's square; `a2`
+/// is the square of its alpha.
+pub(super) fn half_vector(i: u32, count: u32, a2: f32) -> (Vec3, f32) {
+    let u = (i as f32 + 0.5) / count as f32;
+    let (sin_phi, cos_phi) = (TAU * radical_inverse(i)).sin_cos();
+    let cos2 = (1.0 - u) / (1.0 + (a2 - 1.0) * u);
+    let (cos, sin) = (cos2.sqrt(), (1.0 - cos2).max(0.0).sqrt());
+    (Vec3::new(sin * cos_phi, sin * sin_phi, cos), cos2)
+}
+
+/// The density of a direction that is reflected at a half vector of this squared cosine, towards a
+/// viewer along the normal.
+pub(super) fn density(cos2: f32, a2: f32) -> f32 {
+    let d = cos2 * (a2 - 1.0) + 1.0;
+    a2 / (PI * d * d) / 4.0
+}
+
+/// A mirror whose reflectance at right angles is f0 reflects f0 times the first, plus the second.
+fn entry(cosine: f32, roughness: f32) -> [f32; 2] {
+    let a2 = (roughness * roughness).max(0.002).powi(2);
+    let v = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+    let (mut scale, mut bias) = (0.0, 0.0);
+    for i in 0..SAMPLES {
+        let (h, _) = half_vector(i, SAMPLES, a2);
+        let v_dot_h = v.dot(h);
+        let l_z = 2.0 * v_dot_h * h.z - v.z;
+        if l_z <= 0.0 || v_dot_h <= 0.0 {
+            continue;
+        }
+        // As in `ggx_lobe`, the distribution aside.
+        let visibility = 0.5
+            / (l_z * (cosine * cosine * (1.0 - a2) + a2).sqrt()
+                + cosine * (l_z * l_z * (1.0 - a2) + a2).sqrt());
+        let reflected = 4.0 * visibility * l_z * v_dot_h / h.z;
+        let fresnel = (1.0 - v_dot_h).powi(5);
+        scale += reflected * (1.0 - fresnel);
+        bias += reflected * fresnel;
+    }
+    [scale / SAMPLES as f32, bias / SAMPLES as f32]
+}
+
+/// The table: cosines between normal and view across, roughness down, at the entries' centres.
+pub(super) fn table() -> &'static [[f32; 2]] {
+    static TABLE: OnceLock<Vec<[f32; 2]>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let center = |i: usize| (i as f32 + 0.5) / SIDE as f32;
+        (0..SIDE * SIDE)
+            .map(|i| entry(center(i % SIDE), center(i / SIDE)))
+            .collect()
+    })
+}
+
+/// The table's entry between the entries, as shaders look it up.
+#[cfg(test)]
+pub(super) fn looked_up(cosine: f32, roughness: f32) -> Vec2 {
+    let last = (SIDE - 1) as f32;
+    let at =
+        (Vec2::new(cosine, roughness) * SIDE as f32 - 0.5).clamp(Vec2::ZERO, Vec2::splat(last));
+    let low = at.floor().min(Vec2::splat(last - 1.0));
+    let f = at - low;
+    let entry = |x: f32, y: f32| Vec2::from(table()[y as usize * SIDE + x as usize]);
+    let row = |y: f32| entry(low.x, y).lerp(entry(low.x + 1.0, y), f.x);
+    row(low.y).lerp(row(low.y + 1.0), f.y)
+}
