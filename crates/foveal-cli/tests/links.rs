@@ -18,6 +18,7 @@ fn pages() -> Vec<PathBuf> {
     let mut folders = vec![PathBuf::new(), "docs".into()];
     folders.extend(subfolders(Path::new("docs")));
     folders.extend(subfolders(Path::new("crates")));
+    folders.extend(subfolders(Path::new("integrations")));
     for folder in folders {
         for entry in fs::read_dir(root.join(&folder)).unwrap() {
             let name = PathBuf::from(entry.unwrap().file_name());

@@ -5,11 +5,11 @@
 //! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), space stops the walk.
 //! `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
 //! `--side 12` (rooms along each side), `--furniture 30` (pieces a room) and `--lights 2` (with
-//! shadows) change the scene.
+//! shadows) change the scene, `--msaa 4` its samples.
 
 mod shared;
 
-use bevy::prelude::UVec2;
+use bevy::prelude::{Msaa, UVec2};
 use shared::arguments::Arguments;
 use shared::house::House;
 use shared::modes::Mode;
@@ -24,11 +24,18 @@ fn main() {
         lights: arguments.number("lights", 2),
     };
     let size = arguments.size(UVec2::new(640, 360));
+    let msaa = Msaa::from_samples(arguments.number("msaa", 1));
     match arguments.frames() {
         Some(frames) => {
-            let modes = [Mode::Frustum, Mode::Gpu, Mode::Camera, Mode::All];
-            figures::print(house, size, frames, &modes);
+            let modes = [
+                Mode::Frustum,
+                Mode::Prepass,
+                Mode::Gpu,
+                Mode::Camera,
+                Mode::All,
+            ];
+            figures::print(house, size, msaa, frames, &modes);
         }
-        None => window::run("lights", house, size),
+        None => window::run("lights", house, size, msaa),
     }
 }

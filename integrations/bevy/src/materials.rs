@@ -14,10 +14,12 @@ pub(crate) struct Verdict(u8);
 impl Verdict {
     /// It does not cover all that its triangles cover.
     pub(crate) const NEVER: Self = Self(1);
-    /// Back faces are not drawn.
+    /// One side of faces is not drawn.
     pub(crate) const ONE_SIDED: Self = Self(2);
     /// It is not drawn into shadow maps.
     pub(crate) const NO_SHADOW: Self = Self(4);
+    /// Front faces are not drawn, as Bevy's glTF loader has it for what is mirrored.
+    pub(crate) const FRONT_CULLED: Self = Self(8);
 
     pub(crate) fn contains(self, flag: Self) -> bool {
         self.0 & flag.0 != 0
@@ -102,15 +104,13 @@ mod of_pbr {
         let see_through = material.alpha_mode() != AlphaMode::Opaque
             || material.reads_view_transmission_texture();
         let standard = (material as &dyn Any).downcast_ref::<StandardMaterial>();
-        let inside_out = standard.is_some_and(|m| m.cull_mode == Some(Face::Front));
+        let culled = standard.and_then(|m| m.cull_mode);
         // It is drawn at another depth than it lies.
         let biased = material.depth_bias() != 0.0;
         Verdict::default()
-            .with(Verdict::NEVER, see_through || inside_out || biased)
-            .with(
-                Verdict::ONE_SIDED,
-                standard.is_some_and(|m| m.cull_mode == Some(Face::Back)),
-            )
+            .with(Verdict::NEVER, see_through || biased)
+            .with(Verdict::ONE_SIDED, culled.is_some())
+            .with(Verdict::FRONT_CULLED, culled == Some(Face::Front))
             .with(Verdict::NO_SHADOW, !M::enable_shadows())
     }
 
@@ -130,9 +130,9 @@ mod of_pbr {
             assert!(never(|m| m.alpha_mode = AlphaMode::Blend));
             assert!(never(|m| m.alpha_mode = AlphaMode::Mask(0.5)));
             assert!(never(|m| m.specular_transmission = 0.5));
-            assert!(never(|m| m.cull_mode = Some(Face::Front)));
             assert!(never(|m| m.depth_bias = 3.0));
             assert!(of(|_| ()).contains(Verdict::ONE_SIDED));
+            assert!(of(|m| m.cull_mode = Some(Face::Front)).contains(Verdict::FRONT_CULLED));
             assert_eq!(of(|m| m.cull_mode = None), Verdict::default());
         }
     }

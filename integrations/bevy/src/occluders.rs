@@ -164,7 +164,12 @@ pub(crate) fn update(
             OccluderShape::Proxy(proxy) => Shape::Mesh(proxy.id(), sides),
             OccluderShape::Box { min, max } => Shape::Box(*min, *max),
         };
+        // Bevy does not turn faces around where a scale mirrors: a material must draw the other side.
+        let mirrored = transform.affine().matrix3.determinant() < 0.0;
+        let outside_drawn =
+            sides == Sides::Both || mirrored == verdict.contains(Verdict::FRONT_CULLED);
         let drawn = visibility.is_none_or(|v| v.get())
+            && outside_drawn
             && !verdict.contains(Verdict::NEVER)
             && !(own_mesh && (skinned || morphing));
         drawn_ones += usize::from(drawn);

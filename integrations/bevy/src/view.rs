@@ -46,6 +46,7 @@ impl Fit {
     }
 
     /// For a square shadow map.
+    #[cfg(feature = "bevy_light")]
     pub(crate) fn of_shadow_map(mode: OcclusionBufferSize, side: usize) -> Option<Self> {
         Self::new(mode, UVec2::splat(u32::try_from(side).ok()?), 1)
     }

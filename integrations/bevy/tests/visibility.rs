@@ -4,7 +4,9 @@
 
 mod world;
 
-use bevy::camera::visibility::{NoFrustumCulling, RenderLayers, VisibilityRange, VisibleEntities};
+use bevy::camera::visibility::{
+    DynamicSkinnedMeshBounds, NoFrustumCulling, RenderLayers, VisibilityRange, VisibleEntities,
+};
 use bevy::diagnostic::DiagnosticsStore;
 use bevy::mesh::VertexAttributeValues;
 use bevy::mesh::morph::MeshMorphWeights;
@@ -185,11 +187,18 @@ fn what_must_stay_stays() {
         t.spawn_ball(at, MeshMorphWeights::Value { weights: vec![] }),
     ];
     let culled = t.ball(-9.0);
+    // Its box follows its joints.
+    let bounded = Mesh::from(Sphere::new(0.5)).with_skinned_mesh_bounds(Some(default()));
+    let bounded = t.add_mesh(bounded);
+    let follows = t.spawn_ball(at, (SkinnedMesh::default(), DynamicSkinnedMeshBounds));
+    let unbounded = t.spawn_ball(at, (SkinnedMesh::default(), DynamicSkinnedMeshBounds));
+    t.get_mut::<Mesh3d>(follows).0 = bounded;
     t.update();
     for entity in kept {
         assert!(t.sees(entity));
     }
-    assert!(!t.sees(culled));
+    assert!(!t.sees(culled) && !t.sees(follows));
+    assert!(t.sees(unbounded), "the mesh has no bounds of joints");
 }
 
 #[test]
@@ -295,6 +304,32 @@ fn planes_hide_from_behind_only_if_two_sided() {
         .insert(MeshMaterial3d(one_sided));
     t.update();
     assert!(t.sees(ball));
+}
+
+#[test]
+fn what_a_scale_mirrors_hides_only_with_the_faces_that_are_drawn() {
+    use bevy::render::render_resource::Face;
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    for (cull_mode, scale, hides) in [
+        (Some(Face::Back), 1.0, true),
+        (Some(Face::Back), -1.0, false),
+        (Some(Face::Front), 1.0, false),
+        (Some(Face::Front), -1.0, true),
+    ] {
+        let material = t.add_material(StandardMaterial {
+            cull_mode,
+            ..default()
+        });
+        t.app
+            .world_mut()
+            .entity_mut(wall)
+            .insert(MeshMaterial3d(material));
+        t.get_mut::<Transform>(wall).scale.x = scale;
+        t.update();
+        assert_eq!(!t.sees(ball), hides, "{cull_mode:?} {scale}");
+    }
 }
 
 #[test]

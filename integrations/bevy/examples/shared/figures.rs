@@ -9,24 +9,28 @@ use std::time::Duration;
 
 /// Walks through the house and prints a table.
 #[expect(clippy::print_stdout, reason = "that is what it is for")]
-pub fn print(house: House, size: UVec2, frames: usize, modes: &[Mode]) {
+pub fn print(house: House, size: UVec2, msaa: Msaa, frames: usize, modes: &[Mode]) {
     let mut meshes = 0;
     let mut apps: Vec<Headless> = modes
         .iter()
         .map(|mode| {
-            Headless::new(size, Msaa::Off, |world| {
+            Headless::new(size, msaa, |world| {
                 meshes = house.spawn(world);
                 mode.set(world);
             })
         })
         .collect();
     println!(
-        "{meshes} meshes, {} lights with shadows, {}x{} pixels, {frames} frames\n",
-        house.lights, size.x, size.y
+        "{meshes} meshes, {} lights with shadows, {}x{} pixels, {} samples a pixel, {frames} \
+         frames\n",
+        house.lights,
+        size.x,
+        size.y,
+        msaa.samples()
     );
     let mut times = vec![Vec::new(); modes.len()];
     let mut culling = vec![Vec::new(); modes.len()];
-    let mut wrong = vec![0; modes.len()];
+    let mut wrong = vec![(0, 0); modes.len()];
     let mut sums = vec![CpuOcclusionStats::default(); modes.len()];
     for frame in 0..frames {
         let rooms = frame as f32 * 0.05;
@@ -56,15 +60,17 @@ pub fn print(house: House, size: UVec2, frames: usize, modes: &[Mode]) {
             if i == 0 {
                 first = picture;
             } else {
-                wrong[i] += usize::from(pixels_that_differ(&first, &picture) > 0);
+                let pixels = pixels_that_differ(&first, &picture);
+                wrong[i].0 += usize::from(pixels > 0);
+                wrong[i].1 = pixels.max(wrong[i].1);
             }
         }
     }
     println!(
         "| culling | frame, median ms | of the first | culler, median ms | meshes to draw | \
-         casters to draw | frames that differ |"
+         casters to draw | frames that differ | most pixels |"
     );
-    println!("|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|");
     let whole = median(&mut times[0]);
     for (i, mode) in modes.iter().enumerate() {
         let time = median(&mut times[i]);
@@ -74,14 +80,15 @@ pub fn print(house: House, size: UVec2, frames: usize, modes: &[Mode]) {
             _ => format!("{:.0} of {:.0}", each(all - hidden), each(all)),
         };
         println!(
-            "| {} | {:.1} | {:.2} | {:.2} | {} | {} | {} |",
+            "| {} | {:.1} | {:.2} | {:.2} | {} | {} | {} | {} |",
             mode.name(),
             ms(time),
             ms(time) / ms(whole),
             ms(median(&mut culling[i])),
             of(sums[i].meshes, sums[i].meshes_hidden),
             of(sums[i].casters, sums[i].casters_hidden),
-            wrong[i],
+            wrong[i].0,
+            wrong[i].1,
         );
     }
 }

@@ -10,10 +10,14 @@ use bevy_foveal_cull::CpuOcclusionCulling;
 pub enum Mode {
     /// Bevy's frustum culling alone.
     Frustum,
+    /// The same with the depth prepass that the next one needs.
+    Prepass,
     /// Bevy's occlusion culling on the GPU, with the depth prepass that it needs.
     Gpu,
     /// This crate's, on cameras.
     Camera,
+    /// The same with a depth prepass.
+    CameraPrepass,
     /// This crate's, on cameras and lights.
     All,
 }
@@ -23,8 +27,10 @@ impl Mode {
     pub fn name(self) -> &'static str {
         match self {
             Self::Frustum => "frustum alone",
+            Self::Prepass => "frustum, depth prepass",
             Self::Gpu => "Bevy's GPU culling",
             Self::Camera => "this crate, camera",
+            Self::CameraPrepass => "this crate, camera, depth prepass",
             Self::All => "this crate, camera and lights",
         }
     }
@@ -40,8 +46,14 @@ impl Mode {
             camera.remove::<(OcclusionCulling, DepthPrepass, CpuOcclusionCulling)>();
             match self {
                 Self::Frustum => {}
+                Self::Prepass => {
+                    camera.insert(DepthPrepass);
+                }
                 Self::Gpu => {
                     camera.insert((OcclusionCulling, DepthPrepass));
+                }
+                Self::CameraPrepass => {
+                    camera.insert((CpuOcclusionCulling::default(), DepthPrepass));
                 }
                 Self::Camera | Self::All => {
                     camera.insert(CpuOcclusionCulling::default());
@@ -63,7 +75,7 @@ impl Mode {
                 Self::All => {
                     light.insert(CpuOcclusionCulling::default());
                 }
-                Self::Frustum | Self::Camera => {}
+                Self::Frustum | Self::Prepass | Self::Camera | Self::CameraPrepass => {}
             }
         }
     }

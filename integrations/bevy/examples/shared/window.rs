@@ -8,7 +8,7 @@ use bevy::prelude::*;
 use bevy_foveal_cull::{CpuOcclusionPlugin, CpuOcclusionStats};
 
 /// Opens the window: 1, 2, 3 and 4 switch the way of culling, space stops the walk.
-pub fn run(name: &str, house: House, size: UVec2) {
+pub fn run(name: &str, house: House, size: UVec2, msaa: Msaa) {
     let window = Window {
         title: name.into(),
         resolution: (size.x, size.y).into(),
@@ -28,6 +28,7 @@ pub fn run(name: &str, house: House, size: UVec2) {
             rooms: 0.0,
             stopped: false,
             mode: Mode::All,
+            msaa,
         })
         .add_systems(Startup, setup)
         .add_systems(Update, (keys, walk, swing, title))
@@ -40,12 +41,15 @@ struct Walk {
     rooms: f32,
     stopped: bool,
     mode: Mode,
+    msaa: Msaa,
 }
 
 fn setup(world: &mut World) {
-    let Walk { house, mode, .. } = *world.resource::<Walk>();
+    let Walk {
+        house, mode, msaa, ..
+    } = *world.resource::<Walk>();
     house.spawn(world);
-    world.spawn((Camera3d::default(), Tonemapping::Reinhard, Msaa::Off));
+    world.spawn((Camera3d::default(), Tonemapping::Reinhard, msaa));
     mode.set(world);
 }
 
