@@ -239,6 +239,7 @@ mod tests {
             Settings::default().with(|s| {
                 s.shading.mode = Shading::Coarse;
                 s.coarse.source = RateSource::Image;
+                s.lighting.environment = EnvironmentSource::Image;
             }),
         ];
         for key in noted {

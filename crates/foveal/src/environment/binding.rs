@@ -82,11 +82,11 @@ fn reflectances(gpu: &Gpu, is_used: bool) -> wgpu::TextureView {
         height: side,
         depth_or_array_layers: 1,
     };
-    let format = wgpu::TextureFormat::Rg16Float;
+    let format = wgpu::TextureFormat::Rgba16Float;
     let texture = texture(gpu, "reflectances", size, 1, format);
     if is_used {
-        let halves = |entry: &[f32; 2]| entry.map(|v| f16::from_f32(v).to_bits());
-        let texels: Vec<[u16; 2]> = reflectance::table().iter().map(halves).collect();
+        let halves = |&[a, b, c]: &[f32; 3]| [a, b, c, 0.0].map(|v| f16::from_f32(v).to_bits());
+        let texels: Vec<[u16; 4]> = reflectance::table().iter().map(halves).collect();
         write(gpu, texture.as_image_copy(), size, &texels);
     }
     texture.create_view(&Default::default())

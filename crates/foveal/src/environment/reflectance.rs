@@ -1,5 +1,6 @@
-//! Which part of light from everywhere a rough mirror reflects: the second sum of the split-sum
-//! approximation (Karis 2013, 'Real Shading in Unreal Engine 4'), as a table.
+//! Which part of light from everywhere a surface mirrors and scatters, by the lights' own reflection
+//! model, as a table: the second sum of the split-sum approximation (Karis 2013, 'Real Shading in
+//! Unreal Engine 4'), and what it leaves for diffuse reflection.
 
 use std::f32::consts::{PI, TAU};
 use std::sync::OnceLock;
@@ -36,8 +37,9 @@ pub(super) fn density(cos2: f32, a2: f32) -> f32 {
     a2 / (PI * d * d) / 4.0
 }
 
-/// A mirror whose reflectance at right angles is f0 reflects f0 times the first, plus the second.
-fn entry(cosine: f32, roughness: f32) -> [f32; 2] {
+/// A mirror whose reflectance at right angles is f0 reflects f0 times the first, plus the second,
+/// and leaves 1 - f0 times the third for diffuse reflection.
+fn entry(cosine: f32, roughness: f32) -> [f32; 3] {
     let a2 = (roughness * roughness).max(0.002).powi(2);
     let v = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
     let (mut scale, mut bias) = (0.0, 0.0);
@@ -57,12 +59,25 @@ fn entry(cosine: f32, roughness: f32) -> [f32; 2] {
         scale += reflected * (1.0 - fresnel);
         bias += reflected * fresnel;
     }
-    [scale / SAMPLES as f32, bias / SAMPLES as f32]
+    [scale, bias, scattered(v)].map(|sum| sum / SAMPLES as f32)
+}
+
+/// Sum over light from everywhere of what Fresnel's reflection leaves, where f0 is 0.
+fn scattered(v: Vec3) -> f32 {
+    let sample = |i| {
+        let (sin_phi, cos_phi) = (TAU * radical_inverse(i)).sin_cos();
+        let sin2 = (i as f32 + 0.5) / SAMPLES as f32;
+        let sin = sin2.sqrt();
+        let l = Vec3::new(sin * cos_phi, sin * sin_phi, (1.0 - sin2).sqrt());
+        let v_dot_h = v.dot((v + l).normalize());
+        1.0 - (1.0 - v_dot_h).powi(5)
+    };
+    (0..SAMPLES).map(sample).sum()
 }
 
 /// The table: cosines between normal and view across, roughness down, at the entries' centres.
-pub(super) fn table() -> &'static [[f32; 2]] {
-    static TABLE: OnceLock<Vec<[f32; 2]>> = OnceLock::new();
+pub(super) fn table() -> &'static [[f32; 3]] {
+    static TABLE: OnceLock<Vec<[f32; 3]>> = OnceLock::new();
     TABLE.get_or_init(|| {
         let center = |i: usize| (i as f32 + 0.5) / SIDE as f32;
         (0..SIDE * SIDE)
@@ -73,13 +88,13 @@ pub(super) fn table() -> &'static [[f32; 2]] {
 
 /// The table's entry between the entries, as shaders look it up.
 #[cfg(test)]
-pub(super) fn looked_up(cosine: f32, roughness: f32) -> Vec2 {
+pub(super) fn looked_up(cosine: f32, roughness: f32) -> Vec3 {
     let last = (SIDE - 1) as f32;
     let at =
         (Vec2::new(cosine, roughness) * SIDE as f32 - 0.5).clamp(Vec2::ZERO, Vec2::splat(last));
     let low = at.floor().min(Vec2::splat(last - 1.0));
     let f = at - low;
-    let entry = |x: f32, y: f32| Vec2::from(table()[y as usize * SIDE + x as usize]);
+    let entry = |x: f32, y: f32| Vec3::from(table()[y as usize * SIDE + x as usize]);
     let row = |y: f32| entry(low.x, y).lerp(entry(low.x + 1.0, y), f.x);
     row(low.y).lerp(row(low.y + 1.0), f.y)
 }

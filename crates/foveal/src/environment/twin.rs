@@ -11,10 +11,11 @@ use crate::Settings;
 use crate::shading::twin::Surface;
 use crate::testing::f32_of_half;
 
-/// `map_reflectance` in the shader.
-pub(super) fn reflectance(s: &Surface, v: Vec3) -> Vec3 {
+/// What a surface mirrors of light from everywhere, and what is left to be scattered.
+pub(super) fn reflectances(s: &Surface, v: Vec3) -> [Vec3; 2] {
     let terms = looked_up(s.normal.dot(v).clamp(0.0, 1.0), s.roughness);
-    Vec3::splat(0.04).lerp(s.base_color, s.metallic) * terms.x + terms.y
+    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    [f0 * terms.x + terms.y, (1.0 - f0) * terms.z]
 }
 
 /// A map as shaders see it.
@@ -72,9 +73,9 @@ impl Around {
     pub(crate) fn ambient(&self, s: &Surface, v: Vec3) -> Vec3 {
         let mirror = 2.0 * s.normal.dot(v) * s.normal - v;
         let mirror = mirror.lerp(s.normal, s.roughness * s.roughness).normalize();
-        let reflectance = reflectance(s, v);
-        let color = (1.0 - s.metallic) * s.base_color * (1.0 - reflectance);
-        let diffuse = color * self.irradiance(s.normal);
-        (diffuse + reflectance * self.environment(mirror, s.roughness)) * s.occlusion
+        let [mirrored, left] = reflectances(s, v);
+        let color = (1.0 - s.metallic) * s.base_color;
+        let diffuse = color * left * self.irradiance(s.normal);
+        (diffuse + mirrored * self.environment(mirror, s.roughness)) * s.occlusion
     }
 }

@@ -21,7 +21,8 @@ const PI: f32 = 3.14159265;
 // Level 0: radiance; the others: what rougher and rougher mirrors reflect of it.
 @group(0) @binding(3) var environment_map: texture_cube<f32>;
 // What a mirror reflects of light that comes from everywhere alike: the reflectance at right angles
-// times the first, plus the second; by the cosine between normal and view, and the roughness.
+// times the first, plus the second; what it leaves is 1 minus that reflectance, times the third. By
+// the cosine between normal and view, and the roughness.
 @group(0) @binding(4) var environment_reflectances: texture_2d<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 
@@ -123,18 +124,19 @@ fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
     return f0 * scale_bias.x + scale_bias.y;
 }
 
-// The same as the lights' own reflection has it, from the table.
-fn map_reflectance(s: Surface, v: vec3f) -> vec3f {
+// The table's entry for a surface.
+fn reflectance_terms(s: Surface, v: vec3f) -> vec3f {
     let at = vec2f(saturate(dot(s.normal, v)), s.roughness);
-    let terms = textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0);
-    return reflectance_at_normal(s) * terms.x + terms.y;
+    return textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0).xyz;
 }
 
 // The environment's light in a rough mirror.
 fn environment_specular(s: Surface, v: vec3f) -> vec3f {
     let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
     if ENVIRONMENT == ENVIRONMENT_MAP {
-        return map_reflectance(s, v) * environment(normalize(mirror), s.roughness);
+        let terms = reflectance_terms(s, v);
+        let reflected = reflectance_at_normal(s) * terms.x + terms.y;
+        return reflected * environment(normalize(mirror), s.roughness);
     }
     return environment_reflectance(s, v) * environment(normalize(mirror), s.roughness);
 }
@@ -142,8 +144,8 @@ fn environment_specular(s: Surface, v: vec3f) -> vec3f {
 // What a surface scatters of the environment's light.
 fn environment_diffuse(s: Surface, v: vec3f) -> vec3f {
     if ENVIRONMENT == ENVIRONMENT_MAP {
-        // What it mirrors is not left.
-        return diffuse_color(s) * (1.0 - map_reflectance(s, v)) * irradiance(s.normal);
+        let left = (1.0 - reflectance_at_normal(s)) * reflectance_terms(s, v).z;
+        return diffuse_color(s) * left * irradiance(s.normal);
     }
     if ENVIRONMENT == ENVIRONMENT_GRADIENT {
         let around = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);

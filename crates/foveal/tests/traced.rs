@@ -1,0 +1,151 @@
+//! Light and shadow held to a reference that traces rays.
+#![allow(clippy::print_stdout, reason = "a test says what it measured")]
+
+mod trace;
+
+use foveal::{
+    Background, EnvironmentMap, EnvironmentSource, Frame, Gpu, Renderer, RendererOptions, Settings,
+    Shadows, ToneMap,
+};
+use foveal_generate as generate;
+use foveal_scene::{AlphaMode, Material, Scene};
+use glam::Vec3;
+use trace::{Around, Reference};
+
+const WIDTH: u32 = 192;
+const HEIGHT: u32 = 108;
+
+fn srgb(linear: f32) -> u8 {
+    let v = linear.clamp(0.0, 1.0);
+    let encoded = if v <= 0.003_130_8 {
+        12.92 * v
+    } else {
+        1.055 * v.powf(1.0 / 2.4) - 0.055
+    };
+    (encoded * 255.0 + 0.5) as u8
+}
+
+fn flip_image(radiance: impl Iterator<Item = Vec3>) -> nv_flip::FlipImageRgb8 {
+    let rgb: Vec<u8> = radiance.flat_map(|p| p.to_array().map(srgb)).collect();
+    nv_flip::FlipImageRgb8::with_data(WIDTH, HEIGHT, &rgb)
+}
+
+/// A court, no brighter than `most`.
+fn surroundings(most: f32) -> (u32, u32, Vec<[f32; 3]>) {
+    let (width, height, rgb) = generate::surroundings(1024);
+    let capped = rgb.into_iter().map(|t| t.map(|v| v.min(most)));
+    (width, height, capped.collect())
+}
+
+/// Mean FLIP error between the renderer's picture, with the court no brighter than `most`, and the
+/// reference's.
+fn flip(scene: &Scene, settings: Settings, most: f32, reference: &Reference<'_>) -> f32 {
+    let camera = &scene.cameras[0];
+    let settings = settings.with(|s| {
+        s.picture.width = WIDTH;
+        s.picture.height = HEIGHT;
+        s.picture.tone_map = ToneMap::Linear;
+        s.lighting.background = Background::None;
+    });
+    let drawn = pollster::block_on(async {
+        let gpu = Gpu::open(None)
+            .await
+            .expect("the tests need a graphics adapter");
+        let mut renderer = Renderer::new(&gpu, &settings, RendererOptions::default())
+            .await
+            .expect("settings fit");
+        if settings.lighting.environment == EnvironmentSource::Image {
+            let (width, height, rgb) = surroundings(most);
+            let map = EnvironmentMap::new(width, height, &rgb).expect("an environment");
+            renderer.set_environment(map).await.expect("it fits");
+        }
+        renderer.set_scene(scene).await.expect("scene fits");
+        renderer.render(&Frame::new(camera)).await.expect("drawn");
+        renderer.read_radiance().await.expect("read back")
+    });
+    let drawn = drawn.rgb.into_iter().map(Vec3::from);
+    let traced = reference.picture(camera, WIDTH, HEIGHT);
+    if let Some(folder) = std::env::var_os("FOVEAL_TRACED") {
+        let lighting = &settings.lighting;
+        let what = (
+            lighting.environment,
+            lighting.shadows,
+            reference.occludes,
+            most,
+        );
+        let name = format!("{}-{what:?}.png", scene.name);
+        let name = std::path::Path::new(&folder).join(name);
+        let both = drawn.clone().chain(traced.iter().copied());
+        let bytes: Vec<u8> = both.flat_map(|p| p.to_array().map(srgb)).collect();
+        image::save_buffer(name, &bytes, WIDTH, 2 * HEIGHT, image::ColorType::Rgb8)
+            .expect("written");
+    }
+    let map = nv_flip::flip(
+        flip_image(traced.into_iter()),
+        flip_image(drawn),
+        nv_flip::DEFAULT_PIXELS_PER_DEGREE,
+    );
+    nv_flip::FlipPool::from_image(&map).mean()
+}
+
+/// Without textures.
+fn plain(material: &Material) -> Material {
+    Material {
+        base_color: material.base_color,
+        metallic: material.metallic,
+        roughness: material.roughness,
+        emissive: material.emissive,
+        alpha_mode: AlphaMode::Opaque,
+        double_sided: true,
+        ..Material::default()
+    }
+}
+
+#[test]
+fn metals_in_an_environment_are_nearly_as_traced() {
+    let mut scene = generate::materials_grid();
+    scene.lights.clear();
+    let settings = Settings::default().with(|s| s.lighting.environment = EnvironmentSource::Image);
+    // Without a sun, and with one of a radiance of 5,000, which irradiance of order 2 blurs.
+    for (brightest, most) in [(20.0, 0.025), (1e9, 0.1)] {
+        let (width, height, rgb) = surroundings(brightest);
+        let around = Around::new(width, height, rgb);
+        let mut reference = Reference::new(&scene);
+        reference.around = Some(&around);
+        let error = flip(&scene, settings.clone(), brightest, &reference);
+        // The test can tell environments apart.
+        let sky = settings
+            .clone()
+            .with(|s| s.lighting.environment = EnvironmentSource::Sky);
+        let other = flip(&scene, sky, brightest, &reference);
+        println!(
+            "materials-grid, radiance up to {brightest}: FLIP {error:.4}; {other:.4} in another environment"
+        );
+        assert!(error <= most, "{error}");
+        assert!(other > 2.0 * error, "{other}");
+        if brightest < 100.0 {
+            reference.occludes = true;
+            let occluded = flip(&scene, settings.clone(), brightest, &reference);
+            println!("FLIP {occluded:.4} where spheres occlude each other");
+        }
+    }
+}
+
+#[test]
+fn shadows_of_lights_are_nearly_as_traced() {
+    for (name, most) in [("cornell", 0.04), ("demo:1000", 0.1)] {
+        let mut scene = generate::by_name(name).expect("a generated scene");
+        scene.materials = scene.materials.iter().map(plain).collect();
+        let settings = Settings::default().with(|s| {
+            s.lighting.environment = EnvironmentSource::None;
+            s.lighting.shadows = Shadows::Soft;
+        });
+        let reference = Reference::new(&scene);
+        let error = flip(&scene, settings.clone(), 0.0, &reference);
+        let off = settings.with(|s| s.lighting.shadows = Shadows::Off);
+        let off = flip(&scene, off, 0.0, &reference);
+        println!("{name}: FLIP {error:.4}; {off:.4} without shadows");
+        assert!(error <= most, "{name}: {error}");
+        assert!(off > 2.0 * error, "{name}: {off}");
+    }
+}
