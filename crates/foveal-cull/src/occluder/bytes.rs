@@ -13,8 +13,8 @@
 //! | | | vertices of 12, groups of eight quads of 32 |
 //! | | | vertices of one-rings of 12, groups of eight triangles of 24, edges of 6 |
 //!
-//! Numbers are little-endian. Lists of vertices are by coordinate. What follows from the rest is not
-//! written: bounds, where the parts of each cluster begin, and the hash of the mesh.
+//! Numbers are little-endian. Lists of vertices are by coordinate. What follows from the rest is
+//! not written: bounds, where the parts of each cluster begin, and the hash of the mesh.
 
 use super::check;
 use super::mesh::{Cluster, OccluderMesh, bounds_of};
@@ -99,8 +99,8 @@ impl OccluderMesh {
 
     /// The mesh of [`to_bytes`](Self::to_bytes). It gives the same results bit by bit.
     ///
-    /// Nothing is trusted: any single word that is wrong is noticed by the checksum, and all numbers
-    /// are checked even where the checksum is right. What is accepted is a mesh whose surface never
+    /// Nothing is trusted: any single word that is wrong is noticed by the checksum, and all
+    /// numbers are checked even where the checksum is right. What is accepted is a mesh whose surface never
     /// hides what it does not cover. Takes 7 to 9 ms for a million triangles, up to
     /// 110 with adjacency.
     ///

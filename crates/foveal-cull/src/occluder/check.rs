@@ -2,8 +2,8 @@
 //! elsewhere can cause no panic, and no wrong result.
 //!
 //! Positions may be any finite numbers: another surface is not a wrong one. Cones, fills and hashes
-//! decide what is drawn and in which order, never what a polygon hides. Adjacency does: an edge that
-//! is not listed is no silhouette edge for a view region. So every edge of every triangle with a
+//! decide what is drawn and in which order, never what a polygon hides. Adjacency does: an edge
+//! that is not listed is no silhouette edge for a view region. So every edge of every triangle with a
 //! vertex of the cluster must be listed once for each of its triangles.
 
 use super::mesh::{Cluster, OccluderMesh};
