@@ -1,6 +1,6 @@
 //! Occluders: baked meshes, and the set of placed ones.
 //!
-//! `weld`, `half_edges`, `quads`, `neighbors` and `cluster` are the steps of `bake`; `mesh`,
+//! `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
 //! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
 //! what was read is a mesh; `set` places meshes in the world.
 
@@ -14,6 +14,7 @@ pub(crate) mod mesh;
 mod neighbors;
 pub(crate) mod one_ring;
 mod quads;
+mod sah;
 pub(crate) mod set;
 pub(crate) mod vertices;
 mod weld;
