@@ -2,7 +2,7 @@
 //!
 //! `weld`, `half_edges`, `quads`, `neighbors` and `cluster` are the steps of `bake`; `mesh`,
 //! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
-//! what was read is a mesh; `set` places meshes in the world.
+//! what was read is a mesh, by `surface`; `set` places meshes in the world.
 
 mod bake;
 mod bytes;
@@ -15,6 +15,7 @@ mod neighbors;
 pub(crate) mod one_ring;
 mod quads;
 pub(crate) mod set;
+mod surface;
 pub(crate) mod vertices;
 mod weld;
 mod word_hash;
