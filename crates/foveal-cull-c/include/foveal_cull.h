@@ -276,7 +276,8 @@ FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, F
 size_t foveal_cull_mesh_to_bytes(const FovealCullMesh *mesh, uint8_t *bytes, size_t size);
 
 /* The mesh of foveal_cull_mesh_to_bytes, without baking. Bytes that were changed, or come from elsewhere or
- * from another version of the format, are FOVEAL_CULL_BAD_MESH_BYTES. They are not needed afterwards. */
+ * from another version of the format, are FOVEAL_CULL_BAD_MESH_BYTES; but the checksum is no signature: bytes
+ * that somebody made may be another valid mesh. They are not needed afterwards. */
 FovealCullStatus foveal_cull_mesh_from_bytes(const uint8_t *bytes, size_t size, FovealCullMesh **out);
 
 /* Drops a mesh. Occluders that were made of it keep it. Null is nothing. */

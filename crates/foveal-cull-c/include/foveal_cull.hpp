@@ -174,7 +174,10 @@ public:
     /// The mesh as bytes, for a file.
     std::vector<std::uint8_t> to_bytes() const {
         std::vector<std::uint8_t> bytes(foveal_cull_mesh_to_bytes(get(), nullptr, 0));
-        foveal_cull_mesh_to_bytes(get(), bytes.data(), bytes.size());
+        if (bytes.empty() || foveal_cull_mesh_to_bytes(get(), bytes.data(), bytes.size()) != bytes.size()) {
+            FOVEAL_CULL_FAIL(get() == nullptr ? FOVEAL_CULL_NULL_POINTER : FOVEAL_CULL_INTERNAL,
+                             "the bytes of a mesh could not be written");
+        }
         return bytes;
     }
     std::size_t triangle_count() const noexcept { return foveal_cull_mesh_triangle_count(mesh_.get()); }

@@ -212,13 +212,14 @@ pub unsafe extern "C" fn foveal_cull_mesh_to_bytes(
     let mut needed = 0;
     guard(|| {
         // SAFETY: the caller's word.
-        let all = unsafe { border::object(mesh, "mesh") }?.0.to_bytes();
-        needed = all.len();
-        if !bytes.is_null() && needed <= size {
+        let mesh = &unsafe { border::object(mesh, "mesh") }?.0;
+        let all = mesh.bytes_len();
+        if !bytes.is_null() && all <= size {
             // SAFETY: the caller says that there are `size` bytes.
-            let to = unsafe { border::zeroed_list(bytes, needed, "bytes") }?;
-            to.copy_from_slice(&all);
+            let to = unsafe { border::zeroed_list(bytes, all, "bytes") }?;
+            to.copy_from_slice(&mesh.to_bytes());
         }
+        needed = all;
         Ok(())
     });
     needed

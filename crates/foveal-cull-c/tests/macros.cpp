@@ -43,8 +43,11 @@ int main() {
     const foveal::cull::Eye other = foveal::cull::look_at({nan, 0, 0}, {0, 0, -1}, {0, 1, 0}, 1.0, 1.0, 0.1);
     const foveal::cull::Eye none{};
     const bool zero = std::memcmp(&eye, &none, sizeof eye) == 0 && std::memcmp(&other, &none, sizeof other) == 0;
+    foveal::cull::Mesh solid = foveal::cull::Mesh::box({{0, 0, 0}, {1, 1, 1}});
+    const foveal::cull::Mesh moved = std::move(solid);
+    const bool bytes = solid.to_bytes().empty() && !moved.to_bytes().empty();
     MaskedOcclusionCulling *moc = MaskedOcclusionCulling::Create();
     MaskedOcclusionCulling::Destroy(moc);
-    std::printf("%d failures, zero: %d\n", failures, zero);
-    return failures == 2 && zero ? 0 : 1;
+    std::printf("%d failures, zero: %d, bytes: %d\n", failures, zero, bytes);
+    return failures == 3 && zero && bytes ? 0 : 1;
 }

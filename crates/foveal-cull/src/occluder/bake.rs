@@ -59,7 +59,7 @@ impl BakeOptions {
 }
 
 /// Most triangles of a mesh: offsets of clusters, vertices and adjacency are 32 bits.
-const MAX_TRIANGLES: usize = (u32::MAX / 8) as usize;
+pub(super) const MAX_TRIANGLES: usize = (u32::MAX / 8) as usize;
 
 impl OccluderMesh {
     /// Bakes a triangle list: `positions` in mesh space (metres) and `indices`, three per triangle,
@@ -150,6 +150,7 @@ impl OccluderMesh {
         let near = (options.adjacency && !options.two_sided)
             .then(|| Neighbors::new(&welded.points, &welded.triangles, &edges));
         cluster::build(&mut mesh, &welded.points, near.as_ref(), &quads, threads);
+        mesh.one_rings.keep_below(u32::MAX as usize);
         Ok(mesh)
     }
 

@@ -2,12 +2,14 @@
 //! elsewhere can cause no panic, and no wrong result.
 //!
 //! Positions may be any finite numbers: another surface is not a wrong one. Cones, fills and hashes
-//! decide what is drawn and in which order, never what a polygon hides. Adjacency does: an edge
-//! that is not listed is no silhouette edge for a view region. So every edge of every triangle with a
-//! vertex of the cluster must be listed once for each of its triangles.
+//! decide what is drawn and in which order, never what a polygon hides. Adjacency does: an edge that
+//! is not listed is no silhouette edge for a view region, and a triangle of a one-ring counts as
+//! surface. So every edge of every triangle with a vertex of the cluster must be listed once for each
+//! of its triangles, and every triangle of a one-ring must be one of the mesh.
 
 use super::mesh::{Cluster, OccluderMesh};
 use super::one_ring::{FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
+use super::surface::{self, Surface};
 use super::vertices::Vertices;
 
 const MAX_QUADS: u8 = 64;
@@ -35,21 +37,30 @@ pub(super) fn check(mesh: &OccluderMesh) -> Checked {
         !mesh.two_sided || rings.clusters.is_empty(),
         "a two-sided mesh has no adjacency",
     )?;
-    for (i, cluster) in mesh.clusters.iter().enumerate() {
+    for cluster in &mesh.clusters {
         check_cluster(mesh, cluster)?;
-        if let Some(ring) = rings.clusters.get(i) {
-            check_ring(mesh, cluster, ring)?;
-        }
+    }
+    if rings.clusters.is_empty() {
+        return Ok(());
+    }
+    let surface = Surface::new(mesh);
+    for (cluster, ring) in mesh.clusters.iter().zip(&rings.clusters) {
+        check_ring(mesh, &surface, cluster, ring)?;
     }
     Ok(())
 }
 
-fn check_cluster(mesh: &OccluderMesh, c: &Cluster) -> Checked {
+/// Checks the numbers of a cluster's vertices and quads.
+pub(super) fn check_counts(c: &Cluster) -> Checked {
     let vertices = usize::from(c.vertex_count);
     expect(
         (1..=MAX_VERTICES).contains(&vertices) && (1..=MAX_QUADS).contains(&c.quad_count),
         "a cluster has none or too many vertices or quads",
-    )?;
+    )
+}
+
+fn check_cluster(mesh: &OccluderMesh, c: &Cluster) -> Checked {
+    let vertices = usize::from(c.vertex_count);
     let unit = |v: f32| v.abs() <= 1.001;
     let [x, y, z] = c.cone_axis.to_array();
     let part = |v: f32| (0.0..=1.0).contains(&v);
@@ -123,7 +134,7 @@ impl Triangles {
     }
 }
 
-fn check_ring(mesh: &OccluderMesh, c: &Cluster, ring: &OneRing) -> Checked {
+fn check_ring(mesh: &OccluderMesh, surface: &Surface<'_>, c: &Cluster, ring: &OneRing) -> Checked {
     let rings = &mesh.one_rings;
     let own = usize::from(c.vertex_count);
     let base = own.next_multiple_of(8);
@@ -142,6 +153,15 @@ fn check_ring(mesh: &OccluderMesh, c: &Cluster, ring: &OneRing) -> Checked {
         all.corners[n] = Some([v0, v1, v2]);
         all.corners[FIRST_OF_SECOND + n] = (v2 != v3).then_some([v0, v2, v3]);
     }
+    let point = |v: u8| {
+        let around = &rings.vertices;
+        let at = (ring.first_vertex as usize + usize::from(v)).wrapping_sub(base);
+        if usize::from(v) < own {
+            surface::point(mesh, c, v)
+        } else {
+            [&around.x, &around.y, &around.z].map(|list| list[at].to_bits())
+        }
+    };
     let count = usize::from(ring.triangle_count);
     let groups = &rings.triangles[ring.first_group as usize..][..count.div_ceil(8)];
     for n in 0..count {
@@ -154,6 +174,10 @@ fn check_ring(mesh: &OccluderMesh, c: &Cluster, ring: &OneRing) -> Checked {
         let alone = on[1] == on[2] && (on[0] || on[1]);
         let distinct = t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
         expect(known && alone && distinct, "a one-ring's triangle is none")?;
+        expect(
+            surface.has(&t.map(point)),
+            "a one-ring's triangle is none of the mesh",
+        )?;
         all.corners[FIRST_OF_RING + n] = Some(t);
     }
     expect(

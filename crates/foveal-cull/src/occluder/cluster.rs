@@ -4,20 +4,15 @@
 //! normal, so that clusters are compact, large quads lie apart from small ones, and normal cones
 //! are narrow. Each cluster has its own vertex list, whose numbers fit a byte.
 
-use super::in_parts::{in_parts, part_range, parts_of};
+use super::in_parts::{in_parts, in_parts_of, part_range, parts_of};
 use super::mesh::{Cluster, OccluderMesh, bounds_of, hash_words};
 use super::neighbors::{self, LocalNumbers, Neighbors};
 use super::quads::Quad;
-use super::sah::{Cut, Item, Part, cut, quad_normals};
+use super::sah::{Cut, Item, Part, cut, is_lopsided, quad_normals};
 use crate::threads::Threads;
 use glam::Vec3;
-use std::sync::Mutex;
 
 const MAX_QUADS: usize = 64;
-
-/// Quads that fit one cluster are split only if that costs less than this part of it: mostly where
-/// large quads leave small ones.
-const WORTH_A_CUT: f32 = 0.5;
 
 /// Fewest quads that are worth a part of their own.
 const LEAST_QUADS: usize = 2048;
@@ -44,14 +39,11 @@ pub(super) fn build(
         quads.iter().map(item).collect::<Vec<_>>()
     });
     let mut items: Vec<Item> = items.into_iter().flatten().collect();
-    let ranges = cut_apart(&mut items, parts, threads);
-    let ranges: Vec<_> = ranges.into_iter().map(|r| Mutex::new(Some(r))).collect();
+    let mut ranges = cut_apart(&mut items, parts, threads);
     let empty = mesh.clone();
-    let built = in_parts(threads, ranges.len(), &|i| {
+    let built = in_parts_of(threads, &mut ranges, &|range| {
         let mut part = empty.clone();
-        let range = ranges[i].lock().ok().and_then(|mut r| r.take());
-        let mut local = LocalNumbers::new(points.len());
-        split(&mut part, source, &mut local, range.unwrap_or_default());
+        split(&mut part, source, range);
         part
     });
     for part in built {
@@ -61,55 +53,67 @@ pub(super) fn build(
 }
 
 /// Cuts quads until there are `parts` ranges, as [`split`] would.
-fn cut_apart<'a>(
-    items: &'a mut [Item],
-    parts: usize,
-    threads: &dyn Threads,
-) -> Vec<&'a mut [Item]> {
-    let mut ranges = vec![items];
+fn cut_apart<'a>(items: &'a mut [Item], parts: usize, threads: &dyn Threads) -> Vec<Range<'a>> {
+    let mut ranges = vec![Range { items, lopsided: 0 }];
     while ranges.len() < parts {
-        let before = ranges.len();
-        let whole: Vec<_> = ranges.into_iter().map(|r| Mutex::new(Some(r))).collect();
-        ranges = in_parts(threads, before, &|i| {
-            let range = whole[i].lock().ok().and_then(|mut r| r.take());
-            let range = range.unwrap_or_default();
-            if range.len() < LEAST_QUADS {
-                return [Some(range), None];
-            }
-            let best = cut(range);
-            let at = part(range, best);
-            let (left, right) = range.split_at_mut(at);
-            [Some(left), Some(right)]
-        })
-        .into_iter()
-        .flatten()
-        .flatten()
-        .collect();
-        if ranges.len() == before {
+        let cuts = in_parts_of(threads, &mut ranges, &|range| {
+            let large = range.items.len() >= LEAST_QUADS;
+            large.then(|| {
+                let best = cut(range.items, range.lopsided);
+                part(range.items, best)
+            })
+        });
+        if cuts.iter().all(Option::is_none) {
             break;
         }
+        let halves = |(range, cut): (Range<'a>, Option<usize>)| match cut {
+            Some(at) => range.halves(at).map(Some),
+            None => [Some(range), None],
+        };
+        let cut = ranges.into_iter().zip(cuts).flat_map(halves);
+        ranges = cut.flatten().collect();
     }
     ranges
 }
 
-fn split(
-    mesh: &mut OccluderMesh,
-    source: Source<'_>,
-    local: &mut LocalNumbers,
-    items: &mut [Item],
-) {
-    if items.is_empty() {
-        return;
+/// Quads to be split.
+struct Range<'a> {
+    items: &'a mut [Item],
+    /// How many cuts that led here were lopsided.
+    lopsided: u32,
+}
+
+impl Range<'_> {
+    /// The first `at` quads and the others.
+    fn halves(self, at: usize) -> [Self; 2] {
+        let lopsided = self.lopsided + u32::from(is_lopsided(at, self.items.len()));
+        let (left, right) = self.items.split_at_mut(at);
+        [left, right].map(|items| Self { items, lopsided })
     }
-    let cut = cut(items);
-    let cheaper = cut.cost < WORTH_A_CUT * Part::of(items).cost();
-    if items.len() <= MAX_QUADS && !cheaper && emit(mesh, source, local, items) {
-        return;
+}
+
+/// Appends the clusters of a range, in order.
+fn split(mesh: &mut OccluderMesh, source: Source<'_>, range: &mut Range<'_>) {
+    let mut local = LocalNumbers::new();
+    // A list and no recursion: it may become long.
+    let mut rest = vec![Range {
+        items: &mut *range.items,
+        lopsided: range.lopsided,
+    }];
+    while let Some(range) = rest.pop() {
+        let items = &mut *range.items;
+        if items.is_empty() {
+            continue;
+        }
+        let cut = cut(items, range.lopsided);
+        let cheaper = cut.cost < WORTH_A_CUT * Part::of(items).cost();
+        if items.len() <= MAX_QUADS && !cheaper && emit(mesh, source, &mut local, items) {
+            continue;
+        }
+        let at = part(items, cut);
+        let [left, right] = range.halves(at);
+        rest.extend([right, left]);
     }
-    let at = part(items, cut);
-    let (left, right) = items.split_at_mut(at);
-    split(mesh, source, local, left);
-    split(mesh, source, local, right);
 }
 
 /// Brings the quads of a cut's first part to the front; returns their number.
@@ -119,6 +123,10 @@ fn part(items: &mut [Item], cut: Cut) -> usize {
     });
     cut.at
 }
+
+/// Quads that fit one cluster are split only if that costs less than this part of it: mostly where
+/// large quads leave small ones.
+const WORTH_A_CUT: f32 = 0.5;
 
 /// The part of its box's outline that a cluster can fill. The outline of a convex body is a fourth
 /// of its surface in the mean over all directions (Cauchy's formula), and triangles that face one
@@ -250,8 +258,9 @@ fn emit(
 
 #[cfg(test)]
 mod tests {
-    use crate::{Aabb, BakeOptions, OccluderMesh};
-    use glam::Vec3;
+    use super::super::sah::MOST_LOPSIDED;
+    use super::*;
+    use crate::{Aabb, BakeOptions};
 
     fn fills(mesh: &OccluderMesh) -> Vec<f32> {
         mesh.clusters.iter().map(|c| c.fill).collect()
@@ -317,6 +326,58 @@ mod tests {
         let indices: Vec<u32> = (0..298).flat_map(|i| [i, i + 1, i + 2]).collect();
         let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
         assert!(mesh.cluster_count() < 300);
+    }
+
+    /// Triangles over three vertices each, as quads.
+    fn items(points: &[Vec3]) -> Vec<Item> {
+        let quads = (0..points.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2, 3 * i + 2]);
+        quads.map(|quad| Item::new(points, quad)).collect()
+    }
+
+    #[test]
+    fn surfaces_too_small_for_numbers_are_halved() {
+        // The costs of all cuts underflow. Quads near zero, and some in ever smaller steps.
+        let (tiny, steps) = (f32::from_bits(1), 1500);
+        let x = |i: i32| match i {
+            i if i < steps => -0.45 * 0.968f32.powi(i),
+            i => (i - steps) as f32 * 1e-42,
+        };
+        let at = |i: i32| {
+            let width = if i < steps { x(i) * -0.01 } else { 1e-42 };
+            [(0.0, 0.0), (width, 0.0), (0.0, tiny)].map(|(dx, y)| (x(i) + dx, y))
+        };
+        let corners = (0..6 * steps).flat_map(at);
+        let points: Vec<Vec3> = corners.map(|(x, y)| Vec3::new(x, y, 0.0)).collect();
+        let all = items(&points);
+        assert_eq!(cut(&all, 0).at, all.len() / 2);
+        let indices: Vec<u32> = (0..points.len() as u32).collect();
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        assert!(mesh.triangle_count() > 8000, "{}", mesh.triangle_count());
+        let least = mesh.triangle_count().div_ceil(MAX_QUADS);
+        assert!(mesh.cluster_count() < 4 * least, "{}", mesh.cluster_count());
+    }
+
+    #[test]
+    fn lopsided_cuts_are_few() {
+        // One large triangle leaves 999 small ones.
+        let at = |i: u32| {
+            let (x, size) = if i == 0 { (0.0, 1000.0) } else { (900.0, 1.0) };
+            let (x, z) = (x + (i % 32) as f32, (i / 32) as f32);
+            [(0.0, 0.0), (size, 0.0), (0.0, size)].map(|(dx, dz)| Vec3::new(x + dx, 0.0, z + dz))
+        };
+        let points: Vec<Vec3> = (0..1000).flat_map(at).collect();
+        let mut all = items(&points);
+        for lopsided in [0, MOST_LOPSIDED - 1] {
+            let at = cut(&all, lopsided).at;
+            assert!(is_lopsided(at, 1000), "{at}");
+            let range = Range {
+                items: &mut all,
+                lopsided,
+            };
+            let [left, right] = range.halves(at);
+            assert_eq!([left.lopsided, right.lopsided], [lopsided + 1; 2]);
+        }
+        assert_eq!(cut(&all, MOST_LOPSIDED).at, 500);
     }
 
     #[test]

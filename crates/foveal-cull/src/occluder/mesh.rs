@@ -127,9 +127,14 @@ impl OccluderMesh {
     }
 }
 
+/// A position relative to the mesh's centre.
+pub(super) fn relative(mesh_center: DVec3, position: Vec3) -> Vec3 {
+    (position.as_dvec3() - mesh_center).as_vec3()
+}
+
 /// Centre and half extent of a cluster between two corners, relative to the mesh's centre.
 pub(super) fn bounds_of(mesh_center: DVec3, lo: Vec3, hi: Vec3) -> (Vec3, Vec3) {
-    let [lo, hi] = [lo, hi].map(|p| (p.as_dvec3() - mesh_center).as_vec3());
+    let [lo, hi] = [lo, hi].map(|p| relative(mesh_center, p));
     let half = (hi - lo) * 0.5 * (1.0 + 1e-6) + (lo.abs().max(hi.abs())) * 1e-6;
     ((lo + hi) * 0.5, half)
 }

@@ -2,7 +2,7 @@
 //!
 //! `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
 //! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
-//! what was read is a mesh; `set` places meshes in the world.
+//! what was read is a mesh, by `surface`; `set` places meshes in the world.
 
 mod bake;
 mod bytes;
@@ -16,6 +16,7 @@ pub(crate) mod one_ring;
 mod quads;
 mod sah;
 pub(crate) mod set;
+mod surface;
 pub(crate) mod vertices;
 mod weld;
 mod word_hash;

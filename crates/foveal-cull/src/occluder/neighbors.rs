@@ -14,6 +14,10 @@ const MAX_TRIANGLES: usize = 255;
 /// Most vertices of a cluster and its one-ring: numbers fit a byte.
 const MAX_VERTICES: usize = 256;
 
+/// Most triangles that are looked at for a one-ring: 16 at each of 256 vertices, so that vertices of
+/// very many triangles, which belong to many clusters, take no quadratic time.
+const MOST_TOUCHING: usize = 4096;
+
 /// The cosine of 20 degrees. Edges that bend less are seldom a silhouette.
 const SMOOTH: f64 = 0.94;
 
@@ -42,6 +46,15 @@ impl<'a> Neighbors<'a> {
         self.edges.only(b, a)
     }
 
+    /// Triangles at some vertices; the first ones, where they are very many. Those that a one-ring
+    /// leaves out end it in silhouette edges, which is safe.
+    fn touching(&self, vertices: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+        let leaving = vertices.iter().flat_map(|&v| self.edges.leaving(v));
+        leaving
+            .take(MOST_TOUCHING)
+            .map(|edge| self.triangles[edge.triangle as usize])
+    }
+
     /// Whether the mesh continues beyond an edge and hardly bends there.
     pub(super) fn is_smooth(&self, a: u32, b: u32) -> bool {
         let normal = |triangle: u32| {
@@ -66,36 +79,62 @@ fn name([a, b, c]: [u32; 3]) -> Words3 {
     })
 }
 
-/// Local numbers of vertices, for one cluster after the other.
+/// Local numbers of vertices, for one cluster after the other: a table of slots by hash.
 pub(super) struct LocalNumbers {
-    /// By vertex: the last cluster that has it, and its number there.
-    clusters: Vec<u32>,
-    numbers: Vec<u8>,
+    slots: Box<[Slot; SLOTS]>,
     cluster: u32,
 }
 
+/// At least twice the numbers of a cluster and its one-ring, and a power of two.
+const SLOTS: usize = 1024;
+
+#[derive(Clone, Copy)]
+struct Slot {
+    /// The last cluster that used it; 0 for none.
+    cluster: u32,
+    vertex: u32,
+    number: u8,
+}
+
 impl LocalNumbers {
-    pub(super) fn new(points: usize) -> Self {
+    pub(super) fn new() -> Self {
+        let none = Slot {
+            cluster: 0,
+            vertex: 0,
+            number: 0,
+        };
         Self {
-            clusters: vec![0; points],
-            numbers: vec![0; points],
+            slots: Box::new([none; SLOTS]),
             cluster: 0,
         }
     }
 
-    /// Forgets all numbers.
+    /// Forgets all numbers. There is room for [`MAX_VERTICES`] new ones.
     pub(super) fn next_cluster(&mut self) {
         self.cluster += 1;
     }
 
     pub(super) fn set(&mut self, vertex: u32, number: u8) {
-        self.clusters[vertex as usize] = self.cluster;
-        self.numbers[vertex as usize] = number;
+        let slot = self.slot(vertex);
+        self.slots[slot] = Slot {
+            cluster: self.cluster,
+            vertex,
+            number,
+        };
     }
 
     pub(super) fn get(&self, vertex: u32) -> Option<u8> {
-        let known = self.clusters[vertex as usize] == self.cluster;
-        known.then(|| self.numbers[vertex as usize])
+        let slot = &self.slots[self.slot(vertex)];
+        (slot.cluster == self.cluster).then_some(slot.number)
+    }
+
+    /// The slot of a vertex, or the free one where it belongs.
+    fn slot(&self, vertex: u32) -> usize {
+        let mut at = (vertex.wrapping_mul(0x9e37_79b1) >> 22) as usize % SLOTS;
+        while self.slots[at].cluster == self.cluster && self.slots[at].vertex != vertex {
+            at = (at + 1) % SLOTS;
+        }
+        at
     }
 }
 
@@ -109,11 +148,8 @@ pub(super) fn build(
     quads: impl Iterator<Item = Quad>,
 ) {
     let rings = &mut mesh.one_rings;
-    let (first_vertex, first_group, first_edge) = (
-        rings.vertices.x.len() as u32,
-        rings.triangles.len() as u32,
-        rings.edges.len() as u32,
-    );
+    let [first_vertex, first_group, first_edge] = rings.ends();
+    let edges_before = rings.edges.len();
     let mut numbers: HashMap<Words3, u16, WordHash> =
         HashMap::with_capacity_and_hasher(512, near.hash);
     // All triangles with their numbers.
@@ -132,9 +168,11 @@ pub(super) fn build(
     let is_own = |local: &LocalNumbers, v: u32| local.get(v).is_some_and(|n| usize::from(n) < base);
     // Triangles that occur twice have no neighbours: their edges are silhouette edges.
     if !twice {
-        for edge in own.iter().flat_map(|&v| near.edges.leaving(v)) {
-            let corners = near.triangles[edge.triangle as usize];
-            if numbers.contains_key(&name(corners)) || around.len() == MAX_TRIANGLES {
+        for corners in near.touching(own) {
+            if around.len() == MAX_TRIANGLES {
+                break;
+            }
+            if numbers.contains_key(&name(corners)) {
                 continue;
             }
             let new = corners.iter().filter(|&&v| local.get(v).is_none()).count();
@@ -205,6 +243,47 @@ pub(super) fn build(
         first_group,
         triangle_count: around.len() as u16,
         first_edge,
-        edges: (rings.edges.len() - first_edge as usize) as u16,
+        edges: (rings.edges.len() - edges_before) as u16,
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::BakeOptions;
+
+    #[test]
+    fn local_numbers_are_those_of_their_cluster_alone() {
+        let mut local = LocalNumbers::new();
+        for cluster in 1..200u32 {
+            local.next_cluster();
+            // Steps that all begin at few slots, and neighbours.
+            let vertex = |n: u32| n * [1, 1 << 22, 7919, 1 << 10][cluster as usize % 4] + cluster;
+            (0..256).for_each(|n| assert_eq!(local.get(vertex(n)), None));
+            (0..256).for_each(|n| local.set(vertex(n), n as u8));
+            (0..256).for_each(|n| assert_eq!(local.get(vertex(n)), Some(n as u8)));
+            assert_eq!(local.get(vertex(256)), None);
+        }
+    }
+
+    #[test]
+    fn few_triangles_of_a_large_fan_are_looked_at() {
+        let n = 20_000u32;
+        let mut points = vec![Vec3::ZERO];
+        points.extend((0..=n).map(|i| {
+            let angle = i as f32 / n as f32 * 6.0;
+            Vec3::new(angle.cos(), angle.sin(), 0.0)
+        }));
+        let triangles: Vec<[u32; 3]> = (1..=n).map(|i| [0, i, i + 1]).collect();
+        let edges = HalfEdges::new(points.len(), &triangles);
+        let near = Neighbors::new(&points, &triangles, &edges);
+        assert_eq!(edges.leaving(0).len(), n as usize);
+        assert_eq!(near.touching(&[0, 1, 2]).count(), MOST_TOUCHING);
+        assert_eq!(near.touching(&[5, 6]).count(), 4);
+        // Triangles that are left out leave silhouette edges, and no edge is missing.
+        let indices = triangles.as_flattened();
+        let mesh = OccluderMesh::bake(&points, indices, BakeOptions::default()).unwrap();
+        assert_eq!(mesh.triangle_count(), n as usize);
+        assert!(OccluderMesh::from_bytes(&mesh.to_bytes()).is_ok());
+    }
 }

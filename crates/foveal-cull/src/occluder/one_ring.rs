@@ -47,20 +47,57 @@ pub(crate) struct OneRings {
 }
 
 impl OneRings {
+    /// Where the lists of vertices, triangles and edges end. Longer lists than `u32::MAX` are not
+    /// kept ([`keep_below`](Self::keep_below)).
+    pub(super) fn ends(&self) -> [u32; 3] {
+        self.lengths().map(|n| u32::try_from(n).unwrap_or(u32::MAX))
+    }
+
+    fn lengths(&self) -> [usize; 3] {
+        [
+            self.vertices.x.len(),
+            self.triangles.len(),
+            self.edges.len(),
+        ]
+    }
+
+    /// Drops all one-rings if a list has more than `most` elements. View regions are as safe without
+    /// them.
+    pub(super) fn keep_below(&mut self, most: usize) {
+        if self.lengths().iter().any(|n| *n > most) {
+            *self = Self::default();
+        }
+    }
+
     /// Appends the one-rings of further clusters.
     pub(super) fn append(&mut self, other: Self) {
-        let first_vertex = self.vertices.x.len() as u32;
-        let first_group = self.triangles.len() as u32;
-        let first_edge = self.edges.len() as u32;
+        let [first_vertex, first_group, first_edge] = self.ends();
         self.clusters
             .extend(other.clusters.into_iter().map(|c| OneRing {
-                first_vertex: first_vertex + c.first_vertex,
-                first_group: first_group + c.first_group,
-                first_edge: first_edge + c.first_edge,
+                first_vertex: first_vertex.saturating_add(c.first_vertex),
+                first_group: first_group.saturating_add(c.first_group),
+                first_edge: first_edge.saturating_add(c.first_edge),
                 ..c
             }));
         self.vertices.append(other.vertices);
         self.triangles.extend(other.triangles);
         self.edges.extend(other.edges);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Aabb, OccluderMesh};
+
+    #[test]
+    fn one_rings_too_long_for_their_offsets_are_dropped() {
+        let mut mesh = OccluderMesh::from_box(Aabb::new([0.0; 3], [1.0; 3])).unwrap();
+        let edges = mesh.one_rings.edges.len();
+        assert!(edges > 8);
+        mesh.one_rings.keep_below(edges);
+        assert_eq!(mesh.one_rings.edges.len(), edges);
+        mesh.one_rings.keep_below(edges - 1);
+        assert!(mesh.one_rings.clusters.is_empty() && mesh.one_rings.edges.is_empty());
+        assert!(OccluderMesh::from_bytes(&mesh.to_bytes()).is_ok());
     }
 }

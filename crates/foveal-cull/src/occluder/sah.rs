@@ -39,6 +39,11 @@ impl Item {
     }
 }
 
+/// Whether a cut leaves nearly all quads on one side.
+pub(super) fn is_lopsided(at: usize, count: usize) -> bool {
+    at.min(count - at) < count / 64
+}
+
 /// Unit normals of the quad's one or two triangles.
 pub(super) fn quad_normals(p: [Vec3; 4]) -> [Option<Vec3>; 2] {
     let n = |a: Vec3, b: Vec3, c: Vec3| {
@@ -58,11 +63,17 @@ pub(super) struct Cut {
 
 /// Cost of setting up a cluster, in quads.
 const COST_OF_CLUSTER: f32 = 32.0;
+
+/// Most lopsided cuts on the way to a cluster. Each takes time in proportion to all quads and leaves
+/// nearly all of them.
+pub(super) const MOST_LOPSIDED: u32 = 64;
+
 /// Bins per axis.
 const BINS: usize = 32;
 
-/// The cheapest split between bins along the six axes, by the surface-area heuristic.
-pub(super) fn cut(items: &[Item]) -> Cut {
+/// The cheapest split between bins along the six axes, by the surface-area heuristic; halves where
+/// that says nothing, or after too many lopsided cuts.
+pub(super) fn cut(items: &[Item], lopsided: u32) -> Cut {
     let (mut lo, mut hi) = ([Vec4::INFINITY; 2], [Vec4::NEG_INFINITY; 2]);
     for item in items {
         for (k, key) in [item.lo + item.hi, item.normal].into_iter().enumerate() {
@@ -82,11 +93,12 @@ pub(super) fn cut(items: &[Item]) -> Cut {
             }
         }
     }
-    let mut best = Cut {
+    let halves = Cut {
         cost: f32::INFINITY,
         axis: 0,
         at: items.len() / 2,
     };
+    let mut best = halves;
     for (axis, bins) in bins.iter().enumerate() {
         if !scale[axis / 3][axis % 3].is_finite() {
             continue;
@@ -107,7 +119,13 @@ pub(super) fn cut(items: &[Item]) -> Cut {
             }
         }
     }
-    best
+    // Of surfaces too small for `f32` all costs are alike, and the first border is no better.
+    let says_nothing = best.cost < f32::MIN_POSITIVE;
+    if says_nothing || lopsided >= MOST_LOPSIDED && is_lopsided(best.at, items.len()) {
+        halves
+    } else {
+        best
+    }
 }
 
 /// Bounds of some quads and of their normals.

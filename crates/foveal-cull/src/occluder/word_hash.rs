@@ -3,7 +3,9 @@
 use core::hash::{BuildHasher, Hasher};
 use std::collections::hash_map::RandomState;
 
-/// Makes hashers with a seed of its own, so that no mesh is slow in every process.
+/// Makes hashers with a seed of its own, so that no mesh is slow in every process. On targets
+/// without random numbers, as `wasm32-unknown-unknown`, the standard library's seeds are the same in
+/// every process.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct WordHash {
     seed: u64,

@@ -58,7 +58,7 @@ impl FrameScratch {
         let all: usize = instances.iter().map(groups).sum();
         let parts = match threads.count() {
             0 | 1 => 1,
-            n => (n * PARTS_PER_THREAD).min(MAX_PARTS),
+            n => n.saturating_mul(PARTS_PER_THREAD).min(MAX_PARTS),
         };
         let parts = parts.min(1 + all / LEAST_GROUPS);
         self.rows.resize(instances.len(), [[0.0; 4]; 4]);
@@ -69,7 +69,7 @@ impl FrameScratch {
         let (mut rows, mut first, mut first_group, mut done) = (&mut self.rows[..], 0, 0, 0);
         for (k, (job, part)) in jobs.iter_mut().zip(&mut self.parts[..parts]).enumerate() {
             // Every part has as many groups; `done` of them lie before instance `end`.
-            let wanted = all * (k + 1) / parts;
+            let wanted = (all as u64 * (k as u64 + 1) / parts as u64) as usize;
             let mut end = first;
             while end < instances.len() && done + groups(&instances[end]) <= wanted {
                 done += groups(&instances[end]);

@@ -1,10 +1,11 @@
 //! Threads that a frame runs on.
 
-/// Runs the tasks of a frame on several threads.
+/// Runs the tasks of a frame, or of a bake, on several threads.
 ///
 /// Implement it for your own job system. The crate starts threads only in
 /// [`WorkerThreads`](super::WorkerThreads). [`Culler::rasterize`](crate::Culler::rasterize) calls
-/// `run` twice per frame.
+/// `run` twice per frame, [`OccluderMesh::bake_on`](crate::OccluderMesh::bake_on) several times per
+/// mesh.
 pub trait Threads: Sync {
     /// Number of tasks that can run at once, at least 1.
     fn count(&self) -> usize;

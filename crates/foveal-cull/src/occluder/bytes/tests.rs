@@ -1,4 +1,5 @@
 use super::*;
+use crate::occluder::one_ring::{FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE};
 use crate::reference::{Reference, Seen};
 use crate::{
     Aabb, Affine, BakeOptions, Culler, Eye, FrameOptions, OccluderSet, Projection, SingleThread,
@@ -78,6 +79,7 @@ fn every_mesh_comes_back_as_it_was() {
     for mesh in meshes {
         let bytes = mesh.to_bytes();
         assert_eq!(bytes.capacity(), bytes.len(), "the length is known before");
+        assert_eq!(bytes.len(), mesh.bytes_len());
         let again = OccluderMesh::from_bytes(&bytes).unwrap();
         // Boxes after the last cluster are NaN, which is never equal.
         assert_eq!(format!("{again:?}"), format!("{mesh:?}"));
@@ -239,4 +241,210 @@ fn threads_bake_the_same_mesh() {
         let many = OccluderMesh::bake_on(&points, &indices, options, &threads).unwrap();
         assert!(many.to_bytes() == one.to_bytes(), "{count} threads");
     }
+}
+
+/// Bytes that a reader of this version has to know: a box with adjacency.
+#[test]
+fn the_bytes_of_a_box_are_those_of_this_version() {
+    let mesh = OccluderMesh::from_box(Aabb::new([0.0, -1.0, 0.5], [1.0, 2.0, 3.0])).unwrap();
+    let bytes = mesh.to_bytes();
+    let rows = bytes.chunks(32).map(|row| {
+        let row = row.iter().map(|byte| format!("{byte:02x}"));
+        row.collect::<String>() + "\n"
+    });
+    let known = include_str!("box.hex");
+    assert_eq!(rows.collect::<String>(), known);
+    let digits: Vec<u8> = known.bytes().filter(u8::is_ascii_hexdigit).collect();
+    let value = |digit: u8| char::from(digit).to_digit(16).unwrap() as u8;
+    let pairs = digits.chunks(2).map(|d| value(d[0]) << 4 | value(d[1]));
+    let again = OccluderMesh::from_bytes(&pairs.collect::<Vec<_>>()).unwrap();
+    assert_eq!(format!("{again:?}"), format!("{mesh:?}"));
+    assert_eq!(again.triangle_count(), 12);
+    assert_eq!(again.bounds(), mesh.bounds());
+}
+
+/// The reason why sealed bytes are refused.
+fn refusal(bytes: &[u8]) -> &'static str {
+    match OccluderMesh::from_bytes(bytes) {
+        Err(CullError::BadMeshBytes(MeshBytesError::Invalid(why))) => why,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// A mesh of one quad, as bytes, with a one-ring of eight triangles that it does not have: they go on
+/// from the quad, so that a view region would see no silhouette at its edges.
+#[test]
+fn one_rings_of_invented_triangles_are_refused() {
+    let corners = |h: f32| [[-h, -h], [h, -h], [h, h], [-h, h]].map(|[x, y]| [x, y, 0.0]);
+    let near: [u8; 4] = [0, 1, 2, 3];
+    let mut mesh =
+        OccluderMesh::bake(&corners(1.0), &[0, 1, 2, 0, 2, 3], BakeOptions::default()).unwrap();
+    let own = &mesh.vertices;
+    // Vertices of the cluster are by number in welding, which is that of the list.
+    let found = near.map(|v| [own.x[usize::from(v)], own.y[usize::from(v)]]);
+    assert_eq!(found, corners(1.0).map(|[x, y, _]| [x, y]));
+    assert_eq!(mesh.clusters[0].quad_count, 1);
+    let rings = &mut mesh.one_rings;
+    for i in 0..8 {
+        let [x, y, z] = corners(20.0)[i.min(3)];
+        rings.vertices.x.push(x);
+        rings.vertices.y.push(y);
+        rings.vertices.z.push(z);
+    }
+    let mut triangles: Vec<[u8; 3]> = Vec::new();
+    for k in 0..4u8 {
+        let (a, b) = (k, (k + 1) % 4);
+        let (far_a, far_b) = (8 + a, 8 + b);
+        // Beyond the quad's edge from a to b, clockwise from it to keep the face.
+        triangles.push([far_a, b, a]);
+        triangles.push([b, far_a, far_b]);
+    }
+    let mut group = [[0u8; 8]; 3];
+    for (i, t) in triangles.iter().enumerate() {
+        (0..3).for_each(|corner| group[corner][i] = t[corner]);
+    }
+    rings.triangles = vec![group];
+    // All edges at the quad, each with the triangles on both sides.
+    let quad = [0, 1, 2, 3].map(|corner: usize| mesh.quads[0][corner][0]);
+    let mut all = vec![
+        (0u16, [quad[0], quad[1], quad[2]]),
+        (FIRST_OF_SECOND as u16, [quad[0], quad[2], quad[3]]),
+    ];
+    all.extend((FIRST_OF_RING as u16..).zip(triangles.iter().copied()));
+    let sides = |t: [u8; 3]| [(t[0], t[1]), (t[1], t[2]), (t[2], t[0])];
+    rings.edges.clear();
+    for &(n, t) in &all {
+        for (a, b) in sides(t).into_iter().filter(|&(a, b)| a < 4 || b < 4) {
+            let other = all.iter().find(|(_, t)| sides(*t).contains(&(b, a)));
+            let other = other.map_or(NO_TRIANGLE, |o| o.0);
+            if n < other {
+                rings.edges.push(Edge {
+                    triangles: [n, other],
+                    vertices: [a, b],
+                });
+            }
+        }
+    }
+    let closed = |e: &Edge| e.triangles[1] != NO_TRIANGLE;
+    assert_eq!(rings.edges.len(), 13);
+    assert!(rings.edges.iter().all(closed));
+    rings.clusters[0].vertex_count = 8;
+    rings.clusters[0].triangle_count = 8;
+    rings.clusters[0].edges = 13;
+    let expected = "a one-ring's triangle is none of the mesh";
+    assert_eq!(refusal(&mesh.to_bytes()), expected);
+    // The same one-ring is good where its triangles are there, in whichever cluster.
+    let mut bytes = mesh.clone();
+    let other = OccluderMesh::bake(
+        &[corners(1.0), corners(20.0)].concat(),
+        &triangles
+            .iter()
+            .flat_map(|t| t.map(|v| u32::from(if v < 8 { v } else { v - 4 })))
+            .collect::<Vec<_>>(),
+        BakeOptions::default().with_adjacency(false),
+    )
+    .unwrap();
+    assert_eq!(other.cluster_count(), 1);
+    bytes.append(OccluderMesh {
+        one_rings: complete(&other),
+        ..other
+    });
+    assert!(OccluderMesh::from_bytes(&bytes.to_bytes()).is_ok());
+}
+
+/// A one-ring without triangles for the only cluster of a mesh: all edges are silhouette edges.
+fn complete(mesh: &OccluderMesh) -> OneRings {
+    let mut rings = OneRings::default();
+    for q in 0..usize::from(mesh.clusters[0].quad_count) {
+        let quad = [0, 1, 2, 3].map(|corner: usize| mesh.quads[q / 8][corner][q % 8]);
+        let [a, b, c, d] = quad;
+        let second = (c != d).then_some((FIRST_OF_SECOND + q, [a, c, d]));
+        for (n, t) in [(q, [a, b, c])].into_iter().chain(second) {
+            rings.edges.extend([0, 1, 2].map(|k| Edge {
+                triangles: [n as u16, NO_TRIANGLE],
+                vertices: [t[k], t[(k + 1) % 3]],
+            }));
+        }
+    }
+    rings.clusters.push(OneRing {
+        first_vertex: 0,
+        vertex_count: 0,
+        first_group: 0,
+        triangle_count: 0,
+        first_edge: 0,
+        edges: rings.edges.len() as u16,
+    });
+    rings
+}
+
+/// A mesh whose last cluster is cut away: its triangles are still in the one-rings of others.
+#[test]
+fn one_rings_of_a_cluster_that_was_removed_are_refused() {
+    let mut mesh = wall(&mut Random(5), BakeOptions::default());
+    assert!(mesh.cluster_count() > 2);
+    let last = mesh.clusters.pop().unwrap();
+    for list in [
+        &mut mesh.vertices.x,
+        &mut mesh.vertices.y,
+        &mut mesh.vertices.z,
+    ] {
+        list.truncate(last.first_vertex as usize);
+    }
+    mesh.quads.truncate(last.first_group as usize);
+    let rings = &mut mesh.one_rings;
+    let ring = rings.clusters.pop().unwrap();
+    for list in [
+        &mut rings.vertices.x,
+        &mut rings.vertices.y,
+        &mut rings.vertices.z,
+    ] {
+        list.truncate(ring.first_vertex as usize);
+    }
+    rings.triangles.truncate(ring.first_group as usize);
+    rings.edges.truncate(ring.first_edge as usize);
+    let expected = "a one-ring's triangle is none of the mesh";
+    assert_eq!(refusal(&mesh.to_bytes()), expected);
+}
+
+#[test]
+fn centres_too_far_from_the_positions_are_refused() {
+    let mut mesh = wall(&mut Random(5), BakeOptions::default());
+    for far in [1e39, -1e300, f64::MAX] {
+        mesh.center.y = far;
+        assert_eq!(refusal(&mesh.to_bytes()), "the centre is too far away");
+    }
+    mesh.center.y = 1e30;
+    let far = OccluderMesh::from_bytes(&mesh.to_bytes()).unwrap();
+    let (near, bounds) = (mesh.bounds(), far.bounds());
+    assert!(bounds.min[1] <= near.min[1] && bounds.max[1] >= near.max[1]);
+}
+
+#[test]
+fn too_many_triangles_are_refused() {
+    let most = MAX_TRIANGLES / 128;
+    assert!(total_triangles(core::iter::repeat_n(128, most)).is_ok());
+    let more = [
+        core::iter::repeat_n(128, most),
+        core::iter::repeat_n(128, 1),
+    ];
+    assert!(total_triangles(more.into_iter().flatten()).is_err());
+    let wraps = core::iter::repeat_n(128, 1 << 25);
+    assert!(total_triangles(wraps).is_err());
+}
+
+#[test]
+fn nothing_but_what_is_needed_is_allocated() {
+    let mesh = wall(&mut Random(5), BakeOptions::default());
+    let again = OccluderMesh::from_bytes(&mesh.to_bytes()).unwrap();
+    let rings = &again.one_rings;
+    assert_eq!(again.clusters.capacity(), again.clusters.len());
+    assert_eq!(rings.clusters.capacity(), rings.clusters.len());
+    assert_eq!(rings.edges.capacity(), rings.edges.len());
+    // A cluster without vertices ends the reading of clusters.
+    let mut empty = mesh.to_bytes();
+    let counts = HEADER + CLUSTER as usize - 4;
+    empty[counts..counts + 2].fill(0);
+    seal(&mut empty);
+    let why = refusal(&empty);
+    assert_eq!(why, "a cluster has none or too many vertices or quads");
 }
