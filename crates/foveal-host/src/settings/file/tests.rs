@@ -143,7 +143,7 @@ fn an_environment_may_be_a_file() {
 fn a_source_names_one_file() {
     let flags = ["x", "--environment", "a.hdr", "--environment-image"];
     let both = |name| Line::try_parse_from(flags.iter().chain([&name]));
-    let error = both("b.hdr").unwrap_err().to_string();
+    let error = both("b.hdr").map(|_| ()).unwrap_err().to_string();
     assert!(
         error.contains("a.hdr") && error.contains("b.hdr"),
         "{error}"
