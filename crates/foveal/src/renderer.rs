@@ -209,9 +209,9 @@ impl Renderer {
 
     /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
     /// history, so that a host with an eye tracker calls this before each frame. A change of the
-    /// environment's intensity and rotation gives up the light history alone. A change of size
-    /// alone rebuilds the targets alone; any other makes all pipelines anew. A change of
-    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
+    /// environment's intensity and rotation, with or without one of gaze, gives up the light history
+    /// alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
+    /// A change of [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
     /// takes effect with the next [`Renderer::set_scene`].
     ///
@@ -260,7 +260,7 @@ impl Renderer {
             self.stages.settings = settings.clone();
             return Ok(());
         }
-        let lit = old.clone().with(|s| {
+        let lit = looking.with(|s| {
             s.lighting.environment_intensity = settings.lighting.environment_intensity;
             s.lighting.environment_rotation_deg = settings.lighting.environment_rotation_deg;
             s.lighting.environment_image = settings.lighting.environment_image.clone();

@@ -9,6 +9,7 @@ use std::str::FromStr;
 use clap::builder::{
     BoolValueParser, PossibleValuesParser, RangedI64ValueParser, TypedValueParser, ValueParser,
 };
+use clap::error::ErrorKind;
 use clap::{Arg, ArgMatches, Command, value_parser};
 use foveal::{Display, EyeFrusta, Kind, Lens, LensProfile, Setting, Settings};
 use toml::{Table, Value};
@@ -214,8 +215,7 @@ impl clap::FromArgMatches for SettingsArgs {
                 self.given.insert(setting.key.to_owned(), value.clone());
             }
         }
-        self.split_sources();
-        Ok(())
+        self.split_sources(matches)
     }
 }
 
@@ -230,18 +230,32 @@ impl SettingsArgs {
         self.given.insert(key.to_owned(), value.into());
     }
 
-    /// A file's name given for a source goes where it belongs, unless that is given too.
-    fn split_sources(&mut self) {
+    /// A file's name given for a source goes where it belongs.
+    ///
+    /// # Errors
+    /// Where another file is named there.
+    fn split_sources(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
         for (key, file_key, ends) in SOURCES {
-            let Some(Value::String(name)) = self.given.get(key) else {
+            let Some(Value::String(name)) = matches.get_one::<Value>(key) else {
                 continue;
             };
-            if is_file(name, ends) {
-                let file = Value::from(name.as_str());
-                self.given.insert(key.to_owned(), Value::from("image"));
-                self.given.entry(file_key).or_insert(file);
+            if !is_file(name, ends) {
+                continue;
             }
+            let file = Value::from(name.as_str());
+            if let Some(other) = matches.get_one::<Value>(file_key)
+                && *other != file
+            {
+                let other = spelled(other);
+                return Err(clap::Error::raw(
+                    ErrorKind::ArgumentConflict,
+                    format!("--{key} {name} and --{file_key} {other} name two files: give one\n"),
+                ));
+            }
+            self.given.insert(key.to_owned(), Value::from("image"));
+            self.given.insert(file_key.to_owned(), file);
         }
+        Ok(())
     }
 }
 

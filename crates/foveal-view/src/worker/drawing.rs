@@ -38,6 +38,8 @@ struct ReferenceFrame {
 /// A renderer with the scene.
 struct Side {
     renderer: Renderer,
+    /// Name of the file that the renderer's environment map came from.
+    environment: Option<String>,
     /// Where the last frame was seen from.
     before: Option<Camera>,
     /// The moment of its pose; `None` until it has one.
@@ -282,20 +284,22 @@ impl Side {
                 && !before
                     .is_some_and(|b| uses(b) && b.coarse.image_name == settings.coarse.image_name)
         };
-        let new_environment = |before: Option<&Settings>| {
-            let named = |s: &Settings| {
-                let lighting = &s.lighting;
-                let is_image = lighting.environment == EnvironmentSource::Image;
-                is_image.then(|| lighting.environment_image.clone())
-            };
-            before.and_then(named) != named(settings)
+        let named = |s: &Settings| {
+            let lighting = &s.lighting;
+            let is_image = lighting.environment == EnvironmentSource::Image;
+            is_image.then(|| lighting.environment_image.clone())
         };
         let before = slot.as_ref().map(|side| side.renderer.settings().clone());
-        let environment = if new_environment(before.as_ref()) {
-            (host.environment)(settings)?
-        } else {
-            None
-        };
+        let name = named(settings);
+        // The renderer may hold another map than its settings name, where those failed that came
+        // with it.
+        let held = slot.as_ref().and_then(|side| side.environment.clone());
+        let environment =
+            if before.as_ref().and_then(named) != name || name.is_some() && held != name {
+                (host.environment)(settings)?
+            } else {
+                None
+            };
         let image = if new_image(before.as_ref()) {
             (host.rate_image)(settings)?
         } else {
@@ -304,7 +308,9 @@ impl Side {
         let side = match slot {
             Some(side) => {
                 if let Some(map) = environment {
+                    side.environment = None;
                     block_on(side.renderer.set_environment(map))?;
+                    side.environment = name;
                 }
                 block_on(side.renderer.set_settings(settings))?;
                 side
@@ -315,11 +321,14 @@ impl Side {
                     settings,
                     foveal::RendererOptions::default().with_clock(clock::now_ns),
                 ))?;
+                let mut held = None;
                 if let Some(map) = environment {
                     block_on(renderer.set_environment(map))?;
+                    held = name;
                 }
                 slot.insert(Self {
                     renderer,
+                    environment: held,
                     before: None,
                     posed_s: None,
                     is_at_rest: false,

@@ -4,7 +4,9 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::bail;
-use foveal::{Antialiasing, Culling, RateSource, Settings, Shading};
+use foveal::{
+    Antialiasing, Culling, EnvironmentMap, EnvironmentSource, RateSource, Settings, Shading,
+};
 use foveal_generate as generate;
 use foveal_measure::Finding;
 use foveal_scene::Clip;
@@ -128,6 +130,51 @@ fn errors_are_news_and_work_goes_on() {
     assert!(failure(&worker).contains("width"));
     worker.draw(request());
     assert_eq!(picture(&worker).picture.bytes, shown.picture.bytes);
+}
+
+#[test]
+fn settings_that_fail_leave_no_other_environment_behind() {
+    let load = |_: &str| {
+        let scene = generate::materials_grid();
+        let camera = scene.cameras[0].clone();
+        Ok(Loaded {
+            scene,
+            camera,
+            clip: Clip::default(),
+        })
+    };
+    let environment = |settings: &Settings| {
+        let texel = match settings.lighting.environment_image.as_str() {
+            "red.hdr" => [1.0, 0.0, 0.0],
+            _ => [0.0, 0.0, 1.0],
+        };
+        Ok(Some(EnvironmentMap::new(16, 8, &[texel; 16 * 8])?))
+    };
+    let host = Host {
+        fit: false,
+        load: Box::new(load),
+        environment,
+        ..host()
+    };
+    let worker = Worker::start(Arc::new(host), || ()).expect("threads can be started");
+    worker.load("grid".to_owned());
+    let lit_by = |name: &str| {
+        let mut request = request();
+        request.camera = generate::materials_grid().cameras[0].clone();
+        request.settings.lighting.environment = EnvironmentSource::Image;
+        request.settings.lighting.environment_image = name.to_owned();
+        request
+    };
+    worker.draw(lit_by("red.hdr"));
+    let first = picture(&worker);
+    let mut wrong = lit_by("blue.hdr");
+    wrong.settings.lighting.environment_intensity = -1.0;
+    worker.draw(wrong);
+    assert!(failure(&worker).contains("environment-intensity"));
+    worker.draw(lit_by("red.hdr"));
+    assert!(picture(&worker).picture.bytes == first.picture.bytes);
+    worker.draw(lit_by("blue.hdr"));
+    assert!(picture(&worker).picture.bytes != first.picture.bytes);
 }
 
 #[test]

@@ -9,8 +9,8 @@ use super::twin::Around;
 use crate::shading::twin::{position_at, to_eye, unpack_surface};
 use crate::testing::{Film, f32_of_half, gpu, picture, shifted, small, texels};
 use crate::{
-    Background, Composite, EnvironmentSource, Frame, RateSource, Renderer, RendererOptions,
-    Settings, Shading, Stereo,
+    Antialiasing, Background, Composite, EnvironmentSource, Frame, RateSource, Renderer,
+    RendererOptions, Settings, Shading, Stereo,
 };
 
 /// A room's walls, a sky and a small sun, as bright as they are.
@@ -78,9 +78,9 @@ fn shaders_look_the_map_up_as_the_twin_does() {
             let twin = if is_surface {
                 around.ambient(&unpack_surface(words[i], position), v)
             } else if background == Background::Blurred {
-                around.environment(-v, 0.5)
+                around.background(-v, 0.5)
             } else {
-                around.environment(-v, 0.0)
+                around.background(-v, 0.0)
             };
             // Devices blend texels with fractions of 8 bits.
             let tolerance = 0.02 * twin.max_element().max(0.05);
@@ -91,6 +91,46 @@ fn shaders_look_the_map_up_as_the_twin_does() {
             seen[usize::from(is_surface)] += 1;
         }
         assert!(seen.iter().all(|&n| n > 500), "{seen:?}");
+    }
+}
+
+#[test]
+fn radiance_stays_finite_behind_and_beside_a_blinding_sun() {
+    let scene = generate::materials_grid();
+    let camera = &scene.cameras[0];
+    // Behind the upper half of the spheres.
+    let rgb: Vec<[f32; 3]> = (0..64 * 32)
+        .map(|i| [if i < 64 * 16 { f32::INFINITY } else { 0.5 }; 3])
+        .collect();
+    let map = EnvironmentMap::new(64, 32, &rgb).unwrap();
+    let bright = |background| {
+        lit_by_image(small(96, 64)).with(|s| {
+            s.lighting.environment_intensity = 2.0;
+            s.lighting.background = background;
+        })
+    };
+    let of = |s: &Settings, shading, composite| {
+        s.clone().with(|s| {
+            s.shading.mode = shading;
+            s.coarse.composite = composite;
+        })
+    };
+    for background in [Background::Environment, Background::Blurred] {
+        let full = bright(background);
+        let all = [
+            full.clone(),
+            full.clone()
+                .with(|s| s.antialiasing.mode = Antialiasing::Msaa),
+            of(&full, Shading::Coarse, Composite::Light),
+            of(&full, Shading::Coarse, Composite::Smooth),
+            of(&full, Shading::Variable, Composite::Light),
+        ];
+        for (i, settings) in all.iter().enumerate() {
+            let found = radiance(&rendered(&scene, camera, settings, &map));
+            assert!(found.iter().all(|r| r.is_finite()), "{background:?}, {i}");
+            let brightest = found.iter().map(|r| r.max_element());
+            assert_eq!(brightest.fold(0.0, f32::max), 65504.0, "the sun is seen");
+        }
     }
 }
 
@@ -217,6 +257,25 @@ fn another_environment_restarts_the_light_history() {
     let settings = film.renderer.settings().clone();
     pollster::block_on(film.renderer.set_settings(&settings)).unwrap();
     assert!(film.draw(&camera).shaded_samples < 2 * kept);
+}
+
+#[test]
+fn another_light_and_gaze_at_once_keep_pipelines_and_targets() {
+    let scene = generate::cornell();
+    let settings = lit_by_image(small(96, 64));
+    let mut renderer = rendered(&scene, &scene.cameras[0], &settings, &surroundings());
+    let before = renderer.targets().radiance_view.clone();
+    let turned = settings.clone().with(|s| {
+        s.lighting.environment_intensity = 2.0;
+        s.lighting.environment_rotation_deg = 40.0;
+        s.eye.gaze = [0.2, 0.3];
+    });
+    pollster::block_on(renderer.set_settings(&turned)).unwrap();
+    assert!(renderer.targets().radiance_view == before);
+    assert_eq!(*renderer.settings(), turned);
+    let other = turned.with(|s| s.lighting.background = Background::None);
+    pollster::block_on(renderer.set_settings(&other)).unwrap();
+    assert!(renderer.targets().radiance_view != before, "all anew");
 }
 
 #[test]

@@ -64,6 +64,12 @@ impl Around {
         self.intensity * Vec3::from(radiance)
     }
 
+    /// What is seen behind all surfaces.
+    pub(crate) fn background(&self, direction: Vec3, roughness: f32) -> Vec3 {
+        self.environment(direction, roughness)
+            .min(Vec3::splat(65504.0))
+    }
+
     pub(crate) fn irradiance(&self, normal: Vec3) -> Vec3 {
         let terms = polynomials(self.in_map(normal));
         let sum: Vec3 = self.irradiance.iter().zip(terms).map(|(&c, t)| c * t).sum();

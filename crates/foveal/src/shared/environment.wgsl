@@ -60,13 +60,22 @@ fn environment(direction: vec3f, roughness: f32) -> vec3f {
     return vec3f(0.0);
 }
 
+// What a mirror of this roughness shows of the environment, within what a half can hold.
+fn behind(direction: vec3f, roughness: f32) -> vec3f {
+    let radiance = environment(direction, roughness);
+    if ENVIRONMENT == ENVIRONMENT_MAP {
+        return min(radiance, vec3f(65504.0));
+    }
+    return radiance;
+}
+
 // Radiance behind all surfaces, in the unit direction of a ray from the eye.
 fn background(direction: vec3f) -> vec3f {
     if BACKGROUND == BACKGROUND_SHARP {
-        return environment(direction, 0.0);
+        return behind(direction, 0.0);
     }
     if BACKGROUND == BACKGROUND_BLURRED {
-        return environment(direction, BLURRED_ROUGHNESS);
+        return behind(direction, BLURRED_ROUGHNESS);
     }
     return vec3f(0.0);
 }

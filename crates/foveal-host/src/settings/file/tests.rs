@@ -140,6 +140,18 @@ fn an_environment_may_be_a_file() {
 }
 
 #[test]
+fn a_source_names_one_file() {
+    let flags = ["x", "--environment", "a.hdr", "--environment-image"];
+    let both = |name| Line::try_parse_from(flags.iter().chain([&name]));
+    let error = both("b.hdr").map(|_| ()).unwrap_err().to_string();
+    assert!(
+        error.contains("a.hdr") && error.contains("b.hdr"),
+        "{error}"
+    );
+    assert!(both("a.hdr").is_ok());
+}
+
+#[test]
 fn settings_survive_the_file_format() {
     let settings = Settings::default().with(|s| {
         s.picture.exposure_stops = -0.1;
