@@ -10,7 +10,9 @@ use bevy::camera::visibility::{
 use bevy::diagnostic::DiagnosticsStore;
 use bevy::mesh::VertexAttributeValues;
 use bevy::mesh::morph::MeshMorphWeights;
-use bevy::mesh::skinning::SkinnedMesh;
+use bevy::mesh::skinning::{
+    JointAabb, JointIndex, SkinnedMesh, SkinnedMeshBounds, SkinnedMeshInverseBindposes,
+};
 use bevy::prelude::*;
 use bevy_foveal_cull::{
     AutomaticOccluder, AutomaticOccluders, CpuOcclusionCulling, CpuOcclusionPlugin,
@@ -188,17 +190,48 @@ fn what_must_stay_stays() {
     ];
     let culled = t.ball(-9.0);
     // Its box follows its joints.
-    let bounded = Mesh::from(Sphere::new(0.5)).with_skinned_mesh_bounds(Some(default()));
+    let bounds = SkinnedMeshBounds {
+        aabbs: vec![JointAabb {
+            center: Vec3::ZERO,
+            half_size: Vec3::splat(0.5),
+        }],
+        aabb_index_to_joint_index: vec![JointIndex(0)],
+    };
+    let bounded = Mesh::from(Sphere::new(0.5)).with_skinned_mesh_bounds(Some(bounds));
     let bounded = t.add_mesh(bounded);
-    let follows = t.spawn_ball(at, (SkinnedMesh::default(), DynamicSkinnedMeshBounds));
-    let unbounded = t.spawn_ball(at, (SkinnedMesh::default(), DynamicSkinnedMeshBounds));
+    let joint = t
+        .app
+        .world_mut()
+        .spawn(Transform::from_translation(at))
+        .id();
+    let poses = t
+        .app
+        .world()
+        .resource::<Assets<SkinnedMeshInverseBindposes>>();
+    let skin = SkinnedMesh {
+        inverse_bindposes: poses.reserve_handle(),
+        joints: vec![joint],
+    };
+    let follows = t.spawn_ball(at, (skin.clone(), DynamicSkinnedMeshBounds));
+    let unbounded = t.spawn_ball(at, (skin.clone(), DynamicSkinnedMeshBounds));
     t.get_mut::<Mesh3d>(follows).0 = bounded;
     t.update();
     for entity in kept {
         assert!(t.sees(entity));
     }
-    assert!(!t.sees(culled) && !t.sees(follows));
+    assert!(!t.sees(culled));
     assert!(t.sees(unbounded), "the mesh has no bounds of joints");
+    assert!(t.sees(follows), "the bind poses are not loaded");
+    t.app
+        .world_mut()
+        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
+        .insert(&skin.inverse_bindposes, vec![Mat4::IDENTITY].into())
+        .unwrap();
+    t.update();
+    assert!(!t.sees(follows));
+    t.app.world_mut().despawn(joint);
+    t.update();
+    assert!(t.sees(follows), "a joint is gone, and its bounds are old");
 }
 
 #[test]
@@ -284,12 +317,17 @@ fn planes_hide_from_behind_only_if_two_sided() {
     let wall = t.wall(Occluder::default());
     let plane = t.add_mesh(Rectangle::new(8.0, 8.0));
     t.get_mut::<Mesh3d>(wall).0 = plane;
+    let of_both_sides = || StandardMaterial {
+        cull_mode: None,
+        ..default()
+    };
+    t.paint(wall, of_both_sides());
     let ball = t.ball(-9.0);
     t.update();
     assert!(!t.sees(ball), "its front");
     t.get_mut::<Transform>(wall).rotate_y(core::f32::consts::PI);
     t.update();
-    assert!(t.sees(ball), "its back, which is not drawn");
+    assert!(t.sees(ball), "its back, by which it does not occlude");
     t.app
         .world_mut()
         .entity_mut(wall)
@@ -297,11 +335,7 @@ fn planes_hide_from_behind_only_if_two_sided() {
     t.update();
     assert!(!t.sees(ball));
     // A material that culls back faces has the last word.
-    let one_sided = t.add_material(StandardMaterial::default());
-    t.app
-        .world_mut()
-        .entity_mut(wall)
-        .insert(MeshMaterial3d(one_sided));
+    t.paint(wall, StandardMaterial::default());
     t.update();
     assert!(t.sees(ball));
 }
@@ -312,23 +346,31 @@ fn what_a_scale_mirrors_hides_only_with_the_faces_that_are_drawn() {
     let mut t = TestWorld::new();
     let wall = t.wall(Occluder::default());
     let ball = t.ball(-9.0);
-    for (cull_mode, scale, hides) in [
-        (Some(Face::Back), 1.0, true),
-        (Some(Face::Back), -1.0, false),
-        (Some(Face::Front), 1.0, false),
-        (Some(Face::Front), -1.0, true),
+    let proxy = t.add_mesh(Cuboid::new(7.0, 7.0, 0.1));
+    let half = Vec3::new(3.5, 3.5, 0.05);
+    for occluder in [
+        Occluder::default(),
+        Occluder::from_box(-half, half),
+        Occluder::from_proxy(proxy),
     ] {
-        let material = t.add_material(StandardMaterial {
-            cull_mode,
-            ..default()
-        });
-        t.app
-            .world_mut()
-            .entity_mut(wall)
-            .insert(MeshMaterial3d(material));
-        t.get_mut::<Transform>(wall).scale.x = scale;
-        t.update();
-        assert_eq!(!t.sees(ball), hides, "{cull_mode:?} {scale}");
+        t.app.world_mut().entity_mut(wall).insert(occluder.clone());
+        for (cull_mode, scale, hides) in [
+            (Some(Face::Back), 1.0, true),
+            (Some(Face::Back), -1.0, false),
+            (Some(Face::Front), 1.0, false),
+            (Some(Face::Front), -1.0, true),
+        ] {
+            t.paint(
+                wall,
+                StandardMaterial {
+                    cull_mode,
+                    ..default()
+                },
+            );
+            t.get_mut::<Transform>(wall).scale.x = scale;
+            t.update();
+            assert_eq!(!t.sees(ball), hides, "{occluder:?} {cull_mode:?} {scale}");
+        }
     }
 }
 
@@ -389,6 +431,27 @@ fn poses_that_mirror_are_culled_only_with_inverted_faces() {
     t.get_mut::<Camera>(t.camera).invert_culling = true;
     t.update();
     assert!(!t.sees(ball));
+
+    // A projection that mirrors does the same.
+    let mirror = |t: &mut TestWorld| {
+        let mut camera = t.get_mut::<Camera>(t.camera);
+        let clip_from_view = camera.computed.clip_from_view;
+        camera.computed.clip_from_view =
+            Mat4::from_scale(Vec3::new(-1.0, 1.0, 1.0)) * clip_from_view;
+    };
+    mirror(&mut t);
+    t.update();
+    assert!(
+        t.sees(ball),
+        "mirrored twice, and the faces of the inside are drawn"
+    );
+    t.get_mut::<Transform>(t.camera).scale.x = 1.0;
+    t.update();
+    assert!(!t.sees(ball));
+    t.get_mut::<Camera>(t.camera).invert_culling = false;
+    t.update();
+    assert!(t.sees(ball));
+    assert_eq!(t.stats().refused_views, 1);
 }
 
 #[test]
@@ -444,27 +507,21 @@ fn large_opaque_things_that_stand_still_are_found() {
         still_frames: 2,
         ..default()
     });
-    let gray = t.add_material(StandardMaterial::default());
-    let glass = t.add_material(StandardMaterial {
+    let gray = MeshMaterial3d(t.add_material(StandardMaterial::default()));
+    let glass = MeshMaterial3d(t.add_material(StandardMaterial {
         alpha_mode: AlphaMode::Blend,
         ..default()
-    });
+    }));
     let wall = t.wall(Occluder::default());
     t.app.world_mut().entity_mut(wall).remove::<Occluder>();
-    t.app
-        .world_mut()
-        .entity_mut(wall)
-        .insert(MeshMaterial3d(glass));
+    t.app.world_mut().entity_mut(wall).insert(glass.clone());
     let ball = t.ball(-9.0);
     let chosen = |t: &TestWorld| t.app.world().get::<AutomaticOccluder>(wall).is_some();
     for _ in 0..6 {
         t.update();
     }
     assert!(t.sees(ball) && !chosen(&t), "glass");
-    t.app
-        .world_mut()
-        .entity_mut(wall)
-        .insert(MeshMaterial3d(gray));
+    t.app.world_mut().entity_mut(wall).insert(gray.clone());
     for _ in 0..6 {
         t.update();
     }
@@ -472,12 +529,77 @@ fn large_opaque_things_that_stand_still_are_found() {
     assert!(t.app.world().get::<Occluder>(ball).is_none(), "too small");
 
     t.get_mut::<Transform>(wall).translation.y = 0.1;
-    t.update();
+    t.app.update();
     assert!(!chosen(&t), "it moves");
     for _ in 0..6 {
         t.update();
     }
     assert!(!t.sees(ball) && chosen(&t), "it stands again");
+
+    // Another material, none, or a mark: from the same frame on it occludes no more.
+    let found = |t: &mut TestWorld| {
+        for _ in 0..6 {
+            t.update();
+        }
+        assert!(!t.sees(ball) && chosen(t));
+    };
+    t.app.world_mut().entity_mut(wall).insert(glass.clone());
+    t.app.update();
+    assert!(t.sees(ball) && !chosen(&t), "glass");
+    t.app.world_mut().entity_mut(wall).insert(gray.clone());
+    found(&mut t);
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .remove::<MeshMaterial3d<StandardMaterial>>();
+    t.app.update();
+    assert!(t.sees(ball) && !chosen(&t), "no material");
+    t.app.world_mut().entity_mut(wall).insert(gray);
+    found(&mut t);
+    t.app.world_mut().remove_resource::<AutomaticOccluders>();
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(NoOcclusionCulling);
+    t.app.update();
+    assert!(t.sees(ball) && !chosen(&t), "a mark, without the resource");
+}
+
+#[test]
+fn what_was_found_hides_by_the_sides_that_its_material_draws_now() {
+    let mut t = TestWorld::new();
+    t.app.insert_resource(AutomaticOccluders {
+        still_frames: 2,
+        ..default()
+    });
+    let wall = t.wall(Occluder::default());
+    t.app.world_mut().entity_mut(wall).remove::<Occluder>();
+    let plane = t.add_mesh(Rectangle::new(8.0, 8.0));
+    t.get_mut::<Mesh3d>(wall).0 = plane;
+    t.get_mut::<Transform>(wall).rotate_y(core::f32::consts::PI);
+    let material = t.add_material(StandardMaterial {
+        cull_mode: None,
+        ..default()
+    });
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(MeshMaterial3d(material.clone()));
+    let ball = t.ball(-9.0);
+    for _ in 0..6 {
+        t.update();
+    }
+    assert!(!t.sees(ball), "its back");
+    t.app
+        .world_mut()
+        .resource_mut::<Assets<StandardMaterial>>()
+        .get_mut(&material)
+        .unwrap()
+        .cull_mode = Some(bevy::render::render_resource::Face::Back);
+    for _ in 0..6 {
+        t.app.update();
+        assert!(t.sees(ball), "its back is not drawn any more");
+    }
 }
 
 #[test]
