@@ -5,6 +5,7 @@
 mod world;
 
 use bevy::camera::visibility::{VisibilitySystems, VisibleEntities};
+use bevy::mesh::skinning::SkinnedMesh;
 use bevy::pbr::decal::{ForwardDecal, ForwardDecalPlugin};
 use bevy::pbr::wireframe::{Wireframe, WireframeConfig};
 use bevy::pbr::{ExtendedMaterial, MaterialExtension};
@@ -94,6 +95,29 @@ fn meshes_without_a_material_hide_nothing() {
         .insert(Occluder::from_box(-half, half));
     t.update();
     assert!(t.sees(ball));
+}
+
+#[test]
+fn skinned_and_morphing_meshes_do_not_occlude() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(SkinnedMesh::default());
+    t.update();
+    assert!(t.sees(ball));
+    // A box inside it does.
+    t.app
+        .world_mut()
+        .entity_mut(wall)
+        .insert(Occluder::from_box(
+            Vec3::new(-4.0, -4.0, -0.1),
+            Vec3::new(4.0, 4.0, 0.1),
+        ));
+    t.update();
+    assert!(!t.sees(ball));
 }
 
 #[test]
