@@ -1,6 +1,6 @@
 //! Occluders that nobody marks: large, opaque things that stand still.
 
-use crate::components::{NoOcclusionCulling, Occluder, OccluderShape};
+use crate::components::{NoOcclusionCulling, Occluder};
 use crate::materials::{Verdict, verdict};
 use bevy_asset::Assets;
 use bevy_camera::primitives::Aabb;
@@ -20,8 +20,8 @@ use bevy_transform::components::GlobalTransform;
 /// Makes large, opaque meshes with `StandardMaterial` that stand still into occluders. Without this
 /// resource only entities with an [`Occluder`] of yours occlude.
 ///
-/// Chosen entities get an [`Occluder`] and [`AutomaticOccluder`]; they lose both when they move, and
-/// get them again once they stand still. Entities with [`NoOcclusionCulling`] are not chosen. What
+/// Chosen entities get an [`Occluder`] and [`AutomaticOccluder`]; they lose both when they move,
+/// or when their mesh or material changes, and get them again once they stand still. Entities with [`NoOcclusionCulling`] are not chosen. What
 /// was chosen stays when the resource is removed.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
 pub struct AutomaticOccluders {
@@ -84,17 +84,35 @@ pub(crate) fn choose(
         ),
         Candidate,
     >,
-    moved: Query<Entity, (With<AutomaticOccluder>, Changed<GlobalTransform>)>,
+    no_longer: Query<
+        Entity,
+        (
+            With<AutomaticOccluder>,
+            Or<(
+                Changed<GlobalTransform>,
+                Changed<Mesh3d>,
+                Changed<MeshMaterial3d<StandardMaterial>>,
+                Without<Mesh3d>,
+                Without<MeshMaterial3d<StandardMaterial>>,
+                With<NoOcclusionCulling>,
+                With<SkinnedMesh>,
+                With<MeshMorphWeights>,
+                With<VisibilityRange>,
+            )>,
+        ),
+    >,
 ) {
-    let (Some(settings), Some(materials)) = (settings, materials) else {
-        return;
-    };
-    for entity in &moved {
+    // Also without the settings: what was chosen stays only as long as it holds.
+    for entity in &no_longer {
         commands
             .entity(entity)
             .try_remove::<(Occluder, AutomaticOccluder)>();
         waiting.insert(entity, 0);
     }
+    let (Some(settings), Some(materials)) = (settings, materials) else {
+        waiting.clear();
+        return;
+    };
     waiting.extend(changed.iter().map(|entity| (entity, 0)));
     if settings.is_changed() {
         waiting.extend(candidates.iter().map(|(entity, ..)| (entity, 0)));
@@ -113,14 +131,11 @@ pub(crate) fn choose(
         };
         let small = second_side(bounds, transform) < settings.min_side;
         let detailed = corners(mesh).is_none_or(|corners| corners > settings.max_corners);
-        if !(small || detailed || verdict(material).contains(Verdict::NEVER)) {
-            let occluder = Occluder {
-                shape: OccluderShape::Mesh,
-                two_sided: material.cull_mode.is_none(),
-            };
+        if !(small || detailed || verdict(material, Some(material)).contains(Verdict::NEVER)) {
+            // Whether it is one-sided is for the material to say, in every frame anew.
             commands
                 .entity(entity)
-                .try_insert((occluder, AutomaticOccluder));
+                .try_insert((Occluder::two_sided(), AutomaticOccluder));
         }
         false
     });

@@ -3,11 +3,12 @@
 use crate::components::CpuOcclusionCulling;
 use crate::cull::{Boxes, Outcome, ViewCuller};
 use crate::occluders::{Occluders, Range};
+use crate::ready::{ListedByView, Looks, Pipelines};
 use crate::stats::CpuOcclusionStats;
 use crate::tasks::ComputeTasks;
 use crate::view::{Fit, clip_from_world};
+use bevy_camera::Camera;
 use bevy_camera::visibility::{RenderLayers, VisibleEntities, VisibleEntityRanges};
-use bevy_camera::{Camera, MainPassResolutionOverride};
 use bevy_ecs::change_detection::{Res, ResMut};
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::system::{Local, Query};
@@ -37,7 +38,10 @@ pub(crate) fn cull(
     mut occluders: ResMut<Occluders>,
     mut stats: ResMut<CpuOcclusionStats>,
     mut cullers: Local<EntityHashMap<ViewCuller>>,
+    mut listed: Local<ListedByView>,
     boxes: Boxes,
+    looks: Looks,
+    pipelines: Res<Pipelines>,
     ranges: Option<Res<VisibleEntityRanges>>,
     mut cameras: Query<(
         Entity,
@@ -46,18 +50,14 @@ pub(crate) fn cull(
         &CpuOcclusionCulling,
         &mut VisibleEntities,
         Option<&RenderLayers>,
-        Option<&MainPassResolutionOverride>,
         Multisampling,
     )>,
 ) {
     let begin = Instant::now();
     cullers.retain(|camera, _| cameras.contains(*camera));
-    for (entity, camera, transform, culling, mut visible, layers, resolution, multisampling) in
-        &mut cameras
-    {
-        let picture = resolution
-            .map(|size| size.0)
-            .or_else(|| camera.physical_viewport_size());
+    listed.begin_frame();
+    for (entity, camera, transform, culling, mut visible, layers, multisampling) in &mut cameras {
+        let picture = camera.physical_viewport_size();
         let Some(picture) = picture.filter(|_| camera.is_active) else {
             continue;
         };
@@ -65,9 +65,13 @@ pub(crate) fn cull(
             continue;
         };
         let list = visible.get_mut(TypeId::of::<Mesh3d>());
+        let listed = listed.of(entity);
+        listed.note([&*list], &looks);
         let layers = layers.unwrap_or_default();
         let on = occluders.enable(|occluder, entry| {
             layers.intersects(&entry.layers)
+                && (!entry.listed || listed.settled(occluder))
+                && !(entry.not_inverted && camera.invert_culling)
                 && match entry.range {
                     Range::None => true,
                     Range::Abrupt => ranges
@@ -78,21 +82,30 @@ pub(crate) fn cull(
         });
         let mut outcome = Outcome {
             listed: list.len(),
+            coarse: fit.coarse,
             ..Outcome::default()
         };
-        // Faces are told by their winding in the world: a pose that mirrors needs the opposite test.
-        let affine = transform.affine();
-        let mirrors = affine.matrix3.determinant() < 0.0;
+        // Faces are told by their winding in the world: a pose or a projection that mirrors needs
+        // the opposite test.
+        let matrix = clip_from_world(camera.clip_from_view(), transform.affine());
+        let mirrors = matrix.determinant() < 0.0;
         if mirrors != camera.invert_culling {
             outcome.refused = true;
+        } else if pipelines.waiting {
+            outcome.waiting = true;
         } else if on > 0 {
-            let Some(culler) = of_size(&mut cullers, entity, fit.size) else {
-                continue;
-            };
-            let matrix = clip_from_world(camera.clip_from_view(), affine);
-            outcome = culler.cull(list, &boxes, &occluders.set, &ComputeTasks, |_| {
-                fit.view(matrix)
-            });
+            if let Some(culler) = of_size(&mut cullers, entity, fit.size) {
+                let culled =
+                    culler.cull(list, &boxes, listed, &occluders.set, &ComputeTasks, |_| {
+                        fit.view(matrix)
+                    });
+                outcome = Outcome {
+                    coarse: fit.coarse,
+                    ..culled
+                };
+            } else {
+                outcome.refused = true;
+            }
         }
         outcome.add_to(&mut stats, false);
     }

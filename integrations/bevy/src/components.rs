@@ -25,8 +25,8 @@ pub struct Occluder {
     /// What occludes; the entity's own mesh by default.
     pub shape: OccluderShape,
     /// Whether triangles occlude from behind as well; `false` by default. Only for materials without
-    /// back-face culling (`cull_mode: None`); with a `StandardMaterial` that culls faces it has no
-    /// effect. Boxes are closed and need it not.
+    /// back-face culling (`cull_mode: None`); with one that culls faces, or of which that is not known,
+    /// it has no effect. Boxes are closed and need it not.
     pub two_sided: bool,
 }
 
@@ -94,7 +94,8 @@ pub enum OcclusionBufferSize {
     /// So many pixels that their samples are those of the picture: a quarter of the viewport per
     /// axis without multisampling; a half, all and twice of it with 2, 4 and 8 samples. For lights a
     /// quarter of the shadow map. The number of samples is known with the feature `bevy_pbr`, else
-    /// 4 are assumed.
+    /// 4 are assumed. A buffer has at most 4,096 pixels on a side: above that it is halved, and no
+    /// longer exact; `coarse_views` in the stats counts such views.
     #[default]
     Exact,
     /// A quarter of the viewport per axis. Exact at pixel centres. With multisampling, samples

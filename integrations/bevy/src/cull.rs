@@ -1,6 +1,8 @@
 //! One view: its list of entities is tested against its occlusion buffer.
 
 use crate::components::NoOcclusionCulling;
+use crate::materials::MaterialVerdicts;
+use crate::ready::Listed;
 use crate::stats::CpuOcclusionStats;
 use bevy_asset::Assets;
 use bevy_camera::primitives::Aabb as MeshBounds;
@@ -10,7 +12,9 @@ use bevy_ecs::entity::Entity;
 use bevy_ecs::query::{Has, Without};
 use bevy_ecs::system::{Query, SystemParam};
 use bevy_mesh::morph::MeshMorphWeights;
-use bevy_mesh::skinning::SkinnedMesh;
+use bevy_mesh::skinning::{
+    SkinnedMesh, SkinnedMeshInverseBindposes, entity_aabb_from_skinned_mesh_bounds,
+};
 use bevy_mesh::{Mesh, Mesh3d};
 use bevy_transform::components::GlobalTransform;
 use foveal_cull::{Aabb, CullError, Culler, FrameOptions, OccluderSet, Threads, View, Visibility};
@@ -30,28 +34,67 @@ pub(crate) struct Boxes<'w, 's> {
             &'static MeshBounds,
             &'static GlobalTransform,
             Option<&'static Mesh3d>,
-            Has<SkinnedMesh>,
+            Option<&'static SkinnedMesh>,
             Has<DynamicSkinnedMeshBounds>,
+            Material,
         ),
         (
             Without<NoOcclusionCulling>,
             Without<NoFrustumCulling>,
             Without<NoCpuCulling>,
             Without<MeshMorphWeights>,
+            NotDrawnOnTop,
         ),
     >,
+    joints: Query<'w, 's, &'static GlobalTransform>,
     meshes: Res<'w, Assets<Mesh>>,
+    bindposes: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
+    verdicts: Res<'w, MaterialVerdicts>,
+    #[cfg(feature = "bevy_pbr")]
+    materials: Option<Res<'w, Assets<bevy_pbr::StandardMaterial>>>,
+    #[cfg(feature = "bevy_pbr")]
+    wireframes: Option<Res<'w, bevy_pbr::wireframe::WireframeConfig>>,
 }
+
+#[cfg(feature = "bevy_pbr")]
+type Material = Option<&'static bevy_pbr::MeshMaterial3d<bevy_pbr::StandardMaterial>>;
+#[cfg(not(feature = "bevy_pbr"))]
+type Material = ();
+
+/// Decals are drawn whatever their depth, and lines of wireframes in front of faces.
+#[cfg(feature = "bevy_pbr")]
+type NotDrawnOnTop = (
+    Without<bevy_pbr::decal::ForwardDecal>,
+    Without<bevy_pbr::wireframe::Wireframe>,
+);
+#[cfg(not(feature = "bevy_pbr"))]
+type NotDrawnOnTop = ();
 
 impl Boxes<'_, '_> {
     /// The box in the world; `None` where nothing is known of where the entity is.
     fn of(&self, entity: Entity) -> Option<Aabb> {
-        let (bounds, transform, mesh, skinned, follows_joints) = self.entities.get(entity).ok()?;
-        if skinned {
+        let (bounds, transform, mesh, skinned, follows_joints, material) =
+            self.entities.get(entity).ok()?;
+        if let Some(skinned) = skinned {
+            // Where Bevy cannot find the bounds of the joints it leaves old ones.
+            let bindposes = self.bindposes.as_ref()?.get(&skinned.inverse_bindposes)?;
             let mesh = self.meshes.get(&mesh?.0)?;
-            if !(follows_joints && mesh.skinned_mesh_bounds().is_some()) {
+            if !follows_joints
+                || entity_aabb_from_skinned_mesh_bounds(
+                    &self.joints,
+                    mesh,
+                    skinned,
+                    bindposes,
+                    Some(transform),
+                )
+                .is_err()
+            {
                 return None;
             }
+        }
+        // A depth bias draws it in front of what is nearer.
+        if self.verdicts.in_front.contains(&entity) || self.in_front(material) {
+            return None;
         }
         let map = transform.affine();
         let (axes, half) = (map.matrix3, bounds.half_extents);
@@ -61,6 +104,23 @@ impl Boxes<'_, '_> {
         let half = half + (center.abs() + half) * ROUNDING;
         Some(Aabb::new(center - half, center + half))
     }
+
+    #[cfg(feature = "bevy_pbr")]
+    fn in_front(
+        &self,
+        material: Option<&bevy_pbr::MeshMaterial3d<bevy_pbr::StandardMaterial>>,
+    ) -> bool {
+        let biased = material
+            .zip(self.materials.as_ref())
+            .and_then(|(material, materials)| materials.get(&material.0))
+            .is_some_and(|material| material.depth_bias > 0.0);
+        biased || self.wireframes.as_ref().is_some_and(|w| w.global)
+    }
+
+    #[cfg(not(feature = "bevy_pbr"))]
+    fn in_front(&self, (): ()) -> bool {
+        false
+    }
 }
 
 /// What became of a view's list.
@@ -69,11 +129,15 @@ pub(crate) struct Outcome {
     pub(crate) listed: usize,
     pub(crate) hidden: usize,
     pub(crate) refused: bool,
+    pub(crate) waiting: bool,
+    pub(crate) coarse: bool,
 }
 
 impl Outcome {
     pub(crate) fn add_to(self, stats: &mut CpuOcclusionStats, of_light: bool) {
         stats.refused_views += usize::from(self.refused);
+        stats.waiting_views += usize::from(self.waiting);
+        stats.coarse_views += usize::from(self.coarse);
         if of_light {
             stats.light_views += 1;
             stats.casters += self.listed;
@@ -115,6 +179,7 @@ impl ViewCuller {
         &mut self,
         list: &mut Vec<Entity>,
         boxes: &Boxes<'_, '_>,
+        listed: &Listed,
         occluders: &OccluderSet,
         threads: &dyn Threads,
         view: impl FnOnce(&[Aabb]) -> Result<View, CullError>,
@@ -126,7 +191,9 @@ impl ViewCuller {
         self.boxes.clear();
         self.places.clear();
         for (place, &entity) in (0..).zip(list.iter()) {
-            if let Some(bounds) = boxes.of(entity) {
+            if listed.settled(entity)
+                && let Some(bounds) = boxes.of(entity)
+            {
                 self.boxes.push(bounds);
                 self.places.push(place);
             }

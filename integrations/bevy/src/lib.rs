@@ -50,26 +50,38 @@
 //!
 //! # What is never hidden
 //! - Entities with [`NoOcclusionCulling`], and with Bevy's `NoFrustumCulling` or `NoCpuCulling`.
-//! - Entities without an `Aabb`, morphing ones, and skinned ones without `DynamicSkinnedMeshBounds`:
-//!   nothing is known of where they are.
-//! - What materials move, draw outside the `Aabb` or draw in front of what is nearer (vertex
-//!   displacement, depth bias) is not known either: give such entities [`NoOcclusionCulling`].
+//! - Entities without an `Aabb`, morphing ones, and skinned ones without `DynamicSkinnedMeshBounds`
+//!   or while their joints or bind poses are missing: nothing is known of where they are.
+//! - Forward decals, wireframes, and materials with a depth bias above 0: they are drawn in front of
+//!   what is nearer. Of materials of your own this is known with an `OccluderMaterialPlugin`.
+//! - What shaders move, draw outside the `Aabb` or draw in front of what is nearer is not known: give
+//!   such entities [`NoOcclusionCulling`].
 //!
 //! # What occludes
-//! Entities with [`Occluder`] that are visible, on a layer of the view, neither skinned nor morphing,
-//! and, where the feature `bevy_pbr` is on, of an opaque material. They may move, come and go.
-//! Where a light looks, they must be shadow casters. Materials that discard pixels in a shader of
-//! their own must not be given to occluders. With the feature `bevy_pbr`,
-//! `AutomaticOccluders` finds occluders by itself.
+//! Entities with [`Occluder`] that are visible, in the list of the view, neither skinned nor morphing,
+//! and, where the feature `bevy_pbr` is on, of an opaque material whose textures are loaded. Materials
+//! of your own need an `OccluderMaterialPlugin`. Occluders may move, come and go. Where a light looks,
+//! they must be shadow casters. Materials that discard pixels in a shader of their own must not be
+//! given to occluders. With the feature `bevy_pbr`, `AutomaticOccluders` finds occluders by itself.
+//!
+//! # What is not drawn yet
+//! Bevy draws a mesh only when its pipeline is compiled, and compiles pipelines only for what a view
+//! lists. So an entity hides others, and is hidden, from the fourth frame on in which a view lists it
+//! with its mesh and material; and while pipelines are being compiled, nothing is hidden
+//! ([`CpuOcclusionStats::waiting_views`]). Assets that `RenderAssetBytesPerFrame` holds back from
+//! the GPU are not known: such an entity may hide others before it is drawn. A material of your own
+//! that is exchanged while its entity is hidden may be drawn some frames late.
 //!
 //! # Exactness
 //! By [`OcclusionBufferSize::Exact`], the default, occlusion is sampled at the very sample positions
-//! of the picture, multisampled or not, and of the shadow map. A temporal jitter
-//! (`TemporalAntiAliasing`) moves the picture's samples by less than a pixel; slits narrower than
-//! that may then lose what is behind them.
+//! of the picture, multisampled or not, and of the shadow map. Where the buffer would need more than
+//! 4,096 pixels on a side it gets half of them or less ([`CpuOcclusionStats::coarse_views`]), and
+//! slits narrower than a pixel may lose what is behind them. So may they with a temporal jitter
+//! (`TemporalAntiAliasing`) or an upscaler, whose samples are not those of the viewport.
 //!
-//! A view whose near plane is oblique (a mirror's clip plane), or whose transform mirrors without
-//! `Camera::invert_culling`, is not culled; [`CpuOcclusionStats::refused_views`] counts them.
+//! A view whose near plane is oblique (a mirror's clip plane), or whose transform or projection
+//! mirrors without `Camera::invert_culling`, is not culled; [`CpuOcclusionStats::refused_views`]
+//! counts them.
 //!
 //! # Features
 //! - `bevy_pbr` (default): materials decide who may occlude, and `AutomaticOccluders`. Includes
@@ -86,6 +98,7 @@ mod lights;
 mod materials;
 mod occluders;
 mod plugin;
+mod ready;
 mod stats;
 mod tasks;
 mod view;

@@ -5,6 +5,7 @@
 use crate::components::CpuOcclusionCulling;
 use crate::cull::{Boxes, Outcome, ViewCuller};
 use crate::occluders::{Occluders, Range};
+use crate::ready::{Listed, ListedByView, Looks, Pipelines};
 use crate::stats::CpuOcclusionStats;
 use crate::tasks::for_each;
 use crate::view::{Fit, clip_from_world};
@@ -26,10 +27,42 @@ use bevy_math::{Affine3A, DMat4, DVec3, Mat4};
 use bevy_platform::collections::HashMap;
 use bevy_platform::time::Instant;
 use bevy_transform::components::{GlobalTransform, Transform};
+use core::f32::consts::FRAC_PI_2;
 use foveal_cull::{Aabb, SingleThread};
 
 /// Cullers by the size of their buffers.
-type Cullers = HashMap<(u32, u32), Vec<ViewCuller>>;
+#[derive(Default)]
+pub(crate) struct Cullers(HashMap<(u32, u32), OfSize>);
+
+#[derive(Default)]
+struct OfSize {
+    cullers: Vec<ViewCuller>,
+    /// Frames since the last use.
+    idle: u32,
+}
+
+impl Cullers {
+    /// Forgets what has long been unused.
+    fn begin_frame(&mut self) {
+        self.0.retain(|_, of_size| {
+            of_size.idle += 1;
+            of_size.idle < 120
+        });
+    }
+
+    /// So many cullers of a size; fewer where there cannot be any.
+    fn of(&mut self, size: (u32, u32), count: usize) -> &mut [ViewCuller] {
+        let of_size = self.0.entry(size).or_default();
+        of_size.idle = 0;
+        while of_size.cullers.len() < count {
+            match ViewCuller::new(size) {
+                Ok(culler) => of_size.cullers.push(culler),
+                Err(_) => break,
+            }
+        }
+        &mut of_size.cullers
+    }
+}
 
 /// A shadow map of a light.
 struct Face<'a> {
@@ -55,13 +88,17 @@ pub(crate) fn cull(
     mut occluders: ResMut<Occluders>,
     mut stats: ResMut<CpuOcclusionStats>,
     mut cullers: Local<Cullers>,
+    mut listed: Local<ListedByView>,
     boxes: Boxes,
+    looks: Looks,
+    pipelines: Res<Pipelines>,
     not_casters: Query<(), With<NotShadowCaster>>,
     map_sizes: (
         Option<Res<PointLightShadowMap>>,
         Option<Res<DirectionalLightShadowMap>>,
     ),
     mut point_lights: Query<(
+        Entity,
         &PointLight,
         &GlobalTransform,
         &ViewVisibility,
@@ -70,6 +107,7 @@ pub(crate) fn cull(
         Option<&RenderLayers>,
     )>,
     mut spot_lights: Query<(
+        Entity,
         &SpotLight,
         &GlobalTransform,
         &ViewVisibility,
@@ -78,6 +116,7 @@ pub(crate) fn cull(
         Option<&RenderLayers>,
     )>,
     mut directional_lights: Query<(
+        Entity,
         &DirectionalLight,
         &Cascades,
         &ViewVisibility,
@@ -87,28 +126,36 @@ pub(crate) fn cull(
     )>,
 ) {
     let begin = Instant::now();
-    let mut cull_faces = |culling: &CpuOcclusionCulling,
+    cullers.begin_frame();
+    listed.begin_frame();
+    let mut cull_faces = |light: Entity,
+                          culling: &CpuOcclusionCulling,
                           side: Option<usize>,
                           layers: Option<&RenderLayers>,
                           faces: &mut [Face<'_>]| {
         let Some(fit) = side.and_then(|side| Fit::of_shadow_map(culling.buffer_size, side)) else {
             return;
         };
+        let listed = listed.of(light);
+        listed.note(faces.iter().map(|face| &*face.list), &looks);
         let layers = layers.unwrap_or_default();
         let on = occluders.enable(|entity, entry| {
             layers.intersects(&entry.layers)
+                && (!entry.listed || listed.settled(entity))
                 && entry.range == Range::None
                 && entry.shadows
                 && !not_casters.contains(entity)
         });
-        if on > 0 {
-            cull_light(faces, &fit, &mut cullers, &boxes, &occluders);
-        } else {
-            for face in &mut *faces {
-                face.outcome.listed = face.list.len();
-            }
+        for face in &mut *faces {
+            face.outcome.listed = face.list.len();
+            face.outcome.waiting = pipelines.waiting;
+        }
+        if on > 0 && !pipelines.waiting {
+            let cullers = cullers.of(fit.size, faces.len());
+            cull_light(faces, &fit, cullers, &boxes, listed, &occluders);
         }
         for face in faces {
+            face.outcome.coarse = fit.coarse;
             face.outcome.add_to(&mut stats, true);
         }
     };
@@ -116,13 +163,12 @@ pub(crate) fn cull(
     let other_side = map_sizes.1.map(|map| map.size);
 
     // Bevy fills the lists of lights with shadows that a camera sees; those of others are old.
-    for (light, transform, visibility, culling, mut casters, layers) in &mut point_lights {
+    for (entity, light, transform, visibility, culling, mut casters, layers) in &mut point_lights {
         if !(light.shadow_maps_enabled && visibility.get()) {
             continue;
         }
         let near = light.shadow_map_near_z;
-        let clip_from_view =
-            Mat4::perspective_infinite_reverse_rh(core::f32::consts::FRAC_PI_2, 1.0, near);
+        let clip_from_view = Mat4::perspective_infinite_reverse_rh(FRAC_PI_2, 1.0, near);
         let place = Transform::from_translation(transform.translation());
         let mut faces: Vec<Face> = CUBE_MAP_FACES
             .iter()
@@ -133,21 +179,24 @@ pub(crate) fn cull(
                 Face::new(clip_from_world(clip_from_view, pose), casters)
             })
             .collect();
-        cull_faces(culling, point_side, layers, &mut faces);
+        cull_faces(entity, culling, point_side, layers, &mut faces);
     }
-    for (light, transform, visibility, culling, mut casters, layers) in &mut spot_lights {
+    for (entity, light, transform, visibility, culling, mut casters, layers) in &mut spot_lights {
         if !(light.shadow_maps_enabled && visibility.get()) {
             continue;
         }
-        let clip_from_view = spot_light_clip_from_view(light.outer_angle, light.shadow_map_near_z);
+        let angle = drawn_angle(light.outer_angle);
+        let clip_from_view = spot_light_clip_from_view(angle, light.shadow_map_near_z);
         let pose = spot_light_world_from_view(transform);
         let mut face = [Face::new(
             clip_from_world(clip_from_view, pose),
             &mut casters,
         )];
-        cull_faces(culling, other_side, layers, &mut face);
+        cull_faces(entity, culling, other_side, layers, &mut face);
     }
-    for (light, cascades, visibility, culling, mut casters, layers) in &mut directional_lights {
+    for (entity, light, cascades, visibility, culling, mut casters, layers) in
+        &mut directional_lights
+    {
         if !(light.shadow_maps_enabled && visibility.get()) {
             continue;
         }
@@ -161,7 +210,7 @@ pub(crate) fn cull(
                 });
             }
         }
-        cull_faces(culling, other_side, layers, &mut faces);
+        cull_faces(entity, culling, other_side, layers, &mut faces);
     }
     stats.light_time = begin.elapsed();
 }
@@ -170,20 +219,16 @@ pub(crate) fn cull(
 fn cull_light(
     faces: &mut [Face<'_>],
     fit: &Fit,
-    cullers: &mut Cullers,
+    cullers: &mut [ViewCuller],
     boxes: &Boxes<'_, '_>,
+    listed: &Listed,
     occluders: &Occluders,
 ) {
-    let cullers = cullers.entry(fit.size).or_default();
-    while cullers.len() < faces.len() {
-        match ViewCuller::new(fit.size) {
-            Ok(culler) => cullers.push(culler),
-            Err(_) => return,
-        }
-    }
+    refuse_from(cullers.len(), faces);
     for_each(faces.iter_mut().zip(cullers), |(face, culler)| {
         let matrix = face.clip_from_world;
-        face.outcome = culler.cull(face.list, boxes, &occluders.set, &SingleThread, |casters| {
+        let set = &occluders.set;
+        face.outcome = culler.cull(face.list, boxes, listed, set, &SingleThread, |casters| {
             fit.view(if face.casters_before_near {
                 with_near_before(matrix, casters)
             } else {
@@ -191,6 +236,22 @@ fn cull_light(
             })
         });
     });
+}
+
+/// Faces for which there is no culler keep everything.
+fn refuse_from(first: usize, faces: &mut [Face<'_>]) {
+    for face in faces.iter_mut().skip(first) {
+        face.outcome.refused = true;
+    }
+}
+
+/// The angle that Bevy draws a spot light's shadow map with.
+fn drawn_angle(outer_angle: f32) -> f32 {
+    if outer_angle >= FRAC_PI_2 {
+        FRAC_PI_2 - 1e-4
+    } else {
+        outer_angle
+    }
 }
 
 /// An orthographic matrix of reversed depth whose near plane lies before all casters.
@@ -221,6 +282,32 @@ mod tests {
     use super::*;
     use crate::components::OcclusionBufferSize;
     use bevy_math::{DVec4, Vec3};
+
+    #[test]
+    fn cullers_that_cannot_be_made_are_refused_views_and_unused_ones_are_forgotten() {
+        let mut cullers = Cullers::default();
+        assert_eq!(cullers.of((16, 16), 6).len(), 6);
+        assert_eq!(cullers.of((0, 16), 1).len(), 0);
+        let mut lists = [(); 2].map(|()| VisibleMeshEntities::default());
+        let mut faces: Vec<Face> = lists
+            .iter_mut()
+            .map(|list| Face::new(DMat4::IDENTITY, list))
+            .collect();
+        refuse_from(1, &mut faces);
+        let refused = |face: &Face| face.outcome.refused;
+        assert!(!refused(&faces[0]) && refused(&faces[1]));
+        for _ in 0..200 {
+            cullers.begin_frame();
+            cullers.of((16, 16), 1);
+        }
+        assert!(cullers.0.contains_key(&(16, 16)) && !cullers.0.contains_key(&(0, 16)));
+    }
+
+    #[test]
+    fn wide_spot_lights_are_culled_as_they_are_drawn() {
+        assert_eq!(drawn_angle(1.0).to_bits(), 1.0_f32.to_bits());
+        assert!(drawn_angle(2.0) < FRAC_PI_2);
+    }
 
     #[test]
     fn the_near_plane_of_a_cascade_moves_before_its_casters() {

@@ -6,9 +6,10 @@
 
 use crate::components::{Occluder, OccluderShape};
 use crate::materials::{MaterialVerdicts, Verdict};
+use crate::ready::SETTLED;
 use crate::stats::CpuOcclusionStats;
 use bevy_asset::{AssetEvent, AssetId, Assets};
-use bevy_camera::visibility::{InheritedVisibility, RenderLayers, VisibilityRange};
+use bevy_camera::visibility::{InheritedVisibility, NoCpuCulling, RenderLayers, VisibilityRange};
 use bevy_ecs::change_detection::{DetectChanges, Ref, Res, ResMut};
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::message::MessageReader;
@@ -23,7 +24,7 @@ use bevy_platform::collections::{HashMap, HashSet};
 use bevy_platform::time::Instant;
 use bevy_transform::components::GlobalTransform;
 use foveal_cull::{Aabb, BakeOptions, OccluderId, OccluderMesh, OccluderSet};
-use std::sync::Arc;
+use std::sync::{Arc, Once};
 use tracing::warn;
 
 /// The culler's set of occluders, and what is known of each.
@@ -33,6 +34,8 @@ pub(crate) struct Occluders {
     entries: EntityHashMap<Entry>,
     /// `None` for meshes that cannot be baked.
     baked: HashMap<(AssetId<Mesh>, Sides), Option<Arc<OccluderMesh>>>,
+    /// Meshes of which it was said that they cannot be baked.
+    refused: HashSet<AssetId<Mesh>>,
     frame: u64,
 }
 
@@ -49,6 +52,14 @@ pub(crate) struct Entry {
     pub(crate) range: Range,
     /// Whether its material draws into shadow maps.
     pub(crate) shadows: bool,
+    /// Whether a view draws its entity only if it lists it.
+    pub(crate) listed: bool,
+    /// Whether its material draws the same side of faces where a camera inverts culling.
+    pub(crate) not_inverted: bool,
+    /// The mesh that is drawn, and the look of its material.
+    look: (Option<AssetId<Mesh>>, u64),
+    /// The frame in which these changed last.
+    since: u64,
     /// The last frame in which its entity was seen.
     frame: u64,
 }
@@ -93,13 +104,15 @@ impl Occluders {
         on
     }
 
-    fn forget_meshes(&mut self, changed: &HashSet<AssetId<Mesh>>) {
+    /// Forgets what was made of meshes that have changed or are gone.
+    fn forget_meshes(&mut self, changed: &HashSet<AssetId<Mesh>>, meshes: &Assets<Mesh>) {
         if !changed.is_empty() {
             self.baked.retain(|(mesh, _), _| !changed.contains(mesh));
+            self.refused.retain(|mesh| meshes.contains(*mesh));
         }
     }
 
-    fn sweep(&mut self) {
+    fn sweep(&mut self, reshaped: bool) {
         let (set, frame, before) = (&mut self.set, self.frame, self.entries.len());
         self.entries.retain(|_, entry| {
             let kept = entry.frame == frame;
@@ -109,7 +122,7 @@ impl Occluders {
             }
             kept
         });
-        if self.entries.len() < before {
+        if self.entries.len() < before || reshaped {
             self.baked
                 .retain(|_, mesh| mesh.as_ref().is_none_or(|m| Arc::strong_count(m) > 1));
         }
@@ -132,6 +145,7 @@ pub(crate) fn update(
         Option<&VisibilityRange>,
         Has<SkinnedMesh>,
         Has<MeshMorphWeights>,
+        Has<NoCpuCulling>,
     )>,
 ) {
     let begin = Instant::now();
@@ -147,13 +161,19 @@ pub(crate) fn update(
             AssetEvent::Unused { .. } => None,
         })
         .collect();
-    occluders.forget_meshes(&changed);
+    occluders.forget_meshes(&changed, &meshes);
 
+    let frame = occluders.frame;
     let mut drawn_ones = 0;
-    for (entity, occluder, transform, mesh, visibility, layers, range, skinned, morphing) in
+    let mut reshaped = false;
+    for (entity, occluder, transform, mesh, visibility, layers, range, skinned, morphing, gpu) in
         &entities
     {
-        let verdict = verdicts.of(entity);
+        let judgment = verdicts.of(entity);
+        // Without a material Bevy draws no mesh, and of an unknown one nothing is known.
+        let unknown = cfg!(feature = "bevy_pbr") && mesh.is_some() && judgment.is_none();
+        let judgment = judgment.unwrap_or_default();
+        let verdict = judgment.verdict;
         let sides = match occluder.two_sided && !verdict.contains(Verdict::ONE_SIDED) {
             true => Sides::Both,
             false => Sides::Front,
@@ -170,9 +190,10 @@ pub(crate) fn update(
             sides == Sides::Both || mirrored == verdict.contains(Verdict::FRONT_CULLED);
         let drawn = visibility.is_none_or(|v| v.get())
             && outside_drawn
+            && !unknown
             && !verdict.contains(Verdict::NEVER)
             && !(own_mesh && (skinned || morphing));
-        drawn_ones += usize::from(drawn);
+        let look = (mesh.map(|m| m.id()), judgment.look);
 
         let entry = occluders.entries.entry(entity).or_insert_with(|| Entry {
             id: None,
@@ -182,10 +203,33 @@ pub(crate) fn update(
             layers: RenderLayers::default(),
             range: Range::None,
             shadows: true,
-            frame: 0,
+            listed: false,
+            not_inverted: false,
+            look,
+            since: frame,
+            frame,
         });
-        entry.frame = occluders.frame;
+        if entry.look != look || look.0.is_some_and(|mesh| changed.contains(&mesh)) {
+            entry.look = look;
+            entry.since = frame;
+        }
+        let age = frame - entry.since;
+        if unknown && age == u64::from(SETTLED) {
+            static SAID: Once = Once::new();
+            SAID.call_once(|| {
+                warn!(
+                    "{entity} and perhaps others do not occlude: they have neither a \
+                     `StandardMaterial` nor one with an `OccluderMaterialPlugin`"
+                );
+            });
+        }
+        // What has changed may not be drawn at once: pipelines are compiled and assets uploaded.
+        let drawn = drawn && (mesh.is_none() || age >= u64::from(SETTLED));
+        drawn_ones += usize::from(drawn);
+        entry.frame = frame;
         entry.drawn = drawn;
+        entry.listed = mesh.is_some() && !gpu;
+        entry.not_inverted = verdict.contains(Verdict::NOT_INVERTED);
         entry.shadows = !verdict.contains(Verdict::NO_SHADOW);
         entry.range = match range {
             None => Range::None,
@@ -207,6 +251,7 @@ pub(crate) fn update(
                 entry.id = None;
             }
         }
+        reshaped |= entry.shape != shape;
         entry.shape = shape;
         // What is not drawn is not baked. What could not be placed is tried again.
         if entry.id.is_none() && drawn {
@@ -216,10 +261,20 @@ pub(crate) fn update(
                     .ok()
                     .map(Arc::new),
                 Shape::Mesh(id, sides) => meshes.get(id).and_then(|mesh| {
+                    let refused = &mut occluders.refused;
                     occluders
                         .baked
                         .entry((id, sides))
-                        .or_insert_with(|| bake(mesh, sides).map(Arc::new))
+                        .or_insert_with(|| match bake(mesh, sides) {
+                            Ok(mesh) => Some(Arc::new(mesh)),
+                            Err(reason) => {
+                                // Once for each mesh, however often it changes.
+                                if refused.insert(id) {
+                                    warn!("the mesh {id} cannot occlude: {reason}");
+                                }
+                                None
+                            }
+                        })
                         .clone()
                 }),
             };
@@ -227,7 +282,7 @@ pub(crate) fn update(
             entry.enabled = true;
         }
     }
-    occluders.sweep();
+    occluders.sweep(reshaped);
     *stats = CpuOcclusionStats {
         occluders: drawn_ones,
         update_time: begin.elapsed(),
@@ -239,18 +294,15 @@ fn affine(map: &Affine3A) -> foveal_cull::Affine {
     map.to_cols_array_2d().map(|c| c.map(f64::from)).into()
 }
 
-/// Bakes a mesh; says why where it cannot.
-fn bake(mesh: &Mesh, sides: Sides) -> Option<OccluderMesh> {
-    let baked = triangles(mesh).and_then(|(positions, indices)| {
+/// Bakes a mesh, or says why it cannot.
+fn bake(mesh: &Mesh, sides: Sides) -> Result<OccluderMesh, String> {
+    triangles(mesh).and_then(|(positions, indices)| {
         // Cameras and lights are single eyes, which need no adjacency.
         let options = BakeOptions::default()
             .with_two_sided(sides == Sides::Both)
             .with_adjacency(false);
         OccluderMesh::bake(positions, &indices, options).map_err(|error| error.to_string())
-    });
-    baked
-        .inspect_err(|reason| warn!("a mesh cannot occlude: {reason}"))
-        .ok()
+    })
 }
 
 /// The positions of a mesh and its triangles.
@@ -319,6 +371,6 @@ mod tests {
         let mut mesh = quad(PrimitiveTopology::TriangleStrip);
         mesh.take_gpu_data().unwrap();
         assert!(triangles(&mesh).unwrap_err().contains("RenderWorld"));
-        assert!(bake(&mesh, Sides::Front).is_none());
+        assert!(bake(&mesh, Sides::Front).is_err());
     }
 }

@@ -1,7 +1,7 @@
 //! The plugin: resources, systems and their order.
 
 use crate::stats::CpuOcclusionStats;
-use crate::{cameras, materials, occluders, stats};
+use crate::{cameras, materials, occluders, ready, stats};
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_asset::AssetEventSystems;
 use bevy_camera::visibility::VisibilitySystems;
@@ -41,6 +41,7 @@ impl Plugin for CpuOcclusionPlugin {
         use CpuOcclusionSystems::{CullCameras, CullLights, UpdateOccluders};
         app.init_resource::<occluders::Occluders>()
             .init_resource::<materials::MaterialVerdicts>()
+            .init_resource::<ready::Pipelines>()
             .init_resource::<CpuOcclusionStats>()
             .configure_sets(
                 PostUpdate,
@@ -93,7 +94,7 @@ impl Plugin for CpuOcclusionPlugin {
         app.add_systems(
             PostUpdate,
             (
-                materials::judge::<bevy_pbr::StandardMaterial>.in_set(MaterialSteps::Judge),
+                materials::judge_standard.in_set(MaterialSteps::Judge),
                 crate::automatic::choose
                     .after(TransformSystems::Propagate)
                     .after(VisibilitySystems::CalculateBounds)
@@ -101,5 +102,11 @@ impl Plugin for CpuOcclusionPlugin {
                     .before(MaterialSteps::Clear),
             ),
         );
+    }
+
+    // Bevy's renderer is there by now, wherever its plugin stands.
+    #[cfg(feature = "bevy_pbr")]
+    fn finish(&self, app: &mut App) {
+        ready::watch_pipelines(app);
     }
 }

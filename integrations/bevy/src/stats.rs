@@ -10,7 +10,8 @@ use core::time::Duration;
 /// What the culler did in the last frame, over all cameras and lights.
 #[derive(Resource, Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct CpuOcclusionStats {
-    /// Occluders that are visible and whose material may occlude.
+    /// Occluders that are visible, whose material may occlude, and that have been drawn for long
+    /// enough.
     pub occluders: usize,
     /// Views of cameras that were culled.
     pub cameras: usize,
@@ -27,6 +28,12 @@ pub struct CpuOcclusionStats {
     pub casters_hidden: usize,
     /// Views that cannot be culled for, and kept everything.
     pub refused_views: usize,
+    /// Views that kept everything because Bevy is compiling pipelines: not all is drawn that will be.
+    pub waiting_views: usize,
+    /// Views with [`OcclusionBufferSize::Exact`](crate::OcclusionBufferSize::Exact) whose exact buffer
+    /// would have more than 4,096 pixels on a side. They get half of that or less, and may lose what
+    /// shows only through narrow slits.
+    pub coarse_views: usize,
     /// Time for keeping occluders up to date, baking included.
     pub update_time: Duration,
     /// Time for all cameras.

@@ -10,6 +10,8 @@ pub(crate) struct Fit {
     pub(crate) size: (u32, u32),
     /// Above 0, at most 1: the rest of the buffer lies to the right of the picture and below it.
     share: [f64; 2],
+    /// Whether the buffer has fewer samples than asked for.
+    pub(crate) coarse: bool,
 }
 
 impl Fit {
@@ -28,11 +30,14 @@ impl Fit {
                 return Some(Self {
                     size: size.into(),
                     share: [1.0; 2],
+                    coarse: false,
                 });
             }
         };
+        let mut coarse = false;
         while f64::from(picture.max_element()) * per_picture_px > f64::from(MAX_SIDE_PX) {
             per_picture_px *= 0.5;
+            coarse = true;
         }
         let fit = |px: u32| {
             let exact = f64::from(px) * per_picture_px;
@@ -42,6 +47,7 @@ impl Fit {
         Some(Self {
             size: (width, height),
             share: [x, y],
+            coarse,
         })
     }
 
@@ -106,6 +112,12 @@ mod tests {
         assert_eq!(size(Exact, 640, 360, 8), (1280, 720));
         assert_eq!(size(Quarter, 640, 360, 4), (160, 90));
         assert_eq!(size(Exact, 7680, 4320, 4), (3840, 2160));
+        let coarse = |samples| {
+            Fit::new(Exact, UVec2::new(7680, 4320), samples)
+                .unwrap()
+                .coarse
+        };
+        assert!(coarse(4) && !coarse(2));
         assert_eq!(size(Fixed(UVec2::new(0, 9999)), 640, 360, 1), (1, 4096));
         assert_eq!(Fit::new(Exact, UVec2::new(0, 5), 1), None);
     }

@@ -101,6 +101,32 @@ fn casters_behind_casters_leave_the_faces_of_a_point_light() {
 }
 
 #[test]
+fn casters_are_relied_on_after_some_frames() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    t.update();
+    let light = t
+        .app
+        .world_mut()
+        .spawn((point_light(), CpuOcclusionCulling::default()))
+        .id();
+    let hidden = t.ball(-9.0);
+    let seen_until_settled = |t: &mut TestWorld, entity| {
+        for frame in 1..world::FRAMES {
+            t.app.update();
+            assert_eq!(faces(t, light, entity), [FORWARD], "frame {frame}");
+        }
+        t.app.update();
+        assert_eq!(faces(t, light, entity), []);
+    };
+    seen_until_settled(&mut t, hidden);
+    let newer = t.ball(-8.0);
+    seen_until_settled(&mut t, newer);
+    t.paint(wall, StandardMaterial::default());
+    seen_until_settled(&mut t, newer);
+}
+
+#[test]
 fn marked_casters_stay() {
     let mut t = TestWorld::new();
     t.wall(Occluder::default());

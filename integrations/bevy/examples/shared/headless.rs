@@ -9,8 +9,9 @@ use bevy::prelude::*;
 use bevy::render::pipelined_rendering::PipelinedRenderingPlugin;
 use bevy::render::render_asset::RenderAssets;
 use bevy::render::render_resource::{
-    BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Extent3d, MapMode, PollType,
-    TexelCopyBufferInfo, TexelCopyBufferLayout, TextureDimension, TextureFormat, TextureUsages,
+    BufferDescriptor, BufferUsages, CommandEncoderDescriptor, Extent3d, MapMode, PipelineCache,
+    PollType, TexelCopyBufferInfo, TexelCopyBufferLayout, TextureDimension, TextureFormat,
+    TextureUsages,
 };
 use bevy::render::renderer::{RenderDevice, RenderQueue};
 use bevy::render::texture::GpuImage;
@@ -32,6 +33,16 @@ pub struct Headless {
 impl Headless {
     /// An app with a camera that draws a picture of this size.
     pub fn new(size: UVec2, msaa: Msaa, spawn: impl FnOnce(&mut World)) -> Self {
+        Self::with_pipelines(true, size, msaa, spawn)
+    }
+
+    /// The same, with pipelines that are compiled before they are needed or beside.
+    pub fn with_pipelines(
+        synchronous: bool,
+        size: UVec2,
+        msaa: Msaa,
+        spawn: impl FnOnce(&mut World),
+    ) -> Self {
         let mut app = App::new();
         let window = WindowPlugin {
             primary_window: None,
@@ -39,7 +50,7 @@ impl Headless {
             ..default()
         };
         let render = RenderPlugin {
-            synchronous_pipeline_compilation: true,
+            synchronous_pipeline_compilation: synchronous,
             ..default()
         };
         app.add_plugins((
@@ -96,6 +107,16 @@ impl Headless {
         self.app.update();
         self.wait();
         begin.elapsed()
+    }
+
+    /// Whether pipelines were still being compiled in the last frame.
+    pub fn pipelines_wait(&self) -> bool {
+        let cache = self
+            .app
+            .sub_app(RenderApp)
+            .world()
+            .resource::<PipelineCache>();
+        cache.waiting_pipelines().next().is_some()
     }
 
     fn wait(&self) {

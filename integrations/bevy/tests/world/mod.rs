@@ -10,10 +10,13 @@ use bevy::ecs::component::Mutable;
 use bevy::light::LightPlugin;
 use bevy::mesh::MeshPlugin;
 use bevy::prelude::*;
-use bevy_foveal_cull::{CpuOcclusionCulling, CpuOcclusionPlugin, Occluder};
+use bevy_foveal_cull::{CpuOcclusionCulling, CpuOcclusionPlugin, CpuOcclusionStats, Occluder};
 
 /// Pixels of the picture that nobody draws.
 pub const SIZE: UVec2 = UVec2::new(638, 361);
+
+/// Three in which it is drawn but not relied on, and one in which it is.
+pub const FRAMES: usize = 4;
 
 pub struct TestWorld {
     pub app: App,
@@ -24,6 +27,11 @@ pub struct TestWorld {
 
 impl TestWorld {
     pub fn new() -> Self {
+        Self::with(|_| ())
+    }
+
+    /// With plugins of the test.
+    pub fn with(add: impl FnOnce(&mut App)) -> Self {
         let mut app = App::new();
         app.add_plugins((
             MinimalPlugins,
@@ -36,6 +44,7 @@ impl TestWorld {
         ))
         .init_asset::<Image>()
         .init_asset::<StandardMaterial>();
+        add(&mut app);
         app.finish();
         app.cleanup();
         let ball = app
@@ -88,10 +97,12 @@ impl TestWorld {
 
     /// A wall of 8 m x 8 m, 5 m before the camera.
     pub fn wall(&mut self, occluder: Occluder) -> Entity {
-        let mesh = self.add_mesh(Cuboid::new(8.0, 8.0, 0.2));
+        let mesh = Mesh3d(self.add_mesh(Cuboid::new(8.0, 8.0, 0.2)));
+        let material = MeshMaterial3d(self.add_material(StandardMaterial::default()));
+        let place = Transform::from_xyz(0.0, 0.0, -5.0);
         self.app
             .world_mut()
-            .spawn((Mesh3d(mesh), Transform::from_xyz(0.0, 0.0, -5.0), occluder))
+            .spawn((mesh, material, place, occluder))
             .id()
     }
 
@@ -125,10 +136,21 @@ impl TestWorld {
         self.app.world_mut().get_mut::<C>(entity).unwrap()
     }
 
-    /// Two frames: Bevy gives a new mesh its `Aabb` at the end of the first.
+    /// As many frames as it takes until what is new is relied on.
     pub fn update(&mut self) {
-        self.app.update();
-        self.app.update();
+        for _ in 0..FRAMES {
+            self.app.update();
+        }
+    }
+
+    pub fn stats(&self) -> CpuOcclusionStats {
+        *self.app.world().resource()
+    }
+
+    /// Gives an entity a material.
+    pub fn paint(&mut self, entity: Entity, material: StandardMaterial) {
+        let material = MeshMaterial3d(self.add_material(material));
+        self.app.world_mut().entity_mut(entity).insert(material);
     }
 
     /// The first camera's meshes.
