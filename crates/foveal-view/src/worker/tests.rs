@@ -174,7 +174,9 @@ fn settings_that_fail_leave_no_other_environment_behind() {
     worker.draw(lit_by("red.hdr"));
     assert!(picture(&worker).picture.bytes == first.picture.bytes);
     worker.draw(lit_by("blue.hdr"));
-    assert!(picture(&worker).picture.bytes != first.picture.bytes);
+    // The view that stood still may be drawn a few times more before.
+    let mut pictures = (0..40).map(|_| picture(&worker));
+    assert!(pictures.any(|shown| shown.picture.bytes != first.picture.bytes));
 }
 
 #[test]

@@ -41,7 +41,9 @@ fn combine(@builtin(global_invocation_id) id: vec3u) {
             let largest = textureLoad(ordinary, pixel_of(entry), 0).rgb;
             sum += vec4f(largest, 1.0) * (weight_of(largest) * f32(rest) / f32(COUNT));
         }
-        // Alpha says that there is something to store.
-        sums[i] = pack_half4(vec4f(sum.rgb / sum.a, 1.0));
+        // Weights of blinding light are so small that halves hold few digits of them: the quotient may
+        // leave the range of halves. Alpha says that there is something to store.
+        let mean = min(sum.rgb / max(sum.a, 1e-7), vec3f(65504.0));
+        sums[i] = pack_half4(vec4f(mean, 1.0));
     }
 }
