@@ -9,33 +9,23 @@
 
 mod shared;
 
-use bevy::prelude::{Msaa, UVec2};
-use shared::arguments::Arguments;
+use shared::example;
 use shared::house::House;
 use shared::modes::Mode;
-use shared::{figures, window};
 
 fn main() {
-    let arguments = Arguments::read();
     let house = House {
-        side: arguments.number("side", 8),
-        furniture: arguments.number("furniture", 30),
+        side: 8,
+        furniture: 30,
         doors: false,
-        lights: arguments.number("lights", 2),
+        lights: 2,
     };
-    let size = arguments.size(UVec2::new(640, 360));
-    let msaa = Msaa::from_samples(arguments.number("msaa", 1));
-    match arguments.frames() {
-        Some(frames) => {
-            let modes = [
-                Mode::Frustum,
-                Mode::Prepass,
-                Mode::Gpu,
-                Mode::Camera,
-                Mode::All,
-            ];
-            figures::print(house, size, msaa, frames, &modes);
-        }
-        None => window::run("lights", house, size, msaa),
-    }
+    let modes = [
+        Mode::Frustum,
+        Mode::Prepass,
+        Mode::Gpu,
+        Mode::Camera,
+        Mode::All,
+    ];
+    example::run("lights", house, &modes);
 }

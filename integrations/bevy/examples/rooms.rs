@@ -8,33 +8,23 @@
 
 mod shared;
 
-use bevy::prelude::{Msaa, UVec2};
-use shared::arguments::Arguments;
+use shared::example;
 use shared::house::House;
 use shared::modes::Mode;
-use shared::{figures, window};
 
 fn main() {
-    let arguments = Arguments::read();
     let house = House {
-        side: arguments.number("side", 12),
-        furniture: arguments.number("furniture", 30),
+        side: 12,
+        furniture: 30,
         doors: false,
-        lights: arguments.number("lights", 0),
+        lights: 0,
     };
-    let size = arguments.size(UVec2::new(640, 360));
-    let msaa = Msaa::from_samples(arguments.number("msaa", 1));
-    match arguments.frames() {
-        Some(frames) => {
-            let modes = [
-                Mode::Frustum,
-                Mode::Prepass,
-                Mode::Gpu,
-                Mode::Camera,
-                Mode::CameraPrepass,
-            ];
-            figures::print(house, size, msaa, frames, &modes);
-        }
-        None => window::run("rooms", house, size, msaa),
-    }
+    let modes = [
+        Mode::Frustum,
+        Mode::Prepass,
+        Mode::Gpu,
+        Mode::Camera,
+        Mode::CameraPrepass,
+    ];
+    example::run("rooms", house, &modes);
 }

@@ -3,6 +3,7 @@
 #![allow(unreachable_pub, reason = "a module of a program")]
 
 pub mod arguments;
+pub mod example;
 pub mod figures;
 pub mod headless;
 pub mod house;
