@@ -68,11 +68,14 @@ export function showFigures(table, passes, notices, { reference, chosen, found }
   notices.textContent = noticesOf(chosen).join(' ');
 }
 
+const capital = (sentence) => sentence[0].toUpperCase() + sentence.slice(1);
+
 /** What the renderer says of its own choices. */
 function noticesOf(chosen) {
   const sentences = [];
-  const off = chosen?.variable?.notice;
-  if (off) sentences.push(`${off.replace('--force-rate true', 'the switch Force')}.`);
+  for (const off of [chosen?.variable?.notice, chosen?.coarse?.notice]) {
+    if (off) sentences.push(`${capital(off.replace('--force-rate true', 'the switch Force'))}.`);
+  }
   if (chosen?.stereo) sentences.push(`Both eyes: ${chosen.stereo.mode} (${chosen.stereo.reason}).`);
   if (chosen?.coarse) sentences.push(`Backend: ${chosen.coarse.backend} (${chosen.coarse.backend_reason}).`);
   return sentences;

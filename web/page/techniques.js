@@ -6,9 +6,9 @@ export const TECHNIQUES = [
   {
     key: 'coarse',
     name: 'Coarse shading',
-    text: 'Each region is lit once per block of pixels, 1 to 256 wide: fine where you look, coarse around. Let the gaze follow the pointer.',
-    chosen: { shading: 'coarse', display: 'fhd-24', quality: 9.3 },
-    quick: ['view', 'composite', 'quality'],
+    text: 'Each region is lit once per block of pixels, 1 to 256 wide: fine where you look, coarse around. Let the gaze follow the pointer. Where that costs more than it saves, it turns itself off; Force keeps it on.',
+    chosen: { shading: 'coarse', display: 'fhd-24', quality: 9.3, 'force-rate': true },
+    quick: ['view', 'composite', 'quality', 'force-rate'],
     gaze: true,
     views: ['final', 'rate', 'blocks', 'shaded'],
   },

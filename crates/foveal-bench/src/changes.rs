@@ -34,10 +34,7 @@ mod tests {
         ];
         let settings = changed(&Settings::default(), &changes).unwrap();
         assert_eq!(settings.shading.mode, foveal::Shading::Coarse);
-        assert_eq!(
-            (settings.eye.quality_jod, settings.variable.force),
-            (9.0, true)
-        );
+        assert_eq!((settings.eye.quality_jod, settings.rate.force), (9.0, true));
         assert!(changed(&Settings::default(), &[("shade", "coarse")]).is_err());
     }
 }

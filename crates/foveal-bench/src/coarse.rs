@@ -242,6 +242,7 @@ fn measure(
                 let settings = full_settings.clone().with(|s| {
                     s.shading.mode = Shading::Coarse;
                     s.coarse.backend = backend;
+                    s.rate.force = true;
                     s.coarse.composite = composite;
                     s.rate.stage = rate_stage;
                 });

@@ -221,7 +221,7 @@ fn measure(
         s.coarse.source = RateSource::Content;
         s.rate.stage = stage;
         s.variable.threshold = contrast_threshold;
-        s.variable.force = true;
+        s.rate.force = true;
     });
     let mut full = Film::new(gpu, scene, &full_settings)?;
     let mut variable = Film::new(gpu, scene, &variable_settings)?;

@@ -75,7 +75,7 @@ pub(crate) fn missing(
             "Needs Shading: coarse or variable",
         )
         .or(rate(key, s)),
-        "rate-stage" => unless(
+        "rate-stage" | "force-rate" => unless(
             shading != Shading::Full,
             "Needs Shading: coarse or variable",
         ),
@@ -85,7 +85,7 @@ pub(crate) fn missing(
                 "Needs Coarse shading, Rate from: content",
             ))
         }
-        "rate-4x4" | "force-rate" => unless(variable, "Needs Shading: variable"),
+        "rate-4x4" => unless(variable, "Needs Shading: variable"),
         "ipd" | "eye-tangents" | "show" => unless(stereo, EYES),
         "eye-clipping" => unless(stereo, EYES).or(clipping(s, abilities)),
         "convergence" => unless(stereo, EYES).or(unless(

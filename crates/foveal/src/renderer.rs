@@ -4,7 +4,6 @@ use crate::{Clock, Target};
 use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
-use crate::composite::CompositePass;
 use crate::culling::CullingStage;
 use crate::environment::{EnvironmentMap, EnvironmentStage};
 use crate::forward::ForwardPass;
@@ -12,16 +11,18 @@ use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, submitted_work_done};
 
 use crate::lights::LightAssigner;
-use crate::output::{EyesPass, OverlayPass, PresentPass, ToneMapPass, Upscale, ViewPass};
-use crate::rate::{RateImage, RateMapPass};
+use crate::output::{EyesPass, PresentPass, ToneMapPass, Upscale, ViewPass};
+use crate::rate::RateImage;
 use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
+use crate::shading::{ShadingPass, VariableStage};
 use crate::shadow::ShadowStage;
 use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, Settings};
+use coarse::CoarseStages;
 use in_flight::{Counts, InFlight};
 
+mod coarse;
 mod figures;
 mod in_flight;
 mod plan;
@@ -129,17 +130,6 @@ struct Stages {
     eyes_shown: Option<EyesPass>,
     /// How eyes are submitted, and why so.
     submission: (Submission, String),
-}
-
-/// What stands in for shading every pixel.
-#[derive(Debug)]
-struct CoarseStages {
-    rate_map: RateMapPass,
-    shading: CoarseShading,
-    composite: CompositePass,
-    /// Stands in for both where light is kept from frame to frame.
-    history: Option<HistoryStage>,
-    overlay: Option<OverlayPass>,
 }
 
 impl Renderer {

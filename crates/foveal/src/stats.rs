@@ -62,11 +62,21 @@ pub struct CoarseStats {
     pub unlit_pixels: u64,
     /// All samples and those pixels by all pixels.
     pub shaded_fraction: f64,
-    /// The backend that shaded this frame: `stencil` or `compute`.
+    /// The backend that shaded this frame: `stencil`, `compute`, or `none` where every pixel was
+    /// shaded.
     pub backend: String,
-    /// Why it is this backend: `asked for`, `measuring`, what was measured, or that light is kept
-    /// from frame to frame.
+    /// Why it is this backend: `asked for`, `measuring`, what was measured, that light is kept from
+    /// frame to frame, or that every pixel is shaded.
     pub backend_reason: String,
+    /// Whether the frame was shaded coarsely; else every pixel was.
+    pub active: bool,
+    /// Shading of every pixel, in milliseconds, as of the last comparison; 0 before it.
+    pub full_ms: f64,
+    /// What stood in for it in the same frame: rate map, reprojection, shading of samples,
+    /// composite.
+    pub coarse_ms: f64,
+    /// A sentence where coarse shading has turned itself off; else empty.
+    pub notice: String,
 }
 
 impl CoarseStats {

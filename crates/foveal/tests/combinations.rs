@@ -46,7 +46,7 @@ fn compare_in(environment: EnvironmentSource, aa: Antialiasing, stereo: Stereo, 
                     Shading::Variable => RateSource::Content,
                     _ => RateSource::Foveated,
                 };
-                s.variable.force = true;
+                s.rate.force = true;
                 // Blocks as large as 4 x 4: the picture is small.
                 s.coarse.coarsest_level = 2;
             });

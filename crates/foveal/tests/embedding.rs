@@ -89,6 +89,7 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
             s.coarse.backend = foveal::CoarseBackend::Compute;
             // Each frame is the first one's equal.
             s.coarse.history = false;
+            s.rate.force = true;
         });
         pollster::block_on(async {
             let mut renderer = Renderer::new(

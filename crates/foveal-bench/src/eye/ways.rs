@@ -46,22 +46,34 @@ pub(super) const WAYS: &[Way] = &[
     way(
         "coarse, light",
         Follows::GazeAndDisplay,
-        &[("shading", "coarse")],
+        &[("shading", "coarse"), ("force-rate", "true")],
     ),
     way(
         "coarse, light, no history",
         Follows::GazeAndDisplay,
-        &[("shading", "coarse"), ("history", "false")],
+        &[
+            ("shading", "coarse"),
+            ("history", "false"),
+            ("force-rate", "true"),
+        ],
     ),
     way(
         "coarse, light, quality 9.3",
         Follows::GazeAndDisplay,
-        &[("shading", "coarse"), ("quality", "9.3")],
+        &[
+            ("shading", "coarse"),
+            ("quality", "9.3"),
+            ("force-rate", "true"),
+        ],
     ),
     way(
         "coarse, light, quality 9",
         Follows::GazeAndDisplay,
-        &[("shading", "coarse"), ("quality", "9")],
+        &[
+            ("shading", "coarse"),
+            ("quality", "9"),
+            ("force-rate", "true"),
+        ],
     ),
     way(
         "coarse, paper, radii",
@@ -70,6 +82,7 @@ pub(super) const WAYS: &[Way] = &[
             ("shading", "coarse"),
             ("composite", "paper"),
             ("rate", "radii"),
+            ("force-rate", "true"),
         ],
     ),
     variable(

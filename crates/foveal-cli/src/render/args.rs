@@ -172,6 +172,8 @@ impl Args {
     /// The settings that hold.
     pub(super) fn settings(&self) -> anyhow::Result<Settings> {
         let mut settings = self.settings.clone();
+        // What is in files hangs on the settings, not on how long frames took.
+        settings.set_default("force-rate", "true");
         if let Some(shown) = self.outputs().1 {
             settings.set("show", shown);
         }

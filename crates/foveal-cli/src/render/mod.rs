@@ -314,11 +314,15 @@ fn draw_all(
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
         written.write(drawing, &figures, job.file.as_deref(), &mut stages)?;
         drop(claim);
-        if let Some(variable) = &figures.variable
-            && !variable.notice.is_empty()
+        let notices = [
+            figures.coarse.as_ref().map(|coarse| &coarse.notice),
+            figures.variable.as_ref().map(|variable| &variable.notice),
+        ];
+        let notice = notices.into_iter().flatten().find(|n| !n.is_empty());
+        if let Some(notice) = notice
             && !std::mem::replace(&mut noticed, true)
         {
-            console::warn(&variable.notice);
+            console::warn(notice);
         }
         if frames.is_empty() {
             load_ms.extend(stages);

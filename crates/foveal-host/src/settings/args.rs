@@ -230,6 +230,13 @@ impl SettingsArgs {
         self.given.insert(key.to_owned(), value.into());
     }
 
+    /// As the flag `--key value` does, where that flag is not given.
+    pub fn set_default(&mut self, key: &str, value: &str) {
+        if !self.given.contains_key(key) {
+            self.set(key, value);
+        }
+    }
+
     /// A file's name given for a source goes where it belongs.
     ///
     /// # Errors

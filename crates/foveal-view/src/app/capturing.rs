@@ -136,6 +136,8 @@ impl App {
     fn draw_capture(&mut self, poses: Vec<Pose>) {
         self.capture.phase = Phase::Drawing(0, poses.len());
         let settings = self.settings.clone().with(|s| {
+            // What is in files hangs on the settings, not on how long frames took.
+            s.rate.force = true;
             if let Some((width, height)) = self.capture.size {
                 (s.picture.width, s.picture.height) = (width, height);
             }

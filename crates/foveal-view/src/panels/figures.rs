@@ -52,12 +52,16 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
                     .small()
                     .color(look::FAINT),
             );
+            notice(ui, &coarse.notice);
             for (level, samples) in coarse.samples_per_level.iter().enumerate() {
                 figure(ui, &format!("Level {level}"), grouped(*samples));
             }
             if coarse.unlit_pixels > 0 {
                 figure(ui, "Pixels by themselves", grouped(coarse.unlit_pixels));
             }
+        }
+        if let Some(variable) = &stats.variable {
+            notice(ui, &variable.notice);
         }
     });
     ui.add_space(6.0);
@@ -75,4 +79,11 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         }
     });
     ui.add_space(6.0);
+}
+
+/// What has turned itself off, if anything has.
+fn notice(ui: &mut egui::Ui, sentence: &str) {
+    if !sentence.is_empty() {
+        ui.label(RichText::new(sentence).small().color(look::FAINT));
+    }
 }

@@ -92,7 +92,7 @@ mod tests {
                     Shading::Variable => RateSource::Content,
                     _ => RateSource::Foveated,
                 };
-                s.variable.force = true;
+                s.rate.force = true;
             });
             let drawn = scaled.drawn();
             let mut large = rendered(&scene, camera, &scaled);

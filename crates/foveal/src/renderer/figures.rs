@@ -15,7 +15,7 @@ impl Renderer {
     pub(super) fn counters(&self) -> Counts<&wgpu::Buffer> {
         let stages = &self.stages;
         let tiles = match (&stages.coarse, &stages.targets.coarse, &stages.view) {
-            (Some(_), Some(tiles), None) => Some(tiles),
+            (Some(coarse), Some(tiles), None) if coarse.is_active() => Some(tiles),
             _ => None,
         };
         let kept = tiles.and_then(|tiles| Some(&tiles.history.as_ref()?.listed));
@@ -60,6 +60,10 @@ impl Renderer {
             draws: draws * submission.passes(),
             triangles: self.draw_list.triangles * u64::from(EyeLayout::of(settings).eyes),
             shadows: self.stages.shadows.stats(),
+            // What is counted on the device comes later.
+            coarse: (self.stages.coarse.as_ref())
+                .filter(|coarse| settings.picture.view.is_lit() && !coarse.is_active())
+                .map(|coarse| coarse.in_full(settings)),
             stereo: settings.is_stereo().then(|| submission.stats(reason)),
             target_bytes: self.stages.targets.bytes()
                 + self.upscale.as_ref().map_or(0, Upscale::bytes),
@@ -127,11 +131,14 @@ impl Renderer {
         frame_ms: f64,
     ) -> FrameStats {
         let coarse = self.coarse_figures(counts, &gpu_ms);
+        let coarse = coarse.or_else(|| stats.coarse.clone());
         let lit = self.stages.settings.picture.view.is_lit();
         let stages = &mut self.stages;
         let variable = stages.variable.as_mut().filter(|_| lit);
         let bytes = counts.rates.as_deref();
         let variable = variable.map(|v| v.figures(&stages.settings, bytes, &gpu_ms));
+        let weighed = stages.coarse.as_mut().zip(coarse);
+        let coarse = weighed.map(|(c, stats)| c.weigh(&stages.settings, &gpu_ms, stats));
         let stages = &self.stages;
         let pixels = EyeLayout::of(&stages.settings).pixels();
         let mut shaded_samples = match (&coarse, &variable) {

@@ -1,11 +1,14 @@
 //! Which samples a frame shades.
 
 use super::Stages;
+use crate::shading::RatePlan;
+use foveal_scene::Camera;
 
 /// Samples of the G-buffer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum SampleChoice {
     /// One per pixel.
+    #[default]
     Every,
     /// One or a few per block of the rate map.
     Coarse,
@@ -26,27 +29,27 @@ pub(super) struct FramePlan {
     pub(super) lighting: Option<SampleChoice>,
     /// Pixels at edges are lit more than once: the picture is made from sub-samples.
     pub(super) edges: bool,
-    /// Every pixel is shaded besides, to measure what variable shading saves.
+    /// Every pixel is shaded besides, to measure what rates save.
     pub(super) compares: bool,
     /// The picture shows light, not a view of the G-buffer.
     pub(super) is_lit: bool,
 }
 
 impl Stages {
-    /// Chooses the samples of the next frame.
-    pub(super) fn plan(&mut self) -> FramePlan {
+    /// Chooses the samples of the next frame, seen by the first of these cameras and the last one
+    /// by the second.
+    pub(super) fn plan(&mut self, cameras: (&Camera, &Camera)) -> FramePlan {
         let is_lit = self.settings.picture.view.is_lit();
         let stage = self.settings.stage();
-        let variable = match &mut self.variable {
-            Some(variable) if is_lit => variable.plan(),
-            _ => crate::shading::VariablePlan::default(),
+        let (at_rates, chosen) = match (&mut self.variable, &mut self.coarse) {
+            _ if !is_lit => Default::default(),
+            (Some(variable), _) => (SampleChoice::Variable, variable.plan()),
+            (_, Some(coarse)) => (SampleChoice::Coarse, coarse.plan(&self.settings, cameras)),
+            _ => Default::default(),
         };
-        let rates = if variable.active {
-            SampleChoice::Variable
-        } else if self.coarse.is_some() && is_lit {
-            SampleChoice::Coarse
-        } else {
-            SampleChoice::Every
+        let rates = match chosen {
+            RatePlan { active: true, .. } => at_rates,
+            _ => SampleChoice::Every,
         };
         let of_rates = |applies: bool| {
             if applies { rates } else { SampleChoice::Every }
@@ -61,7 +64,7 @@ impl Stages {
             materials: of_rates(stage.has_material()),
             lighting: lighting.filter(|_| is_lit),
             edges: self.antialias.is_some(),
-            compares: variable.compares,
+            compares: chosen.compares,
             is_lit,
         }
     }

@@ -2,16 +2,15 @@
 
 use super::{Clock, CoarseStages, Frame, Seen, Stages};
 use crate::antialias::AntialiasStage;
-use crate::composite::CompositePass;
 use crate::culling::CullingStage;
 use crate::forward::ForwardPass;
 use crate::geometry::GeometryPass;
 use crate::gpu::{ErrorTrap, Gpu};
 use crate::lights::LightAssigner;
-use crate::output::{EyesPass, OverlayPass, ToneMapPass, ViewPass};
-use crate::rate::{RateImage, RateMapPass};
+use crate::output::{EyesPass, ToneMapPass, ViewPass};
+use crate::rate::RateImage;
 use crate::scene::FrameBindings;
-use crate::shading::{CoarseShading, HistoryStage, ShadingPass, VariableStage};
+use crate::shading::{HistoryStage, ShadingPass, VariableStage};
 use crate::shadow::ShadowStage;
 use crate::stereo::{EyeLayout, LensFit, Submission, Trials, eyes};
 use crate::targets::Targets;
@@ -30,28 +29,6 @@ impl Seen {
             },
             lenses: LensFit::of(settings, &eyes_now)?,
         })
-    }
-}
-
-impl CoarseStages {
-    fn new(
-        gpu: &Gpu,
-        settings: &Settings,
-        frame: &wgpu::BindGroupLayout,
-        full: &ShadingPass,
-        image: Option<&RateImage>,
-    ) -> Self {
-        let mut rate_map = RateMapPass::new(gpu, settings, frame);
-        if let Some(image) = image {
-            rate_map.set_image(gpu, image);
-        }
-        Self {
-            rate_map,
-            shading: CoarseShading::new(gpu, settings, frame, full.input_layout()),
-            composite: CompositePass::new(gpu, settings, frame),
-            history: HistoryStage::new(gpu, settings, frame, full.input_layout()),
-            overlay: OverlayPass::new(gpu, settings.picture.view, frame),
-        }
     }
 }
 

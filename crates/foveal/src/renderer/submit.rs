@@ -12,6 +12,7 @@ use crate::lights::{ClusterGrid, SceneLights};
 use crate::recorder::Recorder;
 use crate::shading::{HistoryStage, Samples};
 use crate::stereo::EyeLayout;
+use foveal_scene::Camera;
 
 impl Renderer {
     /// The frame.
@@ -123,7 +124,12 @@ impl Renderer {
         cpu: &mut CpuTimer,
     ) {
         let (gpu, stages) = (&self.gpu, &mut self.stages);
-        let plan = stages.plan();
+        let cameras = (frame.camera, frame.previous_camera.unwrap_or(frame.camera));
+        let plan = stages.plan(cameras);
+        if let Some(history) = stages.coarse.as_mut().and_then(|c| c.history.as_mut()) {
+            let keeps_light = plan.rates == SampleChoice::Coarse;
+            history.begin(gpu, &stages.settings, keeps_light);
+        }
         let draws = Draws {
             scene: &self.scene,
             list: &self.draw_list,
@@ -140,7 +146,7 @@ impl Renderer {
             .assign(recorder, &draws.scene.light_buffer, clusters);
         stages.shadows.draw(recorder, draws.scene);
         stages.fill_gbuffer(recorder, draws, &plan);
-        stages.find_rates(recorder, draws, (frame, seen), &plan);
+        stages.find_rates(recorder, draws, (seen, cameras), &plan);
         if plan.is_lit {
             stages.light(recorder, draws, &plan);
             stages.blend(recorder, draws);
@@ -237,7 +243,7 @@ impl Stages {
         &mut self,
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
-        (frame, seen): (&Frame<'_>, &Seen),
+        (seen, cameras): (&Seen, (&Camera, &Camera)),
         plan: &FramePlan,
     ) {
         let Self {
@@ -250,21 +256,20 @@ impl Stages {
         } = self;
         let gbuffer = &targets.gbuffer;
         let at_rates = plan.materials == plan.rates;
-        let cameras = (frame.camera, frame.previous_camera.unwrap_or(frame.camera));
         match plan.rates {
             SampleChoice::Every => {}
             SampleChoice::Coarse => {
                 let (Some(coarse), Some(tiles)) = (coarse, &targets.coarse) else {
                     return;
                 };
-                if let Some(history) = &mut coarse.history {
-                    history.begin(recorder.gpu, settings, cameras);
-                }
                 let history = coarse.history.as_ref();
                 if history.is_none_or(HistoryStage::needs_rates) {
                     let eyes = (&seen.eyes, seen.lenses.as_ref());
                     let rate_map = &mut coarse.rate_map;
                     rate_map.draw(recorder, settings, eyes, gbuffer, &tiles.rate);
+                }
+                if at_rates && plan.compares {
+                    geometry.resolve(recorder, draws, gbuffer, &ResolveAt::COMPARED);
                 }
                 if at_rates {
                     let at = ResolveAt::at_rates(&tiles.rate.owner.whole);
@@ -295,16 +300,14 @@ impl Stages {
         let radiance = &targets.radiance_view;
         let lights = self.scene_lights(draws);
         let input = &shading.input(recorder.gpu, &targets.gbuffer, lights);
+        if plan.compares && plan.lighting == Some(plan.rates) {
+            shading.shade_every_pixel(recorder, input, radiance, "full shading");
+        }
         match plan.lighting {
             None => {}
-            Some(SampleChoice::Every) => {
-                shading.shade(recorder, input, Samples::EveryPixel, radiance);
-            }
+            Some(SampleChoice::Every) => self.light_in_full(recorder, input),
             Some(SampleChoice::Coarse) => self.light_coarsely(recorder, input),
             Some(SampleChoice::Variable) => {
-                if plan.compares {
-                    shading.shade_every_pixel(recorder, input, radiance, "full shading");
-                }
                 if let Some(variable) = &self.variable {
                     variable.shade(recorder, input, targets);
                 }
@@ -314,6 +317,22 @@ impl Stages {
             let further = targets.samples.as_ref().and_then(|s| s.further_gbuffer());
             let further = further.map(|gbuffer| shading.input(recorder.gpu, gbuffer, lights));
             antialias.combine(recorder, targets, further.as_ref());
+        }
+    }
+
+    /// Light at every pixel.
+    fn light_in_full(&self, recorder: &mut Recorder<'_>, input: &wgpu::BindGroup) {
+        let (targets, shading) = (&self.targets, &self.shading);
+        let history = self.coarse.as_ref().and_then(|c| c.history.as_ref());
+        let kept = targets.coarse.as_ref().and_then(|t| t.history.as_ref());
+        match (history, kept) {
+            (Some(history), Some(kept)) => {
+                history.light_in_full(recorder, shading, input, targets, kept);
+            }
+            _ => {
+                let radiance = &targets.radiance_view;
+                shading.shade(recorder, input, Samples::EveryPixel, radiance);
+            }
         }
     }
 

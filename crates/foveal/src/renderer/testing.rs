@@ -7,7 +7,7 @@ use crate::geometry::{GeometryPass, ResolveAt};
 use crate::lights::{ClusterGrid, LightAssigner, SceneLights};
 use crate::recorder::Recorder;
 use crate::scene::SceneOnGpu;
-use crate::shading::{CoarseShading, HistoryStage, Samples};
+use crate::shading::{Balance, CoarseShading, HistoryStage, Samples};
 use crate::stereo::{EyeLayout, eyes};
 use crate::targets::Targets;
 use foveal_scene::Camera;
@@ -28,6 +28,21 @@ impl Renderer {
                 ],
             );
         }
+    }
+
+    /// Leaves coarse shading off for as long as losses do.
+    pub(crate) fn turn_coarse_off(&mut self) {
+        self.set_balance(Balance::turned_off());
+    }
+
+    /// Compares coarse shading with full shading from the next frame on, and leaves it on.
+    pub(crate) fn compare_coarse(&mut self) {
+        self.set_balance(Balance::new(true, 0));
+    }
+
+    fn set_balance(&mut self, balance: Balance) {
+        let coarse = self.stages.coarse.as_mut();
+        coarse.expect("coarse shading").set_balance(balance);
     }
 
     /// Encodes and submits passes besides a frame's.

@@ -211,6 +211,9 @@ settings! {
         /// variable shading) or both. Materials need the visibility geometry. auto takes both
         /// where it is possible, else lighting.
         rate_stage => stage: RateStage = RateStage::default(), "Work", Kind::choice::<RateStage>();
+        /// Keep coarse or variable shading on even where it costs more than it saves. Off: it
+        /// turns itself off there, and every pixel is shaded.
+        force_rate => force: bool = false, "Force", Kind::Switch;
     }
     /// Samples of up to four by four pixels, by content.
     "Variable shading" variable: VariableSettings {
@@ -225,9 +228,6 @@ settings! {
         velocity_gain => velocity_gain: f32 = 0.1, "Velocity", Kind::Number { least: 0.0, most: 1.0 };
         /// Samples of up to 4x4 pixels. Off: 2x2 is the coarsest.
         rate_4x4 => blocks_4x4: bool = false, "4x4", Kind::Switch;
-        /// Keep shading at reduced rates even when that costs more than it saves. Off: it stops
-        /// by itself.
-        force_rate => force: bool = false, "Force", Kind::Switch;
     }
     /// Two eyes.
     "Stereo" stereo: StereoSettings {

@@ -4,6 +4,7 @@
 //! lighting code is one and the same; rate, backend and anti-aliasing differ only in the samples
 //! that they ask for.
 
+mod balance;
 mod coarse;
 mod history;
 mod pass;
@@ -15,6 +16,7 @@ mod variable;
 pub(crate) use variable::twin::extent as sample_extent;
 
 pub(crate) use crate::formats::RADIANCE_FORMAT;
+pub(crate) use balance::{Balance, Compared, RatePlan};
 #[cfg(test)]
 pub(crate) use coarse::sample_texel;
 pub(crate) use coarse::{
@@ -28,4 +30,4 @@ pub(crate) use pass::{ShadingPass, lighting_constants};
 pub(crate) use samples::{SampleList, Samples};
 #[cfg(test)]
 pub(crate) use variable::RatesUniform;
-pub(crate) use variable::{VariablePlan, VariableStage, VariableTargets};
+pub(crate) use variable::{VariableStage, VariableTargets};

@@ -165,7 +165,7 @@ fn coarse_and_variable_shading_at_every_pixel_give_the_bytes_of_full_shading() {
                     _ => RateSource::Constant,
                 };
                 s.coarse.constant_level = 0;
-                s.variable.force = true;
+                s.rate.force = true;
                 s.variable.threshold = 0.0;
             });
             let reference = match geometry {

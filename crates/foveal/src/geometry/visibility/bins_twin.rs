@@ -74,7 +74,7 @@ fn every_listed_pixel_is_in_its_materials_bin_once() {
                     s.shading.mode = Shading::Variable;
                     s.coarse.source = RateSource::Content;
                     s.rate.stage = RateStage::Both;
-                    s.variable.force = true;
+                    s.rate.force = true;
                 })
             } else {
                 settings

@@ -172,7 +172,7 @@ fn a_picture_by_families_is_the_one_by_materials_to_the_byte() {
             s.rate.stage = RateStage::Both;
             // That of light needs materials at every pixel.
             s.coarse.composite = crate::Composite::Smooth;
-            s.variable.force = true;
+            s.rate.force = true;
         })
     };
     let smoothed = plain.clone().with(|s| {

@@ -110,6 +110,8 @@ impl CoarseShading {
             unlit_pixels: unlit,
             backend: self.choice.now().name().to_owned(),
             backend_reason: self.choice.reason(),
+            active: true,
+            ..CoarseStats::default()
         };
         self.choice.observe(shading_ms);
         stats

@@ -261,7 +261,7 @@ impl HistoryPasses {
                 self.shade_unlit(recorder, &frame);
             }
         }
-        show(recorder, targets, history);
+        history.show(recorder, targets);
     }
 
     /// At rest: lists the pixels whose turn it is.
@@ -423,14 +423,4 @@ impl HistoryPasses {
         pass.set_bind_group(1, &sizes, &[]);
         pass.dispatch_workgroups(1, 1, 1);
     }
-}
-
-/// Copies the radiance of solid surfaces to where blended ones are drawn over it.
-fn show(recorder: &mut Recorder<'_>, targets: &Targets, h: &HistoryTargets) {
-    let radiance = h.radiance.texture();
-    recorder.encoder.copy_texture_to_texture(
-        radiance.as_image_copy(),
-        targets.radiance_view.texture().as_image_copy(),
-        radiance.size(),
-    );
 }

@@ -11,6 +11,7 @@ use crate::rate::RateTargets;
 use crate::recorder::Recorder;
 use crate::shading::coarse::UsedBackend;
 use crate::shading::history::targets;
+use crate::shading::{Samples, ShadingPass};
 use crate::shadow::Place;
 use crate::targets::Targets;
 use crate::{CoarseStats, Settings};
@@ -32,6 +33,14 @@ pub(crate) struct HistoryStage {
     frame: u32,
     /// Frames at rest.
     rested: u32,
+    /// Nothing that is kept can be used.
+    reset: bool,
+    /// What has changed, for the frame at hand.
+    now_changed: Changed,
+    /// The last frame shaded every pixel, and kept no light.
+    in_full: bool,
+    /// The frame shows the last one's radiance again.
+    again: bool,
     pub(super) lit: Lit,
     /// What the last frame's passes were told.
     pub(crate) told: HistoryParameters,
@@ -53,6 +62,10 @@ impl HistoryStage {
             changed: Changed::default(),
             frame: 0,
             rested: 0,
+            reset: true,
+            now_changed: Changed::default(),
+            in_full: false,
+            again: false,
             lit: Lit::default(),
             told: HistoryParameters::default(),
         })
@@ -78,32 +91,49 @@ impl HistoryStage {
         self.changed.add_places(places);
     }
 
-    /// Decides what the frame does.
-    pub(crate) fn begin(
-        &mut self,
-        gpu: &Gpu,
-        settings: &Settings,
-        (camera, previous): (&Camera, &Camera),
-    ) {
+    /// Finds out what the next frame has in common with the last one.
+    pub(crate) fn follow(&mut self, settings: &Settings, (camera, previous): (&Camera, &Camera)) {
         let gaze = [settings.eye.gaze, settings.stereo.gaze_shift];
         let moved = std::mem::take(&mut self.moved)
             || self.changed != Changed::Nowhere
             || std::mem::replace(&mut self.gaze, gaze) != gaze;
         let changed = std::mem::take(&mut self.changed);
-        let reset = self.last.as_ref().is_none_or(|last| last != previous)
+        self.reset = self.last.as_ref().is_none_or(|last| last != previous)
             || changed == Changed::Everywhere;
-        let rests = !reset && !moved && camera == previous;
-        self.frame = if reset { 0 } else { self.frame.wrapping_add(1) };
+        let rests = !self.reset && !moved && camera == previous;
         self.rested = if rests {
             self.rested.saturating_add(1)
         } else {
             0
         };
+        self.last = Some(camera.clone());
+        self.now_changed = changed;
+    }
+
+    /// Whether the next frame shows what the last one showed.
+    pub(crate) fn rests(&self) -> bool {
+        self.rested > 0
+    }
+
+    /// Whether the frame shows the last one's radiance again, all of whose pixels were shaded.
+    pub(crate) fn is_again(&self) -> bool {
+        self.again
+    }
+
+    /// Decides what the frame does: `active` keeps light, otherwise every pixel is shaded.
+    pub(crate) fn begin(&mut self, gpu: &Gpu, settings: &Settings, active: bool) {
+        self.again = !active && self.in_full && self.rests();
+        if active && std::mem::take(&mut self.in_full) {
+            (self.reset, self.rested) = (true, 0);
+        }
+        self.in_full = !active;
+        let reset = self.reset;
+        self.frame = if reset { 0 } else { self.frame.wrapping_add(1) };
         self.lit = Lit {
             even: self.lit.even != (self.rested == 0),
             turn: self.rested.checked_sub(1),
         };
-        self.last = Some(camera.clone());
+        let changed = std::mem::take(&mut self.now_changed);
         self.told = self.parameters(settings, reset, &changed);
         self.passes.write(gpu, &self.told);
     }
@@ -150,6 +180,22 @@ impl HistoryStage {
         self.passes.light(recorder, input, targets, kept, self.lit);
     }
 
+    /// Encodes the lighting of every pixel of solid surfaces into the radiance target, by the pass
+    /// of full shading.
+    pub(crate) fn light_in_full(
+        &self,
+        recorder: &mut Recorder<'_>,
+        shading: &ShadingPass,
+        input: &wgpu::BindGroup,
+        targets: &Targets,
+        kept: &HistoryTargets,
+    ) {
+        if !self.again {
+            shading.shade(recorder, input, Samples::EveryPixel, &kept.radiance);
+        }
+        kept.show(recorder, targets);
+    }
+
     /// The figures of a frame that left these lists.
     pub(crate) fn stats(listed: &[u8], coarsest: u8, pixels: u64) -> CoarseStats {
         let words: Vec<u32> = bytemuck::pod_collect_to_vec(listed);
@@ -163,6 +209,8 @@ impl HistoryStage {
             shaded_fraction: shaded as f64 / pixels as f64,
             backend: UsedBackend::Compute.name().to_owned(),
             backend_reason: "light is kept from frame to frame".to_owned(),
+            active: true,
+            ..CoarseStats::default()
         }
     }
 }

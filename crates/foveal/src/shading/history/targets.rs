@@ -2,8 +2,10 @@
 
 use super::lit::SAMPLE_BYTES;
 use crate::gpu::{self, Gpu};
+use crate::recorder::Recorder;
 use crate::shading::RADIANCE_FORMAT;
 use crate::stereo::EyeLayout;
+use crate::targets::Targets;
 use crate::{Settings, composite::LIGHT_FORMAT};
 
 /// What a pixel keeps besides its light: `layout.wgsl`.
@@ -119,6 +121,16 @@ impl HistoryTargets {
         ];
         u64::from(size.width) * u64::from(size.height) * (2 * 16 + 2 * 4 + 8)
             + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
+    }
+
+    /// Copies the radiance of solid surfaces to where blended ones are drawn over it.
+    pub(super) fn show(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
+        let radiance = self.radiance.texture();
+        recorder.encoder.copy_texture_to_texture(
+            radiance.as_image_copy(),
+            targets.radiance_view.texture().as_image_copy(),
+            radiance.size(),
+        );
     }
 
     /// The binding of one list's `Dispatch`.

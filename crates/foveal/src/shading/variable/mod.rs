@@ -9,14 +9,12 @@
 //!
 //! While the camera or the scene moves, one quad in 16 is shaded in full each frame, in turns, and
 //! so measured again ([`Probes`]). When all stands still again each quad is measured once more,
-//! within four frames: from then on the mask is that of a fresh start. [`Balance`] compares what is
-//! saved with what finding the mask costs.
+//! within four frames: from then on the mask is that of a fresh start. [`Balance`](super::Balance)
+//! compares what is saved with what finding the mask costs.
 
-mod balance;
 #[cfg(test)]
 mod eyes;
 mod passes;
-mod plan;
 mod probes;
 mod stage;
 mod targets;
@@ -30,5 +28,4 @@ mod view;
 pub(crate) use passes::RatesUniform;
 pub(crate) use targets::VariableTargets;
 
-pub(crate) use plan::VariablePlan;
 pub(crate) use stage::VariableStage;

@@ -1,16 +1,21 @@
 //! All of variable shading that outlives a frame.
 
-use super::VariablePlan;
-use super::balance::Balance;
 use super::passes::{RateFrame, RatePasses};
 use super::probes::Probes;
 use super::view::RateView;
 use crate::gpu::Gpu;
 use crate::recorder::Recorder;
+use crate::shading::balance::{Balance, Compared, RatePlan, sum_ms};
 use crate::stereo::{Eye, EyeLayout};
 use crate::targets::Targets;
 use crate::{Settings, Timing, VariableStats};
 use foveal_scene::Camera;
+
+/// Frames before the first comparison.
+const UNCOMPARED: u32 = 3;
+/// Passes that find rates and samples.
+const MASK: &str = "rate mask";
+const REPROJECTION: &str = "reprojection";
 
 /// All of variable shading that outlives a frame.
 #[derive(Debug)]
@@ -19,6 +24,7 @@ pub(crate) struct VariableStage {
     view: Option<RateView>,
     probes: Probes,
     balance: Balance,
+    costs: VariableStats,
     /// The camera of the frame that the targets know.
     last: Option<Camera>,
     /// Frames since the targets knew nothing.
@@ -36,7 +42,8 @@ impl VariableStage {
             passes: RatePasses::new(gpu, settings, frame_layout, input_layout),
             view: RateView::new(gpu, settings.picture.view, frame_layout),
             probes: Probes::default(),
-            balance: Balance::new(settings.variable.force),
+            balance: Balance::new(settings.rate.force, UNCOMPARED),
+            costs: VariableStats::default(),
             last: None,
             frame: 0,
         }
@@ -53,7 +60,7 @@ impl VariableStage {
     }
 
     /// What the next frame does.
-    pub(crate) fn plan(&mut self) -> VariablePlan {
+    pub(crate) fn plan(&mut self) -> RatePlan {
         let plan = self.balance.plan();
         if !plan.active {
             self.forget();
@@ -125,7 +132,7 @@ impl VariableStage {
     ) -> VariableStats {
         let layout = EyeLayout::of(settings);
         let pixels = layout.pixels();
-        let mut stats = self.balance.observe(settings.stage(), gpu_ms);
+        let mut stats = self.costs(settings, gpu_ms);
         stats.active = listed.is_some();
         stats.samples_per_rate = vec![pixels, 0, 0, 0, 0];
         if let Some(bytes) = listed {
@@ -136,5 +143,26 @@ impl VariableStage {
         }
         stats.shaded_fraction = stats.samples_per_rate.iter().sum::<u64>() as f64 / pixels as f64;
         stats
+    }
+
+    /// What is known of cost and gain after a frame whose passes took `gpu_ms`.
+    fn costs(&mut self, settings: &Settings, gpu_ms: &[Timing]) -> VariableStats {
+        let stage = settings.stage();
+        let costs = &mut self.costs;
+        costs.mask_ms = sum_ms(gpu_ms, MASK);
+        costs.reproject_ms = sum_ms(gpu_ms, REPROJECTION);
+        costs.binning_ms = sum_ms(gpu_ms, "binning");
+        let runs = (stage.has_lighting(), stage.has_material());
+        if let Some(compared) = Compared::find(gpu_ms, runs, &[MASK, REPROJECTION]) {
+            self.balance.observe(compared);
+            costs.full_ms = compared.full_ms;
+            costs.variable_ms = compared.rated_ms;
+            costs.saved_ms = compared.full_ms - compared.rated_ms;
+            costs.net_ms = compared.net_ms();
+        }
+        VariableStats {
+            notice: self.balance.notice("variable shading"),
+            ..costs.clone()
+        }
     }
 }

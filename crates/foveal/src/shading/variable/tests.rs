@@ -25,7 +25,7 @@ pub(super) fn variable(size: (u32, u32)) -> Settings {
     small(size.0, size.1).with(|s| {
         s.shading.mode = Shading::Variable;
         s.coarse.source = RateSource::Content;
-        s.variable.force = true;
+        s.rate.force = true;
     })
 }
 

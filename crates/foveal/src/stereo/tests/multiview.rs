@@ -58,7 +58,7 @@ fn pipelines(base: &Settings) -> Vec<Settings> {
     };
     let variable = shading(Shading::Variable).with(|s| {
         s.coarse.source = RateSource::Content;
-        s.variable.force = true;
+        s.rate.force = true;
     });
     let visibility = Geometry::Visibility;
     let mut all = vec![
