@@ -16,6 +16,7 @@ const HONOURED: &[&str] = &[
     "KHR_mesh_quantization",
     "KHR_meshopt_compression",
     "KHR_node_visibility",
+    "KHR_texture_basisu",
     "KHR_texture_transform",
 ];
 
@@ -46,19 +47,13 @@ const INVISIBLE: &[&str] = &[
 
 /// Formats of textures that are not read. Where such a texture has another picture, that one is
 /// shown and there is nothing to say; where it has none, the texture's own warning says so.
-const TEXTURE_FORMATS: &[&str] = &["EXT_texture_avif", "KHR_texture_basisu", "MSFT_texture_dds"];
+const TEXTURE_FORMATS: &[&str] = &["EXT_texture_avif", "MSFT_texture_dds"];
 
 /// How a file that requires an extension becomes one that does not.
-const CONVERSIONS: &[(&str, &str)] = &[
-    (
-        "KHR_texture_basisu",
-        "`gltf-transform ktxdecompress IN OUT` turns KTX textures into PNG",
-    ),
-    (
-        "EXT_texture_avif",
-        "`gltf-transform png IN OUT` turns AVIF textures into PNG",
-    ),
-];
+const CONVERSIONS: &[(&str, &str)] = &[(
+    "EXT_texture_avif",
+    "`gltf-transform png IN OUT` turns AVIF textures into PNG",
+)];
 
 /// Fails on unsupported required extensions, warns of unsupported used ones.
 pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {

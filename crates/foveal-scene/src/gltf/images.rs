@@ -73,14 +73,19 @@ pub(crate) struct TextureDef {
 
 impl TextureDef {
     pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
-        let webp = match o.extension("EXT_texture_webp")? {
-            Some(e) => e
-                .index("source", counts.images)
-                .map_err(|e| e.under("extensions.EXT_texture_webp"))?,
-            None => None,
+        let from = |extension: &str| -> Parsed<Option<u32>> {
+            let Some(e) = o.extension(extension)? else {
+                return Ok(None);
+            };
+            e.index("source", counts.images)
+                .map_err(|e| e.under(format!("extensions.{extension}")))
         };
+        let webp = from("EXT_texture_webp")?;
+        let basis = from("KHR_texture_basisu")?;
+        let plain = o.index("source", counts.images)?;
+        // A plain picture has lost less than one for the graphics card's formats.
         Ok(Self {
-            image: webp.or(o.index("source", counts.images)?),
+            image: webp.or(plain).or(basis),
             sampler: o.index("sampler", counts.samplers)?,
         })
     }

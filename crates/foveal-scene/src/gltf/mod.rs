@@ -6,6 +6,7 @@
 
 mod accessor;
 mod animations;
+mod basis;
 mod budget;
 mod buffers;
 mod cameras;

@@ -10,6 +10,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use image::{DynamicImage, ImageDecoder, ImageFormat};
 
 use super::Resolver;
+use super::basis;
 use super::images::ImageSource;
 use super::reader::Reader;
 use super::uri::{self, Uri};
@@ -29,7 +30,9 @@ pub(crate) fn fetch<'a>(
     resolver: &Resolver<'_>,
 ) -> Parsed<Cow<'a, [u8]>> {
     let Some(image) = image else {
-        return Err(Flaw::new("a texture names no PNG, JPEG or WebP picture"));
+        return Err(Flaw::new(
+            "a texture names no PNG, JPEG, WebP or KTX2 picture",
+        ));
     };
     match &reader.document.images[image as usize].source {
         ImageSource::View(view) => reader
@@ -66,15 +69,14 @@ fn format_of(bytes: &[u8]) -> Result<ImageFormat, String> {
             b'P',
             ..,
         ] => Ok(ImageFormat::WebP),
-        [0xAB, b'K', b'T', b'X', ..] => Err(
-            "is a KTX texture, which is not read; `gltf-transform ktxdecompress` turns it into PNG"
-                .to_owned(),
-        ),
+        [0xAB, b'K', b'T', b'X', ..] => {
+            Err("is a KTX texture of version 1, which glTF does not have".to_owned())
+        }
         [_, _, _, _, b'f', b't', b'y', b'p', b'a', b'v', b'i', ..] => Err(
             "is an AVIF picture, which is not read; `gltf-transform png` turns it into PNG"
                 .to_owned(),
         ),
-        _ => Err("is neither PNG nor JPEG nor WebP".to_owned()),
+        _ => Err("is neither PNG nor JPEG nor WebP nor KTX2".to_owned()),
     }
 }
 
@@ -135,6 +137,16 @@ impl Promise {
 /// Reads a picture's header. An error if the file is too short to keep its promise.
 pub(crate) fn promise(bytes: &[u8]) -> Result<Promise, String> {
     netted(|| {
+        if basis::is_ktx2(bytes) {
+            let (width, height) = basis::size(bytes)?;
+            // Blocks take a byte a texel.
+            let bytes_per_texel = 1;
+            return Ok(Promise {
+                width,
+                height,
+                bytes_per_texel,
+            });
+        }
         let decoder = open(bytes, HEADER_BYTES)?;
         let (width, height) = decoder.dimensions();
         let promise = Promise {
@@ -161,16 +173,25 @@ pub(crate) fn promise(bytes: &[u8]) -> Result<Promise, String> {
 /// Decodes a file whose header is known.
 pub(crate) fn decode(bytes: &[u8], promise: Promise) -> Result<Picture, String> {
     netted(|| {
+        let Promise { width, height, .. } = promise;
+        if basis::is_ktx2(bytes) {
+            let pixels = basis::decode(bytes)?;
+            return Ok(Picture {
+                width,
+                height,
+                pixels,
+            });
+        }
         let room = promise.decoding_bytes() + promise.rgba_bytes() + HEADER_BYTES;
         let decoded =
             DynamicImage::from_decoder(open(bytes, room)?).map_err(|e| undecodable(&e))?;
         let rgba = decoded.into_rgba8();
-        if rgba.dimensions() != (promise.width, promise.height) {
+        if rgba.dimensions() != (width, height) {
             return Err("has another size than its header says".to_owned());
         }
         Ok(Picture {
-            width: rgba.width(),
-            height: rgba.height(),
+            width,
+            height,
             pixels: rgba.into_raw(),
         })
     })

@@ -1,5 +1,6 @@
 //! Tests of the importer on small files made on the spot.
 
+mod basis;
 mod clips;
 mod compressed;
 mod fuzz;

@@ -1,0 +1,82 @@
+//! KTX2 files that hold Basis Universal textures (KHR_texture_basisu) as RGBA8 texels.
+//!
+//! The transcoder trusts lengths that the file states, so all that it allocates by is checked here
+//! first: Khronos, 'KTX File Format Specification 2.0', sections 3 (header, level index) and 5
+//! (data format descriptor). Of the file's mip levels the first is read.
+
+use basisu::{DecodeFlags, TargetFormat, Transcoder};
+
+/// `KHR_DF_MODEL_ETC1S` and `KHR_DF_MODEL_UASTC`.
+const ETC1S: u32 = 163;
+const UASTC: u32 = 166;
+/// Schemes of supercompression.
+const NONE: u32 = 0;
+const BASIS_LZ: u32 = 1;
+const ZSTANDARD: u32 = 2;
+
+/// Whether a file is a KTX2 file, whatever it holds.
+pub(crate) fn is_ktx2(bytes: &[u8]) -> bool {
+    bytes.starts_with(b"\xABKTX 20\xBB\r\n\x1A\n")
+}
+
+/// Width and height of the picture in a KTX2 file. An error where the file holds another thing
+/// than one Basis Universal picture, or is too short for what it states.
+pub(crate) fn size(bytes: &[u8]) -> Result<(u32, u32), String> {
+    let word = |at: usize| -> Result<u32, String> {
+        let word = bytes.get(at..).and_then(<[u8]>::first_chunk);
+        word.map(|w| u32::from_le_bytes(*w)).ok_or_else(cut_off)
+    };
+    let long = |at: usize| Ok::<_, String>(u64::from(word(at)?) | u64::from(word(at + 4)?) << 32);
+    let [format, width, height, depth, layers, faces] = {
+        let mut words = [0; 6];
+        for (field, at) in words.iter_mut().zip([12, 20, 24, 28, 32, 36]) {
+            *field = word(at)?;
+        }
+        words
+    };
+    if depth > 0 || layers > 1 || faces != 1 {
+        return Err("is a KTX2 texture of several pictures, not of one".to_owned());
+    }
+    if width == 0 || height == 0 || width.max(height) > 1 << 16 {
+        return Err(format!("is a KTX2 texture of {width} x {height} texels"));
+    }
+    let (levels, scheme) = (word(40)?, word(44)?);
+    let descriptor = word(48)? as usize;
+    let model = word(descriptor.saturating_add(12))? & 0xFF;
+    let blocks = u64::from(width.div_ceil(4)) * u64::from(height.div_ceil(4));
+    let (offset, length, unpacked) = (long(80)?, long(88)?, long(96)?);
+    // The first level's entry lies before everything else.
+    if levels == 0 || offset.saturating_add(length) > bytes.len() as u64 {
+        return Err(cut_off());
+    }
+    let stated = match (format, model, scheme) {
+        (0, ETC1S, BASIS_LZ) => 0,
+        (0, UASTC, NONE | ZSTANDARD) => 16 * blocks,
+        _ => {
+            return Err(format!(
+                "is a KTX2 texture of format {format}, colour model {model}, scheme {scheme}, \
+                 not of Basis Universal's (ETC1S or UASTC)"
+            ));
+        }
+    };
+    let packed = if scheme == NONE { length } else { unpacked };
+    if packed != stated {
+        return Err(format!(
+            "is a KTX2 texture whose first level has {packed} bytes, not {stated}"
+        ));
+    }
+    Ok((width, height))
+}
+
+fn cut_off() -> String {
+    "is a KTX2 texture that is cut off".to_owned()
+}
+
+/// The texels of a file whose [`size`] is known.
+pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<u8>, String> {
+    let broken = |_| "is a KTX2 texture that cannot be decoded".to_owned();
+    let transcoder = Transcoder::new(bytes).map_err(broken)?;
+    transcoder
+        .transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE)
+        .map_err(broken)
+}
