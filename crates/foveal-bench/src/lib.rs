@@ -18,6 +18,7 @@ mod table;
 mod variable;
 mod verdict;
 
+pub use report::diff::diff_of_texts;
 pub use report::planned_commands;
 
 use clap::Subcommand;

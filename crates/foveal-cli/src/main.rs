@@ -11,9 +11,6 @@ mod cli;
 mod compare;
 mod completions;
 mod cull;
-#[cfg(test)]
-#[path = "../../foveal-scene/src/gltf/tests/mutate.rs"]
-mod mutate;
 mod quiet;
 mod render;
 mod scene_info;

@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Random, answers, eye, occluders, scene, wrongly_culled};
+use common::{Random, answers, assert_as_a_list, eye, occluders, scene, wrongly_culled};
 use foveal_cull::{
     Aabb, CullError, Culler, OccludeeId, OccludeeSet, SingleThread, View, Visibility,
 };
@@ -12,24 +12,6 @@ use glam::{DVec3, Vec3};
 fn moved(r: &mut Random, bounds: Aabb, reach: f64) -> Aabb {
     let by = r.vec(reach).as_vec3();
     Aabb::new(Vec3::from(bounds.min) + by, Vec3::from(bounds.max) + by)
-}
-
-/// Results of a set: what the list shows it shows, but for groups that are hidden as a whole.
-fn assert_as_a_list(culler: &Culler, set: &OccludeeSet, ids: &[OccludeeId]) -> [usize; 2] {
-    let boxes: Vec<Aabb> = ids.iter().map(|id| set.bounds(*id).unwrap()).collect();
-    let mut list = vec![Visibility::Visible; ids.len()];
-    culler.query(&boxes, DVec3::ZERO, &mut list).unwrap();
-    let mut results = vec![Visibility::Visible; set.result_count()];
-    culler.query_set(set, &mut results).unwrap();
-    let (mut culled, mut more) = (0, 0);
-    for ((id, bounds), of_list) in ids.iter().zip(&boxes).zip(list) {
-        let of_set = results[id.index()];
-        culled += usize::from(!of_set.is_visible());
-        more += usize::from(of_list.is_visible() && !of_set.is_visible());
-        assert!(!of_set.is_visible() || of_list.is_visible(), "{bounds:?}");
-        assert!(bounds.is_valid() || of_set.is_visible(), "{bounds:?}");
-    }
-    [culled, more]
 }
 
 #[test]

@@ -3,171 +3,36 @@
 
 mod common;
 
-use common::{Random, Scene, answers, eye, farthest_in_pixels, occluders, scene, wrongly_culled};
+use common::promise::{
+    answers_to_all, culls_nothing_that_either_eye_sees, culls_nothing_visible,
+    culls_nothing_visible_around, culls_nothing_visible_in, hidden, size,
+};
+use common::{Random, answers, eye, occluders, scene, wrongly_culled};
 use foveal_cull::{
-    Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, SingleThread, View, Visibility,
+    Culler, FrameOptions, InstructionSet, OccludeeTree, SingleThread, View, Visibility,
     WorkerThreads,
 };
-use glam::{DAffine3, DVec3};
+use glam::DVec3;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-fn size(r: &mut Random) -> (u32, u32) {
-    (8 + r.below(90) as u32, 8 + r.below(60) as u32)
-}
-
-fn culls_nothing_visible(
-    seed: u64,
-    orthographic: bool,
-    origin: DVec3,
-) -> Result<usize, TestCaseError> {
-    culls_nothing_visible_in(None, seed, orthographic, origin)
-}
-
-/// In a buffer of this size, or of any.
-fn culls_nothing_visible_in(
-    buffer: Option<(u32, u32)>,
-    seed: u64,
-    orthographic: bool,
-    origin: DVec3,
-) -> Result<usize, TestCaseError> {
-    let mut r = Random::new(seed);
-    let objects = 1 + r.below(7);
-    let scene = scene(&mut r, objects, 150, origin);
-    let eye = eye(&mut r, origin, orthographic);
-    let of_any = size(&mut r);
-    let (w, h) = buffer.unwrap_or(of_any);
-    let set = occluders(&scene, &(0..objects).collect::<Vec<_>>());
-    let mut culler = Culler::new(w, h).unwrap();
-    let all = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
-    culler
-        .rasterize(&View::mono(eye), &set, &all, &SingleThread)
-        .unwrap();
-    let mut results = vec![Visibility::Visible; scene.boxes.len()];
-    culler
-        .query(&scene.boxes, scene.origin, &mut results)
-        .unwrap();
-    let mut depth = vec![0.0; (w * h) as usize];
-    culler.read_depth(&mut depth).unwrap();
-    for n in [1, 4] {
-        let farthest = farthest_in_pixels(&scene, &eye, (w, h), n);
-        for (i, (claimed, farthest)) in depth.iter().zip(farthest).enumerate() {
-            prop_assert!(
-                *claimed <= farthest,
-                "seed {seed}, {n}x: pixel {i} of {w} x {h} claims {claimed}, the reference has {farthest}"
-            );
-        }
-        let wrong = wrongly_culled(&scene, &eye, (w, h), n, &results);
-        prop_assert!(
-            wrong.is_empty(),
-            "seed {}, {}x: {:?} {:?}",
-            seed,
-            n,
-            &wrong,
-            wrong
-                .iter()
-                .map(|&i| (scene.boxes[i], results[i]))
-                .collect::<Vec<_>>()
-        );
-    }
-    Ok(hidden(&results))
-}
-
-fn see_nothing_culled(
-    scene: &Scene,
-    eyes: &[Eye],
-    size: (u32, u32),
-    results: &[Visibility],
-) -> Result<(), TestCaseError> {
-    for (eye, n) in eyes.iter().flat_map(|e| [(e, 1), (e, 4)]) {
-        let wrong = wrongly_culled(scene, eye, size, n, results);
-        prop_assert!(
-            wrong.is_empty(),
-            "{}x: {:?} {:?}",
-            n,
-            &wrong,
-            wrong
-                .iter()
-                .map(|&i| (scene.boxes[i], results[i]))
-                .collect::<Vec<_>>()
-        );
-    }
-    Ok(())
-}
-
-fn hidden(results: &[Visibility]) -> usize {
-    results
-        .iter()
-        .filter(|r| **r == Visibility::Occluded)
-        .count()
-}
-
-fn culls_nothing_visible_around(seed: u64) -> Result<(), TestCaseError> {
-    let mut r = Random::new(seed);
-    let objects = 1 + r.below(6);
-    let scene = scene(&mut r, objects, 150, DVec3::ZERO);
-    let center = eye(&mut r, DVec3::ZERO, seed.is_multiple_of(5));
-    let size = size(&mut r);
-    let radius = [0.005, 0.03, 0.2][r.below(3)];
-    let view = View::mono(center).with_validity_radius(radius);
-    let results = answers_to_all(&scene, &view, size);
-    let eyes = [0, 1, 2].map(|k| {
-        let far = if k == 0 { 1.0 } else { r.next() };
-        let step = r.vec(1.0).normalize() * (radius * far);
-        let pose = DAffine3::from_translation(step) * DAffine3::from(center.world_from_eye);
-        Eye::new(pose, center.projection)
-    });
-    see_nothing_culled(&scene, &eyes, size, &results)
-}
-
-/// Gives how many boxes are hidden from one eye, and from both.
-fn culls_nothing_that_either_eye_sees(seed: u64) -> Result<[usize; 2], TestCaseError> {
-    let mut r = Random::new(seed);
-    let objects = 1 + r.below(6);
-    let scene = scene(&mut r, objects, 150, DVec3::ZERO);
-    let left = eye(&mut r, DVec3::ZERO, false);
-    // The other eye: beside it, turned a little outwards, with its own asymmetric frustum.
-    let cant = DAffine3::from_rotation_y(r.range(-0.15, 0.15));
-    let apart = DAffine3::from_translation(DVec3::new(0.063, 0.0, 0.0));
-    let mut right = eye(&mut r, DVec3::ZERO, false);
-    right.world_from_eye = (DAffine3::from(left.world_from_eye) * apart * cant).into();
-    let size = size(&mut r);
-    let results = answers_to_all(&scene, &View::stereo(left, right), size);
-    see_nothing_culled(&scene, &[left, right], size, &results)?;
-    let of_one = answers_to_all(&scene, &View::mono(left), size);
-    Ok([hidden(&of_one), hidden(&results)])
-}
-
-/// Answers where fine detail is not left out.
-fn answers_to_all(scene: &Scene, view: &View, (w, h): (u32, u32)) -> Vec<Visibility> {
-    let all = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
-    let set = occluders(scene, &(0..scene.objects.len()).collect::<Vec<_>>());
-    let mut culler = Culler::new(w, h).unwrap();
-    culler.rasterize(view, &set, &all, &SingleThread).unwrap();
-    let mut results = vec![Visibility::Visible; scene.boxes.len()];
-    culler
-        .query(&scene.boxes, scene.origin, &mut results)
-        .unwrap();
-    results
-}
-
 proptest! {
-    // The same scenes every time; other ones are for `soak`.
+    // The same scenes every time; other ones are for the fuzzers.
     #![proptest_config(ProptestConfig { cases: 1000, rng_seed: RngSeed::Fixed(20), ..ProptestConfig::default() })]
 
     #[test]
     fn perspective_views_cull_nothing_visible(seed in any::<u64>()) {
-        culls_nothing_visible(seed, false, DVec3::ZERO)?;
+        culls_nothing_visible(seed, false, DVec3::ZERO).map_err(TestCaseError::fail)?;
     }
 
     #[test]
     fn orthographic_views_cull_nothing_visible(seed in any::<u64>()) {
-        culls_nothing_visible(seed, true, DVec3::ZERO)?;
+        culls_nothing_visible(seed, true, DVec3::ZERO).map_err(TestCaseError::fail)?;
     }
 
     #[test]
     fn a_million_metres_from_the_origin_nothing_visible_is_culled(seed in any::<u64>()) {
-        culls_nothing_visible(seed, seed % 4 == 0, DVec3::new(1e6, -2e5, 3e6))?;
+        culls_nothing_visible(seed, seed % 4 == 0, DVec3::new(1e6, -2e5, 3e6)).map_err(TestCaseError::fail)?;
     }
 
     #[test]
@@ -236,12 +101,12 @@ proptest! {
 
     #[test]
     fn within_the_validity_radius_nothing_visible_is_culled(seed in any::<u64>()) {
-        culls_nothing_visible_around(seed)?;
+        culls_nothing_visible_around(seed).map_err(TestCaseError::fail)?;
     }
 
     #[test]
     fn what_either_eye_sees_is_not_culled(seed in any::<u64>()) {
-        culls_nothing_that_either_eye_sees(seed)?;
+        culls_nothing_that_either_eye_sees(seed).map_err(TestCaseError::fail)?;
     }
 
     #[test]
@@ -282,25 +147,6 @@ fn samples_beside_a_border_are_not_covered() {
     }
     for seed in [17_824_462_219_250_879_956, 15_990_008_277_548_940_997] {
         culls_nothing_visible(seed, true, DVec3::ZERO).unwrap();
-    }
-}
-
-/// `SCENES=100000 FIRST=0 cargo test -p foveal-cull --test safety soak -- --ignored`: about 2 ms
-/// each.
-#[test]
-#[ignore = "as long as one likes"]
-fn soak() {
-    let number = |name: &str, default: u64| {
-        std::env::var(name).map_or(default, |v| v.parse().expect("a whole number"))
-    };
-    let first = number("FIRST", 0);
-    for i in first..first + number("SCENES", 10_000) {
-        let seed = (i + 1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        culls_nothing_visible(seed, false, DVec3::ZERO).unwrap();
-        culls_nothing_visible(seed, true, DVec3::ZERO).unwrap();
-        culls_nothing_visible(seed, i % 4 == 0, DVec3::new(1e6, -2e5, 3e6)).unwrap();
-        culls_nothing_visible_around(seed).unwrap();
-        culls_nothing_that_either_eye_sees(seed).unwrap();
     }
 }
 

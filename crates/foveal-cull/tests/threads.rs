@@ -101,3 +101,30 @@ fn a_job_system_behind_a_closure_draws_the_same_in_whatever_order_it_runs_tasks(
         expected
     );
 }
+
+/// Rectangles of clusters with a corner so far away were rounded by more than they were grown, and
+/// a thread whose rows they missed left out what one thread alone draws.
+#[test]
+fn with_a_corner_very_far_away_threads_change_nothing() {
+    let pool = WorkerThreads::new(3);
+    let mut covered = 0;
+    for seed in 0..400 {
+        let mut r = Random::new(seed);
+        let mut scene = scene(&mut r, 4, 0, DVec3::ZERO);
+        for object in &mut scene.objects {
+            let at = r.below(object.positions.len());
+            object.positions[at][r.below(3)] = [3e9, -1e9, 1e12, 1e20][r.below(4)];
+        }
+        let view = View::mono(eye(&mut r, DVec3::ZERO, seed % 2 == 0));
+        let set = occluders(&scene, &[0, 1, 2, 3]);
+        let mut culler = Culler::new(77, 36).unwrap();
+        let mut depths = [vec![0.0; 77 * 36], vec![0.0; 77 * 36]];
+        answers(&mut culler, &view, &set, &scene, &SingleThread);
+        culler.read_depth(&mut depths[0]).unwrap();
+        answers(&mut culler, &view, &set, &scene, &pool);
+        culler.read_depth(&mut depths[1]).unwrap();
+        assert!(depths[0] == depths[1], "seed {seed}");
+        covered += depths[0].iter().filter(|d| **d > 0.0).count();
+    }
+    assert!(covered > 10_000, "{covered}");
+}

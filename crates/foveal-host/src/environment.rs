@@ -99,8 +99,11 @@ fn decode(reader: impl BufRead + Seek) -> anyhow::Result<EnvironmentMap> {
     Ok(EnvironmentMap::new(width, height, texels)?)
 }
 
-/// The radiance in a file of either format.
-fn picture(mut reader: impl BufRead + Seek) -> anyhow::Result<Rgb32FImage> {
+/// The radiance in a file of either format, not filtered.
+///
+/// # Errors
+/// Names the cause.
+pub fn picture(mut reader: impl BufRead + Seek) -> anyhow::Result<Rgb32FImage> {
     let mut start = Vec::new();
     reader
         .by_ref()

@@ -27,7 +27,3 @@ pub mod scene_source;
 pub mod settings;
 pub mod values;
 pub mod video;
-
-#[cfg(test)]
-#[path = "../../foveal-scene/src/gltf/tests/mutate.rs"]
-mod mutate;

@@ -47,7 +47,11 @@ pub fn write(path: &Path, radiance: &RadianceImage) -> anyhow::Result<()> {
     crate::atomic_file::write(path, &bytes)
 }
 
-fn encode(path: &Path, radiance: &RadianceImage) -> anyhow::Result<Vec<u8>> {
+/// The bytes of such a file.
+///
+/// # Errors
+/// Where the name is of another format.
+pub fn encode(path: &Path, radiance: &RadianceImage) -> anyhow::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let (width, height) = (radiance.width, radiance.height);
     match PictureFormat::of(path) {

@@ -14,7 +14,7 @@ use serde_json::Value;
 
 use crate::table::text;
 use foveal_host::{atomic_file, console};
-use pairs::{Change, pairs};
+use pairs::{Change, Pair, pairs};
 
 /// Arguments of `foveal bench diff`.
 #[derive(Debug, clap::Args)]
@@ -34,39 +34,82 @@ pub struct Args {
 /// Prints what changed.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     let (old, new) = (read(&args.old)?, read(&args.new)?);
-    for key in ["scene", "width", "height", "quick"] {
-        if old[key] != new[key] {
-            bail!(
-                "the reports cannot be compared: '{key}' is {} in '{}' and {} in '{}'",
-                old[key],
-                args.old.display(),
-                new[key],
-                args.new.display()
-            );
-        }
-    }
     if let Some(file) = &args.page {
         atomic_file::check_writable(file)?;
     }
-    let pairs = pairs(&old, &new);
-    if pairs.is_empty() {
-        bail!("the reports have no row in common");
+    let names = [&args.old, &args.new].map(|path| path.display().to_string());
+    let difference = Difference::of(&old, &new, [&names[0], &names[1]])?;
+    if let Some(file) = &args.page {
+        atomic_file::write(file, difference.page.as_bytes())?;
     }
-    let slower = pairs.iter().filter(|p| p.change == Change::Slower).count();
-    let faster = pairs.iter().filter(|p| p.change == Change::Faster).count();
-    let mut lines = vec![
-        [
-            "bench",
-            "row",
-            "figure",
-            "old ms",
-            "new ms",
-            "old / new",
-            "",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
+    console::print_result(&difference.said)?;
+    if args.fail && difference.slower > 0 {
+        bail!("{} times became slower", difference.slower);
+    }
+    Ok(())
+}
+
+/// What changed between the texts of two reports: as text, and as a page.
+///
+/// # Errors
+/// Where one of them is no report, and where they cannot be compared.
+pub fn diff_of_texts(old: &str, new: &str) -> anyhow::Result<[String; 2]> {
+    let difference = Difference::of(&parse(old)?, &parse(new)?, ["old", "new"])?;
+    Ok([difference.said, difference.page])
+}
+
+/// What changed between two reports.
+struct Difference {
+    said: String,
+    page: String,
+    slower: usize,
+}
+
+impl Difference {
+    fn of(old: &Value, new: &Value, names: [&str; 2]) -> anyhow::Result<Self> {
+        for key in ["scene", "width", "height", "quick"] {
+            if old[key] != new[key] {
+                bail!(
+                    "the reports cannot be compared: '{key}' is {} in '{}' and {} in '{}'",
+                    old[key],
+                    names[0],
+                    new[key],
+                    names[1]
+                );
+            }
+        }
+        let pairs = pairs(old, new);
+        if pairs.is_empty() {
+            bail!("the reports have no row in common");
+        }
+        let count = |change| pairs.iter().filter(|p| p.change == change).count();
+        let (slower, faster) = (count(Change::Slower), count(Change::Faster));
+        let mut said = table(&pairs);
+        said += &format!(
+            "{} times compared: {slower} slower, {faster} faster, {} within the noise\n",
+            pairs.len(),
+            pairs.len() - slower - faster
+        );
+        Ok(Self {
+            said,
+            page: page::of(old, new, &pairs),
+            slower,
+        })
+    }
+}
+
+/// The times that changed; empty where none did.
+fn table(pairs: &[Pair]) -> String {
+    let head = [
+        "bench",
+        "row",
+        "figure",
+        "old ms",
+        "new ms",
+        "old / new",
+        "",
     ];
+    let mut lines = vec![head.map(str::to_owned).to_vec()];
     for pair in pairs.iter().filter(|p| p.change != Change::Same) {
         lines.push(vec![
             pair.bench.clone(),
@@ -78,33 +121,22 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
             format!("{:?}", pair.change).to_lowercase(),
         ]);
     }
-    let mut said = if lines.len() > 1 {
+    if lines.len() > 1 {
         text(&lines)
     } else {
         String::new()
-    };
-    said += &format!(
-        "{} times compared: {slower} slower, {faster} faster, {} within the noise\n",
-        pairs.len(),
-        pairs.len() - slower - faster
-    );
-    if let Some(file) = &args.page {
-        atomic_file::write(file, page::of(&old, &new, &pairs).as_bytes())?;
     }
-    console::print_result(&said)?;
-    if args.fail && slower > 0 {
-        bail!("{slower} times became slower");
-    }
-    Ok(())
 }
 
 fn read(path: &Path) -> anyhow::Result<Value> {
-    let read = || -> anyhow::Result<Value> {
-        let report: Value = serde_json::from_str(&std::fs::read_to_string(path)?)?;
-        if report["schema"] != "foveal-report" {
-            bail!("it is no report of 'foveal bench all'");
-        }
-        Ok(report)
-    };
+    let read = || parse(&std::fs::read_to_string(path)?);
     read().with_context(|| format!("cannot read the report '{}'", path.display()))
+}
+
+fn parse(text: &str) -> anyhow::Result<Value> {
+    let report: Value = serde_json::from_str(text)?;
+    if report["schema"] != "foveal-report" {
+        bail!("it is no report of 'foveal bench all'");
+    }
+    Ok(report)
 }

@@ -7,11 +7,8 @@ use foveal_cull::{Culler, OccludeeTree, View, Visibility};
 use glam::DVec3;
 use serde::Serialize;
 
-use super::occludees::Occludees;
-use super::subject::Subject;
 use foveal_host::culling::Clock;
-use foveal_host::culling::CullingArgs;
-use foveal_host::culling::Workers;
+use foveal_host::culling::{CullingArgs, Occludees, Subject, Workers};
 use foveal_measure::median;
 
 /// The figures of one eye, those that Intel's occlusion culling sample shows. Times are medians.

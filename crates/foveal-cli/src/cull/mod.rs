@@ -5,14 +5,9 @@
 //! wanted, and drawn.
 
 mod args;
-#[cfg(test)]
-mod fuzz;
 mod measure;
-mod mocrec;
-mod occludees;
 mod picture;
 mod report;
-mod subject;
 mod table;
 #[cfg(test)]
 mod tests;
@@ -24,12 +19,11 @@ use foveal_cull::Culler;
 
 pub(crate) use args::Args;
 
-use foveal_host::culling::{Check, NamedEye, Workers};
+use foveal_host::culling::{Check, NamedEye, Subject, Workers, mocrec};
 use foveal_host::progress::progress_bar;
 use foveal_host::{atomic_file, console, scene_source};
 use measure::measure;
 use report::{CameraReport, Report};
-use subject::Subject;
 
 /// Culls what the arguments ask for.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {

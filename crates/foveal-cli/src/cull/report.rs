@@ -5,10 +5,8 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::measure::{Figures, Outcome};
-use super::mocrec::{Agreement, Verdict};
-use super::subject::Subject;
-use foveal_host::culling::Check;
-use foveal_host::culling::NamedEye;
+use foveal_host::culling::mocrec::{Agreement, Verdict};
+use foveal_host::culling::{Check, NamedEye, Subject};
 
 /// Grows by one whenever a field changes its meaning or goes away.
 pub(super) const SCHEMA_VERSION: u32 = 1;

@@ -2,11 +2,11 @@
 
 use std::fmt::Write;
 
-use super::mocrec::Agreement;
 use super::report::{CameraReport, Report};
 use foveal_host::console;
 use foveal_host::console::grouped;
 use foveal_host::culling::Check;
+use foveal_host::culling::mocrec::Agreement;
 
 /// All cameras, one after the other.
 pub(super) fn text(report: &Report) -> String {

@@ -32,8 +32,8 @@ pub fn wall() -> *mut FovealCullMesh {
 
 pub fn set() -> *mut FovealCullOccluders {
     let mut set = null_mut();
-    // SAFETY: a place for the set.
     assert_eq!(
+        // SAFETY: a place for the set.
         unsafe { foveal_cull_occluders_create(&mut set) },
         Status::Ok
     );
@@ -42,8 +42,8 @@ pub fn set() -> *mut FovealCullOccluders {
 
 pub fn culler() -> *mut FovealCuller {
     let mut culler = null_mut();
-    // SAFETY: a place for the culler.
     assert_eq!(
+        // SAFETY: a place for the culler.
         unsafe { foveal_culler_create(64, 64, &mut culler) },
         Status::Ok
     );

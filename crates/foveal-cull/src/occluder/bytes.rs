@@ -141,7 +141,7 @@ fn put_vertices(bytes: &mut Vec<u8>, vertices: &Vertices) {
 }
 
 /// Writes the checksum.
-fn seal(bytes: &mut [u8]) {
+pub(crate) fn seal(bytes: &mut [u8]) {
     let sum = checksum(bytes).to_le_bytes();
     bytes[CHECKSUM..CHECKSUM + 8].copy_from_slice(&sum);
 }

@@ -22,5 +22,7 @@ mod weld;
 mod word_hash;
 
 pub use bake::BakeOptions;
+#[cfg(feature = "reference")]
+pub(crate) use bytes::seal;
 pub use mesh::OccluderMesh;
 pub use set::{OccluderId, OccluderSet};

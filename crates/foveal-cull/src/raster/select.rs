@@ -272,15 +272,39 @@ struct Place {
     crossing: bool,
 }
 
-/// Growth of the rectangles of clipped boxes, samples, against rounding.
+/// Least growth of the rectangles of clipped boxes, samples, against rounding.
 const GROWN: f32 = 1.0;
+
+/// Boxes whose rectangle may be wrong by more samples than this count as everywhere.
+const LOST: f32 = 1e5;
+
+/// A bound on the rounding of a box's rectangle, samples: a rectangle that is too small would leave
+/// polygons out of some threads' rows, and not out of others'. Distances are at least 1 where a box
+/// is clipped, so that an error of a clip row's value is at most one of the quotient.
+fn rounding(screen: &Screen<'_>, cluster: &Cluster) -> f32 {
+    let reach = cluster.center.abs() + cluster.half;
+    let size = |r: &[f32; 4]| {
+        r[0].abs() * reach.x + r[1].abs() * reach.y + r[2].abs() * reach.z + r[3].abs()
+    };
+    let [x, y, _, w] = &screen.rows;
+    let widest = screen.width.max(screen.height);
+    (size(x) + size(y) + size(w) * widest) * f32::EPSILON
+}
 
 /// The place of a cluster whose box crosses the near plane: of the part of the box within the
 /// frustum. None if there is no such part.
 #[inline(never)]
 fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
+    let rounding = rounding(screen, cluster);
+    if rounding.is_nan() || rounding > LOST {
+        return Some(Place {
+            rect: [0.0, 0.0, screen.width, screen.height],
+            depth: f32::INFINITY,
+            crossing: true,
+        });
+    }
     let screen = Screen {
-        dilate: GROWN,
+        dilate: rounding.max(GROWN),
         ..*screen
     };
     if screen.is_beside(cluster.center, cluster.half) {

@@ -11,11 +11,35 @@
     reason = "helpers outlive the borrow of a task; see the SAFETY line"
 )]
 
+#[cfg(all(test, loom))]
+mod model;
+
 use super::run::Threads;
-use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread::JoinHandle;
+use std::sync::PoisonError;
+use sync::{Arc, AtomicU64, AtomicUsize, Condvar, JoinHandle, Mutex, MutexGuard, Ordering};
+
+/// What threads and memory are; under `--cfg loom` the model checker's.
+#[cfg(not(all(test, loom)))]
+mod sync {
+    pub(super) use core::hint::spin_loop;
+    pub(super) use core::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+    pub(super) use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+    pub(super) use std::thread::{Builder, JoinHandle, yield_now};
+
+    /// Times that a waiting thread looks for work before it sleeps, about ten nanoseconds each.
+    pub(super) const LOOKS: u32 = 4000;
+}
+#[cfg(all(test, loom))]
+mod sync {
+    pub(super) use loom::hint::spin_loop;
+    pub(super) use loom::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+    pub(super) use loom::sync::{Arc, Condvar, Mutex, MutexGuard};
+    pub(super) use loom::thread::{Builder, JoinHandle, yield_now};
+
+    /// Every further look makes the same choices possible once more.
+    pub(super) const LOOKS: u32 = 1;
+}
 
 /// Threads of the culler's own, started once and joined when dropped.
 ///
@@ -27,9 +51,6 @@ pub struct WorkerThreads {
     helpers: Vec<JoinHandle<()>>,
     turn: Mutex<()>,
 }
-
-/// Times that a waiting thread looks for work before it sleeps, about ten nanoseconds each.
-const LOOKS: u32 = 4000;
 
 /// After this many looks another thread of the same core may run: it may be the one that is waited
 /// for.
@@ -96,14 +117,14 @@ impl Shared {
 
     /// Spins for a while until something has happened.
     fn watch(&self, happened: impl Fn(&Self) -> bool) {
-        for look in 1..=LOOKS {
+        for look in 1..=sync::LOOKS {
             if happened(self) {
                 return;
             }
             if look % LOOKS_IN_A_ROW == 0 {
-                std::thread::yield_now();
+                sync::yield_now();
             } else {
-                core::hint::spin_loop();
+                sync::spin_loop();
             }
         }
     }
@@ -175,7 +196,7 @@ impl WorkerThreads {
         let helpers = (1..threads)
             .filter_map(|_| {
                 let shared = Arc::clone(&shared);
-                std::thread::Builder::new()
+                sync::Builder::new()
                     .name("foveal-cull".into())
                     .spawn(move || shared.help())
                     .ok()

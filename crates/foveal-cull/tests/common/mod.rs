@@ -6,10 +6,12 @@
     reason = "shared by several test programs, each using a part"
 )]
 
+pub mod promise;
+
 use foveal_cull::reference::{Reference, Seen};
 use foveal_cull::{
-    Aabb, BakeOptions, Culler, Eye, FrameOptions, OccluderMesh, OccluderSet, Projection, Threads,
-    View, Visibility,
+    Aabb, BakeOptions, Culler, Eye, FrameOptions, OccludeeId, OccludeeSet, OccluderMesh,
+    OccluderSet, Projection, Threads, View, Visibility,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3, Vec3};
 use std::sync::Arc;
@@ -308,4 +310,22 @@ pub fn wrongly_culled(
             !results[i].is_visible() && exact.seen(&scene.boxes[i], scene.origin) == Seen::Visible
         })
         .collect()
+}
+
+/// Results of a set: what the list shows it shows, but for groups that are hidden as a whole.
+pub fn assert_as_a_list(culler: &Culler, set: &OccludeeSet, ids: &[OccludeeId]) -> [usize; 2] {
+    let boxes: Vec<Aabb> = ids.iter().map(|id| set.bounds(*id).unwrap()).collect();
+    let mut list = vec![Visibility::Visible; ids.len()];
+    culler.query(&boxes, DVec3::ZERO, &mut list).unwrap();
+    let mut results = vec![Visibility::Visible; set.result_count()];
+    culler.query_set(set, &mut results).unwrap();
+    let (mut culled, mut more) = (0, 0);
+    for ((id, bounds), of_list) in ids.iter().zip(&boxes).zip(list) {
+        let of_set = results[id.index()];
+        culled += usize::from(!of_set.is_visible());
+        more += usize::from(of_list.is_visible() && !of_set.is_visible());
+        assert!(!of_set.is_visible() || of_list.is_visible(), "{bounds:?}");
+        assert!(bounds.is_valid() || of_set.is_visible(), "{bounds:?}");
+    }
+    [culled, more]
 }

@@ -7,4 +7,5 @@ mod viewpoint;
 
 pub use args::CameraArgs;
 pub(crate) use args::check_direction;
+pub use path::CameraPath;
 pub use viewpoint::Viewpoint;

@@ -31,8 +31,11 @@ fn with(settings: &Settings, given: &Table) -> anyhow::Result<Settings> {
     Ok(table.try_into()?)
 }
 
-/// What is wrong on every device; each device's own limits are the renderer's to check.
-fn check(settings: &Settings) -> anyhow::Result<()> {
+/// Refuses what is wrong on every device; each device's own limits are the renderer's to check.
+///
+/// # Errors
+/// Names the setting.
+pub fn check(settings: &Settings) -> anyhow::Result<()> {
     let boundless = wgpu::Limits {
         max_texture_dimension_2d: u32::MAX,
         max_buffer_size: u64::MAX,
@@ -49,14 +52,21 @@ fn check(settings: &Settings) -> anyhow::Result<()> {
 pub fn read(path: &Path) -> anyhow::Result<Settings> {
     let text = std::fs::read_to_string(path)
         .with_context(|| format!("cannot read the settings file '{}'", path.display()))?;
-    parse(&text).map_err(|error| {
+    from_text(&text, &path.display().to_string())
+}
+
+/// Reads the text of a settings file of this name.
+///
+/// # Errors
+/// Where it is wrong, with line and key.
+pub fn from_text(text: &str, name: &str) -> anyhow::Result<Settings> {
+    parse(text).map_err(|error| {
         let place = match error.span() {
-            Some(span) => place(&text, span.start),
+            Some(span) => place(text, span.start),
             None => String::new(),
         };
         anyhow!(
-            "the settings file '{}' is wrong{place}: {}",
-            path.display(),
+            "the settings file '{name}' is wrong{place}: {}",
             error.message()
         )
     })

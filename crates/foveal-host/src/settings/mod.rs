@@ -4,4 +4,4 @@ mod args;
 mod file;
 
 pub use args::{SettingsArgs, flags};
-pub use file::read;
+pub use file::{check, from_text, read};

@@ -40,9 +40,9 @@ struct Pose {
     fov_y_deg: f32,
 }
 
-/// A curve through camera poses.
+/// A curve through camera poses, as `--path FILE.json` takes it.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct CameraPath {
+pub struct CameraPath {
     /// At least one, times strictly increasing.
     keys: Vec<(f32, Pose)>,
 }
@@ -56,7 +56,11 @@ impl CameraPath {
             .with_context(|| format!("the camera path '{}' is wrong", path.display()))
     }
 
-    pub(super) fn parse(text: &str, fov_y_deg: f32) -> anyhow::Result<Self> {
+    /// Reads the text of such a file.
+    ///
+    /// # Errors
+    /// Names the keyframe.
+    pub fn parse(text: &str, fov_y_deg: f32) -> anyhow::Result<Self> {
         let json: Vec<JsonKey> = serde_json::from_str(text)?;
         if json.is_empty() {
             bail!("it has no keyframes");
@@ -82,7 +86,7 @@ impl CameraPath {
     }
 
     /// The camera at `time_s` seconds.
-    pub(super) fn at(&self, time_s: f32) -> Camera {
+    pub fn at(&self, time_s: f32) -> Camera {
         let Pose {
             eye,
             target,

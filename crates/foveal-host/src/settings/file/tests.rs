@@ -6,7 +6,6 @@ use toml::Value;
 
 use super::super::args::flags;
 use super::*;
-use crate::mutate::{self, mutate};
 
 #[derive(Parser)]
 struct Line {
@@ -220,23 +219,4 @@ fn senseless_values_are_refused() {
     ] {
         assert!(check(&parse(text).unwrap()).is_err(), "{text}");
     }
-}
-
-#[test]
-fn fuzz_settings() {
-    let all = toml::to_string(&Settings::default()).unwrap();
-    let seeds = [
-        all.into_bytes(),
-        b"width = 64\nlighting = \"blinn-phong\"\n".to_vec(),
-    ];
-    mutate::run("settings", &seeds, mutate, |bytes| {
-        let text = String::from_utf8_lossy(bytes);
-        match parse(&text) {
-            Ok(settings) => drop(check(&settings)),
-            Err(error) => {
-                let start = error.span().map_or(0, |span| span.start);
-                assert!(place(&text, start).contains("line"));
-            }
-        }
-    });
 }

@@ -3,7 +3,7 @@
 
 use serde_json::json;
 
-use super::{File, warnings};
+use super::{File, Loads, warnings};
 use crate::{Clip, LoadOptions};
 
 /// A triangle that `Walk` (2 s) moves along x and `Run` (1 s) along y.

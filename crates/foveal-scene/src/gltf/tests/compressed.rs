@@ -1,38 +1,9 @@
 //! Compressed geometry and pictures, made here by the libraries' encoders.
 
-use draco_core::{
-    DataType, EncoderBuffer, EncoderOptions, FaceIndex, GeometryAttributeType, Mesh, MeshEncoder,
-    PointAttribute, PointIndex,
-};
+use foveal_seeds::{draco_file, draco_stream, gradient, grid_file, meshopt_file, webp_file};
 use serde_json::json;
 
-use super::{File, warnings};
-
-/// A bumpy grid of 8 x 8 quads.
-fn grid() -> (Vec<[f32; 3]>, Vec<u32>) {
-    let point = |i: u32| {
-        let (x, y) = ((i % 9) as f32, (i / 9) as f32);
-        [x, y, (x * 1.7).sin() + (y * 0.9).cos()]
-    };
-    let mut indices = Vec::new();
-    for y in 0..8 {
-        for x in 0..8 {
-            let a = y * 9 + x;
-            indices.extend([a, a + 1, a + 9, a + 9, a + 1, a + 10]);
-        }
-    }
-    ((0..81).map(point).collect(), indices)
-}
-
-/// The grid without compression.
-fn plain() -> File {
-    let (points, indices) = grid();
-    let mut file = File::with_mesh();
-    file.attribute("POSITION", points.as_flattened(), "VEC3");
-    let narrow: Vec<u16> = indices.iter().map(|&i| i as u16).collect();
-    file.indices(&narrow);
-    file
-}
+use super::{File, Loads, warnings};
 
 /// All triangles as sorted corners, whatever order they are stored in.
 fn triangles(file: &File) -> Vec<[[i32; 3]; 3]> {
@@ -57,40 +28,9 @@ fn triangles(file: &File) -> Vec<[[i32; 3]; 3]> {
     all
 }
 
-/// Puts compressed bytes behind a view of a buffer that exists only for readers without the
-/// extension.
-fn compress(file: &mut File, view: usize, name: &str, bytes: &[u8], stride: usize, mode: &str) {
-    let at = file.view(bytes);
-    let stored = file.json["bufferViews"][at].clone();
-    let plain = file.json["bufferViews"][view]["byteLength"]
-        .as_u64()
-        .unwrap() as usize;
-    file.json["bufferViews"][view] = json!({
-        "buffer": 1, "byteOffset": 0, "byteLength": plain,
-        "extensions": { name: {
-            "buffer": 0, "byteOffset": stored["byteOffset"], "byteLength": bytes.len(),
-            "byteStride": stride, "count": plain / stride, "mode": mode,
-        } },
-    });
-}
-
-pub(super) fn meshopt_file(name: &str, version: i32) -> File {
-    let (points, indices) = grid();
-    let mut file = plain();
-    let packed = meshopt::encode_vertex_buffer_level(&points, 2, Some(version)).unwrap();
-    compress(&mut file, 0, name, &packed, 12, "ATTRIBUTES");
-    let packed = meshopt::encode_index_buffer(&indices, points.len()).unwrap();
-    compress(&mut file, 1, name, &packed, 2, "TRIANGLES");
-    file.more_buffers =
-        vec![json!({ "byteLength": 4096, "extensions": { name: { "fallback": true } } })];
-    file.json["extensionsRequired"] = json!([name]);
-    file.json["extensionsUsed"] = json!([name]);
-    file
-}
-
 #[test]
 fn views_compressed_by_meshopt_give_the_same_triangles() {
-    let expected = triangles(&plain());
+    let expected = triangles(&grid_file());
     for (name, version) in [
         ("EXT_meshopt_compression", 0),
         ("KHR_meshopt_compression", 0),
@@ -124,65 +64,9 @@ fn broken_meshopt_data_are_named_with_their_view() {
     }
 }
 
-/// The grid's Draco stream, by the method that follows edges (speed 5) or without prediction (speed
-/// 10).
-pub(super) fn draco_stream(speed: i32) -> Vec<u8> {
-    let (points, indices) = grid();
-    let mut position = PointAttribute::new();
-    let count = points.len();
-    position.init(
-        GeometryAttributeType::Position,
-        3,
-        DataType::Float32,
-        false,
-        count,
-    );
-    for (i, point) in points.iter().enumerate() {
-        let bytes: Vec<u8> = point.iter().flat_map(|v| v.to_le_bytes()).collect();
-        position.buffer_mut().write(i * 12, &bytes);
-    }
-    let mut mesh = Mesh::new();
-    mesh.add_attribute(position);
-    mesh.set_num_faces(indices.len() / 3);
-    for (i, t) in indices.chunks_exact(3).enumerate() {
-        let face = [PointIndex(t[0]), PointIndex(t[1]), PointIndex(t[2])];
-        mesh.set_face(FaceIndex(i as u32), face);
-    }
-    let mut options = EncoderOptions::new();
-    options.set_compression_level(10 - speed);
-    let mut encoder = MeshEncoder::new();
-    encoder.set_mesh(mesh);
-    let mut out = EncoderBuffer::new();
-    encoder.encode(&options, &mut out).unwrap();
-    out.data().to_vec()
-}
-
-pub(super) fn draco_file(stream: &[u8]) -> File {
-    let (points, indices) = grid();
-    let mut file = File::with_mesh();
-    let view = file.view(stream);
-    let position = file.push(
-        "accessors",
-        json!({ "componentType": 5126, "type": "VEC3", "count": points.len() }),
-    );
-    let index = file.push(
-        "accessors",
-        json!({ "componentType": 5123, "type": "SCALAR", "count": indices.len() }),
-    );
-    *file.primitive() = json!({
-        "attributes": { "POSITION": position },
-        "indices": index,
-        "extensions": { "KHR_draco_mesh_compression": {
-            "bufferView": view, "attributes": { "POSITION": 0 },
-        } },
-    });
-    file.json["extensionsRequired"] = json!(["KHR_draco_mesh_compression"]);
-    file
-}
-
 #[test]
 fn primitives_compressed_by_draco_give_the_same_triangles() {
-    let expected = triangles(&plain());
+    let expected = triangles(&grid_file());
     for speed in [0, 5, 10] {
         assert_eq!(
             triangles(&draco_file(&draco_stream(speed))),
@@ -194,7 +78,7 @@ fn primitives_compressed_by_draco_give_the_same_triangles() {
 
 #[test]
 fn streams_of_indices_alone_are_read() {
-    let mut file = plain();
+    let mut file = grid_file();
     // A header, 2 triangles, 0 points, indices of a byte each, no attributes.
     let stream = b"DRACO\x02\x02\x01\0\0\0\x02\0\x01\x00\x01\x09\x09\x01\x0a\0";
     let view = file.view(stream);
@@ -252,38 +136,12 @@ fn changed_draco_data_never_fail_the_importer() {
 
 #[test]
 fn a_plain_copy_is_preferred_to_a_stream() {
-    let mut file = plain();
+    let mut file = grid_file();
     let view = file.view(b"not Draco");
     file.primitive()["extensions"] = json!({ "KHR_draco_mesh_compression": {
         "bufferView": view, "attributes": { "POSITION": 0 },
     } });
-    assert_eq!(triangles(&file), triangles(&plain()));
-}
-
-fn gradient() -> image::RgbaImage {
-    image::RgbaImage::from_fn(8, 4, |x, y| {
-        image::Rgba([x as u8 * 30, y as u8 * 60, 9, 255])
-    })
-}
-
-/// A triangle with a WebP picture and a PNG in its place for readers that know no WebP.
-pub(super) fn webp_file() -> File {
-    let mut bytes = std::io::Cursor::new(Vec::new());
-    gradient()
-        .write_to(&mut bytes, image::ImageFormat::WebP)
-        .unwrap();
-    let mut file = File::with_triangle();
-    let texture = file.texture(&image::RgbaImage::new(1, 1));
-    let view = file.view(bytes.get_ref());
-    let webp = file.push(
-        "images",
-        json!({ "bufferView": view, "mimeType": "image/webp" }),
-    );
-    file.json["textures"][texture]["extensions"] =
-        json!({ "EXT_texture_webp": { "source": webp } });
-    file.json["extensionsRequired"] = json!(["EXT_texture_webp"]);
-    file.material(json!({ "emissiveTexture": { "index": texture } }));
-    file
+    assert_eq!(triangles(&file), triangles(&grid_file()));
 }
 
 #[test]

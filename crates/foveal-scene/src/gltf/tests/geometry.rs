@@ -3,7 +3,7 @@
 use glam::Vec3;
 use serde_json::json;
 
-use super::{File, near, warnings};
+use super::{File, Loads, near, warnings};
 use crate::{Aabb, LoadOptions, MissingNormals};
 
 #[test]

@@ -1,9 +1,10 @@
 //! Input that means harm, or might as well.
 
+use foveal_seeds::rich;
 use proptest::prelude::*;
 use serde_json::json;
 
-use super::{File, warnings};
+use super::{File, Loads, warnings};
 use crate::{LoadOptions, SceneError, load_bytes};
 
 fn ask(bytes: &[u8]) -> Result<crate::Scene, SceneError> {
@@ -17,41 +18,6 @@ fn ask(bytes: &[u8]) -> Result<crate::Scene, SceneError> {
 
 fn is_internal(error: &SceneError) -> bool {
     matches!(error, SceneError::Internal { .. })
-}
-
-/// A small file with a little of everything.
-pub(super) fn rich() -> File {
-    let mut file = File::with_triangle();
-    file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
-    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
-    file.indices(&[0, 1, 2]);
-    let texture = file.texture(&image::RgbaImage::from_pixel(5, 3, [9, 8, 7, 6].into()));
-    let joints = file.accessor(&[0; 12], 5121, "VEC4", 3);
-    file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
-    file.attribute("WEIGHTS_0", &[1., 0., 0., 0.].repeat(3), "VEC4");
-    let delta = file.floats(&[0.5; 9], "VEC3");
-    file.primitive()["targets"] = json!([{ "POSITION": delta }]);
-    file.material(json!({
-        "alphaMode": "MASK",
-        "pbrMetallicRoughness": { "baseColorTexture": { "index": texture } },
-        "normalTexture": { "index": texture },
-    }));
-    let times = file.floats(&[0., 1.], "SCALAR");
-    let moves = file.floats(&[0., 0., 0., 1., 1., 1.], "VEC3");
-    file.push(
-        "animations",
-        json!({
-            "samplers": [{ "input": times, "output": moves }],
-            "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }],
-        }),
-    );
-    file.push("nodes", json!({ "camera": 0, "children": [2] }));
-    file.push("nodes", json!({ "mesh": 0, "skin": 0 }));
-    file.push("skins", json!({ "joints": [1] }));
-    file.json["cameras"] =
-        json!([{ "type": "perspective", "perspective": { "yfov": 1, "znear": 0.1 } }]);
-    file.json["scenes"][0]["nodes"] = json!([0, 1]);
-    file
 }
 
 proptest! {

@@ -4,7 +4,7 @@ use glam::{Vec2, Vec3, Vec4};
 use image::{Rgba, RgbaImage};
 use serde_json::json;
 
-use super::{File, warnings};
+use super::{File, Loads, warnings};
 use crate::{AlphaMode, ColorSpace, Filter, LoadOptions, Wrap};
 
 fn checker() -> RgbaImage {

@@ -3,7 +3,7 @@
 use glam::{Mat4, Quat, Vec3};
 use serde_json::{Value, json};
 
-use super::{File, near, warnings};
+use super::{File, Loads, near, warnings};
 
 /// Adds an animation with one channel.
 fn animate(file: &mut File, target: Value, mode: &str, times: &[f32], values: &[f32], kind: &str) {

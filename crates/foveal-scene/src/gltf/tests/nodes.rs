@@ -3,7 +3,7 @@
 use glam::{Mat4, Vec3};
 use serde_json::json;
 
-use super::{File, warnings};
+use super::{File, Loads, warnings};
 use crate::{Aabb, LightKind, Projection};
 
 #[test]

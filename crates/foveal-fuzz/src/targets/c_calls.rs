@@ -1,36 +1,44 @@
-//! Random calls with good and bad arguments: every call gives the code that a model expects, and
-//! nothing crashes.
-//!
-//! Two seconds from seed 0. Longer, with the seeds that follow a number:
-//! `FOVEAL_FUZZ_SECONDS=600 FOVEAL_FUZZ_SEED=1000000 cargo test --release -p foveal-cull-c fuzz_`
+//! The C interface: random calls with good and bad arguments. Every call gives the code that a model
+//! expects, and nothing crashes.
 #![allow(
     unsafe_code,
-    clippy::unwrap_used,
-    reason = "tests call the functions as C does, with pointers to their own variables"
+    reason = "calls the functions as C does, with pointers to its own variables"
 )]
 
 use core::ffi::c_void;
 use core::ptr::{null, null_mut};
 use foveal_cull_c::*;
-use std::time::{Duration, Instant};
 
 use FovealCullStatus as Status;
 
-struct Random(u64);
+use crate::random::Choices;
 
-impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
+/// Makes 60 to 150 calls.
+pub fn c_calls(input: &[u8]) {
+    let mut choices = Choices::new(input);
+    let r = &mut choices;
+    let mut world = World::default();
+    for _ in 0..60 + r.below(90) {
+        match r.below(13) {
+            0..2 => world.create(r),
+            2..4 => world.bake(r),
+            4..9 => world.change_occluders(r),
+            9..11 => world.frame(r),
+            11 => world.reload(r),
+            _ => world.destroy_some(r),
+        }
     }
-    fn below(&mut self, n: usize) -> usize {
-        (self.next() % n as u64) as usize
-    }
-    fn one_in(&mut self, n: usize) -> bool {
-        self.below(n) == 0
-    }
+}
+
+/// Arguments.
+trait Arguments {
+    fn number(&mut self) -> f64;
+    fn numbers<const N: usize>(&mut self) -> [f64; N];
+    fn place(&mut self) -> [f64; 12];
+    fn or_null<T>(&mut self, pointer: *mut T) -> *mut T;
+}
+
+impl Arguments for Choices<'_> {
     /// Mostly a number of a world; now and then an odd one.
     fn number(&mut self) -> f64 {
         match self.below(400) {
@@ -39,14 +47,16 @@ impl Random {
             2 => -f64::INFINITY,
             3 => f64::MAX,
             4 => 1e-320,
-            5 => f64::from_bits(self.next()),
+            5 => f64::from_bits(self.bits()),
             6..30 => 0.0,
-            _ => (self.next() >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0,
+            _ => (self.bits() >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0,
         }
     }
+
     fn numbers<const N: usize>(&mut self) -> [f64; N] {
         core::array::from_fn(|_| self.number())
     }
+
     fn place(&mut self) -> [f64; 12] {
         if self.one_in(3) {
             return self.numbers();
@@ -54,6 +64,7 @@ impl Random {
         let [x, y, z] = self.numbers();
         [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, x, y, z]
     }
+
     /// Null now and then.
     fn or_null<T>(&mut self, pointer: *mut T) -> *mut T {
         if self.one_in(40) { null_mut() } else { pointer }
@@ -75,6 +86,7 @@ struct World {
     ids: Vec<(FovealCullOccluderId, usize, Id)>,
     trees: Vec<(*mut FovealCullTree, usize)>,
     cullers: Vec<(*mut FovealCuller, usize)>,
+    /// Refused and done.
     calls: [u64; 2],
 }
 
@@ -94,10 +106,10 @@ impl World {
         status
     }
 
-    fn bake(&mut self, r: &mut Random) {
+    fn bake(&mut self, r: &mut Choices<'_>) {
         let count = r.below(40);
         let stride = [12, 12, 16, 21, 8][r.below(5)];
-        let bytes: Vec<u8> = (0..count * stride + 8).map(|_| r.next() as u8).collect();
+        let bytes: Vec<u8> = (0..count * stride + 8).map(|_| r.bits() as u8).collect();
         let mut positions = bytes;
         if !r.one_in(4) {
             for i in 0..count {
@@ -111,7 +123,7 @@ impl World {
         let indices: Vec<u32> = (0..r.below(90))
             .map(|_| {
                 if r.one_in(300) {
-                    r.next() as u32
+                    r.bits() as u32
                 } else {
                     r.below(count.max(1)) as u32
                 }
@@ -121,7 +133,7 @@ impl World {
         let wide = r.one_in(2);
         let source = FovealCullMeshSource {
             size: if r.one_in(30) {
-                r.next() as u32 % 100
+                r.bits() as u32 % 100
             } else {
                 size_of::<FovealCullMeshSource>() as u32
             },
@@ -153,7 +165,7 @@ impl World {
     }
 
     /// Writes a mesh and reads it again, now and then with wrong bytes.
-    fn reload(&mut self, r: &mut Random) {
+    fn reload(&mut self, r: &mut Choices<'_>) {
         if self.meshes.is_empty() {
             return;
         }
@@ -187,7 +199,7 @@ impl World {
         }
     }
 
-    fn change_occluders(&mut self, r: &mut Random) {
+    fn change_occluders(&mut self, r: &mut Choices<'_>) {
         if self.sets.is_empty() || self.meshes.is_empty() {
             return;
         }
@@ -258,7 +270,7 @@ impl World {
         );
     }
 
-    fn boxes(r: &mut Random, count: usize) -> Vec<f32> {
+    fn boxes(r: &mut Choices<'_>, count: usize) -> Vec<f32> {
         (0..count)
             .flat_map(|_| {
                 let [x, y, z, a, b, c] = r.numbers().map(|v| v as f32);
@@ -275,7 +287,7 @@ impl World {
             .collect()
     }
 
-    fn frame(&mut self, r: &mut Random) {
+    fn frame(&mut self, r: &mut Choices<'_>) {
         if self.cullers.is_empty() || self.sets.is_empty() {
             return;
         }
@@ -371,7 +383,7 @@ impl World {
         }
     }
 
-    fn create(&mut self, r: &mut Random) {
+    fn create(&mut self, r: &mut Choices<'_>) {
         // SAFETY: places for handles; lists as long as said.
         unsafe {
             match r.below(3) {
@@ -414,7 +426,7 @@ impl World {
         }
     }
 
-    fn destroy_some(&mut self, r: &mut Random) {
+    fn destroy_some(&mut self, r: &mut Choices<'_>) {
         // SAFETY: each handle is taken out of its list and used no more.
         unsafe {
             if r.one_in(2) && !self.meshes.is_empty() {
@@ -451,32 +463,29 @@ impl Drop for World {
     }
 }
 
-#[test]
-fn fuzz_random_calls_give_the_codes_that_a_model_expects() {
-    let read = |name| std::env::var(name).ok().and_then(|v| v.parse::<u64>().ok());
-    let time = Duration::from_secs(read("FOVEAL_FUZZ_SECONDS").unwrap_or(2));
-    let mut seed = read("FOVEAL_FUZZ_SEED").unwrap_or(0);
-    let start = Instant::now();
-    let mut calls = [0; 2];
-    while start.elapsed() < time {
-        let mut r = Random(seed);
-        let mut world = World::default();
-        for _ in 0..150 {
-            match r.below(13) {
-                0..2 => world.create(&mut r),
-                2..4 => world.bake(&mut r),
-                4..9 => world.change_occluders(&mut r),
-                9..11 => world.frame(&mut r),
-                11 => world.reload(&mut r),
-                _ => world.destroy_some(&mut r),
+pub(super) fn seeds() -> Vec<Vec<u8>> {
+    super::random_bytes(256)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A model that refuses everything, or nothing, would prove nothing.
+    #[test]
+    fn calls_of_random_bytes_are_both_refused_and_done() {
+        let mut calls = [0; 2];
+        for seed in seeds() {
+            let mut r = Choices::new(&seed);
+            let mut world = World::default();
+            for _ in 0..20 {
+                world.create(&mut r);
+                world.bake(&mut r);
+                world.change_occluders(&mut r);
+                world.frame(&mut r);
             }
+            calls = [0, 1].map(|k| calls[k] + world.calls[k]);
         }
-        calls = [0, 1].map(|k| calls[k] + world.calls[k]);
-        seed += 1;
+        assert!(calls[0] > 50 && calls[1] > 50, "{calls:?}");
     }
-    assert!(calls[0] > 50 && calls[1] > 50, "{calls:?}");
-    println!(
-        "{} calls refused, {} done, up to seed {seed}",
-        calls[0], calls[1]
-    );
 }

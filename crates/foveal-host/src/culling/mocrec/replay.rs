@@ -8,10 +8,10 @@ use glam::{DAffine3, DMat3, DVec3, Vec3};
 
 use super::agreement::Recorded;
 use super::read::{Record, Recording, Triangles, Verdict};
-use crate::cull::occludees::Occludees;
-use crate::cull::subject::Subject;
-use foveal_host::culling::NamedEye;
-use foveal_host::culling::{Occluders, Shape};
+use crate::culling::eye::NamedEye;
+use crate::culling::occludees::Occludees;
+use crate::culling::occluders::{Occluders, Shape};
+use crate::culling::subject::Subject;
 
 /// Most subjects that a recording becomes. Each draws its occluders from the start, so that a
 /// recording in which every query follows a draw of its own would take time by the square of its
@@ -24,7 +24,10 @@ const MOST_NOTES: usize = 16;
 /// One subject per run of queries with equal occluders before it, at least one. Beyond
 /// [`MOST_SUBJECTS`] neighbouring runs share a subject with the occluders of the first of them:
 /// fewer occluders hide nothing more.
-pub(crate) fn subjects(name: &str, recording: &Recording) -> anyhow::Result<Vec<Subject>> {
+///
+/// # Errors
+/// Where occluders cannot be baked.
+pub fn subjects(name: &str, recording: &Recording) -> anyhow::Result<Vec<Subject>> {
     let mut shapes = Shapes::default();
     let mut runs = runs(recording, &mut shapes);
     let found = runs.len();

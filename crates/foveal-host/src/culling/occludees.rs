@@ -3,25 +3,26 @@
 use foveal_cull::Aabb;
 use foveal_scene::Scene;
 
-use super::mocrec::agreement::Recorded;
+use super::mocrec::Recorded;
 
 /// The things asked about, one entry per thing in each list.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Occludees {
+pub struct Occludees {
     /// World space, metres.
-    pub(crate) boxes: Vec<Aabb>,
-    pub(crate) triangles: Vec<u32>,
+    pub boxes: Vec<Aabb>,
+    /// Triangles that one has.
+    pub triangles: Vec<u32>,
     /// Draw calls that one costs.
-    pub(crate) draws: Vec<u32>,
+    pub draws: Vec<u32>,
     /// glTF node and element; for recorded draws the number of the record and 0.
-    pub(crate) ids: Vec<(u32, u32)>,
+    pub ids: Vec<(u32, u32)>,
     /// What a recording says; empty for scenes.
-    pub(crate) recorded: Vec<Recorded>,
+    pub recorded: Vec<Recorded>,
 }
 
 impl Occludees {
     /// Takes over the things of `other`, after its own.
-    pub(crate) fn append(&mut self, other: Self) {
+    pub fn append(&mut self, other: Self) {
         self.boxes.extend(other.boxes);
         self.triangles.extend(other.triangles);
         self.draws.extend(other.draws);
@@ -30,7 +31,7 @@ impl Occludees {
     }
 
     /// The objects of a scene as it is posed.
-    pub(crate) fn of_scene(scene: &Scene) -> Self {
+    pub fn of_scene(scene: &Scene) -> Self {
         let mut occludees = Self::default();
         for object in &scene.objects {
             let range = object.instances.start as usize..object.instances.end as usize;

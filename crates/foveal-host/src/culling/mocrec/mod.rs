@@ -6,10 +6,10 @@
 //! that this space is sheared against the world is all one to visibility. Matrices become affine
 //! placements of the recorded vertices.
 
-pub(crate) mod agreement;
+mod agreement;
 mod read;
 mod replay;
 
-pub(crate) use agreement::Agreement;
-pub(crate) use read::{Recording, Verdict};
-pub(crate) use replay::subjects;
+pub use agreement::{Agreement, Recorded};
+pub use read::{Record, Recording, Triangles, Verdict};
+pub use replay::subjects;

@@ -2,28 +2,31 @@
 
 use foveal_scene::Scene;
 
+use super::eye::NamedEye;
 use super::occludees::Occludees;
-use foveal_host::culling::NamedEye;
-use foveal_host::culling::{Choice, Occluders};
+use super::occluders::{Choice, Occluders};
 
 /// A scene, or a stretch of a recording.
 #[derive(Debug)]
-pub(crate) struct Subject {
-    pub(crate) name: String,
-    pub(crate) occluders: Occluders,
-    pub(crate) occludees: Occludees,
-    pub(crate) eyes: Vec<NamedEye>,
+pub struct Subject {
+    /// The scene's name, or the recording's file.
+    pub name: String,
+    /// What hides.
+    pub occluders: Occluders,
+    /// What is asked about.
+    pub occludees: Occludees,
+    /// Where it is seen from.
+    pub eyes: Vec<NamedEye>,
     /// What could not be represented, for a human.
-    pub(crate) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 impl Subject {
     /// A scene, seen by `eyes`.
-    pub(crate) fn of_scene(
-        scene: &Scene,
-        choice: &Choice,
-        eyes: Vec<NamedEye>,
-    ) -> anyhow::Result<Self> {
+    ///
+    /// # Errors
+    /// Where its occluders cannot be baked.
+    pub fn of_scene(scene: &Scene, choice: &Choice, eyes: Vec<NamedEye>) -> anyhow::Result<Self> {
         Ok(Self {
             name: scene.name.clone(),
             occluders: Occluders::of_scene(scene, choice)?,

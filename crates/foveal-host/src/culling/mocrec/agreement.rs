@@ -7,28 +7,33 @@ use super::read::Verdict;
 
 /// What a recording says of a query, and whether that question could be asked again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-pub(crate) struct Recorded {
-    pub(crate) verdict: Verdict,
+pub struct Recorded {
+    /// What the recorder answered.
+    pub verdict: Verdict,
 }
 
 /// A recording's answers beside this culler's.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
-pub(crate) struct Agreement {
-    pub(crate) queries: u64,
-    pub(crate) recorded_visible: u64,
-    pub(crate) recorded_occluded: u64,
-    pub(crate) recorded_view_culled: u64,
+pub struct Agreement {
+    /// All of them.
+    pub queries: u64,
+    /// Recorded as visible.
+    pub recorded_visible: u64,
+    /// Recorded as occluded.
+    pub recorded_occluded: u64,
+    /// Recorded as outside the frustum.
+    pub recorded_view_culled: u64,
     /// Both say visible, or both say culled.
-    pub(crate) agree: u64,
+    pub agree: u64,
     /// Recorded as occluded or view-culled, visible here.
-    pub(crate) kept_here: u64,
+    pub kept_here: u64,
     /// Recorded as visible, culled here.
-    pub(crate) culled_here: u64,
+    pub culled_here: u64,
 }
 
 impl Agreement {
     /// Counts; `None` without recorded answers.
-    pub(crate) fn of(recorded: &[Recorded], results: &[Visibility]) -> Option<Self> {
+    pub fn of(recorded: &[Recorded], results: &[Visibility]) -> Option<Self> {
         let mut a = Self::default();
         for (recorded, result) in recorded.iter().zip(results) {
             a.queries += 1;

@@ -10,27 +10,34 @@ const MAGIC: u32 = 0xA701_B600;
 
 /// A file.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Recording {
+pub struct Recording {
     /// In units of clip w.
-    pub(crate) near: f32,
-    pub(crate) width: u32,
-    pub(crate) height: u32,
-    pub(crate) records: Vec<Record>,
+    pub near: f32,
+    /// Pixels of the recorder's depth buffer.
+    pub width: u32,
+    /// The same, downwards.
+    pub height: u32,
+    /// In the order of the file.
+    pub records: Vec<Record>,
 }
 
 /// What the recorder answered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Verdict {
+pub enum Verdict {
+    /// May be seen.
     Visible,
+    /// Hidden by occluders.
     Occluded,
+    /// Outside the frustum.
     ViewCulled,
+    /// None of these.
     Unknown,
 }
 
 /// One chunk.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) enum Record {
+pub enum Record {
     /// Occluders.
     Render(Verdict, Triangles),
     /// Screen rectangle (normalized device coordinates: x0, y0, x1, y1) at a clip w.
@@ -43,26 +50,33 @@ pub(crate) enum Record {
 
 /// An indexed triangle list.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Triangles {
+pub struct Triangles {
     /// x, y and z for those with a matrix; x, y and w of clip space otherwise.
-    pub(crate) vertices: Vec<Vec3>,
-    pub(crate) indices: Vec<u32>,
+    pub vertices: Vec<Vec3>,
+    /// Three per triangle.
+    pub indices: Vec<u32>,
     /// Clip from model, column by column.
-    pub(crate) matrix: Option<[f32; 16]>,
+    pub matrix: Option<[f32; 16]>,
     /// 0 none, 1 clockwise is back-facing, 2 counter-clockwise is.
-    pub(crate) backface_winding: i32,
+    pub backface_winding: i32,
 }
 
 impl Recording {
     /// Reads a file.
-    pub(crate) fn read(path: &Path) -> anyhow::Result<Self> {
+    ///
+    /// # Errors
+    /// Names the file, the record and the cause.
+    pub fn read(path: &Path) -> anyhow::Result<Self> {
         let bytes = std::fs::read(path)
             .with_context(|| format!("cannot read the recording '{}'", path.display()))?;
         Self::parse(&bytes).with_context(|| format!("the recording '{}' is wrong", path.display()))
     }
 
     /// Decodes a file's bytes.
-    pub(crate) fn parse(bytes: &[u8]) -> anyhow::Result<Self> {
+    ///
+    /// # Errors
+    /// Names the record and the cause.
+    pub fn parse(bytes: &[u8]) -> anyhow::Result<Self> {
         let mut reader = Reader { rest: bytes };
         if reader.u32()? != MAGIC {
             bail!("it does not begin with the magic number {MAGIC:#x}");

@@ -1,0 +1,25 @@
+//! Fuzz targets of Foveal: each takes bytes and panics at what must not be.
+//!
+//! The `foveal-fuzz` program and the tests run them on stable Rust with random changes to good
+//! inputs; `fuzz/` in the repository's root runs the same targets under `cargo fuzz`, whose inputs
+//! follow the branches that the program takes.
+//!
+//! ```
+//! for target in foveal_fuzz::TARGETS {
+//!     (target.run)(b"no good input");
+//! }
+//! ```
+#![deny(unsafe_code)]
+
+mod campaign;
+mod memory;
+mod mutate;
+mod random;
+mod targets;
+
+pub use campaign::{Campaign, Failure, Outcome};
+pub use memory::Counting;
+pub use targets::{
+    TARGETS, Target, c_calls, cameras, culler, environment, import, mesh_bytes, records, report,
+    settings, world,
+};

@@ -1,0 +1,22 @@
+//! Small good scene files, made on the spot: the importer's tests change them, the fuzzers begin
+//! with them.
+//!
+//! ```
+//! let file = foveal_seeds::rich();
+//! assert!(file.glb().starts_with(b"glTF"));
+//! ```
+#![forbid(unsafe_code)]
+#![allow(
+    clippy::unwrap_used,
+    reason = "used by tests alone, which may stop at once"
+)]
+
+mod compressed;
+mod file;
+mod rich;
+
+pub use compressed::{
+    bumpy_grid, draco_file, draco_stream, gradient, grid_file, meshopt_file, webp_file,
+};
+pub use file::File;
+pub use rich::{extended, rich};
