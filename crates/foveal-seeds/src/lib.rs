@@ -11,10 +11,12 @@
     reason = "used by tests alone, which may stop at once"
 )]
 
+mod basis;
 mod compressed;
 mod file;
 mod rich;
 
+pub use basis::{ETC1S, KTX2_SIZE, UASTC, UASTC_ZSTD, ktx2_file, ktx2_texel};
 pub use compressed::{
     bumpy_grid, draco_file, draco_stream, gradient, grid_file, meshopt_file, webp_file,
 };

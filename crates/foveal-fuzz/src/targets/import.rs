@@ -7,7 +7,8 @@
 
 use foveal_scene::{Clip, LoadOptions, MissingNormals, Scene, SceneError, load_bytes};
 use foveal_seeds::{
-    File, draco_file, draco_stream, extended, grid_file, meshopt_file, rich, webp_file,
+    ETC1S, File, UASTC, UASTC_ZSTD, draco_file, draco_stream, extended, grid_file, ktx2_file,
+    meshopt_file, rich, webp_file,
 };
 
 const WHOLE_FILE: u8 = 1;
@@ -107,6 +108,9 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         draco_file(&draco_stream(5)),
         draco_file(&draco_stream(10)),
         webp_file(),
+        ktx2_file(ETC1S),
+        ktx2_file(UASTC),
+        ktx2_file(UASTC_ZSTD),
     ];
     let mut seeds: Vec<Vec<u8>> = files.iter().map(parts).collect();
     let mut whole = vec![WHOLE_FILE];

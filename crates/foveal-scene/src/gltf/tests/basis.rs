@@ -1,35 +1,9 @@
-//! KTX2 pictures. The files in `ktx2` hold the texels of [`texel`], encoded by the npm package
-//! ktx2-encoder 0.6.0 (Basis Universal's own encoder).
+//! KTX2 pictures.
 
-use serde_json::json;
+use foveal_seeds::{ETC1S, KTX2_SIZE, UASTC, UASTC_ZSTD, ktx2_file, ktx2_texel};
 
-use super::{File, warnings};
-
-const WIDTH: usize = 18;
-const HEIGHT: usize = 10;
-
-fn texel(x: usize, y: usize) -> [u8; 4] {
-    [20 + 12 * x, 30 + 20 * y, 200 - 8 * x - 2 * y, 255 - 10 * y].map(|v| v as u8)
-}
-
-const ETC1S: &[u8] = include_bytes!("ktx2/etc1s.ktx2");
-const UASTC: &[u8] = include_bytes!("ktx2/uastc.ktx2");
-const UASTC_ZSTD: &[u8] = include_bytes!("ktx2/uastc-zstd.ktx2");
-
-/// A triangle that emits this picture.
-fn file(picture: &[u8]) -> File {
-    let mut file = File::with_triangle();
-    let view = file.view(picture);
-    let image = file.push(
-        "images",
-        json!({ "bufferView": view, "mimeType": "image/ktx2" }),
-    );
-    let basis = json!({ "KHR_texture_basisu": { "source": image } });
-    let texture = file.push("textures", json!({ "extensions": basis }));
-    file.json["extensionsRequired"] = json!(["KHR_texture_basisu"]);
-    file.material(json!({ "emissiveTexture": { "index": texture } }));
-    file
-}
+use super::{Loads, warnings};
+use crate::LoadOptions;
 
 /// With a word of the file replaced.
 fn changed(file: &[u8], at: usize, word: u32) -> Vec<u8> {
@@ -54,24 +28,25 @@ fn ktx2_pictures_of_either_codec_are_read_as_by_the_reference_transcoder() {
         (UASTC, uastc, 4.23),
         (UASTC_ZSTD, uastc, 4.23),
     ] {
-        let scene = file(bytes).load();
+        let scene = ktx2_file(bytes).load();
         assert_eq!(warnings(&scene), "");
         let texture = &scene.textures[0];
         assert_eq!((texture.width, texture.height), (18, 10));
         let read = &texture.levels[0];
         assert_eq!(hash(read), reference);
-        let squares = (0..WIDTH * HEIGHT).flat_map(|i| {
-            let wanted = texel(i % WIDTH, i / WIDTH);
+        let (width, height) = KTX2_SIZE;
+        let squares = (0..width * height).flat_map(|i| {
+            let wanted = ktx2_texel(i % width, i / width);
             [0, 1, 2, 3].map(|c| f64::from(read[4 * i + c].abs_diff(wanted[c])).powi(2))
         });
-        let mean = squares.sum::<f64>() / (4 * WIDTH * HEIGHT) as f64;
+        let mean = squares.sum::<f64>() / (4 * width * height) as f64;
         assert!((mean.sqrt() - rms).abs() < 0.01, "{}", mean.sqrt());
     }
 }
 
 #[test]
 fn a_plain_picture_is_preferred_to_the_ktx2_beside_it() {
-    let mut file = file(ETC1S);
+    let mut file = ktx2_file(ETC1S);
     let plain = file.texture(&image::RgbaImage::from_pixel(1, 1, image::Rgba([9; 4])));
     let source = file.json["textures"][plain]["source"].clone();
     file.json["textures"][0]["source"] = source;
@@ -95,7 +70,7 @@ fn what_is_no_basis_universal_picture_says_so() {
         (b"\xABKTX 11\xBB\r\n\x1A\n".to_vec(), "version 1"),
     ];
     for (bytes, cause) in cases {
-        let said = warnings(&file(&bytes).load());
+        let said = warnings(&ktx2_file(&bytes).load());
         assert!(said.contains(cause), "{cause}: {said}");
     }
 }
@@ -104,12 +79,12 @@ fn what_is_no_basis_universal_picture_says_so() {
 fn stated_lengths_that_the_blocks_do_not_need_are_refused_before_they_are_allocated() {
     // The first level's uncompressed length, which a decoder would allocate.
     for (at, word) in [(96, 1 << 30), (100, 1 << 20)] {
-        let said = warnings(&file(&changed(UASTC_ZSTD, at, word)).load());
+        let said = warnings(&ktx2_file(&changed(UASTC_ZSTD, at, word)).load());
         assert!(said.contains("first level has"), "{said}");
     }
     // 65,536 x 65,536 texels of ETC1S in 700 bytes.
     let large = changed(&changed(ETC1S, 20, 1 << 16), 24, 1 << 16);
-    let said = file(&large).refusal();
+    let said = ktx2_file(&large).refusal();
     assert!(said.contains("the limit"), "{said}");
 }
 
@@ -121,11 +96,11 @@ fn any_byte_may_be_wrong() {
                 let mut bytes = original.to_vec();
                 bytes[at] = value;
                 // A picture, a warning or a refusal.
-                let _ = file(&bytes).load_with(&crate::LoadOptions::default());
+                let _ = ktx2_file(&bytes).load_with(&LoadOptions::default());
             }
         }
         for end in (0..original.len()).step_by(7) {
-            let _ = file(&original[..end]).load_with(&crate::LoadOptions::default());
+            let _ = ktx2_file(&original[..end]).load_with(&LoadOptions::default());
         }
     }
 }
