@@ -24,6 +24,15 @@ impl Rng {
     }
 }
 
+/// Eight inputs of so many random bytes, for targets that make their own scenes.
+pub(crate) fn random_bytes(count: usize) -> Vec<Vec<u8>> {
+    let input = |seed| {
+        let mut rng = Rng(seed);
+        (0..count).map(|_| rng.bits() as u8).collect()
+    };
+    (0..8).map(input).collect()
+}
+
 /// Choices that an input's bytes make: small ones cost a byte, so that a fuzzer that watches the
 /// program's branches can change one at a time. When the bytes are used up, choices follow from a
 /// hash of all of them.

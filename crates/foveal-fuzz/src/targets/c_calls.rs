@@ -11,7 +11,7 @@ use foveal_cull_c::*;
 
 use FovealCullStatus as Status;
 
-use crate::random::Choices;
+use crate::random::{Choices, random_bytes};
 
 /// Makes 60 to 150 calls.
 pub fn c_calls(input: &[u8]) {
@@ -464,7 +464,7 @@ impl Drop for World {
 }
 
 pub(super) fn seeds() -> Vec<Vec<u8>> {
-    super::random_bytes(256)
+    random_bytes(256)
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ use super::scenes::promise::{
     culls_nothing_that_either_eye_sees, culls_nothing_visible, culls_nothing_visible_around, size,
 };
 use super::scenes::{Random, Scene, eye, scene, wrongly_culled};
-use crate::random::Choices;
+use crate::random::{Choices, random_bytes};
 
 /// Culls a random scene as it is, and another one with odd numbers in it.
 pub fn culler(input: &[u8]) {
@@ -270,5 +270,5 @@ impl Answers {
 }
 
 pub(super) fn seeds() -> Vec<Vec<u8>> {
-    super::random_bytes(48)
+    random_bytes(48)
 }

@@ -9,7 +9,7 @@ use foveal_cull::{
 use glam::{DVec3, Vec3};
 
 use super::scenes::{Random, assert_as_a_list, eye};
-use crate::random::Choices;
+use crate::random::{Choices, random_bytes};
 
 /// Makes up to some hundred random calls, and compares after each frame.
 pub fn world(input: &[u8]) {
@@ -184,5 +184,5 @@ impl World {
 }
 
 pub(super) fn seeds() -> Vec<Vec<u8>> {
-    super::random_bytes(200)
+    random_bytes(200)
 }
