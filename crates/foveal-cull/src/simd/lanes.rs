@@ -1,6 +1,7 @@
-//! Lanes: the operations that kernels are written in.
+//! What an instruction set must do. Kernels do not call these methods but write formulas with
+//! [`Floats`] and the other types of [`super::typed`], which are made of them.
 
-use super::wide::Wide;
+use super::typed::{Depths, Doubles, Floats, Ints, Mask, Samples};
 use crate::bounds::Aabb;
 
 /// Work that is written once and compiled per instruction set. `run` must be `#[inline(always)]`.
@@ -10,13 +11,122 @@ pub(crate) trait Kernel {
     fn run<L: Lanes>(self, lanes: L) -> Self::Output;
 }
 
-/// Eight lanes for set-up and projection, and the parts of a block: pixels, sample rows, bit
-/// planes.
-pub(crate) trait Lanes: Copy {
-    /// 8 x f32.
+/// `N` lanes of `f32` and `i32`: eight for set-up and projection, sixteen for work that is done to
+/// every box. A value proves that the CPU has the instruction set.
+///
+/// The methods whose names begin with `f`, `i` and `m` are the instruction set's, for floats, whole
+/// numbers and masks; what they do is defined by [`Portable`](super::portable::Portable). The
+/// others, which kernels use, are the same for all.
+pub(crate) trait Vectors<const N: usize>: Copy {
+    /// N x f32.
     type F: Copy;
-    /// 8 x i32.
+    /// N x i32.
     type I: Copy;
+    /// A truth value per lane.
+    type M: Copy;
+
+    fn fsplat(self, v: f32) -> Self::F;
+    fn fload(self, v: &[f32; N]) -> Self::F;
+    fn fstore(self, v: Self::F, to: &mut [f32; N]);
+    fn fadd(self, a: Self::F, b: Self::F) -> Self::F;
+    fn fsub(self, a: Self::F, b: Self::F) -> Self::F;
+    fn fmul(self, a: Self::F, b: Self::F) -> Self::F;
+    fn fdiv(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `if a < b { a } else { b }` (the second on NaN).
+    fn fmin(self, a: Self::F, b: Self::F) -> Self::F;
+    /// `if a > b { a } else { b }` (the second on NaN).
+    fn fmax(self, a: Self::F, b: Self::F) -> Self::F;
+    fn fabs(self, a: Self::F) -> Self::F;
+    fn flt(self, a: Self::F, b: Self::F) -> Self::M;
+    /// Lanes of `mask` from `a`, others from `b`.
+    fn fselect(self, mask: Self::M, a: Self::F, b: Self::F) -> Self::F;
+    /// Towards zero; lanes out of range give `i32::MIN`.
+    fn ftrunc(self, a: Self::F) -> Self::I;
+    /// Depth codes before they are clamped (see [`crate::format::encode`]), of depths above zero.
+    fn fcodes(self, a: Self::F) -> Self::I;
+    /// Boxes by coordinate: smallest x, y and z, largest x, y and z.
+    fn ftranspose(self, v: &[Aabb; N]) -> [Self::F; 6];
+
+    fn isplat(self, v: i32) -> Self::I;
+    fn iload(self, v: &[i32; N]) -> Self::I;
+    fn istore(self, v: Self::I, to: &mut [i32; N]);
+    fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
+    fn isub(self, a: Self::I, b: Self::I) -> Self::I;
+    fn imul(self, a: Self::I, b: Self::I) -> Self::I;
+    fn imin(self, a: Self::I, b: Self::I) -> Self::I;
+    fn imax(self, a: Self::I, b: Self::I) -> Self::I;
+    /// `a >> by`, `by` from 0 to 31.
+    fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
+    /// Number of bits of a number from 0 to 2^24.
+    fn ibits(self, a: Self::I) -> Self::I;
+    fn ilt(self, a: Self::I, b: Self::I) -> Self::M;
+
+    /// All lanes.
+    fn mall(self) -> Self::M;
+    fn mand(self, a: Self::M, b: Self::M) -> Self::M;
+    fn mor(self, a: Self::M, b: Self::M) -> Self::M;
+    /// `!a & b`.
+    fn mandnot(self, a: Self::M, b: Self::M) -> Self::M;
+    /// A bit per lane, lane 0 lowest.
+    fn mbits(self, a: Self::M) -> u32;
+
+    /// The same number in every lane.
+    #[inline(always)]
+    fn splat(self, v: f32) -> Floats<Self, N> {
+        Floats::new(self, self.fsplat(v))
+    }
+    #[inline(always)]
+    fn load(self, v: &[f32; N]) -> Floats<Self, N> {
+        Floats::new(self, self.fload(v))
+    }
+    /// Boxes by coordinate: smallest x, y and z, largest x, y and z.
+    #[inline(always)]
+    fn transpose(self, v: &[Aabb; N]) -> [Floats<Self, N>; 6] {
+        let [a, b, c, d, e, f] = self.ftranspose(v);
+        [
+            Floats::new(self, a),
+            Floats::new(self, b),
+            Floats::new(self, c),
+            Floats::new(self, d),
+            Floats::new(self, e),
+            Floats::new(self, f),
+        ]
+    }
+    /// The same whole number in every lane.
+    #[inline(always)]
+    fn int(self, v: i32) -> Ints<Self, N> {
+        Ints::new(self, self.isplat(v))
+    }
+    #[inline(always)]
+    fn load_ints(self, v: &[i32; N]) -> Ints<Self, N> {
+        Ints::new(self, self.iload(v))
+    }
+    /// The mask of all lanes.
+    #[inline(always)]
+    fn all(self) -> Mask<Self, N> {
+        Mask::new(self, self.mall())
+    }
+}
+
+/// Sixteen lanes, whose masks are a bit per lane.
+pub(crate) trait Sixteen: Vectors<16, M = u16> {
+    /// The first eight lanes, and the others.
+    fn fpair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F;
+
+    /// The first eight lanes, and the others.
+    #[inline(always)]
+    fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> Floats<Self, 16> {
+        Floats::new(self, self.fpair(low, high))
+    }
+    /// The mask of the lanes whose bit is set, lane 0 lowest.
+    #[inline(always)]
+    fn mask(self, bits: u32) -> Mask<Self, 16> {
+        Mask::new(self, bits as u16)
+    }
+}
+
+/// Eight lanes, and what a block is made of: edges in `f64`, depths, samples.
+pub(crate) trait Lanes: Vectors<8> {
     /// 4 x f64: the corners or edges of a polygon.
     type Q: Copy;
     /// 64 x i16: a block's pixels, row by row.
@@ -31,7 +141,7 @@ pub(crate) trait Lanes: Copy {
     /// 64 x 16 bits: a block's samples as bit planes, in any order.
     type P: Copy;
     /// Sixteen lanes.
-    type W: Wide;
+    type W: Sixteen;
 
     fn wide(self) -> Self::W;
 
@@ -46,49 +156,10 @@ pub(crate) trait Lanes: Copy {
     #[inline(always)]
     fn prefetch<T>(self, _soon: &T) {}
 
-    fn splat(self, v: f32) -> Self::F;
-    fn load(self, v: &[f32; 8]) -> Self::F;
-    fn store(self, v: Self::F, to: &mut [f32; 8]);
-    fn add(self, a: Self::F, b: Self::F) -> Self::F;
-    fn sub(self, a: Self::F, b: Self::F) -> Self::F;
-    fn mul(self, a: Self::F, b: Self::F) -> Self::F;
-    fn div(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `if a < b { a } else { b }` (the second on NaN).
-    fn min(self, a: Self::F, b: Self::F) -> Self::F;
-    /// `if a > b { a } else { b }` (the second on NaN).
-    fn max(self, a: Self::F, b: Self::F) -> Self::F;
-    fn abs(self, a: Self::F) -> Self::F;
-    /// All ones where `a < b`.
-    fn lt(self, a: Self::F, b: Self::F) -> Self::I;
-    /// `mask` lanes from `a`, others from `b`; masks are all ones or all zeroes.
-    fn select(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
-    /// Towards zero; lanes out of range give `i32::MIN`.
-    fn trunc(self, a: Self::F) -> Self::I;
-    /// Depth codes before they are clamped (see [`crate::format::encode`]), of depths above zero.
-    fn codes(self, a: Self::F) -> Self::I;
-    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F;
-
-    /// Eight boxes by coordinate: smallest x, y and z, largest x, y and z.
-    fn transpose(self, v: &[Aabb; 8]) -> [Self::F; 6];
-
-    fn isplat(self, v: i32) -> Self::I;
-    fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
-    fn imin(self, a: Self::I, b: Self::I) -> Self::I;
-    fn imax(self, a: Self::I, b: Self::I) -> Self::I;
-    fn imul(self, a: Self::I, b: Self::I) -> Self::I;
-    /// `a >> by`, `by` from 0 to 31.
-    fn ishr(self, a: Self::I, by: Self::I) -> Self::I;
-    /// Number of bits of a number from 0 to 2^24.
-    fn ibits(self, a: Self::I) -> Self::I;
-    fn iload(self, v: &[i32; 8]) -> Self::I;
-    fn istore(self, v: Self::I, to: &mut [i32; 8]);
-    fn isub(self, a: Self::I, b: Self::I) -> Self::I;
-    fn iand(self, a: Self::I, b: Self::I) -> Self::I;
-    fn ior(self, a: Self::I, b: Self::I) -> Self::I;
-    /// `!a & b`.
-    fn iandnot(self, a: Self::I, b: Self::I) -> Self::I;
-    /// Sign bits, lane 0 lowest.
-    fn movemask(self, a: Self::I) -> u32;
+    fn fgather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F;
+    /// A mask from all ones and all zeroes.
+    fn mload(self, v: &[i32; 8]) -> Self::M;
+    fn mstore(self, v: Self::M, to: &mut [i32; 8]);
 
     fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q;
     fn qload(self, v: &[f64; 4]) -> Self::Q;
@@ -106,7 +177,7 @@ pub(crate) trait Lanes: Copy {
 
     /// Pixels from a value for each column at the top, and its change per row: as depth codes (see
     /// [`crate::format`]), no value below `floor` and no code above `cap`.
-    fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D;
+    fn dplane(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D;
     fn dload(self, v: &[i16; 64]) -> Self::D;
     fn dstore(self, v: Self::D, to: &mut [i16; 64]);
     fn dsplat(self, v: i16) -> Self::D;
@@ -122,16 +193,16 @@ pub(crate) trait Lanes: Copy {
 
     /// Distances that four edges move from the first row of samples to every other, and to the rows
     /// through pixel centres.
-    fn edge_rows(self, slope: Self::Q) -> Self::B;
+    fn qrows(self, slope: Self::Q) -> Self::B;
     /// Spans right of the first two edges and left of the last two, in `f64`, row by row as
     /// [`Portable`](super::portable::Portable) has it. `at`: where they cross the first row; sample
     /// n is right of what is less than n + 1. `limits`: only rows after the first one and not after
     /// the second count.
-    fn spans(self, at: Self::Q, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
+    fn qspans(self, at: Self::Q, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S;
     /// The samples and the pixel centres of the spans in the block that begins at sample `left`.
-    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64);
+    fn pwithin(self, spans: &Self::S, left: u32) -> (Self::P, u64);
     /// Eight rows of eight pixels: those from one number to before another.
-    fn bit_rows(self, from: Self::I, to: Self::I) -> u64;
+    fn irows(self, from: Self::I, to: Self::I) -> u64;
     fn pload(self, v: &[u64; 16]) -> Self::P;
     fn pstore(self, v: Self::P, to: &mut [u64; 16]);
     /// Only the pixels whose bit is set.
@@ -141,4 +212,45 @@ pub(crate) trait Lanes: Copy {
     fn pall(self, v: Self::P) -> u64;
     /// Pixels of which any sample is set.
     fn pany(self, v: Self::P) -> u64;
+
+    #[inline(always)]
+    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Floats<Self, 8> {
+        Floats::new(self, self.fgather(table, index))
+    }
+    /// A mask from all ones and all zeroes.
+    #[inline(always)]
+    fn load_mask(self, v: &[i32; 8]) -> Mask<Self, 8> {
+        Mask::new(self, self.mload(v))
+    }
+    #[inline(always)]
+    fn double(self, v: f64) -> Doubles<Self> {
+        Doubles::new(self, self.qsplat(v))
+    }
+    #[inline(always)]
+    fn load_doubles(self, v: &[f64; 4]) -> Doubles<Self> {
+        Doubles::new(self, self.qload(v))
+    }
+    #[inline(always)]
+    fn gather_doubles(self, table: &[f64; 256], index: [u8; 4]) -> Doubles<Self> {
+        Doubles::new(self, self.qgather(table, index))
+    }
+    /// The same depth code in every pixel.
+    #[inline(always)]
+    fn depth(self, v: i16) -> Depths<Self> {
+        Depths::new(self, self.dsplat(v))
+    }
+    #[inline(always)]
+    fn load_depths(self, v: &[i16; 64]) -> Depths<Self> {
+        Depths::new(self, self.dload(v))
+    }
+    #[inline(always)]
+    fn load_samples(self, v: &[u64; 16]) -> Samples<Self> {
+        Samples::new(self, self.pload(v))
+    }
+    /// The samples and the pixel centres of the spans in the block that begins at sample `left`.
+    #[inline(always)]
+    fn within(self, spans: &Self::S, left: u32) -> (Samples<Self>, u64) {
+        let (samples, centers) = self.pwithin(spans, left);
+        (Samples::new(self, samples), centers)
+    }
 }
