@@ -7,7 +7,7 @@
 //! at the finest level where it touches at most three cells in a row.
 
 /// Index in the HiZ table for rectangles of blocks (left, top, right, bottom, inclusive), one per
-/// lane of `$l`. A macro, since lanes of eight and of sixteen are different traits.
+/// lane of `$l`. A macro, which lanes of eight and of sixteen share.
 macro_rules! hiz_index {
     ($l:ident, $buffer:expr, $blocks:expr) => {{
         let (buffer, [x0, y0, x1, y1]) = ($buffer, $blocks);

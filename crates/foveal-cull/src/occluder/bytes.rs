@@ -131,8 +131,8 @@ impl OccluderMesh {
     ///
     /// Nothing is trusted: any single word that is wrong is noticed by the checksum, and all numbers
     /// are checked even where the checksum is right. What is accepted is a mesh whose surface never
-    /// hides what it does not cover. Takes 7 to 9 ms for a million triangles, with adjacency up to
-    /// half as long as baking.
+    /// hides what it does not cover. Takes 7 to 9 ms for a million triangles, with adjacency a
+    /// tenth as long as baking.
     ///
     /// # Errors
     /// [`CullError::BadMeshBytes`], with the reason.

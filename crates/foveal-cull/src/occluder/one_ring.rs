@@ -3,8 +3,6 @@
 //! For view regions a cluster and its one-ring are one surface (see `raster::patch`). Without the
 //! one-ring every cluster would end in silhouette edges all around.
 
-use super::mesh::{Cluster, OccluderMesh};
-use super::surface::{self, Point};
 use super::vertices::Vertices;
 
 /// The number of no triangle: beyond an edge where the mesh ends. All numbers are below 384.
@@ -29,27 +27,6 @@ pub(crate) struct OneRing {
     /// Edges with a vertex of the cluster.
     pub(crate) first_edge: u32,
     pub(crate) edges: u16,
-}
-
-impl OneRing {
-    /// Vertices of triangle `t`, by their numbers.
-    pub(super) fn corners(&self, mesh: &OccluderMesh, t: usize) -> [u8; 3] {
-        let group = &mesh.one_rings.triangles[self.first_group as usize + t / 8];
-        group.map(|corner| corner[t % 8])
-    }
-
-    /// The positions of the corners of triangle `t` of the one-ring of cluster `c`.
-    pub(super) fn points(&self, mesh: &OccluderMesh, c: &Cluster, t: usize) -> [Point; 3] {
-        let own = usize::from(c.vertex_count);
-        let around = &mesh.one_rings.vertices;
-        self.corners(mesh, t).map(|v| {
-            if usize::from(v) < own {
-                return surface::point(mesh, c, v);
-            }
-            let at = self.first_vertex as usize + usize::from(v) - own.next_multiple_of(8);
-            [&around.x, &around.y, &around.z].map(|list| list[at].to_bits())
-        })
-    }
 }
 
 /// An edge of a cluster or its one-ring.

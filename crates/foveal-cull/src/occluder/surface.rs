@@ -5,7 +5,7 @@
 //! other way. Positions are compared bit by bit.
 
 use super::mesh::{Cluster, OccluderMesh};
-use super::one_ring::FIRST_OF_SECOND;
+use super::one_ring::{FIRST_OF_SECOND, OneRing};
 use super::word_hash::{WordHash, Words3};
 use core::hash::{BuildHasher, Hasher};
 
@@ -177,6 +177,27 @@ pub(super) fn point(mesh: &OccluderMesh, c: &Cluster, vertex: u8) -> Point {
     [&v.x, &v.y, &v.z].map(|list| list[at].to_bits())
 }
 
+impl OneRing {
+    /// Vertices of triangle `t`, by their numbers.
+    pub(super) fn corners(&self, mesh: &OccluderMesh, t: usize) -> [u8; 3] {
+        let group = &mesh.one_rings.triangles[self.first_group as usize + t / 8];
+        group.map(|corner| corner[t % 8])
+    }
+
+    /// The positions of the corners of triangle `t` of the one-ring of cluster `c`.
+    pub(super) fn points(&self, mesh: &OccluderMesh, c: &Cluster, t: usize) -> [Point; 3] {
+        let own = usize::from(c.vertex_count);
+        let around = &mesh.one_rings.vertices;
+        self.corners(mesh, t).map(|v| {
+            if usize::from(v) < own {
+                return point(mesh, c, v);
+            }
+            let at = self.first_vertex as usize + usize::from(v) - own.next_multiple_of(8);
+            [&around.x, &around.y, &around.z].map(|list| list[at].to_bits())
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -207,17 +228,11 @@ mod tests {
 
     #[test]
     fn numbers_of_no_triangle_are_none_of_any_positions() {
-        // A cluster of one quad and one triangle.
-        let points = [
-            [0.0, 0.0],
-            [1.0, 0.0],
-            [1.0, 1.0],
-            [0.0, 1.0],
-            [5.0, 0.0],
-            [6.0, 0.0],
-            [6.0, 1.0],
-        ]
-        .map(|[x, y]| [x, y, 0.0f32]);
+        // A cluster of one quad and one triangle just above it.
+        let points: [[f32; 3]; 7] = core::array::from_fn(|i| {
+            let [x, y] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]][i % 4];
+            [x, y, (i / 4) as f32 * 0.1]
+        });
         let indices = [0, 1, 2, 0, 2, 3, 4, 5, 6];
         let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
         assert_eq!(mesh.clusters[0].quad_count, 2);

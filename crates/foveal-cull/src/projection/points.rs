@@ -5,7 +5,7 @@
 
 /// Index of a pixel (right, down; on the screen) for
 /// [`OcclusionBuffer::code_at`](crate::depth::buffer::OcclusionBuffer::code_at), one per lane of
-/// `$l`. A macro, since lanes of eight and of sixteen are different traits.
+/// `$l`. A macro, which lanes of eight and of sixteen share.
 macro_rules! pixel_index {
     ($l:ident, $buffer:expr, $x:expr, $y:expr) => {{
         use crate::format::{BLOCK, BLOCK_PIXELS};

@@ -1,8 +1,7 @@
 //! Every method of every instruction set that this machine has, against the portable one, lane by
 //! lane.
 
-use super::lanes::Vectors;
-use super::typed::{Floats, Ints, Mask};
+use super::lanes::{Floats, Ints, Mask, Vectors};
 use super::{Depths, Doubles, InstructionSet, Kernel, Lanes, Samples, Sixteen};
 use crate::Aabb;
 
