@@ -9,7 +9,7 @@ use crate::format::{BLOCK, BLOCK_SAMPLES, encode};
 use crate::raster::block::DepthPlane;
 use crate::raster::edges::Edges;
 use crate::raster::polygon::{self, Polygon};
-use crate::simd::{InstructionSet, Kernel, Lanes, Wide};
+use crate::simd::{F16, InstructionSet, Kernel, Lanes, Sixteen};
 
 /// A single block that overlapping polygons update one after the other.
 #[derive(Debug)]
@@ -55,7 +55,7 @@ impl Kernel for &mut BlockUpdates {
     fn run<L: Lanes>(self, l: L) -> u32 {
         let mut band = self.buffer.band();
         for (x, y, depth) in &self.quads {
-            let Some((edges, rows)) = Edges::of(l, l.qload(x), l.qload(y)) else {
+            let Some((edges, rows)) = Edges::of(l, l.load_doubles(x), l.load_doubles(y)) else {
                 continue;
             };
             let plane = DepthPlane {
@@ -117,17 +117,22 @@ impl Kernel for Transpose<'_> {
 
     #[inline(always)]
     fn run<L: Lanes>(self, l: L) -> f32 {
-        let w = l.wide();
-        let mut sum = w.splat(0.0);
-        for boxes in self.0.as_chunks::<16>().0 {
-            for v in w.transpose(boxes) {
-                sum = w.add(sum, v);
-            }
-        }
+        let sum = sum(l.wide(), self.0);
         let mut lanes = [0.0; 16];
-        w.store(sum, &mut lanes);
+        sum.store(&mut lanes);
         lanes[15]
     }
+}
+
+#[inline(always)]
+fn sum<W: Sixteen>(w: W, boxes: &[Aabb]) -> F16<W> {
+    let mut sum = w.splat(0.0);
+    for boxes in boxes.as_chunks::<16>().0 {
+        for v in w.transpose(boxes) {
+            sum = sum + v;
+        }
+    }
+    sum
 }
 
 #[cfg(test)]

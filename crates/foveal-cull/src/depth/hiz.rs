@@ -3,7 +3,7 @@
 use super::buffer::OcclusionBuffer;
 use super::hiz_layout::hiz_index;
 use crate::format::{BLOCK, EMPTY};
-use crate::simd::{Lanes, four};
+use crate::simd::{I8, Lanes, four};
 
 /// The HiZ of a complete frame.
 #[derive(Clone, Copy, Debug)]
@@ -21,12 +21,12 @@ impl<'a> Hiz<'a> {
     /// top, right, bottom, inclusive). Conservative: the look-up may cover a somewhat larger
     /// rectangle.
     #[inline(always)]
-    pub(crate) fn occluded<L: Lanes>(self, l: L, pixels: [L::I; 4], codes: &[i32; 8]) -> u32 {
-        let block = l.isplat(BLOCK.trailing_zeros() as i32);
+    pub(crate) fn occluded<L: Lanes>(self, l: L, pixels: [I8<L>; 4], codes: &[i32; 8]) -> u32 {
+        let block = l.int(BLOCK.trailing_zeros() as i32);
         let buffer = self.buffer;
-        let index = hiz_index!(l, buffer, four!(i => l.ishr(pixels[i], block)));
+        let index = hiz_index!(l, buffer, four!(i => pixels[i] >> block));
         let mut at = [0; 8];
-        l.istore(index, &mut at);
+        index.store(&mut at);
         let (table, mut bits) = (self.table(), 0);
         for i in 0..8 {
             bits |= u32::from(codes[i] < farthest_code(table, at[i])) << i;

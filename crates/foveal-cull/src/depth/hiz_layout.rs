@@ -7,26 +7,26 @@
 //! at the finest level where it touches at most three cells in a row.
 
 /// Index in the HiZ table for rectangles of blocks (left, top, right, bottom, inclusive), one per
-/// lane of `$l`. A macro, since lanes of eight and of sixteen are different traits.
+/// lane of `$l`. A macro, which lanes of eight and of sixteen share.
 macro_rules! hiz_index {
     ($l:ident, $buffer:expr, $blocks:expr) => {{
         let (buffer, [x0, y0, x1, y1]) = ($buffer, $blocks);
         // The smallest `up` with `span <= 2 * 2^up`.
-        let span = $l.imax($l.isub(x1, x0), $l.isub(y1, y0));
-        let less = $l.imax($l.isub(span, $l.isplat(1)), $l.isplat(0));
-        let third = $l.ishr(less, $l.isplat(1));
-        let up = $l.ibits(third);
-        let [x0, y0, x1, y1] = crate::simd::four!(i => $l.ishr([x0, y0, x1, y1][i], up));
-        let most = $l.isplat(crate::depth::hiz_layout::MAX_JOINED as i32 - 1);
-        let right = $l.imin($l.isub(x1, x0), most);
-        let below = $l.imin($l.isub(y1, y0), most);
+        let span = (x1 - x0).max(y1 - y0);
+        let less = (span - 1).max($l.int(0));
+        let third = less >> 1;
+        let up = third.significant_bits();
+        let [x0, y0, x1, y1] = crate::simd::four!(i => [x0, y0, x1, y1][i] >> up);
+        let most = $l.int(crate::depth::hiz_layout::MAX_JOINED as i32 - 1);
+        let right = (x1 - x0).min(most);
+        let below = (y1 - y0).min(most);
         let part = crate::depth::hiz_layout::part_len(buffer.blocks_x, buffer.blocks_y);
-        let places = $l.isplat(crate::depth::hiz_layout::MAX_JOINED as i32);
-        let places = $l.imul($l.iadd(right, $l.imul(below, places)), $l.isplat(part as i32));
-        let rows = $l.isplat(crate::depth::hiz_layout::rows(buffer.blocks_x, buffer.blocks_y) as i32);
-        let row = $l.iadd($l.isub(rows, $l.ishr(rows, up)), y0);
-        let row = $l.imul(row, $l.isplat(buffer.blocks_x as i32));
-        $l.iadd(places, $l.iadd(row, x0))
+        let places = $l.int(crate::depth::hiz_layout::MAX_JOINED as i32);
+        let places = (right + below * places) * part as i32;
+        let rows = $l.int(crate::depth::hiz_layout::rows(buffer.blocks_x, buffer.blocks_y) as i32);
+        let row = rows - (rows >> up) + y0;
+        let row = row * buffer.blocks_x as i32;
+        places + (row + x0)
     }};
 }
 pub(crate) use hiz_index;

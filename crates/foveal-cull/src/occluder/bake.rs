@@ -147,9 +147,14 @@ impl OccluderMesh {
             hash: 0,
             triangles: (welded.triangles.len()) as u32,
         };
-        let near = (options.adjacency && !options.two_sided)
-            .then(|| Neighbors::new(&welded.points, &welded.triangles, &edges));
-        cluster::build(&mut mesh, &welded.points, near.as_ref(), &quads, threads);
+        if options.adjacency && !options.two_sided {
+            let near = Neighbors::new(&welded.points, &welded.triangles, &edges);
+            cluster::build(&mut mesh, &welded.points, Some(&near), quads, threads);
+        } else {
+            // Most of the memory by then.
+            drop((edges, welded.triangles));
+            cluster::build(&mut mesh, &welded.points, None, quads, threads);
+        }
         mesh.one_rings.keep_below(u32::MAX as usize);
         Ok(mesh)
     }

@@ -9,7 +9,7 @@
 
 use super::mesh::{Cluster, OccluderMesh};
 use super::one_ring::{FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
-use super::surface::{self, Surface};
+use super::surface::Home;
 use super::vertices::Vertices;
 
 const MAX_QUADS: u8 = 64;
@@ -22,8 +22,9 @@ fn expect(good: bool, what: &'static str) -> Checked {
     if good { Ok(()) } else { Err(what) }
 }
 
-/// Checks a mesh whose parts fill their lists. An error says what is wrong.
-pub(super) fn check(mesh: &OccluderMesh) -> Checked {
+/// Checks a mesh whose parts fill their lists. `homes`: where the triangles of one-rings are among
+/// those of clusters, one after the other. An error says what is wrong.
+pub(super) fn check(mesh: &OccluderMesh, homes: &[Home]) -> Checked {
     let finite = |v: &Vertices| {
         let lists = [&v.x, &v.y, &v.z];
         lists.iter().all(|list| list.iter().all(|n| n.is_finite()))
@@ -43,9 +44,13 @@ pub(super) fn check(mesh: &OccluderMesh) -> Checked {
     if rings.clusters.is_empty() {
         return Ok(());
     }
-    let surface = Surface::new(mesh);
+    let mut homes = homes;
     for (cluster, ring) in mesh.clusters.iter().zip(&rings.clusters) {
-        check_ring(mesh, &surface, cluster, ring)?;
+        let (own, rest) = homes
+            .split_at_checked(usize::from(ring.triangle_count))
+            .ok_or("a one-ring's triangle is none of the mesh")?;
+        homes = rest;
+        check_ring(mesh, own, cluster, ring)?;
     }
     Ok(())
 }
@@ -134,7 +139,7 @@ impl Triangles {
     }
 }
 
-fn check_ring(mesh: &OccluderMesh, surface: &Surface<'_>, c: &Cluster, ring: &OneRing) -> Checked {
+fn check_ring(mesh: &OccluderMesh, homes: &[Home], c: &Cluster, ring: &OneRing) -> Checked {
     let rings = &mesh.one_rings;
     let own = usize::from(c.vertex_count);
     let base = own.next_multiple_of(8);
@@ -153,19 +158,10 @@ fn check_ring(mesh: &OccluderMesh, surface: &Surface<'_>, c: &Cluster, ring: &On
         all.corners[n] = Some([v0, v1, v2]);
         all.corners[FIRST_OF_SECOND + n] = (v2 != v3).then_some([v0, v2, v3]);
     }
-    let point = |v: u8| {
-        let around = &rings.vertices;
-        let at = (ring.first_vertex as usize + usize::from(v)).wrapping_sub(base);
-        if usize::from(v) < own {
-            surface::point(mesh, c, v)
-        } else {
-            [&around.x, &around.y, &around.z].map(|list| list[at].to_bits())
-        }
-    };
     let count = usize::from(ring.triangle_count);
     let groups = &rings.triangles[ring.first_group as usize..][..count.div_ceil(8)];
-    for n in 0..count {
-        let t = [0, 1, 2].map(|corner| groups[n / 8][corner][n % 8]);
+    for (n, home) in homes.iter().enumerate() {
+        let t = ring.corners(mesh, n);
         let on = t.map(|v| usize::from(v) < own);
         let known = t
             .iter()
@@ -175,7 +171,7 @@ fn check_ring(mesh: &OccluderMesh, surface: &Surface<'_>, c: &Cluster, ring: &On
         let distinct = t[0] != t[1] && t[1] != t[2] && t[2] != t[0];
         expect(known && alone && distinct, "a one-ring's triangle is none")?;
         expect(
-            surface.has(&t.map(point)),
+            home.is_of(mesh, &ring.points(mesh, c, n)),
             "a one-ring's triangle is none of the mesh",
         )?;
         all.corners[FIRST_OF_RING + n] = Some(t);

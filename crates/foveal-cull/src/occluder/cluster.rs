@@ -28,7 +28,7 @@ pub(super) fn build(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
     near: Option<&Neighbors<'_>>,
-    quads: &[Quad],
+    quads: Vec<Quad>,
     threads: &dyn Threads,
 ) {
     let source = Source { points, near };
@@ -38,7 +38,13 @@ pub(super) fn build(
         let item = |&quad: &Quad| Item::new(points, quad);
         quads.iter().map(item).collect::<Vec<_>>()
     });
-    let mut items: Vec<Item> = items.into_iter().flatten().collect();
+    let count = quads.len();
+    drop(quads);
+    let mut items = items.into_iter();
+    let mut all = items.next().unwrap_or_default();
+    all.reserve_exact(count - all.len());
+    items.for_each(|part| all.extend(part));
+    let mut items = all;
     let mut ranges = cut_apart(&mut items, parts, threads);
     let empty = mesh.clone();
     let built = in_parts_of(threads, &mut ranges, &|range| {

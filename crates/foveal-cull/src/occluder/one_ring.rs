@@ -61,6 +61,12 @@ impl OneRings {
         ]
     }
 
+    /// The number of all triangles, without what fills groups up.
+    pub(super) fn triangle_count(&self) -> u64 {
+        let counts = self.clusters.iter().map(|r| u64::from(r.triangle_count));
+        counts.sum()
+    }
+
     /// Drops all one-rings if a list has more than `most` elements. View regions are as safe without
     /// them.
     pub(super) fn keep_below(&mut self, most: usize) {

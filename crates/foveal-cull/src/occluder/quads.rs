@@ -6,7 +6,7 @@
 //! taken best first, and triangles with few other partners before those with many.
 
 use super::half_edges::HalfEdges;
-use super::in_parts::{in_parts, part_range, parts_of};
+use super::in_parts::{in_parts, in_parts_of, part_range, parts_of};
 use super::weld::Welded;
 use crate::threads::Threads;
 use glam::DVec3;
@@ -26,14 +26,7 @@ pub(super) fn pair(mesh: &Welded, edges: &HalfEdges, threads: &dyn Threads) -> V
     let found = in_parts(threads, parts, &|i| {
         Found::of(mesh, edges, part_range(triangles.len(), parts, i))
     });
-    let partners: Vec<u8> = found.iter().flat_map(|f| &f.partners).copied().collect();
-    let mut order: Vec<u128> = found
-        .iter()
-        .flat_map(|f| &f.candidates)
-        .map(|c| c.key(&partners))
-        .collect();
-    drop(found);
-    order.sort_unstable();
+    let order = in_order(found, threads);
     let mut taken = vec![false; triangles.len()];
     let mut quads = Vec::with_capacity(triangles.len() / 2 + 1);
     for key in order {
@@ -58,33 +51,60 @@ pub(super) fn pair(mesh: &Welded, edges: &HalfEdges, threads: &dyn Threads) -> V
     quads
 }
 
-/// Two triangles that can be joined: the first, its edge that both share, and the second.
-struct Candidate {
-    score: f64,
-    first: u32,
-    second: u32,
-    edge: u8,
+/// The keys of all candidates, from the least on.
+fn in_order(found: Vec<Found>, threads: &dyn Threads) -> Vec<u128> {
+    // One list, which begins as the first part's: on a single thread nothing is copied.
+    let mut found = found.into_iter();
+    let Some(first) = found.next() else {
+        return Vec::new();
+    };
+    let (mut partners, mut order) = (first.partners, first.candidates);
+    for further in found {
+        partners.extend(further.partners);
+        order.extend(further.candidates);
+    }
+    let parts = parts_of(threads, order.len(), LEAST_TRIANGLES);
+    let size = order.len().div_ceil(parts).max(1);
+    let mut chunks: Vec<&mut [u128]> = order.chunks_mut(size).collect();
+    in_parts_of(threads, &mut chunks, &|chunk| {
+        for candidate in chunk.iter_mut() {
+            *candidate = key(*candidate, &partners);
+        }
+        chunk.sort_unstable();
+    });
+    if chunks.len() > 1 {
+        // Finds the sorted runs and merges them.
+        order.sort();
+    }
+    order
 }
 
-/// Bits of the parts of a candidate's key, from the lowest: edge, triangles, score. The score is
-/// below [`MAX_FOLD`], so that the two highest bits of its 64 are zero.
+/// Bits of the parts of a candidate, two triangles that can be joined, from the lowest: the edge of
+/// the first that both share, the second, the first, the score. The score is below [`MAX_FOLD`], so
+/// that the two highest bits of its 64 are zero.
 const EDGE_BITS: u32 = 2;
 const TRIANGLE_BITS: u32 = 29;
 const SCORE_BITS: u32 = 62;
+const PLACE_BITS: u32 = EDGE_BITS + 2 * TRIANGLE_BITS;
 
-impl Candidate {
-    /// A number by which candidates are ordered: flatter ones in some steps first, then those with
-    /// few other partners, then flatter ones exactly, then by number. No two are equal.
-    fn key(&self, partners: &[u8]) -> u128 {
-        let step = (self.score * 50.0) as u128;
-        // At most three.
-        let lonely = partners[self.first as usize].min(partners[self.second as usize]);
-        let head = (step << 2) | u128::from(lonely);
-        let head = (head << SCORE_BITS) | u128::from(self.score.to_bits());
-        let head = (head << TRIANGLE_BITS) | u128::from(self.first);
-        let head = (head << TRIANGLE_BITS) | u128::from(self.second);
-        (head << EDGE_BITS) | u128::from(self.edge)
-    }
+/// A candidate, ordered by its score.
+fn candidate(score: f64, first: u32, second: u32, edge: u8) -> u128 {
+    let head = u128::from(score.to_bits());
+    let head = (head << TRIANGLE_BITS) | u128::from(first);
+    let head = (head << TRIANGLE_BITS) | u128::from(second);
+    (head << EDGE_BITS) | u128::from(edge)
+}
+
+/// A number by which candidates are ordered: flatter ones in some steps first, then those with few
+/// other partners, then flatter ones exactly, then by number. No two are equal.
+fn key(candidate: u128, partners: &[u8]) -> u128 {
+    let [first, second, _] = places(candidate);
+    let score = f64::from_bits((candidate >> PLACE_BITS) as u64);
+    let step = (score * 50.0) as u128;
+    // At most three.
+    let lonely = partners[first].min(partners[second]);
+    let head = (step << 2) | u128::from(lonely);
+    (head << (SCORE_BITS + PLACE_BITS)) | candidate
 }
 
 /// The two triangles and the edge of a key.
@@ -99,7 +119,7 @@ fn places(key: u128) -> [usize; 3] {
 
 /// Candidates whose first triangle is in a range, and how many partners each triangle of it has.
 struct Found {
-    candidates: Vec<Candidate>,
+    candidates: Vec<u128>,
     partners: Vec<u8>,
 }
 
@@ -135,12 +155,8 @@ impl Found {
                 if let Some(score) = fold(mesh, [a, b, c, d]) {
                     *partners += 1;
                     if (i as u32) < j {
-                        found.candidates.push(Candidate {
-                            score,
-                            first: i as u32,
-                            second: j,
-                            edge: e,
-                        });
+                        let new = candidate(score, i as u32, j, e);
+                        found.candidates.push(new);
                     }
                 }
             }

@@ -29,22 +29,19 @@ impl Boxes8 {
         let v = l.transpose(boxes);
         let half = l.splat(0.5);
         let (mut eight, mut reach) = (Self::NONE, [l.splat(0.0); 2]);
-        let mut valid = l.isplat(-1);
+        let mut valid = l.all();
         let (mut center, mut extent) = ([half; 3], [half; 3]);
         for k in 0..3 {
-            let (lo, hi) = (l.mul(v[k], half), l.mul(v[k + 3], half));
-            (center[k], extent[k]) = (l.add(lo, hi), l.sub(hi, lo));
-            valid = l.iandnot(l.lt(v[k + 3], v[k]), valid);
-            reach = [
-                l.max(reach[0], l.abs(center[k])),
-                l.max(reach[1], extent[k]),
-            ];
+            let (lo, hi) = (v[k] * half, v[k + 3] * half);
+            (center[k], extent[k]) = (lo + hi, hi - lo);
+            valid = valid & !v[k + 3].lt(v[k]);
+            reach = [reach[0].max(center[k].abs()), reach[1].max(extent[k])];
         }
-        let grow = l.mul(l.add(reach[0], reach[1]), l.splat(ROUNDING));
+        let grow = (reach[0] + reach[1]) * ROUNDING;
         for k in 0..3 {
-            l.store(center[k], &mut eight.center[k]);
-            let grown = l.select(valid, l.add(extent[k], grow), l.splat(f32::NAN));
-            l.store(grown, &mut eight.half[k]);
+            center[k].store(&mut eight.center[k]);
+            let grown = valid.select(extent[k] + grow, l.splat(f32::NAN));
+            grown.store(&mut eight.half[k]);
         }
         eight
     }

@@ -5,19 +5,19 @@
 
 /// Index of a pixel (right, down; on the screen) for
 /// [`OcclusionBuffer::code_at`](crate::depth::buffer::OcclusionBuffer::code_at), one per lane of
-/// `$l`. A macro, since lanes of eight and of sixteen are different traits.
+/// `$l`. A macro, which lanes of eight and of sixteen share.
 macro_rules! pixel_index {
     ($l:ident, $buffer:expr, $x:expr, $y:expr) => {{
         use crate::format::{BLOCK, BLOCK_PIXELS};
         let (x, y) = ($x, $y);
-        let bits = $l.isplat(BLOCK.trailing_zeros() as i32);
-        let (column, row) = ($l.ishr(x, bits), $l.ishr(y, bits));
+        let bits = $l.int(BLOCK.trailing_zeros() as i32);
+        let (column, row) = (x >> bits, y >> bits);
         // A step to the next block, less the steps within a block.
-        let right = $l.isplat((BLOCK_PIXELS - BLOCK) as i32);
-        let down = $l.isplat(((($buffer).blocks_x - 1) * BLOCK_PIXELS) as i32);
-        let within = $l.iadd(x, $l.imul(y, $l.isplat(BLOCK as i32)));
-        let across = $l.iadd($l.imul(column, right), $l.imul(row, down));
-        $l.iadd(within, across)
+        let right = $l.int((BLOCK_PIXELS - BLOCK) as i32);
+        let down = $l.int(((($buffer).blocks_x - 1) * BLOCK_PIXELS) as i32);
+        let within = x + y * BLOCK as i32;
+        let across = column * right + row * down;
+        within + across
     }};
 }
 pub(crate) use pixel_index;

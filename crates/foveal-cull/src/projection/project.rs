@@ -4,7 +4,7 @@ use super::boxes::Boxes8;
 use super::points::{Corners8, pixel_index};
 use super::screen::Screen;
 use crate::format::SAMPLES;
-use crate::simd::{Lanes, four};
+use crate::simd::{F8, Lanes, four};
 
 /// Eight boxes on the screen. Rectangles are in samples, already dilated.
 #[derive(Clone, Copy, Debug)]
@@ -74,84 +74,78 @@ pub(crate) fn outline<L: Lanes>(
     ];
     let grow = l.splat(s.grow);
     let h = [
-        l.add(l.load(&boxes.half[0]), grow),
-        l.add(l.load(&boxes.half[1]), grow),
-        l.add(l.load(&boxes.half[2]), grow),
+        l.load(&boxes.half[0]) + grow,
+        l.load(&boxes.half[1]) + grow,
+        l.load(&boxes.half[2]) + grow,
     ];
-    let (zc, ze) = (dot(l, &c, &s.rows[2]), edges(l, &h, &s.rows[2]));
-    let (wc, we) = (dot(l, &c, &s.rows[3]), edges(l, &h, &s.rows[3]));
-    let (zr, wr) = (reach(l, &ze), reach(l, &we));
-    let (w_near, w_far) = (l.sub(wc, wr), l.add(wc, wr));
-    let z_near = l.add(zc, zr);
+    let (zc, ze) = (dot(&c, &s.rows[2]), edges(&h, &s.rows[2]));
+    let (wc, we) = (dot(&c, &s.rows[3]), edges(&h, &s.rows[3]));
+    let (zr, wr) = (reach(&ze), reach(&we));
+    let (w_near, w_far) = (wc - wr, wc + wr);
+    let z_near = zc + zr;
     // Wholly nearer than the near plane; and certainly beyond it.
-    let behind = l.lt(w_far, l.sub(zc, zr));
-    let beyond = l.lt(z_near, w_near);
-    let depth = l.mul(l.div(z_near, w_near), l.splat(1.0 + 1e-6));
+    let behind = w_far.lt(zc - zr);
+    let beyond = z_near.lt(w_near);
+    let depth = z_near / w_near * (1.0 + 1e-6);
 
-    let (xq, xz) = corners(l, &c, &h, &s.rows[0]);
-    let (yq, yz) = corners(l, &c, &h, &s.rows[1]);
-    let (wq, wz) = corners(l, &c, &h, &s.rows[3]);
+    let (xq, xz) = corners(&c, &h, &s.rows[0]);
+    let (yq, yz) = corners(&c, &h, &s.rows[1]);
+    let (wq, wz) = corners(&c, &h, &s.rows[3]);
     let one = l.splat(1.0);
-    let low = four!(k => l.div(one, l.sub(wq[k], wz)));
-    let high = four!(k => l.div(one, l.add(wq[k], wz)));
-    let x_low = four!(k => l.mul(l.sub(xq[k], xz), low[k]));
-    let x_high = four!(k => l.mul(l.add(xq[k], xz), high[k]));
-    let y_low = four!(k => l.mul(l.sub(yq[k], yz), low[k]));
-    let y_high = four!(k => l.mul(l.add(yq[k], yz), high[k]));
-    let (x0, x1) = extent(l, x_low, x_high);
-    let (y0, y1) = extent(l, y_low, y_high);
+    let low = four!(k => one / (wq[k] - wz));
+    let high = four!(k => one / (wq[k] + wz));
+    let x_low = four!(k => (xq[k] - xz) * low[k]);
+    let x_high = four!(k => (xq[k] + xz) * high[k]);
+    let y_low = four!(k => (yq[k] - yz) * low[k]);
+    let y_high = four!(k => (yq[k] + yz) * high[k]);
+    let (x0, x1) = extent(x_low, x_high);
+    let (y0, y1) = extent(y_low, y_high);
     let dilate = l.splat(s.dilate);
-    let (x0, y0) = (l.sub(x0, dilate), l.sub(y0, dilate));
-    let (x1, y1) = (l.add(x1, dilate), l.add(y1, dilate));
+    let (x0, y0) = (x0 - dilate, y0 - dilate);
+    let (x1, y1) = (x1 + dilate, y1 + dilate);
     let zero = l.splat(0.0);
-    let off = l.ior(
-        l.ior(l.lt(x1, zero), l.lt(l.splat(s.width), x0)),
-        l.ior(l.lt(y1, zero), l.lt(l.splat(s.height), y0)),
-    );
-    let off = l.iand(beyond, l.ior(off, l.lt(depth, l.splat(s.far_depth))));
+    let off = x1.lt(zero) | l.splat(s.width).lt(x0) | (y1.lt(zero) | l.splat(s.height).lt(y0));
+    let off = beyond & (off | depth.lt(l.splat(s.far_depth)));
     let mut p = Projected8::NONE;
-    p.outside = l.movemask(l.ior(behind, off));
-    p.crossing = !l.movemask(beyond) & !p.outside & 0xff;
-    l.store(x0, &mut p.x0);
-    l.store(x1, &mut p.x1);
-    l.store(y0, &mut p.y0);
-    l.store(y1, &mut p.y1);
-    l.store(depth, &mut p.depth);
+    p.outside = (behind | off).bits();
+    p.crossing = !beyond.bits() & !p.outside & 0xff;
+    x0.store(&mut p.x0);
+    x1.store(&mut p.x1);
+    y0.store(&mut p.y0);
+    y1.store(&mut p.y1);
+    depth.store(&mut p.depth);
     let pixel = l.splat(1.0 / SAMPLES as f32);
     let right = l.splat(s.width / SAMPLES as f32 - 1.0);
     let bottom = l.splat(s.height / SAMPLES as f32 - 1.0);
     let clamped = four!(i => {
-        let v = l.mul([x0, y0, x1, y1][i], pixel);
+        let v = [x0, y0, x1, y1][i] * pixel;
         let last = [right, bottom, right, bottom][i];
-        l.trunc(l.min(l.max(v, zero), last))
+        v.max(zero).min(last).trunc()
     });
     for (v, to) in clamped.iter().zip(&mut p.pixels) {
-        l.istore(*v, to);
+        (*v).store(to);
     }
-    let code = l.codes(l.max(depth, zero));
-    l.istore(code, &mut p.code);
+    let code = depth.max(zero).codes();
+    code.store(&mut p.code);
     let Some(hiz) = s.hiz else {
         return p;
     };
-    p.hidden = hiz.occluded(l, clamped, &p.code) & l.movemask(beyond) & !p.outside;
+    p.hidden = hiz.occluded(l, clamped, &p.code) & beyond.bits() & !p.outside;
     if let Some(corners_of) = corners_of {
-        let (zq, zz) = corners(l, &c, &h, &s.rows[2]);
-        let z_low = four!(k => l.mul(l.sub(zq[k], zz), low[k]));
-        let z_high = four!(k => l.mul(l.add(zq[k], zz), high[k]));
+        let (zq, zz) = corners(&c, &h, &s.rows[2]);
+        let z_low = four!(k => (zq[k] - zz) * low[k]);
+        let z_high = four!(k => (zq[k] + zz) * high[k]);
         let sides = [[x_low, y_low, z_low], [x_high, y_high, z_high]];
         for (side, [x, y, z]) in sides.into_iter().enumerate() {
             for k in 0..4 {
-                let (x, y) = (l.mul(x[k], pixel), l.mul(y[k], pixel));
-                let beside = l.ior(
-                    l.ior(l.lt(x, zero), l.lt(l.add(right, one), x)),
-                    l.ior(l.lt(y, zero), l.lt(l.add(bottom, one), y)),
-                );
-                let z = l.select(beside, zero, l.max(z[k], zero));
-                let x = l.trunc(l.min(l.max(x, zero), right));
-                let y = l.trunc(l.min(l.max(y, zero), bottom));
+                let (x, y) = (x[k] * pixel, y[k] * pixel);
+                let beside = x.lt(zero) | (right + one).lt(x) | (y.lt(zero) | (bottom + one).lt(y));
+                let z = beside.select(zero, z[k].max(zero));
+                let x = x.max(zero).min(right).trunc();
+                let y = y.max(zero).min(bottom).trunc();
                 let at = pixel_index!(l, hiz.buffer, x, y);
-                l.istore(at, &mut corners_of.at[4 * side + k]);
-                l.istore(l.codes(z), &mut corners_of.code[4 * side + k]);
+                at.store(&mut corners_of.at[4 * side + k]);
+                z.codes().store(&mut corners_of.code[4 * side + k]);
             }
         }
     }
@@ -167,66 +161,56 @@ fn centers<L: Lanes>(l: L, s: &Screen<'_>, boxes: &Boxes8) -> [[i32; 8]; 3] {
         l.load(&boxes.center[1]),
         l.load(&boxes.center[2]),
     ];
-    let [x, y, z, w] = four!(i => dot(l, &c, &s.rows[i]));
+    let [x, y, z, w] = four!(i => dot(&c, &s.rows[i]));
     let (zero, one) = (l.splat(0.0), l.splat(1.0));
-    let behind = l.iandnot(l.lt(z, w), l.isplat(-1));
-    let w = l.div(l.splat(1.0 / SAMPLES as f32), w);
-    let (x, y) = (l.mul(x, w), l.mul(y, w));
-    let z = l.mul(z, l.mul(w, l.splat(SAMPLES as f32)));
+    let behind = !z.lt(w);
+    let w = l.splat(1.0 / SAMPLES as f32) / w;
+    let (x, y) = (x * w, y * w);
+    let z = z * (w * SAMPLES as f32);
     let right = l.splat(s.width / SAMPLES as f32 - 1.0);
     let bottom = l.splat(s.height / SAMPLES as f32 - 1.0);
-    let beside = l.ior(
-        l.ior(l.lt(x, zero), l.lt(l.add(right, one), x)),
-        l.ior(l.lt(y, zero), l.lt(l.add(bottom, one), y)),
-    );
-    let z = l.select(l.ior(behind, beside), zero, l.max(z, zero));
+    let beside = x.lt(zero) | (right + one).lt(x) | (y.lt(zero) | (bottom + one).lt(y));
+    let z = (behind | beside).select(zero, z.max(zero));
     let mut center = [[0; 8]; 3];
-    l.istore(l.trunc(l.min(l.max(x, zero), right)), &mut center[0]);
-    l.istore(l.trunc(l.min(l.max(y, zero), bottom)), &mut center[1]);
-    l.istore(l.codes(z), &mut center[2]);
+    x.max(zero).min(right).trunc().store(&mut center[0]);
+    y.max(zero).min(bottom).trunc().store(&mut center[1]);
+    z.codes().store(&mut center[2]);
     center
 }
 
 #[inline(always)]
-fn dot<L: Lanes>(l: L, c: &[L::F; 3], r: &[f32; 4]) -> L::F {
-    l.add(
-        l.add(l.mul(c[0], l.splat(r[0])), l.mul(c[1], l.splat(r[1]))),
-        l.add(l.mul(c[2], l.splat(r[2])), l.splat(r[3])),
-    )
+fn dot<L: Lanes>(c: &[F8<L>; 3], r: &[f32; 4]) -> F8<L> {
+    c[0] * r[0] + c[1] * r[1] + (c[2] * r[2] + r[3])
 }
 
 #[inline(always)]
-fn edges<L: Lanes>(l: L, h: &[L::F; 3], r: &[f32; 4]) -> [L::F; 3] {
-    [
-        l.mul(h[0], l.splat(r[0])),
-        l.mul(h[1], l.splat(r[1])),
-        l.mul(h[2], l.splat(r[2])),
-    ]
+fn edges<L: Lanes>(h: &[F8<L>; 3], r: &[f32; 4]) -> [F8<L>; 3] {
+    [h[0] * r[0], h[1] * r[1], h[2] * r[2]]
 }
 
 #[inline(always)]
-fn reach<L: Lanes>(l: L, e: &[L::F; 3]) -> L::F {
-    l.add(l.add(l.abs(e[0]), l.abs(e[1])), l.abs(e[2]))
+fn reach<L: Lanes>(e: &[F8<L>; 3]) -> F8<L> {
+    e[0].abs() + e[1].abs() + e[2].abs()
 }
 
 /// A clip row at the four corners of the box's central section, and its change to the upper
 /// corners.
 #[inline(always)]
-fn corners<L: Lanes>(l: L, c: &[L::F; 3], h: &[L::F; 3], r: &[f32; 4]) -> ([L::F; 4], L::F) {
-    let (m, e) = (dot(l, c, r), edges(l, h, r));
-    let (a, b) = (l.add(e[0], e[1]), l.sub(e[0], e[1]));
-    ([l.add(m, a), l.add(m, b), l.sub(m, b), l.sub(m, a)], e[2])
+fn corners<L: Lanes>(c: &[F8<L>; 3], h: &[F8<L>; 3], r: &[f32; 4]) -> ([F8<L>; 4], F8<L>) {
+    let (m, e) = (dot(c, r), edges(h, r));
+    let (a, b) = (e[0] + e[1], e[0] - e[1]);
+    ([m + a, m + b, m - b, m - a], e[2])
 }
 
 #[inline(always)]
-fn extent<L: Lanes>(l: L, a: [L::F; 4], b: [L::F; 4]) -> (L::F, L::F) {
-    let lo = l.min(
-        l.min(l.min(a[0], a[1]), l.min(a[2], a[3])),
-        l.min(l.min(b[0], b[1]), l.min(b[2], b[3])),
-    );
-    let hi = l.max(
-        l.max(l.max(a[0], a[1]), l.max(a[2], a[3])),
-        l.max(l.max(b[0], b[1]), l.max(b[2], b[3])),
-    );
+fn extent<L: Lanes>(a: [F8<L>; 4], b: [F8<L>; 4]) -> (F8<L>, F8<L>) {
+    let lo = a[0]
+        .min(a[1])
+        .min(a[2].min(a[3]))
+        .min(b[0].min(b[1]).min(b[2].min(b[3])));
+    let hi = a[0]
+        .max(a[1])
+        .max(a[2].max(a[3]))
+        .max(b[0].max(b[1]).max(b[2].max(b[3])));
     (lo, hi)
 }

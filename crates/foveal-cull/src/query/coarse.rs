@@ -13,7 +13,7 @@ use crate::format::{BLOCK, BLOCK_SAMPLES};
 use crate::projection::boxes::{Boxes8, ROUNDING};
 use crate::projection::points::pixel_index;
 use crate::projection::screen::Screen;
-use crate::simd::{Wide, four, three, two};
+use crate::simd::{F16, I16, M16, Sixteen, four, three, two};
 
 /// The coarse test, prepared for a frame.
 #[derive(Clone, Copy, Debug)]
@@ -98,9 +98,9 @@ impl Coarse16 {
 
     /// Bit per box: certainly occluded. Call `fetch` before.
     #[inline(always)]
-    pub(crate) fn hidden<W: Wide>(&self, w: W) -> u32 {
-        let farther = w.isub(w.iload(&self.code), w.iload(&self.at));
-        w.negative(farther) & self.beyond
+    pub(crate) fn hidden<W: Sixteen>(&self, w: W) -> u32 {
+        let farther = w.load_ints(&self.code).lt(w.load_ints(&self.at));
+        farther.bits() & self.beyond
     }
 }
 
@@ -127,22 +127,22 @@ impl<'a> CoarseTest<'a> {
     }
 
     #[inline(always)]
-    pub(crate) fn classify<W: Wide>(&self, w: W, boxes: &[Aabb; 16]) -> (Coarse16, Centers16) {
+    pub(crate) fn classify<W: Sixteen>(&self, w: W, boxes: &[Aabb; 16]) -> (Coarse16, Centers16) {
         let v = w.transpose(boxes);
         // Centres and half extents, grown as for exact rectangles.
         let half = w.splat(0.5);
         let [lo, hi] = [[v[0], v[1], v[2]], [v[3], v[4], v[5]]];
         let (mut c, mut h, mut largest) = (lo, hi, w.splat(0.0));
-        let mut volume = !0;
+        let mut volume = w.all();
         for k in 0..3 {
-            let (low, high) = (w.mul(lo[k], half), w.mul(hi[k], half));
-            (c[k], h[k]) = (w.add(low, high), w.sub(high, low));
-            volume &= !w.lt(hi[k], lo[k]);
-            largest = w.max(largest, w.add(w.abs(c[k]), h[k]));
+            let (low, high) = (lo[k] * half, hi[k] * half);
+            (c[k], h[k]) = (low + high, high - low);
+            volume = volume & !hi[k].lt(lo[k]);
+            largest = largest.max(c[k].abs() + h[k]);
         }
-        let grow = w.add(w.mul(largest, w.splat(2.0 * ROUNDING)), w.splat(self.grow));
+        let grow = largest * (2.0 * ROUNDING) + self.grow;
         for h in &mut h {
-            *h = w.add(*h, grow);
+            *h = *h + grow;
         }
         let (coarse, center) = self.classify_extents(w, c, h, volume);
         (coarse, self.centers(w, center))
@@ -150,78 +150,72 @@ impl<'a> CoarseTest<'a> {
 
     /// Pixels of the centres, from their clip rows.
     #[inline(always)]
-    fn centers<W: Wide>(&self, w: W, [x, y, z, distance]: [W::F; 4]) -> Centers16 {
+    fn centers<W: Sixteen>(&self, w: W, [x, y, z, distance]: [F16<W>; 4]) -> Centers16 {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
-        let per = w.div(one, distance);
+        let per = one / distance;
         let size = BLOCK as f32;
-        let x = w.mul(
-            w.add(w.mul(x, per), w.splat(self.half_screen[0])),
-            w.splat(size),
-        );
-        let y = w.mul(
-            w.add(w.mul(y, per), w.splat(self.half_screen[1])),
-            w.splat(size),
-        );
+        let x = (x * per + self.half_screen[0]) * size;
+        let y = (y * per + self.half_screen[1]) * size;
         let [right, bottom] = self.half_screen.map(|m| 2.0 * m * size);
-        let (below_right, below_bottom) = (w.lt(x, w.splat(right)), w.lt(y, w.splat(bottom)));
-        let on = w.lt(z, distance) & !w.lt(x, zero) & !w.lt(y, zero) & below_right & below_bottom;
-        let [x, y] = two!(k => w.trunc(w.select(on, [x, y][k], zero)));
-        let depth = w.select(on, w.max(w.mul(z, per), zero), zero);
+        let (below_right, below_bottom) = (x.lt(w.splat(right)), y.lt(w.splat(bottom)));
+        let on = z.lt(distance) & !x.lt(zero) & !y.lt(zero) & below_right & below_bottom;
+        let [x, y] = two!(k => on.select([x, y][k], zero).trunc());
+        let depth = on.select((z * per).max(zero), zero);
         let mut centers = Centers16::NONE;
-        w.istore(pixel_index!(w, self.hiz.buffer, x, y), &mut centers.at);
-        w.istore(w.codes(depth), &mut centers.code);
-        centers.on = on;
+        pixel_index!(w, self.hiz.buffer, x, y).store(&mut centers.at);
+        depth.codes().store(&mut centers.code);
+        centers.on = on.bits();
         centers
     }
 
     /// Classifies boxes by centres and half extents, with a bit for each that is valid; also
     /// returns the centres' clip rows.
     #[inline(always)]
-    fn classify_extents<W: Wide>(
+    fn classify_extents<W: Sixteen>(
         &self,
         w: W,
-        c: [W::F; 3],
-        h: [W::F; 3],
-        volume: u32,
-    ) -> (Coarse16, [W::F; 4]) {
-        let center = four!(i => dot(w, &c, &self.rows[i]));
-        let reach = four!(i => reach(w, &h, &self.rows[i]));
-        let lo = four!(i => w.sub(center[i], reach[i]));
-        let hi = four!(i => w.add(center[i], reach[i]));
+        c: [F16<W>; 3],
+        h: [F16<W>; 3],
+        volume: M16<W>,
+    ) -> (Coarse16, [F16<W>; 4]) {
+        let center = four!(i => dot(&c, &self.rows[i]));
+        let reach = four!(i => reach(&h, &self.rows[i]));
+        let lo = four!(i => center[i] - reach[i]);
+        let hi = four!(i => center[i] + reach[i]);
         let one = w.splat(1.0);
-        let (near, far) = (w.div(one, lo[3]), w.div(one, hi[3]));
-        let behind = w.lt(hi[3], lo[2]) & volume;
-        let beyond = w.lt(hi[2], lo[3]) & volume;
-        let depth = w.mul(w.mul(hi[2], near), w.splat(1.0 + 2e-6));
+        let (near, far) = (one / lo[3], one / hi[3]);
+        let behind = hi[3].lt(lo[2]) & volume;
+        let beyond = hi[2].lt(lo[3]) & volume;
+        let depth = hi[2] * near * (1.0 + 2e-6);
         let [x0, y0] = [0, 1].map(|i| self.half_screen[i] - self.dilate);
         let [x1, y1] = [0, 1].map(|i| self.half_screen[i] + self.dilate);
-        let x0 = w.add(w.min(w.mul(lo[0], near), w.mul(lo[0], far)), w.splat(x0));
-        let y0 = w.add(w.min(w.mul(lo[1], near), w.mul(lo[1], far)), w.splat(y0));
-        let x1 = w.add(w.max(w.mul(hi[0], near), w.mul(hi[0], far)), w.splat(x1));
-        let y1 = w.add(w.max(w.mul(hi[1], near), w.mul(hi[1], far)), w.splat(y1));
+        let x0 = (lo[0] * near).min(lo[0] * far) + x0;
+        let y0 = (lo[1] * near).min(lo[1] * far) + y0;
+        let x1 = (hi[0] * near).max(hi[0] * far) + x1;
+        let y1 = (hi[1] * near).max(hi[1] * far) + y1;
         let zero = w.splat(0.0);
         let [right, bottom] = [0, 1].map(|i| w.splat(2.0 * self.half_screen[i]));
-        let off = w.lt(x1, zero) | w.lt(right, x0) | w.lt(y1, zero) | w.lt(bottom, y0);
-        let off = beyond & (off | w.lt(depth, w.splat(self.far_depth)));
+        let off = x1.lt(zero) | right.lt(x0) | y1.lt(zero) | bottom.lt(y0);
+        let off = beyond & (off | depth.lt(w.splat(self.far_depth)));
         let last = [
             self.hiz.buffer.blocks_x as f32 - 1.0,
             self.hiz.buffer.blocks_y as f32 - 1.0,
         ];
         let blocks = four!(i => {
             let v = [x0, y0, x1, y1][i];
-            w.trunc(w.min(w.max(v, zero), w.splat(last[i % 2])))
+            v.max(zero).min(w.splat(last[i % 2])).trunc()
         });
         let mut coarse = Coarse16::NONE;
-        w.istore(self.place(w, blocks), &mut coarse.at);
-        w.istore(w.codes(w.max(depth, zero)), &mut coarse.code);
-        coarse.outside = behind | off;
-        coarse.beyond = beyond;
+        self.place(w, blocks).store(&mut coarse.at);
+        depth.max(zero).codes().store(&mut coarse.code);
+        coarse.outside = (behind | off).bits();
+        coarse.beyond = beyond.bits();
         (coarse, center)
     }
 
     /// Classifies the children of two nodes, whose boxes are grown already.
     #[inline(always)]
-    pub(crate) fn classify_nodes<W: Wide>(
+    pub(crate) fn classify_nodes<W: Sixteen>(
         &self,
         w: W,
         pair: [&Boxes8; 2],
@@ -232,20 +226,20 @@ impl<'a> CoarseTest<'a> {
         let own = three!(k => w.pair(&a.half[k], &b.half[k]));
         let mut largest = w.splat(0.0);
         for k in 0..3 {
-            largest = w.max(largest, w.add(w.abs(c[k]), own[k]));
+            largest = largest.max(c[k].abs() + own[k]);
         }
-        let grow = w.add(w.mul(largest, w.splat(ROUNDING)), w.splat(self.grow));
-        let h = three!(k => w.add(own[k], grow));
+        let grow = largest * ROUNDING + self.grow;
+        let h = three!(k => own[k] + grow);
         // Boxes that are not volumes have NaN, for which every comparison is false.
-        let (coarse, center) = self.classify_extents(w, c, h, !0);
+        let (coarse, center) = self.classify_extents(w, c, h, w.all());
         let distance = center[3];
-        let squares = three!(k => w.mul(own[k], own[k]));
-        let squared = w.add(w.add(squares[0], squares[1]), squares[2]);
-        let far_enough = w.lt(w.splat(1.0), distance);
+        let squares = three!(k => own[k] * own[k]);
+        let squared = squares[0] + squares[1] + squares[2];
+        let far_enough = w.splat(1.0).lt(distance);
         CoarseNode16 {
             coarse,
             centers: self.centers(w, center),
-            small: far_enough & w.lt(squared, w.mul(distance, w.splat(small))),
+            small: (far_enough & squared.lt(distance * small)).bits(),
         }
     }
 }
@@ -253,26 +247,17 @@ impl<'a> CoarseTest<'a> {
 impl CoarseTest<'_> {
     /// Index in the HiZ for rectangles of blocks (left, top, right, bottom, inclusive).
     #[inline(always)]
-    fn place<W: Wide>(&self, w: W, blocks: [W::I; 4]) -> W::I {
+    fn place<W: Sixteen>(&self, w: W, blocks: [I16<W>; 4]) -> I16<W> {
         hiz_index!(w, self.hiz.buffer, blocks)
     }
 }
 
 #[inline(always)]
-fn dot<W: Wide>(w: W, c: &[W::F; 3], r: &[f32; 4]) -> W::F {
-    w.add(
-        w.add(w.mul(c[0], w.splat(r[0])), w.mul(c[1], w.splat(r[1]))),
-        w.add(w.mul(c[2], w.splat(r[2])), w.splat(r[3])),
-    )
+fn dot<W: Sixteen>(c: &[F16<W>; 3], r: &[f32; 4]) -> F16<W> {
+    c[0] * r[0] + c[1] * r[1] + (c[2] * r[2] + r[3])
 }
 
 #[inline(always)]
-fn reach<W: Wide>(w: W, h: &[W::F; 3], r: &[f32; 4]) -> W::F {
-    w.add(
-        w.add(
-            w.mul(h[0], w.splat(r[0].abs())),
-            w.mul(h[1], w.splat(r[1].abs())),
-        ),
-        w.mul(h[2], w.splat(r[2].abs())),
-    )
+fn reach<W: Sixteen>(h: &[F16<W>; 3], r: &[f32; 4]) -> F16<W> {
+    h[0] * r[0].abs() + h[1] * r[1].abs() + h[2] * r[2].abs()
 }

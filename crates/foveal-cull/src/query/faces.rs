@@ -11,7 +11,7 @@
 use super::axis_planes::AxisPlanes;
 use super::plane_lanes::{AxisPlaneLanes, FRONTS, GAPS, NEARER, OF_AXIS, ROUNDING};
 use crate::format::{BLOCK, BLOCK_SAMPLES, EMPTY, SAMPLES, decode};
-use crate::simd::{Lanes, Wide, four, three, two};
+use crate::simd::{Depths, F16, Lanes, Sixteen, four, three, two};
 use glam::Vec3;
 
 /// Distance from the centre of a pixel, or of a block, to rays that count as its own, samples: up
@@ -20,19 +20,19 @@ const PIXEL_REACH: f32 = 2.5;
 const BLOCK_REACH: f32 = 16.5;
 
 /// The planes of one box.
-pub(crate) struct Faces<W: Wide> {
+pub(crate) struct Faces<W: Sixteen> {
     /// Change to the right and downwards, depth at zero, and more than its rounding.
-    x: W::F,
-    y: W::F,
-    at_zero: W::F,
-    error: W::F,
+    x: F16<W>,
+    y: F16<W>,
+    at_zero: F16<W>,
+    error: F16<W>,
     /// Absolute change to the right plus downwards.
-    slope: W::F,
+    slope: F16<W>,
     /// Bit per lane with a front plane.
     fronts: u32,
 }
 
-impl<W: Wide> Faces<W> {
+impl<W: Sixteen> Faces<W> {
     /// `None` if the eye may be inside the box. `center` and `half` are relative to the boxes'
     /// origin, grown for rounding.
     #[inline(always)]
@@ -45,47 +45,44 @@ impl<W: Wide> Faces<W> {
         let (zero, one) = (w.splat(0.0), w.splat(1.0));
         let (down, facing, known) = match parallel {
             None => {
-                let down = [w.lt(hi, zero), w.lt(back_hi, zero)];
-                let up = [w.lt(zero, lo), w.lt(zero, back_lo)];
-                (down, two!(k => down[k] | up[k]), !0)
+                let down = [hi.lt(zero), back_hi.lt(zero)];
+                let up = [zero.lt(lo), zero.lt(back_lo)];
+                (down, two!(k => (down[k] | up[k]).bits()), !0)
             }
-            Some(p) => (p.down, [!0; 2], p.known),
+            Some(p) => (p.down.map(|bits| w.mask(bits)), [!0; 2], p.known),
         };
         let fronts = facing[0] & known & FRONTS;
         let gaps = facing[0] & !(facing[1] & NEARER) & known & GAPS;
-        let near = w.select(down[0], hi, lo);
-        let far = w.select(down[1] ^ NEARER, back_lo, back_hi);
+        let near = down[0].select(hi, lo);
+        let far = down[1].flipped(NEARER).select(back_lo, back_hi);
         let (at, errors) = match parallel {
             None => {
-                let (u, v) = (w.div(one, near), w.select(GAPS, w.div(one, far), zero));
-                let at = three!(k => w.sub(w.mul(front[k], u), w.mul(back[k], v)));
-                (at, [w.mul(front[3], w.abs(u)), w.mul(back[3], w.abs(v))])
+                let (u, v) = (one / near, w.mask(GAPS).select(one / far, zero));
+                let at = three!(k => front[k] * u - back[k] * v);
+                (at, [front[3] * u.abs(), back[3] * v.abs()])
             }
             Some(p) => {
-                let u = w.mul(w.load(&p.per_metre[0]), near);
-                let v = w.mul(w.load(&p.per_metre[1]), far);
-                let at_zero = w.sub(w.add(front[2], u), w.add(back[2], v));
+                let u = w.load(&p.per_metre[0]) * near;
+                let v = w.load(&p.per_metre[1]) * far;
+                let at_zero = front[2] + u - (back[2] + v);
                 let rounding = w.splat(ROUNDING);
                 (
-                    [w.sub(front[0], back[0]), w.sub(front[1], back[1]), at_zero],
-                    [
-                        w.add(front[3], w.mul(rounding, w.abs(u))),
-                        w.add(back[3], w.mul(rounding, w.abs(v))),
-                    ],
+                    [front[0] - back[0], front[1] - back[1], at_zero],
+                    [front[3] + rounding * u.abs(), back[3] + rounding * v.abs()],
                 )
             }
         };
         let endless = w.splat(f32::INFINITY);
-        let slope = w.add(w.abs(at[0]), w.abs(at[1]));
+        let slope = at[0].abs() + at[1].abs();
         // Planes through the eye, or nearly so, decide nothing.
-        let finite = w.lt(w.add(w.abs(at[2]), slope), endless);
+        let finite = (at[2].abs() + slope).lt(endless).bits();
         let (gaps, fronts) = (gaps & finite, fronts & finite);
         (fronts != 0).then_some(Self {
             x: at[0],
             y: at[1],
             // Lanes without a plane of this box never decide.
-            at_zero: w.select(gaps | fronts, at[2], endless),
-            error: w.add(errors[0], errors[1]),
+            at_zero: w.mask(gaps | fronts).select(at[2], endless),
+            error: errors[0] + errors[1],
             slope,
             fronts,
         })
@@ -94,30 +91,30 @@ impl<W: Wide> Faces<W> {
     /// Whether the box is invisible in a block with farthest depth `min`, whatever its pixels are.
     #[inline(always)]
     pub(crate) fn miss(&self, w: W, bx: u32, by: u32, min: i16) -> bool {
-        let [most, _] = self.over_block(w, bx, by);
+        let [most, _] = self.over_block(bx, by);
         self.misses(w, most, min)
     }
 
     /// The same from the largest values in the block.
     #[inline(always)]
-    fn misses(&self, w: W, most: W::F, min: i16) -> bool {
+    fn misses(&self, w: W, most: F16<W>, min: i16) -> bool {
         // In a block with empty pixels no depth is too far.
         let nearer = if min == EMPTY {
             f32::NEG_INFINITY
         } else {
             decode(min)
         };
-        let least = w.select(GAPS, w.splat(0.0), w.splat(nearer));
-        w.lt(most, least) & (GAPS | FRONTS) != 0
+        let least = w.mask(GAPS).select(w.splat(0.0), w.splat(nearer));
+        most.lt(least).bits() & (GAPS | FRONTS) != 0
     }
 
     /// Largest and smallest values in a block.
     #[inline(always)]
-    fn over_block(&self, w: W, bx: u32, by: u32) -> [W::F; 2] {
+    fn over_block(&self, bx: u32, by: u32) -> [F16<W>; 2] {
         let center = |v: u32| (v * BLOCK_SAMPLES) as f32 + BLOCK_SAMPLES as f32 * 0.5;
-        let value = self.at(w, center(bx), center(by));
-        let reach = w.add(w.mul(self.slope, w.splat(BLOCK_REACH)), self.error);
-        [w.add(value, reach), w.sub(value, reach)]
+        let value = self.at(center(bx), center(by));
+        let reach = self.slope * BLOCK_REACH + self.error;
+        [value + reach, value - reach]
     }
 
     /// Whether the box may be visible in any of the pixels `seen` of a block.
@@ -129,67 +126,64 @@ impl<W: Wide> Faces<W> {
         by: u32,
         seen: u64,
         min: i16,
-        depth: L::D,
+        depth: Depths<L>,
     ) -> bool {
         let w = l.wide();
-        let [most, least] = self.over_block(w, bx, by);
+        let [most, least] = self.over_block(bx, by);
         if self.misses(w, most, min) {
             return false;
         }
         // Pixel by pixel, from the centre of the first one; only with gaps that may close in this
         // block.
-        let mut open = w.lt(least, w.splat(0.0)) & GAPS;
+        let mut open = least.lt(w.splat(0.0)).bits() & GAPS;
         let mut fronts = self.fronts;
         let pixel = SAMPLES as f32;
         let first = |v: u32| (v * BLOCK_SAMPLES) as f32 + 0.5 * pixel;
-        let first = self.at(w, first(bx), first(by));
-        let reach = w.mul(self.slope, w.splat(PIXEL_REACH));
-        let first = w.add(w.add(first, reach), self.error);
+        let first = self.at(first(bx), first(by));
+        let reach = self.slope * PIXEL_REACH;
+        let first = first + reach + self.error;
         let (mut values, mut right, mut down) = ([0.0; 16], [0.0; 16], [0.0; 16]);
-        w.store(first, &mut values);
-        w.store(w.mul(self.x, w.splat(pixel)), &mut right);
-        w.store(w.mul(self.y, w.splat(pixel)), &mut down);
+        first.store(&mut values);
+        (self.x * pixel).store(&mut right);
+        (self.y * pixel).store(&mut down);
         let mut seen = seen;
         while fronts != 0 {
             let i = fronts.trailing_zeros() as usize % 16;
             fronts &= fronts - 1;
-            seen &= !l.dgt(depth, block_codes(l, values[i], right[i], down[i], 1.0));
+            seen &= !depth.gt(block_codes(l, values[i], right[i], down[i], 1.0));
         }
         while open != 0 && seen != 0 {
             let i = open.trailing_zeros() as usize % 16;
             open &= open - 1;
             // Only the sign counts. Scaled, so that nothing above zero becomes the lowest code.
             let codes = block_codes(l, values[i], right[i], down[i], 1e6);
-            seen &= l.dgt(codes, l.dsplat(i16::MIN));
+            seen &= codes.gt(l.depth(i16::MIN));
         }
         seen != 0
     }
 
     /// The values at a point, rounded.
     #[inline(always)]
-    fn at(&self, w: W, x: f32, y: f32) -> W::F {
-        let slopes = w.add(w.mul(self.x, w.splat(x)), w.mul(self.y, w.splat(y)));
-        w.add(slopes, self.at_zero)
+    fn at(&self, x: f32, y: f32) -> F16<W> {
+        let slopes = self.x * x + self.y * y;
+        slopes + self.at_zero
     }
 }
 
 /// The coordinate along each lane's axis.
 #[inline(always)]
-fn by_axis<W: Wide>(w: W, v: Vec3, of: &[[f32; 16]; 3]) -> W::F {
-    let [x, y, z] = three!(k => w.mul(w.splat(v[k]), w.load(&of[k])));
-    w.add(w.add(x, y), z)
+fn by_axis<W: Sixteen>(w: W, v: Vec3, of: &[[f32; 16]; 3]) -> F16<W> {
+    let [x, y, z] = three!(k => w.splat(v[k]) * w.load(&of[k]));
+    x + y + z
 }
 
 /// Depth codes of the pixels of a block, from the largest value in the first one and its change
 /// from pixel to pixel, times `scale`.
 #[inline(always)]
-fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) -> L::D {
+fn block_codes<L: Lanes>(l: L, first: f32, right: f32, down: f32, scale: f32) -> Depths<L> {
     const COLUMNS: [f32; BLOCK as usize] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-    let columns = l.add(
-        l.splat(first * scale),
-        l.mul(l.load(&COLUMNS), l.splat(right * scale)),
-    );
-    l.depths(columns, down * scale, 0.0, i16::MAX)
+    let columns = l.splat(first * scale) + l.load(&COLUMNS) * (right * scale);
+    columns.plane(down * scale, 0.0, i16::MAX)
 }
 
 #[cfg(test)]
@@ -212,7 +206,7 @@ mod tests {
             let Self(planes, (center, half), [x, y], code) = self;
             let faces = Faces::new(l.wide(), planes, center, half)?;
             let bit = 1 << (y % BLOCK * BLOCK + x % BLOCK);
-            Some(faces.seen(l, x / BLOCK, y / BLOCK, bit, code, l.dsplat(code)))
+            Some(faces.seen(l, x / BLOCK, y / BLOCK, bit, code, l.depth(code)))
         }
     }
 

@@ -86,8 +86,8 @@ pub(crate) fn hidden<L: Lanes>(
             }
             let b = row + bx as usize;
             let here = rect.bits(bx, by);
-            let depth = l.dload(&buffer.depth[b].0);
-            let seen = here & !l.dgt(depth, l.dsplat(code));
+            let depth = l.load_depths(&buffer.depth[b].0);
+            let seen = here & !depth.gt(l.depth(code));
             if seen == 0 {
                 continue;
             }

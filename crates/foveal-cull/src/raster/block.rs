@@ -26,7 +26,7 @@ use crate::depth::block::{
     BlockState, KIND_DEPTH, KIND_EMPTY, KIND_LAYERS, KIND_PARTIAL, PartialBlock,
 };
 use crate::format::{BLOCK, BLOCK_SAMPLES, EMPTY, encode};
-use crate::simd::{Lanes, larger, smaller};
+use crate::simd::{Depths, Doubles, Lanes, Samples, larger, smaller};
 
 /// The depth plane of a polygon: an affine function of pixels, lowered to hold for whole pixels.
 #[derive(Clone, Copy, Debug)]
@@ -53,29 +53,29 @@ pub(crate) struct EdgeRows<L: Lanes> {
 
 impl<L: Lanes> EdgeRows<L> {
     #[inline(always)]
-    pub(crate) fn new(l: L, edges: &Edges<L>) -> Self {
+    pub(crate) fn new(edges: &Edges<L>) -> Self {
         Self {
             edges: *edges,
-            rows: l.edge_rows(edges.slope),
+            rows: edges.slope.edge_rows(),
         }
     }
 
     /// Positions of the edges at the first sample row of a row of blocks that begins at `top`,
     /// samples.
     #[inline(always)]
-    pub(crate) fn at(&self, l: L, top: f32) -> L::Q {
+    pub(crate) fn at(&self, l: L, top: f32) -> Doubles<L> {
         let e = &self.edges;
-        let down = l.qsub(l.qsplat(f64::from(top + 0.5)), e.y);
-        l.qadd(l.qmul(down, e.slope), e.x)
+        let down = l.double(f64::from(top + 0.5)) - e.y;
+        down * e.slope + e.x
     }
 
     /// Spans of covered samples in a row of blocks, from the positions there.
     #[inline(always)]
-    pub(crate) fn spans(&self, l: L, at: L::Q, rows: Option<(f32, f32)>, top: f32) -> L::S {
+    pub(crate) fn spans(&self, at: Doubles<L>, rows: Option<(f32, f32)>, top: f32) -> L::S {
         let first = f64::from(top + 0.5);
         let limits = rows.map(|(after, last)| [f64::from(after) - first, f64::from(last) - first]);
         // Sample n of a row lies at n + 0.5.
-        l.spans(l.qadd(at, l.qsplat(0.5)), &self.rows, limits)
+        (at + 0.5).spans(&self.rows, limits)
     }
 }
 
@@ -103,13 +103,13 @@ impl Slope {
 
     /// Depth codes of all 64 pixels.
     #[inline(always)]
-    fn codes<L: Lanes>(&self, l: L, plane: &DepthPlane) -> L::D {
+    fn codes<L: Lanes>(&self, l: L, plane: &DepthPlane) -> Depths<L> {
         const COLUMNS: [f32; 8] = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0];
-        let columns = l.mul(l.load(&COLUMNS), l.splat(self.across));
-        let columns = l.add(l.splat(self.first), columns);
+        let columns = l.load(&COLUMNS) * self.across;
+        let columns = l.splat(self.first) + columns;
         // Never nearer than the nearest vertex, so that a polygon skipped as hidden would have
         // changed nothing.
-        l.depths(columns, self.down, plane.min, plane.max_code)
+        columns.plane(self.down, plane.min, plane.max_code)
     }
 
     /// The least of these codes. Sums round alike everywhere, so it is that of a corner.
@@ -146,19 +146,19 @@ pub(crate) fn cover_full<L: Lanes>(
     let kind = to.state.kind();
     let mut d = slope.codes(l, plane);
     if (kind == KIND_EMPTY) & (margin == 0) {
-        l.dstore(d, &mut to.depth.0);
+        d.store(&mut to.depth.0);
         *to.min = slope.least_code(plane);
         *to.state = BlockState::DEPTH;
         return WORK_OF_FULL;
     }
     if margin != 0 {
-        d = l.dselect(margin, l.dsplat(EMPTY), d);
+        d = Depths::select(margin, l.depth(EMPTY), d);
     }
     if kind != KIND_EMPTY {
-        d = l.dmax(d, l.dload(&to.depth.0));
+        d = d.max(l.load_depths(&to.depth.0));
     }
-    l.dstore(d, &mut to.depth.0);
-    *to.min = l.dreduce_min(d);
+    d.store(&mut to.depth.0);
+    *to.min = d.farthest();
     match kind {
         KIND_PARTIAL => layers::forget_hidden(l, to, d),
         KIND_LAYERS => layers::forget_hidden_layers(l, to, d),
@@ -198,7 +198,7 @@ pub(crate) fn cover_partial<L: Lanes>(
 
 /// A polygon's coverage of a block.
 struct Covered<L: Lanes> {
-    bits: L::P,
+    bits: Samples<L>,
     /// Pixels whose centre is covered.
     center: u64,
     /// Pixels of which all samples are covered. They lie within convex edges, and so does the
@@ -215,8 +215,8 @@ impl<L: Lanes> Covered<L> {
         Self {
             bits,
             center,
-            whole: l.pall(bits),
-            touched: l.pany(bits) | center,
+            whole: bits.all(),
+            touched: bits.any() | center,
         }
     }
 }
@@ -224,7 +224,7 @@ impl<L: Lanes> Covered<L> {
 /// A polygon's part of a block: its coverage and its depth.
 struct Part<L: Lanes> {
     covered: Covered<L>,
-    depth: L::D,
+    depth: Depths<L>,
 }
 
 /// Merges the first polygon of an empty block, in the pixels `allowed`.
@@ -233,10 +233,10 @@ fn begin<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     let Part { covered, depth } = ours;
     let alone = covered.whole & allowed;
     let joined = covered.touched & allowed & !alone;
-    let new = l.dselect(alone, *depth, l.dsplat(EMPTY));
-    l.dstore(new, &mut to.depth.0);
+    let new = Depths::select(alone, *depth, l.depth(EMPTY));
+    new.store(&mut to.depth.0);
     if alone == u64::MAX {
-        *to.min = l.dreduce_min(new);
+        *to.min = new.farthest();
     }
     if joined == 0 {
         *to.state = BlockState::DEPTH;
@@ -245,8 +245,8 @@ fn begin<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     let slot = to.slots.next();
     to.slots.take(true);
     let partial = &mut to.slots.partial[slot as usize];
-    l.pstore(l.pkeep(covered.bits, joined), &mut partial.bits);
-    l.dstore(*depth, &mut partial.depth);
+    covered.bits.keep(joined).store(&mut partial.bits);
+    (*depth).store(&mut partial.depth);
     partial.center = covered.center & joined;
     partial.any = joined;
     *to.state = BlockState::partial(KIND_PARTIAL, slot);
@@ -255,7 +255,6 @@ fn begin<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
 /// Merges a further polygon, in the pixels `allowed`.
 #[inline(always)]
 fn merge<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
-    let Part { covered, depth: d } = ours;
     let kind = to.state.kind();
     let slot = if kind == KIND_DEPTH {
         let slot = to.slots.next();
@@ -271,44 +270,39 @@ fn merge<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     } else {
         &*partial
     };
-    let old = l.dload(&to.depth.0);
-    let (theirs, before) = (l.dload(&begun.depth), begun.any);
-    let (their_bits, their_center) = (l.pload(&begun.bits), begun.center);
-    // The pixels that all parts together complete do not wait for depths: none of their pixels was
-    // complete before.
-    let complete = l.pall(l.por(covered.bits, their_bits)) & (covered.center | their_center);
-    // Only pixels where the polygon is nearer than the depth so far. Those that it covers alone
-    // need no partner, and their partial coverage stays apart.
-    let nearer = l.dgt(*d, old) & allowed;
-    let alone = covered.whole & nearer;
-    let joined = covered.touched & nearer & !covered.whole;
-    let full = complete & joined;
-    let new = l.dselect(alone, *d, old);
-    let our_bits = l.pkeep(covered.bits, joined);
-    let our_center = covered.center & joined;
-    let apart = l.dapart(*d, theirs, APART) & joined & before;
+    let theirs = Waiting::load(l, begun);
+    let old = l.load_depths(&to.depth.0);
+    let pixels = Pixels::of(ours, &theirs, old, allowed);
+    let new = Depths::select(pixels.alone, ours.depth, old);
+    let joining = ours.covered.bits.keep(pixels.joined);
+    let joining_center = ours.covered.center & pixels.joined;
+    let apart = ours.depth.apart(theirs.depth, APART) & pixels.joined & theirs.any;
     if (apart != 0) | (kind == KIND_LAYERS) {
         let ours = Layer {
-            bits: our_bits,
-            center: our_center,
-            depth: *d,
+            bits: joining,
+            center: joining_center,
+            depth: ours.depth,
         };
-        layers::join(l, to, slot, &ours, joined, new);
+        layers::join(l, to, slot, &ours, pixels.joined, new);
         return;
     }
-    let far = l.dsplat(i16::MAX);
-    let depth = l.dmin(l.dselect(joined, *d, far), l.dselect(before, theirs, far));
-    let new = l.dselect(full, l.dmax(new, depth), new);
-    l.dstore(new, &mut to.depth.0);
-    *to.min = l.dreduce_min(new);
+    // The farther of both where both have samples, and the depth of what is complete with it.
+    let far = l.depth(i16::MAX);
+    let depth = Depths::select(pixels.joined, ours.depth, far).min(Depths::select(
+        theirs.any,
+        theirs.depth,
+        far,
+    ));
+    let new = Depths::select(pixels.full, new.max(depth), new);
+    new.store(&mut to.depth.0);
+    *to.min = new.farthest();
     // Drop what is complete, or hidden by now. Partial coverage is nearer than the old depth, and
     // so is what joins it.
-    let hidden = alone & !l.dgt(theirs, *d);
-    let kept = (joined | before) & !(hidden | full);
-    let bits = l.pkeep(l.por(our_bits, their_bits), kept);
-    l.pstore(bits, &mut partial.bits);
-    partial.center = (our_center | their_center) & kept;
-    l.dstore(depth, &mut partial.depth);
+    let hidden = pixels.alone & !theirs.depth.gt(ours.depth);
+    let kept = (pixels.joined | theirs.any) & !(hidden | pixels.full);
+    (joining | theirs.bits).keep(kept).store(&mut partial.bits);
+    partial.center = (joining_center | theirs.center) & kept;
+    depth.store(&mut partial.depth);
     partial.any = kept;
     to.slots.give(slot, kept == 0);
     *to.state = if kept != 0 {
@@ -316,4 +310,53 @@ fn merge<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     } else {
         BlockState::DEPTH
     };
+}
+
+/// The partial coverage of a block, which waits for further polygons.
+struct Waiting<L: Lanes> {
+    bits: Samples<L>,
+    center: u64,
+    depth: Depths<L>,
+    /// Pixels that have any.
+    any: u64,
+}
+
+impl<L: Lanes> Waiting<L> {
+    #[inline(always)]
+    fn load(l: L, from: &PartialBlock) -> Self {
+        Self {
+            bits: l.load_samples(&from.bits),
+            center: from.center,
+            depth: l.load_depths(&from.depth),
+            any: from.any,
+        }
+    }
+}
+
+/// What a polygon does to the pixels of a block. It changes only those where it is nearer than the
+/// depth so far.
+struct Pixels {
+    /// It covers them alone. They need no partner, and their partial coverage stays apart.
+    alone: u64,
+    /// It joins their partial coverage, or begins it.
+    joined: u64,
+    /// Of those that it joins, the ones that are complete by it.
+    full: u64,
+}
+
+impl Pixels {
+    #[inline(always)]
+    fn of<L: Lanes>(ours: &Part<L>, theirs: &Waiting<L>, old: Depths<L>, allowed: u64) -> Self {
+        let covered = &ours.covered;
+        // The pixels that all parts together complete do not wait for depths: none of their pixels
+        // was complete before.
+        let complete = (covered.bits | theirs.bits).all() & (covered.center | theirs.center);
+        let nearer = ours.depth.gt(old) & allowed;
+        let joined = covered.touched & nearer & !covered.whole;
+        Self {
+            alone: covered.whole & nearer,
+            joined,
+            full: complete & joined,
+        }
+    }
 }

@@ -1,14 +1,14 @@
 //! The edges of a convex polygon.
 
-use crate::simd::{Lanes, four};
+use crate::simd::{Doubles, Lanes, four};
 
 /// Four edges, two left and two right ones (the same twice where there is one): lines through (x,
 /// y), samples, with dx/dy `slope`.
 #[derive(Clone, Copy)]
 pub(crate) struct Edges<L: Lanes> {
-    pub(crate) x: L::Q,
-    pub(crate) y: L::Q,
-    pub(crate) slope: L::Q,
+    pub(crate) x: Doubles<L>,
+    pub(crate) y: Doubles<L>,
+    pub(crate) slope: Doubles<L>,
 }
 
 /// Edges with a larger slope count as horizontal and move inwards by more than they bend away from
@@ -49,27 +49,27 @@ impl<L: Lanes> Edges<L> {
     /// rows that horizontal edges leave. None without area, or with three edges on one side: such a
     /// quadrilateral must be drawn as two triangles.
     #[inline(always)]
-    pub(crate) fn of(l: L, x: L::Q, y: L::Q) -> Option<(Self, Option<(f32, f32)>)> {
+    pub(crate) fn of(l: L, x: Doubles<L>, y: Doubles<L>) -> Option<(Self, Option<(f32, f32)>)> {
         const NEXT: [u8; 4] = [1, 2, 3, 0];
-        let dx = l.qsub(l.qpick(x, NEXT), x);
-        let dy = l.qsub(l.qpick(y, NEXT), y);
-        let slope = l.qdiv(dx, dy);
-        let (zero, size) = (l.qsplat(0.0), l.qabs(slope));
-        let steep = l.qlt(size, l.qsplat(FLAT));
-        let down = l.qlt(zero, dy) & steep;
-        let up = l.qlt(dy, zero) & steep;
+        let dx = x.pick(NEXT) - x;
+        let dy = y.pick(NEXT) - y;
+        let slope = dx / dy;
+        let (zero, size) = (l.double(0.0), slope.abs());
+        let steep = size.lt(l.double(FLAT));
+        let down = zero.lt(dy) & steep;
+        let up = dy.lt(zero) & steep;
         let (edge, upper) = ORDER[(down | up << 4) as usize]?;
         let edges = Self {
-            x: l.qpick(x, upper),
-            y: l.qpick(y, upper),
-            slope: l.qpick(slope, edge),
+            x: x.pick(upper),
+            y: y.pick(upper),
+            slope: slope.pick(edge),
         };
         // Edges without length have a slope of NaN and are not among them.
-        let flat = l.qlt(l.qsplat(FLAT * 0.999), size) & !steep;
+        let flat = l.double(FLAT * 0.999).lt(size) & !steep;
         let rows = (flat != 0).then(|| {
             let (mut xs, mut ys) = ([0.0; 4], [0.0; 4]);
-            l.qstore(x, &mut xs);
-            l.qstore(y, &mut ys);
+            x.store(&mut xs);
+            y.store(&mut ys);
             flat_rows(xs, ys, flat)
         });
         Some((edges, rows))
@@ -79,10 +79,10 @@ impl<L: Lanes> Edges<L> {
     #[inline(always)]
     pub(crate) fn shrink(&mut self, l: L, by: f64) {
         let mut slope = [0.0; 4];
-        l.qstore(self.slope, &mut slope);
+        self.slope.store(&mut slope);
         let along = four!(i => by * (1.0 + slope[i] * slope[i]).sqrt());
         let [a, b, c, d] = along;
-        self.x = l.qadd(self.x, l.qload(&[a, b, -c, -d]));
+        self.x = self.x + l.load_doubles(&[a, b, -c, -d]);
     }
 }
 

@@ -2,38 +2,34 @@
 
 use crate::depth::band::Band;
 use crate::format::BLOCK_SAMPLES;
-use crate::simd::{Lanes, four};
+use crate::simd::{F8, I8, Lanes, four};
 
 /// Twice the signed area; positive if it faces the eye (y points down).
 #[inline(always)]
 pub(super) fn area<L: Lanes>(
-    l: L,
-    x: &[L::F; 4],
-    y: &[L::F; 4],
+    x: &[F8<L>; 4],
+    y: &[F8<L>; 4],
     a: usize,
     b: usize,
     c: usize,
-) -> L::F {
-    l.sub(
-        l.mul(l.sub(x[c], x[a]), l.sub(y[b], y[a])),
-        l.mul(l.sub(x[b], x[a]), l.sub(y[c], y[a])),
-    )
+) -> F8<L> {
+    (x[c] - x[a]) * (y[b] - y[a]) - (x[b] - x[a]) * (y[c] - y[a])
 }
 
 #[inline(always)]
-pub(super) fn lowest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
-    l.min(l.min(v[0], v[1]), l.min(v[2], v[3]))
+pub(super) fn lowest<L: Lanes>(v: &[F8<L>; 4]) -> F8<L> {
+    v[0].min(v[1]).min(v[2].min(v[3]))
 }
 
 #[inline(always)]
-pub(super) fn highest<L: Lanes>(l: L, v: &[L::F; 4]) -> L::F {
-    l.max(l.max(v[0], v[1]), l.max(v[2], v[3]))
+pub(super) fn highest<L: Lanes>(v: &[F8<L>; 4]) -> F8<L> {
+    v[0].max(v[1]).max(v[2].max(v[3]))
 }
 
 /// Half-sample steps strictly above the least x and y and up to the greatest. Every sample and
 /// pixel centre lies on a step. Clamped to the band.
 #[inline(always)]
-pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[L::F; 2]; 2]) -> [L::I; 4] {
+pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[F8<L>; 2]; 2]) -> [I8<L>; 4] {
     let size = BLOCK_SAMPLES as f32;
     let right = band.blocks_x as f32 * size;
     let (top, bottom) = (
@@ -50,27 +46,27 @@ pub(super) fn steps_of<L: Lanes>(l: L, band: &Band<'_>, [lo, hi]: [[L::F; 2]; 2]
 
 /// First and last block that hold these steps.
 #[inline(always)]
-pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [L::I; 4]) -> [[i32; 8]; 4] {
-    let per_block = l.isplat((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
+pub(super) fn blocks_of<L: Lanes>(l: L, band: &Band<'_>, steps: [I8<L>; 4]) -> [[i32; 8]; 4] {
+    let per_block = l.int((2 * BLOCK_SAMPLES).trailing_zeros() as i32);
     let ends = [band.blocks_x, band.first_row + band.rows];
     four!(k => {
-        let last = l.isplat(ends[k % 2] as i32 - 1);
+        let last = l.int(ends[k % 2] as i32 - 1);
         let mut blocks = [0; 8];
-        l.istore(l.imin(l.ishr(steps[k], per_block), last), &mut blocks);
+        (steps[k] >> per_block).min(last).store(&mut blocks);
         blocks
     })
 }
 
 /// Half-sample steps up to `v`, clamped.
 #[inline(always)]
-fn steps<L: Lanes>(l: L, v: L::F, lo: f32, hi: f32) -> L::I {
-    let c = l.min(l.max(v, l.splat(lo)), l.splat(hi));
-    l.trunc(l.add(c, c))
+fn steps<L: Lanes>(l: L, v: F8<L>, lo: f32, hi: f32) -> I8<L> {
+    let c = v.max(l.splat(lo)).min(l.splat(hi));
+    (c + c).trunc()
 }
 
 #[inline(always)]
-pub(super) fn out<L: Lanes>(l: L, v: L::F) -> [f32; 8] {
+pub(super) fn out<L: Lanes>(v: F8<L>) -> [f32; 8] {
     let mut a = [0.0; 8];
-    l.store(v, &mut a);
+    v.store(&mut a);
     a
 }

@@ -9,7 +9,7 @@
 
 use crate::depth::band::BlockMut;
 use crate::depth::block::{BlockState, KIND_LAYERS, KIND_PARTIAL, PartialBlock};
-use crate::simd::Lanes;
+use crate::simd::{Depths, Lanes, Samples};
 
 /// Depth codes further apart than this, half an octave of distance, are kept in two layers.
 pub(super) const APART: i16 = 1024;
@@ -18,44 +18,44 @@ pub(super) const APART: i16 = 1024;
 /// has samples.
 #[derive(Clone, Copy)]
 pub(super) struct Layer<L: Lanes> {
-    pub(super) bits: L::P,
+    pub(super) bits: Samples<L>,
     pub(super) center: u64,
-    pub(super) depth: L::D,
+    pub(super) depth: Depths<L>,
 }
 
 impl<L: Lanes> Layer<L> {
     #[inline(always)]
     fn load(l: L, from: &PartialBlock) -> Self {
         Self {
-            bits: l.pload(&from.bits),
+            bits: l.load_samples(&from.bits),
             center: from.center,
-            depth: l.dload(&from.depth),
+            depth: l.load_depths(&from.depth),
         }
     }
 
     #[inline(always)]
-    fn store(self, l: L, to: &mut PartialBlock) {
-        l.pstore(self.bits, &mut to.bits);
+    fn store(self, to: &mut PartialBlock) {
+        self.bits.store(&mut to.bits);
         to.center = self.center;
-        l.dstore(self.depth, &mut to.depth);
-        to.any = self.any(l);
+        self.depth.store(&mut to.depth);
+        to.any = self.any();
     }
 
     #[inline(always)]
-    fn any(&self, l: L) -> u64 {
-        l.pany(self.bits) | self.center
+    fn any(&self) -> u64 {
+        self.bits.any() | self.center
     }
 
     #[inline(always)]
-    fn full(&self, l: L) -> u64 {
-        l.pall(self.bits) & self.center
+    fn full(&self) -> u64 {
+        self.bits.all() & self.center
     }
 
     /// Only the pixels whose bit is set.
     #[inline(always)]
-    fn keep(self, l: L, bits: u64) -> Self {
+    fn keep(self, bits: u64) -> Self {
         Self {
-            bits: l.pkeep(self.bits, bits),
+            bits: self.bits.keep(bits),
             center: self.center & bits,
             ..self
         }
@@ -63,13 +63,13 @@ impl<L: Lanes> Layer<L> {
 
     /// The union of two layers, at the farther depth where both have samples.
     #[inline(always)]
-    fn with(&self, l: L, other: &Self) -> Self {
-        let (here, there) = (self.any(l), other.any(l));
-        let depth = l.dselect(here, l.dmin(self.depth, other.depth), other.depth);
+    fn with(&self, other: &Self) -> Self {
+        let (here, there) = (self.any(), other.any());
+        let depth = Depths::select(here, self.depth.min(other.depth), other.depth);
         Self {
-            bits: l.por(self.bits, other.bits),
+            bits: self.bits | other.bits,
             center: self.center | other.center,
-            depth: l.dselect(there, depth, self.depth),
+            depth: Depths::select(there, depth, self.depth),
         }
     }
 }
@@ -83,7 +83,7 @@ pub(super) fn join<L: Lanes>(
     slot: u32,
     ours: &Layer<L>,
     joined: u64,
-    new: L::D,
+    new: Depths<L>,
 ) {
     let front = Layer::load(l, &to.slots.partial[slot as usize]);
     let all = if to.state.kind() == KIND_LAYERS {
@@ -91,75 +91,68 @@ pub(super) fn join<L: Lanes>(
     } else {
         front
     };
-    let theirs = front.any(l);
-    let apart = l.dapart(ours.depth, front.depth, APART) & joined & theirs;
-    let nearer = l.dgt(ours.depth, front.depth) & apart;
+    let theirs = front.any();
+    let apart = ours.depth.apart(front.depth, APART) & joined & theirs;
+    let nearer = ours.depth.gt(front.depth) & apart;
     // Much nearer: the near layer begins anew, and its old parts live on in the layer of all. Much
     // farther: it stays as it is.
-    let front = front
-        .keep(l, !nearer)
-        .with(l, &ours.keep(l, nearer | !apart));
-    let all = all.with(l, ours);
-    let full = front.full(l);
-    let new = l.dselect(full, l.dmax(new, front.depth), new);
-    let full = all.full(l);
-    let new = l.dselect(full, l.dmax(new, all.depth), new);
-    l.dstore(new, &mut to.depth.0);
-    *to.min = l.dreduce_min(new);
-    forget(l, to, slot, front, all, new);
+    let front = front.keep(!nearer).with(&ours.keep(nearer | !apart));
+    let all = all.with(ours);
+    let full = front.full();
+    let new = Depths::select(full, new.max(front.depth), new);
+    let full = all.full();
+    let new = Depths::select(full, new.max(all.depth), new);
+    new.store(&mut to.depth.0);
+    *to.min = new.farthest();
+    forget(to, slot, front, all, new);
 }
 
 /// Drops partial coverage that cannot bring anything nearer than the depth `d`.
 #[inline(always)]
-pub(super) fn forget_hidden<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: L::D) {
+pub(super) fn forget_hidden<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: Depths<L>) {
     let slot = to.state.slot();
     let partial = &mut to.slots.partial[slot as usize];
-    let kept = partial.any & l.dgt(l.dload(&partial.depth), d);
+    let kept = partial.any & l.load_depths(&partial.depth).gt(d);
     if kept == 0 {
         to.slots.give(slot, true);
         *to.state = BlockState::DEPTH;
         return;
     }
-    l.pstore(l.pkeep(l.pload(&partial.bits), kept), &mut partial.bits);
+    l.load_samples(&partial.bits)
+        .keep(kept)
+        .store(&mut partial.bits);
     partial.center &= kept;
     partial.any = kept;
 }
 
 /// Drops partial coverage in two layers that cannot bring anything nearer than the depth `d`.
 #[inline(always)]
-pub(super) fn forget_hidden_layers<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: L::D) {
+pub(super) fn forget_hidden_layers<L: Lanes>(l: L, to: BlockMut<'_, '_>, d: Depths<L>) {
     let slot = to.state.slot();
     let (front, all) = (
         Layer::load(l, &to.slots.partial[slot as usize]),
         Layer::load(l, &to.slots.all[slot as usize]),
     );
-    forget(l, to, slot, front, all, d);
+    forget(to, slot, front, all, d);
 }
 
 /// Stores what is not hidden behind `d`, in one layer where both would be the same.
 #[inline(always)]
-fn forget<L: Lanes>(
-    l: L,
-    to: BlockMut<'_, '_>,
-    slot: u32,
-    front: Layer<L>,
-    all: Layer<L>,
-    d: L::D,
-) {
-    let front = front.keep(l, l.dgt(front.depth, d));
-    let kept = l.dgt(all.depth, d);
+fn forget<L: Lanes>(to: BlockMut<'_, '_>, slot: u32, front: Layer<L>, all: Layer<L>, d: Depths<L>) {
+    let front = front.keep(front.depth.gt(d));
+    let kept = all.depth.gt(d);
     // Where the layer of all is hidden, only the near parts count.
     let all = Layer {
-        bits: l.por(l.pkeep(all.bits, kept), l.pkeep(front.bits, !kept)),
+        bits: all.bits.keep(kept) | front.bits.keep(!kept),
         center: (all.center & kept) | (front.center & !kept),
-        depth: l.dselect(kept, all.depth, front.depth),
+        depth: Depths::select(kept, all.depth, front.depth),
     };
-    let two = l.dgt(front.depth, all.depth) & front.any(l);
+    let two = front.depth.gt(all.depth) & front.any();
     let partial = &mut to.slots.partial[slot as usize];
-    front.store(l, partial);
+    front.store(partial);
     let any = partial.any;
     *to.state = if two != 0 {
-        all.store(l, &mut to.slots.all[slot as usize]);
+        all.store(&mut to.slots.all[slot as usize]);
         BlockState::partial(KIND_LAYERS, slot)
     } else if any != 0 {
         BlockState::partial(KIND_PARTIAL, slot)

@@ -66,49 +66,43 @@ pub(super) fn mark_margins<L: Lanes>(
     let (ax, bx) = (l.gather(&points.x, from), l.gather(&points.x, to));
     let (ay, by) = (l.gather(&points.y, from), l.gather(&points.y, to));
     let (az, bz) = (l.gather(&points.depth, from), l.gather(&points.depth, to));
-    let (near, far) = (l.max(az, bz), l.min(az, bz));
+    let (near, far) = (az.max(bz), az.min(bz));
     let margin = l.splat(MARGIN);
     let [shift_x, shift_y] = reach.shifts;
-    let reach_x = l.add(l.mul(near, l.splat(shift_x * 1.001)), margin);
-    let reach_y = l.add(l.mul(near, l.splat(shift_y * 1.001)), margin);
-    let ends = [l.min(ax, bx), l.min(ay, by), l.max(ax, bx), l.max(ay, by)];
+    let reach_x = near * (shift_x * 1.001) + margin;
+    let reach_y = near * (shift_y * 1.001) + margin;
+    let ends = [ax.min(bx), ay.min(by), ax.max(bx), ay.max(by)];
     let grown = [
-        l.sub(ends[0], reach_x),
-        l.sub(ends[1], reach_y),
-        l.add(ends[2], reach_x),
-        l.add(ends[3], reach_y),
+        ends[0] - reach_x,
+        ends[1] - reach_y,
+        ends[2] + reach_x,
+        ends[3] + reach_y,
     ];
     // Only edges that come near to the blocks of the cluster.
     let size = BLOCK_SAMPLES as f32;
     let edge = four!(k => l.splat((reach.blocks[k] + k as u32 / 2) as f32 * size));
-    let meets = l.iand(
-        l.iandnot(l.lt(grown[2], edge[0]), l.lt(grown[0], edge[2])),
-        l.iandnot(l.lt(grown[3], edge[1]), l.lt(grown[1], edge[3])),
-    );
-    let mut live = l.movemask(meets) & ((1 << count) - 1);
+    let meets = grown[0].lt(edge[2])
+        & !grown[2].lt(edge[0])
+        & (grown[1].lt(edge[3]) & !grown[3].lt(edge[1]));
+    let mut live = meets.bits() & ((1 << count) - 1);
     if live == 0 {
         return;
     }
     let blocks = four!(k => {
         let (first, last) = (reach.blocks[k % 2] as i32, reach.blocks[k % 2 + 2] as i32);
-        let block = l.trunc(l.mul(grown[k], l.splat(1.0 / size)));
+        let block = (grown[k] * (1.0 / size)).trunc();
         let mut out = [0; 8];
-        l.istore(l.imin(l.imax(block, l.isplat(first)), l.isplat(last)), &mut out);
+        block.max(l.int(first)).min(l.int(last)).store(&mut out);
         out
     });
-    let around = l.add(
-        l.mul(
-            l.splat(reach.steepness),
-            l.add(l.splat(AROUND_SAMPLE), l.max(reach_x, reach_y)),
-        ),
-        l.mul(near, l.splat(1e-5)),
-    );
-    let slope = l.div(l.sub(bx, ax), l.sub(by, ay));
-    let ends = four!(k => out(l, ends[k]));
-    let (x, y, slope) = (out(l, ax), out(l, ay), out(l, slope));
-    let (reach_x, reach_y) = (out(l, reach_x), out(l, reach_y));
-    let near_codes = out(l, l.mul(near, l.splat(1.001)));
-    let (far, near) = (out(l, l.sub(far, around)), out(l, l.add(near, around)));
+    let around =
+        l.splat(reach.steepness) * (l.splat(AROUND_SAMPLE) + reach_x.max(reach_y)) + near * 1e-5;
+    let slope = (bx - ax) / (by - ay);
+    let ends = four!(k => out(ends[k]));
+    let (x, y, slope) = (out(ax), out(ay), out(slope));
+    let (reach_x, reach_y) = (out(reach_x), out(reach_y));
+    let near_codes = out(near * 1.001);
+    let (far, near) = (out(far - around), out(near + around));
     while live != 0 {
         let i = live.trailing_zeros() as usize;
         live &= live - 1;
@@ -167,35 +161,32 @@ fn mark_margin<L: Lanes>(
             bx0 = column(smaller(larger(p, x_lo), x_hi) - reach_x);
             bx1 = column(smaller(larger(q, x_lo), x_hi) + reach_x);
         }
-        let rows = l.add(l.load(&PIXELS), l.splat(top));
-        let (above, below) = (
-            l.sub(rows, l.splat(reach_y)),
-            l.add(rows, l.splat(reach_y + SAMPLES as f32)),
-        );
-        let beside = l.ior(l.lt(l.splat(y_hi), above), l.lt(below, l.splat(y_lo)));
+        let rows = l.load(&PIXELS) + top;
+        let (above, below) = (rows - reach_y, rows + (reach_y + SAMPLES as f32));
+        let beside = l.splat(y_hi).lt(above) | below.lt(l.splat(y_lo));
         let (mut from, mut to) = (lo, hi);
         if !level {
             let (top, bottom) = (l.splat(y_lo), l.splat(y_hi));
-            let p = l.sub(l.min(l.max(above, top), bottom), l.splat(y));
-            let q = l.sub(l.min(l.max(below, top), bottom), l.splat(y));
-            let p = l.add(l.splat(x), l.mul(p, l.splat(slope)));
-            let q = l.add(l.splat(x), l.mul(q, l.splat(slope)));
-            from = l.min(l.max(l.min(p, q), lo), hi);
-            to = l.min(l.max(l.max(p, q), lo), hi);
+            let p = above.max(top).min(bottom) - y;
+            let q = below.max(top).min(bottom) - y;
+            let p = l.splat(x) + p * slope;
+            let q = l.splat(x) + q * slope;
+            from = p.min(q).max(lo).min(hi);
+            to = p.max(q).max(lo).min(hi);
         }
-        let from = l.select(beside, l.splat(1e9), l.sub(from, l.splat(reach_x)));
-        let to = l.select(beside, l.splat(-1e9), l.add(to, l.splat(reach_x)));
+        let from = beside.select(l.splat(1e9), from - reach_x);
+        let to = beside.select(l.splat(-1e9), to + reach_x);
         // The first pixel of each row within reach, and the first after.
         let pixel = l.splat(1.0 / SAMPLES as f32);
-        let from = l.trunc(l.mul(from, pixel));
-        let to = l.trunc(l.add(l.mul(to, pixel), l.splat(1.0)));
+        let from = (from * pixel).trunc();
+        let to = (to * pixel + 1.0).trunc();
         for bx in bx0..=bx1 {
             let i = ((by - band.first_row) * band.blocks_x + bx) as usize;
             if code <= band.min[i] {
                 continue;
             }
-            let left = l.isplat((bx * BLOCK) as i32);
-            let bits = l.bit_rows(l.isub(from, left), l.isub(to, left));
+            let left = l.int((bx * BLOCK) as i32);
+            let bits = (from - left).rows_to(to - left);
             if bits != 0 {
                 band.has_margins = true;
                 let (pixels, edge) = (&mut band.margin[i], &mut band.margin_depths[i]);

@@ -32,7 +32,7 @@ use super::visible_quads::{QuadCorners, VisibleQuads};
 use crate::depth::band::Band;
 use crate::occluder::mesh::{Cluster, OccluderMesh};
 use crate::occluder::one_ring::{FIRST_OF_RING, FIRST_OF_SECOND, MAX_NUMBERS, OneRing};
-use crate::simd::{Kernel, Lanes, four, larger, smaller};
+use crate::simd::{F8, Kernel, Lanes, M8, four, larger, smaller};
 
 /// A triangle surely faces the eye if its height exceeds this over the sum of its quad's sides,
 /// samples. Vertices are rounded by 1/512 at most.
@@ -144,33 +144,33 @@ fn prepare<L: Lanes>(
         let x = four!(c => l.load(&corners.x[c]));
         let y = four!(c => l.load(&corners.y[c]));
         let z = four!(c => l.load(&corners.depth[c]));
-        let w = l.sub(highest(l, &x), lowest(l, &x));
-        let h = l.sub(highest(l, &y), lowest(l, &y));
-        let (sides, z_hi) = (l.add(w, h), highest(l, &z));
-        let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
+        let w = highest(&x) - lowest(&x);
+        let h = highest(&y) - lowest(&y);
+        let (sides, z_hi) = (w + h, highest(&z));
+        let sum = x[0] + x[1] + (x[2] + x[3]);
         // Quads without a vertex for the clipper.
-        let whole = l.lt(l.sub(sum, sum), one);
-        nearest = l.select(whole, l.max(nearest, z_hi), nearest);
+        let whole = sum.is_finite();
+        nearest = whole.select(nearest.max(z_hi), nearest);
         for (second, kept) in kept.iter_mut().enumerate() {
             let (b, c) = (1 + second, 2 + second);
             let triangle = [(x[0], y[0], z[0]), (x[b], y[b], z[b]), (x[c], y[c], z[c])];
-            let (steepness, member) = judge(l, triangle, sides, z_hi);
-            let member = l.iand(member, whole);
-            steepest = l.max(steepest, l.select(member, steepness, zero));
-            let visible = l.iand(member, l.iload(&corners.visible));
-            l.store(l.select(visible, one, zero), kept);
+            let (steepness, member) = judge(triangle, sides, z_hi);
+            let member = member & whole;
+            steepest = steepest.max(member.select(steepness, zero));
+            let visible = member & l.load_mask(&corners.visible);
+            visible.select(one, zero).store(kept);
             // Numbers are those of triangles that are not mirrored.
             let second = second ^ usize::from(mirrored);
-            l.istore(member, &mut members[g % 8 + second * (FIRST_OF_SECOND / 8)]);
+            member.store(&mut members[g % 8 + second * (FIRST_OF_SECOND / 8)]);
         }
     }
     let base = usize::from(cluster.vertex_count).next_multiple_of(8);
     let (eights, _) = points.depth[base..][..usize::from(ring.vertex_count)].as_chunks::<8>();
     for depths in eights {
-        nearest = l.max(l.load(depths), nearest);
+        nearest = l.load(depths).max(nearest);
     }
     let mut at = [0.0; 8];
-    l.store(nearest, &mut at);
+    nearest.store(&mut at);
     let nearest = smaller(greatest(at), 1.0);
     let [shift_x, shift_y] = radius.shifts;
     let height =
@@ -180,25 +180,22 @@ fn prepare<L: Lanes>(
         let a = corner(l, points, &group[order[0]]);
         let b = corner(l, points, &group[order[1]]);
         let c = corner(l, points, &group[order[2]]);
-        let (dx, dy) = (l.sub(c.0, b.0), l.sub(c.1, b.1));
-        let sides = l.add(l.add(l.abs(dx), l.abs(dy)), {
-            let (dx, dy) = (l.sub(c.0, a.0), l.sub(c.1, a.1));
-            l.add(l.abs(dx), l.abs(dy))
-        });
-        let z_hi = l.max(a.2, l.max(b.2, c.2));
-        let (steepness, member) = judge(l, [a, b, c], sides, z_hi);
-        let f = area(l, &[a.0, b.0, c.0, c.0], &[a.1, b.1, c.1, c.1], 0, 1, 2);
-        let base = l.add(l.mul(dx, dx), l.mul(dy, dy));
-        let high = l.lt(l.mul(l.mul(height, height), base), l.mul(f, f));
-        let member = l.iand(member, high);
-        steepest = l.max(steepest, l.select(member, steepness, zero));
-        l.istore(
-            member,
-            &mut members[(FIRST_OF_RING / 8 + g) % (MAX_NUMBERS / 8)],
-        );
+        let (dx, dy) = (c.0 - b.0, c.1 - b.1);
+        let sides = dx.abs() + dy.abs() + {
+            let (dx, dy) = (c.0 - a.0, c.1 - a.1);
+            dx.abs() + dy.abs()
+        };
+        let z_hi = a.2.max(b.2.max(c.2));
+        let (steepness, member) = judge([a, b, c], sides, z_hi);
+        let f = area(&[a.0, b.0, c.0, c.0], &[a.1, b.1, c.1, c.1], 0, 1, 2);
+        let base = dx * dx + dy * dy;
+        let high = (height * height * base).lt(f * f);
+        let member = member & high;
+        steepest = steepest.max(member.select(steepness, zero));
+        member.store(&mut members[(FIRST_OF_RING / 8 + g) % (MAX_NUMBERS / 8)]);
     }
     // Lanes after the last triangle have no area.
-    l.store(steepest, &mut at);
+    steepest.store(&mut at);
     let steepest = greatest(at);
     // Half a sample along each axis, and the rounding of gradients.
     patch.slack = steepest * 0.6;
@@ -241,7 +238,7 @@ fn prepare<L: Lanes>(
 }
 
 #[inline(always)]
-fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (L::F, L::F, L::F) {
+fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (F8<L>, F8<L>, F8<L>) {
     (
         l.gather(&points.x, index),
         l.gather(&points.y, index),
@@ -253,22 +250,18 @@ fn corner<L: Lanes>(l: L, points: &Points, index: &[u8; 8]) -> (L::F, L::F, L::F
 /// belong to a patch.
 #[inline(always)]
 fn judge<L: Lanes>(
-    l: L,
-    [a, b, c]: [(L::F, L::F, L::F); 3],
-    sides: L::F,
-    z_hi: L::F,
-) -> (L::F, L::I) {
-    let (bx, by, bz) = (l.sub(b.0, a.0), l.sub(b.1, a.1), l.sub(b.2, a.2));
-    let (cx, cy, cz) = (l.sub(c.0, a.0), l.sub(c.1, a.1), l.sub(c.2, a.2));
+    [a, b, c]: [(F8<L>, F8<L>, F8<L>); 3],
+    sides: F8<L>,
+    z_hi: F8<L>,
+) -> (F8<L>, M8<L>) {
+    let (bx, by, bz) = (b.0 - a.0, b.1 - a.1, b.2 - a.2);
+    let (cx, cy, cz) = (c.0 - a.0, c.1 - a.1, c.2 - a.2);
     // Positive where it faces the eye (y points down).
-    let f = l.sub(l.mul(cx, by), l.mul(bx, cy));
-    let change = l.add(
-        l.abs(l.sub(l.mul(cz, by), l.mul(bz, cy))),
-        l.abs(l.sub(l.mul(bz, cx), l.mul(cz, bx))),
-    );
-    let faces = l.lt(l.mul(sides, l.splat(LEAST_HEIGHT)), f);
-    let flat = l.lt(l.mul(change, l.splat(STEEPEST)), l.mul(z_hi, f));
-    (l.div(change, f), l.iand(faces, flat))
+    let f = cx * by - bx * cy;
+    let change = (cz * by - bz * cy).abs() + (bz * cx - cz * bx).abs();
+    let faces = (sides * LEAST_HEIGHT).lt(f);
+    let flat = (change * STEEPEST).lt(z_hi * f);
+    (change / f, faces & flat)
 }
 
 #[inline(always)]

@@ -55,7 +55,7 @@ const WORK_OF_ROW: u32 = 1;
 pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
     let [bx0, by0, bx1, by1] = polygon.blocks;
     let size = f64::from(BLOCK_SAMPLES);
-    let edges = EdgeRows::new(l, &polygon.edges);
+    let edges = EdgeRows::new(&polygon.edges);
     band.work[(by0 - band.first_row) as usize] += WORK_OF_POLYGON;
     for by in by0..=by1 {
         let top = (by * BLOCK_SAMPLES) as f32;
@@ -64,10 +64,10 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
         let (mut inner_left, mut inner_right) = (f64::INFINITY, f64::NEG_INFINITY);
         if bx0 != bx1 {
             let (mut at, mut end) = ([0.0; 4], [0.0; 4]);
-            l.qstore(exact, &mut at);
+            exact.store(&mut at);
             // The same edges at the last sample row.
-            let down = l.qmul(polygon.edges.slope, l.qsplat(size - 1.0));
-            l.qstore(l.qadd(exact, down), &mut end);
+            let down = polygon.edges.slope * (size - 1.0);
+            (exact + down).store(&mut end);
             let low = four!(e => smaller(at[e], end[e]));
             let high = four!(e => larger(at[e], end[e]));
             let outer_left = larger(low[0], low[1]);
@@ -100,7 +100,7 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
         // whole screen has none.
         let left = first..end - whole;
         if !left.is_empty() {
-            let spans = edges.spans(l, exact, polygon.rows, top);
+            let spans = edges.spans(exact, polygon.rows, top);
             for bx in left {
                 let bx = if bx < inner { bx } else { bx + whole };
                 work += block::cover_partial(l, band, bx, by, &polygon.plane, &spans);

@@ -12,12 +12,12 @@
 use super::block::DepthPlane;
 use super::edges::Edges;
 use super::extent::{area, blocks_of, highest, lowest, out, steps_of};
-use super::facing::Facing;
+use super::facing::{Facing, ValidityRadius};
 use super::points::Points;
 use super::polygon::{self, Polygon};
 use crate::depth::band::Band;
 use crate::format::encode;
-use crate::simd::{Lanes, four};
+use crate::simd::{F8, Lanes, M8, four};
 
 /// Largest distance from a point of a pixel to its nearest sample (half the diagonal of a sample,
 /// and a bit). Polygons that shrink by this cover every point between the samples that they cover.
@@ -38,120 +38,49 @@ pub(crate) fn draw_eight<L: Lanes>(
     kept: Option<(&[[f32; 8]; 2], f32)>,
     facing: Facing,
 ) -> u64 {
-    let (two_sided, radius) = (facing.two_sided, facing.radius.filter(|_| kept.is_none()));
-    let mut x = four!(c => l.gather(&points.x, index[c]));
-    let mut y = four!(c => l.gather(&points.y, index[c]));
-    let zero = l.splat(0.0);
-    let mut f0 = area(l, &x, &y, 0, 1, 2);
-    let mut f1 = area(l, &x, &y, 0, 2, 3);
-    let mut reversed = l.isplat(0);
-    if two_sided {
-        // The larger triangle decides the side. Its partner, if it faces the other way, is dropped.
-        reversed = l.lt(l.add(f0, f1), zero);
-        x = swap(l, reversed, x);
-        y = swap(l, reversed, y);
-        f0 = area(l, &x, &y, 0, 1, 2);
-        f1 = area(l, &x, &y, 0, 2, 3);
-    }
-    let mut front0 = l.lt(zero, f0);
-    let mut front1 = l.lt(zero, f1);
-    if let Some(([first, second], _)) = kept {
-        front0 = l.iand(front0, l.lt(zero, l.load(first)));
-        front1 = l.iand(front1, l.lt(zero, l.load(second)));
-    }
-    let front = l.ior(front0, front1);
-    if l.movemask(front) == 0 {
+    let radius = facing.radius.filter(|_| kept.is_none());
+    let mut corners = Corners::gather(l, points, index);
+    let reversed = if facing.two_sided {
+        corners.turn_to_eye(l)
+    } else {
+        !l.all()
+    };
+    let front = Front::of(l, &corners, kept.map(|(triangles, _)| triangles));
+    let any = front.first | front.second;
+    if any.bits() == 0 {
         return 0;
     }
-    let (x_lo, x_hi, y_lo, y_hi) = (lowest(l, &x), highest(l, &x), lowest(l, &y), highest(l, &y));
-    let steps = steps_of(l, band, [[x_lo, y_lo], [x_hi, y_hi]]);
+    let extent = Extent::of(&corners);
+    let steps = steps_of(l, band, extent.ends);
     let [nx0, ny0, nx1, ny1] = steps;
-    // `a - b` is negative where a < b.
-    let live = l.iand(front, l.iand(l.isub(nx0, nx1), l.isub(ny0, ny1)));
-    let mut live = l.movemask(live);
+    let on_screen = nx0.lt(nx1) & ny0.lt(ny1);
+    let mut live = (any & on_screen).bits();
     if live == 0 {
         return 0;
     }
-    let f3 = area(l, &x, &y, 0, 1, 3);
-    let f2 = l.sub(l.add(f0, f1), f3);
-    let convex = l.movemask(l.iand(
-        l.iand(front0, front1),
-        l.iand(l.lt(zero, f2), l.lt(zero, f3)),
-    ));
+    let convex = front.convex(l, &corners);
     let mut z = four!(c => l.gather(&points.depth, index[c]));
-    if two_sided {
-        z = swap(l, reversed, z);
+    if facing.two_sided {
+        z = swap(reversed, z);
     }
-    let (z_lo, z_hi) = (lowest(l, &z), highest(l, &z));
-    // The plane through v0 and the larger (or only) front triangle.
-    let second = l.ior(
-        l.iandnot(front0, l.isplat(-1)),
-        l.iand(front1, l.lt(f0, f1)),
-    );
-    let (bx, cx, ox) = pick(l, second, &x);
-    let (by, cy, oy) = pick(l, second, &y);
-    let (bz, cz, oz) = pick(l, second, &z);
-    let f = l.select(second, f1, f0);
-    let (bx, by, bz) = (l.sub(bx, x[0]), l.sub(by, y[0]), l.sub(bz, z[0]));
-    let (cx, cy, cz) = (l.sub(cx, x[0]), l.sub(cy, y[0]), l.sub(cz, z[0]));
-    let inv = l.div(l.splat(1.0), f);
-    let gx = l.mul(l.sub(l.mul(cz, by), l.mul(bz, cy)), inv);
-    let gy = l.mul(l.sub(l.mul(bz, cx), l.mul(cz, bx)), inv);
-    let at_other = l.add(
-        z[0],
-        l.add(l.mul(gx, l.sub(ox, x[0])), l.mul(gy, l.sub(oy, y[0]))),
-    );
-    let both = l.iand(front0, front1);
-    let fold = l.select(both, l.max(l.sub(at_other, oz), zero), zero);
-    let (w, h) = (l.sub(x_hi, x_lo), l.sub(y_hi, y_lo));
+    let (z_lo, z_hi) = (lowest(&z), highest(&z));
+    let plane = Planes::of(l, &corners, &z, &front);
     if let Some(radius) = radius {
-        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at
-        // least sqrt(2) (w + h), times the distance that it shrinks by.
-        let by = l.add(l.mul(z_hi, l.splat(radius.shift)), l.splat(BETWEEN_SAMPLES));
-        let least = l.mul(l.mul(by, l.splat(1.414)), l.add(w, h));
-        let twice_area = l.add(l.max(f0, zero), l.max(f1, zero));
-        live &= l.movemask(l.lt(least, twice_area));
+        live &= front.survives_shrinking(l, z_hi, &extent, radius).bits();
         if live == 0 {
             return 0;
         }
     }
-    let (ax, ay) = (l.abs(gx), l.abs(gy));
-    let relative = l.add(
-        l.splat(1.0 / 262_144.0),
-        l.mul(l.mul(l.splat(1.0 / 256.0), l.add(w, h)), inv),
-    );
-    let variation = l.add(
-        l.mul(ax, l.add(w, l.splat(4.0))),
-        l.mul(ay, l.add(h, l.splat(4.0))),
-    );
-    let rounding = l.add(
-        l.mul(relative, variation),
-        l.mul(z_hi, l.splat(1.0 / 1_048_576.0)),
-    );
-    let reach = l.splat(if radius.is_some() {
-        WHOLE_PIXEL
-    } else {
-        SAMPLES_ONLY
-    });
     let lower = kept.map_or(0.0, |(_, slack)| slack);
-    let slack = l.add(
-        l.add(fold, l.add(rounding, l.splat(lower))),
-        l.mul(reach, l.add(ax, ay)),
-    );
-    let base = l.sub(z[0], slack);
+    let base = z[0] - plane.slack(l, &extent, z_hi, radius.is_some(), lower);
 
     // One quad at a time from here.
-    let reversed = if two_sided { l.movemask(reversed) } else { 0 };
-    let (x0, y0) = (out(l, x[0]), out(l, y[0]));
-    let (base, gx, gy, z_lo, z_hi) = (
-        out(l, base),
-        out(l, gx),
-        out(l, gy),
-        out(l, z_lo),
-        out(l, z_hi),
-    );
+    let reversed = if facing.two_sided { reversed.bits() } else { 0 };
+    let (x0, y0) = (out(corners.x[0]), out(corners.y[0]));
+    let (base, gx, gy) = (out(base), out(plane.gx), out(plane.gy));
+    let (z_lo, z_hi) = (out(z_lo), out(z_hi));
     let [bx0, by0, bx1, by1] = blocks_of(l, band, steps);
-    let (front0, front1) = (l.movemask(front0), l.movemask(front1));
+    let (first, second) = (front.first.bits(), front.second.bits());
     let mut drawn = 0;
     while live != 0 {
         let i = live.trailing_zeros() as usize;
@@ -174,19 +103,18 @@ pub(crate) fn draw_eight<L: Lanes>(
         }
         let swapped = usize::from(reversed & bit != 0) * 2;
         let n = four!(k => index[if k % 2 == 1 { k ^ swapped } else { k }][i]);
-        let x = l.qgather(&points.exact_x, n);
-        let y = l.qgather(&points.exact_y, n);
+        let x = l.gather_doubles(&points.exact_x, n);
+        let y = l.gather_doubles(&points.exact_y, n);
         let (first, last) = if convex & bit != 0 {
             (2, 5)
         } else {
             (
-                usize::from(front0 & bit == 0),
-                1 + usize::from(front1 & bit != 0),
+                usize::from(first & bit == 0),
+                1 + usize::from(second & bit != 0),
             )
         };
         for (n, shape) in SHAPES[first..last].iter().enumerate() {
-            let (x, y) = (l.qpick(x, *shape), l.qpick(y, *shape));
-            let Some((edges, rows)) = Edges::of(l, x, y) else {
+            let Some((edges, rows)) = Edges::of(l, x.pick(*shape), y.pick(*shape)) else {
                 continue;
             };
             let mut polygon = Polygon {
@@ -218,6 +146,181 @@ pub(crate) fn draw_eight<L: Lanes>(
     drawn
 }
 
+/// The corners of eight quads on the screen, rounded, samples.
+struct Corners<L: Lanes> {
+    x: [F8<L>; 4],
+    y: [F8<L>; 4],
+}
+
+impl<L: Lanes> Corners<L> {
+    #[inline(always)]
+    fn gather(l: L, points: &Points, index: [&[u8; 8]; 4]) -> Self {
+        Self {
+            x: four!(c => l.gather(&points.x, index[c])),
+            y: four!(c => l.gather(&points.y, index[c])),
+        }
+    }
+
+    /// Twice the areas of both triangles.
+    #[inline(always)]
+    fn areas(&self) -> [F8<L>; 2] {
+        [
+            area(&self.x, &self.y, 0, 1, 2),
+            area(&self.x, &self.y, 0, 2, 3),
+        ]
+    }
+
+    /// Reverses two-sided quads that face away, and returns which. The larger triangle decides the
+    /// side. Its partner, if it faces the other way, is dropped.
+    #[inline(always)]
+    fn turn_to_eye(&mut self, l: L) -> M8<L> {
+        let [f0, f1] = self.areas();
+        let reversed = (f0 + f1).lt(l.splat(0.0));
+        self.x = swap(reversed, self.x);
+        self.y = swap(reversed, self.y);
+        reversed
+    }
+}
+
+/// Which triangles of eight quads face the eye, and twice their areas.
+struct Front<L: Lanes> {
+    first: M8<L>,
+    second: M8<L>,
+    areas: [F8<L>; 2],
+}
+
+impl<L: Lanes> Front<L> {
+    /// `kept`: above zero for triangles that count at all.
+    #[inline(always)]
+    fn of(l: L, corners: &Corners<L>, kept: Option<&[[f32; 8]; 2]>) -> Self {
+        let zero = l.splat(0.0);
+        let areas = corners.areas();
+        let [mut first, mut second] = [zero.lt(areas[0]), zero.lt(areas[1])];
+        if let Some(kept) = kept {
+            first = first & zero.lt(l.load(&kept[0]));
+            second = second & zero.lt(l.load(&kept[1]));
+        }
+        Self {
+            first,
+            second,
+            areas,
+        }
+    }
+
+    /// A bit per quad that is convex on the screen: each of the four triangles that its corners
+    /// make faces the eye.
+    #[inline(always)]
+    fn convex(&self, l: L, corners: &Corners<L>) -> u32 {
+        let zero = l.splat(0.0);
+        let [f0, f1] = self.areas;
+        let f3 = area(&corners.x, &corners.y, 0, 1, 3);
+        let f2 = f0 + f1 - f3;
+        (self.first & self.second & (zero.lt(f2) & zero.lt(f3))).bits()
+    }
+
+    /// Quads that may leave anything when they shrink for a region.
+    #[inline(always)]
+    fn survives_shrinking(
+        &self,
+        l: L,
+        z_hi: F8<L>,
+        extent: &Extent<L>,
+        radius: ValidityRadius,
+    ) -> M8<L> {
+        // A polygon shrinks to nothing unless its area exceeds half its perimeter, which is at
+        // least sqrt(2) (w + h), times the distance that it shrinks by.
+        let zero = l.splat(0.0);
+        let (w, h) = extent.size();
+        let by = z_hi * radius.shift + BETWEEN_SAMPLES;
+        let least = by * 1.414 * (w + h);
+        least.lt(self.areas[0].max(zero) + self.areas[1].max(zero))
+    }
+}
+
+/// The extents of eight quads on the screen.
+struct Extent<L: Lanes> {
+    /// Least x and y, greatest x and y.
+    ends: [[F8<L>; 2]; 2],
+}
+
+impl<L: Lanes> Extent<L> {
+    #[inline(always)]
+    fn of(corners: &Corners<L>) -> Self {
+        let (x, y) = (&corners.x, &corners.y);
+        Self {
+            ends: [[lowest(x), lowest(y)], [highest(x), highest(y)]],
+        }
+    }
+
+    /// Width and height.
+    #[inline(always)]
+    fn size(&self) -> (F8<L>, F8<L>) {
+        let [[x_lo, y_lo], [x_hi, y_hi]] = self.ends;
+        (x_hi - x_lo, y_hi - y_lo)
+    }
+}
+
+/// The depth planes of eight quads: through the first corner and the larger (or only) front
+/// triangle.
+struct Planes<L: Lanes> {
+    /// Change per sample.
+    gx: F8<L>,
+    gy: F8<L>,
+    /// One divided by twice the triangle's area.
+    inverse_area: F8<L>,
+    /// How far the corner that is not of the triangle lies behind the plane.
+    fold: F8<L>,
+}
+
+impl<L: Lanes> Planes<L> {
+    #[inline(always)]
+    fn of(l: L, corners: &Corners<L>, z: &[F8<L>; 4], front: &Front<L>) -> Self {
+        let (x, y) = (&corners.x, &corners.y);
+        let [f0, f1] = front.areas;
+        let second = !front.first | front.second & f0.lt(f1);
+        let (bx, cx, ox) = pick(second, x);
+        let (by, cy, oy) = pick(second, y);
+        let (bz, cz, oz) = pick(second, z);
+        let (bx, by, bz) = (bx - x[0], by - y[0], bz - z[0]);
+        let (cx, cy, cz) = (cx - x[0], cy - y[0], cz - z[0]);
+        let inverse_area = l.splat(1.0) / second.select(f1, f0);
+        let gx = (cz * by - bz * cy) * inverse_area;
+        let gy = (bz * cx - cz * bx) * inverse_area;
+        let at_other = z[0] + (gx * (ox - x[0]) + gy * (oy - y[0]));
+        let (both, zero) = (front.first & front.second, l.splat(0.0));
+        Self {
+            gx,
+            gy,
+            inverse_area,
+            fold: both.select((at_other - oz).max(zero), zero),
+        }
+    }
+
+    /// What the planes are lowered by, so that they hold for whole pixels however they are rounded.
+    #[inline(always)]
+    fn slack(
+        &self,
+        l: L,
+        extent: &Extent<L>,
+        z_hi: F8<L>,
+        whole_pixels: bool,
+        lower: f32,
+    ) -> F8<L> {
+        let (w, h) = extent.size();
+        let (ax, ay) = (self.gx.abs(), self.gy.abs());
+        let relative =
+            l.splat(1.0 / 262_144.0) + l.splat(1.0 / 256.0) * (w + h) * self.inverse_area;
+        let variation = ax * (w + 4.0) + ay * (h + 4.0);
+        let rounding = relative * variation + z_hi * (1.0 / 1_048_576.0);
+        let reach = l.splat(if whole_pixels {
+            WHOLE_PIXEL
+        } else {
+            SAMPLES_ONLY
+        });
+        self.fold + (rounding + lower) + reach * (ax + ay)
+    }
+}
+
 /// Parts of a quad, by corners: the triangles alone; then the whole, and the triangles again for a
 /// whole with three edges on one side.
 const SHAPES: [[u8; 4]; 5] = {
@@ -226,21 +329,21 @@ const SHAPES: [[u8; 4]; 5] = {
 };
 
 #[inline(always)]
-fn swap<L: Lanes>(l: L, reversed: L::I, v: [L::F; 4]) -> [L::F; 4] {
+fn swap<L: Lanes>(reversed: M8<L>, v: [F8<L>; 4]) -> [F8<L>; 4] {
     [
         v[0],
-        l.select(reversed, v[3], v[1]),
+        reversed.select(v[3], v[1]),
         v[2],
-        l.select(reversed, v[1], v[3]),
+        reversed.select(v[1], v[3]),
     ]
 }
 
 /// Second, third and left-over corner of the triangle that gives the plane.
 #[inline(always)]
-fn pick<L: Lanes>(l: L, second: L::I, v: &[L::F; 4]) -> (L::F, L::F, L::F) {
+fn pick<L: Lanes>(second: M8<L>, v: &[F8<L>; 4]) -> (F8<L>, F8<L>, F8<L>) {
     (
-        l.select(second, v[2], v[1]),
-        l.select(second, v[3], v[2]),
-        l.select(second, v[1], v[3]),
+        second.select(v[2], v[1]),
+        second.select(v[3], v[2]),
+        second.select(v[1], v[3]),
     )
 }

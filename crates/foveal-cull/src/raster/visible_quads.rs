@@ -63,34 +63,31 @@ impl VisibleQuads {
         let groups = usize::from(cluster.quad_count).div_ceil(8);
         let groups = &mesh.quads[cluster.first_group as usize..][..groups];
         let order = if mirrored { [0, 3, 2, 1] } else { [0, 1, 2, 3] };
-        let (zero, one) = (l.splat(0.0), l.splat(1.0));
+        let zero = l.splat(0.0);
         for ((group, quads), corners) in groups.iter().zip(&mut visible.quads).zip(corners) {
             let x = four!(c => l.gather(&points.x, &group[order[c]]));
             let y = four!(c => l.gather(&points.y, &group[order[c]]));
             let z = four!(c => l.gather(&points.depth, &group[order[c]]));
             *corners = QuadCorners {
-                x: four!(c => out(l, x[c])),
-                y: four!(c => out(l, y[c])),
-                depth: four!(c => out(l, z[c])),
+                x: four!(c => out(x[c])),
+                y: four!(c => out(y[c])),
+                depth: four!(c => out(z[c])),
                 visible: [0; 8],
             };
-            let sum = l.add(l.add(x[0], x[1]), l.add(x[2], x[3]));
-            let whole = l.lt(l.sub(sum, sum), one);
-            let f0 = area(l, &x, &y, 0, 1, 2);
-            let f1 = area(l, &x, &y, 0, 2, 3);
-            let front = l.iand(whole, l.ior(l.lt(zero, f0), l.lt(zero, f1)));
-            let ends = [
-                [lowest(l, &x), lowest(l, &y)],
-                [highest(l, &x), highest(l, &y)],
-            ];
+            let sum = x[0] + x[1] + (x[2] + x[3]);
+            let whole = sum.is_finite();
+            let f0 = area(&x, &y, 0, 1, 2);
+            let f1 = area(&x, &y, 0, 2, 3);
+            let front = whole & (zero.lt(f0) | zero.lt(f1));
+            let ends = [[lowest(&x), lowest(&y)], [highest(&x), highest(&y)]];
             let steps = steps_of(l, band, ends);
             let [nx0, ny0, nx1, ny1] = steps;
-            let meets = l.iand(l.isub(nx0, nx1), l.isub(ny0, ny1));
-            let mut live = l.movemask(l.iand(front, meets));
+            let meets = nx0.lt(nx1) & ny0.lt(ny1);
+            let mut live = (front & meets).bits();
             if live == 0 {
                 continue;
             }
-            let nearest = out(l, highest(l, &z));
+            let nearest = out(highest(&z));
             let [bx0, by0, bx1, by1] = blocks_of(l, band, steps);
             while live != 0 {
                 let i = live.trailing_zeros() as usize;

@@ -2,7 +2,7 @@
 //! sound.
 
 use super::arrays::{four, two};
-use super::lanes::{Kernel, Lanes};
+use super::lanes::{Kernel, Lanes, Vectors};
 use super::portable::{FAR, PIXELS_FROM, ROWS};
 use super::twice::Twice;
 use crate::bounds::Aabb;
@@ -52,110 +52,76 @@ macro_rules! avx2 {
     };
 }
 
-impl Lanes for Avx2 {
+impl Vectors<8> for Avx2 {
     type F = __m256;
     type I = __m256i;
-    type Q = __m256d;
-    type D = [__m256i; 4];
-    type S = [Side256; 2];
-    type B = [[__m256d; 10]; 4];
-    type P = [__m256i; 4];
-    type W = Twice<Self>;
-
-    fn outlined<K: Kernel>(self, kernel: K) -> K::Output {
-        #[inline(never)]
-        #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt")]
-        fn inner<K: Kernel>(lanes: Avx2, kernel: K) -> K::Output {
-            kernel.run(lanes)
-        }
-        // SAFETY: `self` proves that the CPU has these features.
-        unsafe { inner(self, kernel) }
-    }
+    type M = __m256i;
 
     #[inline(always)]
-    fn wide(self) -> Self::W {
-        Twice(self)
-    }
-    #[inline(always)]
-    fn prefetch<T>(self, soon: &T) {
-        super::narrow::sse2::prefetch(soon);
-    }
-
-    #[inline(always)]
-    fn splat(self, v: f32) -> __m256 {
+    fn fsplat(self, v: f32) -> __m256 {
         avx2!(_mm256_set1_ps(v))
     }
     #[inline(always)]
-    fn load(self, v: &[f32; 8]) -> __m256 {
+    fn fload(self, v: &[f32; 8]) -> __m256 {
         avx2!(_mm256_loadu_ps(v.as_ptr()))
     }
     #[inline(always)]
-    fn store(self, v: __m256, to: &mut [f32; 8]) {
+    fn fstore(self, v: __m256, to: &mut [f32; 8]) {
         avx2!(_mm256_storeu_ps(to.as_mut_ptr(), v))
     }
     #[inline(always)]
-    fn add(self, a: __m256, b: __m256) -> __m256 {
+    fn fadd(self, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_add_ps(a, b))
     }
     #[inline(always)]
-    fn sub(self, a: __m256, b: __m256) -> __m256 {
+    fn fsub(self, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_sub_ps(a, b))
     }
     #[inline(always)]
-    fn mul(self, a: __m256, b: __m256) -> __m256 {
+    fn fmul(self, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_mul_ps(a, b))
     }
     #[inline(always)]
-    fn div(self, a: __m256, b: __m256) -> __m256 {
+    fn fdiv(self, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_div_ps(a, b))
     }
     #[inline(always)]
-    fn min(self, a: __m256, b: __m256) -> __m256 {
+    fn fmin(self, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_min_ps(a, b))
     }
     #[inline(always)]
-    fn max(self, a: __m256, b: __m256) -> __m256 {
+    fn fmax(self, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_max_ps(a, b))
     }
     #[inline(always)]
-    fn abs(self, a: __m256) -> __m256 {
+    fn fabs(self, a: __m256) -> __m256 {
         avx2!(_mm256_andnot_ps(_mm256_set1_ps(-0.0), a))
     }
     #[inline(always)]
-    fn lt(self, a: __m256, b: __m256) -> __m256i {
+    fn flt(self, a: __m256, b: __m256) -> __m256i {
         avx2!(_mm256_castps_si256(_mm256_cmp_ps::<_CMP_LT_OQ>(a, b)))
     }
     #[inline(always)]
-    fn select(self, mask: __m256i, a: __m256, b: __m256) -> __m256 {
+    fn fselect(self, mask: __m256i, a: __m256, b: __m256) -> __m256 {
         avx2!(_mm256_blendv_ps(b, a, _mm256_castsi256_ps(mask)))
     }
     #[inline(always)]
-    fn trunc(self, a: __m256) -> __m256i {
+    fn ftrunc(self, a: __m256) -> __m256i {
         avx2!(_mm256_cvttps_epi32(a))
     }
     #[inline(always)]
-    fn codes(self, a: __m256) -> __m256i {
+    fn fcodes(self, a: __m256) -> __m256i {
         avx2!(_mm256_sub_epi32(
             _mm256_srai_epi32::<12>(_mm256_castps_si256(a)),
             _mm256_set1_epi32(CODE_OFFSET)
         ))
     }
     #[inline(always)]
-    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> __m256 {
-        // SAFETY: AVX2 is proved by `self`; eight bytes are read from an array of eight, and a byte
-        // is always a valid index into 256 floats.
-        unsafe {
-            let i = _mm256_cvtepu8_epi32(_mm_loadl_epi64(index.as_ptr().cast()));
-            _mm256_i32gather_ps::<4>(table.as_ptr(), i)
-        }
-    }
-
-    #[inline(always)]
     fn isplat(self, v: i32) -> __m256i {
         avx2!(_mm256_set1_epi32(v))
     }
     #[inline(always)]
-    fn transpose(self, v: &[Aabb; 8]) -> [__m256; 6] {
+    fn ftranspose(self, v: &[Aabb; 8]) -> [__m256; 6] {
         // A box is six numbers in a row, nothing else.
         const { assert!(size_of::<Aabb>() == 24 && core::mem::offset_of!(Aabb, max) == 12) };
         let p: *const f32 = v.as_ptr().cast();
@@ -231,22 +197,64 @@ impl Lanes for Avx2 {
         avx2!(_mm256_sub_epi32(a, b))
     }
     #[inline(always)]
-    fn iand(self, a: __m256i, b: __m256i) -> __m256i {
+    fn mand(self, a: __m256i, b: __m256i) -> __m256i {
         avx2!(_mm256_and_si256(a, b))
     }
     #[inline(always)]
-    fn ior(self, a: __m256i, b: __m256i) -> __m256i {
+    fn mor(self, a: __m256i, b: __m256i) -> __m256i {
         avx2!(_mm256_or_si256(a, b))
     }
     #[inline(always)]
-    fn iandnot(self, a: __m256i, b: __m256i) -> __m256i {
+    fn mandnot(self, a: __m256i, b: __m256i) -> __m256i {
         avx2!(_mm256_andnot_si256(a, b))
     }
     #[inline(always)]
-    fn movemask(self, a: __m256i) -> u32 {
+    fn mbits(self, a: __m256i) -> u32 {
         avx2!(_mm256_movemask_ps(_mm256_castsi256_ps(a)) as u32)
     }
+    #[inline(always)]
+    fn ilt(self, a: __m256i, b: __m256i) -> __m256i {
+        avx2!(_mm256_cmpgt_epi32(b, a))
+    }
+    #[inline(always)]
+    fn mall(self) -> __m256i {
+        self.isplat(-1)
+    }
+}
 
+impl Lanes for Avx2 {
+    type Q = __m256d;
+    type D = [__m256i; 4];
+    type S = [Side256; 2];
+    type B = [[__m256d; 10]; 4];
+    type P = [__m256i; 4];
+    type W = Twice<Self>;
+    fn outlined<K: Kernel>(self, kernel: K) -> K::Output {
+        #[inline(never)]
+        #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt")]
+        fn inner<K: Kernel>(lanes: Avx2, kernel: K) -> K::Output {
+            kernel.run(lanes)
+        }
+        // SAFETY: `self` proves that the CPU has these features.
+        unsafe { inner(self, kernel) }
+    }
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        super::narrow::sse2::prefetch(soon);
+    }
+    #[inline(always)]
+    fn fgather(self, table: &[f32; 256], index: &[u8; 8]) -> __m256 {
+        // SAFETY: AVX2 is proved by `self`; eight bytes are read from an array of eight, and a byte
+        // is always a valid index into 256 floats.
+        unsafe {
+            let i = _mm256_cvtepu8_epi32(_mm_loadl_epi64(index.as_ptr().cast()));
+            _mm256_i32gather_ps::<4>(table.as_ptr(), i)
+        }
+    }
     #[inline(always)]
     fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> __m256d {
         let [a, b, c, d] = four!(k => table[usize::from(index[k])]);
@@ -301,9 +309,8 @@ impl Lanes for Avx2 {
             _mm256_castps_pd(_mm256_permutevar8x32_ps(_mm256_castpd_ps(v), both))
         })
     }
-
     #[inline(always)]
-    fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
+    fn dplane(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
         avx2!({
             let (floor, cap) = (_mm256_set1_ps(floor), _mm256_set1_epi16(cap));
             let offset = _mm256_set1_epi32(CODE_OFFSET);
@@ -390,9 +397,8 @@ impl Lanes for Avx2 {
             (_mm_cvtsi128_si32(m) as i16) ^ i16::MIN
         })
     }
-
     #[inline(always)]
-    fn edge_rows(self, slope: __m256d) -> Self::B {
+    fn qrows(self, slope: __m256d) -> Self::B {
         let mut edges = [[slope; 10]; 4];
         for (e, edge) in edges.iter_mut().enumerate() {
             let slope = self.qpick(slope, [e as u8; 4]);
@@ -403,7 +409,7 @@ impl Lanes for Avx2 {
         edges
     }
     #[inline(always)]
-    fn spans(self, at: __m256d, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn qspans(self, at: __m256d, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         let at = four!(e => self.qpick(at, [e as u8; 4]));
         let [mut from, mut to] = [[at[0]; 10]; 2];
         avx2!({
@@ -437,7 +443,7 @@ impl Lanes for Avx2 {
         })
     }
     #[inline(always)]
-    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
+    fn pwithin(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
         avx2!({
             // A byte a row, from 0 to 32.
             let first = _mm256_set1_epi16(left as i16);
@@ -460,11 +466,11 @@ impl Lanes for Avx2 {
             });
             let first = _mm256_set1_epi32(left as i32 / 4);
             let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
-            (planes, self.bit_rows(from, to))
+            (planes, self.irows(from, to))
         })
     }
     #[inline(always)]
-    fn bit_rows(self, from: __m256i, to: __m256i) -> u64 {
+    fn irows(self, from: __m256i, to: __m256i) -> u64 {
         avx2!({
             let n = [from, to];
             let sides = two!(side => {
@@ -517,6 +523,14 @@ impl Lanes for Avx2 {
             let h = _mm_or_si128(_mm256_castsi256_si128(q), _mm256_extracti128_si256::<1>(q));
             _mm_cvtsi128_si64(_mm_or_si128(h, _mm_unpackhi_epi64(h, h))) as u64
         })
+    }
+    #[inline(always)]
+    fn mload(self, v: &[i32; 8]) -> __m256i {
+        self.iload(v)
+    }
+    #[inline(always)]
+    fn mstore(self, v: __m256i, to: &mut [i32; 8]) {
+        self.istore(v, to);
     }
 }
 

@@ -5,7 +5,7 @@
 use super::arrays::{four, two};
 use super::avx512proof::Avx512;
 use super::avx512x16::Wide512;
-use super::lanes::{Kernel, Lanes};
+use super::lanes::{Kernel, Lanes, Vectors};
 use super::portable::{FAR, ROWS};
 use crate::bounds::Aabb;
 use crate::format::CODE_OFFSET;
@@ -81,16 +81,55 @@ macro_rules! as_avx2 {
     };
 }
 
-impl Lanes for Avx512 {
+impl Vectors<8> for Avx512 {
     type F = __m256;
     type I = __m256i;
+    type M = __m256i;
+
+    as_avx2! {
+        fsplat(v: f32) -> __m256;
+        fload(v: &[f32; 8]) -> __m256;
+        fstore(v: __m256, to: &mut [f32; 8]);
+        fadd(a: __m256, b: __m256) -> __m256;
+        fsub(a: __m256, b: __m256) -> __m256;
+        fmul(a: __m256, b: __m256) -> __m256;
+        fdiv(a: __m256, b: __m256) -> __m256;
+        fmin(a: __m256, b: __m256) -> __m256;
+        fmax(a: __m256, b: __m256) -> __m256;
+        fabs(a: __m256) -> __m256;
+        flt(a: __m256, b: __m256) -> __m256i;
+        fselect(mask: __m256i, a: __m256, b: __m256) -> __m256;
+        ftrunc(a: __m256) -> __m256i;
+        fcodes(a: __m256) -> __m256i;
+        isplat(v: i32) -> __m256i;
+        iload(v: &[i32; 8]) -> __m256i;
+        istore(v: __m256i, to: &mut [i32; 8]);
+        ftranspose(v: &[Aabb; 8]) -> [__m256; 6];
+        iadd(a: __m256i, b: __m256i) -> __m256i;
+        imin(a: __m256i, b: __m256i) -> __m256i;
+        imax(a: __m256i, b: __m256i) -> __m256i;
+        imul(a: __m256i, b: __m256i) -> __m256i;
+        ishr(a: __m256i, by: __m256i) -> __m256i;
+        ibits(a: __m256i) -> __m256i;
+        isub(a: __m256i, b: __m256i) -> __m256i;
+        mand(a: __m256i, b: __m256i) -> __m256i;
+        mor(a: __m256i, b: __m256i) -> __m256i;
+        mandnot(a: __m256i, b: __m256i) -> __m256i;
+        mbits(a: __m256i) -> u32;
+    }
+    as_avx2! {
+        ilt(a: __m256i, b: __m256i) -> __m256i;
+        mall() -> __m256i;
+    }
+}
+
+impl Lanes for Avx512 {
     type Q = __m256d;
     type D = [__m512i; 2];
     type S = [Side512; 2];
     type B = [[__m512d; 5]; 4];
     type P = [__m512i; 2];
     type W = Wide512;
-
     fn outlined<K: Kernel>(self, kernel: K) -> K::Output {
         #[inline(never)]
         #[target_feature(enable = "avx2,bmi1,popcnt,lzcnt,avx512f,avx512bw,avx512dq,avx512vl")]
@@ -100,7 +139,6 @@ impl Lanes for Avx512 {
         // SAFETY: `self` proves that the CPU has these features.
         unsafe { inner(self, kernel) }
     }
-
     #[inline(always)]
     fn wide(self) -> Self::W {
         Wide512(self)
@@ -109,53 +147,22 @@ impl Lanes for Avx512 {
     fn prefetch<T>(self, soon: &T) {
         super::narrow::sse2::prefetch(soon);
     }
-
     as_avx2! {
-    splat(v: f32) -> __m256;
-    load(v: &[f32; 8]) -> __m256;
-    store(v: __m256, to: &mut [f32; 8]);
-    add(a: __m256, b: __m256) -> __m256;
-    sub(a: __m256, b: __m256) -> __m256;
-    mul(a: __m256, b: __m256) -> __m256;
-    div(a: __m256, b: __m256) -> __m256;
-    min(a: __m256, b: __m256) -> __m256;
-    max(a: __m256, b: __m256) -> __m256;
-    abs(a: __m256) -> __m256;
-    lt(a: __m256, b: __m256) -> __m256i;
-    select(mask: __m256i, a: __m256, b: __m256) -> __m256;
-    trunc(a: __m256) -> __m256i;
-    codes(a: __m256) -> __m256i;
-    gather(table: &[f32; 256], index: &[u8; 8]) -> __m256;
-    isplat(v: i32) -> __m256i;
-    qgather(table: &[f64; 256], index: [u8; 4]) -> __m256d;
-    qload(v: &[f64; 4]) -> __m256d;
-    qstore(v: __m256d, to: &mut [f64; 4]);
-    qsplat(v: f64) -> __m256d;
-    qadd(a: __m256d, b: __m256d) -> __m256d;
-    qsub(a: __m256d, b: __m256d) -> __m256d;
-    qmul(a: __m256d, b: __m256d) -> __m256d;
-    qdiv(a: __m256d, b: __m256d) -> __m256d;
-    qabs(a: __m256d) -> __m256d;
-    qlt(a: __m256d, b: __m256d) -> u32;
-    qpick(v: __m256d, from: [u8; 4]) -> __m256d;
-    iload(v: &[i32; 8]) -> __m256i;
-    istore(v: __m256i, to: &mut [i32; 8]);
-    transpose(v: &[Aabb; 8]) -> [__m256; 6];
-    iadd(a: __m256i, b: __m256i) -> __m256i;
-    imin(a: __m256i, b: __m256i) -> __m256i;
-    imax(a: __m256i, b: __m256i) -> __m256i;
-    imul(a: __m256i, b: __m256i) -> __m256i;
-    ishr(a: __m256i, by: __m256i) -> __m256i;
-    ibits(a: __m256i) -> __m256i;
-    isub(a: __m256i, b: __m256i) -> __m256i;
-    iand(a: __m256i, b: __m256i) -> __m256i;
-    ior(a: __m256i, b: __m256i) -> __m256i;
-    iandnot(a: __m256i, b: __m256i) -> __m256i;
-    movemask(a: __m256i) -> u32;
+        fgather(table: &[f32; 256], index: &[u8; 8]) -> __m256;
+        qgather(table: &[f64; 256], index: [u8; 4]) -> __m256d;
+        qload(v: &[f64; 4]) -> __m256d;
+        qstore(v: __m256d, to: &mut [f64; 4]);
+        qsplat(v: f64) -> __m256d;
+        qadd(a: __m256d, b: __m256d) -> __m256d;
+        qsub(a: __m256d, b: __m256d) -> __m256d;
+        qmul(a: __m256d, b: __m256d) -> __m256d;
+        qdiv(a: __m256d, b: __m256d) -> __m256d;
+        qabs(a: __m256d) -> __m256d;
+        qlt(a: __m256d, b: __m256d) -> u32;
+        qpick(v: __m256d, from: [u8; 4]) -> __m256d;
     }
-
     #[inline(always)]
-    fn depths(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
+    fn dplane(self, columns: __m256, down: f32, floor: f32, cap: i16) -> Self::D {
         avx512!({
             // A quarter of a register is half a row, so that packing two of them gives whole rows
             // in their order.
@@ -230,9 +237,8 @@ impl Lanes for Avx512 {
             (_mm_cvtsi128_si32(m) as i16) ^ i16::MIN
         })
     }
-
     #[inline(always)]
-    fn edge_rows(self, slope: __m256d) -> Self::B {
+    fn qrows(self, slope: __m256d) -> Self::B {
         let rows = ORDERED.as_ptr();
         avx512!({
             four!(e => {
@@ -242,7 +248,7 @@ impl Lanes for Avx512 {
         })
     }
     #[inline(always)]
-    fn spans(self, at: __m256d, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn qspans(self, at: __m256d, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         avx512!({
             let at = four!(e => lane(self, at, e));
             let mut from = five!(k => _mm512_max_pd(
@@ -272,7 +278,7 @@ impl Lanes for Avx512 {
         })
     }
     #[inline(always)]
-    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
+    fn pwithin(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
         avx512!({
             // A number a row, 32 samples: the first and third rows of pixels, and the second and
             // fourth.
@@ -303,11 +309,11 @@ impl Lanes for Avx512 {
             ];
             let first = _mm256_set1_epi32(left as i32 / 4);
             let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
-            (planes, self.bit_rows(from, to))
+            (planes, self.irows(from, to))
         })
     }
     #[inline(always)]
-    fn bit_rows(self, from: __m256i, to: __m256i) -> u64 {
+    fn irows(self, from: __m256i, to: __m256i) -> u64 {
         avx512!({
             let n = [from, to];
             let [from, to] = two!(side => {
@@ -352,6 +358,10 @@ impl Lanes for Avx512 {
             _mm512_test_epi16_mask(v[1], v[1])
         ]);
         u64::from(low) | (u64::from(high) << 32)
+    }
+    as_avx2! {
+        mload(v: &[i32; 8]) -> __m256i;
+        mstore(v: __m256i, to: &mut [i32; 8]);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::arrays::four;
 use super::avx512proof::Avx512;
-use super::wide::Wide;
+use super::lanes::{Sixteen, Vectors};
 use crate::bounds::Aabb;
 use crate::format::CODE_OFFSET;
 use core::arch::x86_64::*;
@@ -20,71 +20,65 @@ macro_rules! avx512 {
     };
 }
 
-impl Wide for Wide512 {
+impl Vectors<16> for Wide512 {
     type F = __m512;
     type I = __m512i;
+    type M = u16;
 
     #[inline(always)]
-    fn splat(self, v: f32) -> __m512 {
+    fn fsplat(self, v: f32) -> __m512 {
         avx512!(_mm512_set1_ps(v))
     }
     #[inline(always)]
-    fn load(self, v: &[f32; 16]) -> __m512 {
+    fn fload(self, v: &[f32; 16]) -> __m512 {
         avx512!(_mm512_loadu_ps(v.as_ptr()))
     }
     #[inline(always)]
-    fn store(self, v: __m512, to: &mut [f32; 16]) {
+    fn fstore(self, v: __m512, to: &mut [f32; 16]) {
         avx512!(_mm512_storeu_ps(to.as_mut_ptr(), v))
     }
     #[inline(always)]
-    fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> __m512 {
-        avx512!({
-            let low = _mm512_castps256_ps512(_mm256_loadu_ps(low.as_ptr()));
-            _mm512_insertf32x8::<1>(low, _mm256_loadu_ps(high.as_ptr()))
-        })
-    }
-    #[inline(always)]
-    fn add(self, a: __m512, b: __m512) -> __m512 {
+    fn fadd(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_add_ps(a, b))
     }
     #[inline(always)]
-    fn sub(self, a: __m512, b: __m512) -> __m512 {
+    fn fsub(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_sub_ps(a, b))
     }
     #[inline(always)]
-    fn mul(self, a: __m512, b: __m512) -> __m512 {
+    fn fmul(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_mul_ps(a, b))
     }
     #[inline(always)]
-    fn div(self, a: __m512, b: __m512) -> __m512 {
+    fn fdiv(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_div_ps(a, b))
     }
     #[inline(always)]
-    fn min(self, a: __m512, b: __m512) -> __m512 {
+    fn fmin(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_min_ps(a, b))
     }
     #[inline(always)]
-    fn max(self, a: __m512, b: __m512) -> __m512 {
+    fn fmax(self, a: __m512, b: __m512) -> __m512 {
         avx512!(_mm512_max_ps(a, b))
     }
     #[inline(always)]
-    fn abs(self, a: __m512) -> __m512 {
+    fn fabs(self, a: __m512) -> __m512 {
         avx512!(_mm512_abs_ps(a))
     }
     #[inline(always)]
-    fn lt(self, a: __m512, b: __m512) -> u32 {
-        avx512!(u32::from(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b)))
+    fn flt(self, a: __m512, b: __m512) -> u16 {
+        avx512!(_mm512_cmp_ps_mask::<_CMP_LT_OQ>(a, b))
     }
     #[inline(always)]
-    fn select(self, bits: u32, a: __m512, b: __m512) -> __m512 {
-        avx512!(_mm512_mask_blend_ps(bits as u16, b, a))
+    fn fselect(self, mask: u16, a: __m512, b: __m512) -> __m512 {
+        avx512!(_mm512_mask_blend_ps(mask, b, a))
     }
     #[inline(always)]
-    fn trunc(self, a: __m512) -> __m512i {
+    fn ftrunc(self, a: __m512) -> __m512i {
         avx512!(_mm512_cvttps_epi32(a))
     }
     #[inline(always)]
-    fn codes(self, a: __m512) -> __m512i {
+    fn fcodes(self, a: __m512) -> __m512i {
         avx512!(_mm512_sub_epi32(
             _mm512_srai_epi32::<12>(_mm512_castps_si512(a)),
             _mm512_set1_epi32(CODE_OFFSET)
@@ -127,8 +121,8 @@ impl Wide for Wide512 {
         avx512!(_mm512_srav_epi32(a, by))
     }
     #[inline(always)]
-    fn negative(self, a: __m512i) -> u32 {
-        avx512!(u32::from(_mm512_movepi32_mask(a)))
+    fn ilt(self, a: __m512i, b: __m512i) -> u16 {
+        avx512!(_mm512_cmplt_epi32_mask(a, b))
     }
     #[inline(always)]
     fn ibits(self, a: __m512i) -> __m512i {
@@ -140,7 +134,7 @@ impl Wide for Wide512 {
         })
     }
     #[inline(always)]
-    fn transpose(self, v: &[Aabb; 16]) -> [__m512; 6] {
+    fn ftranspose(self, v: &[Aabb; 16]) -> [__m512; 6] {
         // A box is six numbers in a row, nothing else.
         const { assert!(size_of::<Aabb>() == 24 && core::mem::offset_of!(Aabb, max) == 12) };
         let p: *const f32 = v.as_ptr().cast();
@@ -169,6 +163,36 @@ impl Wide for Wide512 {
                 _mm512_shuffle_ps::<0b10_00_10_00>(yz_a, yz_b),
                 _mm512_shuffle_ps::<0b11_01_11_01>(yz_a, yz_b),
             ]
+        })
+    }
+    #[inline(always)]
+    fn mall(self) -> u16 {
+        u16::MAX
+    }
+    #[inline(always)]
+    fn mand(self, a: u16, b: u16) -> u16 {
+        a & b
+    }
+    #[inline(always)]
+    fn mor(self, a: u16, b: u16) -> u16 {
+        a | b
+    }
+    #[inline(always)]
+    fn mandnot(self, a: u16, b: u16) -> u16 {
+        !a & b
+    }
+    #[inline(always)]
+    fn mbits(self, a: u16) -> u32 {
+        u32::from(a)
+    }
+}
+
+impl Sixteen for Wide512 {
+    #[inline(always)]
+    fn fpair(self, low: &[f32; 8], high: &[f32; 8]) -> __m512 {
+        avx512!({
+            let low = _mm512_castps256_ps512(_mm256_loadu_ps(low.as_ptr()));
+            _mm512_insertf32x8::<1>(low, _mm256_loadu_ps(high.as_ptr()))
         })
     }
 }

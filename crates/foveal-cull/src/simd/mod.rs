@@ -12,7 +12,6 @@ pub(crate) mod portable;
 mod twice;
 #[cfg(test)]
 mod twins;
-mod wide;
 
 #[cfg(target_arch = "x86_64")]
 #[allow(
@@ -51,5 +50,6 @@ mod narrow;
 
 pub(crate) use arrays::{four, larger, smaller, three, two};
 pub use instruction_set::InstructionSet;
-pub(crate) use lanes::{Kernel, Lanes};
-pub(crate) use wide::Wide;
+pub(crate) use lanes::{
+    Depths, Doubles, F8, F16, I8, I16, Kernel, Lanes, M8, M16, Samples, Sixteen,
+};

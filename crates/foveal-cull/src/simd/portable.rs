@@ -1,7 +1,7 @@
 //! The portable lanes: arrays and loops. The meaning of every operation is defined here.
 
 use super::arrays::{larger, smaller};
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Vectors};
 use super::twice::Twice;
 use crate::bounds::Aabb;
 use crate::format::CODE_OFFSET;
@@ -59,71 +59,61 @@ fn number(v: f64, i: usize) -> i32 {
     smaller(larger(v, -FAR), FAR) as i32
 }
 
-impl Lanes for Portable {
+impl Vectors<8> for Portable {
     type F = [f32; 8];
     type I = [i32; 8];
-    type Q = [f64; 4];
-    type D = [i16; 64];
-    type S = [[i32; 40]; 2];
-    type B = [[f64; 40]; 4];
-    type P = [u64; 16];
-    type W = Twice<Self>;
+    type M = [i32; 8];
 
     #[inline(always)]
-    fn wide(self) -> Self::W {
-        Twice(self)
-    }
-
-    #[inline(always)]
-    fn splat(self, v: f32) -> Self::F {
+    fn fsplat(self, v: f32) -> Self::F {
         [v; 8]
     }
     #[inline(always)]
-    fn load(self, v: &[f32; 8]) -> Self::F {
+    fn fload(self, v: &[f32; 8]) -> Self::F {
         *v
     }
     #[inline(always)]
-    fn store(self, v: Self::F, to: &mut [f32; 8]) {
+    fn fstore(self, v: Self::F, to: &mut [f32; 8]) {
         *to = v;
     }
     #[inline(always)]
-    fn add(self, a: Self::F, b: Self::F) -> Self::F {
+    fn fadd(self, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| a[i] + b[i])
     }
     #[inline(always)]
-    fn sub(self, a: Self::F, b: Self::F) -> Self::F {
+    fn fsub(self, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| a[i] - b[i])
     }
     #[inline(always)]
-    fn mul(self, a: Self::F, b: Self::F) -> Self::F {
+    fn fmul(self, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| a[i] * b[i])
     }
     #[inline(always)]
-    fn div(self, a: Self::F, b: Self::F) -> Self::F {
+    fn fdiv(self, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| a[i] / b[i])
     }
     #[inline(always)]
-    fn min(self, a: Self::F, b: Self::F) -> Self::F {
+    fn fmin(self, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| if a[i] < b[i] { a[i] } else { b[i] })
     }
     #[inline(always)]
-    fn max(self, a: Self::F, b: Self::F) -> Self::F {
+    fn fmax(self, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| if a[i] > b[i] { a[i] } else { b[i] })
     }
     #[inline(always)]
-    fn abs(self, a: Self::F) -> Self::F {
+    fn fabs(self, a: Self::F) -> Self::F {
         from_fn(|i| a[i].abs())
     }
     #[inline(always)]
-    fn lt(self, a: Self::F, b: Self::F) -> Self::I {
+    fn flt(self, a: Self::F, b: Self::F) -> Self::I {
         from_fn(|i| -i32::from(a[i] < b[i]))
     }
     #[inline(always)]
-    fn select(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F {
+    fn fselect(self, mask: Self::I, a: Self::F, b: Self::F) -> Self::F {
         from_fn(|i| if mask[i] < 0 { a[i] } else { b[i] })
     }
     #[inline(always)]
-    fn trunc(self, a: Self::F) -> Self::I {
+    fn ftrunc(self, a: Self::F) -> Self::I {
         from_fn(|i| {
             if a[i].abs() < 2_147_483_648.0 {
                 a[i] as i32
@@ -133,20 +123,15 @@ impl Lanes for Portable {
         })
     }
     #[inline(always)]
-    fn codes(self, a: Self::F) -> Self::I {
+    fn fcodes(self, a: Self::F) -> Self::I {
         from_fn(|i| ((a[i].to_bits() as i32) >> 12).wrapping_sub(CODE_OFFSET))
     }
-    #[inline(always)]
-    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F {
-        from_fn(|i| table[usize::from(index[i])])
-    }
-
     #[inline(always)]
     fn isplat(self, v: i32) -> Self::I {
         [v; 8]
     }
     #[inline(always)]
-    fn transpose(self, v: &[Aabb; 8]) -> [Self::F; 6] {
+    fn ftranspose(self, v: &[Aabb; 8]) -> [Self::F; 6] {
         from_fn(|k| from_fn(|i| if k < 3 { v[i].min[k] } else { v[i].max[k - 3] }))
     }
     #[inline(always)]
@@ -186,22 +171,46 @@ impl Lanes for Portable {
         from_fn(|i| a[i].wrapping_sub(b[i]))
     }
     #[inline(always)]
-    fn iand(self, a: Self::I, b: Self::I) -> Self::I {
+    fn mand(self, a: Self::I, b: Self::I) -> Self::I {
         from_fn(|i| a[i] & b[i])
     }
     #[inline(always)]
-    fn ior(self, a: Self::I, b: Self::I) -> Self::I {
+    fn mor(self, a: Self::I, b: Self::I) -> Self::I {
         from_fn(|i| a[i] | b[i])
     }
     #[inline(always)]
-    fn iandnot(self, a: Self::I, b: Self::I) -> Self::I {
+    fn mandnot(self, a: Self::I, b: Self::I) -> Self::I {
         from_fn(|i| !a[i] & b[i])
     }
     #[inline(always)]
-    fn movemask(self, a: Self::I) -> u32 {
+    fn mbits(self, a: Self::I) -> u32 {
         (0..8).fold(0, |m, i| m | (u32::from(a[i] < 0) << i))
     }
+    #[inline(always)]
+    fn ilt(self, a: Self::I, b: Self::I) -> Self::I {
+        from_fn(|i| -i32::from(a[i] < b[i]))
+    }
+    #[inline(always)]
+    fn mall(self) -> Self::I {
+        self.isplat(-1)
+    }
+}
 
+impl Lanes for Portable {
+    type Q = [f64; 4];
+    type D = [i16; 64];
+    type S = [[i32; 40]; 2];
+    type B = [[f64; 40]; 4];
+    type P = [u64; 16];
+    type W = Twice<Self>;
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
+    #[inline(always)]
+    fn fgather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F {
+        from_fn(|i| table[usize::from(index[i])])
+    }
     #[inline(always)]
     fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q {
         index.map(|i| table[usize::from(i)])
@@ -246,9 +255,8 @@ impl Lanes for Portable {
     fn qpick(self, v: Self::Q, from: [u8; 4]) -> Self::Q {
         from.map(|i| v[usize::from(i & 3)])
     }
-
     #[inline(always)]
-    fn depths(self, columns: [f32; 8], down: f32, floor: f32, cap: i16) -> Self::D {
+    fn dplane(self, columns: [f32; 8], down: f32, floor: f32, cap: i16) -> Self::D {
         from_fn(|i| {
             let v = columns[i % 8] + (i / 8) as f32 * down;
             let v = if v > floor { v } else { floor };
@@ -311,13 +319,12 @@ impl Lanes for Portable {
     fn dreduce_min(self, a: Self::D) -> i16 {
         a.iter().fold(i16::MAX, |m, &v| m.min(v))
     }
-
     #[inline(always)]
-    fn edge_rows(self, slope: [f64; 4]) -> Self::B {
+    fn qrows(self, slope: [f64; 4]) -> Self::B {
         slope.map(|slope| ROWS.map(|row| row * slope))
     }
     #[inline(always)]
-    fn spans(self, at: [f64; 4], edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn qspans(self, at: [f64; 4], edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         let edge = |e: usize, i: usize| at[e] + edges[e][i];
         let mut spans = [[0; 40]; 2];
         for i in 0..40 {
@@ -329,7 +336,7 @@ impl Lanes for Portable {
         spans
     }
     #[inline(always)]
-    fn within(self, [from, to]: &Self::S, left: u32) -> (Self::P, u64) {
+    fn pwithin(self, [from, to]: &Self::S, left: u32) -> (Self::P, u64) {
         let left = left as i32;
         let sample = |n: i32| (n - left).clamp(0, 32) as usize;
         // A byte per column of samples.
@@ -343,10 +350,10 @@ impl Lanes for Portable {
             }
         }
         let pixel = |side: &[i32; 40]| from_fn(|i| side[32 + i] - left / 4);
-        (planes, self.bit_rows(pixel(from), pixel(to)))
+        (planes, self.irows(pixel(from), pixel(to)))
     }
     #[inline(always)]
-    fn bit_rows(self, from: [i32; 8], to: [i32; 8]) -> u64 {
+    fn irows(self, from: [i32; 8], to: [i32; 8]) -> u64 {
         let pixels = |n: i32| (0xff_u32 << n.clamp(0, 8)) as u8;
         u64::from_le_bytes(from_fn(|i| pixels(from[i]) & !pixels(to[i])))
     }
@@ -373,5 +380,13 @@ impl Lanes for Portable {
     #[inline(always)]
     fn pany(self, v: Self::P) -> u64 {
         v.iter().fold(0, |any, plane| any | plane)
+    }
+    #[inline(always)]
+    fn mload(self, v: &[i32; 8]) -> Self::M {
+        self.iload(v)
+    }
+    #[inline(always)]
+    fn mstore(self, v: Self::M, to: &mut [i32; 8]) {
+        self.istore(v, to);
     }
 }

@@ -1,8 +1,7 @@
 //! Sixteen lanes as twice eight.
 
 use super::arrays::two;
-use super::lanes::Lanes;
-use super::wide::Wide;
+use super::lanes::{Lanes, Sixteen, Vectors};
 use crate::bounds::Aabb;
 
 /// Eight lanes, all ones where a bit is set.
@@ -31,20 +30,21 @@ macro_rules! by_halves {
     };
 }
 
-impl<L: Lanes> Wide for Twice<L> {
+impl<L: Lanes> Vectors<16> for Twice<L> {
     type F = [L::F; 2];
     type I = [L::I; 2];
+    type M = u16;
 
     by_halves! {
-        add(a: Self::F, b: Self::F) -> Self::F;
-        sub(a: Self::F, b: Self::F) -> Self::F;
-        mul(a: Self::F, b: Self::F) -> Self::F;
-        div(a: Self::F, b: Self::F) -> Self::F;
-        min(a: Self::F, b: Self::F) -> Self::F;
-        max(a: Self::F, b: Self::F) -> Self::F;
-        abs(a: Self::F) -> Self::F;
-        trunc(a: Self::F) -> Self::I;
-        codes(a: Self::F) -> Self::I;
+        fadd(a: Self::F, b: Self::F) -> Self::F;
+        fsub(a: Self::F, b: Self::F) -> Self::F;
+        fmul(a: Self::F, b: Self::F) -> Self::F;
+        fdiv(a: Self::F, b: Self::F) -> Self::F;
+        fmin(a: Self::F, b: Self::F) -> Self::F;
+        fmax(a: Self::F, b: Self::F) -> Self::F;
+        fabs(a: Self::F) -> Self::F;
+        ftrunc(a: Self::F) -> Self::I;
+        fcodes(a: Self::F) -> Self::I;
         iadd(a: Self::I, b: Self::I) -> Self::I;
         isub(a: Self::I, b: Self::I) -> Self::I;
         imul(a: Self::I, b: Self::I) -> Self::I;
@@ -53,44 +53,38 @@ impl<L: Lanes> Wide for Twice<L> {
         ishr(a: Self::I, by: Self::I) -> Self::I;
         ibits(a: Self::I) -> Self::I;
     }
-
     #[inline(always)]
-    fn splat(self, v: f32) -> Self::F {
-        [self.0.splat(v); 2]
+    fn fsplat(self, v: f32) -> Self::F {
+        [self.0.fsplat(v); 2]
     }
     #[inline(always)]
-    fn load(self, v: &[f32; 16]) -> Self::F {
+    fn fload(self, v: &[f32; 16]) -> Self::F {
         let (halves, _) = v.as_chunks::<8>();
-        two!(k => self.0.load(&halves[k]))
+        two!(k => self.0.fload(&halves[k]))
     }
     #[inline(always)]
-    fn store(self, v: Self::F, to: &mut [f32; 16]) {
+    fn fstore(self, v: Self::F, to: &mut [f32; 16]) {
         let (halves, _) = to.as_chunks_mut::<8>();
-        two!(k => self.0.store(v[k], &mut halves[k]));
-    }
-    #[inline(always)]
-    fn pair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F {
-        [self.0.load(low), self.0.load(high)]
+        two!(k => self.0.fstore(v[k], &mut halves[k]));
     }
     #[inline(always)]
     fn isplat(self, v: i32) -> Self::I {
         [self.0.isplat(v); 2]
     }
     #[inline(always)]
-    fn lt(self, a: Self::F, b: Self::F) -> u32 {
-        let [low, high] = two!(k => self.0.movemask(self.0.lt(a[k], b[k])));
-        low | high << 8
+    fn flt(self, a: Self::F, b: Self::F) -> u16 {
+        bits(self.0, two!(k => self.0.flt(a[k], b[k])))
     }
     #[inline(always)]
-    fn select(self, bits: u32, a: Self::F, b: Self::F) -> Self::F {
+    fn fselect(self, mask: u16, a: Self::F, b: Self::F) -> Self::F {
         two!(k => {
-            let mask = self.0.iload(&MASKS[(bits >> (8 * k)) as usize % 256]);
-            self.0.select(mask, a[k], b[k])
+            let mask = self.0.mload(&MASKS[usize::from(mask >> (8 * k)) % 256]);
+            self.0.fselect(mask, a[k], b[k])
         })
     }
     #[inline(always)]
-    fn negative(self, a: Self::I) -> u32 {
-        self.0.movemask(a[0]) | self.0.movemask(a[1]) << 8
+    fn ilt(self, a: Self::I, b: Self::I) -> u16 {
+        bits(self.0, two!(k => self.0.ilt(a[k], b[k])))
     }
     #[inline(always)]
     fn iload(self, v: &[i32; 16]) -> Self::I {
@@ -103,11 +97,44 @@ impl<L: Lanes> Wide for Twice<L> {
         two!(k => self.0.istore(v[k], &mut halves[k]));
     }
     #[inline(always)]
-    fn transpose(self, v: &[Aabb; 16]) -> [Self::F; 6] {
+    fn ftranspose(self, v: &[Aabb; 16]) -> [Self::F; 6] {
         let (halves, _) = v.as_chunks::<8>();
-        let [low, high] = two!(k => self.0.transpose(&halves[k]));
+        let [low, high] = two!(k => self.0.ftranspose(&halves[k]));
         let [a, b, c, d, e, f] = low;
         let [p, q, r, s, t, u] = high;
         [[a, p], [b, q], [c, r], [d, s], [e, t], [f, u]]
     }
+    #[inline(always)]
+    fn mall(self) -> u16 {
+        u16::MAX
+    }
+    #[inline(always)]
+    fn mand(self, a: u16, b: u16) -> u16 {
+        a & b
+    }
+    #[inline(always)]
+    fn mor(self, a: u16, b: u16) -> u16 {
+        a | b
+    }
+    #[inline(always)]
+    fn mandnot(self, a: u16, b: u16) -> u16 {
+        !a & b
+    }
+    #[inline(always)]
+    fn mbits(self, a: u16) -> u32 {
+        u32::from(a)
+    }
+}
+
+impl<L: Lanes> Sixteen for Twice<L> {
+    #[inline(always)]
+    fn fpair(self, low: &[f32; 8], high: &[f32; 8]) -> Self::F {
+        [self.0.fload(low), self.0.fload(high)]
+    }
+}
+
+/// A bit per lane of two masks.
+#[inline(always)]
+fn bits<L: Lanes>(l: L, [low, high]: [L::M; 2]) -> u16 {
+    (l.mbits(low) | l.mbits(high) << 8) as u16
 }

@@ -100,7 +100,7 @@ fn any_wrong_byte_is_noticed() {
         let reason = reason(&wrong);
         let expected = match i {
             0..8 => reason == MeshBytesError::NotAMesh,
-            8..12 => matches!(reason, MeshBytesError::OtherVersion { known: 1, .. }),
+            8..12 => matches!(reason, MeshBytesError::OtherVersion { known: 2, .. }),
             16..24 => matches!(reason, MeshBytesError::WrongLength { .. }),
             _ => reason == MeshBytesError::Corrupt,
         };
@@ -119,7 +119,7 @@ fn any_wrong_byte_is_noticed() {
     // Nothing is allocated for lists that are not there.
     let mut header = bytes[..HEADER].to_vec();
     header[16..24].copy_from_slice(&(HEADER as u64).to_le_bytes());
-    header[56..80].fill(0xff);
+    header[56..84].fill(0xff);
     seal(&mut header);
     assert!(matches!(reason(&header), MeshBytesError::Invalid(_)));
 }
@@ -350,6 +350,53 @@ fn one_rings_of_invented_triangles_are_refused() {
         ..other
     });
     assert!(OccluderMesh::from_bytes(&bytes.to_bytes()).is_ok());
+}
+
+/// A one-ring says of its triangles where they are: of another one it is refused, though both are
+/// there.
+#[test]
+fn one_rings_whose_triangles_are_elsewhere_are_refused() {
+    let mesh = wall(&mut Random(5), BakeOptions::default());
+    let bytes = mesh.to_bytes();
+    let first = bytes.len() - 3 * mesh.one_rings.triangle_count() as usize;
+    assert!(mesh.one_rings.triangle_count() > 20);
+    for at in (first..bytes.len()).step_by(3) {
+        let mut wrong = bytes.clone();
+        let next = if at + 10 <= bytes.len() {
+            at + 5
+        } else {
+            first
+        };
+        wrong.copy_within(next..next + 3, at);
+        seal(&mut wrong);
+        let expected = "a one-ring's triangle is none of the mesh";
+        if bytes[at..at + 3] == bytes[next..next + 3] {
+            assert!(OccluderMesh::from_bytes(&wrong).is_ok());
+        } else {
+            assert_eq!(refusal(&wrong), expected);
+        }
+    }
+}
+
+#[test]
+fn places_of_triangles_are_wider_where_clusters_are_many() {
+    for clusters in [1u32, 1 << 16, (1 << 16) + 1, u32::MAX / 8] {
+        let counts = [clusters, 0, 0, 0, 0, 0, 2];
+        let wide = has_wide_homes(counts);
+        let homes = [0, clusters - 1].map(|cluster| Home {
+            cluster,
+            number: 97,
+        });
+        let mut bytes = Vec::new();
+        for home in homes {
+            put_home(&mut bytes, home, wide);
+        }
+        let without = length([clusters, 0, 0, 0, 0, 0, 0], true);
+        assert_eq!(length(counts, true), without + bytes.len() as u64);
+        let mut from = Reader(&bytes);
+        let read = from.list(2, |from| home(from, wide)).unwrap();
+        assert_eq!(read, homes);
+    }
 }
 
 /// A one-ring without triangles for the only cluster of a mesh: all edges are silhouette edges.

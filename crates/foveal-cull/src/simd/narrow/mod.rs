@@ -6,7 +6,7 @@ use super::twice::Twice;
 use crate::bounds::Aabb;
 use crate::format::{BLOCK, BLOCK_SAMPLES, CODE_OFFSET};
 use crate::simd::arrays::{four, two};
-use crate::simd::lanes::Lanes;
+use crate::simd::lanes::{Lanes, Vectors};
 use registers::Registers;
 
 mod registers;
@@ -65,89 +65,59 @@ macro_rules! by_registers {
     };
 }
 
-impl<R: Registers> Lanes for Narrow<R> {
+impl<R: Registers> Vectors<8> for Narrow<R> {
     type F = [R::F; 2];
     type I = [R::I; 2];
-    type Q = [R::Q; 2];
-    type D = [R::H; 8];
-    type S = [Side<R>; 2];
-    type B = [[R::Q; 20]; 4];
-    /// The two planes of a register are neighbours.
-    type P = [R::B; 8];
-    type W = Twice<Self>;
+    type M = [R::I; 2];
 
     by_registers! { two:
-        add = add(a: Self::F, b: Self::F) -> Self::F;
-        sub = sub(a: Self::F, b: Self::F) -> Self::F;
-        mul = mul(a: Self::F, b: Self::F) -> Self::F;
-        div = div(a: Self::F, b: Self::F) -> Self::F;
-        min = min(a: Self::F, b: Self::F) -> Self::F;
-        max = max(a: Self::F, b: Self::F) -> Self::F;
-        abs = abs(a: Self::F) -> Self::F;
-        lt = lt(a: Self::F, b: Self::F) -> Self::I;
-        select = select(mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
-        trunc = trunc(a: Self::F) -> Self::I;
+        fadd = add(a: Self::F, b: Self::F) -> Self::F;
+        fsub = sub(a: Self::F, b: Self::F) -> Self::F;
+        fmul = mul(a: Self::F, b: Self::F) -> Self::F;
+        fdiv = div(a: Self::F, b: Self::F) -> Self::F;
+        fmin = min(a: Self::F, b: Self::F) -> Self::F;
+        fmax = max(a: Self::F, b: Self::F) -> Self::F;
+        fabs = abs(a: Self::F) -> Self::F;
+        flt = lt(a: Self::F, b: Self::F) -> Self::I;
+        fselect = select(mask: Self::I, a: Self::F, b: Self::F) -> Self::F;
+        ftrunc = trunc(a: Self::F) -> Self::I;
         iadd = iadd(a: Self::I, b: Self::I) -> Self::I;
         isub = isub(a: Self::I, b: Self::I) -> Self::I;
         imul = imul(a: Self::I, b: Self::I) -> Self::I;
+        ilt = ilt(a: Self::I, b: Self::I) -> Self::M;
         imin = imin(a: Self::I, b: Self::I) -> Self::I;
         imax = imax(a: Self::I, b: Self::I) -> Self::I;
         ishr = ishr(a: Self::I, by: Self::I) -> Self::I;
-        iand = iand(a: Self::I, b: Self::I) -> Self::I;
-        ior = ior(a: Self::I, b: Self::I) -> Self::I;
-        iandnot = iandnot(a: Self::I, b: Self::I) -> Self::I;
-        qadd = qadd(a: Self::Q, b: Self::Q) -> Self::Q;
-        qsub = qsub(a: Self::Q, b: Self::Q) -> Self::Q;
-        qmul = qmul(a: Self::Q, b: Self::Q) -> Self::Q;
-        qdiv = qdiv(a: Self::Q, b: Self::Q) -> Self::Q;
-        qabs = qabs(a: Self::Q) -> Self::Q;
-    }
-    by_registers! { eight:
-        dmin = hmin(a: Self::D, b: Self::D) -> Self::D;
-        dmax = hmax(a: Self::D, b: Self::D) -> Self::D;
-        por = bor(a: Self::P, b: Self::P) -> Self::P;
-    }
-
-    #[inline(always)]
-    fn wide(self) -> Self::W {
-        Twice(self)
+        mand = iand(a: Self::I, b: Self::I) -> Self::I;
+        mor = ior(a: Self::I, b: Self::I) -> Self::I;
+        mandnot = iandnot(a: Self::I, b: Self::I) -> Self::I;
     }
     #[inline(always)]
-    fn prefetch<T>(self, soon: &T) {
-        self.0.prefetch(soon);
-    }
-
-    #[inline(always)]
-    fn splat(self, v: f32) -> Self::F {
+    fn fsplat(self, v: f32) -> Self::F {
         [self.0.splat(v); 2]
     }
     #[inline(always)]
-    fn load(self, v: &[f32; 8]) -> Self::F {
+    fn fload(self, v: &[f32; 8]) -> Self::F {
         let (v, _) = v.as_chunks();
         two!(k => self.0.load(&v[k]))
     }
     #[inline(always)]
-    fn store(self, v: Self::F, to: &mut [f32; 8]) {
+    fn fstore(self, v: Self::F, to: &mut [f32; 8]) {
         let (to, _) = to.as_chunks_mut();
         two!(k => self.0.store(v[k], &mut to[k]));
     }
     #[inline(always)]
-    fn codes(self, a: Self::F) -> Self::I {
+    fn fcodes(self, a: Self::F) -> Self::I {
         two!(k => self.code(a[k]))
     }
     #[inline(always)]
-    fn gather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F {
-        two!(k => self.0.load(&four!(i => table[usize::from(index[4 * k + i])])))
-    }
-    #[inline(always)]
-    fn transpose(self, v: &[Aabb; 8]) -> [Self::F; 6] {
+    fn ftranspose(self, v: &[Aabb; 8]) -> [Self::F; 6] {
         let (v, _) = v.as_chunks();
         let [low, high] = two!(k => self.turn_four(&v[k]));
         let [a, b, c, d, e, f] = low;
         let [p, q, r, s, t, u] = high;
         [[a, p], [b, q], [c, r], [d, s], [e, t], [f, u]]
     }
-
     #[inline(always)]
     fn isplat(self, v: i32) -> Self::I {
         [self.0.isplat(v); 2]
@@ -171,10 +141,47 @@ impl<R: Registers> Lanes for Narrow<R> {
         })
     }
     #[inline(always)]
-    fn movemask(self, a: Self::I) -> u32 {
+    fn mbits(self, a: Self::I) -> u32 {
         self.0.signs(a)
     }
+    #[inline(always)]
+    fn mall(self) -> Self::I {
+        self.isplat(-1)
+    }
+}
 
+impl<R: Registers> Lanes for Narrow<R> {
+    type Q = [R::Q; 2];
+    type D = [R::H; 8];
+    type S = [Side<R>; 2];
+    type B = [[R::Q; 20]; 4];
+    /// The two planes of a register are neighbours.
+    type P = [R::B; 8];
+    type W = Twice<Self>;
+    by_registers! { two:
+        qadd = qadd(a: Self::Q, b: Self::Q) -> Self::Q;
+        qsub = qsub(a: Self::Q, b: Self::Q) -> Self::Q;
+        qmul = qmul(a: Self::Q, b: Self::Q) -> Self::Q;
+        qdiv = qdiv(a: Self::Q, b: Self::Q) -> Self::Q;
+        qabs = qabs(a: Self::Q) -> Self::Q;
+    }
+    by_registers! { eight:
+        dmin = hmin(a: Self::D, b: Self::D) -> Self::D;
+        dmax = hmax(a: Self::D, b: Self::D) -> Self::D;
+        por = bor(a: Self::P, b: Self::P) -> Self::P;
+    }
+    #[inline(always)]
+    fn wide(self) -> Self::W {
+        Twice(self)
+    }
+    #[inline(always)]
+    fn prefetch<T>(self, soon: &T) {
+        self.0.prefetch(soon);
+    }
+    #[inline(always)]
+    fn fgather(self, table: &[f32; 256], index: &[u8; 8]) -> Self::F {
+        two!(k => self.0.load(&four!(i => table[usize::from(index[4 * k + i])])))
+    }
     #[inline(always)]
     fn qgather(self, table: &[f64; 256], index: [u8; 4]) -> Self::Q {
         self.qload(&four!(i => table[usize::from(index[i])]))
@@ -203,9 +210,8 @@ impl<R: Registers> Lanes for Narrow<R> {
         self.qstore(v, &mut all);
         self.qload(&four!(i => all[usize::from(from[i] & 3)]))
     }
-
     #[inline(always)]
-    fn depths(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D {
+    fn dplane(self, columns: Self::F, down: f32, floor: f32, cap: i16) -> Self::D {
         let (floor, cap) = (self.0.splat(floor), self.0.hsplat(cap));
         eight!(row => {
             let down = self.0.splat(row as f32 * down);
@@ -247,9 +253,8 @@ impl<R: Registers> Lanes for Narrow<R> {
         let m = two!(k => self.0.hmin(m[k], m[k + 2]));
         self.0.hleast(self.0.hmin(m[0], m[1]))
     }
-
     #[inline(always)]
-    fn edge_rows(self, slope: Self::Q) -> Self::B {
+    fn qrows(self, slope: Self::Q) -> Self::B {
         let slope = self.each(slope);
         let (rows, _) = ROWS.as_chunks();
         let mut edges = [[slope[0]; 20]; 4];
@@ -261,7 +266,7 @@ impl<R: Registers> Lanes for Narrow<R> {
         edges
     }
     #[inline(always)]
-    fn spans(self, at: Self::Q, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
+    fn qspans(self, at: Self::Q, edges: &Self::B, limits: Option<[f64; 2]>) -> Self::S {
         let at = self.each(at);
         let [mut from, mut to] = [[at[0]; 20]; 2];
         for k in 0..20 {
@@ -292,7 +297,7 @@ impl<R: Registers> Lanes for Narrow<R> {
         })
     }
     #[inline(always)]
-    fn within(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
+    fn pwithin(self, spans: &Self::S, left: u32) -> (Self::P, u64) {
         let first = self.0.hsplat(left as i16);
         let most = self.0.hsplat(BLOCK_SAMPLES as i16);
         let [low, high] = two!(k => {
@@ -310,7 +315,7 @@ impl<R: Registers> Lanes for Narrow<R> {
         (eight!(k => [low, high][k % 2][k / 2]), self.pixels(n))
     }
     #[inline(always)]
-    fn bit_rows(self, from: Self::I, to: Self::I) -> u64 {
+    fn irows(self, from: Self::I, to: Self::I) -> u64 {
         self.pixels([self.0.hpack(from), self.0.hpack(to)])
     }
     #[inline(always)]
@@ -342,6 +347,14 @@ impl<R: Registers> Lanes for Narrow<R> {
         let [low, high] = self.0.bhalves(self.0.bor(any[0], any[1]));
         low | high
     }
+    #[inline(always)]
+    fn mload(self, v: &[i32; 8]) -> Self::M {
+        self.iload(v)
+    }
+    #[inline(always)]
+    fn mstore(self, v: Self::M, to: &mut [i32; 8]) {
+        self.istore(v, to);
+    }
 }
 
 impl<R: Registers> Narrow<R> {
@@ -351,7 +364,7 @@ impl<R: Registers> Narrow<R> {
         self.0.isub(bits, self.0.isplat(CODE_OFFSET))
     }
 
-    /// [`Lanes::transpose`] of four.
+    /// [`Vectors::ftranspose`] of four.
     #[inline(always)]
     fn turn_four(self, v: &[Aabb; 4]) -> [R::F; 6] {
         // Six registers of four numbers in a row hold four boxes: two boxes are three of these.

@@ -69,6 +69,7 @@ impl Registers for Neon {
         iadd(a: int32x4_t, b: int32x4_t) -> int32x4_t = vaddq_s32(a, b);
         isub(a: int32x4_t, b: int32x4_t) -> int32x4_t = vsubq_s32(a, b);
         imul(a: int32x4_t, b: int32x4_t) -> int32x4_t = vmulq_s32(a, b);
+        ilt(a: int32x4_t, b: int32x4_t) -> int32x4_t = vreinterpretq_s32_u32(vcltq_s32(a, b));
         imin(a: int32x4_t, b: int32x4_t) -> int32x4_t = vminq_s32(a, b);
         imax(a: int32x4_t, b: int32x4_t) -> int32x4_t = vmaxq_s32(a, b);
         // A negative shift to the left is one to the right.

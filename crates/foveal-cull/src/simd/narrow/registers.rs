@@ -49,6 +49,8 @@ pub(crate) trait Registers: Copy {
     fn iadd(self, a: Self::I, b: Self::I) -> Self::I;
     fn isub(self, a: Self::I, b: Self::I) -> Self::I;
     fn imul(self, a: Self::I, b: Self::I) -> Self::I;
+    /// All ones where `a < b`.
+    fn ilt(self, a: Self::I, b: Self::I) -> Self::I;
     fn imin(self, a: Self::I, b: Self::I) -> Self::I;
     fn imax(self, a: Self::I, b: Self::I) -> Self::I;
     fn ishr(self, a: Self::I, by: Self::I) -> Self::I;

@@ -80,6 +80,7 @@ impl Registers for Simd128 {
         iadd(a: v128, b: v128) -> v128 = i32x4_add(a, b);
         isub(a: v128, b: v128) -> v128 = i32x4_sub(a, b);
         imul(a: v128, b: v128) -> v128 = i32x4_mul(a, b);
+        ilt(a: v128, b: v128) -> v128 = i32x4_lt(a, b);
         imin(a: v128, b: v128) -> v128 = i32x4_min(a, b);
         imax(a: v128, b: v128) -> v128 = i32x4_max(a, b);
         iand(a: v128, b: v128) -> v128 = v128_and(a, b);

@@ -72,6 +72,7 @@ impl Registers for Sse2 {
         iand(a: __m128i, b: __m128i) -> __m128i = _mm_and_si128(a, b);
         ior(a: __m128i, b: __m128i) -> __m128i = _mm_or_si128(a, b);
         iandnot(a: __m128i, b: __m128i) -> __m128i = _mm_andnot_si128(a, b);
+        ilt(a: __m128i, b: __m128i) -> __m128i = _mm_cmplt_epi32(a, b);
         imin(a: __m128i, b: __m128i) -> __m128i = either(_mm_cmplt_epi32(a, b), a, b);
         imax(a: __m128i, b: __m128i) -> __m128i = either(_mm_cmpgt_epi32(a, b), a, b);
         floats(a: __m128i) -> __m128 = _mm_cvtepi32_ps(a);
