@@ -89,7 +89,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         pairs.len() - slower - faster
     );
     if let Some(file) = &args.page {
-        atomic_file::write(file, page::of(&old, &new, &pairs).as_bytes())?;
+        atomic_file::write(
+            file,
+            console::printable_lines(&page::of(&old, &new, &pairs)).as_bytes(),
+        )?;
     }
     console::print_result(&said)?;
     if args.fail && slower > 0 {
@@ -100,7 +103,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
 
 fn read(path: &Path) -> anyhow::Result<Value> {
     let read = || -> anyhow::Result<Value> {
-        let report: Value = serde_json::from_str(&std::fs::read_to_string(path)?)?;
+        let report: Value = serde_json::from_str(&foveal_host::text_file::read(path)?)?;
         if report["schema"] != "foveal-report" {
             bail!("it is no report of 'foveal bench all'");
         }

@@ -47,7 +47,7 @@ fn check(settings: &Settings) -> anyhow::Result<()> {
 /// # Errors
 /// Where it cannot be read, and where it is wrong, with line and key.
 pub fn read(path: &Path) -> anyhow::Result<Settings> {
-    let text = std::fs::read_to_string(path)
+    let text = crate::text_file::read(path)
         .with_context(|| format!("cannot read the settings file '{}'", path.display()))?;
     parse(&text).map_err(|error| {
         let place = match error.span() {
