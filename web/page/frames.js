@@ -5,6 +5,7 @@ import { applySettings, framesToSettle, tellSettings } from './chooser.js';
 import { showFigures, showFooting } from './figures.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
+import { hasStopped, loadRenderer } from './renderer.js';
 import { showScene } from './scenes.js';
 
 /** Even widths: side by side each eye has half. */
@@ -78,11 +79,27 @@ export async function turn(now) {
 
 /** After a failed frame: a lost device is opened anew, once; all else waits for the next change. */
 async function mend(cause) {
+  if (hasStopped(cause)) return restart(cause);
   say(String(cause));
   if (!/lost/i.test(String(cause))) return;
-  wait('Opening the graphics device again…');
+  await reopen('Opening the graphics device again…', async () => {});
+}
+
+/** After the renderer has stopped: another one takes its place, and shows the scene before. */
+async function restart(cause) {
+  say(`The renderer stopped (${cause.message}) and was started again`);
+  // It may be the scene itself that cannot be drawn.
+  if (page.stoppedAt === page.scene) page.scene = { name: 'demo', bytes: null };
+  page.stoppedAt = page.scene;
+  await reopen('Starting the renderer again…', loadRenderer);
+}
+page.restart = restart;
+
+async function reopen(words, load) {
+  wait(words);
   const place = page.camera.place();
   try {
+    await load();
     await openViewer();
     applySettings();
     await showScene(page.scene, place);

@@ -5,6 +5,7 @@ import { placeSplit, wireControls } from './controls.js';
 import { openViewer, turn } from './frames.js';
 import { readLink } from './link.js';
 import { $, page } from './page.js';
+import { loadRenderer } from './renderer.js';
 import { showScene, wireScenes } from './scenes.js';
 import { Settings } from './settings.js';
 import { showStills } from './stills.js';
@@ -17,11 +18,10 @@ async function begin(reduced) {
   } else if (!(await navigator.gpu?.requestAdapter())) {
     throw new Error('no WebGPU');
   }
-  const renderer = await import(reduced ? './webgl2/foveal_web.js' : './foveal_web.js');
-  page.memory = (await renderer.default()).memory;
-  page.Viewer = renderer.Viewer;
-  await openViewer();
   page.reduced = reduced;
+  page.loads = 0;
+  const renderer = await loadRenderer();
+  await openViewer();
   return renderer;
 }
 
@@ -64,7 +64,8 @@ async function main() {
   const address = location.hash;
   showTechnique(page.technique);
   history.replaceState(null, '', address || '#');
-  if (!(await showScene(page.scene, place)) && page.scene.name !== 'demo') {
+  const isShown = await showScene(page.scene, place).catch((cause) => page.restart(cause));
+  if (!isShown && !page.stoppedAt && page.scene.name !== 'demo') {
     await showScene({ name: 'demo', bytes: null });
   }
   requestAnimationFrame(turn);

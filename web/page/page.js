@@ -37,8 +37,11 @@ export const page = {
   frames: 0,
   // Milliseconds from the page's opening to its first frame.
   firstFrameMs: null,
-  // Of the WebAssembly.
+  // Of the WebAssembly, and how often it was loaded: anew after it stopped.
   memory: null,
+  loads: 0,
+  // The scene that was shown when it stopped last.
+  stoppedAt: null,
   costs: { reference: null, chosen: null, found: null },
   // Whether more frames can tell nothing more of the two sides.
   measured: false,
@@ -48,11 +51,16 @@ export function redraw() {
   page.stale = true;
 }
 
+/** Text of files as it may be shown: control characters, and those that turn the direction of writing, escaped. */
+export function printable(text) {
+  return text.replace(/[\u0000-\u001f\u007f-\u009f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff]/g, (c) => `\\u${c.charCodeAt(0).toString(16).padStart(4, '0')}`);
+}
+
 export function say(text) {
   const message = document.createElement('div');
   message.className = 'message';
   const words = document.createElement('span');
-  words.textContent = text;
+  words.textContent = printable(text);
   const close = document.createElement('button');
   close.type = 'button';
   close.textContent = 'Close';

@@ -2,16 +2,19 @@
 
 import { tellSettings } from './chooser.js';
 import { writeLink } from './link.js';
-import { $, alone, page, redraw, say, wait } from './page.js';
+import { $, alone, page, printable, redraw, say, wait } from './page.js';
+import { hasStopped, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
 export async function showScene(scene, place) {
-  wait(`Loading ${scene.name}…`);
+  wait(`Loading ${printable(scene.name)}…`);
   // Let the words appear before the thread is taken.
   await new Promise((done) => setTimeout(done, 30));
   tellSettings();
   try {
+    if (scene.bytes && !scene.isRead) await rehearse(scene.name, scene.bytes);
+    scene.isRead = true;
     const text = scene.bytes
       ? await page.viewer.load(scene.name, new Uint8Array(scene.bytes))
       : await page.viewer.generate(scene.name);
@@ -21,14 +24,15 @@ export async function showScene(scene, place) {
     page.camera.reset({ ...shown.camera, ...place }, shown.radius_m);
     page.camera.touched = Boolean(place);
     const figures = [`${shown.triangles.toLocaleString('en')} triangles`, `${shown.objects.toLocaleString('en')} objects`, `${shown.lights} lights`];
-    $('scene-figures').textContent = figures.join(', ') + (shown.warnings.length ? `. ${shown.warnings.length} warnings: ${shown.warnings[0]}` : '');
+    $('scene-figures').textContent = figures.join(', ') + (shown.warnings.length ? `. ${shown.warnings.length} warnings: ${printable(shown.warnings[0])}` : '');
     const select = $('scene');
-    if (![...select.options].some((o) => o.value === scene.name)) select.add(new Option(scene.name, scene.name));
+    if (![...select.options].some((o) => o.value === scene.name)) select.add(new Option(printable(scene.name), scene.name));
     select.value = scene.name;
     writeLink();
     redraw();
     return true;
   } catch (cause) {
+    if (hasStopped(cause)) throw cause;
     say(String(cause));
     $('scene').value = page.scene.name;
     return false;
@@ -37,14 +41,19 @@ export async function showScene(scene, place) {
   }
 }
 
+/** Shows a scene when nothing else is at work; a renderer that stops at it is loaded anew, with the scene before. */
+function showAlone(scene) {
+  return alone(() => showScene(scene).catch((cause) => page.restart(cause)));
+}
+
 async function showFile(file) {
   const bytes = await file.arrayBuffer();
-  await alone(() => showScene({ name: file.name, bytes }));
+  await showAlone({ name: file.name, bytes });
 }
 
 export function wireScenes() {
   for (const scene of SCENES) $('scene').add(new Option(scene, scene));
-  $('scene').addEventListener('change', (event) => alone(() => showScene({ name: event.target.value, bytes: null })));
+  $('scene').addEventListener('change', (event) => showAlone({ name: event.target.value, bytes: null }));
   $('file').addEventListener('change', (event) => {
     const [file] = event.target.files;
     if (file) showFile(file);

@@ -240,6 +240,47 @@ test('a dropped .glb is shown; a broken one is named, and the page goes on', asy
   await page.context().close();
 });
 
+test('a file that takes too long is given up, and the page goes on', async () => {
+  const { page, said } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  await page.evaluate(() => { window.foveal.mostSeconds = 0; });
+  await drop(page, 'slow.glb', triangle());
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /slow\.glb took more than 0 s to read and was given up/);
+  assert.equal(await page.locator('#scene').inputValue(), 'cornell');
+  await page.evaluate(() => { delete window.foveal.mostSeconds; });
+  await drop(page, 'triangle.glb', triangle());
+  await page.waitForFunction(() => document.getElementById('scene').value === 'triangle.glb');
+  const red = redPixels(await picture(page, false));
+  assert.ok(red > 200, `${red} red pixels`);
+  assert.deepEqual(said, []);
+  await page.context().close();
+});
+
+test('a renderer that stops is started again', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  const first = await picture(page);
+  await page.evaluate(() => {
+    const { viewer } = window.foveal;
+    viewer.draw = () => Promise.reject(new WebAssembly.RuntimeError('unreachable'));
+    window.foveal.stale = true;
+  });
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /stopped \(unreachable\) and was started again/);
+  assert.ok((await picture(page)).bytes.equals(first.bytes));
+  assert.equal(await page.evaluate(() => window.foveal.loads), 2);
+  await page.context().close();
+});
+
+test('control characters of a file are shown and not obeyed', async () => {
+  const { page } = await site.visit('#scene=cornell&scale=0.25', SMALL);
+  await settled(page);
+  await drop(page, 'a\u202e\u001b[2J.glb', triangle().subarray(0, 60));
+  await page.locator('.message').waitFor();
+  assert.match(await page.locator('.message').textContent(), /a\\u202e\\u001b\[2J\.glb/);
+  await page.context().close();
+});
+
 test('settings that cannot be met are said, and the last picture stays', async () => {
   const { page } = await site.visit('#scene=cornell&scale=0.25&technique=msaa', SMALL);
   await settled(page);

@@ -306,8 +306,8 @@ fn measure(
 }
 
 fn print(row: &Row) {
-    eprintln!(
-        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, {:.2} JOD, fovea {:.4}",
+    foveal_host::console::note(&format!(
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, {:.2} JOD, fovea {:.4}\n",
         row.scene,
         row.width,
         row.height,
@@ -327,7 +327,7 @@ fn print(row: &Row) {
         row.flip_mean,
         row.jod.unwrap_or(f32::NAN),
         row.fovea_differing,
-    );
+    ));
 }
 
 /// The source's table rebuilt: frames per second of whole frames and the gains over full shading,

@@ -102,7 +102,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let mut rows: Vec<Row> = Vec::new();
     for screen in &screens {
         for row in measure(args, &commands, (&mut studio, &mut times), screen)? {
-            eprint!("{}", text(&[line(&row)]));
+            foveal_host::console::note(&text(&[line(&row)]));
             rows.push(row);
         }
     }

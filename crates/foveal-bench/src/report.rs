@@ -142,7 +142,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         }
     }
     write("report.csv", &csv::of(&figures)?)?;
-    write("report.html", &page::of(&report))?;
+    write("report.html", &console::printable_lines(&page::of(&report)))?;
     console::print_result(&format!("{}\n", args.report.join("report.html").display()))?;
     if failures.is_empty() {
         Ok(())

@@ -117,7 +117,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
             for stage in [RateStage::Lighting, RateStage::Material, RateStage::Both] {
                 for &threshold in &args.contrast_threshold {
                     let row = measure(args, &gpu, &scene, &camera, stage, cost, threshold)?;
-                    eprint!("{}", text(&[line(&row)]));
+                    foveal_host::console::note(&text(&[line(&row)]));
                     rows.push(row);
                 }
             }

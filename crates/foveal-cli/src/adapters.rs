@@ -23,7 +23,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     };
     foveal_host::console::print_result(&text)?;
     if adapters.is_empty() {
-        bail!(foveal_host::gpu::INSTALL_A_DRIVER);
+        bail!(foveal_host::gpu::install_a_driver());
     }
     Ok(())
 }

@@ -133,7 +133,7 @@ impl SceneInfo {
     fn text(&self) -> String {
         let mut text = String::new();
         let mut line = |name: &str, value: String| {
-            let _ = writeln!(text, "{name:10} {}", console::escaped_line(&value));
+            let _ = writeln!(text, "{name:10} {}", foveal_scene::printable(&value));
         };
         let count = |n: usize| grouped(n as u64);
         line("scene", self.name.clone());

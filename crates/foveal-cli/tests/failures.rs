@@ -172,8 +172,12 @@ fn without_a_vulkan_driver_the_message_says_so() {
         .output()
         .unwrap();
     let said = common::stderr(&output);
-    // Where the system has drivers that these variables do not hide there is nothing to see.
+    // With OpenGL there is a picture, and a word on what is missing; without, an error. Systems may
+    // have drivers that these variables do not hide.
     if output.status.code() == Some(0) {
+        let is_gl = said.contains("through OpenGL alone");
+        assert!(is_gl == said.contains("(gl)"), "{said}");
+        assert!(folder.path().join("a.png").exists());
         return;
     }
     assert_eq!(output.status.code(), Some(1), "{said}");
@@ -206,6 +210,73 @@ fn control_characters_of_a_file_never_reach_the_terminal() {
         assert!(!said.contains(bad), "{words:?}: {said:?}");
         assert!(said.contains("\\u001b"), "{words:?}: {said:?}");
     }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk_behind_stderr_changes_no_exit_code() {
+    let folder = folder();
+    for (words, code) in [
+        (&["scene", "info", "nothing"][..], 1),
+        (&["render", "cornell", "--size", "16x9", "-o", "a.png"], 0),
+        (&["render", "cornell", "-o", "a.txt"], 2),
+    ] {
+        let full = std::fs::File::create("/dev/full").unwrap();
+        let mut command = common::command(folder.path(), words);
+        let status = command.stderr(full).status().unwrap();
+        assert_eq!(status.code(), Some(code), "{words:?}");
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn files_without_an_end_are_refused() {
+    let folder = folder();
+    let made = std::process::Command::new("mkfifo")
+        .arg(folder.path().join("pipe.png"))
+        .status();
+    assert!(made.is_ok_and(|status| status.success()), "mkfifo");
+    let render = ["render", "cornell", "-o", "a.png"];
+    for (flags, cause) in [
+        (&["--settings", "/dev/zero"][..], "64 MiB"),
+        (&["--path", "/dev/zero"], "64 MiB"),
+        (
+            &[
+                "--shading",
+                "coarse",
+                "--rate",
+                "image",
+                "--rate-image",
+                "pipe.png",
+            ],
+            "not a regular file",
+        ),
+    ] {
+        fail(
+            folder.path(),
+            &[&render[..], flags].concat(),
+            &[flags[flags.len() - 1], cause],
+        );
+    }
+    fail(
+        folder.path(),
+        &["compare", "pipe.png", "pipe.png"],
+        &["pipe.png", "not a regular file"],
+    );
+    fail(
+        folder.path(),
+        &["bench", "diff", "/dev/zero", "/dev/zero"],
+        &["/dev/zero", "64 MiB"],
+    );
+}
+
+#[test]
+fn a_picture_and_its_stats_need_two_files_however_they_are_written() {
+    let folder = folder();
+    let words = ["render", "cornell", "-o", "a.png", "--stats", "./a.png"];
+    let output = common::foveal_in(folder.path(), &words);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(common::stderr(&output).contains("the same file"));
 }
 
 #[test]

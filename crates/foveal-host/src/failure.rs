@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::process::ExitCode;
 use std::sync::Mutex;
 
-use crate::console::one_line;
+use crate::console::{note, one_line};
 
 /// Arguments that are well-formed one by one but make no sense together. Exit code 2.
 #[derive(Debug)]
@@ -37,20 +37,22 @@ pub fn report(name: &str, command: impl FnOnce() -> anyhow::Result<()>) -> ExitC
         Ok(Err(error)) => match error.downcast_ref::<Usage>() {
             Some(usage) => {
                 let usage = one_line(&usage.to_string());
-                eprintln!("error: {usage}\n\nFor more information, try 'foveal {name} --help'.");
+                note(&format!(
+                    "error: {usage}\n\nFor more information, try 'foveal {name} --help'.\n"
+                ));
                 ExitCode::from(2)
             }
             None => {
-                eprintln!("error: {}", paragraph(&error));
+                note(&format!("error: {}\n", paragraph(&error)));
                 ExitCode::FAILURE
             }
         },
         Err(_) => {
             let what = LAST_PANIC.lock().ok().and_then(|mut last| last.take());
-            eprintln!(
-                "error: foveal {name} has a defect and stopped: {}; please report it with the command line and the scene",
+            note(&format!(
+                "error: foveal {name} has a defect and stopped: {}; please report it with the command line and the scene\n",
                 what.as_deref().unwrap_or("no message")
-            );
+            ));
             ExitCode::FAILURE
         }
     }

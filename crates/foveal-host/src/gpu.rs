@@ -1,34 +1,55 @@
-//! Opening the graphics device, with a way out for a machine that has none that suffices.
+//! Opening the graphics device, with a word on what is missing where the machine has none that
+//! suffices.
 
 use anyhow::bail;
 use foveal::{AdapterStats, Gpu};
 
-/// What to do on a machine without any adapter.
-pub const INSTALL_A_DRIVER: &str = "no graphics adapter was found on this machine; install a Vulkan \
-    driver (without a graphics card: apt-get install mesa-vulkan-drivers, which draws on the processor)";
+use crate::console;
 
-/// Opens the adapter that `wanted` names, or the most capable one.
+/// What to do on a machine without any adapter.
+pub fn install_a_driver() -> String {
+    without_adapter(std::env::var("WGPU_BACKEND").ok().as_deref())
+}
+
+fn without_adapter(backend: Option<&str>) -> String {
+    match backend {
+        Some(backend) => format!(
+            "no graphics adapter was found on this machine that WGPU_BACKEND={backend} allows; unset it, or name \
+             others: vulkan, metal, dx12, gl"
+        ),
+        None => "no graphics adapter was found on this machine; install a Vulkan driver (without a graphics card: \
+                 apt-get install mesa-vulkan-drivers, which draws on the processor)"
+            .to_owned(),
+    }
+}
+
+/// Opens the adapter that `wanted` names, or the most capable one. Where that has OpenGL alone, a
+/// warning says what is missing.
 pub fn open(wanted: Option<&str>) -> anyhow::Result<Gpu> {
     match pollster::block_on(Gpu::open(wanted)) {
-        // The full renderer's shaders cannot be said in desktop GL; the reduced one is for devices
-        // that say so themselves.
-        Ok(gpu) if is_gl(&gpu.adapter_stats()) && !gpu.is_reduced() => {
-            bail!(only_gl(&gpu.adapter_stats()))
+        Ok(gpu) => {
+            if gpu.is_reduced() {
+                console::warn(&reduced(&gpu.adapter_stats()));
+            }
+            Ok(gpu)
         }
-        Ok(gpu) => Ok(gpu),
         Err(foveal::Error::NoAdapter { .. }) if pollster::block_on(Gpu::adapters()).is_empty() => {
-            bail!(INSTALL_A_DRIVER)
+            bail!(install_a_driver())
         }
         Err(error) => Err(error.into()),
     }
 }
 
-/// Fails where no adapter would do, for those who open the device themselves.
+/// Fails where there is no adapter, for those who open the device themselves; warns where the one
+/// that they will get has OpenGL alone.
 pub fn check(wanted: Option<&str>) -> anyhow::Result<()> {
     let adapters = pollster::block_on(Gpu::adapters());
     match adapters.first() {
-        None => bail!(INSTALL_A_DRIVER),
-        Some(first) if wanted.is_none() && adapters.iter().all(is_gl) => bail!(only_gl(first)),
+        None => bail!(install_a_driver()),
+        Some(first) if wanted.is_none() && adapters.iter().all(is_gl) => {
+            console::warn(&reduced(first));
+            Ok(())
+        }
         Some(_) => Ok(()),
     }
 }
@@ -37,10 +58,11 @@ fn is_gl(adapter: &AdapterStats) -> bool {
     adapter.backend == "gl"
 }
 
-fn only_gl(adapter: &AdapterStats) -> String {
+fn reduced(adapter: &AdapterStats) -> String {
     format!(
-        "'{}' ({}) can be used through OpenGL alone, which lacks what the renderer needs; install a Vulkan driver \
-         (on Debian: apt-get install mesa-vulkan-drivers, or the graphics card's own), and see `foveal adapters`",
+        "'{}' ({}) can be used through OpenGL alone, so a reduced renderer draws: without shadows, anti-aliasing, coarse \
+         and variable shading, debug views and times per pass. For all of them install a Vulkan driver (on Debian: \
+         apt-get install mesa-vulkan-drivers, or the graphics card's own), and see `foveal adapters`",
         adapter.name, adapter.driver
     )
 }
@@ -50,7 +72,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_adapter_that_has_only_gl_is_refused_with_what_to_install() {
+    fn an_adapter_that_has_only_gl_is_named_with_what_is_missing_and_what_to_install() {
         let adapter = |backend: &str| AdapterStats {
             name: "llvmpipe".to_owned(),
             backend: backend.to_owned(),
@@ -58,10 +80,11 @@ mod tests {
             driver: "4.5 Mesa 22.3.6".to_owned(),
         };
         assert!(is_gl(&adapter("gl")) && !is_gl(&adapter("vulkan")));
-        let text = only_gl(&adapter("gl"));
-        assert!(
-            text.contains("'llvmpipe'") && text.contains("Vulkan"),
-            "{text}"
-        );
+        let text = reduced(&adapter("gl"));
+        for word in ["'llvmpipe'", "shadows", "mesa-vulkan-drivers"] {
+            assert!(text.contains(word), "{text}");
+        }
+        assert!(without_adapter(None).contains("mesa-vulkan-drivers"));
+        assert!(without_adapter(Some("dx12")).contains("WGPU_BACKEND=dx12"));
     }
 }

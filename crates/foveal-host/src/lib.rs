@@ -25,5 +25,6 @@ pub mod progress;
 pub mod rate_image;
 pub mod scene_source;
 pub mod settings;
+pub mod text_file;
 pub mod values;
 pub mod video;

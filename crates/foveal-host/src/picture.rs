@@ -38,8 +38,13 @@ impl Picture {
     /// is 255.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
         let read = || -> anyhow::Result<Self> {
-            if path.is_dir() {
+            let found = path.metadata()?;
+            if found.is_dir() {
                 bail!("it is a folder");
+            }
+            // A pipe or a device could keep us waiting.
+            if !found.is_file() {
+                bail!("it is not a regular file");
             }
             let decoded = ImageReader::open(path)?
                 .with_guessed_format()?

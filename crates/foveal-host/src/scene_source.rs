@@ -64,7 +64,8 @@ fn from_file(
     load_ms: &mut Vec<Timing>,
 ) -> anyhow::Result<Scene> {
     let path = Path::new(name);
-    if !path.exists() {
+    // One that may not be looked at is for the reader to name.
+    if matches!(path.try_exists(), Ok(false)) {
         bail!(
             "there is no scene '{name}': neither a file of that name nor a generated scene; generated are {}",
             generate::NAMES.join(", ")
@@ -162,6 +163,12 @@ mod tests {
             error.contains("'castle.glb'") && error.contains("cornell"),
             "{error}"
         );
+    }
+
+    #[test]
+    fn a_file_that_may_not_be_looked_at_is_named_with_the_systems_reason() {
+        let error = load(&"a".repeat(5000)).unwrap_err().to_string();
+        assert!(error.contains("cannot be read"), "{error}");
     }
 
     #[test]

@@ -200,14 +200,14 @@ impl App {
 
     pub(crate) fn say(&mut self, context: &egui::Context, text: impl Into<String>) {
         self.messages.push(Message {
-            text: text.into(),
+            text: foveal_scene::printable(&text.into()),
             is_error: false,
             until_s: context.input(|i| i.time) + 5.0,
         });
     }
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {
-        let text = text.into();
+        let text = foveal_scene::printable(&text.into());
         self.messages.retain(|message| message.text != text);
         self.messages.push(Message {
             text,

@@ -28,13 +28,19 @@ impl Graphics {
         window: &Arc<Window>,
         wake: impl Fn() + Send + Sync + 'static,
     ) -> anyhow::Result<Self> {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
+        // OpenGL draws only to windows of a display that it was opened with.
+        let display = Box::new(Arc::clone(window));
+        let instance =
+            wgpu::Instance::new(wgpu::InstanceDescriptor::new_with_display_handle(display));
         let surface = instance.create_surface(Arc::clone(window))?;
         let adapter = block_on(instance.request_adapter(&wgpu::RequestAdapterOptions {
             compatible_surface: Some(&surface),
             ..Default::default()
         }))
-        .context("no graphics adapter can draw to the window")?;
+        .context(
+            "no graphics adapter can draw to the window; install a Vulkan driver (on Debian: \
+             apt-get install mesa-vulkan-drivers)",
+        )?;
         let (device, queue) = block_on(adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("window"),
             required_limits: wgpu::Limits {

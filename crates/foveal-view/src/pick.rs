@@ -65,7 +65,7 @@ pub(crate) fn pick(scene: &Scene, ray: Ray) -> Option<Picked> {
         .filter_map(|instance| scene.meshes.get(instance.mesh as usize))
         .map(|mesh| mesh.triangle_count() as u64);
     Some(Picked {
-        name: found.name.clone(),
+        name: foveal_scene::printable(&found.name),
         object,
         bounds: found.bounds,
         triangles: triangles.sum(),

@@ -23,4 +23,4 @@ mod table;
 mod viewer;
 
 #[cfg(target_arch = "wasm32")]
-pub use viewer::{Viewer, default_settings, settings_table};
+pub use viewer::{Viewer, default_settings, rehearse, settings_table};

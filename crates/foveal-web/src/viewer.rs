@@ -106,6 +106,16 @@ pub fn settings_table() -> String {
     crate::table::json()
 }
 
+/// Reads a file as [`Viewer::load`] does, and forgets it: for a worker, which the page can end where
+/// that takes too long.
+///
+/// # Errors
+/// As [`Viewer::load`].
+#[wasm_bindgen]
+pub fn rehearse(name: &str, bytes: Vec<u8>) -> Result<(), String> {
+    scenes::from_bytes(name, &bytes).map(drop)
+}
+
 #[wasm_bindgen(start)]
 fn start() {
     console_error_panic_hook::set_once();

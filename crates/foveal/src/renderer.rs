@@ -5,7 +5,7 @@ use foveal_scene::{Camera, Scene};
 
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingStage;
-use crate::environment::{EnvironmentMap, EnvironmentStage};
+use crate::environment::EnvironmentStage;
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, submitted_work_done};
@@ -23,8 +23,12 @@ use coarse::CoarseStages;
 use in_flight::{Counts, InFlight};
 
 mod coarse;
+mod environment;
+#[cfg(test)]
+mod fault_tests;
 mod figures;
 mod in_flight;
+mod mend;
 mod plan;
 mod results;
 mod stages;
@@ -93,6 +97,8 @@ pub struct Renderer {
     /// How each way of drawing two eyes did on this device.
     trials: Trials,
     rate_image: Option<RateImage>,
+    /// The stages have not got the rate image yet.
+    rate_image_is_new: bool,
     environment: EnvironmentStage,
     scene: SceneOnGpu,
     draw_list: DrawList,
@@ -102,6 +108,8 @@ pub struct Renderer {
     upscale: Option<Upscale>,
     frozen: bool,
     in_flight: Option<InFlight>,
+    /// A call failed half way; what it may have left half made is made anew before the next frame.
+    is_torn: bool,
 }
 
 /// What a frame is seen with.
@@ -147,47 +155,46 @@ impl Renderer {
     ) -> Result<Self, Error> {
         let RendererOptions { clock } = options;
         gpu.check_limits()?;
-        let frame_bindings = FrameBindings::new(gpu);
-        let material_layout = material_layout(gpu);
-        let mut trials = Trials::default();
-        let trial = (&mut trials, clock);
         settings.validate(&gpu.device.limits())?;
+        let trap = ErrorTrap::new(gpu, "preparing the renderer");
+        let frame_bindings = FrameBindings::new(gpu, None);
+        let material_layout = material_layout(gpu);
+        let upscale = Upscale::new(gpu, settings);
+        let present = PresentPass::new(gpu);
+        let timer = GpuTimer::new(gpu);
+        let limits = ArrayLimits::of(gpu);
+        let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout, limits);
+        trap.finish().await?;
+        let (timer, scene) = (timer?, scene?);
+        let mut trials = Trials::default();
         let stages = Stages::new(
             gpu,
             &settings.drawn(),
             &frame_bindings,
             &material_layout,
             None,
-            trial,
+            (&mut trials, clock),
         )
         .await?;
-        let trap = ErrorTrap::new(gpu, "preparing the renderer");
-        let upscale = Upscale::new(gpu, settings);
-        trap.finish().await?;
-        let scene = SceneOnGpu::new(
-            gpu,
-            &Scene::default(),
-            settings,
-            &material_layout,
-            ArrayLimits::of(gpu),
-        )?;
         Ok(Self {
             gpu: gpu.clone(),
             clock,
-            timer: GpuTimer::new(gpu)?,
+            timer,
             frame_bindings,
             material_layout,
             stages,
             trials,
             rate_image: None,
+            rate_image_is_new: false,
             environment: EnvironmentStage::default(),
             scene,
             draw_list: DrawList::default(),
-            present: PresentPass::new(gpu),
+            present,
             settings: settings.clone(),
             upscale,
             frozen: false,
             in_flight: None,
+            is_torn: false,
         })
     }
 
@@ -212,6 +219,7 @@ impl Renderer {
         if *settings == self.settings {
             return Ok(());
         }
+        self.mend().await?;
         let sizes = |s: &Settings| (s.picture_size(), s.drawn().picture_size());
         let upscale = if sizes(settings) == sizes(&self.settings) {
             None
@@ -276,48 +284,20 @@ impl Renderer {
             self.stages.settings = settings.clone();
             return Ok(());
         }
-        self.stages = Stages::new(
-            &self.gpu,
-            settings,
-            &self.frame_bindings,
-            &self.material_layout,
-            self.rate_image.as_ref(),
-            (&mut self.trials, self.clock),
-        )
-        .await?;
-        self.choose_environment().await
-    }
-
-    /// Takes over the map of [`EnvironmentSource::Image`](crate::EnvironmentSource::Image) in place
-    /// of the last one; until there is one, the scene's sky stands for it.
-    ///
-    /// # Errors
-    /// [`Error::OutOfMemory`].
-    pub async fn set_environment(&mut self, map: EnvironmentMap) -> Result<(), Error> {
-        self.environment.set_image(map);
-        self.choose_environment().await
-    }
-
-    /// Binds the environment that settings and scene ask for.
-    async fn choose_environment(&mut self) -> Result<(), Error> {
-        let sky = &self.scene.environment;
-        if self.environment.choose(&self.stages.settings, sky) {
-            let trap = ErrorTrap::new(&self.gpu, "uploading the environment");
-            let map = self.environment.map();
-            self.frame_bindings.set_environment(&self.gpu, map);
-            self.stages.forget_light();
-            trap.finish().await?;
-        }
+        let stages = self.new_stages(settings, None).await?;
+        let sky = self.scene.environment;
+        let environment = self.upload_environment(settings, &sky, None).await?;
+        self.stages = stages;
+        self.rate_image_is_new = false;
+        self.take_environment(environment);
         Ok(())
     }
 
     /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source
     /// requests every pixel.
     pub fn set_rate_image(&mut self, image: RateImage) {
-        if let Some(coarse) = &mut self.stages.coarse {
-            coarse.rate_map.set_image(&self.gpu, &image);
-        }
         self.rate_image = Some(image);
+        self.rate_image_is_new = true;
     }
 
     /// Uploads a scene in place of the last one.
@@ -336,6 +316,7 @@ impl Renderer {
         scene: &Scene,
         limits: ArrayLimits,
     ) -> Result<(), Error> {
+        self.mend().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene");
         let uploaded = SceneOnGpu::new(
             &self.gpu,
@@ -352,11 +333,17 @@ impl Renderer {
         let written = self
             .frame_bindings
             .write_instances(&self.gpu, uploaded.instance_uniforms());
-        trap.finish().await?;
-        written?;
+        // The old scene's instances are gone from here on.
+        let written = trap.finish().await.and(written);
+        self.torn(written)?;
+        let settings = &self.stages.settings;
+        let sky = &uploaded.environment;
+        let environment = self.upload_environment(settings, sky, None).await;
+        let environment = self.torn(environment)?;
         self.scene = uploaded;
         self.stages.forget();
-        self.choose_environment().await
+        self.take_environment(environment);
+        Ok(())
     }
 
     /// Takes over a new pose of the same scene (after [`Scene::pose`]). The pose before it becomes
@@ -365,6 +352,7 @@ impl Renderer {
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
+        self.mend().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
         let change = self.scene.update_pose(&self.gpu, scene);
         let wants_places = self.stages.history().is_some();
@@ -382,9 +370,11 @@ impl Renderer {
             history.lights_changed(&change.lights_before, &self.scene.lights);
             history.shadows_changed(&shadows);
         }
-        self.frame_bindings
-            .write_instances(&self.gpu, self.scene.instance_uniforms())?;
-        trap.finish().await
+        let written = self
+            .frame_bindings
+            .write_instances(&self.gpu, self.scene.instance_uniforms());
+        let written = trap.finish().await.and(written);
+        self.torn(written)
     }
 
     /// Draws one frame into the renderer's own picture and waits until it is done.
@@ -392,12 +382,22 @@ impl Renderer {
     /// # Errors
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`].
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
+        self.mend().await?;
         self.stages.culling.iter().for_each(CullingStage::wake);
         let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
         let submitted = self.submit(frame, &seen, None, &mut cpu);
-        self.finish_frame(trap).await?;
+        let drawn = self.wait_for(submitted, &cpu).await;
+        self.finish_frame(trap, drawn).await
+    }
+
+    /// Waits for the frame that was submitted, and reads its figures.
+    async fn wait_for(
+        &mut self,
+        submitted: FrameStats,
+        cpu: &CpuTimer,
+    ) -> Result<FrameStats, Error> {
         submitted_work_done(&self.gpu).await?;
         let frame_ms = cpu.since_start_ms();
         let gpu_ms = self.timer.collect(&self.gpu);
@@ -433,26 +433,27 @@ impl Renderer {
         frame: &Frame<'_>,
         target: Target<'_>,
     ) -> Result<Option<FrameStats>, Error> {
+        self.mend().await?;
         self.stages.culling.iter().for_each(CullingStage::wake);
-        let finished = self.finished()?;
         let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
+        let finished = self.finished()?;
         let mut cpu = CpuTimer::start(self.clock);
         let submitted = self.submit(frame, &seen, Some(target), &mut cpu);
         if self.in_flight.is_none() {
             self.in_flight = Some(InFlight::new(&self.gpu, submitted, &self.counters(), cpu));
         }
-        self.finish_frame(trap).await?;
-        Ok(finished)
+        self.finish_frame(trap, Ok(finished)).await
     }
 
     /// What a frame that failed has left in the targets is not carried on to the next one.
-    async fn finish_frame(&mut self, trap: ErrorTrap) -> Result<(), Error> {
-        let finished = trap.finish().await;
-        if finished.is_err() {
-            self.stages.forget();
-        }
-        finished
+    async fn finish_frame<T>(
+        &mut self,
+        trap: ErrorTrap,
+        drawn: Result<T, Error>,
+    ) -> Result<T, Error> {
+        let drawn = trap.finish().await.and(drawn);
+        self.torn(drawn)
     }
 
     /// Whether frames draw what culling found last, whatever their camera sees: to look at a result

@@ -92,7 +92,7 @@ impl Difference {
         );
         Ok(Self {
             said,
-            page: page::of(old, new, &pairs),
+            page: console::printable_lines(&page::of(old, new, &pairs)),
             slower,
         })
     }
@@ -129,7 +129,7 @@ fn table(pairs: &[Pair]) -> String {
 }
 
 fn read(path: &Path) -> anyhow::Result<Value> {
-    let read = || parse(&std::fs::read_to_string(path)?);
+    let read = || parse(&foveal_host::text_file::read(path)?);
     read().with_context(|| format!("cannot read the report '{}'", path.display()))
 }
 

@@ -3,7 +3,6 @@
 use std::fmt::Write;
 
 use super::report::{CameraReport, Report};
-use foveal_host::console;
 use foveal_host::console::grouped;
 use foveal_host::culling::Check;
 use foveal_host::culling::mocrec::Agreement;
@@ -32,7 +31,7 @@ pub(super) fn text(report: &Report) -> String {
 }
 
 fn push_camera(text: &mut String, camera: &CameraReport) {
-    let _ = writeln!(text, "\ncamera '{}'", console::escaped_line(&camera.name));
+    let _ = writeln!(text, "\ncamera '{}'", foveal_scene::printable(&camera.name));
     let mut line = |name: &str, value: String| {
         let _ = writeln!(text, "  {name:31} {value:>14}");
     };

@@ -211,6 +211,8 @@ impl Args {
         }
         self.camera.check()?;
         let written = [file, self.video.as_deref(), self.stats.as_deref()];
+        // However they are written: a.png is ./a.png.
+        let written = written.map(|file| file.and_then(|file| std::path::absolute(file).ok()));
         for (index, one) in written.iter().enumerate() {
             if one.is_some() && written[index + 1..].contains(one) {
                 return usage("--output, --video and --stats name the same file");

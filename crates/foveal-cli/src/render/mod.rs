@@ -56,8 +56,10 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     if jobs.is_empty() {
         if !args.quiet {
             match total {
-                0 => eprintln!("this part of the range has no frames; nothing to draw"),
-                _ => eprintln!("all {total} frames are there already; nothing to draw"),
+                0 => console::note("this part of the range has no frames; nothing to draw\n"),
+                _ => console::note(&format!(
+                    "all {total} frames are there already; nothing to draw\n"
+                )),
             }
         }
         return Ok(());
@@ -112,7 +114,7 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     }
     if frames.is_empty() {
         if !args.quiet {
-            eprintln!("other jobs drew all {open} frames");
+            console::note(&format!("other jobs drew all {open} frames\n"));
         }
         return Ok(());
     }

@@ -36,7 +36,7 @@ pub struct Defaults {
 
 /// Reads a file of cameras.
 pub fn read(path: &Path, defaults: Defaults) -> anyhow::Result<Vec<NamedEye>> {
-    let text = std::fs::read_to_string(path)
+    let text = crate::text_file::read(path)
         .with_context(|| format!("cannot read the camera file '{}'", path.display()))?;
     parse(&text, defaults).with_context(|| format!("the camera file '{}' is wrong", path.display()))
 }

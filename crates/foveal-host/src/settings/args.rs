@@ -147,7 +147,7 @@ fn lens(text: &str) -> Result<Value, String> {
         };
     }
     let wrong = |cause: &dyn std::fmt::Display| format!("the lens file '{text}': {cause}");
-    let file = std::fs::read_to_string(text).map_err(|e| wrong(&e))?;
+    let file = crate::text_file::read(std::path::Path::new(text)).map_err(|e| wrong(&e))?;
     let LensProfile {
         distortion,
         red,

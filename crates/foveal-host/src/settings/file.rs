@@ -50,7 +50,7 @@ pub fn check(settings: &Settings) -> anyhow::Result<()> {
 /// # Errors
 /// Where it cannot be read, and where it is wrong, with line and key.
 pub fn read(path: &Path) -> anyhow::Result<Settings> {
-    let text = std::fs::read_to_string(path)
+    let text = crate::text_file::read(path)
         .with_context(|| format!("cannot read the settings file '{}'", path.display()))?;
     from_text(&text, &path.display().to_string())
 }

@@ -1,7 +1,7 @@
 //! Device, scene and up to two renderers: the one that is asked about, and its reference.
 
 use foveal::{AdapterStats, EnvironmentSource, FrameStats, Gpu, RateSource, Renderer, Settings};
-use foveal_scene::{Camera, Clip, Scene};
+use foveal_scene::{Camera, Clip, Scene, printable};
 use pollster::block_on;
 
 use super::measuring::Measuring;
@@ -93,7 +93,7 @@ impl Drawing {
         let own_lights = scene.lights.len();
         (host.light)(&mut scene);
         let loaded = LoadedScene {
-            name: scene.name.clone(),
+            name: printable(&scene.name),
             source: name.to_owned(),
             counts: foveal::SceneStats {
                 objects: scene.objects.len() as u64,
@@ -102,10 +102,13 @@ impl Drawing {
                 lights: scene.lights.len() as u64,
                 ..Default::default()
             },
-            start: camera,
-            cameras: scene.cameras.clone(),
+            start: Camera {
+                name: printable(&camera.name),
+                ..camera
+            },
+            cameras: shown_cameras(&scene),
             bounds: scene.bounds(),
-            clips: scene.clips().map(|(n, s)| (n.to_owned(), s)).collect(),
+            clips: scene.clips().map(|(n, s)| (printable(n), s)).collect(),
             clip: clip.clone(),
             warnings: scene.warnings.len(),
         };
@@ -381,6 +384,15 @@ impl Side {
         };
         Ok((picture, stats))
     }
+}
+
+/// The scene's cameras with names that can be shown.
+fn shown_cameras(scene: &Scene) -> Vec<Camera> {
+    let shown = |camera: &Camera| Camera {
+        name: printable(&camera.name),
+        ..camera.clone()
+    };
+    scene.cameras.iter().map(shown).collect()
 }
 
 /// The mean of FLIP's error map; `None` for pictures of different sizes.

@@ -24,4 +24,6 @@ pub(crate) mod twin;
 
 pub(crate) use binding::EnvironmentBinding;
 pub use map::EnvironmentMap;
-pub(crate) use stage::{EnvironmentStage, EnvironmentTerms, environment_constants};
+pub(crate) use stage::{
+    ChosenEnvironment, EnvironmentStage, EnvironmentTerms, environment_constants,
+};

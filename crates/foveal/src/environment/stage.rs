@@ -23,33 +23,61 @@ pub(crate) struct EnvironmentTerms<'a> {
     pub(crate) map: Option<&'a EnvironmentMap>,
 }
 
-impl EnvironmentStage {
-    /// Takes over the host's map.
-    pub(crate) fn set_image(&mut self, map: EnvironmentMap) {
-        self.image = Some(map);
-    }
+/// A choice that is not in force yet.
+#[derive(Debug)]
+pub(crate) struct ChosenEnvironment {
+    stage: EnvironmentStage,
+    /// Whether another map is in use than before.
+    pub(crate) is_new: bool,
+}
 
-    /// Chooses the map that the settings ask for, and filters the sky where that is it; whether it
-    /// is another one than before.
-    pub(crate) fn choose(&mut self, settings: &Settings, sky: &Environment) -> bool {
-        let wanted = match (settings.lighting.environment, &self.image) {
+impl ChosenEnvironment {
+    /// The map to bind.
+    pub(crate) fn map(&self) -> Option<&EnvironmentMap> {
+        self.stage.map()
+    }
+}
+
+impl EnvironmentStage {
+    /// Chooses the map that the settings ask for, and filters the sky where that is it; `image` is
+    /// the host's map in place of the last one. Nothing changes before [`EnvironmentStage::take`].
+    pub(crate) fn choose(
+        &self,
+        settings: &Settings,
+        sky: &Environment,
+        image: Option<EnvironmentMap>,
+    ) -> ChosenEnvironment {
+        let image = image.or_else(|| self.image.clone());
+        let mut filtered = self.sky.clone();
+        let in_use = match (settings.lighting.environment, &image) {
             (EnvironmentSource::Gradient | EnvironmentSource::None, _) => None,
             (EnvironmentSource::Image, Some(image)) => Some(image.clone()),
             (EnvironmentSource::Image | EnvironmentSource::Sky, _) => {
-                let known = self.sky.take().filter(|(of, _)| of == sky);
-                let filtered = known.unwrap_or_else(|| (*sky, EnvironmentMap::of_gradient(sky)));
-                let map = filtered.1.clone();
-                self.sky = Some(filtered);
-                Some(map)
+                let (_, map) = match filtered.take().filter(|(of, _)| of == sky) {
+                    Some(known) => filtered.insert(known),
+                    None => filtered.insert((*sky, EnvironmentMap::of_gradient(sky))),
+                };
+                Some(map.clone())
             }
         };
-        let is_same = match (&wanted, &self.in_use) {
+        let is_same = match (&in_use, &self.in_use) {
             (None, None) => true,
             (Some(a), Some(b)) => a.is_same(b),
             _ => false,
         };
-        self.in_use = wanted;
-        !is_same
+        ChosenEnvironment {
+            is_new: !is_same,
+            stage: Self {
+                image,
+                sky: filtered,
+                in_use,
+            },
+        }
+    }
+
+    /// Takes a choice over.
+    pub(crate) fn take(&mut self, chosen: ChosenEnvironment) {
+        *self = chosen.stage;
     }
 
     /// What a frame is told, in a scene with this sky.

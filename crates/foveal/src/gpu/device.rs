@@ -3,14 +3,34 @@
 use crate::{AdapterStats, Error};
 use std::sync::{Arc, Mutex};
 
+#[cfg(test)]
+pub(super) use super::faults::{Device, Queue};
+#[cfg(not(test))]
+pub(super) type Device = wgpu::Device;
+#[cfg(not(test))]
+pub(super) type Queue = wgpu::Queue;
+
 /// An open graphics device.
 #[derive(Clone, Debug)]
 pub struct Gpu {
     /// The device.
-    pub device: wgpu::Device,
+    pub device: Device,
     /// Its queue.
-    pub queue: wgpu::Queue,
+    pub queue: Queue,
     lost: Arc<Mutex<Option<String>>>,
+    /// An error that no scope caught.
+    stray: Arc<Mutex<Option<String>>>,
+}
+
+/// Limits of an adapter, as far as the renderer uses them. The full renderer's shaders cannot be
+/// written in OpenGL's language, whatever the driver offers: there, the reduced renderer draws.
+fn usable_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
+    let mut limits = adapter.limits();
+    if adapter.get_info().backend == wgpu::Backend::Gl {
+        limits.max_storage_buffers_per_shader_stage = 0;
+        limits.max_storage_buffer_binding_size = 0;
+    }
+    limits
 }
 
 /// Without storage buffers there is nothing that the full renderer could do.
@@ -35,16 +55,23 @@ impl Gpu {
     }
 
     /// Opens a device of the host's adapter, with what [`Gpu::wanted_features`] and
-    /// [`Gpu::wanted_limits`] say.
+    /// [`Gpu::wanted_limits`] say. Of an adapter that has OpenGL alone it is a device of the reduced
+    /// renderer ([`Gpu::reduced_limits`]).
     ///
     /// # Errors
     /// [`Error::NoDevice`].
     pub async fn from_adapter(adapter: &wgpu::Adapter) -> Result<Self, Error> {
+        let limits = usable_limits(adapter);
+        let features = if is_reduced(&limits) {
+            wgpu::Features::empty()
+        } else {
+            Self::wanted_features() & adapter.features()
+        };
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 label: Some("foveal"),
-                required_features: Self::wanted_features() & adapter.features(),
-                required_limits: Self::wanted_limits(&adapter.limits()),
+                required_features: features,
+                required_limits: Self::wanted_limits(&limits),
                 ..Default::default()
             })
             .await
@@ -60,6 +87,12 @@ impl Gpu {
                 "" => note(&lost, format!("{reason:?}")),
                 message => note(&lost, message.to_owned()),
             });
+        // Without a handler wgpu panics.
+        let stray = Arc::clone(&gpu.stray);
+        gpu.device
+            .on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
+                note(&stray, error.to_string());
+            }));
         Ok(gpu)
     }
 
@@ -68,11 +101,21 @@ impl Gpu {
     /// a callback of the host's that hears of its loss should call [`Gpu::note_loss`].
     #[must_use]
     pub fn from_device(device: wgpu::Device, queue: wgpu::Queue) -> Self {
+        #[cfg(test)]
+        let device = Device::new(device, &Default::default());
+        #[cfg(test)]
+        let queue = Queue::new(queue, &device);
         Self {
             device,
             queue,
             lost: Arc::new(Mutex::new(None)),
+            stray: Arc::new(Mutex::new(None)),
         }
+    }
+
+    /// An error of this device that no scope caught, if there was one since the last question.
+    pub(super) fn take_stray(&self) -> Option<String> {
+        self.stray.lock().ok()?.take()
     }
 
     /// Takes down that the device is gone: from now on the renderer answers with
@@ -163,9 +206,11 @@ impl Gpu {
         super::adapter::describe(&self.device.adapter_info())
     }
 
-    /// Whether the device is Mesa's processor.
+    /// Whether the device is Mesa's processor, which Vulkan names as its driver and OpenGL as its
+    /// adapter.
     pub(crate) fn is_lavapipe(&self) -> bool {
-        self.adapter_stats().driver.starts_with("llvmpipe")
+        let AdapterStats { name, driver, .. } = self.adapter_stats();
+        driver.starts_with("llvmpipe") || name.starts_with("llvmpipe")
     }
 
     /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.

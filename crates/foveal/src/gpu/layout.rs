@@ -2,9 +2,11 @@
 
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages, TextureSampleType};
 
+use super::device::Device;
+
 /// A layout whose bindings are `types` in order, each seen by `stages`.
 pub(crate) fn bind_group_layout(
-    device: &wgpu::Device,
+    device: &Device,
     label: &str,
     stages: ShaderStages,
     types: &[BindingType],
@@ -26,7 +28,7 @@ pub(crate) fn bind_group_layout(
 
 /// A bind group whose bindings are `resources` in order.
 pub(crate) fn bind_group(
-    device: &wgpu::Device,
+    device: &Device,
     label: &str,
     layout: &wgpu::BindGroupLayout,
     resources: &[wgpu::BindingResource<'_>],

@@ -2,6 +2,8 @@
 
 mod adapter;
 mod device;
+#[cfg(test)]
+pub(crate) mod faults;
 mod layout;
 mod mips;
 #[cfg(feature = "profiler")]

@@ -30,16 +30,26 @@ impl ErrorTrap {
         let internal = self.internal.pop().await;
         let validation = self.validation.pop().await;
         let memory = self.memory.pop().await;
+        // A loss is told when the device is asked, and makes errors of all else.
+        #[cfg(not(target_arch = "wasm32"))]
+        if internal.is_some() || validation.is_some() || memory.is_some() {
+            let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+        }
         self.gpu.check_alive()?;
-        if memory.is_some() {
+        #[cfg(not(test))]
+        let is_full = memory.is_some();
+        #[cfg(test)]
+        let is_full = self.gpu.device.faults.take_out_of_memory() || memory.is_some();
+        if is_full {
             return Err(Error::OutOfMemory {
                 doing: self.doing.to_owned(),
             });
         }
-        match validation.or(internal) {
+        let stray = self.gpu.take_stray();
+        match validation.or(internal).map(|e| e.to_string()).or(stray) {
             Some(cause) => Err(Error::Validation {
                 doing: self.doing.to_owned(),
-                cause: cause.to_string(),
+                cause,
             }),
             None => Ok(()),
         }

@@ -23,6 +23,7 @@ impl Renderer {
         target: Option<Target<'_>>,
         cpu: &mut CpuTimer,
     ) -> FrameStats {
+        self.take_rate_image();
         let culled = self.cull(frame, seen);
         cpu.stage("culling");
         self.list_draws(frame);
@@ -33,6 +34,15 @@ impl Renderer {
         cpu.stage("shadows");
         self.encode_frame(frame, seen, target, &clusters, cpu);
         self.submitted(culled, cpu)
+    }
+
+    /// Gives the stages a rate image that is new.
+    fn take_rate_image(&mut self) {
+        if std::mem::take(&mut self.rate_image_is_new)
+            && let (Some(coarse), Some(image)) = (&mut self.stages.coarse, &self.rate_image)
+        {
+            coarse.rate_map.set_image(&self.gpu, image);
+        }
     }
 
     /// Finds the visible objects, or keeps the last frame's while culling is frozen.

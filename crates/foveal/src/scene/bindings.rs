@@ -18,11 +18,19 @@ pub(crate) struct FrameBindings {
     environment: EnvironmentBinding,
 }
 
+/// An environment that is uploaded and not bound yet.
+#[derive(Debug)]
+pub(crate) struct BoundEnvironment {
+    binding: EnvironmentBinding,
+    group: wgpu::BindGroup,
+}
+
 impl FrameBindings {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
+    /// Bindings without instances; without a map, the environment is black.
+    pub(crate) fn new(gpu: &Gpu, map: Option<&EnvironmentMap>) -> Self {
         let table = Table::binding_type(gpu);
-        let [map, reflectances, sampler] = EnvironmentBinding::TYPES;
-        let types = [uniform(), table, table, map, reflectances, sampler];
+        let [cube, reflectances, sampler] = EnvironmentBinding::TYPES;
+        let types = [uniform(), table, table, cube, reflectances, sampler];
         let layout = bind_group_layout(
             &gpu.device,
             "frame",
@@ -39,7 +47,7 @@ impl FrameBindings {
         // A binding must hold one instance, even where there is none.
         instances.write(gpu, &[0; size_of::<InstanceUniform>()]);
         let drawn = Table::new(gpu, "drawn");
-        let environment = EnvironmentBinding::new(gpu, None);
+        let environment = EnvironmentBinding::new(gpu, map);
         let tables = (&instances, &drawn);
         let group = group(gpu, &layout, &frame, tables, &environment);
         Self {
@@ -66,10 +74,22 @@ impl FrameBindings {
         group(gpu, &self.layout, &self.frame, tables, &self.environment)
     }
 
-    /// Binds another environment; without a map, one that is black.
-    pub(crate) fn set_environment(&mut self, gpu: &Gpu, map: Option<&EnvironmentMap>) {
-        self.environment = EnvironmentBinding::new(gpu, map);
-        self.group = self.group_of(gpu, &self.drawn);
+    /// Another environment with the group that binds it; without a map, one that is black.
+    pub(crate) fn with_environment(
+        &self,
+        gpu: &Gpu,
+        map: Option<&EnvironmentMap>,
+    ) -> BoundEnvironment {
+        let binding = EnvironmentBinding::new(gpu, map);
+        let tables = (&self.instances, &self.drawn);
+        let group = group(gpu, &self.layout, &self.frame, tables, &binding);
+        BoundEnvironment { binding, group }
+    }
+
+    /// Binds another environment.
+    pub(crate) fn set_environment(&mut self, bound: BoundEnvironment) {
+        self.environment = bound.binding;
+        self.group = bound.group;
     }
 
     /// Uploads the frame's uniform block.

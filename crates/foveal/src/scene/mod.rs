@@ -9,7 +9,7 @@ mod materials;
 mod samplers;
 mod textures;
 
-pub(crate) use bindings::FrameBindings;
+pub(crate) use bindings::{BoundEnvironment, FrameBindings};
 #[cfg(test)]
 pub(crate) use families::FamilyUniform;
 pub(crate) use families::{FAMILY_BYTES, MaterialDispatch, family_layout};

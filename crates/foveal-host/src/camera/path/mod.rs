@@ -50,7 +50,7 @@ pub struct CameraPath {
 impl CameraPath {
     /// Reads a file of keyframes; those without a field of view get `fov_y_deg`.
     pub(super) fn read(path: &Path, fov_y_deg: f32) -> anyhow::Result<Self> {
-        let text = std::fs::read_to_string(path)
+        let text = crate::text_file::read(path)
             .with_context(|| format!("cannot read the camera path '{}'", path.display()))?;
         Self::parse(&text, fov_y_deg)
             .with_context(|| format!("the camera path '{}' is wrong", path.display()))

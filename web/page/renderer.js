@@ -1,0 +1,43 @@
+// The renderer's WebAssembly: loaded, loaded anew after it stopped, and read with in a worker.
+
+import { page } from './page.js';
+
+/** Seconds that a dropped file may take to be read. */
+const MOST_SECONDS = 20;
+
+/** Loads the renderer; one that has stopped is left behind, with its memory. */
+export async function loadRenderer() {
+  const path = page.reduced ? './webgl2/foveal_web.js' : './foveal_web.js';
+  page.loads += 1;
+  const renderer = await import(page.loads > 1 ? `${path}?again=${page.loads}` : path);
+  page.memory = (await renderer.default()).memory;
+  page.Viewer = renderer.Viewer;
+  return renderer;
+}
+
+/** Whether the renderer has stopped for good: nothing in its memory can be relied on. */
+export function hasStopped(cause) {
+  return cause instanceof WebAssembly.RuntimeError;
+}
+
+/** Reads a file in a worker of its own. Fails with a sentence where it cannot be read, or takes too long. */
+export function rehearse(name, bytes) {
+  return new Promise((done, failed) => {
+    const worker = new Worker(new URL('./rehearse.js', import.meta.url), { type: 'module' });
+    const end = (cause) => {
+      clearTimeout(timer);
+      worker.terminate();
+      if (cause) failed(cause);
+      else done();
+    };
+    const seconds = page.mostSeconds ?? MOST_SECONDS;
+    const timer = setTimeout(() => end(`${name} took more than ${seconds} s to read and was given up; what is shown stays. Programs outside the browser have more time: foveal scene info`), seconds * 1000);
+    worker.addEventListener('message', ({ data }) => end(data.cause));
+    worker.addEventListener('error', (event) => {
+      event.preventDefault();
+      end(`${name} cannot be read: ${event.message || 'the reader did not start'}`);
+    });
+    const renderer = page.reduced ? './webgl2/foveal_web.js' : './foveal_web.js';
+    worker.postMessage({ renderer, name, bytes });
+  });
+}
