@@ -160,6 +160,7 @@ fn whatever_happens_a_renderer_draws_what_a_new_one_draws() {
             s.picture.width = 64;
             s.picture.height = 36;
             s.coarse.history = false;
+            s.rate.force = true;
         }),
         camera: first.cameras[0].clone(),
         scene: first,

@@ -100,7 +100,7 @@ fn cases() -> Vec<(&'static str, Settings)> {
             "variable",
             of(&|s| {
                 s.shading.mode = Shading::Variable;
-                s.variable.force = true;
+                s.rate.force = true;
             }),
         ),
         ("msaa", of(&|s| s.antialiasing.mode = Antialiasing::Msaa)),
