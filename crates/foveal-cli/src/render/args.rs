@@ -173,7 +173,7 @@ impl Args {
     pub(super) fn settings(&self) -> anyhow::Result<Settings> {
         let mut settings = self.settings.clone();
         // What is in files hangs on the settings, not on how long frames took.
-        settings.set_default("force-rate", "true");
+        settings.switch_on_by_default("force-rate");
         if let Some(shown) = self.outputs().1 {
             settings.set("show", shown);
         }
@@ -240,5 +240,31 @@ impl Args {
             return refuse("--render-scale");
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Args;
+    use clap::Parser;
+
+    #[derive(Parser)]
+    struct Command {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    #[test]
+    fn what_is_in_files_does_not_hang_on_times_unless_asked_to() {
+        let forced = |words: &[&str]| {
+            let words = ["render", "cornell", "-o", "a.png", "--shading", "coarse"]
+                .iter()
+                .chain(words);
+            let command = Command::try_parse_from(words).unwrap();
+            command.args.settings().unwrap().rate.force
+        };
+        assert!(forced(&[]));
+        assert!(forced(&["--force-rate", "true"]));
+        assert!(!forced(&["--force-rate", "false"]));
     }
 }

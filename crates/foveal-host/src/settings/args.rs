@@ -230,10 +230,10 @@ impl SettingsArgs {
         self.given.insert(key.to_owned(), value.into());
     }
 
-    /// As the flag `--key value` does, where that flag is not given.
-    pub fn set_default(&mut self, key: &str, value: &str) {
+    /// As the flag `--key true` does, where that flag is not given.
+    pub fn switch_on_by_default(&mut self, key: &str) {
         if !self.given.contains_key(key) {
-            self.set(key, value);
+            self.given.insert(key.to_owned(), true.into());
         }
     }
 
