@@ -5,7 +5,7 @@ import { applySettings, framesToSettle, tellSettings } from './chooser.js';
 import { showFigures, showFooting } from './figures.js';
 import { writeLink } from './link.js';
 import { $, page, redraw, say, wait } from './page.js';
-import { hasStopped, loadRenderer } from './renderer.js';
+import { hasStopped, loadRenderer, orStopped } from './renderer.js';
 import { showScene } from './scenes.js';
 
 /** Even widths: side by side each eye has half. */
@@ -53,7 +53,7 @@ function drawOrFail(request) {
   return new Promise((done, failed) => {
     if (page.lost) throw page.lost;
     page.fail = failed;
-    page.viewer.draw(request).then(done, failed);
+    orStopped(page.viewer.draw(request)).then(done, failed);
   });
 }
 
@@ -79,25 +79,30 @@ export async function turn(now) {
 
 /** After a failed frame: a lost device is opened anew, once; all else waits for the next change. */
 async function mend(cause) {
-  if (hasStopped(cause)) return restart(cause);
+  if (hasStopped(cause)) return restart(cause, true);
   say(String(cause));
   if (!/lost/i.test(String(cause))) return;
   await reopen('Opening the graphics device again…', async () => {});
 }
 
 /** After the renderer has stopped: another one takes its place, and shows the scene before. */
-async function restart(cause) {
+async function restart(cause, whileDrawing = false) {
+  if (!hasStopped(cause)) return say(String(cause));
   say(`The renderer stopped (${cause.message}) and was started again`);
+  let place = page.camera.place();
   // It may be the scene itself that cannot be drawn.
-  if (page.stoppedAt === page.scene) page.scene = { name: 'demo', bytes: null };
-  page.stoppedAt = page.scene;
-  await reopen('Starting the renderer again…', loadRenderer);
+  if (whileDrawing && page.stoppedAt === page.scene) {
+    if (page.scene.name === 'demo') return say(`The renderer stopped again (${cause.message}). Reload the page to try again.`);
+    page.scene = { name: 'demo', bytes: null };
+    place = null;
+  }
+  if (whileDrawing) page.stoppedAt = page.scene;
+  await reopen('Starting the renderer again…', loadRenderer, place);
 }
 page.restart = restart;
 
-async function reopen(words, load) {
+async function reopen(words, load, place = page.camera.place()) {
   wait(words);
-  const place = page.camera.place();
   try {
     await load();
     await openViewer();
@@ -122,7 +127,7 @@ export async function openViewer() {
     redraw();
   });
   page.viewer = null;
-  page.viewer = await page.Viewer.open(canvas);
+  page.viewer = await orStopped(page.Viewer.open(canvas));
   const touched = page.camera?.touched;
   const camera = new Camera(canvas, () => {
     camera.touched = true;

@@ -60,7 +60,7 @@ export function say(text) {
   const message = document.createElement('div');
   message.className = 'message';
   const words = document.createElement('span');
-  words.textContent = printable(text);
+  words.textContent = printable(text.replace(/\s+/g, ' '));
   const close = document.createElement('button');
   close.type = 'button';
   close.textContent = 'Close';

@@ -5,6 +5,7 @@ addEventListener('message', async ({ data: { renderer, name, bytes } }) => {
   try {
     const module = await import(renderer);
     await module.default();
+    postMessage({ ready: true });
     module.rehearse(name, new Uint8Array(bytes));
     postMessage({ cause: null });
   } catch (cause) {

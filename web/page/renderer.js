@@ -20,6 +20,26 @@ export function hasStopped(cause) {
   return cause instanceof WebAssembly.RuntimeError;
 }
 
+/**
+ * A promise of the renderer that also fails where the renderer stops meanwhile: a stop within a future is told to the
+ * window alone, and the future never ends.
+ */
+export function orStopped(promise) {
+  return new Promise((done, failed) => {
+    const stopped = ({ error }) => {
+      // Timers of a renderer that was left behind may fail too.
+      const mine = page.loads === 1 || !error?.stack?.includes('foveal_web') || error.stack.includes(`?again=${page.loads}`);
+      if (hasStopped(error) && mine) end(failed)(error);
+    };
+    const end = (how) => (value) => {
+      removeEventListener('error', stopped);
+      how(value);
+    };
+    addEventListener('error', stopped);
+    promise.then(end(done), end(failed));
+  });
+}
+
 /** Reads a file in a worker of its own. Fails with a sentence where it cannot be read, or takes too long. */
 export function rehearse(name, bytes) {
   return new Promise((done, failed) => {
@@ -31,8 +51,14 @@ export function rehearse(name, bytes) {
       else done();
     };
     const seconds = page.mostSeconds ?? MOST_SECONDS;
-    const timer = setTimeout(() => end(`${name} took more than ${seconds} s to read and was given up; what is shown stays. Programs outside the browser have more time: foveal scene info`), seconds * 1000);
-    worker.addEventListener('message', ({ data }) => end(data.cause));
+    const late = () => end(`${name} took more than ${seconds} s to read and was given up; what is shown stays. Programs outside the browser have more time: foveal scene info`);
+    let timer = setTimeout(late, 3 * seconds * 1000);
+    worker.addEventListener('message', ({ data }) => {
+      if (!data.ready) return end(data.cause);
+      // Fetching and compiling the renderer does not count.
+      clearTimeout(timer);
+      timer = setTimeout(late, seconds * 1000);
+    });
     worker.addEventListener('error', (event) => {
       event.preventDefault();
       end(`${name} cannot be read: ${event.message || 'the reader did not start'}`);

@@ -3,7 +3,7 @@
 import { tellSettings } from './chooser.js';
 import { writeLink } from './link.js';
 import { $, alone, page, printable, redraw, say, wait } from './page.js';
-import { hasStopped, rehearse } from './renderer.js';
+import { hasStopped, orStopped, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
@@ -11,13 +11,18 @@ export async function showScene(scene, place) {
   wait(`Loading ${printable(scene.name)}…`);
   // Let the words appear before the thread is taken.
   await new Promise((done) => setTimeout(done, 30));
-  tellSettings();
+  // Settings that cannot be read are said; frames go on saying so.
+  try {
+    tellSettings();
+  } catch (cause) {
+    say(String(cause));
+  }
   try {
     if (scene.bytes && !scene.isRead) await rehearse(scene.name, scene.bytes);
     scene.isRead = true;
-    const text = scene.bytes
-      ? await page.viewer.load(scene.name, new Uint8Array(scene.bytes))
-      : await page.viewer.generate(scene.name);
+    const text = await orStopped(scene.bytes
+      ? page.viewer.load(scene.name, new Uint8Array(scene.bytes))
+      : page.viewer.generate(scene.name));
     const shown = JSON.parse(text);
     page.scene = scene;
     page.home = { place: shown.camera, radius: shown.radius_m };

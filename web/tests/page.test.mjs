@@ -262,7 +262,8 @@ test('a renderer that stops is started again', async () => {
   const first = await picture(page);
   await page.evaluate(() => {
     const { viewer } = window.foveal;
-    viewer.draw = () => Promise.reject(new WebAssembly.RuntimeError('unreachable'));
+    // As a trap in a future: the promise never ends, and the window alone is told.
+    viewer.draw = () => new Promise(() => queueMicrotask(() => { throw new WebAssembly.RuntimeError('unreachable'); }));
     window.foveal.stale = true;
   });
   await page.locator('.message').waitFor();

@@ -200,14 +200,14 @@ impl App {
 
     pub(crate) fn say(&mut self, context: &egui::Context, text: impl Into<String>) {
         self.messages.push(Message {
-            text: foveal_scene::printable(&text.into()),
+            text: printable_lines(&text.into()),
             is_error: false,
             until_s: context.input(|i| i.time) + 5.0,
         });
     }
 
     pub(crate) fn complain(&mut self, text: impl Into<String>) {
-        let text = foveal_scene::printable(&text.into());
+        let text = printable_lines(&text.into());
         self.messages.retain(|message| message.text != text);
         self.messages.push(Message {
             text,
@@ -413,4 +413,10 @@ impl App {
     pub(crate) fn missing(&self, key: &str) -> Option<&'static str> {
         needs::missing(key, &self.settings, self.abilities, self.display.compare)
     }
+}
+
+/// Text with the lines that it has, and none of the characters that would change what is around it.
+fn printable_lines(text: &str) -> String {
+    let lines: Vec<String> = text.lines().map(foveal_scene::printable).collect();
+    lines.join("\n")
 }

@@ -219,7 +219,12 @@ impl Renderer {
         if *settings == self.settings {
             return Ok(());
         }
-        self.mend().await?;
+        match self.mend().await {
+            // Where memory is out, the old settings may be what does not fit: the next frame mends
+            // with the new ones.
+            Err(Error::OutOfMemory { .. }) => {}
+            mended => mended?,
+        }
         let sizes = |s: &Settings| (s.picture_size(), s.drawn().picture_size());
         let upscale = if sizes(settings) == sizes(&self.settings) {
             None
@@ -459,6 +464,11 @@ impl Renderer {
     /// Whether frames draw what culling found last, whatever their camera sees: to look at a result
     /// from elsewhere.
     pub fn freeze_culling(&mut self, frozen: bool) {
-        self.frozen = frozen;
+        if std::mem::replace(&mut self.frozen, frozen) != frozen
+            && let Some(history) = self.stages.history()
+        {
+            // Other things may be seen from the same place.
+            history.scene_moved();
+        }
     }
 }

@@ -228,5 +228,6 @@ fn whatever_happens_a_renderer_draws_what_a_new_one_draws() {
         "{frames} frames, {lost} devices lost, {refused} settings refused, {compared} pictures compared; \
          resident at each tenth: {memory:?} MiB"
     );
-    assert!(lost > 0 && compared as u64 >= frames / BETWEEN);
+    // Devices are lost by chance.
+    assert!((lost > 0 || frames < 300) && compared as u64 >= frames / BETWEEN);
 }

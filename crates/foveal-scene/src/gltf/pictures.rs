@@ -176,6 +176,9 @@ pub(crate) fn decode(bytes: &[u8], promise: Promise) -> Result<Picture, String> 
         let Promise { width, height, .. } = promise;
         if basis::is_ktx2(bytes) {
             let pixels = basis::decode(bytes)?;
+            if pixels.len() as u64 != promise.rgba_bytes() {
+                return Err("has another size than its header says".to_owned());
+            }
             return Ok(Picture {
                 width,
                 height,

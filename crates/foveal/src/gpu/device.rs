@@ -144,6 +144,12 @@ impl Gpu {
         is_reduced(&self.device.limits())
     }
 
+    /// Whether passes tell how long they took.
+    pub(crate) fn tells_times(&self) -> bool {
+        let features = self.device.features();
+        cfg!(feature = "profiler") && features.contains(wgpu::Features::TIMESTAMP_QUERY)
+    }
+
     /// [`Error::Limit`] for the first of [`Gpu::required_limits`] that the device does not offer.
     pub(crate) fn check_limits(&self) -> Result<(), Error> {
         let mut missing = Ok(());

@@ -27,9 +27,12 @@ impl ErrorTrap {
     /// The worst of what was reported: a lost device, then memory, then the rest.
     pub(crate) async fn finish(self) -> Result<(), Error> {
         // Scopes close in the reverse order of their opening.
-        let internal = self.internal.pop().await;
-        let validation = self.validation.pop().await;
-        let memory = self.memory.pop().await;
+        let (internal, validation, memory) = (
+            self.internal.pop(),
+            self.validation.pop(),
+            self.memory.pop(),
+        );
+        let (internal, validation, memory) = (internal.await, validation.await, memory.await);
         // A loss is told when the device is asked, and makes errors of all else.
         #[cfg(not(target_arch = "wasm32"))]
         if internal.is_some() || validation.is_some() || memory.is_some() {
@@ -40,12 +43,12 @@ impl ErrorTrap {
         let is_full = memory.is_some();
         #[cfg(test)]
         let is_full = self.gpu.device.faults.take_out_of_memory() || memory.is_some();
+        let stray = self.gpu.take_stray();
         if is_full {
             return Err(Error::OutOfMemory {
                 doing: self.doing.to_owned(),
             });
         }
-        let stray = self.gpu.take_stray();
         match validation.or(internal).map(|e| e.to_string()).or(stray) {
             Some(cause) => Err(Error::Validation {
                 doing: self.doing.to_owned(),

@@ -69,7 +69,11 @@ impl CoarseStages {
             composite: CompositePass::new(gpu, settings, frame),
             history,
             overlay,
-            balance: weighs.then(|| Balance::new(forced, uncompared)),
+            balance: weighs.then(|| {
+                // What is forced has no use for comparisons, and benches would time them.
+                let compares = gpu.tells_times() && !forced;
+                Balance::new(forced, uncompared, compares)
+            }),
             last: RatePlan::default(),
         }
     }
@@ -82,13 +86,26 @@ impl CoarseStages {
         let rests = self.history.as_ref().is_some_and(HistoryStage::rests);
         self.last = match &mut self.balance {
             // What shows the same picture again costs next to nothing, whichever way.
-            Some(balance) if !rests => balance.plan(),
+            Some(balance) if !rests => {
+                let plan = balance.plan();
+                // The backend that is compared is the one that stays.
+                let compares =
+                    plan.compares && (self.history.is_some() || self.shading.has_chosen());
+                RatePlan { compares, ..plan }
+            }
             balance => RatePlan {
                 active: balance.as_ref().is_none_or(|b| !b.is_off()),
                 compares: false,
             },
         };
         self.last
+    }
+
+    /// What was measured belongs to another scene or size.
+    pub(super) fn weigh_again(&mut self) {
+        if let Some(balance) = &mut self.balance {
+            balance.start_again();
+        }
     }
 
     /// Whether the last frame was shaded coarsely.

@@ -51,6 +51,12 @@ impl Stages {
     /// The next frame follows none: what is known belongs to another scene or size.
     pub(super) fn forget(&mut self) {
         self.shadows.forget();
+        if let Some(coarse) = &mut self.coarse {
+            coarse.weigh_again();
+        }
+        if let Some(variable) = &mut self.variable {
+            variable.weigh_again();
+        }
         self.forget_light();
     }
 

@@ -37,7 +37,7 @@ impl Renderer {
 
     /// Compares coarse shading with full shading from the next frame on, and leaves it on.
     pub(crate) fn compare_coarse(&mut self) {
-        self.set_balance(Balance::new(true, 0));
+        self.set_balance(Balance::new(true, 0, true));
     }
 
     fn set_balance(&mut self, balance: Balance) {

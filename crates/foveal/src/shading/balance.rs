@@ -78,6 +78,8 @@ pub(crate) fn sum_ms(gpu_ms: &[Timing], name: &str) -> f64 {
 #[derive(Clone, Debug)]
 pub(crate) struct Balance {
     forced: bool,
+    /// Passes tell how long they take, and somebody wants to know.
+    compares: bool,
     /// Frames before the first comparison: the first ones compile shaders and shade in full.
     first: u32,
     /// Frames since it was switched on, or off.
@@ -91,10 +93,12 @@ pub(crate) struct Balance {
 }
 
 impl Balance {
-    /// `forced`: it stays on. The first `first` frames are not compared.
-    pub(crate) fn new(forced: bool, first: u32) -> Self {
+    /// `forced`: it stays on. The first `first` frames are not compared, and none without
+    /// `compares`: where passes do not tell how long they take, that would never end.
+    pub(crate) fn new(forced: bool, first: u32, compares: bool) -> Self {
         Self {
             forced,
+            compares,
             first,
             frames: 0,
             off: false,
@@ -110,7 +114,7 @@ impl Balance {
     pub(crate) fn turned_off() -> Self {
         Self {
             off: true,
-            ..Self::new(false, 0)
+            ..Self::new(false, 0, true)
         }
     }
 
@@ -119,7 +123,7 @@ impl Balance {
         if self.off && self.frames >= REST {
             (self.off, self.rested, self.frames) = (false, true, 0);
         }
-        if !self.off {
+        if !self.off && self.compares {
             if self.frames == self.first {
                 self.wanted = LOSSES;
             } else if self.frames > self.first && self.frames.is_multiple_of(PERIOD) {
@@ -131,6 +135,11 @@ impl Balance {
             active: !self.off,
             compares: !self.off && self.wanted > 0,
         }
+    }
+
+    /// Forgets what was measured: another scene or size costs another time.
+    pub(crate) fn start_again(&mut self) {
+        *self = Self::new(self.forced, self.first, self.compares);
     }
 
     /// Whether frames are shaded in full.
@@ -219,7 +228,7 @@ mod tests {
 
     #[test]
     fn a_gain_keeps_it_on_and_is_looked_at_now_and_then() {
-        let mut balance = Balance::new(false, FIRST);
+        let mut balance = Balance::new(false, FIRST, true);
         let (frames, comparisons) = run(&mut balance, 1000, |_| 6.0);
         assert_eq!(active(&frames), 1000);
         assert!((balance.last().net_ms() - 3.0).abs() < 1e-9);
@@ -229,7 +238,7 @@ mod tests {
 
     #[test]
     fn three_losses_turn_it_off_and_it_comes_back_for_a_clear_gain_alone() {
-        let mut balance = Balance::new(false, FIRST);
+        let mut balance = Balance::new(false, FIRST, true);
         let (frames, _) = run(&mut balance, 20, |_| 9.5);
         assert_eq!(active(&frames), FIRST + LOSSES);
         assert!(balance.is_off(), "off after {FIRST} + {LOSSES} frames");
@@ -248,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_first_comparison_that_compiles_shaders_does_not_keep_a_loss_on() {
-        let mut balance = Balance::new(false, FIRST);
+        let mut balance = Balance::new(false, FIRST, true);
         let slow_once = |frame| if frame == FIRST { -500.0 } else { 9.5 };
         let (frames, _) = run(&mut balance, 20, slow_once);
         assert_eq!(active(&frames), FIRST + LOSSES + 1);
@@ -256,10 +265,29 @@ mod tests {
 
     #[test]
     fn what_becomes_a_loss_later_is_off_within_a_period() {
-        let mut balance = Balance::new(false, FIRST);
+        let mut balance = Balance::new(false, FIRST, true);
         assert_eq!(active(&run(&mut balance, 200, |_| 6.0).0), 200);
         let (frames, _) = run(&mut balance, PERIOD + LOSSES, |_| 9.5);
         assert!(!frames[frames.len() - 1]);
+    }
+
+    #[test]
+    fn without_times_nothing_is_compared() {
+        let mut balance = Balance::new(false, FIRST, false);
+        for _ in 0..1000 {
+            let plan = balance.plan();
+            assert!(plan.active && !plan.compares);
+        }
+    }
+
+    #[test]
+    fn another_scene_is_measured_anew() {
+        let mut balance = Balance::new(false, FIRST, true);
+        run(&mut balance, 20, |_| 9.5);
+        assert!(balance.is_off());
+        balance.start_again();
+        assert!(!balance.is_off() && balance.notice("it").is_empty());
+        assert_eq!(balance.last(), Compared::default());
     }
 
     #[test]
@@ -298,7 +326,7 @@ mod tests {
 
     #[test]
     fn force_keeps_it_on_and_does_not_compare_all_the_time() {
-        let mut balance = Balance::new(true, FIRST);
+        let mut balance = Balance::new(true, FIRST, true);
         let (frames, comparisons) = run(&mut balance, 1000, |_| 20.0);
         assert_eq!(active(&frames), 1000);
         assert!(comparisons <= LOSSES * (2 + 1000 / PERIOD), "{comparisons}");

@@ -362,11 +362,7 @@ fn one_rings_whose_triangles_are_elsewhere_are_refused() {
     assert!(mesh.one_rings.triangle_count() > 20);
     for at in (first..bytes.len()).step_by(3) {
         let mut wrong = bytes.clone();
-        let next = if at + 10 <= bytes.len() {
-            at + 5
-        } else {
-            first
-        };
+        let next = if at + 6 <= bytes.len() { at + 3 } else { first };
         wrong.copy_within(next..next + 3, at);
         seal(&mut wrong);
         let expected = "a one-ring's triangle is none of the mesh";

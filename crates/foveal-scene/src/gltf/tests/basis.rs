@@ -89,6 +89,30 @@ fn stated_lengths_that_the_blocks_do_not_need_are_refused_before_they_are_alloca
 }
 
 #[test]
+fn a_bomb_of_zstandard_is_refused_before_it_is_decoded() {
+    // A window of 2^40 bytes, then blocks of 4 bytes that stand for 128 KiB each: 2 GiB in all.
+    let window = [0x28, 0xB5, 0x2F, 0xFD, 0x00, 0xF0];
+    let block = ((131_072u32 << 3) | 1 << 1).to_le_bytes();
+    let mut stream = window.to_vec();
+    for _ in 0..16_384 {
+        stream.extend_from_slice(&block[..3]);
+        stream.push(7);
+    }
+    let (at, length) = (UASTC_ZSTD.len() as u32, stream.len() as u32);
+    let mut bomb = changed(&changed(UASTC_ZSTD, 80, at), 88, length);
+    bomb.extend(&stream);
+    let started = std::time::Instant::now();
+    let said = warnings(&ktx2_file(&bomb).load());
+    assert!(said.contains("cannot be decoded"), "{said}");
+    // 2 GiB take seconds: a bound on work, not a measure of speed.
+    assert!(started.elapsed().as_secs() < 20);
+    // The same with the largest window that is allowed: the first blocks are more than the level.
+    bomb[at as usize + 5] = 0x68;
+    let said = warnings(&ktx2_file(&bomb).load());
+    assert!(said.contains("cannot be decoded"), "{said}");
+}
+
+#[test]
 fn any_byte_may_be_wrong() {
     for original in [ETC1S, UASTC, UASTC_ZSTD] {
         for at in 12..original.len() {

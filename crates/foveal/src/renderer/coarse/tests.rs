@@ -4,7 +4,10 @@ use foveal_generate as generate;
 use foveal_scene::{Camera, Scene};
 
 use crate::testing::{Film, picture, rendered, shifted, small};
-use crate::{CoarseStats, Composite, FrameStats, Geometry, RateSource, Settings, Shading, Stereo};
+use crate::{
+    CoarseBackend, CoarseStats, Composite, FrameStats, Geometry, RateSource, Settings, Shading,
+    Stereo,
+};
 
 const SIZE: (u32, u32) = (121, 83);
 
@@ -17,6 +20,7 @@ fn scene() -> Scene {
 fn coarse() -> Settings {
     small(SIZE.0, SIZE.1).with(|s| {
         s.shading.mode = Shading::Coarse;
+        s.coarse.backend = CoarseBackend::Compute;
         s.coarse.source = RateSource::Radii;
         s.coarse.fovea_inner = 0.1;
         s.coarse.fovea_outer = 1.0;

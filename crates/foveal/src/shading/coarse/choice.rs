@@ -40,18 +40,19 @@ pub(crate) enum BackendChoice {
 
 impl BackendChoice {
     pub(super) fn new(asked: CoarseBackend, gpu: &Gpu) -> Self {
-        let has_timestamps = gpu
-            .device
-            .features()
-            .contains(wgpu::Features::TIMESTAMP_QUERY);
         match asked {
             CoarseBackend::Stencil => Self::Fixed(UsedBackend::Stencil, "asked for"),
             CoarseBackend::Compute => Self::Fixed(UsedBackend::Compute, "asked for"),
-            CoarseBackend::Auto if has_timestamps => Self::Measuring(Vec::new()),
+            CoarseBackend::Auto if gpu.tells_times() => Self::Measuring(Vec::new()),
             CoarseBackend::Auto => {
                 Self::Fixed(UsedBackend::Compute, "no timestamps to measure with")
             }
         }
+    }
+
+    /// Whether it stands.
+    pub(super) fn is_made(&self) -> bool {
+        !matches!(self, Self::Measuring(_))
     }
 
     /// The backend of the frame at hand.

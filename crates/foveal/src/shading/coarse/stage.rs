@@ -90,6 +90,11 @@ impl CoarseShading {
         }
     }
 
+    /// Whether the backend is no longer being chosen.
+    pub(crate) fn has_chosen(&self) -> bool {
+        self.choice.is_made()
+    }
+
     /// The last frame's figures, for the `tiles` of each level and the pixels that none speaks for;
     /// lets the choice of the backend know how long the passes took.
     pub(crate) fn stats(

@@ -261,7 +261,7 @@ impl HistoryPasses {
                 self.shade_unlit(recorder, &frame);
             }
         }
-        history.show(recorder, targets);
+        history.show(recorder, &targets.radiance_view);
     }
 
     /// At rest: lists the pixels whose turn it is.

@@ -193,7 +193,7 @@ impl HistoryStage {
         if !self.again {
             shading.shade(recorder, input, Samples::EveryPixel, &kept.radiance);
         }
-        kept.show(recorder, targets);
+        kept.show(recorder, &targets.radiance_view);
     }
 
     /// The figures of a frame that left these lists.

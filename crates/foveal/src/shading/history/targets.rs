@@ -5,7 +5,6 @@ use crate::gpu::{self, Gpu};
 use crate::recorder::Recorder;
 use crate::shading::RADIANCE_FORMAT;
 use crate::stereo::EyeLayout;
-use crate::targets::Targets;
 use crate::{Settings, composite::LIGHT_FORMAT};
 
 /// What a pixel keeps besides its light: `layout.wgsl`.
@@ -124,11 +123,11 @@ impl HistoryTargets {
     }
 
     /// Copies the radiance of solid surfaces to where blended ones are drawn over it.
-    pub(super) fn show(&self, recorder: &mut Recorder<'_>, targets: &Targets) {
+    pub(super) fn show(&self, recorder: &mut Recorder<'_>, to: &wgpu::TextureView) {
         let radiance = self.radiance.texture();
         recorder.encoder.copy_texture_to_texture(
             radiance.as_image_copy(),
-            targets.radiance_view.texture().as_image_copy(),
+            to.texture().as_image_copy(),
             radiance.size(),
         );
     }

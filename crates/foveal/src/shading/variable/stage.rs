@@ -42,7 +42,7 @@ impl VariableStage {
             passes: RatePasses::new(gpu, settings, frame_layout, input_layout),
             view: RateView::new(gpu, settings.picture.view, frame_layout),
             probes: Probes::default(),
-            balance: Balance::new(settings.rate.force, UNCOMPARED),
+            balance: Balance::new(settings.rate.force, UNCOMPARED, gpu.tells_times()),
             costs: VariableStats::default(),
             last: None,
             frame: 0,
@@ -52,6 +52,12 @@ impl VariableStage {
     /// The next frame follows none: what is known belongs to another scene or size.
     pub(crate) fn forget(&mut self) {
         self.last = None;
+    }
+
+    /// What was measured belongs to another scene or size.
+    pub(crate) fn weigh_again(&mut self) {
+        self.balance.start_again();
+        self.costs = VariableStats::default();
     }
 
     /// The next frame shows another pose.
