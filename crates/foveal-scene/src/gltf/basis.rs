@@ -1,14 +1,9 @@
 //! KTX2 files that hold Basis Universal textures (KHR_texture_basisu) as RGBA8 texels.
 //!
 //! The transcoder trusts lengths that the file states, so all that it allocates by is checked here
-//! first, and Zstandard is undone here, within bounds: Khronos, 'KTX File Format Specification 2.0', sections 3 (header, level index) and 5
-//! (data format descriptor). Of the file's mip levels the first is read.
-
-use std::borrow::Cow;
-use std::io::Read;
-
-use basisu::{DecodeFlags, TargetFormat, Transcoder};
-use ruzstd::decoding::StreamingDecoder;
+//! first, and Zstandard is undone here, within bounds: Khronos, 'KTX File Format Specification 2.0',
+//! sections 3 (header, level index) and 5 (data format descriptor). Of the file's mip levels the
+//! first is read.
 
 /// `KHR_DF_MODEL_ETC1S` and `KHR_DF_MODEL_UASTC`.
 const ETC1S: u32 = 163;
@@ -77,37 +72,61 @@ fn cut_off() -> String {
 }
 
 /// The texels of a file whose [`size`] is known.
-pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<u8>, String> {
-    let broken = || "is a KTX2 texture that cannot be decoded".to_owned();
-    let plain = match bytes.get(44) {
-        Some(&scheme) if u32::from(scheme) == ZSTANDARD => {
-            Cow::Owned(unpacked(bytes).ok_or_else(broken)?)
-        }
-        _ => Cow::Borrowed(bytes),
-    };
-    let transcoder = Transcoder::new(&plain).map_err(|_| broken())?;
-    transcoder
-        .transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE)
-        .map_err(|_| broken())
+#[cfg(target_arch = "wasm32")]
+pub(crate) fn decode(_: &[u8]) -> Result<Vec<u8>, String> {
+    Err(
+        "is a KTX2 texture, which is not read in browsers; `gltf-transform ktxdecompress` turns it \
+         into PNG"
+            .to_owned(),
+    )
 }
 
-/// The largest window that decoders ought to support (RFC 8878, section 3.1.1.1.2).
-const MOST_WINDOW: u64 = 8 << 20;
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) use native::decode;
 
-/// The same file without Zstandard; `None` where its first level is not what it states. What is
-/// decoded at a time is bounded by the window, and the whole by what [`size`] has checked.
-fn unpacked(bytes: &[u8]) -> Option<Vec<u8>> {
-    let long = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
-    let (offset, length, want) = (long(80)?, long(88)?, long(96)?);
-    let packed = bytes.get(offset..offset.checked_add(length)?)?;
-    let window = (want as u64).max(MOST_WINDOW);
-    let mut decoder = StreamingDecoder::new_with_max_window_size(packed, window).ok()?;
-    let mut file = bytes.to_vec();
-    let at = file.len();
-    file[44..48].copy_from_slice(&NONE.to_le_bytes());
-    file[80..88].copy_from_slice(&(at as u64).to_le_bytes());
-    file[88..96].copy_from_slice(&(want as u64).to_le_bytes());
-    file.resize(at.checked_add(want)?, 0);
-    decoder.read_exact(&mut file[at..]).ok()?;
-    (decoder.read(&mut [0]).ok()? == 0).then_some(file)
+#[cfg(not(target_arch = "wasm32"))]
+mod native {
+    use std::borrow::Cow;
+    use std::io::Read;
+
+    use basisu::{DecodeFlags, TargetFormat, Transcoder};
+    use ruzstd::decoding::StreamingDecoder;
+
+    use super::{NONE, ZSTANDARD};
+
+    /// The texels of a file whose [`size`](super::size) is known.
+    pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<u8>, String> {
+        let broken = || "is a KTX2 texture that cannot be decoded".to_owned();
+        let plain = match bytes.get(44) {
+            Some(&scheme) if u32::from(scheme) == ZSTANDARD => {
+                Cow::Owned(unpacked(bytes).ok_or_else(broken)?)
+            }
+            _ => Cow::Borrowed(bytes),
+        };
+        let transcoder = Transcoder::new(&plain).map_err(|_| broken())?;
+        transcoder
+            .transcode(0, TargetFormat::Rgba32, DecodeFlags::NONE)
+            .map_err(|_| broken())
+    }
+
+    /// The largest window that decoders ought to support (RFC 8878, section 3.1.1.1.2).
+    const MOST_WINDOW: u64 = 8 << 20;
+
+    /// The same file without Zstandard; `None` where its first level is not what it states. What is
+    /// decoded at a time is bounded by the window, and the whole by what [`size`](super::size) has checked.
+    fn unpacked(bytes: &[u8]) -> Option<Vec<u8>> {
+        let long = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
+        let (offset, length, want) = (long(80)?, long(88)?, long(96)?);
+        let packed = bytes.get(offset..offset.checked_add(length)?)?;
+        let window = (want as u64).max(MOST_WINDOW);
+        let mut decoder = StreamingDecoder::new_with_max_window_size(packed, window).ok()?;
+        let mut file = bytes.to_vec();
+        let at = file.len();
+        file[44..48].copy_from_slice(&NONE.to_le_bytes());
+        file[80..88].copy_from_slice(&(at as u64).to_le_bytes());
+        file[88..96].copy_from_slice(&(want as u64).to_le_bytes());
+        file.resize(at.checked_add(want)?, 0);
+        decoder.read_exact(&mut file[at..]).ok()?;
+        (decoder.read(&mut [0]).ok()? == 0).then_some(file)
+    }
 }
