@@ -22,7 +22,7 @@ const MOST_SUBJECTS: usize = 16;
 const MOST_NOTES: usize = 16;
 
 /// One subject per run of queries with equal occluders before it, at least one. Beyond
-/// [`MOST_SUBJECTS`] neighbouring runs share a subject with the occluders of the first of them:
+/// `MOST_SUBJECTS` neighbouring runs share a subject with the occluders of the first of them:
 /// fewer occluders hide nothing more.
 ///
 /// # Errors
