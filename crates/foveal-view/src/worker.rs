@@ -105,7 +105,7 @@ pub(crate) struct LoadedScene {
     pub(crate) start: Camera,
     pub(crate) cameras: Vec<Camera>,
     pub(crate) bounds: Aabb,
-    /// Names of its animations and their lengths in seconds.
+    /// Names of its animations, as the file has them, and their lengths in seconds.
     pub(crate) clips: Vec<(String, f32)>,
     /// The one that plays at first.
     pub(crate) clip: Clip,

@@ -1,7 +1,7 @@
 //! The animation: which clip plays, where in it one is.
 
 use egui::{Slider, Ui};
-use foveal_scene::Clip;
+use foveal_scene::{Clip, printable};
 
 use crate::app::App;
 
@@ -10,7 +10,7 @@ fn name(number: usize, name: &str) -> String {
     if name.is_empty() {
         format!("clip {number}")
     } else {
-        name.to_owned()
+        printable(name)
     }
 }
 
@@ -37,7 +37,7 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
                     let clip = scene.clips.get(*number as usize);
                     clip.map_or(String::new(), |c| name(*number as usize, &c.0))
                 }
-                Clip::Named(name) => name.clone(),
+                Clip::Named(name) => printable(name),
                 Clip::All => "all".to_owned(),
             };
             let before = app.display.clip.clone();
@@ -68,4 +68,15 @@ pub(super) fn show(app: &mut App, ui: &mut Ui) {
             app.display.playing = false;
         }
     });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_clip_is_shown_without_control_characters_and_by_its_number_where_it_has_no_name() {
+        assert_eq!(name(3, "Walk\u{1b}[2J"), r"Walk\u001b[2J");
+        assert_eq!(name(3, ""), "clip 3");
+    }
 }

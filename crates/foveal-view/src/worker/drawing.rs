@@ -108,7 +108,7 @@ impl Drawing {
             },
             cameras: shown_cameras(&scene),
             bounds: scene.bounds(),
-            clips: scene.clips().map(|(n, s)| (printable(n), s)).collect(),
+            clips: scene.clips().map(|(n, s)| (n.to_owned(), s)).collect(),
             clip: clip.clone(),
             warnings: scene.warnings.len(),
         };

@@ -1,5 +1,7 @@
 //! The file format: little-endian, packed; see `Record` for its chunks.
 
+use std::fs::File;
+use std::io::Read as _;
 use std::path::Path;
 
 use anyhow::{Context, bail};
@@ -7,6 +9,9 @@ use glam::Vec3;
 use serde::Serialize;
 
 const MAGIC: u32 = 0xA701_B600;
+
+/// The longest file that is read, in bytes; recordings of whole games are some ten megabytes.
+const MAX_BYTES: u64 = 1 << 30;
 
 /// A file.
 #[derive(Debug, Clone, PartialEq)]
@@ -67,7 +72,7 @@ impl Recording {
     /// # Errors
     /// Names the file, the record and the cause.
     pub fn read(path: &Path) -> anyhow::Result<Self> {
-        let bytes = std::fs::read(path)
+        let bytes = read_limited(path)
             .with_context(|| format!("cannot read the recording '{}'", path.display()))?;
         Self::parse(&bytes).with_context(|| format!("the recording '{}' is wrong", path.display()))
     }
@@ -104,6 +109,21 @@ impl Recording {
             records,
         })
     }
+}
+
+/// A file's bytes; pipes and devices, which may never end, are no recordings.
+fn read_limited(path: &Path) -> anyhow::Result<Vec<u8>> {
+    if !path.metadata()?.is_file() {
+        bail!("it is not a file");
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(MAX_BYTES + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > MAX_BYTES {
+        bail!("it is longer than {} MiB", MAX_BYTES >> 20);
+    }
+    Ok(bytes)
 }
 
 struct Reader<'a> {
@@ -218,5 +238,20 @@ impl<'a> Reader<'a> {
     fn length(&mut self, what: &str) -> anyhow::Result<usize> {
         let length = self.i32()?;
         usize::try_from(length).with_context(|| format!("{length} {what}"))
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_device_without_an_end_is_no_recording() {
+        let error = Recording::read(Path::new("/dev/zero")).expect_err("it has no end");
+        let text = format!("{error:#}");
+        assert_eq!(
+            text,
+            "cannot read the recording '/dev/zero': it is not a file"
+        );
     }
 }
