@@ -2,12 +2,12 @@
 
 use std::fmt::Write;
 
-use foveal_scene::{Camera, Projection, Scene};
+use foveal_scene::{Camera, Code, LoadOptions, Projection, Scene};
 use glam::Vec3;
 use serde::Serialize;
 
 use foveal_host::console::grouped;
-use foveal_host::import_args::ImportArgs;
+use foveal_host::import_args::{ImportArgs, code_of};
 use foveal_host::{console, scene_source};
 
 /// Arguments of `foveal scene info`.
@@ -27,7 +27,19 @@ pub(crate) struct Args {
 
 /// Prints what the scene holds.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    let scene = scene_source::load_with(&args.scene, &args.import.options())?;
+    let options = LoadOptions {
+        check_unused: true,
+        ..args.import.options()
+    };
+    let scene = match scene_source::load_with(&args.scene, &options) {
+        Ok(scene) => scene,
+        Err(error) => {
+            if args.json {
+                print_fault(&error)?;
+            }
+            return Err(error);
+        }
+    };
     let info = SceneInfo::of(&scene);
     let text = if args.json {
         serde_json::to_string_pretty(&info)? + "\n"
@@ -35,6 +47,28 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
         info.text()
     };
     console::print_result(&text)
+}
+
+/// What is wrong with a file, as JSON; without a code where the fault is not the file's.
+fn print_fault(error: &anyhow::Error) -> anyhow::Result<()> {
+    #[derive(Serialize)]
+    struct Fault {
+        error: Note,
+    }
+    let fault = Fault {
+        error: Note {
+            code: code_of(error).map(Code::name),
+            text: format!("{error:#}"),
+        },
+    };
+    console::print_result(&(serde_json::to_string_pretty(&fault)? + "\n"))
+}
+
+/// A warning or an error; docs/gltf-codes.md lists the codes.
+#[derive(Debug, Serialize)]
+struct Note {
+    code: Option<&'static str>,
+    text: String,
 }
 
 /// The JSON's fields; docs/program.md describes them.
@@ -57,7 +91,7 @@ struct SceneInfo {
     /// Metres in world space; `None` without geometry.
     bounds: Option<Bounds>,
     cameras: Vec<CameraInfo>,
-    warnings: Vec<String>,
+    warnings: Vec<Note>,
 }
 
 #[derive(Debug, Serialize)]
@@ -126,7 +160,14 @@ impl SceneInfo {
                 .enumerate()
                 .map(CameraInfo::of)
                 .collect(),
-            warnings: scene.warnings.iter().map(ToString::to_string).collect(),
+            warnings: scene
+                .warnings
+                .iter()
+                .map(|warning| Note {
+                    code: Some(warning.code.name()),
+                    text: warning.text.clone(),
+                })
+                .collect(),
         }
     }
 
@@ -197,7 +238,11 @@ impl SceneInfo {
             line("cameras", "none".to_owned());
         }
         for (i, warning) in self.warnings.iter().enumerate() {
-            line(if i == 0 { "warnings" } else { "" }, warning.clone());
+            let label = if i == 0 { "warnings" } else { "" };
+            line(
+                label,
+                format!("{} [{}]", warning.text, warning.code.unwrap_or_default()),
+            );
         }
         text
     }

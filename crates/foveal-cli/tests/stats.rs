@@ -96,3 +96,33 @@ fn scene_info_lists_the_cameras() {
     assert_eq!(info["cameras"][0]["name"], "front");
     assert_eq!(info["bounds"]["max"], serde_json::json!([0.0, 1.5, 0.0]));
 }
+
+#[test]
+fn scene_info_gives_warnings_and_errors_with_their_codes() {
+    let folder = folder();
+    common::moving_triangle(folder.path());
+    let path = folder.path().join("triangle.gltf");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let used = text.replace("\"asset\"", "\"extensionsUsed\": [\"ACME_x\"], \"asset\"");
+    std::fs::write(&path, used).unwrap();
+    let words = ["scene", "info", "triangle.gltf", "--json"];
+    let info: Value = serde_json::from_str(&stdout(&succeed(folder.path(), &words))).unwrap();
+    assert_eq!(info["warnings"][0]["code"], "EXTENSION_IGNORED");
+    let sentence = "extensionsUsed: ACME_x is not supported; the file is shown without it";
+    assert_eq!(info["warnings"][0]["text"], sentence);
+
+    std::fs::write(&path, "[]").unwrap();
+    let output = common::foveal_in(folder.path(), &words);
+    assert_eq!(output.status.code(), Some(1));
+    let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(said["error"]["code"], "NOT_GLTF");
+    let text = said["error"]["text"].as_str().unwrap();
+    assert!(common::stderr(&output).contains(text), "{said}");
+
+    let flags = [&words[..], &["--max-triangles", "0"]].concat();
+    std::fs::remove_file(&path).unwrap();
+    common::moving_triangle(folder.path());
+    let output = common::foveal_in(folder.path(), &flags);
+    let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
+    assert_eq!(said["error"]["code"], "LIMIT_EXCEEDED", "{said}");
+}

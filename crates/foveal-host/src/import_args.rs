@@ -1,6 +1,8 @@
 //! Flags for reading scene files: how much a file may ask for, and what it may reach.
 
-use foveal_scene::{Clip, Limit, LoadOptions, SceneError};
+use std::fmt;
+
+use foveal_scene::{Clip, Code, Limit, LoadOptions, SceneError};
 
 use crate::values;
 
@@ -96,7 +98,33 @@ pub fn with_flag(error: SceneError) -> anyhow::Error {
         Some(Limit::Expansion) => "--max-expansion",
         _ => return error.into(),
     };
-    anyhow::anyhow!("{error}: {flag}")
+    Limited { error, flag }.into()
+}
+
+/// A file beyond a limit, and the flag that allows more.
+#[derive(Debug)]
+struct Limited {
+    error: SceneError,
+    flag: &'static str,
+}
+
+impl fmt::Display for Limited {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}: {}", self.error, self.flag)
+    }
+}
+
+impl std::error::Error for Limited {}
+
+/// The code of an error, where it is about a scene's file.
+#[must_use]
+pub fn code_of(error: &anyhow::Error) -> Option<Code> {
+    let limited = error
+        .downcast_ref::<Limited>()
+        .map(|limited| &limited.error);
+    limited
+        .or_else(|| error.downcast_ref::<SceneError>())
+        .map(SceneError::code)
 }
 
 #[cfg(test)]

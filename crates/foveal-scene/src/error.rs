@@ -3,6 +3,8 @@
 //! Every message is one sentence that names the file, the place in its JSON where there is one
 //! (`meshes[3].primitives[0].attributes.POSITION`) and the cause.
 
+use crate::{Code, Warning};
+
 /// The field of [`LoadOptions`](crate::LoadOptions) that a file goes beyond.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
@@ -41,12 +43,24 @@ pub enum SceneError {
         /// What is wrong with it.
         cause: String,
     },
+    /// The bytes are not the OBJ or PLY file that its name or its first line promises.
+    #[error("{file} is not {format}: {cause}")]
+    NotMesh {
+        /// The file as it was asked for.
+        file: String,
+        /// The format's name.
+        format: &'static str,
+        /// What is wrong with it.
+        cause: String,
+    },
     /// A part of the document contradicts the glTF 2.0 specification so that no picture can be made
     /// from it.
     #[error("{file} is broken at {place}: {cause}")]
     Invalid {
         /// The file as it was asked for.
         file: String,
+        /// What is wrong with it, for programs.
+        code: Code,
         /// JSON path of the part.
         place: String,
         /// What is wrong with it.
@@ -93,6 +107,21 @@ pub enum SceneError {
 }
 
 impl SceneError {
+    /// What it is about, by a name that stays from version to version.
+    #[must_use]
+    pub fn code(&self) -> Code {
+        match self {
+            Self::Read { .. } => Code::FileUnreadable,
+            Self::NotGltf { .. } => Code::NotGltf,
+            Self::NotMesh { .. } => Code::NotMesh,
+            Self::Invalid { code, .. } => *code,
+            Self::Extension { .. } => Code::ExtensionRequired,
+            Self::TooLarge { .. } => Code::LimitExceeded,
+            Self::Absent { .. } => Code::NotInFile,
+            Self::Internal { .. } => Code::Importer,
+        }
+    }
+
     /// The option that would let the file load, where it is only too large.
     #[must_use]
     pub fn limit(&self) -> Option<Limit> {
@@ -118,15 +147,17 @@ pub(crate) enum FlawKind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Flaw {
     pub(crate) kind: FlawKind,
+    pub(crate) code: Code,
     pub(crate) place: String,
     pub(crate) cause: String,
 }
 
 impl Flaw {
     /// A fault at the place that the callers name.
-    pub(crate) fn new(cause: impl Into<String>) -> Self {
+    pub(crate) fn new(code: Code, cause: impl Into<String>) -> Self {
         Self {
             kind: FlawKind::Invalid,
+            code,
             place: String::new(),
             cause: cause.into(),
         }
@@ -136,7 +167,7 @@ impl Flaw {
     pub(crate) fn too_large(cause: impl Into<String>) -> Self {
         Self {
             kind: FlawKind::TooLarge(None),
-            ..Self::new(cause)
+            ..Self::new(Code::LimitExceeded, cause)
         }
     }
 
@@ -144,7 +175,7 @@ impl Flaw {
     pub(crate) fn beyond(limit: Limit, cause: impl Into<String>) -> Self {
         Self {
             kind: FlawKind::TooLarge(Some(limit)),
-            ..Self::new(cause)
+            ..Self::new(Code::LimitExceeded, cause)
         }
     }
 
@@ -166,9 +197,14 @@ impl Flaw {
         } else {
             self.place
         };
-        let cause = self.cause;
+        let (code, cause) = (self.code, self.cause);
         match self.kind {
-            FlawKind::Invalid => SceneError::Invalid { file, place, cause },
+            FlawKind::Invalid => SceneError::Invalid {
+                file,
+                code,
+                place,
+                cause,
+            },
             FlawKind::TooLarge(limit) => SceneError::TooLarge {
                 file,
                 place,
@@ -187,7 +223,12 @@ impl Flaw {
         }
     }
 
-    /// The same as a sentence, for a warning.
+    /// The same as a warning.
+    pub(crate) fn warning(&self) -> Warning {
+        Warning::new(self.code, self.sentence())
+    }
+
+    /// The same as a sentence.
     pub(crate) fn sentence(&self) -> String {
         if self.place.is_empty() {
             self.cause.clone()
@@ -238,7 +279,7 @@ mod tests {
 
     #[test]
     fn places_are_joined_as_json_paths() {
-        let flaw = Flaw::new("is 7, there are 3")
+        let flaw = Flaw::new(Code::IndexOutOfRange, "is 7, there are 3")
             .under("POSITION")
             .under("attributes")
             .under("primitives[0]")

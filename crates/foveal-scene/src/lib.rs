@@ -1,7 +1,7 @@
 //! What a Foveal frame is made from: meshes, materials, instances, lights, cameras.
 //!
-//! A [`Scene`] is plain data without any graphics API in it. It comes from a glTF 2.0 file
-//! ([`load`]) or from a program's own code (as the scenes of `foveal-generate` do), and is posed at
+//! A [`Scene`] is plain data without any graphics API in it. It comes from a glTF 2.0, OBJ or
+//! PLY file ([`load`]) or from a program's own code (as the scenes of `foveal-generate` do), and is posed at
 //! a point in time by [`Scene::pose`]. Conventions are glTF's: right-handed, y up, metres,
 //! counter-clockwise front faces, column vectors; matrices are named *to_from*
 //! (`world_from_object`).
@@ -19,6 +19,7 @@
 
 mod camera;
 mod cloud;
+mod code;
 mod error;
 mod gltf;
 mod light;
@@ -26,6 +27,8 @@ mod load;
 mod material;
 mod mesh;
 pub mod mip;
+#[cfg(not(target_arch = "wasm32"))]
+mod other;
 mod pose;
 mod printable;
 mod scene;
@@ -35,10 +38,11 @@ mod threads;
 mod timings;
 
 pub use camera::{Camera, Projection};
+pub use code::Code;
 pub use error::{Limit, SceneError};
 pub use foveal_bounds::Aabb;
 pub use light::{Environment, Light, LightKind};
-pub use load::{LoadOptions, MissingNormals, load, load_bytes};
+pub use load::{ENDINGS, LoadOptions, MissingNormals, load, load_bytes};
 pub use material::{AlphaMode, Material, ProceduralLayers, TextureRef};
 pub use mesh::{Mesh, Vertex};
 pub use pose::{Clip, Rig};

@@ -39,6 +39,9 @@ pub struct LoadOptions {
     /// Allow external files outside the scene's own folder, by path (`../textures/wood.png`) or by
     /// a symbolic link that leads there.
     pub outside_files: bool,
+    /// Read what nothing shown uses, too, meshes and pictures, and warn of what is wrong with it. It
+    /// is freed again.
+    pub check_unused: bool,
     /// Most bytes of the file and all files that it names, together.
     pub max_file_bytes: u64,
     /// Largest width and height of a texture in texels; larger pictures are halved until they fit.
@@ -60,7 +63,8 @@ pub struct LoadOptions {
 }
 
 impl Default for LoadOptions {
-    /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only; 4 GiB of
+    /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only, only what
+    /// is shown; 4 GiB of
     /// files, 8192-texel textures, 4 GiB of them, 64 Mi vertices, 4 Mi instances, 4 Gi triangles,
     /// 256 bytes per byte.
     fn default() -> Self {
@@ -71,6 +75,7 @@ impl Default for LoadOptions {
             parallel: true,
             missing_normals: MissingNormals::Flat,
             outside_files: false,
+            check_unused: false,
             max_file_bytes: 4 << 30,
             max_texture_size: 8192,
             max_texture_bytes: 4 << 30,
@@ -82,14 +87,18 @@ impl Default for LoadOptions {
     }
 }
 
-/// Loads a glTF 2.0 scene: `.glb`, or `.gltf` with data URIs or external files beside it.
+/// Endings of the names of files that [`load`] reads, in lower case.
+pub const ENDINGS: &[&str] = &["gltf", "glb", "obj", "ply"];
+
+/// Loads a glTF 2.0 scene: `.glb`, or `.gltf` with data URIs or external files beside it; or, not
+/// on WebAssembly, a mesh: Wavefront `.obj` with its `.mtl`, or a Stanford `.ply`.
 ///
 /// What the file asks for and Foveal cannot give is listed in [`Scene::warnings`]. A picture that
 /// is missing or broken is such a warning, and a magenta checker board takes its place as a colour
 /// (a neutral value as anything else). Nodes without geometry, lights or cameras leave no trace.
 ///
 /// # Errors
-/// When the file cannot be read, is not glTF 2.0, contradicts itself so that no sensible picture
+/// When the file cannot be read, is not of the format that it should be, contradicts itself so that no sensible picture
 /// can be made, requires an unsupported extension, or is beyond a limit of `options`.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     let watch = crate::timings::Stopwatch::start();
@@ -102,7 +111,7 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     let read_ms = watch.elapsed_ms();
     let folder = path.parent().unwrap_or(Path::new(""));
     let resolver = |uri: &str| resolve_beside(folder, uri, options.outside_files, &allowance);
-    let mut scene = gltf::import(&bytes, &file, options, &resolver)?;
+    let mut scene = import(&bytes, &file, options, &resolver)?;
     scene.name = path
         .file_name()
         .map_or_else(|| file.clone(), |n| n.to_string_lossy().into_owned());
@@ -110,7 +119,8 @@ pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     Ok(scene)
 }
 
-/// Loads a glTF 2.0 scene from memory; `name` is used in messages and as [`Scene::name`].
+/// Loads a scene from memory; `name` is used in messages and as [`Scene::name`], and a Wavefront
+/// file is known by its ending.
 ///
 /// `resolver` is called with the percent-decoded relative URI of each external file and gives its
 /// bytes or the reason why not; `&|_| Err("no files here".to_owned())` suits a `.glb`.
@@ -135,7 +145,25 @@ pub fn load_bytes(
             limit: Some(Limit::FileBytes),
         });
     }
-    gltf::import(bytes, name, options, resolver)
+    import(bytes, name, options, resolver)
+}
+
+/// A file of any format.
+fn import(
+    bytes: &[u8],
+    file: &str,
+    options: &LoadOptions,
+    resolver: &gltf::Resolver<'_>,
+) -> Result<Scene, SceneError> {
+    #[cfg(not(target_arch = "wasm32"))]
+    if let Some(format) = crate::other::Format::of(file, bytes) {
+        let (glb, mut warnings) = format.to_glb(bytes, file, resolver)?;
+        let mut scene = gltf::import(&glb, file, options, resolver)?;
+        warnings.append(&mut scene.warnings);
+        scene.warnings = gltf::limited(warnings);
+        return Ok(scene);
+    }
+    gltf::import(bytes, file, options, resolver)
 }
 
 /// Reads a regular file, as long as `allowance` bytes suffice, and takes its size from them.

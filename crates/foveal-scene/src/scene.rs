@@ -1,9 +1,11 @@
 //! The scene: everything that a frame is made from.
 
+use std::fmt;
+
 use glam::{Mat4, Vec3};
 
 use crate::{
-    Aabb, AlphaMode, Camera, Environment, Light, LightKind, LoadTimings, Material, Mesh, Rig,
+    Aabb, AlphaMode, Camera, Code, Environment, Light, LightKind, LoadTimings, Material, Mesh, Rig,
     Texture,
 };
 
@@ -43,16 +45,47 @@ pub struct Instance {
     pub bounds: Aabb,
 }
 
-/// Something in a file that was understood but not honoured, in one sentence that names the place.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Warning(
-    /// The sentence.
-    pub String,
-);
+/// Something in a file that was understood but not honoured.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[non_exhaustive]
+pub struct Warning {
+    /// What it is about, for programs.
+    pub code: Code,
+    /// One sentence that names the place.
+    pub text: String,
+}
 
-impl std::fmt::Display for Warning {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(&self.0)
+impl Warning {
+    /// A warning of this text.
+    pub fn new(code: Code, text: impl Into<String>) -> Self {
+        Self {
+            code,
+            text: text.into(),
+        }
+    }
+
+    /// The same, of the thing at `place`.
+    pub(crate) fn at(mut self, place: impl fmt::Display) -> Self {
+        self.text = format!("{place}: {}", self.text);
+        self
+    }
+
+    /// The same, its place within `outer`.
+    pub(crate) fn within(mut self, outer: impl fmt::Display) -> Self {
+        self.text = format!("{outer}.{}", self.text);
+        self
+    }
+
+    /// The same, and what follows from it.
+    pub(crate) fn and(mut self, consequence: &str) -> Self {
+        self.text = format!("{}; {consequence}", self.text);
+        self
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
     }
 }
 

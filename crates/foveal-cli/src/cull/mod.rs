@@ -123,7 +123,7 @@ fn subjects(args: &Args) -> anyhow::Result<(String, Vec<Subject>, Vec<String>)> 
     let aspect = f64::from(width) / f64::from(height);
     let eyes = args.views.choose(&scene, aspect)?;
     let subject = Subject::of_scene(&scene, &args.culling.occluders, eyes)?;
-    let warnings = scene.warnings.iter().map(|w| w.0.clone()).collect();
+    let warnings = scene.warnings.iter().map(|w| w.text.clone()).collect();
     Ok((scene.name, vec![subject], warnings))
 }
 

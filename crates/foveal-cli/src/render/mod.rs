@@ -237,7 +237,7 @@ fn prepare(
         scene
             .warnings
             .iter()
-            .for_each(|warning| console::warn(&warning.0));
+            .for_each(|warning| console::warn(&warning.text));
     }
     let viewpoint = Viewpoint::choose(&args.camera, &scene, &args.scene)?;
     timed(load_ms, "upload", || block_on(renderer.set_scene(&scene)))

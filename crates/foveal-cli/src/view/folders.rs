@@ -112,9 +112,11 @@ fn is_scene(name: &str) -> bool {
     let ending = Path::new(name)
         .extension()
         .and_then(|ending| ending.to_str());
-    ending.is_some_and(|ending| {
-        ending.eq_ignore_ascii_case("gltf") || ending.eq_ignore_ascii_case("glb")
-    })
+    let is_read = |ending: &str| {
+        let mut known = foveal_scene::ENDINGS.iter();
+        known.any(|known| ending.eq_ignore_ascii_case(known))
+    };
+    ending.is_some_and(is_read)
 }
 
 /// Whether it is a generated scene's name, as `demo:500`, so that it wins over a file.
@@ -153,14 +155,14 @@ mod tests {
     #[test]
     fn a_folder_lists_its_folders_and_scenes_by_name() {
         let folder = tempfile::tempdir().unwrap();
-        for name in ["b.GLB", "A.gltf", "c.png", "c.bin"] {
+        for name in ["b.GLB", "A.gltf", "c.png", "c.bin", "d.Obj", "e.ply"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
         fs::create_dir(folder.path().join("z.glb")).unwrap();
         let folders = Folders { memory: None };
         let listing = folders.list(folder.path()).unwrap();
         assert_eq!(listing.folders, ["z.glb"]);
-        assert_eq!(listing.scenes, ["A.gltf", "b.GLB"]);
+        assert_eq!(listing.scenes, ["A.gltf", "b.GLB", "d.Obj", "e.ply"]);
         let missing = folder.path().join("missing");
         let error = folders.list(&missing).unwrap_err().to_string();
         assert!(error.contains("missing"), "{error}");

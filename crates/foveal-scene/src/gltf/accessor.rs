@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use super::document::Counts;
 use super::json::Obj;
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 
 /// Type of one component.
@@ -29,9 +30,11 @@ impl Component {
             5125 => Self::U32,
             5126 => Self::F32,
             _ => {
-                return Err(
-                    Flaw::new(format!("is {code}, not a component type")).under("componentType")
-                );
+                return Err(Flaw::new(
+                    Code::ValueUnknown,
+                    format!("is {code}, not a component type"),
+                )
+                .under("componentType"));
             }
         })
     }
@@ -89,7 +92,11 @@ impl Accessor {
     pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
         let count = o.need("count", o.uint("count")?)?;
         if count > u64::from(u32::MAX) {
-            return Err(Flaw::new(format!("is {count}, more than can be indexed")).under("count"));
+            return Err(Flaw::new(
+                Code::ValueOutOfRange,
+                format!("is {count}, more than can be indexed"),
+            )
+            .under("count"));
         }
         let kind = o.need("type", o.string("type")?)?;
         let width = match kind {
@@ -99,7 +106,12 @@ impl Accessor {
             "VEC4" | "MAT2" => 4,
             "MAT3" => 9,
             "MAT4" => 16,
-            _ => return Err(Flaw::new(format!("\"{kind}\" is not a type")).under("type")),
+            _ => {
+                return Err(
+                    Flaw::new(Code::ValueUnknown, format!("\"{kind}\" is not a type"))
+                        .under("type"),
+                );
+            }
         };
         let sparse = match o.object("sparse")? {
             Some(s) => {
@@ -139,10 +151,11 @@ impl Sparse {
     fn parse(o: Obj<'_>, counts: &Counts, elements: usize) -> Parsed<Self> {
         let count = o.need("count", o.uint("count")?)?;
         if count > elements as u64 {
-            return Err(
-                Flaw::new(format!("is {count}, the accessor has {elements} elements"))
-                    .under("count"),
-            );
+            return Err(Flaw::new(
+                Code::ValueOutOfRange,
+                format!("is {count}, the accessor has {elements} elements"),
+            )
+            .under("count"));
         }
         let indices = o.need("indices", o.object("indices")?)?;
         let values = o.need("values", o.object("values")?)?;

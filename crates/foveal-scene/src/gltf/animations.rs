@@ -7,6 +7,7 @@ use super::json::Obj;
 use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Animation, Channel, Interpolation, Target};
+use crate::{Code, Warning};
 
 struct SamplerDef {
     input: u32,
@@ -38,8 +39,11 @@ impl AnimationDef {
                     Some("STEP") => Interpolation::Step,
                     Some("CUBICSPLINE") => Interpolation::CubicSpline,
                     Some(other) => {
-                        return Err(Flaw::new(format!("\"{other}\" is not an interpolation"))
-                            .under("interpolation"));
+                        return Err(Flaw::new(
+                            Code::ValueUnknown,
+                            format!("\"{other}\" is not an interpolation"),
+                        )
+                        .under("interpolation"));
                     }
                 },
             })
@@ -68,7 +72,7 @@ impl AnimationDef {
         &self,
         reader: Reader<'_>,
         weights_of: impl Fn(u32) -> usize,
-        warn: &mut Vec<String>,
+        warn: &mut Vec<Warning>,
     ) -> Animation {
         let mut channels: Vec<Channel> = Vec::new();
         for (i, def) in self.channels.iter().enumerate() {
@@ -77,16 +81,22 @@ impl AnimationDef {
                 Ok(Some(channel)) => {
                     let twin = |c: &Channel| c.node == channel.node && c.target == channel.target;
                     if channels.iter().rev().take(8).any(twin) {
-                        let flaw = Flaw::new("moves what another channel moves already");
-                        warn.push(flaw.under(place).sentence());
+                        let flaw = Flaw::new(
+                            Code::AnimationTwice,
+                            "moves what another channel moves already",
+                        );
+                        warn.push(flaw.under(place).warning());
                     }
                     channels.push(channel);
                 }
                 Ok(None) => {}
-                Err(flaw) => warn.push(format!(
-                    "{}; this channel is not played",
-                    flaw.under(place).sentence()
-                )),
+                Err(flaw) => {
+                    warn.push(
+                        flaw.under(place)
+                            .warning()
+                            .and("this channel is not played"),
+                    );
+                }
             }
         }
         Animation::new(self.name.clone().unwrap_or_default(), channels)
@@ -105,14 +115,17 @@ impl AnimationDef {
             "weights" => Target::Weights,
             "pointer" => {
                 return Err(Flaw::new(
+                    Code::AnimationUnsupported,
                     "is a pointer (KHR_animation_pointer), which is not supported",
                 )
                 .under("target.path"));
             }
             other => {
-                return Err(
-                    Flaw::new(format!("\"{other}\" cannot be animated")).under("target.path")
-                );
+                return Err(Flaw::new(
+                    Code::AnimationUnsupported,
+                    format!("\"{other}\" cannot be animated"),
+                )
+                .under("target.path"));
             }
         };
         // The specification lets channels without a node be ignored.
@@ -134,7 +147,7 @@ impl AnimationDef {
         let ordered = times.is_sorted() && times.iter().all(|t| t.is_finite() && *t >= 0.0);
         if times.is_empty() || !ordered {
             return Err(place(
-                Flaw::new("is empty or not in ascending order"),
+                Flaw::new(Code::Animation, "is empty or not in ascending order"),
                 "input",
             ));
         }
@@ -162,12 +175,13 @@ impl AnimationDef {
         let needed = times.len() * width * per_key;
         if width == 0 {
             return Err(Flaw::new(
+                Code::Animation,
                 "moves the weights of a node without morph targets",
             ));
         }
         if values.len() < needed || !values.iter().all(|v| v.is_finite()) {
             let cause = format!("has {} usable numbers instead of {needed}", values.len());
-            return Err(place(Flaw::new(cause), "output"));
+            return Err(place(Flaw::new(Code::Animation, cause), "output"));
         }
         Ok(Some(Channel {
             node,

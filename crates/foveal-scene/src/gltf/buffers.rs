@@ -12,7 +12,7 @@ use super::draco::DracoDef;
 use super::meshopt::Coded;
 use super::uri::{self, Uri};
 use crate::error::{Flaw, Parsed};
-use crate::{LoadOptions, threads};
+use crate::{Code, LoadOptions, threads};
 
 /// Numbers that all accessors together may yield, and how many more for each byte of the files:
 /// overlapping accessors can make many out of few bytes.
@@ -66,9 +66,9 @@ impl<'a> Buffers<'a> {
             .iter()
             .enumerate()
             .map(|(i, def)| {
-                store
-                    .source(def, bin.filter(|_| i == 0))
-                    .map_err(|cause| Flaw::new(cause).under(format_args!("buffers[{i}]")))
+                store.source(def, bin.filter(|_| i == 0)).map_err(|cause| {
+                    Flaw::new(Code::BufferUnreadable, cause).under(format_args!("buffers[{i}]"))
+                })
             })
             .collect();
         let files = bin
@@ -111,7 +111,7 @@ impl<'a> Buffers<'a> {
             slice
                 .ok_or_else(|| "its compressed data end beyond their buffer".to_owned())
                 .and_then(|bytes| coded.decode(bytes))
-                .map_err(Flaw::new)
+                .map_err(|cause| Flaw::new(Code::CompressedData, cause))
         });
         self.plain = coded.iter().map(|(i, _)| *i).zip(plain).collect();
 
@@ -135,7 +135,12 @@ impl<'a> Buffers<'a> {
             let bytes = self.view(document, def.view)?;
             // The decoder promises not to panic; should it, this mesh is broken and nothing else.
             catch_unwind(AssertUnwindSafe(|| def.decode(bytes, &document.accessors)))
-                .unwrap_or_else(|_| Err(Flaw::new("is broken: the decoder failed")))
+                .unwrap_or_else(|_| {
+                    Err(Flaw::new(
+                        Code::CompressedData,
+                        "is broken: the decoder failed",
+                    ))
+                })
                 .map_err(|e| e.under(format_args!("its Draco data in bufferViews[{}]", def.view)))
         });
         for (def, decoded) in streams.iter().zip(decoded) {
@@ -145,7 +150,7 @@ impl<'a> Buffers<'a> {
                     self.dense.extend(all);
                 }
                 Err(flaw) => {
-                    let flaw = Flaw::new(flaw.sentence());
+                    let flaw = Flaw::new(flaw.code, flaw.sentence());
                     let all = def.accessors().map(|a| (a, Err(flaw.clone())));
                     self.dense.extend(all);
                 }
@@ -159,7 +164,7 @@ impl<'a> Buffers<'a> {
         match self.dense.get(&accessor) {
             Some(Ok(bytes)) => Ok(bytes),
             Some(Err(flaw)) => Err(flaw.clone()),
-            None => Err(Flaw::new("has no Draco data")),
+            None => Err(Flaw::new(Code::CompressedData, "has no Draco data")),
         }
     }
 
@@ -175,17 +180,26 @@ impl<'a> Buffers<'a> {
         let def = &document.views[view as usize];
         if let Some(plain) = self.plain.get(&view) {
             return match plain {
-                Ok(bytes) => bytes
-                    .get(..def.len as usize)
-                    .ok_or_else(|| Flaw::new(format!("bufferViews[{view}] ends beyond its data"))),
-                Err(flaw) => Err(Flaw::new(format!("bufferViews[{view}]: {}", flaw.cause))),
+                Ok(bytes) => bytes.get(..def.len as usize).ok_or_else(|| {
+                    Flaw::new(
+                        Code::BufferTooShort,
+                        format!("bufferViews[{view}] ends beyond its data"),
+                    )
+                }),
+                Err(flaw) => Err(Flaw::new(
+                    flaw.code,
+                    format!("bufferViews[{view}]: {}", flaw.cause),
+                )),
             };
         }
         let bytes = self.bytes(def.buffer)?;
         let (start, end) = (def.offset as usize, (def.offset + def.len) as usize);
-        bytes
-            .get(start..end)
-            .ok_or_else(|| Flaw::new(format!("bufferViews[{view}] ends beyond its buffer")))
+        bytes.get(start..end).ok_or_else(|| {
+            Flaw::new(
+                Code::BufferTooShort,
+                format!("bufferViews[{view}] ends beyond its buffer"),
+            )
+        })
     }
 
     /// All bytes of a buffer.
@@ -193,7 +207,7 @@ impl<'a> Buffers<'a> {
         match &self.sources[buffer as usize] {
             Ok(Source::Bin) => Ok(self.bin),
             Ok(Source::Stored(i)) => Ok(self.stored[*i].as_slice()),
-            Err(flaw) => Err(Flaw::new(flaw.sentence())),
+            Err(flaw) => Err(Flaw::new(flaw.code, flaw.sentence())),
         }
     }
 

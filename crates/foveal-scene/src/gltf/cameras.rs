@@ -4,7 +4,7 @@ use glam::{Mat3, Mat4, Vec3};
 
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
-use crate::{Camera, Projection};
+use crate::{Camera, Code, Projection};
 
 /// A camera as the file has it.
 pub(crate) struct CameraDef {
@@ -47,7 +47,7 @@ fn parse_projection(o: Obj<'_>) -> Parsed<Projection> {
         if value > 0.0 {
             Ok(value)
         } else {
-            Err(Flaw::new(format!("is {value}, not above 0")).under(key))
+            Err(Flaw::new(Code::ValueOutOfRange, format!("is {value}, not above 0")).under(key))
         }
     };
     match o.need("type", o.string("type")?)? {
@@ -56,7 +56,11 @@ fn parse_projection(o: Obj<'_>) -> Parsed<Projection> {
             let parse = || -> Parsed<Projection> {
                 let fov_y_rad = positive(p, "yfov")?;
                 if fov_y_rad >= std::f32::consts::PI {
-                    return Err(Flaw::new(format!("is {fov_y_rad}, not below π")).under("yfov"));
+                    return Err(Flaw::new(
+                        Code::ValueOutOfRange,
+                        format!("is {fov_y_rad}, not below π"),
+                    )
+                    .under("yfov"));
                 }
                 // The far plane, where there is one, is given up: depth is infinite.
                 Ok(Projection::Perspective {
@@ -73,14 +77,16 @@ fn parse_projection(o: Obj<'_>) -> Parsed<Projection> {
                 // what is meant.
                 let y_mag = p.need("ymag", p.float("ymag")?)?.abs();
                 if y_mag <= 0.0 {
-                    return Err(Flaw::new("is 0").under("ymag"));
+                    return Err(Flaw::new(Code::ValueOutOfRange, "is 0").under("ymag"));
                 }
                 let near_m = p.need("znear", p.float("znear")?)?;
                 let far_m = p.need("zfar", p.float("zfar")?)?;
                 if far_m <= near_m {
-                    return Err(
-                        Flaw::new(format!("is {far_m}, not beyond znear = {near_m}")).under("zfar"),
-                    );
+                    return Err(Flaw::new(
+                        Code::ValueOutOfRange,
+                        format!("is {far_m}, not beyond znear = {near_m}"),
+                    )
+                    .under("zfar"));
                 }
                 Ok(Projection::Orthographic {
                     height_m: 2.0 * y_mag,
@@ -90,7 +96,11 @@ fn parse_projection(o: Obj<'_>) -> Parsed<Projection> {
             };
             parse().map_err(|e| e.under("orthographic"))
         }
-        other => Err(Flaw::new(format!("\"{other}\" is not a camera type")).under("type")),
+        other => Err(Flaw::new(
+            Code::ValueUnknown,
+            format!("\"{other}\" is not a camera type"),
+        )
+        .under("type")),
     }
 }
 

@@ -1,11 +1,13 @@
 //! The outermost layer: text or GLB container (glTF 2.0 specification, section 4.4).
 
+use crate::{Code, Warning};
+
 /// The two parts of a file.
 pub(crate) struct Container<'a> {
     pub(crate) json: &'a [u8],
     pub(crate) bin: Option<&'a [u8]>,
     /// What was odd about the container, in sentences.
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<Warning>,
 }
 
 const JSON: u32 = 0x4E4F_534A;
@@ -34,9 +36,12 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container<'_>, String> {
     }
     let mut notes = Vec::new();
     if length < bytes.len() {
-        notes.push(format!(
-            "{} bytes after the end of the container are ignored",
-            bytes.len() - length
+        notes.push(Warning::new(
+            Code::ContainerTail,
+            format!(
+                "{} bytes after the end of the container are ignored",
+                bytes.len() - length
+            ),
         ));
     }
     let body = &bytes[..length];
@@ -64,8 +69,9 @@ pub(crate) fn split(bytes: &[u8]) -> Result<Container<'_>, String> {
             (_, BIN) => {
                 return Err(format!("chunk {number} is binary but not the second chunk"));
             }
-            _ => notes.push(format!(
-                "chunk {number} of the unknown kind {kind:#010x} is ignored"
+            _ => notes.push(Warning::new(
+                Code::ContainerChunk,
+                format!("chunk {number} of the unknown kind {kind:#010x} is ignored"),
             )),
         }
         at = end;

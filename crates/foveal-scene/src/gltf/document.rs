@@ -17,8 +17,8 @@ use super::meshes::MeshDef;
 use super::meshopt::Coded;
 use super::nodes::NodeDef;
 use super::skins::SkinDef;
-use crate::Sampler;
 use crate::error::{Flaw, Parsed};
+use crate::{Code, Sampler, Warning};
 
 /// How many of each thing there are; references are checked against these.
 pub(crate) struct Counts {
@@ -78,7 +78,7 @@ pub(crate) struct Document {
 
 impl Document {
     /// Reads the document; `warn` takes what is odd but harmless.
-    pub(crate) fn parse(root: &Value, warn: &mut Vec<String>) -> Parsed<Self> {
+    pub(crate) fn parse(root: &Value, warn: &mut Vec<Warning>) -> Parsed<Self> {
         let root = Obj::of(root)?;
         check_version(root)?;
         super::extensions::check(root, warn)?;
@@ -192,7 +192,9 @@ fn check_version(root: Obj<'_>) -> Parsed<()> {
             .and_then(|(major, minor)| Some((major.parse().ok()?, minor.parse().ok()?)));
         match parts {
             Some(parts) => Ok(Some(parts)),
-            None => Err(Flaw::new(format!("\"{text}\" is not a version")).under(key)),
+            None => Err(
+                Flaw::new(Code::ValueUnknown, format!("\"{text}\" is not a version")).under(key),
+            ),
         }
     };
     let needed = version("minVersion").map_err(|e| e.under("asset"))?;
@@ -201,10 +203,13 @@ fn check_version(root: Obj<'_>) -> Parsed<()> {
         .map_err(|e| e.under("asset"))?;
     let (major, minor) = needed.unwrap_or((written.0, 0));
     if written.0 != 2 || major != 2 || minor > 0 {
-        return Err(Flaw::new(format!(
-            "the file is glTF {}.{} and needs {major}.{minor}; only 2.0 is read",
-            written.0, written.1
-        ))
+        return Err(Flaw::new(
+            Code::VersionUnsupported,
+            format!(
+                "the file is glTF {}.{} and needs {major}.{minor}; only 2.0 is read",
+                written.0, written.1
+            ),
+        )
         .under("asset"));
     }
     Ok(())
@@ -238,15 +243,20 @@ fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
     let len = o.need("byteLength", o.uint("byteLength")?)?;
     let available = buffers[buffer as usize].len;
     if offset.checked_add(len).is_none_or(|end| end > available) {
-        return Err(Flaw::new(format!(
-            "ends beyond buffers[{buffer}], which has {available} bytes"
-        )));
+        return Err(Flaw::new(
+            Code::BufferTooShort,
+            format!("ends beyond buffers[{buffer}], which has {available} bytes"),
+        ));
     }
     let stride = o.uint("byteStride")?;
     if let Some(stride) = stride
         && !(1..=252).contains(&stride)
     {
-        return Err(Flaw::new(format!("is {stride}, outside 4 to 252")).under("byteStride"));
+        return Err(Flaw::new(
+            Code::ValueOutOfRange,
+            format!("is {stride}, outside 4 to 252"),
+        )
+        .under("byteStride"));
     }
     let coded = match meshopt_extension(o)? {
         Some((e, name)) => Some(
@@ -266,14 +276,17 @@ fn parse_view(o: Obj<'_>, buffers: &[BufferDef]) -> Parsed<View> {
 
 /// The roots of the default scene; of the first one where none is named; all parentless nodes where
 /// there is none.
-fn parse_roots(root: Obj<'_>, counts: &Counts, warn: &mut Vec<String>) -> Parsed<Vec<u32>> {
+fn parse_roots(root: Obj<'_>, counts: &Counts, warn: &mut Vec<Warning>) -> Parsed<Vec<u32>> {
     let scenes = root.objects("scenes", |o| o.indices("nodes", counts.nodes))?;
     let scene = root.index("scene", counts.scenes)?;
     if let Some(roots) = scenes.into_iter().nth(scene.unwrap_or(0) as usize) {
         return Ok(roots);
     }
     if counts.nodes > 0 {
-        warn.push("the file has no scenes; all its nodes are shown".to_owned());
+        warn.push(Warning::new(
+            Code::SceneMissing,
+            "the file has no scenes; all its nodes are shown",
+        ));
     }
     let mut is_child = vec![false; counts.nodes];
     root.objects("nodes", |o| {

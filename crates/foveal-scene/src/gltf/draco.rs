@@ -7,6 +7,7 @@ use draco_core::{DecodeLimits, DecoderBuffer, FaceIndex, Mesh, MeshDecoder};
 use super::accessor::{Accessor, Component};
 use super::json::Obj;
 use super::meshes::Attributes;
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 
 /// The extension's object of one primitive.
@@ -80,7 +81,8 @@ impl DracoDef {
 
     /// The elements of all its accessors.
     pub(crate) fn decode(&self, bytes: &[u8], accessors: &[Accessor]) -> Parsed<Vec<Dense>> {
-        let broken = |e: draco_core::DracoError| Flaw::new(format!("is broken: {e}"));
+        let broken =
+            |e: draco_core::DracoError| Flaw::new(Code::CompressedData, format!("is broken: {e}"));
         let (points, triangles) = self.promised(accessors);
         let limits = DecodeLimits::default()
             .with_max_points(points)
@@ -96,15 +98,21 @@ impl DracoDef {
         for &(accessor, id) in &self.attributes {
             let def = &accessors[accessor as usize];
             let Some(attribute) = mesh.attribute_by_unique_id(id) else {
-                return Err(Flaw::new(format!("has no attribute {id}")).under("attributes"));
+                return Err(
+                    Flaw::new(Code::CompressedData, format!("has no attribute {id}"))
+                        .under("attributes"),
+                );
             };
             let (own, width) = (usize::from(attribute.num_components()), def.width);
             if own != width || mesh.num_points() < def.count {
-                return Err(Flaw::new(format!(
-                    "attribute {id} has {} elements of {own} components, accessors[{accessor}] {} of {width}",
-                    mesh.num_points(),
-                    def.count
-                )));
+                return Err(Flaw::new(
+                    Code::CompressedData,
+                    format!(
+                        "attribute {id} has {} elements of {own} components, accessors[{accessor}] {} of {width}",
+                        mesh.num_points(),
+                        def.count
+                    ),
+                ));
             }
             let values = attribute.read_f32s(def.count, width);
             let bytes = encode(def.component, values.into_iter());
@@ -113,11 +121,14 @@ impl DracoDef {
         if let Some(accessor) = self.indices {
             let def = &accessors[accessor as usize];
             if mesh.num_faces() * 3 < def.count || def.component == Component::F32 {
-                return Err(Flaw::new(format!(
-                    "has {} triangles, accessors[{accessor}] {} indices",
-                    mesh.num_faces(),
-                    def.count
-                )));
+                return Err(Flaw::new(
+                    Code::CompressedData,
+                    format!(
+                        "has {} triangles, accessors[{accessor}] {} indices",
+                        mesh.num_faces(),
+                        def.count
+                    ),
+                ));
             }
             let corners = (0..mesh.num_faces() as u32)
                 .flat_map(|i| mesh.face(FaceIndex(i)))

@@ -2,6 +2,7 @@
 
 use super::json::Obj;
 use crate::error::{Flaw, FlawKind, Parsed};
+use crate::{Code, Warning};
 
 /// Honoured in full as far as a picture can tell.
 const HONOURED: &[&str] = &[
@@ -56,7 +57,7 @@ const CONVERSIONS: &[(&str, &str)] = &[(
 )];
 
 /// Fails on unsupported required extensions, warns of unsupported used ones.
-pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {
+pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<Warning>) -> Parsed<()> {
     let approximated = |name: &str| APPROXIMATED.iter().find(|(known, _)| *known == name);
     let honoured = |name: &str| {
         HONOURED.contains(&name) || INVISIBLE.contains(&name) || approximated(name).is_some()
@@ -73,10 +74,14 @@ pub(crate) fn check(root: Obj<'_>, warn: &mut Vec<String>) -> Parsed<()> {
     used.dedup();
     for name in used {
         if let Some((_, how)) = approximated(name) {
-            warn.push(format!("extensionsUsed: {name} is approximated: {how}"));
+            warn.push(Warning::new(
+                Code::ExtensionApproximated,
+                format!("extensionsUsed: {name} is approximated: {how}"),
+            ));
         } else if !honoured(name) && !TEXTURE_FORMATS.contains(&name) {
-            warn.push(format!(
-                "extensionsUsed: {name} is not supported; the file is shown without it"
+            warn.push(Warning::new(
+                Code::ExtensionIgnored,
+                format!("extensionsUsed: {name} is not supported; the file is shown without it"),
             ));
         }
     }
@@ -90,11 +95,14 @@ fn missing_extensions(missing: &[&str]) -> Flaw {
         .iter()
         .filter(|(name, _)| missing.contains(name));
     let helps: Vec<&str> = helps.map(|(_, how)| *how).collect();
-    let mut flaw = Flaw::new(if helps.is_empty() {
-        format!("{names}, not supported here")
-    } else {
-        format!("{names}, not supported here; {}", helps.join("; "))
-    });
+    let mut flaw = Flaw::new(
+        Code::ExtensionRequired,
+        if helps.is_empty() {
+            format!("{names}, not supported here")
+        } else {
+            format!("{names}, not supported here; {}", helps.join("; "))
+        },
+    );
     flaw.kind = FlawKind::Extension;
     flaw
 }

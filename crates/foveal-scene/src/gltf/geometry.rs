@@ -10,7 +10,7 @@ use super::{morphs, normals, tangents, topology};
 use crate::error::{Flaw, Parsed};
 use crate::load::MissingNormals;
 use crate::pose::Shape;
-use crate::{Aabb, Mesh, Vertex};
+use crate::{Aabb, Code, Mesh, Vertex, Warning};
 
 /// What a primitive's geometry depends on; equal requests share one mesh.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -27,7 +27,7 @@ pub(crate) struct Built {
     pub(crate) mesh: Mesh,
     /// What morph targets or joints need; `None` for rigid geometry.
     pub(crate) shape: Option<Shape>,
-    pub(crate) notes: Vec<String>,
+    pub(crate) notes: Vec<Warning>,
 }
 
 /// Smallest box around the vertices that `indices` name.
@@ -45,14 +45,20 @@ pub(crate) fn build(
     let def = &request.primitive;
     let mut notes = Vec::new();
     if def.mode == Mode::NoTriangles {
-        notes.push("is made of points or lines, which are not drawn".to_owned());
+        notes.push(Warning::new(
+            Code::PrimitiveMode,
+            "is made of points or lines, which are not drawn",
+        ));
         return Ok(Built {
             notes,
             ..Built::default()
         });
     }
     let Some(position) = def.attributes.position else {
-        notes.push("has no POSITION and is not drawn".to_owned());
+        notes.push(Warning::new(
+            Code::PrimitivePositions,
+            "has no POSITION and is not drawn",
+        ));
         return Ok(Built {
             notes,
             ..Built::default()
@@ -112,7 +118,7 @@ pub(crate) fn build(
 }
 
 /// Leaves out triangles that name missing vertices or vertices at no place.
-fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec<String>) {
+fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec<Warning>) {
     let finite = |p: &[f32; 3]| p.iter().all(|x| x.is_finite());
     let all_finite = positions.iter().all(finite);
     let all_there = indices.iter().all(|&i| (i as usize) < positions.len());
@@ -129,10 +135,10 @@ fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec
         .collect();
     let dropped = (before - indices.len()) / 3;
     if dropped > 0 {
-        notes.push(format!(
+        notes.push(Warning::new(Code::TrianglesUnusable, format!(
             "{dropped} of {} triangles name vertices that do not exist or lie at no finite place, and are left out",
             before / 3
-        ));
+        )));
     }
 }
 
@@ -161,7 +167,7 @@ fn assemble(
     reader: Reader<'_>,
     positions: &[[f32; 3]],
     source: &[u32],
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Warning>,
 ) -> Parsed<Vec<Vertex>> {
     let attributes = &request.primitive.attributes;
     let mut vertices: Vec<Vertex> = source
@@ -200,9 +206,12 @@ fn assemble(
                     v.uv[slot] = uv.map(|x| if x.is_finite() { x } else { 0.0 });
                 })?;
             }
-            None if request.tangents_for.is_some() || slot > 0 || set > 0 => notes.push(format!(
-                "has no TEXCOORD_{set} although its material reads it; (0, 0) is used"
-            )),
+            None if request.tangents_for.is_some() || slot > 0 || set > 0 => {
+                notes.push(Warning::new(
+                    Code::TexcoordsMissing,
+                    format!("has no TEXCOORD_{set} although its material reads it; (0, 0) is used"),
+                ))
+            }
             None => {}
         }
     }
@@ -230,11 +239,10 @@ impl Fill<'_> {
         let place = |e: Flaw| e.under(format_args!("attributes.{name}"));
         let list = list.map_err(place)?;
         if list.len() < self.count {
-            return Err(place(Flaw::new(format!(
-                "has {} elements for {} positions",
-                list.len(),
-                self.count
-            ))));
+            return Err(place(Flaw::new(
+                Code::AccessorCount,
+                format!("has {} elements for {} positions", list.len(), self.count),
+            )));
         }
         for (vertex, &i) in self.vertices.iter_mut().zip(self.source) {
             set(vertex, list[i as usize]);
@@ -279,7 +287,7 @@ fn unit_tangent([x, y, z, w]: [f32; 4]) -> [f32; 4] {
 }
 
 /// Makes normals unit vectors; those without a direction become those of the surface.
-fn repair_normals(vertices: &mut [Vertex], indices: &[u32], notes: &mut Vec<String>) {
+fn repair_normals(vertices: &mut [Vertex], indices: &[u32], notes: &mut Vec<Warning>) {
     let mut bad = Vec::new();
     for (i, vertex) in vertices.iter_mut().enumerate() {
         match glam::Vec3::from(vertex.normal).try_normalize() {
@@ -288,10 +296,13 @@ fn repair_normals(vertices: &mut [Vertex], indices: &[u32], notes: &mut Vec<Stri
         }
     }
     if !bad.is_empty() {
-        notes.push(format!(
-            "{} of {} normals have no direction and are made anew",
-            bad.len(),
-            vertices.len()
+        notes.push(Warning::new(
+            Code::Normals,
+            format!(
+                "{} of {} normals have no direction and are made anew",
+                bad.len(),
+                vertices.len()
+            ),
         ));
         normals::smooth(vertices, indices, |i| bad.binary_search(&i).is_ok());
     }

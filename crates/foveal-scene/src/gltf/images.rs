@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use super::document::{Counts, View};
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
-use crate::{Filter, Sampler, Wrap};
+use crate::{Code, Filter, Sampler, Wrap};
 
 /// Where a picture's bytes are.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -99,7 +99,10 @@ pub(crate) fn parse_sampler(o: Obj<'_>) -> Parsed<Sampler> {
             Some(33648) => Wrap::MirroredRepeat,
             Some(33071) => Wrap::ClampToEdge,
             Some(other) => {
-                return Err(Flaw::new(format!("is {other}, not a wrap mode")).under(key));
+                return Err(
+                    Flaw::new(Code::ValueUnknown, format!("is {other}, not a wrap mode"))
+                        .under(key),
+                );
             }
         })
     };
@@ -107,7 +110,10 @@ pub(crate) fn parse_sampler(o: Obj<'_>) -> Parsed<Sampler> {
         None | Some(9729) => Filter::Linear,
         Some(9728) => Filter::Nearest,
         Some(other) => {
-            return Err(Flaw::new(format!("is {other}, not a filter")).under("magFilter"));
+            return Err(
+                Flaw::new(Code::ValueUnknown, format!("is {other}, not a filter"))
+                    .under("magFilter"),
+            );
         }
     };
     let (min, mip) = match o.uint("minFilter")? {
@@ -118,7 +124,10 @@ pub(crate) fn parse_sampler(o: Obj<'_>) -> Parsed<Sampler> {
         Some(9986) => (Filter::Nearest, Some(Filter::Linear)),
         None | Some(9987) => (Filter::Linear, Some(Filter::Linear)),
         Some(other) => {
-            return Err(Flaw::new(format!("is {other}, not a filter")).under("minFilter"));
+            return Err(
+                Flaw::new(Code::ValueUnknown, format!("is {other}, not a filter"))
+                    .under("minFilter"),
+            );
         }
     };
     Ok(Sampler {

@@ -5,6 +5,7 @@
 
 use serde_json::{Map, Value};
 
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 
 /// A JSON object.
@@ -24,7 +25,10 @@ fn type_name(value: &Value) -> &'static str {
 }
 
 fn wrong(value: &Value, expected: &str) -> Flaw {
-    Flaw::new(format!("is {} instead of {expected}", type_name(value)))
+    Flaw::new(
+        Code::ValueType,
+        format!("is {} instead of {expected}", type_name(value)),
+    )
 }
 
 fn to_float(value: &Value) -> Parsed<f32> {
@@ -32,7 +36,10 @@ fn to_float(value: &Value) -> Parsed<f32> {
     if number.is_finite() {
         Ok(number)
     } else {
-        Err(Flaw::new("is beyond the range of 32-bit numbers"))
+        Err(Flaw::new(
+            Code::ValueOutOfRange,
+            "is beyond the range of 32-bit numbers",
+        ))
     }
 }
 
@@ -44,7 +51,10 @@ fn to_uint(value: &Value) -> Parsed<u64> {
         .or_else(|| value.as_f64().and_then(whole))
         .ok_or_else(|| {
             if value.is_number() {
-                Flaw::new(format!("is {value} instead of a whole number from 0 on"))
+                Flaw::new(
+                    Code::ValueOutOfRange,
+                    format!("is {value} instead of a whole number from 0 on"),
+                )
             } else {
                 wrong(value, "a whole number")
             }
@@ -56,7 +66,10 @@ fn to_index(value: &Value, len: usize) -> Parsed<u32> {
     if index < len as u64 && index < u64::from(u32::MAX) {
         Ok(index as u32)
     } else {
-        Err(Flaw::new(format!("names number {index}, there are {len}")))
+        Err(Flaw::new(
+            Code::IndexOutOfRange,
+            format!("names number {index}, there are {len}"),
+        ))
     }
 }
 
@@ -92,7 +105,7 @@ impl<'a> Obj<'a> {
     }
 
     pub(crate) fn need<T>(self, key: &str, found: Option<T>) -> Parsed<T> {
-        found.ok_or_else(|| Flaw::new("is missing").under(key))
+        found.ok_or_else(|| Flaw::new(Code::ValueMissing, "is missing").under(key))
     }
 
     pub(crate) fn uint(self, key: &str) -> Parsed<Option<u64>> {
@@ -118,9 +131,9 @@ impl<'a> Obj<'a> {
             return Ok(None);
         }
         let len = list.len();
-        <[f32; N]>::try_from(list)
-            .map(Some)
-            .map_err(|_| Flaw::new(format!("has {len} numbers instead of {N}")).under(key))
+        <[f32; N]>::try_from(list).map(Some).map_err(|_| {
+            Flaw::new(Code::ValueType, format!("has {len} numbers instead of {N}")).under(key)
+        })
     }
 
     pub(crate) fn float_list(self, key: &str) -> Parsed<Vec<f32>> {

@@ -6,7 +6,7 @@ use glam::{Mat4, Vec3};
 
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
-use crate::{Light, LightKind};
+use crate::{Code, Light, LightKind};
 
 /// A light as the file has it.
 pub(crate) struct LightDef {
@@ -42,7 +42,11 @@ fn parse_light(o: Obj<'_>) -> Parsed<Light> {
             }
         }
         other => {
-            return Err(Flaw::new(format!("\"{other}\" is not a light type")).under("type"));
+            return Err(Flaw::new(
+                Code::ValueUnknown,
+                format!("\"{other}\" is not a light type"),
+            )
+            .under("type"));
         }
     };
     Ok(Light {

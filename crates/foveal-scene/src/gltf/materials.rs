@@ -5,7 +5,7 @@ use glam::{Mat3, Vec3, Vec4};
 use super::document::Counts;
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
-use crate::{AlphaMode, Material};
+use crate::{AlphaMode, Code, Material};
 
 /// A texture as a material slot names it, with the file's own UV set number.
 #[derive(Clone, Copy)]
@@ -130,7 +130,11 @@ fn parse_alpha(o: Obj<'_>) -> Parsed<AlphaMode> {
             cutoff: o.float("alphaCutoff")?.unwrap_or(0.5),
         },
         Some(other) => {
-            return Err(Flaw::new(format!("\"{other}\" is not an alpha mode")).under("alphaMode"));
+            return Err(Flaw::new(
+                Code::ValueUnknown,
+                format!("\"{other}\" is not an alpha mode"),
+            )
+            .under("alphaMode"));
         }
     })
 }

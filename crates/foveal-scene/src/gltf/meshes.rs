@@ -3,6 +3,7 @@
 use super::document::Counts;
 use super::draco::DracoDef;
 use super::json::Obj;
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 
 /// What the vertices of a primitive make, as far as triangles can express it.
@@ -162,7 +163,9 @@ fn parse_primitive(o: Obj<'_>, counts: &Counts) -> Parsed<PrimitiveDef> {
             Some(5) => Mode::Strip,
             Some(6) => Mode::Fan,
             Some(other) => {
-                return Err(Flaw::new(format!("is {other}, not a mode")).under("mode"));
+                return Err(
+                    Flaw::new(Code::ValueUnknown, format!("is {other}, not a mode")).under("mode"),
+                );
             }
         },
         targets: o.objects("targets", |t| parse_attributes(t, counts))?,

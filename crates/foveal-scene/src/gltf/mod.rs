@@ -33,6 +33,7 @@ mod skins;
 mod tangents;
 mod textures;
 mod topology;
+mod unused;
 mod uri;
 
 #[cfg(test)]
@@ -44,6 +45,7 @@ pub(crate) use lights::place as place_light;
 pub(crate) use nodes::rotation;
 pub(crate) use normals::plane_normal;
 
+use std::collections::HashSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use buffers::Buffers;
@@ -56,7 +58,7 @@ use textures::Wanted;
 
 use crate::error::{Flaw, FlawKind, Parsed};
 use crate::timings::Stopwatch;
-use crate::{Clip, LoadOptions, Scene, SceneError, Warning};
+use crate::{Clip, Code, LoadOptions, Scene, SceneError, Warning};
 
 /// Gives the bytes of an external file by its relative path, or the reason why not.
 pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
@@ -119,7 +121,7 @@ fn import_checked(
         options,
         resolver,
     );
-    warn.extend(buffers.faults().map(Flaw::sentence));
+    warn.extend(buffers.faults().map(Flaw::warning));
     let read_ms = watch.lap_ms();
     buffers
         .decompress(&document, options.parallel)
@@ -140,18 +142,16 @@ fn import_checked(
 }
 
 /// Each warning once, and not more than anyone reads.
-fn limited(warn: Vec<String>) -> Vec<Warning> {
-    let mut seen = std::collections::HashSet::new();
-    let mut warnings: Vec<Warning> = Vec::new();
-    for text in warn {
-        if seen.insert(text.clone()) {
-            warnings.push(Warning(text));
-        }
-    }
+pub(crate) fn limited(mut warnings: Vec<Warning>) -> Vec<Warning> {
+    let mut seen = HashSet::new();
+    warnings.retain(|warning| seen.insert(warning.clone()));
     if warnings.len() > MAX_WARNINGS {
         let more = warnings.len() - MAX_WARNINGS;
         warnings.truncate(MAX_WARNINGS);
-        warnings.push(Warning(format!("{more} more warnings are not listed")));
+        warnings.push(Warning::new(
+            Code::MoreWarnings,
+            format!("{more} more warnings are not listed"),
+        ));
     }
     warnings
 }
@@ -161,7 +161,7 @@ fn build(
     reader: Reader<'_>,
     resolver: &Resolver<'_>,
     options: &LoadOptions,
-    warn: &mut Vec<String>,
+    warn: &mut Vec<Warning>,
 ) -> Parsed<Scene> {
     let mut watch = Stopwatch::start();
     let mut scene = Scene::default();
@@ -189,13 +189,19 @@ fn build(
     }
     let shapes = parts::drop_empty_meshes(&mut shown, shapes, &mut scene);
     if shown.is_empty() {
-        warn.push("the scene shows no triangles".to_owned());
+        warn.push(Warning::new(
+            Code::SceneEmpty,
+            "the scene shows no triangles",
+        ));
     }
     let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;
     rig.give_own_meshes(&mut shown, &shapes, &mut scene, reader, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
 
     scene.textures = textures::decode(&wanted, reader, resolver, options, warn)?;
+    if options.check_unused {
+        unused::check(reader, resolver, options, &hierarchy, &wanted, warn);
+    }
     scene.timings.decode_ms = watch.lap_ms();
 
     let world = rig.world_at_rest();
@@ -237,17 +243,20 @@ fn no_such(what: &str, wanted: impl std::fmt::Display, known: Vec<String>) -> Fl
     } else {
         known.join(", ")
     };
-    let mut flaw = Flaw::new(format!("{what} '{wanted}'; there are: {known}"));
+    let mut flaw = Flaw::new(
+        Code::NotInFile,
+        format!("{what} '{wanted}'; there are: {known}"),
+    );
     flaw.kind = FlawKind::Absent;
     flaw
 }
 
-fn warn_of_uv_sets(document: &Document, warn: &mut Vec<String>) {
+fn warn_of_uv_sets(document: &Document, warn: &mut Vec<Warning>) {
     for (i, def) in document.materials.iter().enumerate() {
         if def.uv_sets().1 {
-            warn.push(format!(
+            warn.push(Warning::new(Code::TexcoordsTooMany, format!(
                 "materials[{i}]: reads more than two sets of texture coordinates; the others read the first"
-            ));
+            )));
         }
     }
 }
@@ -273,7 +282,7 @@ fn place_cameras_and_lights(
     document: &Document,
     hierarchy: &Hierarchy,
     world: &[Mat4],
-    warn: &mut Vec<String>,
+    warn: &mut Vec<Warning>,
 ) -> Vec<u32> {
     let mut camera_nodes = Vec::new();
     let visible = document.nodes.iter().enumerate();
@@ -287,10 +296,11 @@ fn place_cameras_and_lights(
                     scene.cameras.push(camera);
                     camera_nodes.push(i as u32);
                 }
-                Err(flaw) => warn.push(format!(
-                    "cameras[{camera}].{}; this camera is left out",
-                    flaw.sentence()
-                )),
+                Err(flaw) => warn.push(
+                    flaw.warning()
+                        .within(format_args!("cameras[{camera}]"))
+                        .and("this camera is left out"),
+                ),
             }
         }
         if let Some(light) = node.light {
@@ -301,10 +311,13 @@ fn place_cameras_and_lights(
                     place_light(&mut placed, world[i]);
                     scene.lights.push(placed);
                 }
-                Err(flaw) => warn.push(format!(
-                    "extensions.KHR_lights_punctual.lights[{light}].{}; this light is left out",
-                    flaw.sentence()
-                )),
+                Err(flaw) => warn.push(
+                    flaw.warning()
+                        .within(format_args!(
+                            "extensions.KHR_lights_punctual.lights[{light}]"
+                        ))
+                        .and("this light is left out"),
+                ),
             }
         }
     }

@@ -7,6 +7,7 @@ use super::meshes::PrimitiveDef;
 use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Influences, MorphTarget, Shape};
+use crate::{Code, Warning};
 
 /// Reads what deforms a primitive; `None` for rigid ones. `source` names each vertex's number in
 /// the file.
@@ -14,7 +15,7 @@ pub(crate) fn read_shape(
     def: &PrimitiveDef,
     reader: Reader<'_>,
     source: &[u32],
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Warning>,
 ) -> Parsed<Option<Shape>> {
     let influences = read_influences(def, reader, source, notes)?;
     if influences.is_none() && def.targets.is_empty() {
@@ -36,11 +37,22 @@ pub(crate) fn read_shape(
                 .iter()
                 .map(pick)
                 .collect::<Option<_>>()
-                .ok_or_else(|| place(Flaw::new(format!("has only {} elements", list.len())), name))
+                .ok_or_else(|| {
+                    place(
+                        Flaw::new(
+                            Code::AccessorCount,
+                            format!("has only {} elements", list.len()),
+                        ),
+                        name,
+                    )
+                })
         };
         if !target.uv.is_empty() || target.color.is_some() {
-            notes.push(format!(
-                "targets[{i}] morphs texture coordinates or colours, which stay as they are"
+            notes.push(Warning::new(
+                Code::MorphIgnored,
+                format!(
+                    "targets[{i}] morphs texture coordinates or colours, which stay as they are"
+                ),
             ));
         }
         targets.push(MorphTarget {
@@ -60,13 +72,14 @@ fn read_influences(
     def: &PrimitiveDef,
     reader: Reader<'_>,
     source: &[u32],
-    notes: &mut Vec<String>,
+    notes: &mut Vec<Warning>,
 ) -> Parsed<Option<Influences>> {
     let attributes = &def.attributes;
     for set in 0..2 {
         if attributes.joints[set].is_some() != attributes.weights[set].is_some() {
-            notes.push(format!(
-                "has only one of JOINTS_{set} and WEIGHTS_{set}, which is ignored"
+            notes.push(Warning::new(
+                Code::Skin,
+                format!("has only one of JOINTS_{set} and WEIGHTS_{set}, which is ignored"),
             ));
         }
     }
@@ -74,9 +87,10 @@ fn read_influences(
         return Ok(None);
     }
     if attributes.more_joints {
-        notes.push(
-            "has more than eight joint influences per vertex; the first eight are used".into(),
-        );
+        notes.push(Warning::new(
+            Code::Skin,
+            "has more than eight joint influences per vertex; the first eight are used",
+        ));
     }
     let mut joints = vec![[0u16; 8]; source.len()];
     let mut weights = vec![[0f32; 8]; source.len()];
@@ -87,7 +101,7 @@ fn read_influences(
         let place = |e: Flaw, name: &str| e.under(format_args!("attributes.{name}_{set}"));
         if reader.accessor(j).component == Component::U32 {
             return Err(place(
-                Flaw::new("is not of 8- or 16-bit integers"),
+                Flaw::new(Code::AccessorType, "is not of 8- or 16-bit integers"),
                 "JOINTS",
             ));
         }
@@ -96,7 +110,10 @@ fn read_influences(
         for (i, &from) in source.iter().enumerate() {
             let (Some(j), Some(w)) = (j.get(from as usize), w.get(from as usize)) else {
                 return Err(place(
-                    Flaw::new(format!("has only {} elements", j.len().min(w.len()))),
+                    Flaw::new(
+                        Code::AccessorCount,
+                        format!("has only {} elements", j.len().min(w.len())),
+                    ),
                     "JOINTS",
                 ));
             };

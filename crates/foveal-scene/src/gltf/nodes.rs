@@ -6,6 +6,7 @@ use super::document::{Counts, Document};
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
 use crate::pose::Local;
+use crate::{Code, Warning};
 
 /// EXT_mesh_gpu_instancing: the accessors of its attributes.
 #[derive(Clone, Copy, Default)]
@@ -46,7 +47,7 @@ impl NodeDef {
         o: Obj<'_>,
         number: usize,
         counts: &Counts,
-        warn: &mut Vec<String>,
+        warn: &mut Vec<Warning>,
     ) -> Parsed<Self> {
         let name = o.name("name")?;
         let trs = ["translation", "rotation", "scale"]
@@ -55,9 +56,9 @@ impl NodeDef {
         let local = match o.floats::<16>("matrix")? {
             Some(matrix) => {
                 if trs {
-                    warn.push(format!(
+                    warn.push(Warning::new(Code::NodeTransform, format!(
                         "nodes[{number}]: has a matrix and translation, rotation or scale; the matrix is used"
-                    ));
+                    )));
                 }
                 Local::Matrix(affine(matrix))
             }
@@ -150,16 +151,17 @@ pub(crate) struct Hierarchy {
 
 impl Hierarchy {
     /// Fails on a node with two parents and on a cycle. Iterative: depth is up to the file.
-    pub(crate) fn of(document: &Document, warn: &mut Vec<String>) -> Parsed<Self> {
+    pub(crate) fn of(document: &Document, warn: &mut Vec<Warning>) -> Parsed<Self> {
         let nodes = &document.nodes;
         let mut parent: Vec<Option<u32>> = vec![None; nodes.len()];
         for (i, node) in nodes.iter().enumerate() {
             for (k, &child) in node.children.iter().enumerate() {
                 let slot = &mut parent[child as usize];
                 if let Some(first) = slot {
-                    return Err(Flaw::new(format!(
-                        "node {child} is already a child of node {first}"
-                    ))
+                    return Err(Flaw::new(
+                        Code::NodeTwoParents,
+                        format!("node {child} is already a child of node {first}"),
+                    )
                     .under(format_args!("nodes[{i}].children[{k}]")));
                 }
                 *slot = Some(i as u32);
@@ -177,15 +179,17 @@ impl Hierarchy {
             let mut reached = vec![false; nodes.len()];
             order.iter().for_each(|&i| reached[i as usize] = true);
             let looped = reached.iter().position(|r| !r).unwrap_or(0);
-            return Err(Flaw::new("is its own ancestor or below such a node")
-                .under(format_args!("nodes[{looped}]")));
+            return Err(
+                Flaw::new(Code::NodeCycle, "is its own ancestor or below such a node")
+                    .under(format_args!("nodes[{looped}]")),
+            );
         }
         let mut shown = vec![false; nodes.len()];
         for &root in &document.roots {
             if parent[root as usize].is_some() {
-                warn.push(format!(
+                warn.push(Warning::new(Code::NodeRoot, format!(
                     "scenes: node {root} is listed as a root although it has a parent; its parent's transform applies"
-                ));
+                )));
             }
             shown[root as usize] = true;
         }

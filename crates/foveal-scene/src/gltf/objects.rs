@@ -8,7 +8,7 @@ use super::nodes::{Hierarchy, Instancing, NodeDef, rotation};
 use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Limit, Parsed};
-use crate::{Aabb, Instance, LoadOptions, Mesh, Object, threads};
+use crate::{Aabb, Code, Instance, LoadOptions, Mesh, Object, Warning, threads};
 
 /// An object takes hundreds of bytes: a file that stores none of them does not get many.
 const MAX_UNBACKED_INSTANCES: usize = 1 << 16;
@@ -137,7 +137,7 @@ pub(crate) fn place(
     world: &[Mat4],
     meshes: &[Mesh],
     options: &LoadOptions,
-    warn: &mut Vec<String>,
+    warn: &mut Vec<Warning>,
 ) -> Parsed<Placed> {
     let uses = count_uses(shown, meshes, options)?;
     let numbers: Vec<u32> = (0..meshes.len() as u32).collect();
@@ -166,7 +166,10 @@ pub(crate) fn place(
         let usable = |b: &Aabb| b.is_empty() || (b.min.is_finite() && b.max.is_finite());
         if !matrix.is_finite() || !boxes.iter().all(usable) {
             let note = "lies beyond the range of 32-bit numbers and is left out";
-            warn.push(format!("nodes[{}]: {note}", shown.node));
+            warn.push(Warning::new(
+                Code::NodeBeyondRange,
+                format!("nodes[{}]: {note}", shown.node),
+            ));
             continue;
         }
         let node = &nodes[shown.node as usize];

@@ -14,7 +14,7 @@ use super::objects::{self, Part, Shown};
 use super::reader::Reader;
 use crate::error::{Flaw, Limit, Parsed};
 use crate::pose::Shape;
-use crate::{LoadOptions, Material, MissingNormals, Scene, Vertex, threads};
+use crate::{LoadOptions, Material, MissingNormals, Scene, Vertex, Warning, threads};
 
 /// The meshes to build, each once however many primitives ask for it.
 #[derive(Default)]
@@ -73,6 +73,13 @@ impl Geometry {
         Ok(shown)
     }
 
+    /// Asks for all primitives of a mesh.
+    pub(crate) fn request_mesh(&mut self, document: &Document, mesh: u32) {
+        for primitive in 0..document.meshes[mesh as usize].primitives.len() {
+            self.number(document, mesh, primitive);
+        }
+    }
+
     fn number(&mut self, document: &Document, mesh: u32, primitive: usize) -> u32 {
         let def = &document.meshes[mesh as usize];
         let material = def.materials[primitive].map(|m| &document.materials[m as usize]);
@@ -99,7 +106,7 @@ impl Geometry {
         reader: Reader<'_>,
         options: &LoadOptions,
         scene: &mut Scene,
-        warn: &mut Vec<String>,
+        warn: &mut Vec<Warning>,
     ) -> Parsed<Vec<Option<Shape>>> {
         self.check_size(reader, options)?;
         let built = threads::map(options.parallel, &self.requests, |(request, place)| {
@@ -112,7 +119,7 @@ impl Geometry {
                 shape,
                 notes,
             } = built?;
-            warn.extend(notes.into_iter().map(|note| format!("{place}: {note}")));
+            warn.extend(notes.into_iter().map(|note| note.at(place)));
             mesh.name.clone_from(name);
             scene.meshes.push(mesh);
             shapes.push(shape);

@@ -14,6 +14,7 @@ use super::basis;
 use super::images::ImageSource;
 use super::reader::Reader;
 use super::uri::{self, Uri};
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 
 /// RGBA8 texels.
@@ -31,6 +32,7 @@ pub(crate) fn fetch<'a>(
 ) -> Parsed<Cow<'a, [u8]>> {
     let Some(image) = image else {
         return Err(Flaw::new(
+            Code::TextureWithoutImage,
             "a texture names no PNG, JPEG, WebP or KTX2 picture",
         ));
     };
@@ -40,12 +42,19 @@ pub(crate) fn fetch<'a>(
             .view(reader.document, *view)
             .map(Cow::Borrowed),
         ImageSource::Uri(text) => {
-            match uri::parse(text).map_err(|e| Flaw::new(format!("its URI {e}")))? {
+            match uri::parse(text)
+                .map_err(|e| Flaw::new(Code::ImageUnreadable, format!("its URI {e}")))?
+            {
                 Uri::Data(bytes) => Ok(Cow::Owned(bytes)),
-                Uri::File(path) => resolver(&path).map(Cow::Owned).map_err(Flaw::new),
+                Uri::File(path) => resolver(&path)
+                    .map(Cow::Owned)
+                    .map_err(|e| Flaw::new(Code::ImageUnreadable, e)),
             }
         }
-        ImageSource::Nowhere => Err(Flaw::new("has neither a URI nor a buffer view")),
+        ImageSource::Nowhere => Err(Flaw::new(
+            Code::ImageUnreadable,
+            "has neither a URI nor a buffer view",
+        )),
     }
 }
 

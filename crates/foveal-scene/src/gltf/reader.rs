@@ -4,6 +4,7 @@
 use super::accessor::{Accessor, Component};
 use super::buffers::Buffers;
 use super::document::Document;
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 
 /// Reads accessors of one document.
@@ -31,9 +32,10 @@ impl<'a> Reader<'a> {
             .stride
             .map_or(size, |s| s as usize);
         if stride < size {
-            return Err(Flaw::new(format!(
-                "has elements of {size} bytes, bufferViews[{view}] a stride of {stride}"
-            )));
+            return Err(Flaw::new(
+                Code::AccessorStride,
+                format!("has elements of {size} bytes, bufferViews[{view}] a stride of {stride}"),
+            ));
         }
         let len = match count {
             0 => 0,
@@ -41,10 +43,13 @@ impl<'a> Reader<'a> {
         };
         let end = offset.checked_add(len);
         if end.is_none_or(|end| end > bytes.len() as u64) {
-            return Err(Flaw::new(format!(
-                "needs {len} bytes from byte {offset} of bufferViews[{view}], which has {}",
-                bytes.len()
-            )));
+            return Err(Flaw::new(
+                Code::BufferTooShort,
+                format!(
+                    "needs {len} bytes from byte {offset} of bufferViews[{view}], which has {}",
+                    bytes.len()
+                ),
+            ));
         }
         Ok(Strided {
             bytes: &bytes[offset as usize..(offset + len) as usize],
@@ -56,10 +61,13 @@ impl<'a> Reader<'a> {
     pub(crate) fn floats<const N: usize>(&self, index: u32) -> Parsed<Vec<[f32; N]>> {
         let accessor = self.accessor(index);
         if accessor.width != N {
-            return Err(Flaw::new(format!(
-                "names accessors[{index}], whose elements have {} components instead of {N}",
-                accessor.width
-            )));
+            return Err(Flaw::new(
+                Code::AccessorType,
+                format!(
+                    "names accessors[{index}], whose elements have {} components instead of {N}",
+                    accessor.width
+                ),
+            ));
         }
         let read = |source: Strided<'_>, count| {
             decode::<N>(&source, accessor.component, accessor.normalized, count)
@@ -76,9 +84,10 @@ impl<'a> Reader<'a> {
             Component::U8 | Component::U16 | Component::U32
         );
         if accessor.width != N || !whole {
-            return Err(Flaw::new(format!(
-                "names accessors[{index}], whose elements are not {N} unsigned integers"
-            )));
+            return Err(Flaw::new(
+                Code::AccessorType,
+                format!("names accessors[{index}], whose elements are not {N} unsigned integers"),
+            ));
         }
         let read =
             |source: Strided<'_>, count| decode_uints::<N>(&source, accessor.component, count);
@@ -105,7 +114,7 @@ impl<'a> Reader<'a> {
             None if accessor.draco => {
                 let bytes = self.buffers.dense(index)?;
                 if bytes.len() < accessor.count * size {
-                    return Err(Flaw::new("has too few Draco data"));
+                    return Err(Flaw::new(Code::CompressedData, "has too few Draco data"));
                 }
                 read(
                     Strided {
@@ -135,10 +144,10 @@ impl<'a> Reader<'a> {
                 .map_err(|e| e.under("sparse.values"))?;
             for ([at], value) in at.into_iter().zip(read(values, sparse.count)) {
                 let Some(element) = elements.get_mut(at as usize) else {
-                    return Err(Flaw::new(format!(
-                        "names element {at}, there are {}",
-                        accessor.count
-                    ))
+                    return Err(Flaw::new(
+                        Code::IndexOutOfRange,
+                        format!("names element {at}, there are {}", accessor.count),
+                    )
                     .under("sparse.indices"));
                 };
                 *element = value;

@@ -12,7 +12,7 @@ use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
 use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};
-use crate::{LoadOptions, Scene};
+use crate::{Code, LoadOptions, Scene, Warning};
 
 /// Each pose writes all of these anew, and each node has its own: more would not move in real time.
 const MAX_DEFORMING: u64 = 16 << 20;
@@ -30,7 +30,7 @@ impl Rigging {
         reader: Reader<'_>,
         hierarchy: &Hierarchy,
         options: &LoadOptions,
-        warn: &mut Vec<String>,
+        warn: &mut Vec<Warning>,
     ) -> Parsed<Self> {
         let document = reader.document;
         let nodes = document
@@ -48,7 +48,11 @@ impl Rigging {
             let mut notes = Vec::new();
             let targets = |node: u32| target_count(document, node);
             let animation = def.read(reader, targets, &mut notes);
-            warn.extend(notes.into_iter().map(|n| format!("animations[{i}].{n}")));
+            warn.extend(
+                notes
+                    .into_iter()
+                    .map(|note| note.within(format_args!("animations[{i}]"))),
+            );
             animations.push(animation);
         }
         let mut data = RigData {
@@ -76,7 +80,7 @@ impl Rigging {
         scene: &mut Scene,
         reader: Reader<'_>,
         options: &LoadOptions,
-        warn: &mut Vec<String>,
+        warn: &mut Vec<Warning>,
     ) -> Parsed<()> {
         let document = reader.document;
         let weights = shown.iter().map(|s| target_count(document, s.node) as u64);
@@ -109,7 +113,7 @@ impl Rigging {
                 if shape.targets.is_empty() && skin.is_none() {
                     if shape.influences.is_some() {
                         let note = "has joints in its mesh but no skin; it stays rigid";
-                        warn.push(format!("nodes[{node}]: {note}"));
+                        warn.push(Warning::new(Code::Skin, format!("nodes[{node}]: {note}")));
                     }
                     continue;
                 }
@@ -145,7 +149,7 @@ impl Rigging {
         Ok(())
     }
 
-    fn check_joints(&self, shape: &Shape, skin: Option<u32>, node: u32, warn: &mut Vec<String>) {
+    fn check_joints(&self, shape: &Shape, skin: Option<u32>, node: u32, warn: &mut Vec<Warning>) {
         let (Some(skin), Some(influences)) = (skin, &shape.influences) else {
             return;
         };
@@ -153,9 +157,9 @@ impl Rigging {
         let lists = influences.joints.iter().zip(&influences.weights);
         let mut pairs = lists.flat_map(|(j, w)| j.iter().zip(w));
         if pairs.any(|(&j, &w)| w > 0.0 && j as usize >= joints) {
-            warn.push(format!(
+            warn.push(Warning::new(Code::Skin, format!(
                 "nodes[{node}]: its mesh names joints that skins[{skin}] does not have; they are ignored"
-            ));
+            )));
         }
     }
 
@@ -219,15 +223,18 @@ impl Rigging {
 }
 
 /// Marks animated nodes and everything below them. Nodes with a matrix cannot be animated.
-fn moving_nodes(data: &mut RigData, document: &Document, warn: &mut Vec<String>) -> Vec<bool> {
+fn moving_nodes(data: &mut RigData, document: &Document, warn: &mut Vec<Warning>) -> Vec<bool> {
     let mut moving = vec![false; data.nodes.len()];
     for channel in data.animations.iter().flat_map(|a| &a.channels) {
         let node = channel.node as usize;
         if matches!(document.nodes[node].local, Local::Matrix(_))
             && channel.target != crate::pose::Target::Weights
         {
-            warn.push(format!(
-                "nodes[{node}]: is animated but has a matrix; its own transform stays as it is"
+            warn.push(Warning::new(
+                Code::AnimationUnsupported,
+                format!(
+                    "nodes[{node}]: is animated but has a matrix; its own transform stays as it is"
+                ),
             ));
         }
         moving[node] = true;
@@ -252,7 +259,7 @@ fn target_count(document: &Document, node: u32) -> usize {
 }
 
 /// The node's own weights, else its mesh's, else zeros.
-fn weights_at_rest(document: &Document, node: u32, warn: &mut Vec<String>) -> Vec<f32> {
+fn weights_at_rest(document: &Document, node: u32, warn: &mut Vec<Warning>) -> Vec<f32> {
     let def = &document.nodes[node as usize];
     let of_mesh = def.mesh.map(|m| &document.meshes[m as usize].weights);
     let mut weights = match of_mesh {
@@ -261,9 +268,12 @@ fn weights_at_rest(document: &Document, node: u32, warn: &mut Vec<String>) -> Ve
     };
     let count = target_count(document, node);
     if !weights.is_empty() && weights.len() != count {
-        warn.push(format!(
-            "nodes[{node}]: has {} weights for {count} morph targets",
-            weights.len()
+        warn.push(Warning::new(
+            Code::MorphWeights,
+            format!(
+                "nodes[{node}]: has {} weights for {count} morph targets",
+                weights.len()
+            ),
         ));
     }
     weights.resize(count, 0.0);

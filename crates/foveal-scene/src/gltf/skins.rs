@@ -6,6 +6,7 @@ use super::accessor::Component;
 use super::document::Counts;
 use super::json::Obj;
 use super::reader::Reader;
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 use crate::pose::Skin;
 
@@ -26,7 +27,7 @@ impl SkinDef {
     /// The skin with its matrices; identity matrices where the file gives none.
     pub(crate) fn read(&self, reader: Reader<'_>) -> Parsed<Skin> {
         if self.joints.is_empty() {
-            return Err(Flaw::new("is empty").under("joints"));
+            return Err(Flaw::new(Code::Skin, "is empty").under("joints"));
         }
         let count = self.inverse_bind.map_or(0, |a| reader.accessor(a).count);
         let bytes = 128 * count.max(self.joints.len()) as u64;
@@ -34,7 +35,8 @@ impl SkinDef {
         let inverse_bind = match self.inverse_bind {
             Some(accessor) => {
                 if reader.accessor(accessor).component != Component::F32 {
-                    return Err(Flaw::new("is not of 32-bit floats").under("inverseBindMatrices"));
+                    return Err(Flaw::new(Code::AccessorType, "is not of 32-bit floats")
+                        .under("inverseBindMatrices"));
                 }
                 reader
                     .floats::<16>(accessor)
@@ -46,15 +48,19 @@ impl SkinDef {
             None => vec![Mat4::IDENTITY; self.joints.len()],
         };
         if inverse_bind.len() < self.joints.len() {
-            return Err(Flaw::new(format!(
-                "has {} matrices for {} joints",
-                inverse_bind.len(),
-                self.joints.len()
-            ))
+            return Err(Flaw::new(
+                Code::Skin,
+                format!(
+                    "has {} matrices for {} joints",
+                    inverse_bind.len(),
+                    self.joints.len()
+                ),
+            )
             .under("inverseBindMatrices"));
         }
         if !inverse_bind.iter().all(|m| m.is_finite()) {
-            return Err(Flaw::new("has a matrix that is not finite").under("inverseBindMatrices"));
+            return Err(Flaw::new(Code::Skin, "has a matrix that is not finite")
+                .under("inverseBindMatrices"));
         }
         Ok(Skin {
             joints: self.joints.clone(),

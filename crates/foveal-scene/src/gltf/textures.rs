@@ -14,7 +14,10 @@ use super::pictures::{self, Picture, Promise};
 use super::reader::Reader;
 use crate::error::{Flaw, Limit, Parsed, amount};
 use crate::mip::{self, Content};
-use crate::{AlphaMode, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, threads};
+use crate::{
+    AlphaMode, Code, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, Warning,
+    threads,
+};
 
 /// Why a material reads a texture; what its mip levels depend on.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
@@ -96,6 +99,11 @@ impl Wanted {
         }
     }
 
+    /// The pictures that are decoded, some of them several times.
+    pub(crate) fn images(&self) -> impl Iterator<Item = u32> {
+        self.keys.iter().filter_map(|key| key.image)
+    }
+
     /// The texture's number in the scene.
     fn number(&mut self, slot: SlotDef, role: Role, document: &Document) -> u32 {
         let texture = &document.textures[slot.texture as usize];
@@ -139,7 +147,7 @@ pub(crate) fn decode(
     reader: Reader<'_>,
     resolver: &Resolver<'_>,
     options: &LoadOptions,
-    warn: &mut Vec<String>,
+    warn: &mut Vec<Warning>,
 ) -> Parsed<Vec<Texture>> {
     let document = reader.document;
     let sources = sources(wanted, reader, resolver);
@@ -154,7 +162,7 @@ pub(crate) fn decode(
     let mut textures: Vec<(usize, Texture)> = Vec::new();
     for (one, source) in decoded.into_iter().zip(&sources) {
         let place = source.place(document);
-        warn.extend(one.notes.into_iter().map(|note| format!("{place}: {note}")));
+        warn.extend(one.notes.into_iter().map(|note| note.at(&place)));
         textures.extend(one.textures);
     }
     textures.sort_unstable_by_key(|(i, _)| *i);
@@ -237,7 +245,7 @@ fn plan(
     document: &Document,
     options: &LoadOptions,
     budget: &Budget,
-    warn: &mut Vec<String>,
+    warn: &mut Vec<Warning>,
 ) -> Parsed<Plan> {
     let limit = options.max_texture_bytes;
     let requested = options.max_texture_size.max(1);
@@ -268,11 +276,11 @@ fn plan(
         largest /= 2;
     }
     if largest < requested {
-        warn.push(format!(
+        warn.push(Warning::new(Code::TexturesReduced, format!(
             "images: want {} for textures; the limit is {}, and they are reduced to {largest} texels",
             amount(total(requested)),
             amount(limit)
-        ));
+        )));
     }
     let (total, decoding) = (total(largest), decoding(largest));
     let kept = kept(largest);
@@ -305,7 +313,7 @@ fn levels_to_drop(width: u32, height: u32, largest: u32) -> usize {
 /// What came of one picture.
 struct Finished {
     textures: Vec<(usize, Texture)>,
-    notes: Vec<String>,
+    notes: Vec<Warning>,
 }
 
 fn finish(
@@ -332,16 +340,22 @@ fn finish(
                 };
                 let texture = build(&wanted.keys[i], document, pixels, (width, height), largest);
                 if last && texture.width < width {
-                    notes.push(format!(
-                        "is {width} x {height} texels large and reduced to {} x {}",
-                        texture.width, texture.height
+                    notes.push(Warning::new(
+                        Code::TexturesReduced,
+                        format!(
+                            "is {width} x {height} texels large and reduced to {} x {}",
+                            texture.width, texture.height
+                        ),
                     ));
                 }
                 textures.push((i, texture));
             }
         }
         Err(cause) => {
-            notes.push(format!("{cause}; a placeholder is shown"));
+            notes.push(Warning::new(
+                Code::ImageUnreadable,
+                format!("{cause}; a placeholder is shown"),
+            ));
             for &i in uses {
                 let key = &wanted.keys[i];
                 let (pixels, side) = placeholder(key.role, wanted.only_emissive[i]);

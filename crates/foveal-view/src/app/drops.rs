@@ -19,7 +19,7 @@ fn sorted(files: impl IntoIterator<Item = PathBuf>) -> Sorted {
         let ending = file.extension().and_then(|e| e.to_str());
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         match ending.as_str() {
-            "gltf" | "glb" => found.scenes.push(file),
+            known if foveal_scene::ENDINGS.contains(&known) => found.scenes.push(file),
             "toml" => found.settings.push(file),
             _ => found.others.push(file),
         }
@@ -90,8 +90,10 @@ mod tests {
 
     #[test]
     fn files_are_told_apart_by_their_endings() {
-        let found = sorted(paths(&["a.GLB", "b.gltf", "c.toml", "d.png", "folder"]));
-        assert_eq!(found.scenes, paths(&["a.GLB", "b.gltf"]));
+        let found = sorted(paths(&[
+            "a.GLB", "b.gltf", "c.toml", "d.png", "e.obj", "folder",
+        ]));
+        assert_eq!(found.scenes, paths(&["a.GLB", "b.gltf", "e.obj"]));
         assert_eq!(found.settings, paths(&["c.toml"]));
         assert_eq!(found.others, paths(&["d.png", "folder"]));
     }

@@ -14,6 +14,7 @@ mod vertices;
 #[cfg(test)]
 mod tests;
 
+use crate::Code;
 use crate::error::{Flaw, Parsed};
 use crate::gltf::json::Obj;
 
@@ -63,7 +64,12 @@ impl Coded {
             "ATTRIBUTES" => Mode::Attributes,
             "TRIANGLES" => Mode::Triangles,
             "INDICES" => Mode::Indices,
-            other => return Err(Flaw::new(format!("\"{other}\" is not a mode")).under("mode")),
+            other => {
+                return Err(
+                    Flaw::new(Code::ValueUnknown, format!("\"{other}\" is not a mode"))
+                        .under("mode"),
+                );
+            }
         };
         let filter = match o.string("filter")? {
             None | Some("NONE") => Filter::None,
@@ -72,7 +78,10 @@ impl Coded {
             Some("EXPONENTIAL") => Filter::Exponential,
             Some("COLOR") => Filter::Color,
             Some(other) => {
-                return Err(Flaw::new(format!("\"{other}\" is not a filter")).under("filter"));
+                return Err(
+                    Flaw::new(Code::ValueUnknown, format!("\"{other}\" is not a filter"))
+                        .under("filter"),
+                );
             }
         };
         let coded = Self {
@@ -84,7 +93,10 @@ impl Coded {
             mode,
             filter,
         };
-        coded.check().map(|()| coded).map_err(Flaw::new)
+        coded
+            .check()
+            .map(|()| coded)
+            .map_err(|cause| Flaw::new(Code::ValueOutOfRange, cause))
     }
 
     fn check(&self) -> Result<(), String> {

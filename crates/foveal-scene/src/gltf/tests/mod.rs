@@ -2,6 +2,7 @@
 
 mod basis;
 mod clips;
+mod codes;
 mod compressed;
 mod geometry;
 mod hostile;
@@ -44,7 +45,7 @@ impl Loads for File {
 
 /// All warnings in one text.
 pub(super) fn warnings(scene: &Scene) -> String {
-    let texts: Vec<&str> = scene.warnings.iter().map(|w| w.0.as_str()).collect();
+    let texts: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
     texts.join("\n")
 }
 

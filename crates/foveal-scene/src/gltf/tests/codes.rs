@@ -1,0 +1,133 @@
+//! Codes of warnings and errors.
+
+use serde_json::json;
+
+use super::{File, Loads};
+use crate::{Code, LoadOptions, load_bytes};
+
+type Change = fn(&mut File);
+
+#[test]
+fn errors_have_the_code_of_their_cause() {
+    let cases: &[(Code, Change)] = &[
+        (Code::NodeCycle, |file| {
+            file.node()["children"] = json!([0]);
+        }),
+        (Code::IndexOutOfRange, |file| {
+            file.node()["mesh"] = json!(7);
+        }),
+        (Code::ValueType, |file| {
+            file.node()["translation"] = json!("left");
+        }),
+        (Code::ValueMissing, |file| {
+            file.push("accessors", json!({ "componentType": 5126 }));
+        }),
+        (Code::ValueUnknown, |file| {
+            file.push(
+                "accessors",
+                json!({ "componentType": 5126, "count": 1, "type": "VEC5" }),
+            );
+        }),
+        (Code::ExtensionRequired, |file| {
+            file.push("extensionsRequired", json!("ACME_surfaces"));
+        }),
+        (Code::BufferTooShort, |file| {
+            file.push(
+                "bufferViews",
+                json!({ "buffer": 0, "byteLength": 1_000_000_000 }),
+            );
+        }),
+    ];
+    for (code, change) in cases {
+        let mut file = File::with_triangle();
+        change(&mut file);
+        let error = file.load_with(&LoadOptions::default()).unwrap_err();
+        assert_eq!(error.code(), *code, "{error}");
+    }
+    let options = LoadOptions {
+        max_triangles: 0,
+        ..LoadOptions::default()
+    };
+    let error = File::with_triangle().load_with(&options).unwrap_err();
+    assert_eq!(error.code(), Code::LimitExceeded, "{error}");
+    let none = |_: &str| Err("no files".into());
+    let error = load_bytes(b"text", "a.glb", &LoadOptions::default(), &none).unwrap_err();
+    assert_eq!(error.code(), Code::NotGltf, "{error}");
+}
+
+#[test]
+fn warnings_have_the_code_of_their_cause() {
+    let cases: &[(Code, Change)] = &[
+        (Code::ExtensionIgnored, |file| {
+            file.push("extensionsUsed", json!("ACME_surfaces"));
+        }),
+        (Code::NodeTransform, |file| {
+            let one = glam::Mat4::IDENTITY.to_cols_array();
+            file.node()["matrix"] = json!(one);
+            file.node()["scale"] = json!([1, 1, 1]);
+        }),
+        (Code::ImageUnreadable, |file| {
+            file.push("images", json!({ "uri": "missing.png" }));
+            file.push("textures", json!({ "source": 0 }));
+            file.push(
+                "materials",
+                json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }),
+            );
+            file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+        }),
+        (Code::SceneEmpty, |file| {
+            file.json["meshes"][0]["primitives"][0]["mode"] = json!(0);
+        }),
+        // The fault of a part that is left out keeps its own code.
+        (Code::ValueOutOfRange, |file| {
+            file.push(
+                "cameras",
+                json!({ "type": "perspective", "perspective": { "yfov": -1, "znear": 1 } }),
+            );
+            file.node()["camera"] = json!(0);
+        }),
+    ];
+    for (code, change) in cases {
+        let mut file = File::with_triangle();
+        change(&mut file);
+        let scene = file.load();
+        let found: Vec<Code> = scene.warnings.iter().map(|w| w.code).collect();
+        assert!(found.contains(code), "{code}: {:?}", scene.warnings);
+    }
+}
+
+#[test]
+fn what_nothing_uses_is_checked_on_request_and_changes_nothing() {
+    let mut file = File::with_triangle();
+    let positions = file.floats(&[0., 0., 0., 1., 0., 0., 0., 1., 0.], "VEC3");
+    let indices = file.accessor(&[0, 0, 1, 0, 9, 0], 5123, "SCALAR", 3);
+    let primitive = json!({ "attributes": { "POSITION": positions }, "indices": indices });
+    file.push("meshes", json!({ "primitives": [primitive] }));
+    file.push("images", json!({ "uri": "missing.png" }));
+    let plain = file.load();
+    assert!(plain.warnings.is_empty(), "{:?}", plain.warnings);
+    let options = LoadOptions {
+        check_unused: true,
+        ..LoadOptions::default()
+    };
+    let scene = file.load_with(&options).unwrap();
+    let found: Vec<(Code, &str)> = scene
+        .warnings
+        .iter()
+        .map(|w| (w.code, w.text.as_str()))
+        .collect();
+    let expected = [
+        (
+            Code::TrianglesUnusable,
+            "meshes[1].primitives[0]: 1 of 1 triangles name vertices that do not exist or lie at no \
+             finite place, and are left out; nothing shown uses it",
+        ),
+        (
+            Code::ImageUnreadable,
+            "images[0] (missing.png): no files; nothing shown uses it",
+        ),
+    ];
+    assert_eq!(found, expected);
+    assert_eq!(scene.meshes.len(), plain.meshes.len());
+    assert!(scene.textures.is_empty());
+}

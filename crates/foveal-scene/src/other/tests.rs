@@ -1,0 +1,239 @@
+//! OBJ and PLY files made on the spot.
+
+use proptest::prelude::*;
+
+use crate::{AlphaMode, Code, LoadOptions, Scene, SceneError, load_bytes};
+
+fn load(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> Result<Scene, SceneError> {
+    let resolver = |uri: &str| {
+        let found = beside.iter().find(|(name, _)| *name == uri);
+        let found = found.map(|(_, text)| text.as_bytes().to_vec());
+        found.ok_or_else(|| format!("\"{uri}\" cannot be read: there is none"))
+    };
+    load_bytes(bytes, name, &LoadOptions::default(), &resolver)
+}
+
+const HOUSE: &str = "\
+mtllib house.mtl
+o wall
+v 0 0 0
+v 2 0 0
+v 2 2 0
+v 0 2 0
+vt 0 0.25
+vt 1 0.25
+vt 1 1
+vt 0 1
+usemtl brick
+f 1/1 2/2 3/3 4/4
+o roof
+v 0 2 0
+v 2 2 0
+v 1 3 0
+usemtl glass
+f -3 -2 -1
+";
+
+const HOUSE_MTL: &str = "\
+newmtl brick
+Kd 0.5 0.25 0.125
+Ns 6
+Ke 0 0.5 0
+map_Kd brick.png
+newmtl glass
+Kd 1 1 1
+d 0.5
+Pm 1
+Pr 0.25
+map_d leaf.png
+";
+
+#[test]
+fn an_obj_file_is_read_with_its_materials() {
+    let scene = load("house.obj", HOUSE.as_bytes(), &[("house.mtl", HOUSE_MTL)]).unwrap();
+    let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_str()).collect();
+    assert_eq!(names, ["wall", "roof"]);
+    assert_eq!(scene.triangle_count(), 3);
+    assert_eq!(scene.bounds().max.to_array(), [2.0, 3.0, 0.0]);
+    let wall = &scene.meshes[scene.instances[0].mesh as usize];
+    // Rows are counted from below in OBJ, from above in glTF.
+    assert!(wall.vertices.iter().any(|v| v.uv[0] == [1.0, 0.75]));
+    assert!(wall.vertices.iter().all(|v| v.normal == [0.0, 0.0, 1.0]));
+    let [brick, glass] = [0, 1].map(|i| &scene.materials[scene.instances[i].material as usize]);
+    assert_eq!(brick.base_color.to_array(), [0.5, 0.25, 0.125, 1.0]);
+    assert_eq!((brick.metallic, brick.alpha_mode), (0.0, AlphaMode::Opaque));
+    // sqrt(2 / (6 + 2)) = 1/2 is the square of glTF's roughness.
+    assert!((brick.roughness - 0.5f32.sqrt()).abs() < 1e-6);
+    assert_eq!(brick.emissive.to_array(), [0.0, 0.5, 0.0]);
+    assert_eq!((glass.metallic, glass.roughness), (1.0, 0.25));
+    assert_eq!(
+        (glass.alpha_mode, glass.base_color.w),
+        (AlphaMode::Blend, 0.5)
+    );
+    let sentence = "material glass: map_d is not read; the surface is shown without";
+    let warning = &scene.warnings[0];
+    assert_eq!(
+        (warning.code, &*warning.text),
+        (Code::MaterialIgnored, sentence)
+    );
+}
+
+#[test]
+fn a_missing_material_file_is_a_warning() {
+    let scene = load("house.OBJ", HOUSE.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.triangle_count(), 3);
+    let sentence = "mtllib: \"house.mtl\" cannot be read: there is none";
+    assert_eq!(scene.warnings[0].text, sentence);
+    assert_eq!(scene.warnings[0].code, Code::MaterialUnreadable);
+}
+
+#[test]
+fn pictures_of_an_obj_file_are_looked_for_beside_it() {
+    let material = "newmtl brick\nKd 0 0 0\nmap_Kd -s 2 2 1 wood\\#1.png\nnewmtl glass\n";
+    let scene = load("house.obj", HOUSE.as_bytes(), &[("house.mtl", material)]).unwrap();
+    let brick = &scene.materials[scene.instances[0].material as usize];
+    assert!(brick.base_color_texture.is_some());
+    assert_eq!(brick.base_color.to_array(), [1.0; 4]);
+    let text = &scene.warnings[0].text;
+    assert!(text.contains("\"wood/#1.png\" cannot be read"), "{text}");
+}
+
+const SQUARE: &str = "\
+ply
+format ascii 1.0
+comment TextureFile wood.png
+element vertex 4
+property float x
+property float y
+property double z
+property uchar red
+property uchar green
+property uchar blue
+property float s
+property float t
+element face 2
+property list uchar int vertex_indices
+end_header
+0 0 0 255 0 188 0 0
+1 0 0 255 0 188 1 0
+1 1 0 255 0 188 1 1
+0 1 0 255 0 188 0 1
+4 0 1 2 3
+3 0 1 9
+";
+
+#[test]
+fn a_ply_file_is_read_with_colours_and_texture_coordinates() {
+    let scene = load("square.ply", SQUARE.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.triangle_count(), 2);
+    let vertices = &scene.meshes[0].vertices;
+    let corner = vertices.iter().find(|v| v.position == [1.0, 1.0, 0.0]);
+    let corner = corner.unwrap();
+    assert_eq!(corner.uv[0], [1.0, 0.0]);
+    assert_eq!(corner.normal, [0.0, 0.0, 1.0]);
+    let [red, green, blue, _] = corner.color;
+    assert_eq!((red, green), (255, 0));
+    // IEC 61966-2-1: 188 of 255 is half of the light.
+    assert!(blue.abs_diff(128) <= 1, "{blue}");
+    let text = "1 of 2 faces have fewer than three corners or name vertices that do not exist, and are left out";
+    assert_eq!(scene.warnings[0].text, text);
+}
+
+/// The square without colours in binary.
+fn binary(big_endian: bool) -> Vec<u8> {
+    let order = if big_endian { "big" } else { "little" };
+    let mut out = format!(
+        "ply\nformat binary_{order}_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+         property float z\nelement junk 1\nproperty list uchar uchar x\nelement face 1\n\
+         property list uchar uint vertex_index\nend_header\n"
+    )
+    .into_bytes();
+    let mut word = |bits: u32| {
+        out.extend(if big_endian {
+            bits.to_be_bytes()
+        } else {
+            bits.to_le_bytes()
+        });
+    };
+    for x in [0.0f32, 0., 0., 1., 0., 0., 0., 1., 0.] {
+        word(x.to_bits());
+    }
+    out.extend([2, 7, 7, 3]);
+    for index in [0u32, 1, 2] {
+        let bytes = if big_endian {
+            index.to_be_bytes()
+        } else {
+            index.to_le_bytes()
+        };
+        out.extend(bytes);
+    }
+    out
+}
+
+#[test]
+fn binary_ply_files_of_either_byte_order_are_read() {
+    for big_endian in [false, true] {
+        // Known by its first line, whatever its name is.
+        let scene = load("scan.bin", &binary(big_endian), &[]).unwrap();
+        assert_eq!(scene.triangle_count(), 1);
+        assert_eq!(scene.bounds().max.to_array(), [1.0, 1.0, 0.0]);
+    }
+}
+
+#[test]
+fn broken_files_are_named_with_their_format() {
+    let refusal = |name: &str, text: &str| {
+        let error = load(name, text.as_bytes(), &[]).unwrap_err();
+        assert_eq!(error.code(), Code::NotMesh, "{error}");
+        error.to_string()
+    };
+    let text = refusal("a.obj", "v 1 2\nf 1 2 3\n");
+    assert!(text.starts_with("a.obj is not OBJ: "), "{text}");
+    let many = SQUARE.replace("vertex 4", "vertex 4000000000");
+    assert_eq!(
+        refusal("a.ply", &many),
+        format!(
+            "a.ply is not PLY: element vertex promises 4000000000 of them in {} bytes",
+            many.len()
+        )
+    );
+    let endless = "ply\nformat binary_little_endian 1.0\nelement x 5\nend_header\n";
+    assert_eq!(
+        refusal("a.ply", endless),
+        "a.ply is not PLY: element x has no properties"
+    );
+    let cut = &SQUARE[..SQUARE.len() - 20];
+    assert!(!refusal("a.ply", cut).contains('\n'));
+}
+
+#[test]
+fn points_alone_are_a_warning() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n";
+    let scene = load("points.ply", text.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.warnings[0].code, Code::PrimitiveMode);
+    assert_eq!(scene.triangle_count(), 0);
+}
+
+proptest! {
+    #[test]
+    fn changed_files_never_panic(
+        changes in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        kind in 0..4usize,
+    ) {
+        let (name, mut bytes) = match kind {
+            0 => ("a.obj", HOUSE.as_bytes().to_vec()),
+            1 => ("a.ply", SQUARE.as_bytes().to_vec()),
+            2 => ("a.ply", binary(true)),
+            _ => ("a.obj", HOUSE_MTL.replace("newmtl", "usemtl").into_bytes()),
+        };
+        let mut material = HOUSE_MTL.as_bytes().to_vec();
+        for (at, byte) in changes {
+            let i = at.index(bytes.len());
+            bytes[i] = byte;
+            let i = at.index(material.len());
+            material[i] = byte;
+        }
+        let material = String::from_utf8_lossy(&material).into_owned();
+        let _ = load(name, &bytes, &[("house.mtl", &material)]);
+    }
+}
