@@ -1,5 +1,6 @@
 //! Wavefront OBJ and MTL, read by the crate `tobj`.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::io::BufReader;
 
@@ -21,6 +22,7 @@ pub(super) fn convert(
         ignore_points: true,
         ignore_lines: true,
     };
+    let bytes = &*without_nameless_materials(bytes);
     let missing = RefCell::new(Vec::new());
     let (models, materials) = tobj::load_obj_buf(&mut BufReader::new(bytes), &options, |path| {
         let name = path.to_string_lossy().replace('\\', "/");
@@ -49,6 +51,10 @@ pub(super) fn convert(
     for material in &materials {
         let material = surface(material, &mut builder, &mut notes);
         builder.materials.push(material);
+    }
+    if models.iter().all(|model| model.mesh.indices.is_empty()) {
+        let text = "has no faces: points and lines are not drawn";
+        notes.push(Warning::new(Code::PrimitiveMode, text));
     }
     for model in models {
         let place = |what: &str| format!("object {}: {what}", model.name);
@@ -87,6 +93,22 @@ pub(super) fn convert(
         builder.object(&model.name, primitive);
     }
     Ok((builder.glb()?, notes))
+}
+
+/// The file without `usemtl` lines that name nothing, which Rhino writes and the parser refuses.
+fn without_nameless_materials(bytes: &[u8]) -> Cow<'_, [u8]> {
+    let is_nameless = |line: &[u8]| line.trim_ascii() == b"usemtl";
+    if !bytes.split(|&b| b == b'\n').any(is_nameless) {
+        return Cow::Borrowed(bytes);
+    }
+    let lines = bytes.split_inclusive(|&b| b == b'\n');
+    Cow::Owned(
+        lines
+            .filter(|line| !is_nameless(line))
+            .flatten()
+            .copied()
+            .collect(),
+    )
 }
 
 /// Whether each list is empty or has an element for each vertex.

@@ -79,6 +79,21 @@ fn an_obj_file_is_read_with_its_materials() {
 }
 
 #[test]
+fn a_material_without_a_name_is_none() {
+    let text = HOUSE.replace("usemtl brick", "usemtl \r");
+    let scene = load("house.obj", text.as_bytes(), &[("house.mtl", HOUSE_MTL)]).unwrap();
+    assert_eq!(scene.triangle_count(), 3);
+    let wall = &scene.materials[scene.instances[0].material as usize];
+    assert_eq!(wall.base_color.to_array(), [1.0; 4]);
+}
+
+#[test]
+fn lines_alone_are_a_warning() {
+    let scene = load("a.obj", b"v 0 0 0\nv 1 0 0\nl 1 2\n", &[]).unwrap();
+    assert_eq!(scene.warnings[0].code, Code::PrimitiveMode);
+}
+
+#[test]
 fn a_missing_material_file_is_a_warning() {
     let scene = load("house.OBJ", HOUSE.as_bytes(), &[]).unwrap();
     assert_eq!(scene.triangle_count(), 3);
