@@ -102,16 +102,16 @@ fn scene_info_gives_warnings_and_errors_with_their_codes() {
     let folder = folder();
     common::moving_triangle(folder.path());
     let path = folder.path().join("triangle.gltf");
-    let text = std::fs::read_to_string(&path).unwrap();
+    let text = fs::read_to_string(&path).unwrap();
     let used = text.replace("\"asset\"", "\"extensionsUsed\": [\"ACME_x\"], \"asset\"");
-    std::fs::write(&path, used).unwrap();
+    fs::write(&path, used).unwrap();
     let words = ["scene", "info", "triangle.gltf", "--json"];
     let info: Value = serde_json::from_str(&stdout(&succeed(folder.path(), &words))).unwrap();
     assert_eq!(info["warnings"][0]["code"], "EXTENSION_IGNORED");
     let sentence = "extensionsUsed: ACME_x is not supported; the file is shown without it";
     assert_eq!(info["warnings"][0]["text"], sentence);
 
-    std::fs::write(&path, "[]").unwrap();
+    fs::write(&path, "[]").unwrap();
     let output = common::foveal_in(folder.path(), &words);
     assert_eq!(output.status.code(), Some(1));
     let said: Value = serde_json::from_str(&stdout(&output)).unwrap();
@@ -120,7 +120,7 @@ fn scene_info_gives_warnings_and_errors_with_their_codes() {
     assert!(common::stderr(&output).contains(text), "{said}");
 
     let flags = [&words[..], &["--max-triangles", "0"]].concat();
-    std::fs::remove_file(&path).unwrap();
+    fs::remove_file(&path).unwrap();
     common::moving_triangle(folder.path());
     let output = common::foveal_in(folder.path(), &flags);
     let said: Value = serde_json::from_str(&stdout(&output)).unwrap();

@@ -37,6 +37,8 @@ pub(super) struct Found {
     /// programs take their share of it, that is steadier.
     pub(super) work: Option<Comparison>,
     pub(super) nearness: Nearness,
+    /// What the renderer said of a technique that turned itself off; empty where none did.
+    pub(super) notice: String,
 }
 
 impl Found {
@@ -93,8 +95,13 @@ pub(super) fn decide(aim: Aim, measured: &Measured) -> (Decision, String) {
             Decision::BetterButSlower,
             format!("smoother edges; {subject}: {gain}"),
         ),
-        (Finding::NoDifference, Aim::Faster) => (Decision::Skip, format!("{subject}: {gain}")),
-        (Finding::Slower, Aim::Faster) => (Decision::Skip, format!("{subject}: {gain}")),
+        (Finding::NoDifference | Finding::Slower, Aim::Faster) => {
+            let mut why = format!("{subject}: {gain}");
+            if !measured.notice.is_empty() {
+                why = format!("{why}; {}", measured.notice);
+            }
+            (Decision::Skip, why)
+        }
     }
 }
 
@@ -115,7 +122,17 @@ mod tests {
             frame: Comparison::of(&pairs).unwrap(),
             work: None,
             nearness: Nearness { flip, jod: None },
+            notice: String::new(),
         })
+    }
+
+    #[test]
+    fn a_technique_that_turned_itself_off_is_named() {
+        let mut found = measured(20.0, 20.0, 0.0, 20);
+        found.as_mut().unwrap().notice = "coarse shading is off".to_owned();
+        let (decision, why) = decide(Aim::Faster, &found);
+        assert_eq!(decision, Decision::Skip);
+        assert!(why.ends_with("; coarse shading is off"), "{why}");
     }
 
     #[test]

@@ -16,6 +16,8 @@ struct Side {
     settings: Settings,
     frame_ms: Vec<f64>,
     work_ms: Vec<f64>,
+    /// What the last frame said of a technique that turned itself off.
+    notice: String,
 }
 
 /// Draws the plain settings and the others in turn; what each of the others turned out to be.
@@ -80,10 +82,13 @@ pub(super) fn measure(
             let Some(frame) = compared(&plain.frame_ms, &side.frame_ms) else {
                 return Ok(Err("no time could be taken".to_owned()));
             };
+            // The picture's own frames rest, and say nothing of those that were timed.
+            let notice = std::mem::take(&mut side.notice);
             let work = processor_draws.then(|| compared(&plain.work_ms, &side.work_ms));
             Ok(Ok(Found {
                 frame,
                 work: work.flatten(),
+                notice,
                 nearness: Nearness::of(&reference, &side.picture(camera)?),
             }))
         })
@@ -98,6 +103,7 @@ impl Side {
             settings: settings.clone(),
             frame_ms: Vec::new(),
             work_ms: Vec::new(),
+            notice: String::new(),
         })
     }
 
@@ -107,6 +113,13 @@ impl Side {
         let stats: FrameStats = block_on(self.renderer.render(&frame))?;
         self.work_ms.push(process_ms() - before_ms);
         self.frame_ms.push(stats.frame_ms);
+        let coarse = stats.coarse.map(|coarse| coarse.notice);
+        let variable = stats.variable.map(|variable| variable.notice);
+        let said = [coarse, variable].into_iter().flatten();
+        self.notice = said
+            .filter(|notice| !notice.is_empty())
+            .collect::<Vec<_>>()
+            .join("; ");
         Ok(())
     }
 

@@ -140,7 +140,7 @@ mod tests {
             assert!(scene.triangle_count() > 0, "seed {i}");
             for warning in &scene.warnings {
                 assert!(
-                    warning.0.contains("SpecularGlossiness"),
+                    warning.text.contains("SpecularGlossiness"),
                     "seed {i}: {warning}"
                 );
             }
