@@ -116,9 +116,31 @@ impl fmt::Display for Limited {
 
 impl std::error::Error for Limited {}
 
+/// A word that is neither a file nor a generated scene's name.
+#[derive(Debug)]
+pub(crate) struct NoSuchScene {
+    pub(crate) name: String,
+}
+
+impl fmt::Display for NoSuchScene {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "there is no scene '{}': neither a file of that name nor a generated scene; generated are {}",
+            self.name,
+            foveal_generate::NAMES.join(", ")
+        )
+    }
+}
+
+impl std::error::Error for NoSuchScene {}
+
 /// The code of an error, where it is about a scene's file.
 #[must_use]
 pub fn code_of(error: &anyhow::Error) -> Option<Code> {
+    if error.is::<NoSuchScene>() {
+        return Some(Code::FileUnreadable);
+    }
     let limited = error
         .downcast_ref::<Limited>()
         .map(|limited| &limited.error);

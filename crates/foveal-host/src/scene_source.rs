@@ -10,7 +10,7 @@ use foveal_generate as generate;
 use foveal_generate::{DemoOptions, GenerateError};
 use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene};
 
-use crate::import_args;
+use crate::import_args::{self, NoSuchScene};
 
 /// What is drawn without SCENE.
 pub const DEFAULT_SCENE: &str = "demo";
@@ -66,10 +66,10 @@ fn from_file(
     let path = Path::new(name);
     // One that may not be looked at is for the reader to name.
     if matches!(path.try_exists(), Ok(false)) {
-        bail!(
-            "there is no scene '{name}': neither a file of that name nor a generated scene; generated are {}",
-            generate::NAMES.join(", ")
-        );
+        return Err(NoSuchScene {
+            name: name.to_owned(),
+        }
+        .into());
     }
     let scene = foveal_scene::load(path, options).map_err(import_args::with_flag)?;
     add_timings(&scene, load_ms);

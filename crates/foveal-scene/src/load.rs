@@ -64,9 +64,8 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only, only what
-    /// is shown; 4 GiB of
-    /// files, 8192-texel textures, 4 GiB of them, 64 Mi vertices, 4 Mi instances, 4 Gi triangles,
-    /// 256 bytes per byte.
+    /// is shown; 4 GiB of files, 8192-texel textures, 4 GiB of them, 64 Mi vertices, 4 Mi instances,
+    /// 4 Gi triangles, 256 bytes per byte.
     fn default() -> Self {
         Self {
             time_s: 0.0,
@@ -88,7 +87,12 @@ impl Default for LoadOptions {
 }
 
 /// Endings of the names of files that [`load`] reads, in lower case.
+#[cfg(not(target_arch = "wasm32"))]
 pub const ENDINGS: &[&str] = &["gltf", "glb", "obj", "ply"];
+
+/// Endings of the names of files that [`load`] reads, in lower case.
+#[cfg(target_arch = "wasm32")]
+pub const ENDINGS: &[&str] = &["gltf", "glb"];
 
 /// Loads a glTF 2.0 scene: `.glb`, or `.gltf` with data URIs or external files beside it; or, not
 /// on WebAssembly, a mesh: Wavefront `.obj` with its `.mtl`, or a Stanford `.ply`.
@@ -98,8 +102,8 @@ pub const ENDINGS: &[&str] = &["gltf", "glb", "obj", "ply"];
 /// (a neutral value as anything else). Nodes without geometry, lights or cameras leave no trace.
 ///
 /// # Errors
-/// When the file cannot be read, is not of the format that it should be, contradicts itself so that no sensible picture
-/// can be made, requires an unsupported extension, or is beyond a limit of `options`.
+/// When the file cannot be read, is not of the format that it should be, contradicts itself so that
+/// no sensible picture can be made, requires an unsupported extension, or is beyond a limit of `options`.
 pub fn load(path: &Path, options: &LoadOptions) -> Result<Scene, SceneError> {
     let watch = crate::timings::Stopwatch::start();
     let file = path.display().to_string();
@@ -157,13 +161,14 @@ fn import(
 ) -> Result<Scene, SceneError> {
     #[cfg(not(target_arch = "wasm32"))]
     if let Some(format) = crate::other::Format::of(file, bytes) {
-        let (glb, mut warnings) = format.to_glb(bytes, file, resolver)?;
-        let mut scene = gltf::import(&glb, file, options, resolver)?;
-        warnings.append(&mut scene.warnings);
-        scene.warnings = gltf::limited(warnings);
+        let watch = crate::timings::Stopwatch::start();
+        let (glb, notes) = format.to_glb(bytes, file, options, resolver)?;
+        let convert_ms = watch.elapsed_ms();
+        let mut scene = gltf::import(&glb, file, notes, options, resolver)?;
+        scene.timings.parse_ms += convert_ms;
         return Ok(scene);
     }
-    gltf::import(bytes, file, options, resolver)
+    gltf::import(bytes, file, Vec::new(), options, resolver)
 }
 
 /// Reads a regular file, as long as `allowance` bytes suffice, and takes its size from them.

@@ -2,7 +2,7 @@
 //! picture.
 
 mod capturing;
-mod drops;
+pub(crate) mod drops;
 mod files;
 mod hands;
 #[cfg(test)]

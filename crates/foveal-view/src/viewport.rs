@@ -7,6 +7,7 @@ use egui::{
 use foveal::{DebugView, RateSource};
 
 use crate::app::App;
+use crate::app::drops::endings;
 use crate::navigator::Hands;
 use crate::{boxes, legend, look};
 
@@ -262,7 +263,7 @@ fn drop_here(ui: &egui::Ui, place: Rect) {
     painter.text(
         place.center(),
         Align2::CENTER_CENTER,
-        "Drop scenes (.gltf, .glb) or settings (.toml)",
+        format!("Drop scenes ({}) or settings (.toml)", endings()),
         egui::FontId::proportional(16.0),
         look::TEXT,
     );

@@ -66,17 +66,18 @@ pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 
 /// More warnings than this say no more.
 const MAX_WARNINGS: usize = 100;
 
-/// Reads a whole file. `file` is its name for messages.
+/// Reads a whole file. `file` is its name for messages, `warn` what is known of it before.
 pub(crate) fn import(
     bytes: &[u8],
     file: &str,
+    warn: Vec<Warning>,
     options: &LoadOptions,
     resolver: &Resolver<'_>,
 ) -> Result<Scene, SceneError> {
     // The last net. Bad input is found by checks; what slips through must still not end the
     // program.
     catch_unwind(AssertUnwindSafe(|| {
-        import_checked(bytes, file, options, resolver)
+        import_checked(bytes, file, warn, options, resolver)
     }))
     .unwrap_or_else(|panic| {
         let text = panic
@@ -93,6 +94,7 @@ pub(crate) fn import(
 fn import_checked(
     bytes: &[u8],
     file: &str,
+    mut warn: Vec<Warning>,
     options: &LoadOptions,
     resolver: &Resolver<'_>,
 ) -> Result<Scene, SceneError> {
@@ -104,7 +106,7 @@ fn import_checked(
     let container = container::split(bytes).map_err(not_gltf)?;
     let root = serde_json::from_slice(container.json)
         .map_err(|e| not_gltf(format!("its JSON is broken: {e}")))?;
-    let mut warn = container.notes;
+    warn.extend(container.notes);
     let mut document = Document::parse(&root, &mut warn).map_err(|e| e.in_file(file))?;
     if let Some(variant) = &options.variant {
         document
@@ -142,7 +144,7 @@ fn import_checked(
 }
 
 /// Each warning once, and not more than anyone reads.
-pub(crate) fn limited(mut warnings: Vec<Warning>) -> Vec<Warning> {
+fn limited(mut warnings: Vec<Warning>) -> Vec<Warning> {
     let mut seen = HashSet::new();
     warnings.retain(|warning| seen.insert(warning.clone()));
     if warnings.len() > MAX_WARNINGS {

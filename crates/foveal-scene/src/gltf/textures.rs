@@ -135,7 +135,7 @@ impl Wanted {
 struct Source<'a> {
     image: Option<u32>,
     /// Its file, and what the header promises; or why it cannot be had.
-    encoded: Result<(Cow<'a, [u8]>, Promise), String>,
+    encoded: Result<(Cow<'a, [u8]>, Promise), Flaw>,
     /// Numbers of the textures made from it.
     uses: Vec<usize>,
 }
@@ -154,8 +154,8 @@ pub(crate) fn decode(
     let plan = plan(&sources, document, options, &reader.buffers.budget, warn)?;
     let decoded = threads::map_few(options.parallel, plan.at_once, &sources, |source| {
         let picture = match &source.encoded {
-            Ok((bytes, promise)) => pictures::decode(bytes, *promise),
-            Err(cause) => Err(cause.clone()),
+            Ok((bytes, promise)) => pictures::decode(bytes, *promise).map_err(unreadable),
+            Err(flaw) => Err(flaw.clone()),
         };
         finish(picture, &source.uses, wanted, document, plan.largest)
     });
@@ -176,12 +176,10 @@ fn sources<'a>(wanted: &Wanted, reader: Reader<'a>, resolver: &Resolver<'_>) -> 
     let mut number: HashMap<Option<u32>, usize> = HashMap::new();
     for (i, key) in wanted.keys.iter().enumerate() {
         let at = *number.entry(key.image).or_insert_with(|| {
-            let encoded = pictures::fetch(key.image, reader, resolver)
-                .map_err(|flaw| flaw.cause)
-                .and_then(|bytes| {
-                    let promise = pictures::promise(&bytes)?;
-                    Ok((bytes, promise))
-                });
+            let encoded = pictures::fetch(key.image, reader, resolver).and_then(|bytes| {
+                let promise = pictures::promise(&bytes).map_err(unreadable)?;
+                Ok((bytes, promise))
+            });
             sources.push(Source {
                 image: key.image,
                 encoded,
@@ -310,6 +308,11 @@ fn levels_to_drop(width: u32, height: u32, largest: u32) -> usize {
     drop
 }
 
+/// A picture's bytes are no picture.
+fn unreadable(cause: String) -> Flaw {
+    Flaw::new(Code::ImageUnreadable, cause)
+}
+
 /// What came of one picture.
 struct Finished {
     textures: Vec<(usize, Texture)>,
@@ -317,7 +320,7 @@ struct Finished {
 }
 
 fn finish(
-    picture: Result<Picture, String>,
+    picture: Parsed<Picture>,
     uses: &[usize],
     wanted: &Wanted,
     document: &Document,
@@ -351,11 +354,9 @@ fn finish(
                 textures.push((i, texture));
             }
         }
-        Err(cause) => {
-            notes.push(Warning::new(
-                Code::ImageUnreadable,
-                format!("{cause}; a placeholder is shown"),
-            ));
+        Err(flaw) => {
+            let text = format!("{}; a placeholder is shown", flaw.cause);
+            notes.push(Warning::new(flaw.code, text));
             for &i in uses {
                 let key = &wanted.keys[i];
                 let (pixels, side) = placeholder(key.role, wanted.only_emissive[i]);

@@ -1,41 +1,62 @@
 //! A GLB file in the making.
 
-use serde_json::{Value, json};
+use std::collections::HashMap;
+use std::fmt::{Display, Write as _};
+
+use serde_json::json;
 
 /// Component types of accessors (glTF 2.0 specification, section 3.6.2.2).
 const UNSIGNED_INT: u32 = 5125;
 const FLOAT: u32 = 5126;
 
+/// A list of JSON, as text: trees of it would take many times the memory.
+#[derive(Default)]
+struct List {
+    text: String,
+    len: usize,
+}
+
+impl List {
+    /// Adds an entry and returns its number.
+    fn push(&mut self, entry: impl Display) -> usize {
+        let comma = if self.len == 0 { "" } else { "," };
+        let _ = write!(self.text, "{comma}{entry}");
+        self.len += 1;
+        self.len - 1
+    }
+}
+
 /// Lists of a glTF document, and its binary part.
 #[derive(Default)]
 pub(super) struct Builder {
     bin: Vec<u8>,
-    views: Vec<Value>,
-    accessors: Vec<Value>,
-    images: Vec<Value>,
-    textures: Vec<Value>,
-    pub(super) materials: Vec<Value>,
-    meshes: Vec<Value>,
-    nodes: Vec<Value>,
+    views: List,
+    accessors: List,
+    images: List,
+    textures: List,
+    materials: List,
+    meshes: List,
+    nodes: List,
+    texture_of: HashMap<String, usize>,
 }
 
 impl Builder {
     fn accessor(&mut self, bytes: &[u8], component: u32, kind: &str, count: usize) -> usize {
-        self.views.push(json!({
-            "buffer": 0, "byteOffset": self.bin.len(), "byteLength": bytes.len()
-        }));
+        let (start, len) = (self.bin.len(), bytes.len());
+        let view = self.views.push(format_args!(
+            "{{\"buffer\":0,\"byteOffset\":{start},\"byteLength\":{len}}}"
+        ));
         self.bin.extend_from_slice(bytes);
-        self.accessors.push(json!({
-            "bufferView": self.views.len() - 1, "componentType": component, "count": count,
-            "type": kind
-        }));
-        self.accessors.len() - 1
+        self.accessors.push(format_args!(
+            "{{\"bufferView\":{view},\"componentType\":{component},\"count\":{count},\"type\":\"{kind}\"}}"
+        ))
     }
 
     /// Vectors of `N` numbers each.
-    pub(super) fn vectors<const N: usize>(&mut self, values: &[f32]) -> usize {
+    pub(super) fn vectors<const N: usize>(&mut self, values: &[[f32; N]]) -> usize {
         let kind = ["SCALAR", "VEC2", "VEC3", "VEC4"][N - 1];
-        self.accessor(bytemuck::cast_slice(values), FLOAT, kind, values.len() / N)
+        let numbers: &[f32] = values.as_flattened();
+        self.accessor(bytemuck::cast_slice(numbers), FLOAT, kind, values.len())
     }
 
     pub(super) fn indices(&mut self, values: &[u32]) -> usize {
@@ -45,44 +66,57 @@ impl Builder {
 
     /// The number of a texture that shows the picture in a file beside the scene.
     pub(super) fn texture(&mut self, file: &str) -> usize {
+        if let Some(number) = self.texture_of.get(file) {
+            return *number;
+        }
         // Exporters for Windows write its separators.
         let uri = file.replace('\\', "/");
         let uri = percent_encoding::utf8_percent_encode(&uri, ESCAPED).to_string();
-        let known = self.images.iter().position(|image| image["uri"] == *uri);
-        known.unwrap_or_else(|| {
-            self.images.push(json!({ "uri": uri }));
-            self.textures
-                .push(json!({ "source": self.images.len() - 1 }));
-            self.textures.len() - 1
-        })
+        let image = self.images.push(json!({ "uri": uri }));
+        let number = self.textures.push(json!({ "source": image }));
+        self.texture_of.insert(file.to_owned(), number);
+        number
+    }
+
+    pub(super) fn material(&mut self, material: &serde_json::Value) -> usize {
+        self.materials.push(material)
     }
 
     /// A mesh of one primitive at a node of its own.
-    pub(super) fn object(&mut self, name: &str, primitive: Value) {
-        self.meshes
-            .push(json!({ "name": name, "primitives": [primitive] }));
+    pub(super) fn object(&mut self, name: &str, primitive: &serde_json::Value) {
+        let name = json!(name);
+        let mesh = self.meshes.push(format_args!(
+            "{{\"name\":{name},\"primitives\":[{primitive}]}}"
+        ));
         self.nodes
-            .push(json!({ "name": name, "mesh": self.meshes.len() - 1 }));
+            .push(format_args!("{{\"name\":{name},\"mesh\":{mesh}}}"));
     }
 
     /// The file's bytes; an error where they are more than a GLB may have.
     pub(super) fn glb(mut self) -> Result<Vec<u8>, String> {
-        let mut root = json!({
-            "asset": { "version": "2.0" },
-            "scene": 0,
-            "scenes": [{ "nodes": (0..self.nodes.len()).collect::<Vec<_>>() }],
-            "nodes": self.nodes,
-            "meshes": self.meshes,
-            "materials": self.materials,
-            "textures": self.textures,
-            "images": self.images,
-            "accessors": self.accessors,
-            "bufferViews": self.views,
-        });
-        if !self.bin.is_empty() {
-            root["buffers"] = json!([{ "byteLength": self.bin.len() }]);
+        let mut roots = List::default();
+        for node in 0..self.nodes.len {
+            roots.push(node);
         }
-        let mut json = root.to_string().into_bytes();
+        let mut json = String::from("{\"asset\":{\"version\":\"2.0\"},\"scene\":0");
+        let _ = write!(json, ",\"scenes\":[{{\"nodes\":[{}]}}]", roots.text);
+        for (name, list) in [
+            ("nodes", &self.nodes),
+            ("meshes", &self.meshes),
+            ("materials", &self.materials),
+            ("textures", &self.textures),
+            ("images", &self.images),
+            ("accessors", &self.accessors),
+            ("bufferViews", &self.views),
+        ] {
+            let _ = write!(json, ",\"{name}\":[{}]", list.text);
+        }
+        if !self.bin.is_empty() {
+            let len = self.bin.len();
+            let _ = write!(json, ",\"buffers\":[{{\"byteLength\":{len}}}]");
+        }
+        json.push('}');
+        let mut json = json.into_bytes();
         json.resize(json.len().next_multiple_of(4), b' ');
         self.bin.resize(self.bin.len().next_multiple_of(4), 0);
         let of_bin = if self.bin.is_empty() {
@@ -91,7 +125,7 @@ impl Builder {
             8 + self.bin.len()
         };
         let total = 12 + 8 + json.len() + of_bin;
-        let total = u32::try_from(total).map_err(|_| "it is larger than 4 GB".to_owned())?;
+        let total = u32::try_from(total).map_err(|_| "takes more than 4 GB as glTF".to_owned())?;
         let mut out = Vec::with_capacity(total as usize);
         let words = |out: &mut Vec<u8>, words: &[u32]| {
             for word in words {

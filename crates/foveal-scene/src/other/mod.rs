@@ -2,6 +2,7 @@
 //! and completes (normals, tangents, mip levels, limits) as it does any other.
 
 mod builder;
+mod mtl;
 mod obj;
 mod ply;
 
@@ -10,8 +11,12 @@ mod tests;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use crate::error::{Limit, amount};
 use crate::gltf::Resolver;
-use crate::{SceneError, Warning};
+use crate::{LoadOptions, SceneError, Warning};
+
+/// Memory that any file may ask for, however short it is; the importer's own allowance.
+const FREE_BYTES: u64 = 160 << 20;
 
 /// A format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,13 +27,31 @@ pub(crate) enum Format {
     Ply,
 }
 
+/// Why a file cannot be converted.
+pub(crate) enum Refusal {
+    /// It is not of the format.
+    Broken(String),
+    /// It asks for more than a limit, where it has one of the options.
+    TooLarge(Option<Limit>, String),
+}
+
+impl From<String> for Refusal {
+    fn from(cause: String) -> Self {
+        Self::Broken(cause)
+    }
+}
+
 impl Format {
     /// The format of a file by its ending, or by its first line where it is a PLY file.
     pub(crate) fn of(name: &str, bytes: &[u8]) -> Option<Self> {
         let ending = name.rsplit_once('.').map_or("", |(_, ending)| ending);
+        let is_gltf = bytes.starts_with(b"glTF") || bytes.starts_with(b"{");
         if ending.eq_ignore_ascii_case("obj") {
             Some(Self::Obj)
-        } else if bytes.starts_with(b"ply\n") || bytes.starts_with(b"ply\r") {
+        } else if ending.eq_ignore_ascii_case("ply") && !is_gltf
+            || bytes.starts_with(b"ply\n")
+            || bytes.starts_with(b"ply\r\n")
+        {
             Some(Self::Ply)
         } else {
             None
@@ -47,19 +70,68 @@ impl Format {
         self,
         bytes: &[u8],
         file: &str,
+        options: &LoadOptions,
         resolver: &Resolver<'_>,
     ) -> Result<(Vec<u8>, Vec<Warning>), SceneError> {
         let convert = || match self {
-            Self::Obj => obj::convert(bytes, resolver),
-            Self::Ply => ply::convert(bytes),
+            Self::Obj => obj::convert(bytes, options, resolver),
+            Self::Ply => ply::convert(bytes, options),
         };
         // The decoders promise not to panic; should they, this file is broken and nothing else.
-        catch_unwind(AssertUnwindSafe(convert))
-            .unwrap_or_else(|_| Err("the decoder failed".to_owned()))
-            .map_err(|cause| SceneError::NotMesh {
-                file: file.to_owned(),
+        let refusal = match catch_unwind(AssertUnwindSafe(convert)) {
+            Ok(Ok(converted)) => return Ok(converted),
+            Ok(Err(refusal)) => refusal,
+            Err(_) => Refusal::Broken("the decoder failed".to_owned()),
+        };
+        let file = file.to_owned();
+        Err(match refusal {
+            Refusal::Broken(cause) => SceneError::NotMesh {
+                file,
                 format: self.name(),
                 cause,
-            })
+            },
+            Refusal::TooLarge(limit, cause) => SceneError::TooLarge {
+                file,
+                place: "file".to_owned(),
+                cause,
+                limit,
+            },
+        })
+    }
+}
+
+/// An error where `count` things of `each` bytes are more than a file of its size may ask for.
+fn check_memory(
+    what: &str,
+    count: usize,
+    each: u64,
+    input: usize,
+    options: &LoadOptions,
+) -> Result<(), Refusal> {
+    let allowed = FREE_BYTES.saturating_add(options.max_expansion.saturating_mul(input as u64));
+    let wanted = each.saturating_mul(count as u64);
+    if wanted <= allowed {
+        return Ok(());
+    }
+    let cause = format!(
+        "wants {} for {count} {what}; the limit for {} of files is {}",
+        amount(wanted),
+        amount(input as u64),
+        amount(allowed)
+    );
+    Err(Refusal::TooLarge(Some(Limit::Expansion), cause))
+}
+
+/// A colour's channel from 0 to 1 as displays show it, as linear light (IEC 61966-2-1).
+fn linear(x: f32) -> f32 {
+    let x = if x.is_finite() {
+        x.clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    if x <= 0.04045 {
+        x / 12.92
+    } else {
+        ((x + 0.055) / 1.055).powf(2.4)
     }
 }

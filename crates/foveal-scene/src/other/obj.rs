@@ -1,199 +1,411 @@
-//! Wavefront OBJ and MTL, read by the crate `tobj`.
+//! Wavefront OBJ.
+//!
+//! Read here and not by the crate `tobj` (4.0.5), which refuses what exporters write (comments after
+//! faces, bytes that are not UTF-8, `usemtl` without a name), fills lines as if they were polygons,
+//! and takes memory without bound for short files.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
-use std::io::BufReader;
+use std::collections::{HashMap, HashSet};
 
-use serde_json::{Value, json};
-use tobj::{LoadError, LoadOptions, Material, Mesh};
+use serde_json::json;
 
 use super::builder::Builder;
+use super::{Refusal, check_memory, linear, mtl};
+use crate::error::Limit;
 use crate::gltf::Resolver;
-use crate::{Code, Warning};
+use crate::{Code, LoadOptions, Warning};
+
+/// Longest name in bytes; longer ones are cut.
+const MAX_NAME: usize = 200;
+
+/// Most material libraries of a file.
+const MAX_LIBRARIES: usize = 64;
+
+/// What an object, and a material, takes while it is imported, in bytes.
+const OBJECT_BYTES: u64 = 16 << 10;
+const MATERIAL_BYTES: u64 = 8 << 10;
+
+/// A line of text, lines that end in `\` joined with the next.
+pub(super) struct Line<'a> {
+    pub(super) text: Cow<'a, str>,
+    /// From 1 on.
+    number: usize,
+}
+
+/// The lines that are neither empty nor comments, trimmed. Bytes that are not UTF-8 are replaced.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = Line<'_>> {
+    let mut rest = bytes.split(|&b| b == b'\n').enumerate();
+    std::iter::from_fn(move || {
+        loop {
+            let (index, first) = rest.next()?;
+            let mut text = String::from_utf8_lossy(first.trim_ascii());
+            while text.ends_with('\\') {
+                let Some((_, next)) = rest.next() else { break };
+                let joined = text.to_mut();
+                joined.pop();
+                joined.push(' ');
+                joined.push_str(&String::from_utf8_lossy(next.trim_ascii()));
+            }
+            if !text.is_empty() && !text.starts_with('#') {
+                let number = index + 1;
+                return Some(Line { text, number });
+            }
+        }
+    })
+}
+
+/// A name as it is kept.
+pub(super) fn name_of(text: &str) -> String {
+    let mut end = text.len().min(MAX_NAME);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    text[..end].to_owned()
+}
+
+/// Numbers of a face's corner: position, texture coordinates, normal.
+type Corner = (u32, Option<u32>, Option<u32>);
+
+/// Triangles of one name and one material.
+#[derive(Default)]
+struct Group {
+    name: String,
+    material: Option<u32>,
+    corners: Vec<Corner>,
+    number_of: HashMap<Corner, u32>,
+    indices: Vec<u32>,
+}
+
+#[derive(Default)]
+struct File {
+    positions: Vec<[f32; 3]>,
+    /// As displays show them; as many as positions, where all have one.
+    colors: Vec<[f32; 3]>,
+    uvs: Vec<[f32; 2]>,
+    normals: Vec<[f32; 3]>,
+    groups: Vec<Group>,
+    libraries: Vec<String>,
+    /// Names of materials, in the order of their first use.
+    used: Vec<String>,
+    faces: usize,
+    dropped: usize,
+    not_drawn: usize,
+}
 
 /// One object per group and material; polygons are cut into fans.
 pub(super) fn convert(
     bytes: &[u8],
+    options: &LoadOptions,
     resolver: &Resolver<'_>,
-) -> Result<(Vec<u8>, Vec<Warning>), String> {
-    let options = LoadOptions {
-        single_index: true,
-        triangulate: true,
-        ignore_points: true,
-        ignore_lines: true,
-    };
-    let bytes = &*without_nameless_materials(bytes);
-    let missing = RefCell::new(Vec::new());
-    let (models, materials) = tobj::load_obj_buf(&mut BufReader::new(bytes), &options, |path| {
-        let name = path.to_string_lossy().replace('\\', "/");
-        match resolver(&name) {
-            Ok(bytes) => tobj::load_mtl_buf(&mut BufReader::new(&bytes[..])),
-            Err(cause) => {
-                missing.borrow_mut().push(format!("mtllib: {cause}"));
-                Err(LoadError::OpenFileFailed)
-            }
-        }
-    })
-    .map_err(|error| error.to_string())?;
-    let mut notes: Vec<Warning> = missing
-        .into_inner()
-        .into_iter()
-        .map(|text| Warning::new(Code::MaterialUnreadable, text))
-        .collect();
-    let materials = materials.unwrap_or_else(|error| {
-        if notes.is_empty() {
-            let text = format!("mtllib: {error}; the materials are left out");
-            notes.push(Warning::new(Code::MaterialUnreadable, text));
-        }
-        Vec::new()
-    });
+) -> Result<(Vec<u8>, Vec<Warning>), Refusal> {
+    let file = File::parse(bytes, options)?;
+    let mut notes = Vec::new();
     let mut builder = Builder::default();
-    for material in &materials {
-        let material = surface(material, &mut builder, &mut notes);
-        builder.materials.push(material);
+    let materials = file.add_materials(bytes.len(), options, resolver, &mut builder, &mut notes)?;
+    if file.dropped > 0 {
+        let text = format!(
+            "{} of {} faces have fewer than three corners or name vertices that do not exist, and are left out",
+            file.dropped, file.faces
+        );
+        notes.push(Warning::new(Code::TrianglesUnusable, text));
     }
-    if models.iter().all(|model| model.mesh.indices.is_empty()) {
-        let text = "has no faces: points and lines are not drawn";
+    if file.not_drawn > 0 {
+        let text = format!(
+            "has {} points, lines or free-form surfaces, which are not drawn",
+            file.not_drawn
+        );
         notes.push(Warning::new(Code::PrimitiveMode, text));
     }
-    for model in models {
-        let place = |what: &str| format!("object {}: {what}", model.name);
-        let mesh = model.mesh;
-        if mesh.indices.is_empty() {
-            continue;
+    for group in &file.groups {
+        file.add_group(group, &materials, &mut builder, &mut notes);
+    }
+    Ok((builder.glb().map_err(too_large)?, notes))
+}
+
+/// A file whose glTF is too long.
+pub(super) fn too_large(cause: String) -> Refusal {
+    Refusal::TooLarge(None, cause)
+}
+
+impl File {
+    fn parse(bytes: &[u8], options: &LoadOptions) -> Result<Self, Refusal> {
+        let mut file = Self::default();
+        let mut name = String::new();
+        let mut material = None;
+        let mut group_of: HashMap<(String, Option<u32>), usize> = HashMap::new();
+        let mut number_of: HashMap<String, u32> = HashMap::new();
+        let mut current: Option<usize> = None;
+        for Line { text, number } in lines(bytes) {
+            let (key, rest) = text.split_once(char::is_whitespace).unwrap_or((&text, ""));
+            let rest = rest.trim();
+            let broken = |cause: &str| Refusal::Broken(format!("line {number}: {cause}"));
+            match key {
+                "v" => file.add_position(rest).map_err(|e| broken(&e))?,
+                "vt" => {
+                    let [u, v] = floats::<2>(rest, 1).map_err(|e| broken(&e))?;
+                    // Rows are counted from below.
+                    file.uvs.push([u, 1.0 - v]);
+                }
+                "vn" => file.normals.push(floats(rest, 3).map_err(|e| broken(&e))?),
+                "o" | "g" => {
+                    name = name_of(rest);
+                    current = None;
+                }
+                "usemtl" => {
+                    material = (!rest.is_empty()).then(|| {
+                        let known = number_of.len() as u32;
+                        *number_of.entry(name_of(rest)).or_insert_with_key(|name| {
+                            file.used.push(name.clone());
+                            known
+                        })
+                    });
+                    current = None;
+                }
+                "mtllib" if !file.libraries.iter().any(|library| library == rest) => {
+                    if file.libraries.len() == MAX_LIBRARIES {
+                        return Err(broken("names more than 64 material libraries"));
+                    }
+                    file.libraries.push(rest.to_owned());
+                }
+                "f" | "fo" => {
+                    let group = *current.get_or_insert_with(|| {
+                        *group_of.entry((name.clone(), material)).or_insert_with(|| {
+                            file.groups.push(Group {
+                                name: name.clone(),
+                                material,
+                                ..Group::default()
+                            });
+                            file.groups.len() - 1
+                        })
+                    });
+                    file.add_face(group, rest).map_err(|e| broken(&e))?;
+                    if file.groups.len() as u64 > options.max_instances {
+                        let cause = format!(
+                            "wants more objects than the limit of {}",
+                            options.max_instances
+                        );
+                        return Err(Refusal::TooLarge(Some(Limit::Instances), cause));
+                    }
+                }
+                "p" | "l" | "curv" | "curv2" | "surf" => file.not_drawn += 1,
+                _ => {}
+            }
         }
-        let count = mesh.positions.len() / 3;
-        if !fits(&mesh, count) {
-            let text = place("its lists have different lengths; it is left out");
-            notes.push(Warning::new(Code::AccessorCount, text));
-            continue;
+        check_memory(
+            "objects",
+            file.groups.len(),
+            OBJECT_BYTES,
+            bytes.len(),
+            options,
+        )?;
+        Ok(file)
+    }
+
+    fn add_position(&mut self, text: &str) -> Result<(), String> {
+        let words = text.split_whitespace().take_while(|w| !w.starts_with('#'));
+        let numbers: Vec<f32> = words
+            .take(7)
+            .map(|word| word.parse().map_err(|_| not_a_number(word)))
+            .collect::<Result<_, _>>()?;
+        let [x, y, z, rest @ ..] = &numbers[..] else {
+            return Err("a vertex has fewer than three numbers".to_owned());
+        };
+        // A colour follows for certain where there are three numbers more; one is a weight.
+        if let [.., r, g, b] = rest {
+            if self.colors.len() == self.positions.len() {
+                self.colors.push([*r, *g, *b]);
+            }
         }
-        let mut attributes = json!({ "POSITION": builder.vectors::<3>(&mesh.positions) });
-        if !mesh.normals.is_empty() {
-            attributes["NORMAL"] = json!(builder.vectors::<3>(&mesh.normals));
+        self.positions.push([*x, *y, *z]);
+        Ok(())
+    }
+
+    /// Adds the triangles of a polygon; one that names what does not exist is counted.
+    fn add_face(&mut self, group: usize, text: &str) -> Result<(), String> {
+        self.faces += 1;
+        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
+        let group = &mut self.groups[group];
+        let (mut first, mut last) = (None, None);
+        let mut corners = 0;
+        let before = group.indices.len();
+        for word in text.split_whitespace().take_while(|w| !w.starts_with('#')) {
+            let Some(corner) = corner(word, counts)? else {
+                group.indices.truncate(before);
+                self.dropped += 1;
+                return Ok(());
+            };
+            corners += 1;
+            let next = group.corners.len() as u32;
+            let number = *group.number_of.entry(corner).or_insert(next);
+            if number == next {
+                group.corners.push(corner);
+            }
+            match (first, last) {
+                (None, _) => first = Some(number),
+                (Some(first), Some(last)) => group.indices.extend([first, last, number]),
+                (Some(_), None) => {}
+            }
+            if corners > 1 {
+                last = Some(number);
+            }
         }
-        if !mesh.texcoords.is_empty() {
-            // OBJ counts rows from below.
-            let turned: Vec<f32> = mesh
-                .texcoords
-                .chunks_exact(2)
-                .flat_map(|uv| [uv[0], 1.0 - uv[1]])
-                .collect();
-            attributes["TEXCOORD_0"] = json!(builder.vectors::<2>(&turned));
+        if corners < 3 {
+            self.dropped += 1;
         }
-        if !mesh.vertex_color.is_empty() {
-            attributes["COLOR_0"] = json!(builder.vectors::<3>(&mesh.vertex_color));
+        Ok(())
+    }
+
+    /// Adds the materials that faces use; returns the number of each in the document.
+    fn add_materials(
+        &self,
+        input: usize,
+        options: &LoadOptions,
+        resolver: &Resolver<'_>,
+        builder: &mut Builder,
+        notes: &mut Vec<Warning>,
+    ) -> Result<Vec<Option<usize>>, Refusal> {
+        check_memory("materials", self.used.len(), MATERIAL_BYTES, input, options)?;
+        let mut wanted: HashMap<&str, usize> = HashMap::new();
+        for (number, name) in self.used.iter().enumerate() {
+            wanted.insert(name, number);
+        }
+        let mut numbers = vec![None; self.used.len()];
+        let mut read = HashSet::new();
+        for library in &self.libraries {
+            let name = library.replace('\\', "/");
+            // One name with spaces in it, or several names.
+            let found = resolver(&name).map(|bytes| vec![bytes]).or_else(|cause| {
+                let names: Vec<&str> = name.split_whitespace().collect();
+                if names.len() < 2 {
+                    return Err(cause);
+                }
+                names.iter().map(|name| resolver(name)).collect()
+            });
+            let files = match found {
+                Ok(files) => files,
+                Err(cause) => {
+                    let text = format!("mtllib: {cause}");
+                    notes.push(Warning::new(Code::MaterialUnreadable, text));
+                    continue;
+                }
+            };
+            for bytes in files {
+                for material in mtl::parse(&bytes) {
+                    let Some(&number) = wanted.get(material.name.as_str()) else {
+                        continue;
+                    };
+                    // The first of a name holds.
+                    if read.insert(number) {
+                        let surface = material.surface(builder, notes);
+                        numbers[number] = Some(builder.material(&surface));
+                    }
+                }
+            }
+        }
+        let missing: Vec<&str> = self
+            .used
+            .iter()
+            .zip(&numbers)
+            .filter(|(_, number)| number.is_none())
+            .map(|(name, _)| name.as_str())
+            .take(10)
+            .collect();
+        if !missing.is_empty() {
+            let text = format!(
+                "usemtl: no library has the materials {}",
+                missing.join(", ")
+            );
+            notes.push(Warning::new(Code::MaterialUnreadable, text));
+        }
+        Ok(numbers)
+    }
+
+    fn add_group(
+        &self,
+        group: &Group,
+        materials: &[Option<usize>],
+        builder: &mut Builder,
+        notes: &mut Vec<Warning>,
+    ) {
+        if group.indices.is_empty() {
+            return;
+        }
+        let corners = &group.corners;
+        let positions: Vec<[f32; 3]> = corners
+            .iter()
+            .map(|c| self.positions[c.0 as usize])
+            .collect();
+        let mut attributes = json!({ "POSITION": builder.vectors(&positions) });
+        let with_normal = corners.iter().filter(|c| c.2.is_some()).count();
+        if with_normal == corners.len() {
+            let of = |c: &Corner| c.2.map_or([0.0; 3], |i| self.normals[i as usize]);
+            let normals: Vec<[f32; 3]> = corners.iter().map(of).collect();
+            attributes["NORMAL"] = json!(builder.vectors(&normals));
+        } else if with_normal > 0 {
+            let text = format!(
+                "object {}: not all faces have normals; all are made anew",
+                group.name
+            );
+            notes.push(Warning::new(Code::Normals, text));
+        }
+        if corners.iter().any(|c| c.1.is_some()) {
+            let of = |c: &Corner| c.1.map_or([0.0; 2], |i| self.uvs[i as usize]);
+            let uvs: Vec<[f32; 2]> = corners.iter().map(of).collect();
+            attributes["TEXCOORD_0"] = json!(builder.vectors(&uvs));
+        }
+        if !self.colors.is_empty() && self.colors.len() == self.positions.len() {
+            let of = |c: &Corner| self.colors[c.0 as usize].map(linear);
+            let colors: Vec<[f32; 3]> = corners.iter().map(of).collect();
+            attributes["COLOR_0"] = json!(builder.vectors(&colors));
         }
         let mut primitive = json!({
-            "attributes": attributes, "indices": builder.indices(&mesh.indices)
+            "attributes": attributes, "indices": builder.indices(&group.indices)
         });
-        if let Some(material) = mesh.material_id {
+        let material = group.material.and_then(|m| materials[m as usize]);
+        if let Some(material) = material {
             primitive["material"] = json!(material);
         }
-        builder.object(&model.name, primitive);
+        builder.object(&group.name, &primitive);
     }
-    Ok((builder.glb()?, notes))
 }
 
-/// The file without `usemtl` lines that name nothing, which Rhino writes and the parser refuses.
-fn without_nameless_materials(bytes: &[u8]) -> Cow<'_, [u8]> {
-    let is_nameless = |line: &[u8]| line.trim_ascii() == b"usemtl";
-    if !bytes.split(|&b| b == b'\n').any(is_nameless) {
-        return Cow::Borrowed(bytes);
+fn not_a_number(word: &str) -> String {
+    let word: String = word.chars().take(40).collect();
+    format!("\"{word}\" is not a number")
+}
+
+/// `N` numbers, of which `least` must be there; the others are 0.
+fn floats<const N: usize>(text: &str, least: usize) -> Result<[f32; N], String> {
+    let mut out = [0.0; N];
+    let words = text.split_whitespace().take_while(|w| !w.starts_with('#'));
+    let mut count = 0;
+    for (slot, word) in out.iter_mut().zip(words) {
+        *slot = word.parse().map_err(|_| not_a_number(word))?;
+        count += 1;
     }
-    let lines = bytes.split_inclusive(|&b| b == b'\n');
-    Cow::Owned(
-        lines
-            .filter(|line| !is_nameless(line))
-            .flatten()
-            .copied()
-            .collect(),
-    )
+    if count < least {
+        return Err(format!("has {count} numbers instead of {least}"));
+    }
+    Ok(out)
 }
 
-/// Whether each list is empty or has an element for each vertex.
-fn fits(mesh: &Mesh, count: usize) -> bool {
-    let is = |len: usize, width: usize| len == 0 || len == width * count;
-    is(mesh.normals.len(), 3) && is(mesh.texcoords.len(), 2) && is(mesh.vertex_color.len(), 3)
-}
-
-/// A material of MTL as metallic-roughness: Kd and map_Kd are the base colour, Ke and map_Ke emission,
-/// d opacity, Ns the exponent of a Blinn-Phong lobe; Pm, Pr and norm, the format's extension for
-/// physically based materials, are taken as they are. A lobe of exponent n has the roughness
-/// `sqrt(2 / (n + 2))` squared in glTF's terms (Walter et al. 2007, section 5.2).
-fn surface(material: &Material, builder: &mut Builder, notes: &mut Vec<Warning>) -> Value {
-    let extra = |key: &str| material.unknown_param.get(key).map(String::as_str);
-    let number = |key: &str| extra(key).and_then(|text| text.trim().parse::<f32>().ok());
-    let unit = |x: f32| {
-        if x.is_finite() {
-            x.clamp(0.0, 1.0)
+/// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; `None` where it names what does not exist. Texture
+/// coordinates and normals that do not exist are left out.
+fn corner(word: &str, counts: [usize; 3]) -> Result<Option<Corner>, String> {
+    let mut numbers = [None; 3];
+    for ((slot, part), count) in numbers.iter_mut().zip(word.split('/')).zip(counts) {
+        if part.is_empty() {
+            continue;
+        }
+        let number: i64 = part.parse().map_err(|_| not_a_number(part))?;
+        let count = count as i64;
+        // From 1 on, or backwards from the last one so far.
+        let index = if number < 0 {
+            count + number
         } else {
-            1.0
-        }
-    };
-    let opacity = unit(material.dissolve.unwrap_or(1.0));
-    let color = material.diffuse.unwrap_or([1.0; 3]).map(unit);
-    let from_exponent = |n: f32| (2.0 / (n.max(0.0) + 2.0)).sqrt().sqrt();
-    let roughness = number("Pr").or_else(|| material.shininess.map(from_exponent));
-    let mut surface = json!({
-        "name": material.name,
-        "pbrMetallicRoughness": {
-            "baseColorFactor": [color[0], color[1], color[2], opacity],
-            "metallicFactor": unit(number("Pm").unwrap_or(0.0)),
-            "roughnessFactor": unit(roughness.unwrap_or(1.0)),
-        },
-        "alphaMode": if opacity < 1.0 { "BLEND" } else { "OPAQUE" },
-        "doubleSided": true,
-    });
-    if let Some(file) = material.diffuse_texture.as_deref().map(picture) {
-        let texture = json!({ "index": builder.texture(file) });
-        surface["pbrMetallicRoughness"]["baseColorTexture"] = texture;
-        if material.diffuse.is_some_and(|kd| kd == [0.0; 3]) {
-            // Exporters write black where the picture says it all.
-            surface["pbrMetallicRoughness"]["baseColorFactor"] = json!([1, 1, 1, opacity]);
-        }
+            number - 1
+        };
+        *slot = (0..count).contains(&index).then_some(index as u32);
     }
-    if let Some(file) = extra("norm").map(picture) {
-        surface["normalTexture"] = json!({ "index": builder.texture(file) });
-    }
-    if let Some(emission) = material.emissive {
-        surface["emissiveFactor"] = json!(emission.map(unit));
-    }
-    if let Some(file) = extra("map_Ke").map(picture) {
-        surface["emissiveTexture"] = json!({ "index": builder.texture(file) });
-        if material.emissive.is_none() {
-            surface["emissiveFactor"] = json!([1, 1, 1]);
-        }
-    }
-    let ignored = [
-        ("map_d", material.dissolve_texture.is_some()),
-        ("map_Bump", material.normal_texture.is_some()),
-        ("map_Ks", material.specular_texture.is_some()),
-        ("map_Ns", material.shininess_texture.is_some()),
-        ("map_Pr", extra("map_Pr").is_some()),
-        ("map_Pm", extra("map_Pm").is_some()),
-    ];
-    let ignored: Vec<&str> = ignored.iter().filter(|i| i.1).map(|i| i.0).collect();
-    if !ignored.is_empty() {
-        let text = format!(
-            "material {}: {} not read; the surface is shown without",
-            material.name,
-            if ignored.len() == 1 {
-                format!("{} is", ignored[0])
-            } else {
-                format!("{} are", ignored.join(", "))
-            }
-        );
-        notes.push(Warning::new(Code::MaterialIgnored, text));
-    }
-    surface
-}
-
-/// The picture's file, without the options that may stand before it (`-s 2 2 1 wood.png`).
-fn picture(text: &str) -> &str {
-    if text.starts_with('-') {
-        text.rsplit(char::is_whitespace).next().unwrap_or(text)
-    } else {
-        text
-    }
+    Ok(numbers[0].map(|position| (position, numbers[1], numbers[2])))
 }

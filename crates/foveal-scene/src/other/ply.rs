@@ -7,15 +7,26 @@ use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
 use serde_json::json;
 
 use super::builder::Builder;
-use crate::{Code, Warning};
+use super::obj::too_large;
+use super::{Refusal, check_memory, linear};
+use crate::error::Limit;
+use crate::{Code, LoadOptions, Warning};
+
+/// Longest line of a header in bytes, and most lines: the parser's work grows with their product.
+const MAX_LINE: usize = 4 << 10;
+const MAX_LINES: usize = 10_000;
 
 /// The mesh as one object; polygons are cut into fans.
-pub(super) fn convert(bytes: &[u8]) -> Result<(Vec<u8>, Vec<Warning>), String> {
+pub(super) fn convert(
+    bytes: &[u8],
+    options: &LoadOptions,
+) -> Result<(Vec<u8>, Vec<Warning>), Refusal> {
+    check_header(bytes)?;
     let mut reader = Reader::new(Cursor::new(bytes));
     let header = Parser::<Skipped>::new()
         .read_header(&mut reader)
         .map_err(|error| short(&error))?;
-    check_counts(&header, bytes.len())?;
+    check_counts(&header, bytes.len(), options)?;
     let (mut vertices, mut faces) = (Vec::new(), Vec::new());
     for (name, element) in &header.elements {
         match name.as_str() {
@@ -36,50 +47,74 @@ pub(super) fn convert(bytes: &[u8]) -> Result<(Vec<u8>, Vec<Warning>), String> {
             }
         }
     }
+    let has = |element: &str, key: &str| {
+        let element = header.elements.get(element);
+        element.is_some_and(|element| element.properties.contains_key(key))
+    };
     let mut notes = Vec::new();
     let indices = fans(&faces, vertices.len(), &mut notes);
     if faces.is_empty() {
-        let text = "has no faces: points are not drawn";
+        let text = if header.elements.contains_key("tristrips") {
+            "has triangle strips instead of faces, which are not drawn"
+        } else {
+            "has no faces: points are not drawn"
+        };
         notes.push(Warning::new(Code::PrimitiveMode, text));
     }
-    let has = |key: &str| {
-        let vertex = header.elements.get("vertex");
-        vertex.is_some_and(|vertex| vertex.properties.contains_key(key))
-    };
+    if has("face", "texcoord") {
+        let text = "has texture coordinates of faces, which are not read; those of vertices are";
+        notes.push(Warning::new(Code::MaterialIgnored, text));
+    }
     let mut builder = Builder::default();
     if !indices.is_empty() {
-        let list = |pick: fn(&Corner) -> [f32; 3]| -> Vec<f32> {
-            vertices.iter().flat_map(pick).collect()
+        let list = |pick: fn(&Corner) -> [f32; 3]| -> Vec<[f32; 3]> {
+            vertices.iter().map(pick).collect()
         };
-        let mut attributes = json!({ "POSITION": builder.vectors::<3>(&list(|v| v.position)) });
-        if has("nx") {
-            attributes["NORMAL"] = json!(builder.vectors::<3>(&list(|v| v.normal)));
+        let mut attributes = json!({ "POSITION": builder.vectors(&list(|v| v.position)) });
+        if has("vertex", "nx") {
+            attributes["NORMAL"] = json!(builder.vectors(&list(|v| v.normal)));
         }
-        if has("red") {
-            attributes["COLOR_0"] = json!(builder.vectors::<3>(&list(|v| v.color)));
+        if has("vertex", "red") {
+            attributes["COLOR_0"] = json!(builder.vectors(&list(|v| v.color)));
         }
-        let is_mapped = UVS.iter().any(|[u, _]| has(u));
+        let is_mapped = UVS.iter().any(|[u, _]| has("vertex", u));
         if is_mapped {
-            let uv: Vec<f32> = vertices.iter().flat_map(|v| v.uv).collect();
-            attributes["TEXCOORD_0"] = json!(builder.vectors::<2>(&uv));
+            let uv: Vec<[f32; 2]> = vertices.iter().map(|v| v.uv).collect();
+            attributes["TEXCOORD_0"] = json!(builder.vectors(&uv));
         }
-        let mut primitive =
-            json!({ "attributes": attributes, "indices": builder.indices(&indices) });
         let mut surface =
             json!({ "pbrMetallicRoughness": { "metallicFactor": 0 }, "doubleSided": true });
         let named = |comment: &String| {
             let file = comment.trim().strip_prefix("TextureFile")?.trim();
             (!file.is_empty()).then(|| file.to_owned())
         };
-        if let Some(file) = header.comments.iter().find_map(named).filter(|_| is_mapped) {
+        let file = header.comments.iter().find_map(named);
+        if let Some(file) = file.filter(|_| is_mapped) {
             let texture = json!({ "index": builder.texture(&file) });
             surface["pbrMetallicRoughness"]["baseColorTexture"] = texture;
         }
-        builder.materials.push(surface);
-        primitive["material"] = json!(0);
-        builder.object("", primitive);
+        let primitive = json!({
+            "attributes": attributes, "indices": builder.indices(&indices),
+            "material": builder.material(&surface)
+        });
+        builder.object("", &primitive);
     }
-    Ok((builder.glb()?, notes))
+    Ok((builder.glb().map_err(too_large)?, notes))
+}
+
+/// Refuses headers that the parser would take long for.
+fn check_header(bytes: &[u8]) -> Result<(), String> {
+    for (number, line) in bytes.split(|&b| b == b'\n').enumerate() {
+        if line.trim_ascii() == b"end_header" {
+            return Ok(());
+        }
+        if line.len() > MAX_LINE || number == MAX_LINES {
+            return Err(format!(
+                "its header has a line of over {MAX_LINE} bytes, or over {MAX_LINES} lines"
+            ));
+        }
+    }
+    Err("its header has no end".to_owned())
 }
 
 /// The parser's message without the file's own text.
@@ -89,19 +124,30 @@ fn short(error: &ply_rs_bw::parser::ParseError) -> String {
 }
 
 /// An element takes a byte of the file at least: a short file cannot promise many.
-fn check_counts(header: &Header, len: usize) -> Result<(), String> {
+fn check_counts(header: &Header, len: usize, options: &LoadOptions) -> Result<(), Refusal> {
     for (name, element) in &header.elements {
-        if element.properties.is_empty() && element.count > 0 {
-            return Err(format!("element {name} has no properties"));
+        let count = element.count;
+        if element.properties.is_empty() && count > 0 {
+            return Err(format!("element {name} has no properties").into());
         }
-        if element.count > len {
-            return Err(format!(
-                "element {name} promises {} of them in {len} bytes",
-                element.count
-            ));
+        if count > len {
+            return Err(format!("element {name} promises {count} of them in {len} bytes").into());
+        }
+        let (limit, most) = match name.as_str() {
+            "vertex" => (Limit::Vertices, options.max_vertices),
+            "face" => (Limit::Triangles, options.max_triangles),
+            _ => continue,
+        };
+        if count as u64 > most {
+            let cause = format!("wants {count} elements {name}; the limit is {most}");
+            return Err(Refusal::TooLarge(Some(limit), cause));
         }
     }
-    Ok(())
+    let vertices = header.elements.get("vertex").map_or(0, |e| e.count);
+    let faces = header.elements.get("face").map_or(0, |e| e.count);
+    let (corner, face) = (size_of::<Corner>() as u64 + 80, 64);
+    check_memory("vertices", vertices, corner, len, options)?;
+    check_memory("faces", faces, face, len, options)
 }
 
 /// Triangles of all faces that name vertices that exist.
@@ -162,8 +208,8 @@ impl PropertyAccess for Corner {
             "ny" => &mut self.normal[1],
             "nz" => &mut self.normal[2],
             "red" | "green" | "blue" => {
-                let channel = ["red", "green", "blue"].iter().position(|c| *c == name);
-                self.color[channel.unwrap_or(0)] = linear(&property, value);
+                let number = ["red", "green", "blue"].iter().position(|c| *c == name);
+                self.color[number.unwrap_or(0)] = linear(channel(&property, value));
                 return PropertyAccessResult::Set;
             }
             _ => {
@@ -184,18 +230,12 @@ impl PropertyAccess for Corner {
     }
 }
 
-/// A colour's channel, which PLY files hold as displays show it (IEC 61966-2-1).
-fn linear(property: &Property, value: f32) -> f32 {
-    let most = match property {
-        Property::Float(_) | Property::Double(_) => 1.0,
-        Property::UShort(_) | Property::Short(_) => 65535.0,
-        _ => 255.0,
-    };
-    let x = (value / most).clamp(0.0, 1.0);
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        ((x + 0.055) / 1.055).powf(2.4)
+/// A colour's channel from 0 to 1.
+fn channel(property: &Property, value: f32) -> f32 {
+    match property {
+        Property::Float(_) | Property::Double(_) => value,
+        Property::UShort(_) | Property::Short(_) => value / 65535.0,
+        _ => value / 255.0,
     }
 }
 

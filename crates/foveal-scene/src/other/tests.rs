@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use crate::{AlphaMode, Code, LoadOptions, Scene, SceneError, load_bytes};
+use crate::{AlphaMode, Code, Limit, LoadOptions, Scene, SceneError, load_bytes};
 
 fn load(name: &str, bytes: &[u8], beside: &[(&str, &str)]) -> Result<Scene, SceneError> {
     let resolver = |uri: &str| {
@@ -37,12 +37,13 @@ f -3 -2 -1
 const HOUSE_MTL: &str = "\
 newmtl brick
 Kd 0.5 0.25 0.125
+Ks 0 0 0
 Ns 6
-Ke 0 0.5 0
+Ke 0 2 0
 map_Kd brick.png
 newmtl glass
 Kd 1 1 1
-d 0.5
+Tr 0.5
 Pm 1
 Pr 0.25
 map_d leaf.png
@@ -64,13 +65,13 @@ fn an_obj_file_is_read_with_its_materials() {
     assert_eq!((brick.metallic, brick.alpha_mode), (0.0, AlphaMode::Opaque));
     // sqrt(2 / (6 + 2)) = 1/2 is the square of glTF's roughness.
     assert!((brick.roughness - 0.5f32.sqrt()).abs() < 1e-6);
-    assert_eq!(brick.emissive.to_array(), [0.0, 0.5, 0.0]);
+    assert_eq!(brick.emissive.to_array(), [0.0, 2.0, 0.0]);
     assert_eq!((glass.metallic, glass.roughness), (1.0, 0.25));
     assert_eq!(
         (glass.alpha_mode, glass.base_color.w),
         (AlphaMode::Blend, 0.5)
     );
-    let sentence = "material glass: map_d is not read; the surface is shown without";
+    let sentence = "material glass: not read: map_d";
     let warning = &scene.warnings[0];
     assert_eq!(
         (warning.code, &*warning.text),
@@ -80,16 +81,117 @@ fn an_obj_file_is_read_with_its_materials() {
 
 #[test]
 fn a_material_without_a_name_is_none() {
-    let text = HOUSE.replace("usemtl brick", "usemtl \r");
+    let text = HOUSE.replace("usemtl glass", "usemtl \r");
     let scene = load("house.obj", text.as_bytes(), &[("house.mtl", HOUSE_MTL)]).unwrap();
     assert_eq!(scene.triangle_count(), 3);
-    let wall = &scene.materials[scene.instances[0].material as usize];
-    assert_eq!(wall.base_color.to_array(), [1.0; 4]);
+    let roof = &scene.materials[scene.instances[1].material as usize];
+    assert_eq!(roof.base_color.to_array(), [1.0; 4]);
+}
+
+#[test]
+fn what_exporters_write_is_understood() {
+    // Comments, bytes of Latin-1, tabs, indents, lines joined, one texture coordinate, grey as one
+    // number, a face that no vertex is left of, texture coordinates on some faces alone.
+    let text =
+        b"# Gr\xf6\xdfe\nmtllib\tm.mtl\n  v 0 0 0 # here\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0.5\n\
+        usemtl\tred\nf 1/1 2/1 \\\n 3/1 # first\nf 1 3 4\nf\nf 1 2 9\n";
+    let scene = load("a.obj", text, &[("m.mtl", "newmtl red\nKd 0.5\n")]).unwrap();
+    assert_eq!(scene.triangle_count(), 2);
+    let red = &scene.materials[scene.instances[0].material as usize];
+    assert_eq!(red.base_color.to_array(), [0.5, 0.5, 0.5, 1.0]);
+    let text = "2 of 4 faces have fewer than three corners or name vertices that do not exist, and are left out";
+    let texts: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
+    assert_eq!(texts, [text]);
+}
+
+#[test]
+fn faces_of_one_name_and_material_are_one_object() {
+    let corners = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n";
+    let faces = "o a\nf 1//1 2//1 3//1\no b\nf 1 2 3\no a\nusemtl x\nusemtl\nf 3 2 1\n";
+    let scene = load("a.obj", (corners.to_owned() + faces).as_bytes(), &[]).unwrap();
+    let names: Vec<&str> = scene.objects.iter().map(|o| o.name.as_str()).collect();
+    assert_eq!(names, ["a", "b"]);
+    let codes: Vec<Code> = scene.warnings.iter().map(|w| w.code).collect();
+    assert_eq!(codes, [Code::MaterialUnreadable, Code::Normals]);
+}
+
+#[test]
+fn colours_count_where_all_vertices_have_one() {
+    let with = |color: &str| {
+        let text = format!("v 0 0 0 1 0 0.5\nv 1 0 0 {color}\nv 0 1 0 1 0 0.5\nf 1 2 3\n");
+        let scene = load("a.obj", text.as_bytes(), &[]).unwrap();
+        scene.meshes[0].vertices[0].color
+    };
+    let [r, g, b, _] = with("1 0 0.5");
+    assert_eq!((r, g), (255, 0));
+    // As displays show it: half is a fifth of the light.
+    assert!(b.abs_diff(55) <= 1, "{b}");
+    assert_eq!(with(""), [255; 4]);
+}
+
+#[test]
+fn scale_and_offset_of_a_map_are_kept() {
+    let material = "newmtl brick\nmap_Kd -clamp on -s 2 3 1 -o 0.25 0.5 my wood.png\n";
+    let scene = load("house.obj", HOUSE.as_bytes(), &[("house.mtl", material)]).unwrap();
+    let brick = &scene.materials[scene.instances[0].material as usize];
+    let texture = brick.base_color_texture.unwrap();
+    // Of the vertex (u, 1 - v): 2 u + 0.25 and 1 - (3 v + 0.5).
+    let uv = texture
+        .uv_transform
+        .transform_point2(glam::Vec2::new(0.5, 1.0 - 0.25));
+    assert!(uv.abs_diff_eq(glam::Vec2::new(1.25, -0.25), 1e-6), "{uv}");
+    let said = scene
+        .warnings
+        .iter()
+        .any(|w| w.text.contains("\"my wood.png\""));
+    assert!(said, "{:?}", scene.warnings);
+}
+
+#[test]
+fn a_file_may_not_ask_for_more_than_it_is_worth() {
+    let mut text = String::from("v 0 0 0\n");
+    for i in 0..30_000 {
+        text += &format!("o {i:x}\nf 1 1 1\n");
+    }
+    let error = load("a.obj", text.as_bytes(), &[]).unwrap_err();
+    assert_eq!(error.code(), Code::LimitExceeded, "{error}");
+    // A library that is named a thousand times is read once.
+    let many = "mtllib house.mtl\n".repeat(1000) + HOUSE;
+    let scene = load("a.obj", many.as_bytes(), &[("house.mtl", HOUSE_MTL)]).unwrap();
+    assert_eq!(scene.materials.len(), 2);
+    let options = LoadOptions {
+        max_vertices: 3,
+        ..LoadOptions::default()
+    };
+    let none = |_: &str| Err(String::new());
+    let error = load_bytes(SQUARE.as_bytes(), "a.ply", &options, &none).unwrap_err();
+    assert_eq!(error.limit(), Some(Limit::Vertices), "{error}");
+    let long = SQUARE
+        .replace("made by hand", &"x".repeat(5000))
+        .replace("wood.png", &"x".repeat(5000));
+    let error = load("a.ply", long.as_bytes(), &[]).unwrap_err();
+    assert!(
+        error.to_string().contains("its header has a line"),
+        "{error}"
+    );
+}
+
+#[test]
+fn warnings_beyond_the_hundredth_are_counted_once() {
+    let mut materials = String::new();
+    let mut text = String::from("mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for i in 0..150 {
+        materials += &format!("newmtl m{i}\nmap_d a.png\n");
+        text += &format!("usemtl m{i}\nf 1 2 3\n");
+    }
+    let scene = load("a.obj", text.as_bytes(), &[("m.mtl", &materials)]).unwrap();
+    assert_eq!(scene.warnings.len(), 101);
+    assert_eq!(scene.warnings[100].text, "50 more warnings are not listed");
 }
 
 #[test]
 fn lines_alone_are_a_warning() {
-    let scene = load("a.obj", b"v 0 0 0\nv 1 0 0\nl 1 2\n", &[]).unwrap();
+    let scene = load("a.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n", &[]).unwrap();
     assert_eq!(scene.warnings[0].code, Code::PrimitiveMode);
 }
 
@@ -104,7 +206,7 @@ fn a_missing_material_file_is_a_warning() {
 
 #[test]
 fn pictures_of_an_obj_file_are_looked_for_beside_it() {
-    let material = "newmtl brick\nKd 0 0 0\nmap_Kd -s 2 2 1 wood\\#1.png\nnewmtl glass\n";
+    let material = "newmtl brick\nKd 0 0 0\nmap_Kd wood\\#1.png\nnewmtl glass\n";
     let scene = load("house.obj", HOUSE.as_bytes(), &[("house.mtl", material)]).unwrap();
     let brick = &scene.materials[scene.instances[0].material as usize];
     assert!(brick.base_color_texture.is_some());
@@ -202,8 +304,18 @@ fn broken_files_are_named_with_their_format() {
         assert_eq!(error.code(), Code::NotMesh, "{error}");
         error.to_string()
     };
-    let text = refusal("a.obj", "v 1 2\nf 1 2 3\n");
-    assert!(text.starts_with("a.obj is not OBJ: "), "{text}");
+    let cases = [
+        ("\nv 1 2\n", "line 2: a vertex has fewer than three numbers"),
+        ("v 1 2 x\n", "line 1: \"x\" is not a number"),
+        ("v 0 0 0\nf 1/x 2 3\n", "line 2: \"x\" is not a number"),
+    ];
+    for (text, cause) in cases {
+        assert_eq!(refusal("a.obj", text), format!("a.obj is not OBJ: {cause}"));
+    }
+    assert_eq!(
+        refusal("empty.ply", ""),
+        "empty.ply is not PLY: its header has no end"
+    );
     let many = SQUARE.replace("vertex 4", "vertex 4000000000");
     assert_eq!(
         refusal("a.ply", &many),
@@ -249,6 +361,11 @@ proptest! {
             material[i] = byte;
         }
         let material = String::from_utf8_lossy(&material).into_owned();
-        let _ = load(name, &bytes, &[("house.mtl", &material)]);
+        // Panics are caught; they would be these.
+        match load(name, &bytes, &[("house.mtl", &material)]) {
+            Err(SceneError::Internal { cause, .. }) => panic!("{cause}"),
+            Err(SceneError::NotMesh { cause, .. }) => prop_assert_ne!(cause, "the decoder failed"),
+            _ => {}
+        }
     }
 }

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use foveal_scene::ENDINGS;
+
 use super::App;
 use crate::browser::Browser;
 
@@ -13,13 +15,19 @@ struct Sorted {
     others: Vec<PathBuf>,
 }
 
+/// Endings of scene files, as a list for people.
+pub(crate) fn endings() -> String {
+    let all: Vec<String> = ENDINGS.iter().map(|ending| format!(".{ending}")).collect();
+    all.join(", ")
+}
+
 fn sorted(files: impl IntoIterator<Item = PathBuf>) -> Sorted {
     let mut found = Sorted::default();
     for file in files {
         let ending = file.extension().and_then(|e| e.to_str());
         let ending = ending.unwrap_or_default().to_ascii_lowercase();
         match ending.as_str() {
-            known if foveal_scene::ENDINGS.contains(&known) => found.scenes.push(file),
+            known if ENDINGS.contains(&known) => found.scenes.push(file),
             "toml" => found.settings.push(file),
             _ => found.others.push(file),
         }
@@ -51,8 +59,9 @@ impl App {
                 self.browser = Some(Browser::new(self.host.files.as_ref(), other));
             } else {
                 self.complain(format!(
-                    "'{}' is neither a scene (.gltf, .glb) nor settings (.toml)",
-                    name(&other)
+                    "'{}' is neither a scene ({}) nor settings (.toml)",
+                    name(&other),
+                    endings()
                 ));
             }
         }

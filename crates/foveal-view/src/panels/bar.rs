@@ -26,7 +26,7 @@ fn scene(app: &mut App, ui: &mut egui::Ui) {
         .desired_width(130.0)
         .hint_text("path or generated scene");
     let response = ui.add(name).on_hover_text(
-        "A glTF file's path or a generated scene's name; Enter loads it. Or drop a file onto the window.",
+        "A scene file's path or a generated scene's name; Enter loads it. Or drop a file onto the window.",
     );
     if response.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter)) {
         let name = app.scene_name.trim().to_owned();

@@ -128,7 +128,7 @@ fn folder(app: &App, browser: &mut Browser, ui: &mut Ui, height: f32) -> Choice 
     let entries = browser.entries();
     if entries.is_empty() {
         let text = if browser.typed.is_empty() {
-            "No folders and no .gltf or .glb files"
+            "No folders and no scenes"
         } else {
             "Nothing here has such a name"
         };

@@ -75,6 +75,14 @@ fn warnings_have_the_code_of_their_cause() {
             );
             file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
         }),
+        (Code::TextureWithoutImage, |file| {
+            file.push("textures", json!({ "extensions": {} }));
+            file.push(
+                "materials",
+                json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }),
+            );
+            file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
+        }),
         (Code::SceneEmpty, |file| {
             file.json["meshes"][0]["primitives"][0]["mode"] = json!(0);
         }),
