@@ -211,10 +211,10 @@ impl File {
             return Err("a vertex has fewer than three numbers".to_owned());
         };
         // A colour follows for certain where there are three numbers more; one is a weight.
-        if let [.., r, g, b] = rest {
-            if self.colors.len() == self.positions.len() {
-                self.colors.push([*r, *g, *b]);
-            }
+        if let [.., r, g, b] = rest
+            && self.colors.len() == self.positions.len()
+        {
+            self.colors.push([*r, *g, *b]);
         }
         self.positions.push([*x, *y, *z]);
         Ok(())
