@@ -32,10 +32,11 @@ struct Map {
     offset: [f32; 2],
 }
 
-/// What changes a surface and is left out.
+/// What changes a surface and is left out. Exporters write a specular colour (Ks) for every material;
+/// it means another thing in each, and is no news.
 const IGNORED: &[&str] = &[
-    "Ks", "map_Ks", "map_Ns", "map_d", "map_Pr", "map_Pm", "map_Bump", "bump", "disp", "decal",
-    "refl", "Ps", "Pc", "Pcr", "aniso",
+    "map_Ks", "map_Ns", "map_d", "map_Pr", "map_Pm", "map_Bump", "bump", "disp", "decal", "refl",
+    "Ps", "Pc", "Pcr", "aniso",
 ];
 
 /// All materials of a file.
@@ -67,9 +68,7 @@ pub(super) fn parse(bytes: &[u8]) -> Vec<Material> {
             "norm" => material.normal_map = map(rest),
             other => {
                 let known = IGNORED.iter().find(|k| k.eq_ignore_ascii_case(other));
-                // A black specular colour is what the default is.
-                let is_nothing = other == "ks" && color(rest).is_none_or(|ks| ks == [0.0; 3]);
-                material.ignored.extend(known.filter(|_| !is_nothing));
+                material.ignored.extend(known);
             }
         }
     }
