@@ -278,9 +278,11 @@ const GROWN: f32 = 1.0;
 /// Boxes whose rectangle may be wrong by more samples than this count as everywhere.
 const LOST: f32 = 1e5;
 
-/// A bound on the rounding of a box's rectangle, samples: a rectangle that is too small would leave
-/// polygons out of some threads' rows, and not out of others'. Distances are at least 1 where a box
-/// is clipped, so that an error of a clip row's value is at most one of the quotient.
+/// About the rounding of a box's rectangle, samples: one rounding of the sum of sizes that go into a
+/// clip row's value, of which there are a few. A rectangle that is too small would leave polygons
+/// out of some threads' rows, and not out of others'; it covers nothing that polygons do not.
+/// Distances are at least 1 where a box is clipped, so that an error of a clip row's value is at most
+/// one of the quotient.
 fn rounding(screen: &Screen<'_>, cluster: &Cluster) -> f32 {
     let reach = cluster.center.abs() + cluster.half;
     let size = |r: &[f32; 4]| {
