@@ -19,7 +19,7 @@ use glam::{DVec3, DVec4, Vec3};
 /// reaches what is behind these checks. Shorter bytes than a header stay as they are.
 #[cfg(feature = "reference")]
 pub fn seal_mesh_bytes(bytes: &mut [u8]) {
-    if bytes.len() >= 80 {
+    if bytes.len() >= crate::occluder::MESH_HEADER {
         let length = (bytes.len() as u64).to_le_bytes();
         bytes[16..24].copy_from_slice(&length);
         crate::occluder::seal(bytes);

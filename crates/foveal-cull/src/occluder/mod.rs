@@ -23,6 +23,6 @@ mod word_hash;
 
 pub use bake::BakeOptions;
 #[cfg(feature = "reference")]
-pub(crate) use bytes::seal;
+pub(crate) use bytes::{HEADER as MESH_HEADER, seal};
 pub use mesh::OccluderMesh;
 pub use set::{OccluderId, OccluderSet};

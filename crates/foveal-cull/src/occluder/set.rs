@@ -57,6 +57,9 @@ pub(crate) struct Instance {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
     pub(crate) mirrored: bool,
+    /// Triangles and clusters of the mesh, for stats: most meshes are not touched in a frame.
+    pub(crate) triangles: u32,
+    pub(crate) clusters: u32,
     /// Takes the eye to mesh space, where normal cones are tested; NaN for a singular transform.
     pub(crate) mesh_from_world: DAffine3,
     /// Content hash.
@@ -209,6 +212,8 @@ impl Instance {
             mirrored: m.determinant() < 0.0,
             mesh_from_world: world_from_mesh.inverse(),
             hash,
+            triangles: mesh.triangle_count() as u32,
+            clusters: mesh.clusters.len() as u32,
             mesh: Some(mesh),
             world_from_mesh,
             enabled: true,

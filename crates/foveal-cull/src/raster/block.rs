@@ -45,6 +45,18 @@ pub(crate) struct DepthPlane {
     pub(crate) max_code: i16,
 }
 
+/// Polygons over more depth codes than this, a thirty-second of an octave, are deep.
+const DEEP: i32 = 64;
+
+impl DepthPlane {
+    /// Whether its blocks lie at depths so different that it is worth asking for each whether it
+    /// is hidden.
+    #[inline(always)]
+    fn is_deep(&self) -> bool {
+        i32::from(self.max_code) - i32::from(self.min_code) > DEEP
+    }
+}
+
 /// The edges of a polygon, two left and two right ones, prepared for rows of blocks.
 pub(crate) struct EdgeRows<L: Lanes> {
     edges: Edges<L>,
@@ -112,6 +124,15 @@ impl Slope {
         columns.plane(self.down, plane.min, plane.max_code)
     }
 
+    /// The greatest of these codes, likewise.
+    #[inline(always)]
+    fn greatest_code(&self, plane: &DepthPlane) -> i16 {
+        let last = (BLOCK - 1) as f32;
+        let left = larger(self.first, self.first + last * self.across);
+        let greatest = left + larger(0.0, last * self.down);
+        smaller(encode(larger(greatest, plane.min)), plane.max_code)
+    }
+
     /// The least of these codes. Sums round alike everywhere, so it is that of a corner.
     #[inline(always)]
     fn least_code(&self, plane: &DepthPlane) -> i16 {
@@ -144,6 +165,9 @@ pub(crate) fn cover_full<L: Lanes>(
     }
     let slope = Slope::new(plane, bx, by);
     let kind = to.state.kind();
+    if (kind != KIND_EMPTY) && plane.is_deep() && slope.greatest_code(plane) <= *to.min {
+        return 0;
+    }
     let mut d = slope.codes(l, plane);
     if (kind == KIND_EMPTY) & (margin == 0) {
         d.store(&mut to.depth.0);
@@ -184,14 +208,19 @@ pub(crate) fn cover_partial<L: Lanes>(
     if near <= *to.min {
         return 0;
     }
+    let slope = Slope::new(plane, bx, by);
+    let kind = to.state.kind();
+    if (kind != KIND_EMPTY) && plane.is_deep() && slope.greatest_code(plane) <= *to.min {
+        return 0;
+    }
     let ours = Part {
-        depth: Slope::new(plane, bx, by).codes(l, plane),
+        depth: slope.codes(l, plane),
         covered: Covered::new(l, spans, bx),
     };
-    if to.state.kind() == KIND_EMPTY {
-        begin(l, to, &ours, !margin);
-    } else {
-        merge(l, to, &ours, !margin);
+    match kind {
+        KIND_EMPTY => begin(l, to, &ours, !margin),
+        KIND_DEPTH => begin_over(l, to, &ours, !margin),
+        _ => merge(l, to, &ours, !margin),
     }
     WORK_OF_PARTIAL
 }
@@ -252,25 +281,40 @@ fn begin<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     *to.state = BlockState::partial(KIND_PARTIAL, slot);
 }
 
-/// Merges a further polygon, in the pixels `allowed`.
+/// Merges a polygon into a block that has depth and no partial coverage, in the pixels `allowed`.
+#[inline(always)]
+fn begin_over<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
+    let Part { covered, depth } = ours;
+    let old = l.load_depths(&to.depth.0);
+    let nearer = depth.gt(old) & allowed;
+    let alone = covered.whole & nearer;
+    let joined = covered.touched & nearer & !covered.whole;
+    let new = Depths::select(alone, *depth, old);
+    new.store(&mut to.depth.0);
+    *to.min = new.farthest();
+    // Without a branch: what is written into a slot that is not taken is never read.
+    let slot = to.slots.next();
+    let any = joined != 0;
+    to.slots.take(any);
+    let partial = &mut to.slots.partial[slot as usize];
+    covered.bits.keep(joined).store(&mut partial.bits);
+    (*depth).store(&mut partial.depth);
+    partial.center = covered.center & joined;
+    partial.any = joined;
+    *to.state = if any {
+        BlockState::partial(KIND_PARTIAL, slot)
+    } else {
+        BlockState::DEPTH
+    };
+}
+
+/// Merges a polygon into a block with partial coverage, in the pixels `allowed`.
 #[inline(always)]
 fn merge<L: Lanes>(l: L, to: BlockMut<'_, '_>, ours: &Part<L>, allowed: u64) {
     let kind = to.state.kind();
-    let slot = if kind == KIND_DEPTH {
-        let slot = to.slots.next();
-        to.slots.take(true);
-        slot
-    } else {
-        to.state.slot()
-    };
+    let slot = to.state.slot();
     let partial = &mut to.slots.partial[slot as usize];
-    // Stale memory is not even fetched.
-    let begun = if kind == KIND_DEPTH {
-        &PartialBlock::NONE
-    } else {
-        &*partial
-    };
-    let theirs = Waiting::load(l, begun);
+    let theirs = Waiting::load(l, partial);
     let old = l.load_depths(&to.depth.0);
     let pixels = Pixels::of(ours, &theirs, old, allowed);
     let new = Depths::select(pixels.alone, ours.depth, old);

@@ -33,6 +33,8 @@ pub(crate) struct FrameScratch {
 pub(crate) struct Part {
     pub(super) candidates: Vec<Candidate>,
     pub(super) order: Vec<u64>,
+    /// Instances that may be on the screen, by their place in the part.
+    pub(super) near: Vec<u32>,
     /// Stats of the clusters looked at.
     pub(super) stats: CullStats,
 }

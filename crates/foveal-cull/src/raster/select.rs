@@ -31,6 +31,10 @@ const LEAST_GROUPS: usize = 32;
 const SHIFTS: f32 = 4.0;
 const SHIFTS_OF_CREASES: f32 = 8.0;
 
+/// How far ahead meshes, and the bounds of their first clusters, are fetched.
+const MESHES_AHEAD: usize = 8;
+const CLUSTERS_AHEAD: usize = 4;
+
 /// Input of the selection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice<'a> {
@@ -177,19 +181,42 @@ impl Kernel for Select<'_> {
         let planes = instance_planes(camera, f64::from(width), f64::from(height));
         let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
         let begun = usize::from(first_group > 0);
+        // Meshes lie anywhere in memory: only those that may be on the screen are fetched, before
+        // their turn comes.
+        let near = &mut part.near;
+        near.clear();
         for (index, instance) in instances.iter().enumerate() {
-            let Some(mesh) = instance.mesh.as_deref().filter(|_| instance.enabled) else {
+            if instance.mesh.is_none() | !instance.enabled {
+                continue;
+            }
+            if index >= begun {
+                stats.occluder_models += 1;
+                stats.occluder_triangles += u64::from(instance.triangles);
+                stats.clusters += u64::from(instance.clusters);
+            }
+            if !outside(camera, &planes, instance, small) {
+                near.push(index as u32);
+            }
+        }
+        let mesh_of = |n: usize| {
+            let instance = &instances[*near.get(n)? as usize];
+            instance.mesh.as_deref()
+        };
+        for n in 0..MESHES_AHEAD {
+            mesh_of(n).inspect(|mesh| l.prefetch(*mesh));
+        }
+        for (n, &index) in near.iter().enumerate() {
+            mesh_of(n + MESHES_AHEAD).inspect(|mesh| l.prefetch(*mesh));
+            if let Some(mesh) = mesh_of(n + CLUSTERS_AHEAD) {
+                mesh.bounds8.first().inspect(|b| l.prefetch(*b));
+                mesh.clusters.first().inspect(|c| l.prefetch(*c));
+            }
+            let index = index as usize;
+            let instance = &instances[index];
+            let Some(mesh) = instance.mesh.as_deref() else {
                 continue;
             };
             let begins = index >= begun;
-            if begins {
-                stats.occluder_models += 1;
-                stats.occluder_triangles += mesh.triangle_count() as u64;
-                stats.clusters += mesh.clusters.len() as u64;
-            }
-            if outside(camera, &planes, instance, small) {
-                continue;
-            }
             let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
             if begins {
                 clip_rows[index - begun] = camera.exact_rows(&instance.world_from_mesh);
@@ -278,9 +305,11 @@ const GROWN: f32 = 1.0;
 /// Boxes whose rectangle may be wrong by more samples than this count as everywhere.
 const LOST: f32 = 1e5;
 
-/// A bound on the rounding of a box's rectangle, samples: a rectangle that is too small would leave
-/// polygons out of some threads' rows, and not out of others'. Distances are at least 1 where a box
-/// is clipped, so that an error of a clip row's value is at most one of the quotient.
+/// About the rounding of a box's rectangle, samples: one rounding of the sum of sizes that go into a
+/// clip row's value, of which there are a few. A rectangle that is too small would leave polygons
+/// out of some threads' rows, and not out of others'; it covers nothing that polygons do not.
+/// Distances are at least 1 where a box is clipped, so that an error of a clip row's value is at most
+/// one of the quotient.
 fn rounding(screen: &Screen<'_>, cluster: &Cluster) -> f32 {
     let reach = cluster.center.abs() + cluster.half;
     let size = |r: &[f32; 4]| {

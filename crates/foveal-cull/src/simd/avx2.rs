@@ -437,7 +437,10 @@ impl Lanes for Avx2 {
                 });
                 Side256 {
                     rows: two!(k => _mm256_packs_epi32(rows[2 * k], rows[2 * k + 1])),
-                    centers: whole(self, centers[0], centers[1]),
+                    centers: {
+                        let n = whole(self, centers[0], centers[1]);
+                        _mm256_max_epi32(n, _mm256_setzero_si256())
+                    },
                 }
             })
         })
@@ -475,7 +478,7 @@ impl Lanes for Avx2 {
             let n = [from, to];
             let sides = two!(side => {
                 let n = _mm256_max_epi32(n[side], _mm256_setzero_si256());
-                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
+                shifted(_mm256_set1_epi32(0xff), n)
             });
             let bits = _mm256_andnot_si256(sides[1], sides[0]);
             let bits = _mm256_and_si256(bits, _mm256_set1_epi32(0xff));
@@ -543,15 +546,33 @@ fn half_rows(_: Avx2, table: *const f32, at: usize) -> __m256 {
     unsafe { _mm256_loadu2_m128(table.add(at + 24), table.add(at)) }
 }
 
-/// Rounded towards zero; what is far off the screen, no farther than [`FAR`].
+/// Rounded towards zero, no greater than [`FAR`]. What is far to the left is far below zero.
 #[inline(always)]
 fn whole(_: Avx2, low: __m256d, high: __m256d) -> __m256i {
     avx2!({
         let v = [low, high];
-        let [low, high] = two!(k => _mm256_cvttpd_epi32(_mm256_min_pd(
-            _mm256_max_pd(v[k], _mm256_set1_pd(-FAR)),
-            _mm256_set1_pd(FAR),
-        )));
+        let [low, high] = two!(k => {
+            _mm256_cvttpd_epi32(_mm256_min_pd(_mm256_set1_pd(FAR), v[k]))
+        });
         _mm256_set_m128i(high, low)
     })
+}
+
+/// Numbers shifted to the left, by 32 or more to nothing. [`_mm256_sllv_epi32`] is the same, but is
+/// compiled to this instruction, a comparison with 32, and a choice.
+#[inline]
+#[target_feature(enable = "avx2")]
+pub(super) fn shifted(v: __m256i, by: __m256i) -> __m256i {
+    let to;
+    // SAFETY: the attribute says that the CPU has AVX2; nothing but one register changes.
+    unsafe {
+        core::arch::asm!(
+            "vpsllvd {to}, {v}, {by}",
+            to = lateout(ymm_reg) to,
+            v = in(ymm_reg) v,
+            by = in(ymm_reg) by,
+            options(pure, nomem, nostack, preserves_flags),
+        );
+    }
+    to
 }

@@ -3,6 +3,7 @@
 //! makes its methods sound.
 
 use super::arrays::{four, two};
+use super::avx2;
 use super::avx512proof::Avx512;
 use super::avx512x16::Wide512;
 use super::lanes::{Kernel, Lanes, Vectors};
@@ -214,10 +215,11 @@ impl Lanes for Avx512 {
     }
     #[inline(always)]
     fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64 {
-        let distance = avx512!(two!(i => {
-            _mm512_max_epi16(_mm512_subs_epi16(a[i], b[i]), _mm512_subs_epi16(b[i], a[i]))
+        let [low, high] = avx512!(two!(i => {
+            let distance = _mm512_abs_epi16(_mm512_subs_epi16(a[i], b[i]));
+            _mm512_cmpgt_epu16_mask(distance, _mm512_set1_epi16(by))
         }));
-        self.dgt(distance, self.dsplat(by))
+        u64::from(low) | (u64::from(high) << 32)
     }
     #[inline(always)]
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D {
@@ -270,9 +272,13 @@ impl Lanes for Avx512 {
                 Side512 {
                     rows: two!(k => {
                         let n = _mm512_castsi256_si512(whole(self, v[k]));
-                        _mm512_inserti64x4::<1>(n, whole(self, v[k + 2]))
+                        let n = _mm512_inserti64x4::<1>(n, whole(self, v[k + 2]));
+                        _mm512_max_epi32(n, _mm512_setzero_si512())
                     }),
-                    centers: whole(self, _mm512_mul_pd(center, _mm512_set1_pd(0.25))),
+                    centers: {
+                        let n = whole(self, _mm512_mul_pd(center, _mm512_set1_pd(0.25)));
+                        _mm256_max_epi32(n, _mm256_setzero_si256())
+                    },
                 }
             })
         })
@@ -285,9 +291,9 @@ impl Lanes for Avx512 {
             let first = _mm512_set1_epi32(left as i32);
             let rows = two!(k => {
                 let [from, to] = two!(side => {
-                    let n = _mm512_sub_epi32(spans[side].rows[k], first);
-                    let n = _mm512_max_epi32(n, _mm512_setzero_si512());
-                    _mm512_sllv_epi32(_mm512_set1_epi32(-1), n)
+                    // Numbers have 15 bits.
+                    let n = _mm512_subs_epu16(spans[side].rows[k], first);
+                    shifted(_mm512_set1_epi32(-1), n)
                 });
                 _mm512_andnot_si512(to, from)
             });
@@ -308,8 +314,12 @@ impl Lanes for Avx512 {
                 _mm512_unpackhi_epi16(even, odd),
             ];
             let first = _mm256_set1_epi32(left as i32 / 4);
-            let [from, to] = two!(side => _mm256_sub_epi32(spans[side].centers, first));
-            (planes, self.irows(from, to))
+            let [from, to] = two!(side => {
+                let n = _mm256_subs_epu16(spans[side].centers, first);
+                avx2::shifted(_mm256_set1_epi32(0xff), n)
+            });
+            let rows = _mm256_cvtepi32_epi8(_mm256_andnot_si256(to, from));
+            (planes, _mm_cvtsi128_si64(rows) as u64)
         })
     }
     #[inline(always)]
@@ -318,7 +328,7 @@ impl Lanes for Avx512 {
             let n = [from, to];
             let [from, to] = two!(side => {
                 let n = _mm256_max_epi32(n[side], _mm256_setzero_si256());
-                _mm256_sllv_epi32(_mm256_set1_epi32(0xff), n)
+                avx2::shifted(_mm256_set1_epi32(0xff), n)
             });
             _mm_cvtsi128_si64(_mm256_cvtepi32_epi8(_mm256_andnot_si256(to, from))) as u64
         })
@@ -401,17 +411,36 @@ fn limited(_: Avx512, v: __m512d, [after, last]: [f64; 2], k: usize) -> __m512d 
     })
 }
 
-/// Rounded towards zero; what is far off the screen, no farther than [`FAR`].
+/// Beyond the screen to the right, in 15 bits.
+const RIGHT: f64 = 32767.0;
+
+/// Rounded towards zero, no greater than [`RIGHT`]. What is far to the left is below zero.
 #[inline(always)]
 fn whole(_: Avx512, v: __m512d) -> __m256i {
-    avx512!(_mm512_cvttpd_epi32(_mm512_min_pd(
-        _mm512_max_pd(v, _mm512_set1_pd(-FAR)),
-        _mm512_set1_pd(FAR)
-    )))
+    avx512!(_mm512_cvttpd_epi32(_mm512_min_pd(_mm512_set1_pd(RIGHT), v)))
 }
 
 /// `a` where a bit is set, else `b`.
 #[inline(always)]
 fn select(_: Avx512, bits: __m512i, a: __m512i, b: __m512i) -> __m512i {
     avx512!(_mm512_ternarylogic_epi32::<0xca>(bits, a, b))
+}
+
+/// Numbers shifted to the left, by 32 or more to nothing. [`_mm512_sllv_epi32`] is the same, but is
+/// compiled to this instruction, a comparison with 32, and a choice.
+#[inline]
+#[target_feature(enable = "avx512f")]
+fn shifted(v: __m512i, by: __m512i) -> __m512i {
+    let to;
+    // SAFETY: the attribute says that the CPU has AVX-512; nothing but one register changes.
+    unsafe {
+        core::arch::asm!(
+            "vpsllvd {to}, {v}, {by}",
+            to = lateout(zmm_reg) to,
+            v = in(zmm_reg) v,
+            by = in(zmm_reg) by,
+            options(pure, nomem, nostack, preserves_flags),
+        );
+    }
+    to
 }

@@ -187,7 +187,8 @@ pub(crate) trait Lanes: Vectors<8> {
     fn dmax(self, a: Self::D, b: Self::D) -> Self::D;
     /// A bit per pixel where `a > b`.
     fn dgt(self, a: Self::D, b: Self::D) -> u64;
-    /// A bit per pixel where `a` and `b` are further apart than `by`.
+    /// A bit per pixel where `a` and `b` are further apart than `by`, which is not below zero and
+    /// less than the greatest number.
     fn dapart(self, a: Self::D, b: Self::D, by: i16) -> u64;
     /// `a` where the bit is set, else `b`.
     fn dselect(self, bits: u64, a: Self::D, b: Self::D) -> Self::D;
