@@ -43,6 +43,16 @@ pub struct Material {
     pub roughness: f32,
     /// Green = roughness, blue = metallic, linear.
     pub metallic_roughness_texture: Option<TextureRef>,
+    /// KHR_materials_ior: index of refraction of what is not metal; 0 reflects everything.
+    pub ior: f32,
+    /// KHR_materials_specular: part of the reflection of what is not metal, 0 … 1.
+    pub specular: f32,
+    /// Alpha times `specular`, linear.
+    pub specular_texture: Option<TextureRef>,
+    /// Linear colour of the reflection at right angles of what is not metal; may exceed 1.
+    pub specular_color: Vec3,
+    /// sRGB colour, times `specular_color`.
+    pub specular_color_texture: Option<TextureRef>,
     /// Tangent-space normals, linear.
     pub normal_texture: Option<TextureRef>,
     /// Scale of the normal's x and y.
@@ -77,6 +87,30 @@ pub struct ProceduralLayers {
     pub frequency: f32,
 }
 
+/// The index of refraction of a material that names none.
+const DEFAULT_IOR: f32 = 1.5;
+
+impl Material {
+    /// Reflectance at right angles that the index of refraction gives what is not metal.
+    #[must_use]
+    pub fn ior_reflectance(&self) -> f32 {
+        if self.ior == DEFAULT_IOR {
+            return 0.04;
+        }
+        ((self.ior - 1.0) / (self.ior + 1.0)).powi(2)
+    }
+
+    /// Whether what is not metal reflects otherwise than by default: by the index of refraction, or
+    /// by KHR_materials_specular.
+    #[must_use]
+    pub fn has_own_specular(&self) -> bool {
+        let default = (DEFAULT_IOR, 1.0, Vec3::ONE);
+        let textures = [self.specular_texture, self.specular_color_texture];
+        (self.ior, self.specular, self.specular_color) != default
+            || textures.iter().any(Option::is_some)
+    }
+}
+
 impl Default for Material {
     /// glTF's default material, white, with roughness and metallic 1 (as the specification says).
     fn default() -> Self {
@@ -87,6 +121,11 @@ impl Default for Material {
             metallic: 1.0,
             roughness: 1.0,
             metallic_roughness_texture: None,
+            ior: DEFAULT_IOR,
+            specular: 1.0,
+            specular_texture: None,
+            specular_color: Vec3::ONE,
+            specular_color_texture: None,
             normal_texture: None,
             normal_scale: 1.0,
             occlusion_texture: None,

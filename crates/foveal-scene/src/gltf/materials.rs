@@ -5,7 +5,7 @@ use glam::{Mat3, Vec3, Vec4};
 use super::document::Counts;
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
-use crate::{AlphaMode, Material};
+use crate::{AlphaMode, Material, TextureRef};
 
 /// A texture as a material slot names it, with the file's own UV set number.
 #[derive(Clone, Copy)]
@@ -17,7 +17,7 @@ pub(crate) struct SlotDef {
 
 /// A material whose texture slots are still numbers of the file.
 pub(crate) struct MaterialDef {
-    /// Everything but the textures.
+    /// Everything but the textures below. Other textures are numbers of the file in it.
     pub(crate) material: Material,
     pub(crate) base_color: Option<SlotDef>,
     pub(crate) metallic_roughness: Option<SlotDef>,
@@ -85,6 +85,7 @@ impl MaterialDef {
             material.occlusion_strength =
                 occlusion.float("strength")?.unwrap_or(1.0).clamp(0.0, 1.0);
         }
+        read_specular(&mut material, o, counts)?;
         Ok(Self {
             material,
             base_color,
@@ -104,7 +105,10 @@ impl MaterialDef {
             self.occlusion,
             self.emissive,
         ];
-        let mut sets: Vec<u32> = slots.iter().flatten().map(|s| s.set).collect();
+        let further = further_textures(&self.material);
+        let further = further.iter().flatten().map(|slot| slot.uv_set);
+        let slots = slots.iter().flatten().map(|slot| slot.set);
+        let mut sets: Vec<u32> = slots.chain(further).collect();
         // The most visible sets win where there are more than two: the order of `slots`.
         let mut kept: Vec<u32> = Vec::new();
         for set in sets.drain(..) {
@@ -117,6 +121,45 @@ impl MaterialDef {
         kept.sort_unstable();
         ([kept.first().copied(), kept.get(1).copied()], overflow)
     }
+}
+
+/// The textures of extensions.
+fn further_textures(material: &Material) -> [Option<TextureRef>; 2] {
+    [material.specular_texture, material.specular_color_texture]
+}
+
+/// KHR_materials_ior and KHR_materials_specular.
+fn read_specular(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed<()> {
+    if let Some(e) = o.extension("KHR_materials_ior")? {
+        let within = |e: Flaw| e.under("extensions.KHR_materials_ior");
+        let ior = e.float("ior").map_err(within)?.unwrap_or(material.ior);
+        // 0 is allowed and reflects everything; nothing real lies between it and 1.
+        material.ior = if ior <= 0.0 { 0.0 } else { ior.max(1.0) };
+    }
+    if let Some(e) = o.extension("KHR_materials_specular")? {
+        let within = |e: Flaw| e.under("extensions.KHR_materials_specular");
+        let strength = e.float("specularFactor").map_err(within)?;
+        material.specular = strength.unwrap_or(1.0).clamp(0.0, 1.0);
+        let color = e.floats("specularColorFactor").map_err(within)?;
+        material.specular_color = color.map_or(Vec3::ONE, Vec3::from).max(Vec3::ZERO);
+        material.specular_texture = texture(e, "specularTexture", counts).map_err(within)?;
+        material.specular_color_texture =
+            texture(e, "specularColorTexture", counts).map_err(within)?;
+    }
+    Ok(())
+}
+
+/// A texture of an extension, with the file's numbers.
+fn texture(o: Obj<'_>, key: &str, counts: &Counts) -> Parsed<Option<TextureRef>> {
+    let Some(info) = o.object(key)? else {
+        return Ok(None);
+    };
+    let slot = parse_slot(info, counts).map_err(|e| e.under(key))?;
+    Ok(Some(TextureRef {
+        texture: slot.texture,
+        uv_set: slot.set,
+        uv_transform: slot.transform,
+    }))
 }
 
 /// The sets that a primitive without a material carries along.

@@ -12,6 +12,7 @@ use super::meshes::{Attributes, Mode, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
 use super::reader::Reader;
+use super::tangents::TangentUvs;
 use crate::error::{Flaw, Limit, Parsed};
 use crate::pose::Shape;
 use crate::{LoadOptions, Material, MissingNormals, Scene, Vertex, threads};
@@ -79,7 +80,7 @@ impl Geometry {
         let uv_sets: UvSets = material.map_or(DEFAULT_UV_SETS, |m| m.uv_sets().0);
         let tangents_for = material
             .and_then(|m| m.normal)
-            .map(|slot| u32::from(uv_sets[1] == Some(slot.set)));
+            .map(|slot| TangentUvs::new(usize::from(uv_sets[1] == Some(slot.set)), slot.transform));
         let request = Request {
             primitive: def.primitives[primitive].clone(),
             uv_sets,

@@ -86,7 +86,17 @@ impl Wanted {
                 uv_transform: slot.transform,
             })
         };
+        let further = |found: Option<TextureRef>| {
+            found.map(|found| SlotDef {
+                texture: found.texture,
+                set: found.uv_set,
+                transform: found.uv_transform,
+            })
+        };
+        let plain = &def.material;
         Material {
+            specular_texture: slot(further(plain.specular_texture), Role::Data, false),
+            specular_color_texture: slot(further(plain.specular_color_texture), Role::Color, false),
             base_color_texture: slot(def.base_color, base_role, false),
             metallic_roughness_texture: slot(def.metallic_roughness, Role::Data, false),
             normal_texture: slot(def.normal, Role::Normal, false),

@@ -3,6 +3,7 @@
 #variant
 #variant CLIPPED
 #variant LAYERED
+#import shared/face_normal.wgsl
 #import shared/material_at.wgsl
 #import shared/material_bindings.wgsl
 #import shared/surface.wgsl
@@ -30,8 +31,7 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
     }
     var words = pack_surface(m.surface);
     if FACE_NORMAL {
-        let e = octahedral_from_unit(unit_or(face, m.surface.normal));
-        words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
+        words = with_face_normal(words, unit_or(face, m.surface.normal));
     }
     return GBufferOut(
         words,

@@ -1,6 +1,6 @@
-//! Materials as bind group 1: a uniform block, five textures, five samplers.
+//! Materials as bind group 1: a uniform block, textures, samplers.
 
-use super::material_uniform::{MaterialUniform, material_class, slots};
+use super::material_uniform::{MaterialUniform, SLOTS, material_class, slots};
 use foveal_scene::{ColorSpace, Material, Sampler, Scene, Texture};
 
 use super::families::{Families, FamilyBindings, Slot};
@@ -12,7 +12,7 @@ use crate::{Error, Settings};
 /// The layout of bind group 1.
 pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let mut types = vec![uniform()];
-    for _ in 0..5 {
+    for _ in 0..SLOTS {
         types.push(sampled(wgpu::TextureSampleType::Float { filterable: true }));
         types.push(wgpu::BindingType::Sampler(
             wgpu::SamplerBindingType::Filtering,

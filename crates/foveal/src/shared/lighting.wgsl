@@ -66,8 +66,10 @@ fn reflect_ggx(s: Surface, v: vec3f, l: vec3f, n_dot_l: f32) -> Reflection {
     let f0 = reflectance_at_normal(s);
     let m = 1.0 - v_dot_h;
     let m2 = m * m;
-    let fresnel = f0 + (1.0 - f0) * (m2 * m2 * m);
-    return Reflection(1.0 - fresnel, fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s)));
+    let m5 = m2 * m2 * m;
+    let fresnel = f0 + (reflectance_at_grazing(s) - f0) * m5;
+    let left = 1.0 - fresnel - kept_from_scattering(s) * (1.0 - m5);
+    return Reflection(left, fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s)));
 }
 
 // Lambert and normalized Blinn-Phong, the exponent taken from the roughness.

@@ -177,6 +177,8 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             reserved_0,
             reserved_1,
             reserved_2,
+            specular_color,
+            specular,
         ]
     );
     for shader in [
