@@ -2,6 +2,8 @@
 
 use glam::{Mat3, Vec3, Vec4};
 
+use crate::{Anisotropy, Clearcoat, Sheen};
+
 /// What alpha means.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum AlphaMode {
@@ -71,6 +73,12 @@ pub struct Material {
     pub double_sided: bool,
     /// KHR_materials_unlit: base colour straight to the screen.
     pub unlit: bool,
+    /// A clear coat over it.
+    pub clearcoat: Option<Clearcoat>,
+    /// Fibres that stand off it.
+    pub sheen: Option<Sheen>,
+    /// Highlights that are longer in one direction.
+    pub anisotropy: Option<Anisotropy>,
     /// Noise that is computed at each point instead of looked up in textures.
     pub procedural: Option<ProceduralLayers>,
 }
@@ -135,6 +143,9 @@ impl Default for Material {
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
+            clearcoat: None,
+            sheen: None,
+            anisotropy: None,
             procedural: None,
         }
     }

@@ -4,6 +4,7 @@ use glam::{Mat3, Vec3, Vec4};
 
 use super::document::Counts;
 use super::json::Obj;
+use super::lobes;
 use crate::error::{Flaw, Parsed};
 use crate::{AlphaMode, Material, TextureRef};
 
@@ -86,6 +87,9 @@ impl MaterialDef {
                 occlusion.float("strength")?.unwrap_or(1.0).clamp(0.0, 1.0);
         }
         read_specular(&mut material, o, counts)?;
+        if !material.unlit {
+            lobes::read(&mut material, o, counts)?;
+        }
         Ok(Self {
             material,
             base_color,
@@ -94,6 +98,19 @@ impl MaterialDef {
             occlusion: slot(o, "occlusionTexture")?,
             emissive: slot(o, "emissiveTexture")?,
         })
+    }
+
+    /// The set of texture coordinates that tangents follow, and what becomes of them: of normals,
+    /// else of the coat's normals, else of anisotropy; `None` where nothing needs tangents.
+    pub(crate) fn tangent_uvs(&self) -> Option<(u32, Mat3)> {
+        let normal = self.normal.map(|slot| (slot.set, slot.transform));
+        let of = |slot: TextureRef| (slot.uv_set, slot.uv_transform);
+        let coat = self.material.clearcoat.and_then(|coat| coat.normal_texture);
+        let anisotropy = self.material.anisotropy.map(|found| {
+            let first = (self.uv_sets().0[0].unwrap_or(0), Mat3::IDENTITY);
+            found.texture.map_or(first, of)
+        });
+        normal.or(coat.map(of)).or(anisotropy)
     }
 
     /// Maps the sets in use to the two slots, lowest set first; true when some did not fit.
@@ -116,6 +133,9 @@ impl MaterialDef {
                 kept.push(set);
             }
         }
+        if kept.is_empty() && self.material.anisotropy.is_some() {
+            kept.push(0);
+        }
         let overflow = kept.len() > 2;
         kept.truncate(2);
         kept.sort_unstable();
@@ -124,8 +144,12 @@ impl MaterialDef {
 }
 
 /// The textures of extensions.
-fn further_textures(material: &Material) -> [Option<TextureRef>; 2] {
-    [material.specular_texture, material.specular_color_texture]
+fn further_textures(material: &Material) -> Vec<Option<TextureRef>> {
+    let specular = [material.specular_texture, material.specular_color_texture];
+    specular
+        .into_iter()
+        .chain(material.lobe_textures())
+        .collect()
 }
 
 /// KHR_materials_ior and KHR_materials_specular.
@@ -150,7 +174,7 @@ fn read_specular(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed
 }
 
 /// A texture of an extension, with the file's numbers.
-fn texture(o: Obj<'_>, key: &str, counts: &Counts) -> Parsed<Option<TextureRef>> {
+pub(super) fn texture(o: Obj<'_>, key: &str, counts: &Counts) -> Parsed<Option<TextureRef>> {
     let Some(info) = o.object(key)? else {
         return Ok(None);
     };

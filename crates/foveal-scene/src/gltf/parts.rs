@@ -7,7 +7,7 @@ use glam::Mat4;
 use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
-use super::materials::{DEFAULT_UV_SETS, UvSets};
+use super::materials::{DEFAULT_UV_SETS, MaterialDef, UvSets};
 use super::meshes::{Attributes, Mode, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
@@ -79,8 +79,10 @@ impl Geometry {
         let material = def.materials[primitive].map(|m| &document.materials[m as usize]);
         let uv_sets: UvSets = material.map_or(DEFAULT_UV_SETS, |m| m.uv_sets().0);
         let tangents_for = material
-            .and_then(|m| m.normal)
-            .map(|slot| TangentUvs::new(usize::from(uv_sets[1] == Some(slot.set)), slot.transform));
+            .and_then(MaterialDef::tangent_uvs)
+            .map(|(set, transform)| {
+                TangentUvs::new(usize::from(uv_sets[1] == Some(set)), transform)
+            });
         let request = Request {
             primitive: def.primitives[primitive].clone(),
             uv_sets,

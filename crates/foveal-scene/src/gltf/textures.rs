@@ -94,7 +94,27 @@ impl Wanted {
             })
         };
         let plain = &def.material;
+        let mut of_lobe = |found: &mut Option<TextureRef>, role| {
+            *found = slot(further(*found), role, false);
+        };
+        let (mut clearcoat, mut sheen) = (plain.clearcoat, plain.sheen);
+        if let Some(coat) = &mut clearcoat {
+            of_lobe(&mut coat.texture, Role::Data);
+            of_lobe(&mut coat.roughness_texture, Role::Data);
+            of_lobe(&mut coat.normal_texture, Role::Normal);
+        }
+        if let Some(sheen) = &mut sheen {
+            of_lobe(&mut sheen.color_texture, Role::Color);
+            of_lobe(&mut sheen.roughness_texture, Role::Data);
+        }
+        let mut anisotropy = plain.anisotropy;
+        if let Some(anisotropy) = &mut anisotropy {
+            of_lobe(&mut anisotropy.texture, Role::Data);
+        }
         Material {
+            clearcoat,
+            sheen,
+            anisotropy,
             specular_texture: slot(further(plain.specular_texture), Role::Data, false),
             specular_color_texture: slot(further(plain.specular_color_texture), Role::Color, false),
             base_color_texture: slot(def.base_color, base_role, false),

@@ -1,9 +1,13 @@
-// Forward pass for blended surfaces, back to front over the deferred picture.
+// Forward pass: surfaces with lobes, at the depth where the G-buffer has them, and blended surfaces,
+// back to front over the deferred picture.
 
 #variant
 #variant CLIPPED
 #variant LAYERED
 #variant REDUCED
+#variant LOBES
+#variant LOBES CLIPPED
+#variant LOBES LAYERED
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
 #import shared/material_at.wgsl
@@ -11,11 +15,19 @@
 #ifndef REDUCED
 #import shared/light.wgsl
 #endif
+#ifdef LOBES
+#import forward/lobes.wgsl
+#endif
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;
 // Drawn at sub-samples: what is drawn to has other texels than the picture.
 override SAMPLED: bool = false;
+
+#ifdef LOBES
+// Alpha is ignored.
+override OPAQUE: bool = false;
+#endif
 
 #ifdef REDUCED
 @group(2) @binding(0) var light_table: texture_2d<u32>;
@@ -42,14 +54,22 @@ fn target_position(in: VertexOut) -> vec2f {
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
+#ifdef LOBES
+    let lobed = lobes_at(m.surface, in.normal, in.tangent, in.uv, select(-1.0, 1.0, front));
+#endif
     if is_beyond(in.now, in.instance) {
         discard;
     }
     let pixel = target_position(in);
     let view = frame.views[view_at(pixel)];
     let distance = dot(in.world - view.world_from_view[3].xyz, view.forward);
+#ifdef LOBES
+    let radiance = min(lit_with_lobes(lobed, pixel, distance), vec3f(65504.0));
+    let alpha = select(saturate(m.alpha), 1.0, OPAQUE);
+#else
     let radiance = min(lit(m.surface, pixel, distance), vec3f(65504.0));
     let alpha = saturate(m.alpha);
+#endif
     // Premultiplied.
     return vec4f(radiance * alpha, alpha);
 }

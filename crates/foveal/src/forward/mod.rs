@@ -1,5 +1,8 @@
-//! Forward pass: blended surfaces over the deferred picture, back to front.
+//! Forward pass over the deferred picture: opaque surfaces with lobes, shaded at each pixel where the
+//! G-buffer shows them, then blended surfaces, back to front.
 
+#[cfg(test)]
+mod lobes_twin;
 #[cfg(test)]
 pub(crate) mod twin;
 
@@ -10,6 +13,7 @@ use crate::geometry::{
 use crate::gpu::{Gpu, bind_group, bind_group_layout};
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, drawn_over, overwritten};
+use crate::scene::{LobeClass, lobes_layout};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
@@ -28,10 +32,12 @@ struct ForwardTarget<'a> {
     depth: &'a wgpu::TextureView,
 }
 
-/// Draws blended surfaces.
+/// Draws surfaces with lobes, and blended ones.
 #[derive(Debug)]
 pub(crate) struct ForwardPass {
-    pipelines: Pipelines,
+    blended: Pipelines,
+    /// Opaque and blended surfaces with lobes; `None` on devices that do not shade these.
+    lobed: Option<[Pipelines; 2]>,
     submission: Submission,
     layout: EyeLayout,
     lights_layout: wgpu::BindGroupLayout,
@@ -57,34 +63,57 @@ impl ForwardPass {
         constants.push(("LAYERED", f64::from(u8::from(layered))));
         let sampled = settings.antialiasing.mode != Antialiasing::None;
         constants.push(("SAMPLED", f64::from(u8::from(sampled))));
-        let shader = match submission {
-            _ if submission.clips() => shader::FORWARD_FORWARD.variant(&["CLIPPED"]),
-            Submission::Multiview => shader::FORWARD_FORWARD.variant(&["LAYERED"]),
-            _ if gpu.is_reduced() => shader::FORWARD_FORWARD.variant(&["REDUCED"]),
-            _ => shader::FORWARD_FORWARD,
+        let recipe = |lobes: bool, opaque: bool| {
+            let shader = match (submission, lobes) {
+                (_, true) if submission.clips() => {
+                    shader::FORWARD_FORWARD.variant(&["LOBES", "CLIPPED"])
+                }
+                (Submission::Multiview, true) => {
+                    shader::FORWARD_FORWARD.variant(&["LOBES", "LAYERED"])
+                }
+                (_, true) => shader::FORWARD_FORWARD.variant(&["LOBES"]),
+                _ if submission.clips() => shader::FORWARD_FORWARD.variant(&["CLIPPED"]),
+                (Submission::Multiview, _) => shader::FORWARD_FORWARD.variant(&["LAYERED"]),
+                _ if gpu.is_reduced() => shader::FORWARD_FORWARD.variant(&["REDUCED"]),
+                _ => shader::FORWARD_FORWARD,
+            };
+            let own_layout = lobes.then(|| lobes_layout(gpu));
+            let material_layout = own_layout.as_ref().unwrap_or(material_layout);
+            let mut constants = constants.clone();
+            if lobes {
+                constants.push(("OPAQUE", f64::from(u8::from(opaque))));
+            }
+            Pipelines::new(PipelineRecipe {
+                label: "forward",
+                module: shader::module(gpu, "forward", shader),
+                layout: shader::pipeline_layout(
+                    gpu,
+                    "forward",
+                    &[frame_layout, material_layout, &lights_layout],
+                ),
+                vertex: VertexSource::Buffers(submission.vertex_entry()),
+                fragment: "fragment",
+                targets: vec![Some(wgpu::ColorTargetState {
+                    format: RADIANCE_FORMAT,
+                    blend: (!opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })],
+                writes_depth: false,
+                depth_compare: if opaque {
+                    wgpu::CompareFunction::Equal
+                } else {
+                    wgpu::CompareFunction::Greater
+                },
+                constants,
+                has_mask: false,
+                multiview_mask: submission.multiview_mask(),
+            })
         };
-        let pipelines = Pipelines::new(PipelineRecipe {
-            label: "forward",
-            module: shader::module(gpu, "forward", shader),
-            layout: shader::pipeline_layout(
-                gpu,
-                "forward",
-                &[frame_layout, material_layout, &lights_layout],
-            ),
-            vertex: VertexSource::Buffers(submission.vertex_entry()),
-            fragment: "fragment",
-            targets: vec![Some(wgpu::ColorTargetState {
-                format: RADIANCE_FORMAT,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            writes_depth: false,
-            constants,
-            has_mask: false,
-            multiview_mask: submission.multiview_mask(),
-        });
+        let blended = recipe(false, false);
+        let lobed = (!gpu.is_reduced()).then(|| [recipe(true, true), recipe(true, false)]);
         Self {
-            pipelines,
+            blended,
+            lobed,
             submission,
             layout: EyeLayout::of(settings),
             lights_layout,
@@ -98,15 +127,29 @@ impl ForwardPass {
 
     /// Makes the pipelines that `list` needs.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
-        let mut keys: Vec<PipelineKey> = list.blended.iter().map(|b| b.key).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        for key in keys {
-            self.pipelines.prepare(gpu, key);
+        let prepare = |pipelines: &mut Pipelines, keys: &mut dyn Iterator<Item = PipelineKey>| {
+            for key in keys.collect::<std::collections::BTreeSet<_>>() {
+                pipelines.prepare(gpu, key);
+            }
+        };
+        let has_lobes = |key: &PipelineKey| key.lobes != LobeClass::default();
+        let keys = || list.blended.iter().map(|b| b.key);
+        prepare(&mut self.blended, &mut keys().filter(|key| !has_lobes(key)));
+        if let Some([opaque, blended]) = &mut self.lobed {
+            prepare(opaque, &mut list.lobed.iter().map(|b| b.key));
+            prepare(blended, &mut keys().filter(has_lobes));
         }
     }
 
-    /// Encodes the pass, unless nothing is blended.
+    fn pipeline(&self, key: PipelineKey, opaque: bool) -> &wgpu::RenderPipeline {
+        match &self.lobed {
+            Some([lobed, _]) if opaque => lobed.get(key),
+            Some([_, blended]) if key.lobes != LobeClass::default() => blended.get(key),
+            _ => self.blended.get(key),
+        }
+    }
+
+    /// Encodes the pass, unless it has nothing to draw.
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
@@ -114,7 +157,7 @@ impl ForwardPass {
         lights: SceneLights<'_>,
         targets: &Targets,
     ) {
-        if draws.list.blended.is_empty() {
+        if !draws.list.has_forward() {
             return;
         }
         let radiance = targets.radiance_layers.as_ref();
@@ -173,7 +216,10 @@ impl ForwardPass {
             for &drawn in self.submission.drawn() {
                 let window = self.layout.window_of(drawn, Window { frame, part });
                 window.set(&mut pass);
-                DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines, drawn);
+                let lobed = |key| self.pipeline(key, true);
+                DrawList::issue_with(&list.lobed, &mut pass, scene, lobed, false, drawn);
+                let blended = |key| self.pipeline(key, false);
+                DrawList::issue_with(&list.blended, &mut pass, scene, blended, false, drawn);
             }
         }
     }

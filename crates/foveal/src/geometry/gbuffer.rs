@@ -101,6 +101,7 @@ impl GeometryPass {
             fragment: "fragment",
             targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],
             writes_depth: true,
+            depth_compare: wgpu::CompareFunction::Greater,
             constants,
             has_mask: true,
             multiview_mask: submission.multiview_mask(),

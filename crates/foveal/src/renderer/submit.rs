@@ -85,7 +85,7 @@ impl Renderer {
         );
         geometry.prepare(gpu, scene, list);
         forward.prepare(gpu, list);
-        if !list.blended.is_empty() {
+        if list.has_forward() {
             targets.blend_samples(gpu, settings);
         }
     }
@@ -224,7 +224,7 @@ impl Stages {
         let input = input.as_ref();
         let blended = samples
             .blended()
-            .filter(|_| plan.is_lit && !draws.list.blended.is_empty());
+            .filter(|_| plan.is_lit && draws.list.has_forward());
         antialias.begin(recorder, samples);
         for band in samples.bands() {
             let windows = samples.windows(band.0);
@@ -364,7 +364,7 @@ impl Stages {
         }
     }
 
-    /// Forward: blended surfaces over opaque ones.
+    /// Forward: lobes of opaque surfaces, and blended surfaces over them.
     fn blend(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
         match &self.antialias {
             Some(antialias) => antialias.blend(recorder, draws.list, &self.targets),

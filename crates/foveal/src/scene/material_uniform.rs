@@ -117,7 +117,7 @@ impl MaterialUniform {
     }
 }
 
-fn uv_rows(slot: TextureRef) -> [[f32; 4]; 2] {
+pub(super) fn uv_rows(slot: TextureRef) -> [[f32; 4]; 2] {
     let m = slot.uv_transform;
     [
         [m.x_axis.x, m.y_axis.x, m.z_axis.x, slot.uv_set as f32],

@@ -10,6 +10,7 @@ use crate::lights::LightUniform;
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
 use crate::{DebugView, LightAssignment, LightingModel, Renderer, Settings};
 
+#[derive(Clone, Copy)]
 pub(crate) struct Surface {
     pub(crate) position: Vec3,
     pub(crate) normal: Vec3,
@@ -121,7 +122,7 @@ pub(crate) fn normal_of_depth(camera: &Camera, size: UVec2, depths: &[f32], at: 
         .transform_vector3(in_view.normalize())
 }
 
-fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
+pub(crate) fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
     let e = &scene.environment;
     if direction.y >= 0.0 {
         e.horizon.lerp(e.zenith, direction.y.sqrt())
@@ -189,19 +190,13 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
 /// of the angle between its normal and the light's direction.
 pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) -> f32;
 
-/// A light's part.
-fn from_light(
-    model: LightingModel,
-    s: &Surface,
-    v: Vec3,
-    (number, light): (usize, &LightUniform),
-    passing: Passing<'_>,
-) -> Lit {
+/// Unit direction to a light, and irradiance on a surface at a position that faces it.
+pub(crate) fn incident(light: &LightUniform, position: Vec3) -> (Vec3, Vec3) {
     let radiant = Vec3::from(light.radiant);
-    let (direction, irradiance) = if light.kind == 0 {
+    if light.kind == 0 {
         (-Vec3::from(light.direction), radiant)
     } else {
-        let to_light = Vec3::from(light.position) - s.position;
+        let to_light = Vec3::from(light.position) - position;
         let squared = to_light.length_squared().max(1e-4);
         let direction = to_light / squared.sqrt();
         let ratio = squared / (light.range * light.range);
@@ -212,7 +207,18 @@ fn from_light(
             attenuation *= cone.clamp(0.0, 1.0).powi(2);
         }
         (direction, radiant * attenuation)
-    };
+    }
+}
+
+/// A light's part.
+fn from_light(
+    model: LightingModel,
+    s: &Surface,
+    v: Vec3,
+    (number, light): (usize, &LightUniform),
+    passing: Passing<'_>,
+) -> Lit {
+    let (direction, irradiance) = incident(light, s.position);
     let n_dot_l = s.normal.dot(direction);
     if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
         return Lit::default();
@@ -283,14 +289,16 @@ pub(crate) fn environment_reflectance(s: &Surface, v: Vec3) -> Vec3 {
     f0 * (-1.04 * a004 + r.z) + (1.04 * a004 + r.w) * s.reflectance_at_grazing()
 }
 
+/// What the gradient sends to a normal.
+pub(crate) fn gradient_around(scene: &Scene, normal: Vec3) -> Vec3 {
+    let e = &scene.environment;
+    let around = e.nadir.lerp(e.zenith, 0.5 + 0.5 * normal.y);
+    around.lerp(e.horizon, 0.4)
+}
+
 pub(crate) fn ambient(scene: &Scene, s: &Surface, v: Vec3) -> Vec3 {
     let mirror = (2.0 * s.normal.dot(v) * s.normal - v).lerp(s.normal, s.roughness * s.roughness);
-    let e = &scene.environment;
-    let irradiance = e
-        .nadir
-        .lerp(e.zenith, 0.5 + 0.5 * s.normal.y)
-        .lerp(e.horizon, 0.4);
-    let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
+    let diffuse = s.base_color * (1.0 - s.metallic) * gradient_around(scene, s.normal);
     (diffuse + environment_reflectance(s, v) * environment(scene, mirror.normalize())) * s.occlusion
 }
 

@@ -59,6 +59,14 @@ struct Reflection {
     specular: vec3f,
 }
 
+// Fresnel's reflectance (Schlick 1994).
+fn fresnel_of(s: Surface, v_dot_h: f32) -> vec3f {
+    let f0 = reflectance_at_normal(s);
+    let m = 1.0 - v_dot_h;
+    let m2 = m * m;
+    return f0 + (reflectance_at_grazing(s) - f0) * (m2 * m2 * m);
+}
+
 // Lambert and GGX: glTF 2.0 appendix B, with the height-correlated visibility term (Heitz 2014).
 fn reflect_ggx(s: Surface, v: vec3f, l: vec3f, n_dot_l: f32) -> Reflection {
     let h = normalize(v + l);

@@ -5,6 +5,7 @@ mod clips;
 mod compressed;
 mod geometry;
 mod hostile;
+mod lobes;
 mod materials;
 mod motion;
 mod nodes;

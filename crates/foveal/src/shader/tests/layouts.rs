@@ -181,6 +181,22 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             specular,
         ]
     );
+    assert_same_layout!(
+        FORWARD_FORWARD.variant(&["LOBES"]),
+        "Lobes",
+        crate::scene::LobesUniform,
+        [
+            sheen_color,
+            sheen_roughness,
+            clearcoat,
+            clearcoat_roughness,
+            clearcoat_normal_scale,
+            anisotropy,
+            anisotropy_turn,
+            reserved,
+            uv
+        ]
+    );
     for shader in [
         GEOMETRY_VISIBILITY_BINS_TABLE.variant(&["EVERY"]),
         RESOLVE,

@@ -1,0 +1,76 @@
+//! What surfaces reflect beside glTF's metallic-roughness model: coats, cloth, brushed metal.
+
+use glam::Vec3;
+
+use crate::{Material, TextureRef};
+
+/// KHR_materials_clearcoat: a clear coat over everything else.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearcoat {
+    /// How much of it there is, 0 … 1.
+    pub factor: f32,
+    /// Red times `factor`, linear.
+    pub texture: Option<TextureRef>,
+    /// Perceptual roughness, 0 … 1.
+    pub roughness: f32,
+    /// Green times `roughness`, linear.
+    pub roughness_texture: Option<TextureRef>,
+    /// Tangent-space normals of the coat, linear; without, the geometry's.
+    pub normal_texture: Option<TextureRef>,
+    /// Scale of the normal's x and y.
+    pub normal_scale: f32,
+}
+
+/// KHR_materials_sheen: fibres that stand off the surface, as of velvet.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheen {
+    /// Linear colour, 0 … 1.
+    pub color: Vec3,
+    /// sRGB colour, times `color`.
+    pub color_texture: Option<TextureRef>,
+    /// Perceptual roughness, 0 … 1.
+    pub roughness: f32,
+    /// Alpha times `roughness`, linear.
+    pub roughness_texture: Option<TextureRef>,
+}
+
+/// KHR_materials_anisotropy: highlights that are longer in one direction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Anisotropy {
+    /// 0 … 1.
+    pub strength: f32,
+    /// Direction of the longer side, counter-clockwise from the tangent.
+    pub rotation_rad: f32,
+    /// Red and green: direction in tangent space, turned by the rotation; blue times `strength`.
+    /// Linear.
+    pub texture: Option<TextureRef>,
+}
+
+/// Places for textures in all lobes.
+const TEXTURES: usize = 6;
+
+impl Material {
+    /// Most different textures that lobes read; renderers leave out what comes after.
+    pub const MAX_LOBE_TEXTURES: usize = 5;
+
+    /// Whether the material has a clear coat, sheen or anisotropy.
+    #[must_use]
+    pub fn has_lobes(&self) -> bool {
+        self.clearcoat.is_some() || self.sheen.is_some() || self.anisotropy.is_some()
+    }
+
+    /// The textures of its lobes: clear coat, its roughness, its normals; sheen's colour, its
+    /// roughness; anisotropy.
+    #[must_use]
+    pub fn lobe_textures(&self) -> [Option<TextureRef>; TEXTURES] {
+        let (coat, sheen) = (self.clearcoat.as_ref(), self.sheen.as_ref());
+        [
+            coat.and_then(|c| c.texture),
+            coat.and_then(|c| c.roughness_texture),
+            coat.and_then(|c| c.normal_texture),
+            sheen.and_then(|s| s.color_texture),
+            sheen.and_then(|s| s.roughness_texture),
+            self.anisotropy.as_ref().and_then(|a| a.texture),
+        ]
+    }
+}
