@@ -40,7 +40,7 @@ pub use error::{Limit, SceneError};
 pub use foveal_bounds::Aabb;
 pub use light::{Environment, Light, LightKind};
 pub use load::{LoadOptions, MissingNormals, load, load_bytes};
-pub use lobes::{Anisotropy, Clearcoat, Sheen};
+pub use lobes::{Anisotropy, Clearcoat, Sheen, Transmission};
 pub use material::{AlphaMode, Material, ProceduralLayers, TextureRef};
 pub use mesh::{Mesh, Vertex};
 pub use pose::{Clip, Rig};

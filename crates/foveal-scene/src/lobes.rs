@@ -46,21 +46,43 @@ pub struct Anisotropy {
     pub texture: Option<TextureRef>,
 }
 
+/// KHR_materials_transmission with KHR_materials_volume: light that passes instead of being
+/// scattered.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transmission {
+    /// Part of the light, 0 … 1.
+    pub factor: f32,
+    /// Red times `factor`, linear.
+    pub texture: Option<TextureRef>,
+    /// Metres of the volume behind the surface, in the mesh's own scale; 0 is a thin wall, which
+    /// does not refract.
+    pub thickness_m: f32,
+    /// Green times `thickness_m`, linear.
+    pub thickness_texture: Option<TextureRef>,
+    /// Metres after which light has the attenuation's colour; infinite by default.
+    pub attenuation_distance_m: f32,
+    /// What white light is then, linear.
+    pub attenuation_color: Vec3,
+}
+
 /// Places for textures in all lobes.
-const TEXTURES: usize = 6;
+const TEXTURES: usize = 8;
 
 impl Material {
     /// Most different textures that lobes read; renderers leave out what comes after.
     pub const MAX_LOBE_TEXTURES: usize = 5;
 
-    /// Whether the material has a clear coat, sheen or anisotropy.
+    /// Whether the material has a clear coat, sheen, anisotropy or transmission.
     #[must_use]
     pub fn has_lobes(&self) -> bool {
-        self.clearcoat.is_some() || self.sheen.is_some() || self.anisotropy.is_some()
+        self.clearcoat.is_some()
+            || self.sheen.is_some()
+            || self.anisotropy.is_some()
+            || self.transmission.is_some()
     }
 
     /// The textures of its lobes: clear coat, its roughness, its normals; sheen's colour, its
-    /// roughness; anisotropy.
+    /// roughness; anisotropy; transmission, thickness.
     #[must_use]
     pub fn lobe_textures(&self) -> [Option<TextureRef>; TEXTURES] {
         let (coat, sheen) = (self.clearcoat.as_ref(), self.sheen.as_ref());
@@ -71,6 +93,8 @@ impl Material {
             sheen.and_then(|s| s.color_texture),
             sheen.and_then(|s| s.roughness_texture),
             self.anisotropy.as_ref().and_then(|a| a.texture),
+            self.transmission.as_ref().and_then(|t| t.texture),
+            self.transmission.as_ref().and_then(|t| t.thickness_texture),
         ]
     }
 }

@@ -2,7 +2,7 @@
 
 use glam::{Mat3, Vec3, Vec4};
 
-use crate::{Anisotropy, Clearcoat, Sheen};
+use crate::{Anisotropy, Clearcoat, Sheen, Transmission};
 
 /// What alpha means.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -79,6 +79,8 @@ pub struct Material {
     pub sheen: Option<Sheen>,
     /// Highlights that are longer in one direction.
     pub anisotropy: Option<Anisotropy>,
+    /// Light that passes.
+    pub transmission: Option<Transmission>,
     /// Noise that is computed at each point instead of looked up in textures.
     pub procedural: Option<ProceduralLayers>,
 }
@@ -146,6 +148,7 @@ impl Default for Material {
             clearcoat: None,
             sheen: None,
             anisotropy: None,
+            transmission: None,
             procedural: None,
         }
     }

@@ -111,7 +111,13 @@ impl Wanted {
         if let Some(anisotropy) = &mut anisotropy {
             of_lobe(&mut anisotropy.texture, Role::Data);
         }
+        let mut transmission = plain.transmission;
+        if let Some(transmission) = &mut transmission {
+            of_lobe(&mut transmission.texture, Role::Data);
+            of_lobe(&mut transmission.thickness_texture, Role::Data);
+        }
         Material {
+            transmission,
             clearcoat,
             sheen,
             anisotropy,

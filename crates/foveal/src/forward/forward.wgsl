@@ -1,5 +1,5 @@
-// Forward pass: surfaces with lobes, at the depth where the G-buffer has them, and blended surfaces,
-// back to front over the deferred picture.
+// Forward pass: surfaces with lobes, at the depth where the G-buffer has them, blended surfaces, back
+// to front over the deferred picture, and surfaces that light passes.
 
 #variant
 #variant CLIPPED
@@ -8,6 +8,9 @@
 #variant LOBES
 #variant LOBES CLIPPED
 #variant LOBES LAYERED
+#variant LOBES TRANSMISSION
+#variant LOBES TRANSMISSION CLIPPED
+#variant LOBES TRANSMISSION LAYERED
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
 #import shared/material_at.wgsl
@@ -18,12 +21,21 @@
 #ifdef LOBES
 #import forward/lobes.wgsl
 #endif
+#ifdef TRANSMISSION
+#import forward/transmission.wgsl
+#import shared/instances.wgsl
+#import shared/material_bindings.wgsl
+#endif
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;
 // Drawn at sub-samples: what is drawn to has other texels than the picture.
 override SAMPLED: bool = false;
 
+#ifdef TRANSMISSION
+// Alpha cuts holes.
+override MASKED: bool = false;
+#endif
 #ifdef LOBES
 // Alpha is ignored.
 override OPAQUE: bool = false;
@@ -60,12 +72,26 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) v
     if is_beyond(in.now, in.instance) {
         discard;
     }
+#ifdef TRANSMISSION
+    if MASKED && m.alpha < material.alpha_cutoff {
+        discard;
+    }
+#endif
     let pixel = target_position(in);
     let view = frame.views[view_at(pixel)];
     let distance = dot(in.world - view.world_from_view[3].xyz, view.forward);
 #ifdef LOBES
+#ifdef TRANSMISSION
+    let passed = passed_light(lobed, pixel, instance_at(in.instance & ~RIGHT_EYE));
+    let radiance = min(lit_with_lobes(lobed, pixel, distance) + passed, vec3f(65504.0));
+#else
     let radiance = min(lit_with_lobes(lobed, pixel, distance), vec3f(65504.0));
+#endif
     let alpha = select(saturate(m.alpha), 1.0, OPAQUE);
+    if OPAQUE && SAMPLED {
+        // Added to pixels in which the surface is black.
+        return vec4f(radiance, 0.0);
+    }
 #else
     let radiance = min(lit(m.surface, pixel, distance), vec3f(65504.0));
     let alpha = saturate(m.alpha);

@@ -1,5 +1,5 @@
-// Lobes beside metallic-roughness: clear coat, sheen and anisotropy, at a point of a surface and in
-// its light. Rust: `scene/lobes.rs`; CPU twin: `forward/lobes_twin.rs`.
+// Lobes beside metallic-roughness: clear coat, sheen, anisotropy and transmission, at a point of a
+// surface and in its light. Rust: `scene/lobes.rs`; CPU twin: `forward/lobes_twin.rs`.
 
 #import shared/environment.wgsl
 #import shared/frame.wgsl
@@ -16,6 +16,7 @@ override LOBE_TEXTURES: u32 = 0u;
 const HAS_CLEARCOAT: u32 = 4096u;
 const HAS_SHEEN: u32 = 8192u;
 const HAS_ANISOTROPY: u32 = 16384u;
+const HAS_TRANSMISSION: u32 = 32768u;
 
 const CLEARCOAT: u32 = 0u;
 const CLEARCOAT_ROUGHNESS: u32 = 1u;
@@ -23,6 +24,8 @@ const CLEARCOAT_NORMAL: u32 = 2u;
 const SHEEN_COLOR: u32 = 3u;
 const SHEEN_ROUGHNESS: u32 = 4u;
 const ANISOTROPY: u32 = 5u;
+const TRANSMISSION: u32 = 6u;
+const THICKNESS: u32 = 7u;
 
 // Below, the distribution of fibres is too narrow for halves.
 const LEAST_SHEEN_ROUGHNESS: f32 = 0.1;
@@ -36,8 +39,13 @@ struct Lobes {
     anisotropy: f32,
     // Cosine and sine of the rotation.
     anisotropy_turn: vec2f,
-    reserved: vec2f,
-    uv: array<UvMap, 6>,
+    transmission: f32,
+    // Metres, in the mesh's scale.
+    thickness: f32,
+    // Per metre.
+    absorption: vec3f,
+    ior: f32,
+    uv: array<UvMap, 8>,
 }
 
 @group(1) @binding(15) var<uniform> lobes: Lobes;
@@ -55,15 +63,20 @@ struct Lobes {
 // A point of a lobed surface, ready to be lit.
 struct LobedSurface {
     base: Surface,
+    base_mirror: Mirror,
     clearcoat: f32,
     // The coat alone, as a dielectric that scatters nothing.
     coat: Surface,
+    coat_mirror: Mirror,
     sheen_color: vec3f,
     sheen_roughness: f32,
     // Unit, along the longer side of highlights and across; and how much longer.
     along: vec3f,
     across: vec3f,
     anisotropy: f32,
+    // Part of what would be scattered that passes instead, and through how much.
+    transmission: f32,
+    thickness: f32,
 }
 
 fn bound_texture(place: u32) -> u32 {
@@ -95,7 +108,8 @@ fn lobes_at(s: Surface, normal: vec3f, tangent: vec4f, uv: vec4f, facing: f32) -
     let bitangent = cross(normal, tangent.xyz) * tangent.w;
     let has_tangent = dot(tangent.xyz, tangent.xyz) > 0.0;
     let geometric = normalize(normal) * facing;
-    var found = LobedSurface(s, 0.0, s, vec3f(0.0), 1.0, vec3f(0.0), vec3f(0.0), 0.0);
+    let mirror = mirror_of(s);
+    var found = LobedSurface(s, mirror, 0.0, s, mirror, vec3f(0.0), 1.0, vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0);
     if (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u {
         found.clearcoat = lobes.clearcoat * sample_lobe(CLEARCOAT, uv).r;
         var n = geometric;
@@ -107,6 +121,7 @@ fn lobes_at(s: Surface, normal: vec3f, tangent: vec4f, uv: vec4f, facing: f32) -
         }
         let roughness = saturate(lobes.clearcoat_roughness * sample_lobe(CLEARCOAT_ROUGHNESS, uv).g);
         found.coat = Surface(s.position, n, vec3f(0.0), 0.0, roughness, s.occlusion, vec3f(0.0), PLAIN_DIELECTRIC);
+        found.coat_mirror = mirror_of(found.coat);
     }
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         found.sheen_color = lobes.sheen_color * sample_lobe(SHEEN_COLOR, uv).rgb;
@@ -129,6 +144,10 @@ fn lobes_at(s: Surface, normal: vec3f, tangent: vec4f, uv: vec4f, facing: f32) -
         found.along = in_plane / max(size, 1e-6);
         found.across = cross(s.normal, found.along);
         found.anisotropy = select(0.0, saturate(strength), has_tangent && size > 1e-6);
+    }
+    if (MATERIAL_CLASS & HAS_TRANSMISSION) != 0u {
+        found.transmission = lobes.transmission * sample_lobe(TRANSMISSION, uv).r;
+        found.thickness = lobes.thickness * sample_lobe(THICKNESS, uv).g;
     }
     return found;
 }
@@ -188,11 +207,10 @@ fn below_sheen(s: LobedSurface, cosine: f32) -> f32 {
     return 1.0 - max(c.x, max(c.y, c.z)) * sheen_part(cosine, s.sheen_roughness);
 }
 
-// What the coat leaves for everything below it.
+// What the coat leaves for everything below it: Fresnel's reflectance at the cosine between normal
+// and view, as KHR_materials_clearcoat has it, would darken the rim of rough coats.
 fn below_coat(s: LobedSurface, v: vec3f) -> f32 {
-    let m = 1.0 - saturate(dot(s.coat.normal, v));
-    let m2 = m * m;
-    return 1.0 - s.clearcoat * (0.04 + 0.96 * (m2 * m2 * m));
+    return 1.0 - s.clearcoat * environment_reflectance(s.coat, v).x;
 }
 
 // As `ggx_lobe`, longer along than across (Burley 2012; Heitz 2014).
@@ -214,15 +232,15 @@ fn anisotropic_lobe(s: LobedSurface, v: vec3f, l: vec3f, h: vec3f, n_dot_l: f32)
 fn below_coat_reflected(s: LobedSurface, v: vec3f, l: vec3f, n_dot_l: f32) -> vec3f {
     var r: Reflection;
     if BLINN_PHONG {
-        r = reflect_blinn_phong(s.base, v, l);
+        r = reflect_blinn_phong(s.base, s.base_mirror, v, l);
     } else {
-        r = reflect_ggx(s.base, v, l, n_dot_l);
+        r = reflect_ggx(s.base, s.base_mirror, v, l, n_dot_l);
     }
     if (MATERIAL_CLASS & HAS_ANISOTROPY) != 0u {
         let h = normalize(v + l);
-        r.specular = fresnel_of(s.base, saturate(dot(v, h))) * anisotropic_lobe(s, v, l, h, n_dot_l);
+        r.specular = fresnel_of(s.base_mirror, saturate(dot(v, h))) * anisotropic_lobe(s, v, l, h, n_dot_l);
     }
-    let base = r.diffuse_weight * diffuse_color(s.base) / PI + r.specular;
+    let base = r.diffuse_weight * diffuse_color(s.base) * ((1.0 - s.transmission) / PI) + r.specular;
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         let n_dot_v = saturate(dot(s.base.normal, v));
         let left = min(below_sheen(s, n_dot_v), below_sheen(s, n_dot_l));
@@ -250,7 +268,8 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
         sum = left * n_dot_l * below_coat_reflected(s, v, a.direction, n_dot_l);
     }
     if (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u && coat_n_dot_l > 0.0 {
-        sum += s.clearcoat * coat_n_dot_l * reflect_ggx(s.coat, v, a.direction, coat_n_dot_l).specular;
+        let coat = reflect_ggx(s.coat, s.coat_mirror, v, a.direction, coat_n_dot_l);
+        sum += s.clearcoat * coat_n_dot_l * coat.specular;
     }
     return sum * irradiance;
 }
@@ -265,7 +284,7 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32) -> vec3f {
         let turned = mix(bent, s.base.normal, kept * kept * kept * kept);
         mirror.normal = normalize(select(s.base.normal, turned, s.anisotropy > 0.0));
     }
-    var below = environment_diffuse(s.base, v) + environment_specular(mirror, v);
+    var below = (1.0 - s.transmission) * environment_diffuse(s.base, v) + environment_specular(mirror, v);
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         let cosine = saturate(dot(s.base.normal, v));
         let around = Surface(

@@ -2,9 +2,15 @@
 //! G-buffer shows them, then blended surfaces, back to front.
 
 #[cfg(test)]
+mod lobes_tests;
+#[cfg(test)]
 mod lobes_twin;
+mod transmission;
 #[cfg(test)]
 pub(crate) mod twin;
+
+use transmission::BehindPass;
+pub(crate) use transmission::TransmissionTargets;
 
 use crate::geometry::{
     DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window,
@@ -30,6 +36,35 @@ enum Copied {
 struct ForwardTarget<'a> {
     color: Option<wgpu::RenderPassColorAttachment<'a>>,
     depth: &'a wgpu::TextureView,
+    /// With what light passes, which writes depth, the group of the picture behind; else opaque
+    /// surfaces with lobes are drawn, and blended ones.
+    behind: Option<&'a wgpu::BindGroup>,
+}
+
+/// What a pipeline of the pass draws.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Blended,
+    LobedOpaque,
+    LobedBlended,
+    Transmissive,
+}
+
+impl Kind {
+    fn variant(self, gpu: &Gpu, submission: Submission) -> &'static [&'static str] {
+        match (self, submission) {
+            (Self::Blended, _) if submission.clips() => &["CLIPPED"],
+            (Self::Blended, Submission::Multiview) => &["LAYERED"],
+            (Self::Blended, _) if gpu.is_reduced() => &["REDUCED"],
+            (Self::Blended, _) => &[],
+            (Self::Transmissive, _) if submission.clips() => &["LOBES", "TRANSMISSION", "CLIPPED"],
+            (Self::Transmissive, Submission::Multiview) => &["LOBES", "TRANSMISSION", "LAYERED"],
+            (Self::Transmissive, _) => &["LOBES", "TRANSMISSION"],
+            _ if submission.clips() => &["LOBES", "CLIPPED"],
+            (_, Submission::Multiview) => &["LOBES", "LAYERED"],
+            _ => &["LOBES"],
+        }
+    }
 }
 
 /// Draws surfaces with lobes, and blended ones.
@@ -38,6 +73,8 @@ pub(crate) struct ForwardPass {
     blended: Pipelines,
     /// Opaque and blended surfaces with lobes; `None` on devices that do not shade these.
     lobed: Option<[Pipelines; 2]>,
+    /// Surfaces that light passes.
+    transmissive: Option<(Pipelines, BehindPass)>,
     submission: Submission,
     layout: EyeLayout,
     lights_layout: wgpu::BindGroupLayout,
@@ -63,34 +100,27 @@ impl ForwardPass {
         constants.push(("LAYERED", f64::from(u8::from(layered))));
         let sampled = settings.antialiasing.mode != Antialiasing::None;
         constants.push(("SAMPLED", f64::from(u8::from(sampled))));
-        let recipe = |lobes: bool, opaque: bool| {
-            let shader = match (submission, lobes) {
-                (_, true) if submission.clips() => {
-                    shader::FORWARD_FORWARD.variant(&["LOBES", "CLIPPED"])
-                }
-                (Submission::Multiview, true) => {
-                    shader::FORWARD_FORWARD.variant(&["LOBES", "LAYERED"])
-                }
-                (_, true) => shader::FORWARD_FORWARD.variant(&["LOBES"]),
-                _ if submission.clips() => shader::FORWARD_FORWARD.variant(&["CLIPPED"]),
-                (Submission::Multiview, _) => shader::FORWARD_FORWARD.variant(&["LAYERED"]),
-                _ if gpu.is_reduced() => shader::FORWARD_FORWARD.variant(&["REDUCED"]),
-                _ => shader::FORWARD_FORWARD,
-            };
-            let own_layout = lobes.then(|| lobes_layout(gpu));
+        let behind = (!gpu.is_reduced()).then(|| BehindPass::new(gpu, frame_layout));
+        let recipe = |kind: Kind| {
+            let shader = shader::FORWARD_FORWARD.variant(kind.variant(gpu, submission));
+            let own_layout = (kind != Kind::Blended).then(|| lobes_layout(gpu));
             let material_layout = own_layout.as_ref().unwrap_or(material_layout);
+            let mut layouts = vec![frame_layout, material_layout, &lights_layout];
             let mut constants = constants.clone();
-            if lobes {
+            let opaque = matches!(kind, Kind::LobedOpaque | Kind::Transmissive);
+            if kind != Kind::Blended {
                 constants.push(("OPAQUE", f64::from(u8::from(opaque))));
+            }
+            let transmissive = kind == Kind::Transmissive;
+            if transmissive {
+                layouts.extend(behind.as_ref().map(|behind| &behind.layout));
+                // Drawn to the picture's own texels.
+                constants.retain(|(name, _)| *name != "SAMPLED");
             }
             Pipelines::new(PipelineRecipe {
                 label: "forward",
                 module: shader::module(gpu, "forward", shader),
-                layout: shader::pipeline_layout(
-                    gpu,
-                    "forward",
-                    &[frame_layout, material_layout, &lights_layout],
-                ),
+                layout: shader::pipeline_layout(gpu, "forward", &layouts),
                 vertex: VertexSource::Buffers(submission.vertex_entry()),
                 fragment: "fragment",
                 targets: vec![Some(wgpu::ColorTargetState {
@@ -98,22 +128,26 @@ impl ForwardPass {
                     blend: (!opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                     write_mask: wgpu::ColorWrites::ALL,
                 })],
-                writes_depth: false,
-                depth_compare: if opaque {
+                writes_depth: transmissive,
+                depth_compare: if kind == Kind::LobedOpaque {
                     wgpu::CompareFunction::Equal
                 } else {
                     wgpu::CompareFunction::Greater
                 },
                 constants,
-                has_mask: false,
+                has_mask: transmissive,
                 multiview_mask: submission.multiview_mask(),
             })
         };
-        let blended = recipe(false, false);
-        let lobed = (!gpu.is_reduced()).then(|| [recipe(true, true), recipe(true, false)]);
+        let blended = recipe(Kind::Blended);
+        let lobed =
+            (!gpu.is_reduced()).then(|| [recipe(Kind::LobedOpaque), recipe(Kind::LobedBlended)]);
+        let transmissive = (!gpu.is_reduced()).then(|| recipe(Kind::Transmissive));
+        let transmissive = transmissive.zip(behind);
         Self {
             blended,
             lobed,
+            transmissive,
             submission,
             layout: EyeLayout::of(settings),
             lights_layout,
@@ -138,6 +172,9 @@ impl ForwardPass {
         if let Some([opaque, blended]) = &mut self.lobed {
             prepare(opaque, &mut list.lobed.iter().map(|b| b.key));
             prepare(blended, &mut keys().filter(has_lobes));
+        }
+        if let Some((pipelines, _)) = &mut self.transmissive {
+            prepare(pipelines, &mut list.transmissive.iter().map(|b| b.key));
         }
     }
 
@@ -164,6 +201,35 @@ impl ForwardPass {
         let target = ForwardTarget {
             color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
             depth: &targets.gbuffer.depth_view,
+            behind: None,
+        };
+        let (width, height) = self.layout.target_size();
+        let whole = [Window::sized(width, height)];
+        self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
+        self.draw_windows(recorder, draws, lights, target, &whole);
+        self.copy_radiance(recorder.encoder, targets, Copied::Back);
+    }
+
+    /// Encodes the pass of what light passes, over everything else, unless nothing is such.
+    pub(crate) fn draw_transmissive(
+        &self,
+        recorder: &mut Recorder<'_>,
+        draws: Draws<'_>,
+        lights: SceneLights<'_>,
+        targets: &Targets,
+    ) {
+        let (Some((_, behind)), Some(own)) = (&self.transmissive, &targets.transmission) else {
+            return;
+        };
+        if draws.list.transmissive.is_empty() {
+            return;
+        }
+        let behind = behind.draw(recorder, targets, own);
+        let radiance = targets.radiance_layers.as_ref();
+        let target = ForwardTarget {
+            color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
+            depth: &own.depth_view,
+            behind: Some(&behind),
         };
         let (width, height) = self.layout.target_size();
         let whole = [Window::sized(width, height)];
@@ -183,7 +249,11 @@ impl ForwardPass {
         windows: &[Window],
     ) {
         let color = overwritten(color);
-        let target = ForwardTarget { color, depth };
+        let target = ForwardTarget {
+            color,
+            depth,
+            behind: None,
+        };
         self.draw_windows(recorder, draws, lights, target, windows);
     }
 
@@ -192,7 +262,11 @@ impl ForwardPass {
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
         lights: SceneLights<'_>,
-        ForwardTarget { color, depth }: ForwardTarget<'_>,
+        ForwardTarget {
+            color,
+            depth,
+            behind,
+        }: ForwardTarget<'_>,
         windows: &[Window],
     ) {
         let Draws { scene, list } = draws;
@@ -204,18 +278,28 @@ impl ForwardPass {
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            // Read-only: it is sampled by other passes of the frame.
-            depth_ops: None,
+            // The G-buffer's is read-only: it is sampled by other passes of the frame.
+            depth_ops: behind.map(|_| wgpu::Operations {
+                load: wgpu::LoadOp::Load,
+                store: wgpu::StoreOp::Store,
+            }),
             stencil_ops: None,
         };
         let mask = self.submission.multiview_mask();
         let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
+        if let Some(behind) = behind {
+            pass.set_bind_group(3, behind, &[]);
+        }
         scene.geometry.bind(&mut pass);
         for &Window { frame, part } in windows {
             for &drawn in self.submission.drawn() {
                 let window = self.layout.window_of(drawn, Window { frame, part });
                 window.set(&mut pass);
+                if let (Some(_), Some((pipelines, _))) = (behind, &self.transmissive) {
+                    DrawList::issue(&list.transmissive, &mut pass, scene, pipelines, drawn);
+                    continue;
+                }
                 let lobed = |key| self.pipeline(key, true);
                 DrawList::issue_with(&list.lobed, &mut pass, scene, lobed, false, drawn);
                 let blended = |key| self.pipeline(key, false);

@@ -29,6 +29,8 @@ pub(crate) struct DrawList {
     pub(crate) solid: Vec<Batch>,
     /// Those of `solid` that have lobes, which are shaded in a pass over what the G-buffer shows.
     pub(crate) lobed: Vec<Batch>,
+    /// Surfaces that light passes, which are not in the G-buffer.
+    pub(crate) transmissive: Vec<Batch>,
     /// Blended surfaces, back to front.
     pub(crate) blended: Vec<Batch>,
     /// Triangles of all draws.
@@ -55,6 +57,7 @@ impl DrawList {
         self.drawn.clear();
         self.solid.clear();
         self.lobed.clear();
+        self.transmissive.clear();
         self.blended.clear();
         self.triangles = 0;
         let mut solid: Vec<(PipelineKey, u32, u32, u32)> =
@@ -98,15 +101,24 @@ impl DrawList {
             triangles,
             ..
         } = self;
+        let lobes = |material| scene.materials.lobes(material);
         for &one in &solid {
-            Self::push(list, drawn, scene, merge, triangles, batch(one));
+            if !lobes(one.1).is_some_and(LobeClass::transmits) {
+                Self::push(list, drawn, scene, merge, triangles, batch(one));
+            }
         }
         for (mut key, material, mesh, index) in solid {
-            if let Some(lobes) = scene.materials.lobes(material) {
-                key.lobes = lobes;
-                let one = batch((key, material, mesh, index));
-                Self::push(&mut self.lobed, drawn, scene, merge, triangles, one);
-            }
+            let Some(lobes) = lobes(material) else {
+                continue;
+            };
+            key.lobes = lobes;
+            let to = if lobes.transmits() {
+                &mut self.transmissive
+            } else {
+                &mut self.lobed
+            };
+            let one = batch((key, material, mesh, index));
+            Self::push(to, drawn, scene, merge, triangles, one);
         }
         blended.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         for (_, index) in blended {
@@ -123,7 +135,9 @@ impl DrawList {
                     masked: false,
                     mirrored: instance.mirrored,
                     faces,
-                    lobes: scene.materials.lobes(instance.material).unwrap_or_default(),
+                    // What is behind shows by alpha.
+                    lobes: (scene.materials.lobes(instance.material))
+                        .map_or_else(LobeClass::default, LobeClass::without_transmission),
                 };
                 Self::push(
                     &mut self.blended,

@@ -46,7 +46,8 @@ impl Renderer {
         } = &self.stages;
         let (width, height) = self.settings.picture_size();
         let list = &self.draw_list;
-        let draws = (list.solid.len() + list.lobed.len() + list.blended.len()) as u64;
+        let forward = list.lobed.len() + list.blended.len() + list.transmissive.len();
+        let draws = (list.solid.len() + forward) as u64;
         FrameStats {
             width,
             height,

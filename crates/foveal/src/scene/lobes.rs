@@ -2,12 +2,12 @@
 
 use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Material, TextureRef};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
 use super::material_uniform::uv_rows;
 
 /// Places for textures in all lobes.
-const PLACES: usize = 6;
+const PLACES: usize = 8;
 
 /// Textures that are bound at once.
 pub(super) const BOUND: usize = Material::MAX_LOBE_TEXTURES;
@@ -23,7 +23,10 @@ pub(crate) struct LobesUniform {
     pub(crate) clearcoat_normal_scale: f32,
     pub(crate) anisotropy: f32,
     pub(crate) anisotropy_turn: [f32; 2],
-    pub(crate) reserved: [f32; 2],
+    pub(crate) transmission: f32,
+    pub(crate) thickness: f32,
+    pub(crate) absorption: [f32; 3],
+    pub(crate) ior: f32,
     pub(crate) uv: [[[f32; 4]; 2]; PLACES],
 }
 
@@ -32,6 +35,7 @@ impl LobesUniform {
         let sheen = material.sheen.as_ref();
         let coat = material.clearcoat.as_ref();
         let anisotropy = material.anisotropy.as_ref();
+        let transmission = material.transmission.as_ref();
         Self {
             sheen_color: sheen.map_or([0.0; 3], |s| s.color.to_array()),
             sheen_roughness: sheen.map_or(0.0, |s| s.roughness),
@@ -41,7 +45,14 @@ impl LobesUniform {
             anisotropy: anisotropy.map_or(0.0, |a| a.strength),
             anisotropy_turn: Vec2::from_angle(anisotropy.map_or(0.0, |a| a.rotation_rad))
                 .to_array(),
-            reserved: [0.0; 2],
+            transmission: transmission.map_or(0.0, |t| t.factor),
+            thickness: transmission.map_or(0.0, |t| t.thickness_m),
+            absorption: transmission.map_or([0.0; 3], |t| {
+                // Per metre; what is black after the distance is as good as black at once.
+                let passing = t.attenuation_color.max(Vec3::splat(1e-6));
+                (-passing.map(f32::ln) / t.attenuation_distance_m).to_array()
+            }),
+            ior: material.ior.max(1.0),
             uv: material
                 .lobe_textures()
                 .map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
@@ -58,13 +69,28 @@ pub(crate) struct LobeClass {
     pub(crate) textures: u32,
 }
 
+const HAS_TRANSMISSION: u32 = 32768;
+
 impl LobeClass {
+    /// The same for a surface that is blended.
+    pub(crate) fn without_transmission(self) -> Self {
+        let flags = self.flags & !HAS_TRANSMISSION;
+        let textures = if flags == 0 { 0 } else { self.textures };
+        Self { flags, textures }
+    }
+
+    /// Whether light passes.
+    pub(crate) fn transmits(self) -> bool {
+        self.flags & HAS_TRANSMISSION != 0
+    }
+
     /// A material's, with the textures to bind.
     pub(super) fn of(material: &Material) -> (Self, Vec<u32>) {
         let flags = [
             (material.clearcoat.is_some(), 4096),
             (material.sheen.is_some(), 8192),
             (material.anisotropy.is_some(), 16384),
+            (material.transmission.is_some(), HAS_TRANSMISSION),
         ];
         let mut bound: Vec<u32> = Vec::new();
         let mut place = |slot: Option<TextureRef>| {
@@ -93,7 +119,7 @@ impl LobeClass {
 #[cfg(test)]
 mod tests {
     use foveal_scene::{Clearcoat, Sheen};
-    use glam::{Mat3, Vec3};
+    use glam::Mat3;
 
     use super::*;
 

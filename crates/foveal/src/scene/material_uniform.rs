@@ -20,9 +20,9 @@ pub(crate) struct MaterialUniform {
     pub(crate) number: u32,
     pub(crate) procedural_seed: u32,
     pub(crate) procedural_frequency: f32,
+    pub(crate) without_lobes: f32,
     pub(crate) reserved_0: u32,
     pub(crate) reserved_1: u32,
-    pub(crate) reserved_2: u32,
     pub(crate) specular_color: [f32; 3],
     pub(crate) specular: f32,
 }
@@ -108,9 +108,9 @@ impl MaterialUniform {
             number,
             procedural_seed: material.procedural.map_or(0, |p| p.seed),
             procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
+            without_lobes: f32::from(u8::from(!material.has_lobes())),
             reserved_0: 0,
             reserved_1: 0,
-            reserved_2: 0,
             specular_color: (material.specular_color * material.ior_reflectance()).to_array(),
             specular: material.specular,
         }

@@ -107,6 +107,18 @@ fn kept_from_scattering(s: Surface) -> vec3f {
     return (1.0 - s.metallic) * (max(d.x, max(d.y, d.z)) - d);
 }
 
+// What a surface mirrors by Fresnel's law, found once for all lights.
+struct Mirror {
+    at_normal: vec3f,
+    at_grazing: f32,
+    // As `kept_from_scattering`.
+    kept: vec3f,
+}
+
+fn mirror_of(s: Surface) -> Mirror {
+    return Mirror(reflectance_at_normal(s), reflectance_at_grazing(s), kept_from_scattering(s));
+}
+
 fn luminance(color: vec3f) -> f32 {
     return dot(color, vec3f(0.2126, 0.7152, 0.0722));
 }

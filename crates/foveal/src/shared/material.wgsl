@@ -47,9 +47,10 @@ struct Material {
     procedural_seed: u32,
     // Lumps per metre.
     procedural_frequency: f32,
+    // 0 where the surface has lobes, which are drawn forward; else 1.
+    without_lobes: f32,
     reserved_0: u32,
     reserved_1: u32,
-    reserved_2: u32,
     // Reflectance at right angles of what is not metal, and at grazing angles: factor of both.
     specular_color: vec3f,
     specular: f32,

@@ -67,12 +67,42 @@ fn lobes_are_read_with_their_textures() {
     ] {
         assert_eq!(space(&scene, slot), ColorSpace::Linear);
     }
-    assert!(m.lobe_textures().iter().all(Option::is_some));
+    assert!(m.lobe_textures()[..6].iter().all(Option::is_some));
     // Data, normals, colour.
     assert_eq!(scene.textures.len(), 3);
     // The coat's normals need tangents.
     let vertices = &scene.meshes[0].vertices;
     assert!(vertices.iter().all(|v| v.tangent != [0.0; 4]));
+}
+
+#[test]
+fn transmission_is_read_with_its_volume() {
+    let mut file = File::with_triangle();
+    let picture = file.texture(&RgbaImage::from_pixel(1, 1, Rgba([255; 4])));
+    let slot = json!({ "index": picture });
+    let scene = with(
+        file,
+        &json!({
+            "KHR_materials_transmission": { "transmissionFactor": 0.5, "transmissionTexture": slot },
+            "KHR_materials_volume": {
+                "thicknessFactor": 2,
+                "thicknessTexture": slot,
+                "attenuationDistance": 3,
+                "attenuationColor": [1, 0.5, 0.25],
+            },
+        }),
+    );
+    assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
+    let t = scene.materials[0].transmission.unwrap();
+    assert_eq!(
+        (t.factor, t.thickness_m, t.attenuation_distance_m),
+        (0.5, 2.0, 3.0)
+    );
+    assert_eq!(t.attenuation_color, Vec3::new(1.0, 0.5, 0.25));
+    assert!(t.texture.is_some() && t.thickness_texture.is_some());
+    let volume = json!({ "KHR_materials_volume": { "thicknessFactor": 2 } });
+    let alone = with(File::with_triangle(), &volume);
+    assert!(alone.materials[0].transmission.is_none());
 }
 
 #[test]

@@ -174,9 +174,9 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             number,
             procedural_seed,
             procedural_frequency,
+            without_lobes,
             reserved_0,
             reserved_1,
-            reserved_2,
             specular_color,
             specular,
         ]
@@ -193,7 +193,10 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             clearcoat_normal_scale,
             anisotropy,
             anisotropy_turn,
-            reserved,
+            transmission,
+            thickness,
+            absorption,
+            ior,
             uv
         ]
     );
