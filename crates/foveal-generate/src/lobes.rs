@@ -34,7 +34,7 @@ pub fn lobes() -> Scene {
         }
     }
     let mut bar = MeshBuilder::new();
-    bar.block(Vec3::new(-2.6, 1.9, -1.3), Vec3::new(2.6, 2.1, -1.2));
+    bar.block(Vec3::new(-2.6, 2.25, -1.3), Vec3::new(2.6, 2.5, -1.2));
     let bar = scene.mesh(bar.finish("bar"));
     let orange = scene.material(Material {
         name: "bar".to_owned(),

@@ -39,6 +39,8 @@ override MASKED: bool = false;
 #ifdef LOBES
 // Alpha is ignored.
 override OPAQUE: bool = false;
+// Added to pixels in which the surface is black.
+override ADDED: bool = false;
 #endif
 
 #ifdef REDUCED
@@ -88,8 +90,7 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) v
     let radiance = min(lit_with_lobes(lobed, pixel, distance), vec3f(65504.0));
 #endif
     let alpha = select(saturate(m.alpha), 1.0, OPAQUE);
-    if OPAQUE && SAMPLED {
-        // Added to pixels in which the surface is black.
+    if ADDED {
         return vec4f(radiance, 0.0);
     }
 #else

@@ -5,25 +5,24 @@
 mod lobes_tests;
 #[cfg(test)]
 mod lobes_twin;
+mod recipes;
 mod transmission;
 #[cfg(test)]
 pub(crate) mod twin;
 
+use std::collections::{BTreeMap, BTreeSet};
+
+use recipes::{Kind, Recipes};
 use transmission::BehindPass;
 pub(crate) use transmission::TransmissionTargets;
 
-use crate::geometry::{
-    DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window,
-};
-
-use crate::gpu::{Gpu, bind_group, bind_group_layout};
+use crate::Settings;
+use crate::geometry::{Batch, DrawList, Draws, PipelineKey, Pipelines, Window};
+use crate::gpu::{Gpu, bind_group};
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, drawn_over, overwritten};
-use crate::scene::{LobeClass, lobes_layout};
-use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
-use crate::{Antialiasing, Settings, shader};
 
 /// Which way radiance is copied.
 #[derive(Clone, Copy)]
@@ -41,43 +40,15 @@ struct ForwardTarget<'a> {
     behind: Option<&'a wgpu::BindGroup>,
 }
 
-/// What a pipeline of the pass draws.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Kind {
-    Blended,
-    LobedOpaque,
-    LobedBlended,
-    Transmissive,
-}
-
-impl Kind {
-    fn variant(self, gpu: &Gpu, submission: Submission) -> &'static [&'static str] {
-        match (self, submission) {
-            (Self::Blended, _) if submission.clips() => &["CLIPPED"],
-            (Self::Blended, Submission::Multiview) => &["LAYERED"],
-            (Self::Blended, _) if gpu.is_reduced() => &["REDUCED"],
-            (Self::Blended, _) => &[],
-            (Self::Transmissive, _) if submission.clips() => &["LOBES", "TRANSMISSION", "CLIPPED"],
-            (Self::Transmissive, Submission::Multiview) => &["LOBES", "TRANSMISSION", "LAYERED"],
-            (Self::Transmissive, _) => &["LOBES", "TRANSMISSION"],
-            _ if submission.clips() => &["LOBES", "CLIPPED"],
-            (_, Submission::Multiview) => &["LOBES", "LAYERED"],
-            _ => &["LOBES"],
-        }
-    }
-}
-
-/// Draws surfaces with lobes, and blended ones.
+/// Draws surfaces with lobes, blended ones, and what light passes.
 #[derive(Debug)]
 pub(crate) struct ForwardPass {
-    blended: Pipelines,
-    /// Opaque and blended surfaces with lobes; `None` on devices that do not shade these.
-    lobed: Option<[Pipelines; 2]>,
-    /// Surfaces that light passes.
-    transmissive: Option<(Pipelines, BehindPass)>,
+    recipes: Recipes,
+    /// Made when first needed, as few scenes need all.
+    pipelines: BTreeMap<Kind, Pipelines>,
+    behind: Option<BehindPass>,
     submission: Submission,
     layout: EyeLayout,
-    lights_layout: wgpu::BindGroupLayout,
 }
 
 impl ForwardPass {
@@ -88,69 +59,12 @@ impl ForwardPass {
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let lights_layout = bind_group_layout(
-            &gpu.device,
-            "forward lights",
-            wgpu::ShaderStages::FRAGMENT,
-            &SceneLights::binding_types(gpu),
-        );
-        let mut constants = lighting_constants(gpu, settings);
-        constants.extend(submission.constants());
-        let layered = submission == Submission::Multiview;
-        constants.push(("LAYERED", f64::from(u8::from(layered))));
-        let sampled = settings.antialiasing.mode != Antialiasing::None;
-        constants.push(("SAMPLED", f64::from(u8::from(sampled))));
-        let behind = (!gpu.is_reduced()).then(|| BehindPass::new(gpu, frame_layout));
-        let recipe = |kind: Kind| {
-            let shader = shader::FORWARD_FORWARD.variant(kind.variant(gpu, submission));
-            let own_layout = (kind != Kind::Blended).then(|| lobes_layout(gpu));
-            let material_layout = own_layout.as_ref().unwrap_or(material_layout);
-            let mut layouts = vec![frame_layout, material_layout, &lights_layout];
-            let mut constants = constants.clone();
-            let opaque = matches!(kind, Kind::LobedOpaque | Kind::Transmissive);
-            if kind != Kind::Blended {
-                constants.push(("OPAQUE", f64::from(u8::from(opaque))));
-            }
-            let transmissive = kind == Kind::Transmissive;
-            if transmissive {
-                layouts.extend(behind.as_ref().map(|behind| &behind.layout));
-                // Drawn to the picture's own texels.
-                constants.retain(|(name, _)| *name != "SAMPLED");
-            }
-            Pipelines::new(PipelineRecipe {
-                label: "forward",
-                module: shader::module(gpu, "forward", shader),
-                layout: shader::pipeline_layout(gpu, "forward", &layouts),
-                vertex: VertexSource::Buffers(submission.vertex_entry()),
-                fragment: "fragment",
-                targets: vec![Some(wgpu::ColorTargetState {
-                    format: RADIANCE_FORMAT,
-                    blend: (!opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                    write_mask: wgpu::ColorWrites::ALL,
-                })],
-                writes_depth: transmissive,
-                depth_compare: if kind == Kind::LobedOpaque {
-                    wgpu::CompareFunction::Equal
-                } else {
-                    wgpu::CompareFunction::Greater
-                },
-                constants,
-                has_mask: transmissive,
-                multiview_mask: submission.multiview_mask(),
-            })
-        };
-        let blended = recipe(Kind::Blended);
-        let lobed =
-            (!gpu.is_reduced()).then(|| [recipe(Kind::LobedOpaque), recipe(Kind::LobedBlended)]);
-        let transmissive = (!gpu.is_reduced()).then(|| recipe(Kind::Transmissive));
-        let transmissive = transmissive.zip(behind);
         Self {
-            blended,
-            lobed,
-            transmissive,
+            recipes: Recipes::new(gpu, settings, submission, (frame_layout, material_layout)),
+            pipelines: BTreeMap::new(),
+            behind: None,
             submission,
             layout: EyeLayout::of(settings),
-            lights_layout,
         }
     }
 
@@ -161,28 +75,23 @@ impl ForwardPass {
 
     /// Makes the pipelines that `list` needs.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
-        let prepare = |pipelines: &mut Pipelines, keys: &mut dyn Iterator<Item = PipelineKey>| {
-            for key in keys.collect::<std::collections::BTreeSet<_>>() {
-                pipelines.prepare(gpu, key);
-            }
-        };
-        let has_lobes = |key: &PipelineKey| key.lobes != LobeClass::default();
-        let keys = || list.blended.iter().map(|b| b.key);
-        prepare(&mut self.blended, &mut keys().filter(|key| !has_lobes(key)));
-        if let Some([opaque, blended]) = &mut self.lobed {
-            prepare(opaque, &mut list.lobed.iter().map(|b| b.key));
-            prepare(blended, &mut keys().filter(has_lobes));
+        if !list.transmissive.is_empty() {
+            let make = || BehindPass::new(gpu, &self.recipes.frame);
+            self.behind.get_or_insert_with(make);
         }
-        if let Some((pipelines, _)) = &mut self.transmissive {
-            prepare(pipelines, &mut list.transmissive.iter().map(|b| b.key));
-        }
-    }
-
-    fn pipeline(&self, key: PipelineKey, opaque: bool) -> &wgpu::RenderPipeline {
-        match &self.lobed {
-            Some([lobed, _]) if opaque => lobed.get(key),
-            Some([_, blended]) if key.lobes != LobeClass::default() => blended.get(key),
-            _ => self.blended.get(key),
+        let blended = list
+            .blended
+            .iter()
+            .map(|b| (Kind::of_blended(b.key), b.key));
+        let lobed = list.lobed.iter().map(|b| (Kind::LobedOpaque, b.key));
+        let transmissive = list.transmissive.iter();
+        let transmissive = transmissive.map(|b| (Kind::Transmissive, b.key));
+        let needed: BTreeSet<_> = blended.chain(lobed).chain(transmissive).collect();
+        for (kind, key) in needed {
+            let behind = self.behind.as_ref().map(|behind| &behind.layout);
+            let make = || self.recipes.pipelines(gpu, kind, behind);
+            let pipelines = self.pipelines.entry(kind).or_insert_with(make);
+            pipelines.prepare(gpu, key);
         }
     }
 
@@ -218,7 +127,7 @@ impl ForwardPass {
         lights: SceneLights<'_>,
         targets: &Targets,
     ) {
-        let (Some((_, behind)), Some(own)) = (&self.transmissive, &targets.transmission) else {
+        let (Some(behind), Some(own)) = (&self.behind, &targets.transmission) else {
             return;
         };
         if draws.list.transmissive.is_empty() {
@@ -273,7 +182,7 @@ impl ForwardPass {
         let lights = bind_group(
             &recorder.gpu.device,
             "forward lights",
-            &self.lights_layout,
+            &self.recipes.lights,
             &lights.resources(),
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
@@ -296,14 +205,16 @@ impl ForwardPass {
             for &drawn in self.submission.drawn() {
                 let window = self.layout.window_of(drawn, Window { frame, part });
                 window.set(&mut pass);
-                if let (Some(_), Some((pipelines, _))) = (behind, &self.transmissive) {
-                    DrawList::issue(&list.transmissive, &mut pass, scene, pipelines, drawn);
-                    continue;
+                let mut issue = |batches: &[Batch], kind: fn(PipelineKey) -> Kind| {
+                    let pipeline = |key| self.pipelines[&kind(key)].get(key);
+                    DrawList::issue_with(batches, &mut pass, scene, pipeline, false, drawn);
+                };
+                if behind.is_some() {
+                    issue(&list.transmissive, |_| Kind::Transmissive);
+                } else {
+                    issue(&list.lobed, |_| Kind::LobedOpaque);
+                    issue(&list.blended, Kind::of_blended);
                 }
-                let lobed = |key| self.pipeline(key, true);
-                DrawList::issue_with(&list.lobed, &mut pass, scene, lobed, false, drawn);
-                let blended = |key| self.pipeline(key, false);
-                DrawList::issue_with(&list.blended, &mut pass, scene, blended, false, drawn);
             }
         }
     }

@@ -125,13 +125,14 @@ mod tests {
         }
     }
 
-    /// Of index 1: it reflects next to nothing.
+    /// It reflects nothing.
     fn glass(color: Vec3) -> Material {
         Material {
             base_color: color.extend(1.0),
             metallic: 0.0,
             roughness: 0.0,
             ior: 1.0,
+            specular: 0.0,
             transmission: Some(Transmission {
                 factor: 1.0,
                 texture: None,
@@ -258,7 +259,6 @@ mod tests {
 
     #[test]
     fn each_eye_sees_its_own_picture_behind_glass() {
-        // The wall ends between what the eyes see through the glass.
         let scene = quads(vec![wall(WALL), glass(GREEN)], &[0.0, 0.5]);
         let settings = settings().with(|s| s.stereo.mode = Stereo::Instanced);
         let drawn = rendered(&scene, &front(), &settings);

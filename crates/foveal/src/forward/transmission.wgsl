@@ -5,7 +5,6 @@
 #import shared/environment.wgsl
 #import shared/frame.wgsl
 #import shared/instances.wgsl
-#import shared/lighting.wgsl
 #import shared/material.wgsl
 
 @group(3) @binding(0) var picture_behind: texture_2d<f32>;
@@ -39,8 +38,10 @@ fn passed_light(s: LobedSurface, pixel: vec2f, i: Instance) -> vec3f {
     let left_at = seen_at(s.base.position + refracted * thickness, pixel);
     let at = select(pixel, left_at, thickness > 0.0);
     let n_dot_v = saturate(dot(n, v));
-    let f = fresnel_of(s.base_mirror, n_dot_v);
-    var part = s.transmission * (1.0 - max(f.x, max(f.y, f.z))) * (1.0 - s.base.metallic) * below_coat(s, v);
+    // As of what is scattered, what is reflected of even light is left out.
+    let f = environment_reflectance(s.base, v);
+    let left = 1.0 - saturate(max(f.x, max(f.y, f.z)));
+    var part = s.transmission * left * (1.0 - s.base.metallic) * below_coat(s, v);
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         part *= below_sheen(s, n_dot_v);
     }

@@ -55,7 +55,7 @@ impl GeometryPass {
                     frame_layout,
                     (MaterialDispatch::of(gpu, settings), material_layout),
                     FaceNormals::wanted_by(settings),
-                    (windows, settings.antialiasing.mode != Antialiasing::None),
+                    (windows, crate::antialias::adds_lobes(settings)),
                     (further, Rates::wanted_by(settings)),
                     (submission, EyeLayout::of(settings)),
                 )))
@@ -86,8 +86,8 @@ impl GeometryPass {
         let mut constants = submission.constants().to_vec();
         if !gpu.is_reduced() {
             constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
-            let sampled = settings.antialiasing.mode != Antialiasing::None;
-            constants.push(("BLACK_BELOW_LOBES", f64::from(u8::from(sampled))));
+            let black = crate::antialias::adds_lobes(settings);
+            constants.push(("BLACK_BELOW_LOBES", f64::from(u8::from(black))));
         }
         let shader = match submission {
             _ if submission.clips() => shader::GEOMETRY_GBUFFER.variant(&["CLIPPED"]),
