@@ -2,7 +2,7 @@
 
 use glam::Vec3;
 
-use crate::{Material, TextureRef};
+use crate::TextureRef;
 
 /// KHR_materials_clearcoat: a clear coat over everything else.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -63,38 +63,4 @@ pub struct Transmission {
     pub attenuation_distance_m: f32,
     /// What white light is then, linear.
     pub attenuation_color: Vec3,
-}
-
-/// Places for textures in all lobes.
-const TEXTURES: usize = 8;
-
-impl Material {
-    /// Most different textures that lobes read; renderers leave out what comes after.
-    pub const MAX_LOBE_TEXTURES: usize = 5;
-
-    /// Whether the material has a clear coat, sheen, anisotropy or transmission.
-    #[must_use]
-    pub fn has_lobes(&self) -> bool {
-        self.clearcoat.is_some()
-            || self.sheen.is_some()
-            || self.anisotropy.is_some()
-            || self.transmission.is_some()
-    }
-
-    /// The textures of its lobes: clear coat, its roughness, its normals; sheen's colour, its
-    /// roughness; anisotropy; transmission, thickness.
-    #[must_use]
-    pub fn lobe_textures(&self) -> [Option<TextureRef>; TEXTURES] {
-        let (coat, sheen) = (self.clearcoat.as_ref(), self.sheen.as_ref());
-        [
-            coat.and_then(|c| c.texture),
-            coat.and_then(|c| c.roughness_texture),
-            coat.and_then(|c| c.normal_texture),
-            sheen.and_then(|s| s.color_texture),
-            sheen.and_then(|s| s.roughness_texture),
-            self.anisotropy.as_ref().and_then(|a| a.texture),
-            self.transmission.as_ref().and_then(|t| t.texture),
-            self.transmission.as_ref().and_then(|t| t.thickness_texture),
-        ]
-    }
 }

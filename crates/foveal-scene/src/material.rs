@@ -1,8 +1,8 @@
 //! Surfaces: glTF's metallic-roughness model.
 
-use glam::{Mat3, Vec3, Vec4};
+use glam::{Vec3, Vec4};
 
-use crate::{Anisotropy, Clearcoat, Sheen, Transmission};
+use crate::{Anisotropy, Clearcoat, Sheen, TextureRef, Transmission};
 
 /// What alpha means.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,18 +16,6 @@ pub enum AlphaMode {
     },
     /// Blended over what is behind it.
     Blend,
-}
-
-/// A texture as one material slot uses it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TextureRef {
-    /// Index into [`Scene::textures`](crate::Scene::textures).
-    pub texture: u32,
-    /// Which of a vertex's two UV sets it reads: 0 or 1 (the importer maps the file's sets to
-    /// these).
-    pub uv_set: u32,
-    /// Texture coordinates from vertex coordinates (KHR_texture_transform), affine in 2-D.
-    pub uv_transform: Mat3,
 }
 
 /// One surface.
@@ -97,10 +85,42 @@ pub struct ProceduralLayers {
     pub frequency: f32,
 }
 
+/// Places for textures in all lobes.
+const TEXTURES: usize = 8;
+
 /// The index of refraction of a material that names none.
 const DEFAULT_IOR: f32 = 1.5;
 
 impl Material {
+    /// Most different textures that lobes read; renderers leave out what comes after.
+    pub const MAX_LOBE_TEXTURES: usize = 5;
+
+    /// Whether the material has a clear coat, sheen, anisotropy or transmission.
+    #[must_use]
+    pub fn has_lobes(&self) -> bool {
+        self.clearcoat.is_some()
+            || self.sheen.is_some()
+            || self.anisotropy.is_some()
+            || self.transmission.is_some()
+    }
+
+    /// The textures of its lobes: clear coat, its roughness, its normals; sheen's colour, its
+    /// roughness; anisotropy; transmission, thickness.
+    #[must_use]
+    pub fn lobe_textures(&self) -> [Option<TextureRef>; TEXTURES] {
+        let (coat, sheen) = (self.clearcoat.as_ref(), self.sheen.as_ref());
+        [
+            coat.and_then(|c| c.texture),
+            coat.and_then(|c| c.roughness_texture),
+            coat.and_then(|c| c.normal_texture),
+            sheen.and_then(|s| s.color_texture),
+            sheen.and_then(|s| s.roughness_texture),
+            self.anisotropy.as_ref().and_then(|a| a.texture),
+            self.transmission.as_ref().and_then(|t| t.texture),
+            self.transmission.as_ref().and_then(|t| t.thickness_texture),
+        ]
+    }
+
     /// Reflectance at right angles that the index of refraction gives what is not metal.
     #[must_use]
     pub fn ior_reflectance(&self) -> f32 {

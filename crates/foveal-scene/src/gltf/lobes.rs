@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use super::document::Counts;
 use super::json::Obj;
-use super::materials::texture;
+use super::slots::texture;
 use crate::error::{Flaw, Parsed};
 use crate::{Anisotropy, Clearcoat, Material, Sheen, Transmission};
 

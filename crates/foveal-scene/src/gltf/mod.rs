@@ -31,6 +31,7 @@ mod pictures;
 mod reader;
 mod rigging;
 mod skins;
+mod slots;
 mod tangents;
 mod textures;
 mod topology;

@@ -6,6 +6,7 @@ mod lobes_tests;
 #[cfg(test)]
 mod lobes_twin;
 mod recipes;
+mod targets;
 mod transmission;
 #[cfg(test)]
 pub(crate) mod twin;
@@ -13,8 +14,8 @@ pub(crate) mod twin;
 use std::collections::{BTreeMap, BTreeSet};
 
 use recipes::{Kind, Recipes};
+pub(crate) use targets::TransmissionTargets;
 use transmission::BehindPass;
-pub(crate) use transmission::TransmissionTargets;
 
 use crate::Settings;
 use crate::geometry::{Batch, DrawList, Draws, PipelineKey, Pipelines, Window};
