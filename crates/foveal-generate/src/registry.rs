@@ -36,6 +36,7 @@ pub fn by_name(name: &str) -> Result<Scene, GenerateError> {
         "cornell" => crate::cornell,
         "materials-grid" => crate::materials_grid,
         "alpha" => crate::alpha,
+        "lobes" => crate::lobes,
         _ => {
             return Err(GenerateError::UnknownScene {
                 name: name.to_owned(),

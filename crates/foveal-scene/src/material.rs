@@ -1,6 +1,8 @@
 //! Surfaces: glTF's metallic-roughness model.
 
-use glam::{Mat3, Vec3, Vec4};
+use glam::{Vec3, Vec4};
+
+use crate::{Anisotropy, Clearcoat, Sheen, TextureRef, Transmission};
 
 /// What alpha means.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,18 +16,6 @@ pub enum AlphaMode {
     },
     /// Blended over what is behind it.
     Blend,
-}
-
-/// A texture as one material slot uses it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TextureRef {
-    /// Index into [`Scene::textures`](crate::Scene::textures).
-    pub texture: u32,
-    /// Which of a vertex's two UV sets it reads: 0 or 1 (the importer maps the file's sets to
-    /// these).
-    pub uv_set: u32,
-    /// Texture coordinates from vertex coordinates (KHR_texture_transform), affine in 2-D.
-    pub uv_transform: Mat3,
 }
 
 /// One surface.
@@ -43,6 +33,16 @@ pub struct Material {
     pub roughness: f32,
     /// Green = roughness, blue = metallic, linear.
     pub metallic_roughness_texture: Option<TextureRef>,
+    /// KHR_materials_ior: index of refraction of what is not metal; 0 reflects everything.
+    pub ior: f32,
+    /// KHR_materials_specular: part of the reflection of what is not metal, 0 … 1.
+    pub specular: f32,
+    /// Alpha times `specular`, linear.
+    pub specular_texture: Option<TextureRef>,
+    /// Linear colour of the reflection at right angles of what is not metal; may exceed 1.
+    pub specular_color: Vec3,
+    /// sRGB colour, times `specular_color`.
+    pub specular_color_texture: Option<TextureRef>,
     /// Tangent-space normals, linear.
     pub normal_texture: Option<TextureRef>,
     /// Scale of the normal's x and y.
@@ -61,6 +61,14 @@ pub struct Material {
     pub double_sided: bool,
     /// KHR_materials_unlit: base colour straight to the screen.
     pub unlit: bool,
+    /// A clear coat over it.
+    pub clearcoat: Option<Clearcoat>,
+    /// Fibres that stand off it.
+    pub sheen: Option<Sheen>,
+    /// Highlights that are longer in one direction.
+    pub anisotropy: Option<Anisotropy>,
+    /// Light that passes.
+    pub transmission: Option<Transmission>,
     /// Noise that is computed at each point instead of looked up in textures.
     pub procedural: Option<ProceduralLayers>,
 }
@@ -77,6 +85,62 @@ pub struct ProceduralLayers {
     pub frequency: f32,
 }
 
+/// Places for textures in all lobes.
+const TEXTURES: usize = 8;
+
+/// The index of refraction of a material that names none.
+const DEFAULT_IOR: f32 = 1.5;
+
+impl Material {
+    /// Most different textures that lobes read; renderers leave out what comes after.
+    pub const MAX_LOBE_TEXTURES: usize = 5;
+
+    /// Whether the material has a clear coat, sheen, anisotropy or transmission.
+    #[must_use]
+    pub fn has_lobes(&self) -> bool {
+        self.clearcoat.is_some()
+            || self.sheen.is_some()
+            || self.anisotropy.is_some()
+            || self.transmission.is_some()
+    }
+
+    /// The textures of its lobes: clear coat, its roughness, its normals; sheen's colour, its
+    /// roughness; anisotropy; transmission, thickness.
+    #[must_use]
+    pub fn lobe_textures(&self) -> [Option<TextureRef>; TEXTURES] {
+        let (coat, sheen) = (self.clearcoat.as_ref(), self.sheen.as_ref());
+        [
+            coat.and_then(|c| c.texture),
+            coat.and_then(|c| c.roughness_texture),
+            coat.and_then(|c| c.normal_texture),
+            sheen.and_then(|s| s.color_texture),
+            sheen.and_then(|s| s.roughness_texture),
+            self.anisotropy.as_ref().and_then(|a| a.texture),
+            self.transmission.as_ref().and_then(|t| t.texture),
+            self.transmission.as_ref().and_then(|t| t.thickness_texture),
+        ]
+    }
+
+    /// Reflectance at right angles that the index of refraction gives what is not metal.
+    #[must_use]
+    pub fn ior_reflectance(&self) -> f32 {
+        if self.ior == DEFAULT_IOR {
+            return 0.04;
+        }
+        ((self.ior - 1.0) / (self.ior + 1.0)).powi(2)
+    }
+
+    /// Whether what is not metal reflects otherwise than by default: by the index of refraction, or
+    /// by KHR_materials_specular.
+    #[must_use]
+    pub fn has_own_specular(&self) -> bool {
+        let default = (DEFAULT_IOR, 1.0, Vec3::ONE);
+        let textures = [self.specular_texture, self.specular_color_texture];
+        (self.ior, self.specular, self.specular_color) != default
+            || textures.iter().any(Option::is_some)
+    }
+}
+
 impl Default for Material {
     /// glTF's default material, white, with roughness and metallic 1 (as the specification says).
     fn default() -> Self {
@@ -87,6 +151,11 @@ impl Default for Material {
             metallic: 1.0,
             roughness: 1.0,
             metallic_roughness_texture: None,
+            ior: DEFAULT_IOR,
+            specular: 1.0,
+            specular_texture: None,
+            specular_color: Vec3::ONE,
+            specular_color_texture: None,
             normal_texture: None,
             normal_scale: 1.0,
             occlusion_texture: None,
@@ -96,6 +165,10 @@ impl Default for Material {
             alpha_mode: AlphaMode::Opaque,
             double_sided: false,
             unlit: false,
+            clearcoat: None,
+            sheen: None,
+            anisotropy: None,
+            transmission: None,
             procedural: None,
         }
     }

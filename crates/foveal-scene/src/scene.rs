@@ -131,12 +131,14 @@ impl Scene {
     }
 
     /// Whether an instance's surface can hide things for certain: opaque (masks have holes, blended
-    /// surfaces show what is behind them) and rigid (an occluder that deforms would have to be
+    /// and transmissive surfaces show what is behind them) and rigid (an occluder that deforms would have to be
     /// prepared in every pose).
     #[must_use]
     pub fn can_occlude(&self, instance: &Instance) -> bool {
         let material = &self.materials[instance.material as usize];
-        material.alpha_mode == AlphaMode::Opaque && !self.meshes[instance.mesh as usize].deforms
+        material.alpha_mode == AlphaMode::Opaque
+            && material.transmission.is_none()
+            && !self.meshes[instance.mesh as usize].deforms
     }
 
     /// Whether the scene says of any object that it is meant to occlude.

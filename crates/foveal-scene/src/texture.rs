@@ -1,5 +1,7 @@
 //! Textures: decoded pixels and how they are sampled.
 
+use glam::Mat3;
+
 /// What the bytes mean.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ColorSpace {
@@ -73,4 +75,16 @@ pub struct Texture {
     /// RGBA8 rows top to bottom, one `Vec` per mip level, level k of size max(1, width >> k) x
     /// max(1, height >> k). Level 0 alone where the sampler has no mip filter.
     pub levels: Vec<Vec<u8>>,
+}
+
+/// A texture as one material slot uses it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TextureRef {
+    /// Index into [`Scene::textures`](crate::Scene::textures).
+    pub texture: u32,
+    /// Which of a vertex's two UV sets it reads: 0 or 1 (the importer maps the file's sets to
+    /// these).
+    pub uv_set: u32,
+    /// Texture coordinates from vertex coordinates (KHR_texture_transform), affine in 2-D.
+    pub uv_transform: Mat3,
 }

@@ -1,6 +1,7 @@
 //! What a frame is drawn into.
 
 use crate::antialias::SampleTargets;
+use crate::forward::TransmissionTargets;
 use crate::geometry::{GBuffer, VisibilityTargets};
 use crate::gpu::{self, Gpu};
 use crate::output::PICTURE_FORMAT;
@@ -19,6 +20,8 @@ pub(crate) struct Targets {
     pub(crate) radiance_view: wgpu::TextureView,
     /// Where blended surfaces are drawn over it, if that is to a layer for each eye.
     pub(crate) radiance_layers: Option<wgpu::TextureView>,
+    /// Once something has been drawn that light passes.
+    pub(crate) transmission: Option<TransmissionTargets>,
     /// The eyes' pictures.
     pub(crate) picture_view: wgpu::TextureView,
     /// The picture as the output shows it, where that is not the same.
@@ -59,6 +62,7 @@ impl Targets {
                 let label = "radiance of blended surfaces";
                 gpu::layered_target(gpu, label, size, layers, RADIANCE_FORMAT, copied)
             }),
+            transmission: None,
             picture_view: target("picture", PICTURE_FORMAT, wgpu::TextureUsages::empty()),
             shown_view: settings.is_stereo().then(|| {
                 let (size, none) = (settings.picture_size(), wgpu::TextureUsages::empty());
@@ -97,6 +101,7 @@ impl Targets {
         texels(&self.picture_view) * BYTES_PER_PIXEL
             + self.shown_view.as_ref().map_or(0, texels) * 4
             + self.radiance_layers.as_ref().map_or(0, texels) * 8
+            + (self.transmission.as_ref()).map_or(0, TransmissionTargets::bytes)
             + visibility.map_or(0, VisibilityTargets::bytes)
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
             + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)

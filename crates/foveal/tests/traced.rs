@@ -132,6 +132,28 @@ fn metals_in_an_environment_are_nearly_as_traced() {
 }
 
 #[test]
+fn reflections_of_all_strengths_and_colours_are_nearly_as_traced() {
+    let mut scene = generate::materials_grid();
+    let plain = scene.clone();
+    for (i, material) in (0..).zip(&mut scene.materials) {
+        material.metallic *= 0.5;
+        material.ior = [1.33, 1.8, 2.4][i % 3];
+        material.specular = [1.0, 0.5, 0.0, 1.0][i % 4];
+        material.specular_color = [Vec3::ONE, Vec3::new(3.0, 1.0, 0.5)][i / 2 % 2];
+    }
+    let (width, height, rgb) = surroundings(20.0);
+    let around = Around::new(width, height, rgb);
+    let mut reference = Reference::new(&scene);
+    reference.around = Some(&around);
+    let settings = Settings::default().with(|s| s.lighting.environment = EnvironmentSource::Image);
+    let error = flip(&scene, settings.clone(), 20.0, &reference);
+    let other = flip(&plain, settings, 20.0, &reference);
+    println!("ior and specular: FLIP {error:.4}; {other:.4} without them");
+    assert!(error <= 0.03, "{error}");
+    assert!(other > 2.0 * error, "{other}");
+}
+
+#[test]
 fn shadows_of_lights_are_nearly_as_traced() {
     for (name, most) in [("cornell", 0.04), ("demo:1000", 0.1)] {
         let mut scene = generate::by_name(name).expect("a generated scene");

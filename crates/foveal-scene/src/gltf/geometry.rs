@@ -6,6 +6,7 @@ use super::accessor::Component;
 use super::materials::UvSets;
 use super::meshes::{Mode, PrimitiveDef};
 use super::reader::Reader;
+use super::tangents::TangentUvs;
 use super::{morphs, normals, tangents, topology};
 use crate::error::{Flaw, Parsed};
 use crate::load::MissingNormals;
@@ -17,8 +18,8 @@ use crate::{Aabb, Code, Mesh, Vertex, Warning};
 pub(crate) struct Request {
     pub(crate) primitive: PrimitiveDef,
     pub(crate) uv_sets: UvSets,
-    /// The vertex's UV slot that the normal texture reads, where there is one.
-    pub(crate) tangents_for: Option<u32>,
+    /// Where the normal texture is read, where there is one.
+    pub(crate) tangents_for: Option<TangentUvs>,
 }
 
 /// A finished primitive.
@@ -96,8 +97,8 @@ pub(crate) fn build(
     }
     // Tangents of the file belong to normals of the file.
     let has_tangents = def.attributes.tangent.is_some() && def.attributes.normal.is_some();
-    if let Some(slot) = request.tangents_for.filter(|_| !has_tangents)
-        && let Some(split) = tangents::generate(&mut vertices, &mut indices, slot as usize)
+    if let Some(uvs) = request.tangents_for.filter(|_| !has_tangents)
+        && let Some(split) = tangents::generate(&mut vertices, &mut indices, uvs)
     {
         source = split.iter().map(|&i| source[i as usize]).collect();
     }

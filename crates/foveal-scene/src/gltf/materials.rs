@@ -4,20 +4,14 @@ use glam::{Mat3, Vec3, Vec4};
 
 use super::document::Counts;
 use super::json::Obj;
+use super::lobes;
+use super::slots::{SlotDef, parse_slot, texture};
 use crate::error::{Flaw, Parsed};
-use crate::{AlphaMode, Code, Material};
-
-/// A texture as a material slot names it, with the file's own UV set number.
-#[derive(Clone, Copy)]
-pub(crate) struct SlotDef {
-    pub(crate) texture: u32,
-    pub(crate) set: u32,
-    pub(crate) transform: Mat3,
-}
+use crate::{AlphaMode, Code, Material, TextureRef};
 
 /// A material whose texture slots are still numbers of the file.
 pub(crate) struct MaterialDef {
-    /// Everything but the textures.
+    /// Everything but the textures below. Other textures are numbers of the file in it.
     pub(crate) material: Material,
     pub(crate) base_color: Option<SlotDef>,
     pub(crate) metallic_roughness: Option<SlotDef>,
@@ -85,6 +79,10 @@ impl MaterialDef {
             material.occlusion_strength =
                 occlusion.float("strength")?.unwrap_or(1.0).clamp(0.0, 1.0);
         }
+        read_specular(&mut material, o, counts)?;
+        if !material.unlit {
+            lobes::read(&mut material, o, counts)?;
+        }
         Ok(Self {
             material,
             base_color,
@@ -93,6 +91,19 @@ impl MaterialDef {
             occlusion: slot(o, "occlusionTexture")?,
             emissive: slot(o, "emissiveTexture")?,
         })
+    }
+
+    /// The set of texture coordinates that tangents follow, and what becomes of them: of normals,
+    /// else of the coat's normals, else of anisotropy; `None` where nothing needs tangents.
+    pub(crate) fn tangent_uvs(&self) -> Option<(u32, Mat3)> {
+        let normal = self.normal.map(|slot| (slot.set, slot.transform));
+        let of = |slot: TextureRef| (slot.uv_set, slot.uv_transform);
+        let coat = self.material.clearcoat.and_then(|coat| coat.normal_texture);
+        let anisotropy = self.material.anisotropy.map(|found| {
+            let first = (self.uv_sets().0[0].unwrap_or(0), Mat3::IDENTITY);
+            found.texture.map_or(first, of)
+        });
+        normal.or(coat.map(of)).or(anisotropy)
     }
 
     /// Maps the sets in use to the two slots, lowest set first; true when some did not fit.
@@ -104,7 +115,10 @@ impl MaterialDef {
             self.occlusion,
             self.emissive,
         ];
-        let mut sets: Vec<u32> = slots.iter().flatten().map(|s| s.set).collect();
+        let further = further_textures(&self.material);
+        let further = further.iter().flatten().map(|slot| slot.uv_set);
+        let slots = slots.iter().flatten().map(|slot| slot.set);
+        let mut sets: Vec<u32> = slots.chain(further).collect();
         // The most visible sets win where there are more than two: the order of `slots`.
         let mut kept: Vec<u32> = Vec::new();
         for set in sets.drain(..) {
@@ -112,11 +126,44 @@ impl MaterialDef {
                 kept.push(set);
             }
         }
+        if kept.is_empty() && self.material.anisotropy.is_some() {
+            kept.push(0);
+        }
         let overflow = kept.len() > 2;
         kept.truncate(2);
         kept.sort_unstable();
         ([kept.first().copied(), kept.get(1).copied()], overflow)
     }
+}
+
+/// The textures of extensions.
+fn further_textures(material: &Material) -> Vec<Option<TextureRef>> {
+    let specular = [material.specular_texture, material.specular_color_texture];
+    specular
+        .into_iter()
+        .chain(material.lobe_textures())
+        .collect()
+}
+
+/// KHR_materials_ior and KHR_materials_specular.
+fn read_specular(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed<()> {
+    if let Some(e) = o.extension("KHR_materials_ior")? {
+        let within = |e: Flaw| e.under("extensions.KHR_materials_ior");
+        let ior = e.float("ior").map_err(within)?.unwrap_or(material.ior);
+        // 0 is allowed and reflects everything; nothing real lies between it and 1.
+        material.ior = if ior <= 0.0 { 0.0 } else { ior.max(1.0) };
+    }
+    if let Some(e) = o.extension("KHR_materials_specular")? {
+        let within = |e: Flaw| e.under("extensions.KHR_materials_specular");
+        let strength = e.float("specularFactor").map_err(within)?;
+        material.specular = strength.unwrap_or(1.0).clamp(0.0, 1.0);
+        let color = e.floats("specularColorFactor").map_err(within)?;
+        material.specular_color = color.map_or(Vec3::ONE, Vec3::from).max(Vec3::ZERO);
+        material.specular_texture = texture(e, "specularTexture", counts).map_err(within)?;
+        material.specular_color_texture =
+            texture(e, "specularColorTexture", counts).map_err(within)?;
+    }
+    Ok(())
 }
 
 /// The sets that a primitive without a material carries along.
@@ -137,39 +184,4 @@ fn parse_alpha(o: Obj<'_>) -> Parsed<AlphaMode> {
             .under("alphaMode"));
         }
     })
-}
-
-fn parse_slot(o: Obj<'_>, counts: &Counts) -> Parsed<SlotDef> {
-    let mut slot = SlotDef {
-        texture: o.need("index", o.index("index", counts.textures)?)?,
-        set: parse_set(o)?.unwrap_or(0),
-        transform: Mat3::IDENTITY,
-    };
-    if let Some(e) = o.extension("KHR_texture_transform")? {
-        let within = |e: Flaw| e.under("extensions.KHR_texture_transform");
-        slot.set = parse_set(e).map_err(within)?.unwrap_or(slot.set);
-        slot.transform = parse_transform(e).map_err(within)?;
-    }
-    Ok(slot)
-}
-
-fn parse_set(o: Obj<'_>) -> Parsed<Option<u32>> {
-    Ok(o.uint("texCoord")?
-        .map(|s| s.min(u64::from(u32::MAX)) as u32))
-}
-
-/// KHR_texture_transform: offset · rotation · scale.
-///
-/// The rotation is counter-clockwise as seen with v upwards. glTF's v points down, so the angle
-/// is negated; so do the reference viewer and the other engines, against the letter of the
-/// extension's GLSL.
-fn parse_transform(o: Obj<'_>) -> Parsed<Mat3> {
-    let [x, y] = o.floats("offset")?.unwrap_or([0.0, 0.0]);
-    let [sx, sy] = o.floats("scale")?.unwrap_or([1.0, 1.0]);
-    let (sin, cos) = o.float("rotation")?.unwrap_or(0.0).sin_cos();
-    Ok(Mat3::from_cols(
-        Vec3::new(cos * sx, -sin * sx, 0.0),
-        Vec3::new(sin * sy, cos * sy, 0.0),
-        Vec3::new(x, y, 1.0),
-    ))
 }

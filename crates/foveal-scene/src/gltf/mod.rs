@@ -18,6 +18,7 @@ mod geometry;
 mod images;
 mod json;
 mod lights;
+mod lobes;
 mod materials;
 mod meshes;
 mod meshopt;
@@ -30,6 +31,7 @@ mod pictures;
 mod reader;
 mod rigging;
 mod skins;
+mod slots;
 mod tangents;
 mod textures;
 mod topology;
@@ -58,7 +60,7 @@ use textures::Wanted;
 
 use crate::error::{Flaw, FlawKind, Parsed};
 use crate::timings::Stopwatch;
-use crate::{Clip, Code, LoadOptions, Scene, SceneError, Warning};
+use crate::{Clip, Code, LoadOptions, Material, Scene, SceneError, Warning};
 
 /// Gives the bytes of an external file by its relative path, or the reason why not.
 pub(crate) type Resolver<'a> = dyn Fn(&str) -> Result<Vec<u8>, String> + Sync + 'a;
@@ -177,6 +179,7 @@ fn build(
         .map(|def| wanted.material(def, document))
         .collect();
     warn_of_uv_sets(document, warn);
+    warn_of_lobes(&scene.materials, warn);
     scene.timings.parse_ms = watch.lap_ms();
 
     let mut geometry = Geometry::default();
@@ -259,6 +262,21 @@ fn warn_of_uv_sets(document: &Document, warn: &mut Vec<Warning>) {
             warn.push(Warning::new(Code::TexcoordsTooMany, format!(
                 "materials[{i}]: reads more than two sets of texture coordinates; the others read the first"
             )));
+        }
+    }
+}
+
+fn warn_of_lobes(materials: &[Material], warn: &mut Vec<Warning>) {
+    for (i, material) in materials.iter().enumerate() {
+        let slots = material.lobe_textures().into_iter().flatten();
+        let textures: std::collections::BTreeSet<u32> = slots.map(|slot| slot.texture).collect();
+        if textures.len() > Material::MAX_LOBE_TEXTURES {
+            let text = format!(
+                "materials[{i}]: its clear coat, sheen, anisotropy and transmission read {} textures; the first {} are read",
+                textures.len(),
+                Material::MAX_LOBE_TEXTURES
+            );
+            warn.push(Warning::new(Code::MaterialIgnored, text));
         }
     }
 }

@@ -7,11 +7,12 @@ use glam::Mat4;
 use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
-use super::materials::{DEFAULT_UV_SETS, UvSets};
+use super::materials::{DEFAULT_UV_SETS, MaterialDef, UvSets};
 use super::meshes::{Attributes, Mode, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
 use super::reader::Reader;
+use super::tangents::TangentUvs;
 use crate::error::{Flaw, Limit, Parsed};
 use crate::pose::Shape;
 use crate::{LoadOptions, Material, MissingNormals, Scene, Vertex, Warning, threads};
@@ -85,8 +86,10 @@ impl Geometry {
         let material = def.materials[primitive].map(|m| &document.materials[m as usize]);
         let uv_sets: UvSets = material.map_or(DEFAULT_UV_SETS, |m| m.uv_sets().0);
         let tangents_for = material
-            .and_then(|m| m.normal)
-            .map(|slot| u32::from(uv_sets[1] == Some(slot.set)));
+            .and_then(MaterialDef::tangent_uvs)
+            .map(|(set, transform)| {
+                TangentUvs::new(usize::from(uv_sets[1] == Some(set)), transform)
+            });
         let request = Request {
             primitive: def.primitives[primitive].clone(),
             uv_sets,

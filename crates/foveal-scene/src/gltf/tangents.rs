@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 
 use bevy_mikktspace::{Geometry, TangentSpace};
-use glam::{Vec2, Vec3};
+use glam::{Mat2, Mat3, Vec2, Vec3};
 
 use crate::Vertex;
 
@@ -17,11 +17,45 @@ const MAX_FAN: u64 = 1024;
 /// Most squares of fans, summed over the mesh: bounds the time (about 10 ns each).
 const MAX_WORK: u64 = 50_000_000;
 
+/// The texture coordinates that tangents follow: those that the normal map is read at.
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct TangentUvs {
+    /// The vertex's UV slot.
+    slot: usize,
+    /// What KHR_texture_transform makes of them, as bits: the columns of a matrix.
+    turn: [u32; 4],
+}
+
+impl TangentUvs {
+    /// A shift changes no direction, nor does a stretch along u or v: with these alone, meshes are
+    /// shared.
+    pub(crate) fn new(slot: usize, transform: Mat3) -> Self {
+        let turn = Mat2::from_mat3(transform);
+        let [[a, b], [c, d]] = turn.to_cols_array_2d();
+        let stretches = b == 0.0 && c == 0.0 && a > 0.0 && d > 0.0;
+        let turns = turn.is_finite() && turn.determinant() != 0.0 && !stretches;
+        let turn = if turns { turn } else { Mat2::IDENTITY };
+        let turn = turn.to_cols_array().map(f32::to_bits);
+        Self { slot, turn }
+    }
+
+    fn of(&self, vertex: &Vertex) -> Vec2 {
+        let uv = Vec2::from(vertex.uv[self.slot]);
+        let turn = Mat2::from_cols_array(&self.turn.map(f32::from_bits));
+        // To the bit where nothing turns: a sum with zero would turn -0 into 0.
+        if turn == Mat2::IDENTITY {
+            uv
+        } else {
+            turn * uv
+        }
+    }
+}
+
 struct Corners<'a> {
     vertices: &'a [Vertex],
     /// Corners of the triangles with area.
     indices: &'a [u32],
-    uv_slot: usize,
+    uvs: TangentUvs,
     tangents: Vec<[f32; 4]>,
 }
 
@@ -49,7 +83,7 @@ impl Geometry for Corners<'_> {
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        self.vertex(face, corner).uv[self.uv_slot]
+        self.uvs.of(self.vertex(face, corner)).to_array()
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
@@ -59,12 +93,12 @@ impl Geometry for Corners<'_> {
     }
 }
 
-/// Generates tangents for the UVs of `uv_slot`. Vertices whose corners disagree are split; the
+/// Generates tangents that follow `uvs`. Vertices whose corners disagree are split; the
 /// result names the former vertex of each vertex when that happened.
 pub(crate) fn generate(
     vertices: &mut Vec<Vertex>,
     indices: &mut [u32],
-    uv_slot: usize,
+    uvs: TangentUvs,
 ) -> Option<Vec<u32>> {
     let at = |i: u32| vertices[i as usize].position;
     let has_area = |t: &[u32]| {
@@ -77,18 +111,18 @@ pub(crate) fn generate(
         .flatten()
         .copied()
         .collect();
-    let tangents = if is_tame(vertices, &solid, uv_slot) {
+    let tangents = if is_tame(vertices, &solid, uvs.slot) {
         let mut corners = Corners {
             vertices,
             indices: &solid,
-            uv_slot,
+            uvs,
             tangents: vec![[1.0, 0.0, 0.0, 1.0]; solid.len()],
         };
         // The error type has no values.
         let _ = bevy_mikktspace::generate_tangents(&mut corners);
         corners.tangents
     } else {
-        means(vertices, &solid, uv_slot)
+        means(vertices, &solid, uvs)
     };
     let mut of_solid = tangents.into_iter();
     let mut split = Split::new(vertices.len());
@@ -199,13 +233,13 @@ fn is_tame(vertices: &[Vertex], solid: &[u32], uv_slot: usize) -> bool {
 }
 
 /// Angle-weighted means per welded vertex and orientation; one tangent per corner.
-fn means(vertices: &[Vertex], solid: &[u32], uv_slot: usize) -> Vec<[f32; 4]> {
+fn means(vertices: &[Vertex], solid: &[u32], uvs: TangentUvs) -> Vec<[f32; 4]> {
     let mut sums: HashMap<([u32; 8], bool), Vec3> = HashMap::new();
     let mut corners = Vec::with_capacity(solid.len());
     for t in solid.chunks_exact(3) {
         let of = [t[0], t[1], t[2]].map(|i| &vertices[i as usize]);
         let p = of.map(|v| Vec3::from(v.position));
-        let uv = of.map(|v| Vec2::from(v.uv[uv_slot]));
+        let uv = of.map(|v| uvs.of(v));
         let (d1, d2) = (uv[1] - uv[0], uv[2] - uv[0]);
         let area = d1.perp_dot(d2);
         let along = ((p[1] - p[0]) * d2.y - (p[2] - p[0]) * d1.y) * area.signum();
@@ -214,7 +248,7 @@ fn means(vertices: &[Vertex], solid: &[u32], uv_slot: usize) -> Vec<[f32; 4]> {
             let flat = |v: Vec3| v.reject_from_normalized(normal).normalize_or_zero();
             let (e1, e2) = (p[(k + 1) % 3] - p[k], p[(k + 2) % 3] - p[k]);
             let angle = flat(e1).dot(flat(e2)).clamp(-1.0, 1.0).acos();
-            let key = (weld_key(of[k], uv_slot), area > 0.0);
+            let key = (weld_key(of[k], uvs.slot), area > 0.0);
             *sums.entry(key).or_default() += flat(along) * angle;
             corners.push((key, normal));
         }

@@ -9,9 +9,10 @@ use std::collections::HashMap;
 use super::Resolver;
 use super::budget::Budget;
 use super::document::Document;
-use super::materials::{MaterialDef, SlotDef};
+use super::materials::MaterialDef;
 use super::pictures::{self, Picture, Promise};
 use super::reader::Reader;
+use super::slots::SlotDef;
 use crate::error::{Flaw, Limit, Parsed, amount};
 use crate::mip::{self, Content};
 use crate::{
@@ -89,7 +90,43 @@ impl Wanted {
                 uv_transform: slot.transform,
             })
         };
+        let further = |found: Option<TextureRef>| {
+            found.map(|found| SlotDef {
+                texture: found.texture,
+                set: found.uv_set,
+                transform: found.uv_transform,
+            })
+        };
+        let plain = &def.material;
+        let mut of_lobe = |found: &mut Option<TextureRef>, role| {
+            *found = slot(further(*found), role, false);
+        };
+        let (mut clearcoat, mut sheen) = (plain.clearcoat, plain.sheen);
+        if let Some(coat) = &mut clearcoat {
+            of_lobe(&mut coat.texture, Role::Data);
+            of_lobe(&mut coat.roughness_texture, Role::Data);
+            of_lobe(&mut coat.normal_texture, Role::Normal);
+        }
+        if let Some(sheen) = &mut sheen {
+            of_lobe(&mut sheen.color_texture, Role::Color);
+            of_lobe(&mut sheen.roughness_texture, Role::Data);
+        }
+        let mut anisotropy = plain.anisotropy;
+        if let Some(anisotropy) = &mut anisotropy {
+            of_lobe(&mut anisotropy.texture, Role::Data);
+        }
+        let mut transmission = plain.transmission;
+        if let Some(transmission) = &mut transmission {
+            of_lobe(&mut transmission.texture, Role::Data);
+            of_lobe(&mut transmission.thickness_texture, Role::Data);
+        }
         Material {
+            transmission,
+            clearcoat,
+            sheen,
+            anisotropy,
+            specular_texture: slot(further(plain.specular_texture), Role::Data, false),
+            specular_color_texture: slot(further(plain.specular_color_texture), Role::Color, false),
             base_color_texture: slot(def.base_color, base_role, false),
             metallic_roughness_texture: slot(def.metallic_roughness, Role::Data, false),
             normal_texture: slot(def.normal, Role::Normal, false),

@@ -1,7 +1,7 @@
-//! Where sub-samples are sorted by their triangles.
+//! Which way of anti-aliasing settings ask for.
 
 use super::pattern::Pattern;
-use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings};
+use crate::{Antialiasing, EdgeTest, Geometry, SamplePattern, Settings, Shading};
 
 /// Whether the settings ask for this way.
 pub(crate) fn by_triangles(settings: &Settings) -> bool {
@@ -9,6 +9,12 @@ pub(crate) fn by_triangles(settings: &Settings) -> bool {
         && settings.geometry.path == Geometry::Visibility
         && settings.antialiasing.edge_test == EdgeTest::Surface
         && settings.antialiasing.pattern == SamplePattern::Grid
+}
+
+/// Whether lobes are added to pixels in which their surfaces are black: where the pixel's colour is a
+/// mean of all its surfaces. Where it is that of the largest, at reduced rates, they are laid over.
+pub(crate) fn adds_lobes(settings: &Settings) -> bool {
+    settings.antialiasing.mode != Antialiasing::None && settings.shading.mode == Shading::Full
 }
 
 /// Side of what a pixel's textures are filtered over, in pixels, where its material is evaluated

@@ -239,7 +239,7 @@ impl AntialiasStage {
     pub(crate) fn blend(&self, recorder: &mut Recorder<'_>, list: &DrawList, targets: &Targets) {
         let Some(t) = &targets.samples else { return };
         if let (Some(blended), Some((_, band)), false) =
-            (&t.blended, t.bands.first(), list.blended.is_empty())
+            (&t.blended, t.bands.first(), !list.has_forward())
         {
             let radiance = &targets.radiance_view;
             self.blended.lay_over(recorder, blended, band, radiance);

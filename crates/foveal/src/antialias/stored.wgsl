@@ -3,6 +3,7 @@
 #import antialias/samples.wgsl
 #import antialias/surfaces.wgsl
 #import shading/input.wgsl
+#import shared/face_normal.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/surface.wgsl
@@ -46,14 +47,14 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
     if textureLoad(sample_identity, first_texel, 0).x == 0u {
         return Blend(vec4u(0u), 0.0, vec2f(pixel) + 0.5);
     }
-    var sum = Surface(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, vec3f(0.0));
+    var sum = Surface(vec3f(0.0), vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, vec3f(0.0), PLAIN_DIELECTRIC);
     var depth = 0.0;
     var position = vec2f(0.0);
+    let part = 1.0 / f32(countOneBits(members));
     for (var left = members; left != 0u; left &= left - 1u) {
         let index = firstTrailingBit(left);
         let texel = sample_texel(pixel, index);
-        // Without the face normal.
-        let words = load_words(gbuffer_surface, texel) & vec4u(vec3u(0xffffffffu), 0xffffu);
+        let words = without_face_normal(load_words(gbuffer_surface, texel));
         let sample_depth = load_depth(gbuffer_depth, texel);
         let at = sample_position(pixel, index);
         let s = unpack_surface(words, world_position(at, view_distance(sample_depth)));
@@ -63,13 +64,14 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         sum.roughness += s.roughness;
         sum.occlusion += s.occlusion;
         sum.emissive += s.emissive;
+        // As differences, so that plain ones stay so to the bit.
+        sum.dielectric += (s.dielectric - PLAIN_DIELECTRIC) * part;
         if MIRROR {
             sum.emissive += s.occlusion * environment_specular(s, direction_to_eye(view_at(at), s.position));
         }
         depth += sample_depth;
         position += at;
     }
-    let part = 1.0 / f32(countOneBits(members));
     let mean = Surface(
         vec3f(0.0),
         // Opposite normals may cancel: then any is as good.
@@ -79,11 +81,15 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         sum.roughness * part,
         sum.occlusion * part,
         sum.emissive * part,
+        sum.dielectric,
     );
     var words = pack_surface(mean);
+    words.w |= select(0u, MIRRORED, MIRROR);
+    if (words.w & OWN_DIELECTRIC) != 0u {
+        return Blend(words, depth * part, position * part);
+    }
     let color = vec3u(round(sqrt(saturate(mean.base_color)) * 4080.0));
     words.x = (words.x & 0xff000000u) | (color.r >> 4u) | ((color.g >> 4u) << 8u) | ((color.b >> 4u) << 16u);
     words.w |= ((color.r & 15u) << 16u) | ((color.g & 15u) << 20u) | ((color.b & 15u) << 24u);
-    words.w |= select(0u, MIRRORED, MIRROR);
     return Blend(words, depth * part, position * part);
 }

@@ -3,7 +3,7 @@
 use std::f32::consts::PI;
 
 use foveal_generate as generate;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 use super::EnvironmentMap;
 use super::cube::{Cube, SIDES, direction_of, place_of, relative_solid_angle};
@@ -11,6 +11,7 @@ use super::irradiance::irradiance_of;
 use super::picture::Equirectangular;
 use super::prefilter::{Levels, prefilter};
 use super::twin::Around;
+use crate::shading::dielectric::PLAIN_DIELECTRIC;
 use crate::shading::twin::{Surface, ggx_lobe, squared_alpha};
 use crate::testing::f32_of_half;
 use crate::{Error, Settings};
@@ -250,7 +251,12 @@ fn levels_follow_the_roughness() {
 fn a_white_furnace_shows_what_the_reflection_model_says() {
     let map = EnvironmentMap::from_radiance(64, 1, |_| Vec3::ONE.into());
     let around = Around::new(&map, &Settings::default());
-    for metallic in [0.0, 0.5, 1.0] {
+    let tinted = Vec4::new(0.3, 0.1, 0.02, 0.5);
+    let dielectrics = [PLAIN_DIELECTRIC, Vec4::ZERO, tinted];
+    for (metallic, dielectric) in [0.0, 0.5, 1.0]
+        .into_iter()
+        .flat_map(|m| dielectrics.map(|d| (m, d)))
+    {
         // A lobe of 0 is too narrow to be integrated so.
         for step in 1..=10 {
             for cosine in [0.1f32, 0.4, 0.7, 1.0] {
@@ -262,6 +268,7 @@ fn a_white_furnace_shows_what_the_reflection_model_says() {
                     roughness: step as f32 / 10.0,
                     occlusion: 1.0,
                     emissive: Vec3::ZERO,
+                    dielectric,
                 };
                 let v = Vec3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
                 let found = around.ambient(&s, v);
@@ -279,13 +286,14 @@ fn a_white_furnace_shows_what_the_reflection_model_says() {
 
 /// Part of light from everywhere that the lights' own model scatters.
 fn scattered_part(s: &Surface, v: Vec3) -> Vec3 {
-    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    let (f0, f90) = (s.reflectance_at_normal(), s.reflectance_at_grazing());
     let above = directions(8000).filter(|l| l.z > 0.0);
     let sum: Vec3 = above
         .map(|l| {
             let v_dot_h = v.dot((v + l).normalize());
-            let fresnel = f0 + (1.0 - f0) * (1.0 - v_dot_h).powi(5);
-            (1.0 - fresnel) * l.z
+            let m5 = (1.0 - v_dot_h).powi(5);
+            let fresnel = f0 + (f90 - f0) * m5;
+            (1.0 - fresnel - s.kept_from_scattering() * (1.0 - m5)) * l.z
         })
         .sum();
     // Of the sphere's solid angle, 4 pi, over pi.
@@ -296,7 +304,7 @@ fn scattered_part(s: &Surface, v: Vec3) -> Vec3 {
 fn reflected_part(s: &Surface, v: Vec3) -> Vec3 {
     let a2 = squared_alpha(s);
     let count = 4000;
-    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    let (f0, f90) = (s.reflectance_at_normal(), s.reflectance_at_grazing());
     let mut sum = Vec3::ZERO;
     for i in 0..count {
         let u = (i as f32 + 0.5) / count as f32;
@@ -311,7 +319,7 @@ fn reflected_part(s: &Surface, v: Vec3) -> Vec3 {
         }
         let d = cos2 * (a2 - 1.0) + 1.0;
         let density = a2 / (PI * d * d) * cos / (4.0 * v_dot_h);
-        let fresnel = f0 + (1.0 - f0) * (1.0 - v_dot_h).powi(5);
+        let fresnel = f0 + (f90 - f0) * (1.0 - v_dot_h).powi(5);
         sum += fresnel * ggx_lobe(s.normal, v, l, l.z, a2) * l.z / density;
     }
     sum / count as f32

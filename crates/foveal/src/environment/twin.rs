@@ -14,8 +14,10 @@ use crate::testing::f32_of_half;
 /// What a surface mirrors of light from everywhere, and what is left to be scattered.
 pub(super) fn reflectances(s: &Surface, v: Vec3) -> [Vec3; 2] {
     let terms = looked_up(s.normal.dot(v).clamp(0.0, 1.0), s.roughness);
-    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
-    [f0 * terms.x + terms.y, (1.0 - f0) * terms.z]
+    let (f0, f90) = (s.reflectance_at_normal(), s.reflectance_at_grazing());
+    let left = (1.0 - f0) * terms.z + (1.0 - f90) * (1.0 - terms.z);
+    let left = left - s.kept_from_scattering() * terms.z;
+    [f0 * terms.x + terms.y * f90, left]
 }
 
 /// A map as shaders see it.

@@ -1,9 +1,16 @@
-// Forward pass for blended surfaces, back to front over the deferred picture.
+// Forward pass: surfaces with lobes, at the depth where the G-buffer has them, blended surfaces, back
+// to front over the deferred picture, and surfaces that light passes.
 
 #variant
 #variant CLIPPED
 #variant LAYERED
 #variant REDUCED
+#variant LOBES
+#variant LOBES CLIPPED
+#variant LOBES LAYERED
+#variant LOBES TRANSMISSION
+#variant LOBES TRANSMISSION CLIPPED
+#variant LOBES TRANSMISSION LAYERED
 #import shared/frame.wgsl
 #import shared/lighting.wgsl
 #import shared/material_at.wgsl
@@ -11,11 +18,30 @@
 #ifndef REDUCED
 #import shared/light.wgsl
 #endif
+#ifdef LOBES
+#import forward/lobes.wgsl
+#endif
+#ifdef TRANSMISSION
+#import forward/transmission.wgsl
+#import shared/instances.wgsl
+#import shared/material_bindings.wgsl
+#endif
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;
 // Drawn at sub-samples: what is drawn to has other texels than the picture.
 override SAMPLED: bool = false;
+
+#ifdef TRANSMISSION
+// Alpha cuts holes.
+override MASKED: bool = false;
+#endif
+#ifdef LOBES
+// Alpha is ignored.
+override OPAQUE: bool = false;
+// Added to pixels in which the surface is black.
+override ADDED: bool = false;
+#endif
 
 #ifdef REDUCED
 @group(2) @binding(0) var light_table: texture_2d<u32>;
@@ -42,14 +68,35 @@ fn target_position(in: VertexOut) -> vec2f {
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
+#ifdef LOBES
+    let lobed = lobes_at(m.surface, in.normal, in.tangent, in.uv, select(-1.0, 1.0, front));
+#endif
     if is_beyond(in.now, in.instance) {
         discard;
     }
+#ifdef TRANSMISSION
+    if MASKED && m.alpha < material.alpha_cutoff {
+        discard;
+    }
+#endif
     let pixel = target_position(in);
     let view = frame.views[view_at(pixel)];
     let distance = dot(in.world - view.world_from_view[3].xyz, view.forward);
+#ifdef LOBES
+#ifdef TRANSMISSION
+    let passed = passed_light(lobed, pixel, instance_at(in.instance & ~RIGHT_EYE));
+    let radiance = min(lit_with_lobes(lobed, pixel, distance) + passed, vec3f(65504.0));
+#else
+    let radiance = min(lit_with_lobes(lobed, pixel, distance), vec3f(65504.0));
+#endif
+    let alpha = select(saturate(m.alpha), 1.0, OPAQUE);
+    if ADDED {
+        return vec4f(radiance, 0.0);
+    }
+#else
     let radiance = min(lit(m.surface, pixel, distance), vec3f(65504.0));
     let alpha = saturate(m.alpha);
+#endif
     // Premultiplied.
     return vec4f(radiance * alpha, alpha);
 }

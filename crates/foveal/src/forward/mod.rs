@@ -1,19 +1,29 @@
-//! Forward pass: blended surfaces over the deferred picture, back to front.
+//! Forward pass over the deferred picture: opaque surfaces with lobes, shaded at each pixel where the
+//! G-buffer shows them, then blended surfaces, back to front.
 
+#[cfg(test)]
+mod lobes_tests;
+#[cfg(test)]
+mod lobes_twin;
+mod recipes;
+mod targets;
+mod transmission;
 #[cfg(test)]
 pub(crate) mod twin;
 
-use crate::geometry::{
-    DrawList, Draws, PipelineKey, PipelineRecipe, Pipelines, VertexSource, Window,
-};
+use std::collections::{BTreeMap, BTreeSet};
 
-use crate::gpu::{Gpu, bind_group, bind_group_layout};
+use recipes::{Kind, Recipes};
+pub(crate) use targets::TransmissionTargets;
+use transmission::BehindPass;
+
+use crate::Settings;
+use crate::geometry::{Batch, DrawList, Draws, PipelineKey, Pipelines, Window};
+use crate::gpu::{Gpu, bind_group};
 use crate::lights::SceneLights;
 use crate::recorder::{Recorder, drawn_over, overwritten};
-use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::stereo::{EyeLayout, Submission};
 use crate::targets::Targets;
-use crate::{Antialiasing, Settings, shader};
 
 /// Which way radiance is copied.
 #[derive(Clone, Copy)]
@@ -26,15 +36,20 @@ enum Copied {
 struct ForwardTarget<'a> {
     color: Option<wgpu::RenderPassColorAttachment<'a>>,
     depth: &'a wgpu::TextureView,
+    /// With what light passes, which writes depth, the group of the picture behind; else opaque
+    /// surfaces with lobes are drawn, and blended ones.
+    behind: Option<&'a wgpu::BindGroup>,
 }
 
-/// Draws blended surfaces.
+/// Draws surfaces with lobes, blended ones, and what light passes.
 #[derive(Debug)]
 pub(crate) struct ForwardPass {
-    pipelines: Pipelines,
+    recipes: Recipes,
+    /// Made when first needed, as few scenes need all.
+    pipelines: BTreeMap<Kind, Pipelines>,
+    behind: Option<BehindPass>,
     submission: Submission,
     layout: EyeLayout,
-    lights_layout: wgpu::BindGroupLayout,
 }
 
 impl ForwardPass {
@@ -45,49 +60,12 @@ impl ForwardPass {
         frame_layout: &wgpu::BindGroupLayout,
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
-        let lights_layout = bind_group_layout(
-            &gpu.device,
-            "forward lights",
-            wgpu::ShaderStages::FRAGMENT,
-            &SceneLights::binding_types(gpu),
-        );
-        let mut constants = lighting_constants(gpu, settings);
-        constants.extend(submission.constants());
-        let layered = submission == Submission::Multiview;
-        constants.push(("LAYERED", f64::from(u8::from(layered))));
-        let sampled = settings.antialiasing.mode != Antialiasing::None;
-        constants.push(("SAMPLED", f64::from(u8::from(sampled))));
-        let shader = match submission {
-            _ if submission.clips() => shader::FORWARD_FORWARD.variant(&["CLIPPED"]),
-            Submission::Multiview => shader::FORWARD_FORWARD.variant(&["LAYERED"]),
-            _ if gpu.is_reduced() => shader::FORWARD_FORWARD.variant(&["REDUCED"]),
-            _ => shader::FORWARD_FORWARD,
-        };
-        let pipelines = Pipelines::new(PipelineRecipe {
-            label: "forward",
-            module: shader::module(gpu, "forward", shader),
-            layout: shader::pipeline_layout(
-                gpu,
-                "forward",
-                &[frame_layout, material_layout, &lights_layout],
-            ),
-            vertex: VertexSource::Buffers(submission.vertex_entry()),
-            fragment: "fragment",
-            targets: vec![Some(wgpu::ColorTargetState {
-                format: RADIANCE_FORMAT,
-                blend: Some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
-                write_mask: wgpu::ColorWrites::ALL,
-            })],
-            writes_depth: false,
-            constants,
-            has_mask: false,
-            multiview_mask: submission.multiview_mask(),
-        });
         Self {
-            pipelines,
+            recipes: Recipes::new(gpu, settings, submission, (frame_layout, material_layout)),
+            pipelines: BTreeMap::new(),
+            behind: None,
             submission,
             layout: EyeLayout::of(settings),
-            lights_layout,
         }
     }
 
@@ -98,15 +76,27 @@ impl ForwardPass {
 
     /// Makes the pipelines that `list` needs.
     pub(crate) fn prepare(&mut self, gpu: &Gpu, list: &DrawList) {
-        let mut keys: Vec<PipelineKey> = list.blended.iter().map(|b| b.key).collect();
-        keys.sort_unstable();
-        keys.dedup();
-        for key in keys {
-            self.pipelines.prepare(gpu, key);
+        if !list.transmissive.is_empty() {
+            let make = || BehindPass::new(gpu, &self.recipes.frame);
+            self.behind.get_or_insert_with(make);
+        }
+        let blended = list
+            .blended
+            .iter()
+            .map(|b| (Kind::of_blended(b.key), b.key));
+        let lobed = list.lobed.iter().map(|b| (Kind::LobedOpaque, b.key));
+        let transmissive = list.transmissive.iter();
+        let transmissive = transmissive.map(|b| (Kind::Transmissive, b.key));
+        let needed: BTreeSet<_> = blended.chain(lobed).chain(transmissive).collect();
+        for (kind, key) in needed {
+            let behind = self.behind.as_ref().map(|behind| &behind.layout);
+            let make = || self.recipes.pipelines(gpu, kind, behind);
+            let pipelines = self.pipelines.entry(kind).or_insert_with(make);
+            pipelines.prepare(gpu, key);
         }
     }
 
-    /// Encodes the pass, unless nothing is blended.
+    /// Encodes the pass, unless it has nothing to draw.
     pub(crate) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
@@ -114,13 +104,42 @@ impl ForwardPass {
         lights: SceneLights<'_>,
         targets: &Targets,
     ) {
-        if draws.list.blended.is_empty() {
+        if !draws.list.has_forward() {
             return;
         }
         let radiance = targets.radiance_layers.as_ref();
         let target = ForwardTarget {
             color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
             depth: &targets.gbuffer.depth_view,
+            behind: None,
+        };
+        let (width, height) = self.layout.target_size();
+        let whole = [Window::sized(width, height)];
+        self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
+        self.draw_windows(recorder, draws, lights, target, &whole);
+        self.copy_radiance(recorder.encoder, targets, Copied::Back);
+    }
+
+    /// Encodes the pass of what light passes, over everything else, unless nothing is such.
+    pub(crate) fn draw_transmissive(
+        &self,
+        recorder: &mut Recorder<'_>,
+        draws: Draws<'_>,
+        lights: SceneLights<'_>,
+        targets: &Targets,
+    ) {
+        let (Some(behind), Some(own)) = (&self.behind, &targets.transmission) else {
+            return;
+        };
+        if draws.list.transmissive.is_empty() {
+            return;
+        }
+        let behind = behind.draw(recorder, targets, own);
+        let radiance = targets.radiance_layers.as_ref();
+        let target = ForwardTarget {
+            color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
+            depth: &own.depth_view,
+            behind: Some(&behind),
         };
         let (width, height) = self.layout.target_size();
         let whole = [Window::sized(width, height)];
@@ -140,7 +159,11 @@ impl ForwardPass {
         windows: &[Window],
     ) {
         let color = overwritten(color);
-        let target = ForwardTarget { color, depth };
+        let target = ForwardTarget {
+            color,
+            depth,
+            behind: None,
+        };
         self.draw_windows(recorder, draws, lights, target, windows);
     }
 
@@ -149,31 +172,50 @@ impl ForwardPass {
         recorder: &mut Recorder<'_>,
         draws: Draws<'_>,
         lights: SceneLights<'_>,
-        ForwardTarget { color, depth }: ForwardTarget<'_>,
+        ForwardTarget {
+            color,
+            depth,
+            behind,
+        }: ForwardTarget<'_>,
         windows: &[Window],
     ) {
         let Draws { scene, list } = draws;
         let lights = bind_group(
             &recorder.gpu.device,
             "forward lights",
-            &self.lights_layout,
+            &self.recipes.lights,
             &lights.resources(),
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            // Read-only: it is sampled by other passes of the frame.
-            depth_ops: None,
+            // The G-buffer's is read-only: it is sampled by other passes of the frame.
+            depth_ops: behind.map(|_| wgpu::Operations {
+                load: wgpu::LoadOp::Load,
+                store: wgpu::StoreOp::Store,
+            }),
             stencil_ops: None,
         };
         let mask = self.submission.multiview_mask();
         let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
+        if let Some(behind) = behind {
+            pass.set_bind_group(3, behind, &[]);
+        }
         scene.geometry.bind(&mut pass);
         for &Window { frame, part } in windows {
             for &drawn in self.submission.drawn() {
                 let window = self.layout.window_of(drawn, Window { frame, part });
                 window.set(&mut pass);
-                DrawList::issue(&list.blended, &mut pass, scene, &self.pipelines, drawn);
+                let mut issue = |batches: &[Batch], kind: fn(PipelineKey) -> Kind| {
+                    let pipeline = |key| self.pipelines[&kind(key)].get(key);
+                    DrawList::issue_with(batches, &mut pass, scene, pipeline, false, drawn);
+                };
+                if behind.is_some() {
+                    issue(&list.transmissive, |_| Kind::Transmissive);
+                } else {
+                    issue(&list.lobed, |_| Kind::LobedOpaque);
+                    issue(&list.blended, Kind::of_blended);
+                }
             }
         }
     }

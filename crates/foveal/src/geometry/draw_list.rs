@@ -6,7 +6,7 @@ use foveal_scene::AlphaMode;
 use glam::Vec3;
 
 use super::{Faces, PipelineKey};
-use crate::scene::SceneOnGpu;
+use crate::scene::{LobeClass, SceneOnGpu};
 use crate::stereo::Drawn;
 
 /// One draw: equal meshes with equal materials, `count` instances from `first` in
@@ -27,6 +27,10 @@ pub(crate) struct DrawList {
     pub(crate) drawn: Vec<u32>,
     /// Opaque and masked surfaces, fewest state changes first.
     pub(crate) solid: Vec<Batch>,
+    /// Those of `solid` that have lobes, which are shaded in a pass over what the G-buffer shows.
+    pub(crate) lobed: Vec<Batch>,
+    /// Surfaces that light passes, which are not in the G-buffer.
+    pub(crate) transmissive: Vec<Batch>,
     /// Blended surfaces, back to front.
     pub(crate) blended: Vec<Batch>,
     /// Triangles of all draws.
@@ -52,6 +56,8 @@ impl DrawList {
     ) {
         self.drawn.clear();
         self.solid.clear();
+        self.lobed.clear();
+        self.transmissive.clear();
         self.blended.clear();
         self.triangles = 0;
         let mut solid: Vec<(PipelineKey, u32, u32, u32)> =
@@ -72,6 +78,7 @@ impl DrawList {
                         } else {
                             Faces::Front
                         },
+                        lobes: LobeClass::default(),
                     };
                     solid.push((key, instance.material, instance.mesh, index));
                 }
@@ -81,21 +88,37 @@ impl DrawList {
             }
         }
         solid.sort_unstable();
-        for (key, material, mesh, index) in solid {
-            Self::push(
-                &mut self.solid,
-                &mut self.drawn,
-                scene,
-                merge,
-                &mut self.triangles,
-                Batch {
-                    key,
-                    material,
-                    mesh,
-                    first: 0,
-                    count: index,
-                },
-            );
+        let batch = |(key, material, mesh, index)| Batch {
+            key,
+            material,
+            mesh,
+            first: 0,
+            count: index,
+        };
+        let Self {
+            solid: list,
+            drawn,
+            triangles,
+            ..
+        } = self;
+        let lobes = |material| scene.materials.lobes(material);
+        for &one in &solid {
+            if !lobes(one.1).is_some_and(LobeClass::transmits) {
+                Self::push(list, drawn, scene, merge, triangles, batch(one));
+            }
+        }
+        for (mut key, material, mesh, index) in solid {
+            let Some(lobes) = lobes(material) else {
+                continue;
+            };
+            key.lobes = lobes;
+            let to = if lobes.transmits() {
+                &mut self.transmissive
+            } else {
+                &mut self.lobed
+            };
+            let one = batch((key, material, mesh, index));
+            Self::push(to, drawn, scene, merge, triangles, one);
         }
         blended.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
         for (_, index) in blended {
@@ -112,6 +135,9 @@ impl DrawList {
                     masked: false,
                     mirrored: instance.mirrored,
                     faces,
+                    // What is behind shows by alpha.
+                    lobes: (scene.materials.lobes(instance.material))
+                        .map_or_else(LobeClass::default, LobeClass::without_transmission),
                 };
                 Self::push(
                     &mut self.blended,
@@ -129,6 +155,11 @@ impl DrawList {
                 );
             }
         }
+    }
+
+    /// Whether anything is drawn forward.
+    pub(crate) fn has_forward(&self) -> bool {
+        !(self.lobed.is_empty() && self.blended.is_empty())
     }
 
     /// Lists the draws of instances of which only the depth matters; `key` is the pipeline's for a
@@ -222,7 +253,13 @@ impl DrawList {
             }
             if material != Some(batch.material) {
                 material = Some(batch.material);
-                pass.set_bind_group(1, scene.materials.group(batch.material), &[]);
+                let materials = &scene.materials;
+                let group = if batch.key.lobes == LobeClass::default() {
+                    materials.group(batch.material)
+                } else {
+                    materials.group_with_lobes(batch.material)
+                };
+                pass.set_bind_group(1, group, &[]);
             }
             let mesh = scene.geometry.mesh(batch.mesh);
             let indices = mesh.first_index..mesh.first_index + mesh.index_count;

@@ -55,7 +55,7 @@ impl GeometryPass {
                     frame_layout,
                     (MaterialDispatch::of(gpu, settings), material_layout),
                     FaceNormals::wanted_by(settings),
-                    windows,
+                    (windows, crate::antialias::adds_lobes(settings)),
                     (further, Rates::wanted_by(settings)),
                     (submission, EyeLayout::of(settings)),
                 )))
@@ -86,6 +86,8 @@ impl GeometryPass {
         let mut constants = submission.constants().to_vec();
         if !gpu.is_reduced() {
             constants.push(("FACE_NORMAL", f64::from(u8::from(face_normals))));
+            let black = crate::antialias::adds_lobes(settings);
+            constants.push(("BLACK_BELOW_LOBES", f64::from(u8::from(black))));
         }
         let shader = match submission {
             _ if submission.clips() => shader::GEOMETRY_GBUFFER.variant(&["CLIPPED"]),
@@ -101,6 +103,7 @@ impl GeometryPass {
             fragment: "fragment",
             targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],
             writes_depth: true,
+            depth_compare: wgpu::CompareFunction::Greater,
             constants,
             has_mask: true,
             multiview_mask: submission.multiview_mask(),

@@ -3,6 +3,8 @@
 #variant
 #variant CLIPPED
 #variant LAYERED
+#import shared/below_lobes.wgsl
+#import shared/face_normal.wgsl
 #import shared/material_at.wgsl
 #import shared/material_bindings.wgsl
 #import shared/surface.wgsl
@@ -28,10 +30,9 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> GBufferOut {
     if (MASKED && m.alpha < material.alpha_cutoff) || is_beyond(in.now, in.instance) {
         discard;
     }
-    var words = pack_surface(m.surface);
+    var words = pack_surface(below_lobes(m.surface, material.without_lobes));
     if FACE_NORMAL {
-        let e = octahedral_from_unit(unit_or(face, m.surface.normal));
-        words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
+        words = with_face_normal(words, unit_or(face, m.surface.normal));
     }
     return GBufferOut(
         words,

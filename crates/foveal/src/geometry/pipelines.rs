@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::num::NonZeroU32;
 
 use crate::gpu::Gpu;
-use crate::scene::VERTEX_LAYOUTS;
+use crate::scene::{LobeClass, VERTEX_LAYOUTS};
 
 /// Which sides of a triangle are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -24,6 +24,8 @@ pub(crate) struct PipelineKey {
     /// The instance's transform turns the winding around.
     pub(crate) mirrored: bool,
     pub(crate) faces: Faces,
+    /// Lobes that are shaded besides; none in the G-buffer.
+    pub(crate) lobes: LobeClass,
 }
 
 /// Where vertices come from, with the vertex shader's entry point.
@@ -46,6 +48,8 @@ pub(crate) struct PipelineRecipe {
     pub(crate) fragment: &'static str,
     pub(crate) targets: Vec<Option<wgpu::ColorTargetState>>,
     pub(crate) writes_depth: bool,
+    /// Of a fragment's depth and the one that is there, which is reversed.
+    pub(crate) depth_compare: wgpu::CompareFunction,
     pub(crate) constants: Vec<(&'static str, f64)>,
     /// The shader has the override `MASKED`.
     pub(crate) has_mask: bool,
@@ -84,7 +88,11 @@ impl Pipelines {
 
 fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPipeline {
     let mut constants = recipe.constants.clone();
-    constants.push(("MATERIAL_CLASS", f64::from(key.class)));
+    let class = key.class | key.lobes.flags;
+    constants.push(("MATERIAL_CLASS", f64::from(class)));
+    if key.lobes.flags != 0 {
+        constants.push(("LOBE_TEXTURES", f64::from(key.lobes.textures)));
+    }
     if recipe.has_mask {
         constants.push(("MASKED", f64::from(u8::from(key.masked))));
     }
@@ -122,7 +130,7 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
             depth_stencil: Some(wgpu::DepthStencilState {
                 format: crate::formats::DEPTH_FORMAT,
                 depth_write_enabled: Some(recipe.writes_depth),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
+                depth_compare: Some(recipe.depth_compare),
                 stencil: wgpu::StencilState::default(),
                 bias: wgpu::DepthBiasState::default(),
             }),

@@ -45,7 +45,9 @@ impl Renderer {
             ..
         } = &self.stages;
         let (width, height) = self.settings.picture_size();
-        let draws = (self.draw_list.solid.len() + self.draw_list.blended.len()) as u64;
+        let list = &self.draw_list;
+        let forward = list.lobed.len() + list.blended.len() + list.transmissive.len();
+        let draws = (list.solid.len() + forward) as u64;
         FrameStats {
             width,
             height,

@@ -5,6 +5,7 @@ use super::{Frame, Renderer, Seen, Stages, Target};
 use crate::FrameStats;
 use crate::antialias::Shadings;
 use crate::culling::CullingCounts;
+use crate::forward::TransmissionTargets;
 use crate::frame::FrameUniform;
 use crate::geometry::{Draws, ResolveAt};
 use crate::gpu::CpuTimer;
@@ -74,6 +75,7 @@ impl Renderer {
             geometry,
             forward,
             targets,
+            submission,
             ..
         } = &mut self.stages;
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
@@ -85,8 +87,13 @@ impl Renderer {
         );
         geometry.prepare(gpu, scene, list);
         forward.prepare(gpu, list);
-        if !list.blended.is_empty() {
+        if list.has_forward() {
             targets.blend_samples(gpu, settings);
+        }
+        if !list.transmissive.is_empty() && targets.transmission.is_none() {
+            let (submission, _) = submission;
+            let transmission = TransmissionTargets::new(gpu, settings, *submission);
+            targets.transmission = Some(transmission);
         }
     }
 
@@ -224,7 +231,7 @@ impl Stages {
         let input = input.as_ref();
         let blended = samples
             .blended()
-            .filter(|_| plan.is_lit && !draws.list.blended.is_empty());
+            .filter(|_| plan.is_lit && draws.list.has_forward());
         antialias.begin(recorder, samples);
         for band in samples.bands() {
             let windows = samples.windows(band.0);
@@ -364,7 +371,7 @@ impl Stages {
         }
     }
 
-    /// Forward: blended surfaces over opaque ones.
+    /// Forward: lobes of opaque surfaces, blended surfaces over them, and at last what light passes.
     fn blend(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
         match &self.antialias {
             Some(antialias) => antialias.blend(recorder, draws.list, &self.targets),
@@ -373,6 +380,9 @@ impl Stages {
                 self.forward.draw(recorder, draws, lights, &self.targets);
             }
         }
+        let lights = self.scene_lights(draws);
+        let targets = &self.targets;
+        (self.forward).draw_transmissive(recorder, draws, lights, targets);
     }
 
     /// Tone map: radiance to display values, and what debug views lay over the picture.

@@ -11,12 +11,13 @@ use bytemuck::{Pod, Zeroable};
 use foveal_scene::Sampler;
 
 use super::MaterialUniform;
+use super::material_uniform::SLOTS;
 use super::samplers::Samplers;
 use super::textures::{Place, Textures};
 use crate::Settings;
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled_layers, storage_read, uniform};
 
-/// What a material reads in one of its five places for textures.
+/// What a material reads in one of its places for textures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Slot {
     pub(crate) place: Place,
@@ -29,7 +30,7 @@ struct Common {
     /// [`super::materials::material_class`].
     class: u32,
     /// Array and sampler of each slot in use.
-    slots: [Option<(u32, Sampler)>; 5],
+    slots: [Option<(u32, Sampler)>; SLOTS],
 }
 
 /// A scene's materials by families.
@@ -46,7 +47,7 @@ pub(crate) struct Families {
 
 impl Families {
     /// Of materials with these classes and slots; families are numbered as they first come up.
-    pub(crate) fn new(materials: impl Iterator<Item = (u32, [Option<Slot>; 5])>) -> Self {
+    pub(crate) fn new(materials: impl Iterator<Item = (u32, [Option<Slot>; SLOTS])>) -> Self {
         let mut numbers = HashMap::new();
         let mut common = Vec::new();
         let family_of: Vec<u32> = materials
@@ -143,7 +144,7 @@ pub(crate) struct FamilyUniform {
 /// The layout of [`FamilyBindings::group`]: bind group 1 of `geometry/visibility/by_family.wgsl`.
 pub(crate) fn family_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let mut types = vec![storage_read(), uniform()];
-    for _ in 0..5 {
+    for _ in 0..SLOTS {
         types.push(sampled_layers(wgpu::TextureSampleType::Float {
             filterable: true,
         }));
@@ -278,9 +279,12 @@ mod tests {
             .map(|i| i * 7 % 6 + i / 30 % 2)
             .map(|i| i % 6)
             .collect();
-        let materials = order
-            .iter()
-            .map(|&i| (kinds[i].0, [kinds[i].1, None, None, None, None]));
+        let materials = order.iter().map(|&i| {
+            (
+                kinds[i].0,
+                std::array::from_fn(|at| kinds[i].1.filter(|_| at == 0)),
+            )
+        });
         let families = Families::new(materials);
         assert_eq!(families.count(), 5);
         for (a, &i) in (0..).zip(&order) {

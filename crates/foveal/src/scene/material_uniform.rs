@@ -15,47 +15,58 @@ pub(crate) struct MaterialUniform {
     pub(crate) normal_scale: f32,
     pub(crate) occlusion_strength: f32,
     pub(crate) alpha_cutoff: f32,
-    pub(crate) uv: [[[f32; 4]; 2]; 5],
+    pub(crate) uv: [[[f32; 4]; 2]; SLOTS],
     pub(crate) layers: [u32; 2],
     pub(crate) number: u32,
     pub(crate) procedural_seed: u32,
     pub(crate) procedural_frequency: f32,
+    pub(crate) without_lobes: f32,
     pub(crate) reserved_0: u32,
     pub(crate) reserved_1: u32,
-    pub(crate) reserved_2: u32,
+    pub(crate) specular_color: [f32; 3],
+    pub(crate) specular: f32,
 }
 
-/// A material's texture slots in the order of the shader's bindings; their positions are the flags'
-/// bits.
-pub(super) fn slots(material: &Material) -> [Option<TextureRef>; 5] {
+/// Places for textures in a material.
+pub(crate) const SLOTS: usize = 7;
+
+/// A material's texture slots in the order of the shader's bindings.
+pub(super) fn slots(material: &Material) -> [Option<TextureRef>; SLOTS] {
     [
         material.base_color_texture,
         material.metallic_roughness_texture,
         material.normal_texture,
         material.occlusion_texture,
         material.emissive_texture,
+        material.specular_texture,
+        material.specular_color_texture,
     ]
 }
+
+/// Each slot's flag.
+const HAS_TEXTURE: [u32; SLOTS] = [1, 2, 4, 8, 16, 512, 1024];
 
 const IS_UNLIT: u32 = 32;
 const IS_PROCEDURAL: u32 = 64;
 const HAS_UV_MAP: u32 = 128;
 const HAS_OWN_UV_MAPS: u32 = 256;
+const IS_SPECULAR: u32 = 2048;
 
 /// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for
 /// procedural, one where a texture is read elsewhere than at the first UV set as it is, one where
-/// textures are read at different places.
+/// textures are read at different places, one where what is not metal has a reflectance of its own.
 pub(crate) fn material_class(material: &Material) -> u32 {
     let slots = slots(material);
     let textures = slots
         .iter()
-        .enumerate()
-        .map(|(i, slot)| u32::from(slot.is_some()) << i);
+        .zip(HAS_TEXTURE)
+        .map(|(slot, flag)| if slot.is_some() { flag } else { 0 });
     let flags = [
         (material.unlit, IS_UNLIT),
         (material.procedural.is_some(), IS_PROCEDURAL),
         (slots.iter().flatten().any(has_uv_map), HAS_UV_MAP),
         (shared_uv_map(&slots).is_none(), HAS_OWN_UV_MAPS),
+        (material.has_own_specular(), IS_SPECULAR),
     ];
     let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
     textures.sum::<u32>() | flags.sum::<u32>()
@@ -66,7 +77,7 @@ fn has_uv_map(slot: &TextureRef) -> bool {
 }
 
 /// What all slots in use share, if they do.
-fn shared_uv_map(slots: &[Option<TextureRef>; 5]) -> Option<[[f32; 4]; 2]> {
+fn shared_uv_map(slots: &[Option<TextureRef>; SLOTS]) -> Option<[[f32; 4]; 2]> {
     let mut maps = slots.iter().flatten().map(|&slot| uv_rows(slot));
     let first = maps.next().unwrap_or([[0.0; 4]; 2]);
     maps.all(|map| map == first).then_some(first)
@@ -74,8 +85,8 @@ fn shared_uv_map(slots: &[Option<TextureRef>; 5]) -> Option<[[f32; 4]; 2]> {
 
 impl MaterialUniform {
     /// `layers`: where the slots' textures lie in their arrays, each below 256.
-    pub(crate) fn new(material: &Material, number: u32, layers: [u32; 5]) -> Self {
-        let [a, b, c, d, e] = layers.map(|layer| layer as u8);
+    pub(crate) fn new(material: &Material, number: u32, layers: [u32; SLOTS]) -> Self {
+        let [a, b, c, d, e, f, g] = layers.map(|layer| layer as u8);
         let slots = slots(material);
         let own = slots.map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows));
         Self {
@@ -89,19 +100,24 @@ impl MaterialUniform {
                 AlphaMode::Mask { cutoff } => cutoff,
                 AlphaMode::Opaque | AlphaMode::Blend => 0.0,
             },
-            uv: shared_uv_map(&slots).map_or(own, |map| [map; 5]),
-            layers: [u32::from_le_bytes([a, b, c, d]), u32::from(e)],
+            uv: shared_uv_map(&slots).map_or(own, |map| [map; SLOTS]),
+            layers: [
+                u32::from_le_bytes([a, b, c, d]),
+                u32::from_le_bytes([e, f, g, 0]),
+            ],
             number,
             procedural_seed: material.procedural.map_or(0, |p| p.seed),
             procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
+            without_lobes: f32::from(u8::from(!material.has_lobes())),
             reserved_0: 0,
             reserved_1: 0,
-            reserved_2: 0,
+            specular_color: (material.specular_color * material.ior_reflectance()).to_array(),
+            specular: material.specular,
         }
     }
 }
 
-fn uv_rows(slot: TextureRef) -> [[f32; 4]; 2] {
+pub(super) fn uv_rows(slot: TextureRef) -> [[f32; 4]; 2] {
     let m = slot.uv_transform;
     [
         [m.x_axis.x, m.y_axis.x, m.z_axis.x, slot.uv_set as f32],

@@ -1,35 +1,42 @@
-//! Materials as bind group 1: a uniform block, five textures, five samplers.
+//! Materials as bind group 1: a uniform block, textures, samplers.
 
-use super::material_uniform::{MaterialUniform, material_class, slots};
+use super::material_uniform::{MaterialUniform, SLOTS, material_class, slots};
 use foveal_scene::{ColorSpace, Material, Sampler, Scene, Texture};
 
 use super::families::{Families, FamilyBindings, Slot};
+use super::lobes::{BOUND, LobeClass, LobesUniform};
 use super::samplers::Samplers;
 use super::textures::{ArrayLimits, Textures};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled, uniform};
 use crate::{Error, Settings};
 
+/// A uniform block and so many textures with their samplers.
+fn types(textures: usize) -> Vec<wgpu::BindingType> {
+    let filterable = sampled(wgpu::TextureSampleType::Float { filterable: true });
+    let sampler = wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Filtering);
+    let pairs = (0..textures).flat_map(|_| [filterable, sampler]);
+    std::iter::once(uniform()).chain(pairs).collect()
+}
+
 /// The layout of bind group 1.
 pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
-    let mut types = vec![uniform()];
-    for _ in 0..5 {
-        types.push(sampled(wgpu::TextureSampleType::Float { filterable: true }));
-        types.push(wgpu::BindingType::Sampler(
-            wgpu::SamplerBindingType::Filtering,
-        ));
-    }
-    bind_group_layout(
-        &gpu.device,
-        "material",
-        wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
-        &types,
-    )
+    let stages = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
+    bind_group_layout(&gpu.device, "material", stages, &types(SLOTS))
+}
+
+/// The layout of bind group 1 where lobes are shaded: the same, and theirs.
+pub(crate) fn lobes_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
+    let all: Vec<_> = types(SLOTS).into_iter().chain(types(BOUND)).collect();
+    let stages = wgpu::ShaderStages::FRAGMENT;
+    bind_group_layout(&gpu.device, "lobes", stages, &all)
 }
 
 /// The bind groups of a scene's materials.
 #[derive(Debug)]
 pub(crate) struct SceneMaterials {
     groups: Vec<wgpu::BindGroup>,
+    /// Of each material that has lobes.
+    lobes: Vec<Option<(LobeClass, wgpu::BindGroup)>>,
     families: Families,
     /// `None` on devices without storage buffers.
     family_bindings: Option<FamilyBindings>,
@@ -80,15 +87,17 @@ impl SceneMaterials {
             mapped_at_creation: false,
         });
         let mut groups = Vec::with_capacity(scene.materials.len());
+        let mut lobes = Vec::with_capacity(scene.materials.len());
+        let lobes_layout = lobes_layout(gpu);
         for ((number, material), uniform) in (0..).zip(&scene.materials).zip(&uniforms) {
             let offset = number * stride;
             (gpu.queue).write_buffer(&buffer, offset, bytemuck::bytes_of(uniform));
-            let pairs = slots(material).map(|slot| {
-                let texture = slot.map_or(missing, |slot| slot.texture);
+            let mut pair = |texture: u32| {
                 let sampler = (scene.textures.get(texture as usize))
                     .map_or_else(Sampler::default, |texture| texture.sampler);
                 (textures.alone(texture), samplers.get(sampler))
-            });
+            };
+            let pairs = slots(material).map(|slot| pair(slot.map_or(missing, |slot| slot.texture)));
             let mut resources = vec![wgpu::BindingResource::Buffer(wgpu::BufferBinding {
                 buffer: &buffer,
                 offset,
@@ -99,9 +108,32 @@ impl SceneMaterials {
                 resources.push(wgpu::BindingResource::Sampler(sampler));
             }
             groups.push(bind_group(&gpu.device, &material.name, layout, &resources));
+            if !material.has_lobes() || material.unlit || gpu.is_reduced() {
+                lobes.push(None);
+                continue;
+            }
+            let (class, bound) = LobeClass::of(material);
+            let own = LobesUniform::new(material);
+            let block = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some("lobes"),
+                size: size_of::<LobesUniform>() as u64,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
+                mapped_at_creation: false,
+            });
+            (gpu.queue).write_buffer(&block, 0, bytemuck::bytes_of(&own));
+            let bound = bound.into_iter().chain(std::iter::repeat(missing));
+            let bound: Vec<_> = bound.take(BOUND).map(pair).collect();
+            resources.push(block.as_entire_binding());
+            for (view, sampler) in &bound {
+                resources.push(wgpu::BindingResource::TextureView(view));
+                resources.push(wgpu::BindingResource::Sampler(sampler));
+            }
+            let group = bind_group(&gpu.device, &material.name, &lobes_layout, &resources);
+            lobes.push(Some((class, group)));
         }
         Ok(Self {
             groups,
+            lobes,
             families,
             family_bindings,
         })
@@ -109,6 +141,18 @@ impl SceneMaterials {
 
     pub(crate) fn group(&self, material: u32) -> &wgpu::BindGroup {
         &self.groups[material as usize]
+    }
+
+    /// A material's lobes, where it has some and this device shades them.
+    pub(crate) fn lobes(&self, material: u32) -> Option<LobeClass> {
+        let lobes = self.lobes[material as usize].as_ref();
+        lobes.map(|(class, _)| *class)
+    }
+
+    /// The group of a material with its lobes, where it has some; else as [`Self::group`].
+    pub(crate) fn group_with_lobes(&self, material: u32) -> &wgpu::BindGroup {
+        let lobes = self.lobes[material as usize].as_ref();
+        lobes.map_or(self.group(material), |(_, group)| group)
     }
 
     /// What materials share dispatches.

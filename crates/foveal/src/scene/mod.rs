@@ -4,6 +4,7 @@ mod bindings;
 mod families;
 mod geometry;
 mod instances;
+mod lobes;
 mod material_uniform;
 mod materials;
 mod samplers;
@@ -17,9 +18,12 @@ pub(crate) use families::{FAMILY_BYTES, MaterialDispatch, family_layout};
 pub(crate) use geometry::PlaceUniform;
 pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS, geometry_layout};
 pub(crate) use instances::InstanceUniform;
+pub(crate) use lobes::LobeClass;
+#[cfg(test)]
+pub(crate) use lobes::LobesUniform;
 pub(crate) use material_uniform::MaterialUniform;
 use material_uniform::material_class;
-pub(crate) use materials::{SceneMaterials, material_layout};
+pub(crate) use materials::{SceneMaterials, lobes_layout, material_layout};
 pub(crate) use textures::ArrayLimits;
 
 use foveal_scene::{Aabb, AlphaMode, Environment, Scene};

@@ -6,6 +6,8 @@
 
 mod balance;
 mod coarse;
+#[cfg(test)]
+pub(crate) mod dielectric;
 mod history;
 mod pass;
 mod samples;

@@ -5,10 +5,12 @@ use foveal_generate as generate;
 use foveal_scene::{Camera, Projection, Scene};
 use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
+use super::dielectric::{dielectric_of, normal_of};
 use crate::lights::LightUniform;
 use crate::testing::{f32_of_half, picture, rendered, small, texels};
 use crate::{DebugView, LightAssignment, LightingModel, Renderer, Settings};
 
+#[derive(Clone, Copy)]
 pub(crate) struct Surface {
     pub(crate) position: Vec3,
     pub(crate) normal: Vec3,
@@ -17,6 +19,8 @@ pub(crate) struct Surface {
     pub(crate) roughness: f32,
     pub(crate) occlusion: f32,
     pub(crate) emissive: Vec3,
+    /// Reflectance of what is not metal: at right angles, and in w at grazing angles.
+    pub(crate) dielectric: Vec4,
 }
 
 fn unpack_unorm4(word: u32) -> Vec4 {
@@ -54,12 +58,13 @@ pub(crate) fn unpack_surface(words: [u32; 4], position: Vec3) -> Surface {
     let material = unpack_unorm4(words[3]);
     Surface {
         position,
-        normal: unit_from_octahedral(words[1]),
+        normal: normal_of(words),
         base_color: color.truncate() * color.truncate(),
         metallic: material.x,
         roughness: material.y,
         occlusion: color.w,
         emissive: unpack_shared_exponent(words[2]),
+        dielectric: dielectric_of(words),
     }
 }
 
@@ -117,7 +122,7 @@ pub(crate) fn normal_of_depth(camera: &Camera, size: UVec2, depths: &[f32], at: 
         .transform_vector3(in_view.normalize())
 }
 
-fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
+pub(crate) fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
     let e = &scene.environment;
     if direction.y >= 0.0 {
         e.horizon.lerp(e.zenith, direction.y.sqrt())
@@ -131,13 +136,15 @@ fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) ->
     use std::f32::consts::PI;
     let h = (v + l).normalize();
     let n_dot_h = s.normal.dot(h);
-    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    let f0 = s.reflectance_at_normal();
     match model {
         LightingModel::Ggx => {
             let v_dot_h = v.dot(h).clamp(0.0, 1.0);
-            let fresnel = f0 + (1.0 - f0) * (1.0 - v_dot_h).powi(5);
+            let m5 = (1.0 - v_dot_h).powi(5);
+            let fresnel = f0 + (s.reflectance_at_grazing() - f0) * m5;
+            let left = 1.0 - fresnel - s.kept_from_scattering() * (1.0 - m5);
             let lobe = ggx_lobe(s.normal, v, l, n_dot_l, squared_alpha(s));
-            [1.0 - fresnel, fresnel * lobe]
+            [left, fresnel * lobe]
         }
         LightingModel::BlinnPhong => {
             let alpha = (s.roughness * s.roughness).max(0.03);
@@ -183,19 +190,13 @@ pub(crate) fn luminance(color: Vec3) -> f32 {
 /// of the angle between its normal and the light's direction.
 pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) -> f32;
 
-/// A light's part.
-fn from_light(
-    model: LightingModel,
-    s: &Surface,
-    v: Vec3,
-    (number, light): (usize, &LightUniform),
-    passing: Passing<'_>,
-) -> Lit {
+/// Unit direction to a light, and irradiance on a surface at a position that faces it.
+pub(crate) fn incident(light: &LightUniform, position: Vec3) -> (Vec3, Vec3) {
     let radiant = Vec3::from(light.radiant);
-    let (direction, irradiance) = if light.kind == 0 {
+    if light.kind == 0 {
         (-Vec3::from(light.direction), radiant)
     } else {
-        let to_light = Vec3::from(light.position) - s.position;
+        let to_light = Vec3::from(light.position) - position;
         let squared = to_light.length_squared().max(1e-4);
         let direction = to_light / squared.sqrt();
         let ratio = squared / (light.range * light.range);
@@ -206,7 +207,18 @@ fn from_light(
             attenuation *= cone.clamp(0.0, 1.0).powi(2);
         }
         (direction, radiant * attenuation)
-    };
+    }
+}
+
+/// A light's part.
+fn from_light(
+    model: LightingModel,
+    s: &Surface,
+    v: Vec3,
+    (number, light): (usize, &LightUniform),
+    passing: Passing<'_>,
+) -> Lit {
+    let (direction, irradiance) = incident(light, s.position);
     let n_dot_l = s.normal.dot(direction);
     if n_dot_l <= 0.0 || irradiance.cmple(Vec3::ZERO).all() {
         return Lit::default();
@@ -270,21 +282,23 @@ pub(crate) fn to_eye(camera: &Camera, position: Vec3) -> Vec3 {
 /// `environment_reflectance` in `shared/environment.wgsl`.
 pub(crate) fn environment_reflectance(s: &Surface, v: Vec3) -> Vec3 {
     let n_dot_v = s.normal.dot(v).clamp(0.0, 1.0);
-    let f0 = Vec3::splat(0.04).lerp(s.base_color, s.metallic);
+    let f0 = s.reflectance_at_normal();
     let r =
         s.roughness * Vec4::new(-1.0, -0.0275, -0.572, 0.022) + Vec4::new(1.0, 0.0425, 1.04, -0.04);
     let a004 = (r.x * r.x).min((-9.28 * n_dot_v).exp2()) * r.x + r.y;
-    f0 * (-1.04 * a004 + r.z) + (1.04 * a004 + r.w)
+    f0 * (-1.04 * a004 + r.z) + (1.04 * a004 + r.w) * s.reflectance_at_grazing()
+}
+
+/// What the gradient sends to a normal.
+pub(crate) fn gradient_around(scene: &Scene, normal: Vec3) -> Vec3 {
+    let e = &scene.environment;
+    let around = e.nadir.lerp(e.zenith, 0.5 + 0.5 * normal.y);
+    around.lerp(e.horizon, 0.4)
 }
 
 pub(crate) fn ambient(scene: &Scene, s: &Surface, v: Vec3) -> Vec3 {
     let mirror = (2.0 * s.normal.dot(v) * s.normal - v).lerp(s.normal, s.roughness * s.roughness);
-    let e = &scene.environment;
-    let irradiance = e
-        .nadir
-        .lerp(e.zenith, 0.5 + 0.5 * s.normal.y)
-        .lerp(e.horizon, 0.4);
-    let diffuse = s.base_color * (1.0 - s.metallic) * irradiance;
+    let diffuse = s.base_color * (1.0 - s.metallic) * gradient_around(scene, s.normal);
     (diffuse + environment_reflectance(s, v) * environment(scene, mirror.normalize())) * s.occlusion
 }
 
@@ -330,7 +344,7 @@ fn radiance(renderer: &Renderer) -> Vec<Vec3> {
         .collect()
 }
 
-fn assert_equals_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
+pub(super) fn assert_equals_twin(scene: &Scene, camera: &Camera, settings: &Settings) {
     let renderer = rendered(scene, camera, settings);
     let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
     let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);

@@ -6,7 +6,7 @@ use super::atlas::Tile;
 use crate::geometry::{DrawList, Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
-use crate::scene::SceneOnGpu;
+use crate::scene::{LobeClass, SceneOnGpu};
 use crate::shader::{self, Screen};
 use crate::stereo::Drawn;
 
@@ -67,6 +67,7 @@ impl CasterPass {
             fragment: "cast_shadow",
             targets: Vec::new(),
             writes_depth: true,
+            depth_compare: wgpu::CompareFunction::Greater,
             constants: Vec::new(),
             has_mask: true,
             multiview_mask: None,
@@ -105,6 +106,7 @@ impl CasterPass {
             masked,
             mirrored: false,
             faces: Faces::Both,
+            lobes: LobeClass::default(),
         }
     }
 

@@ -92,7 +92,31 @@ fn irradiance(normal: vec3f) -> vec3f {
 }
 
 fn reflectance_at_normal(s: Surface) -> vec3f {
-    return mix(vec3f(0.04), s.base_color, s.metallic);
+    return mix(s.dielectric.xyz, s.base_color, s.metallic);
+}
+
+// At grazing angles; exactly 1 for a plain dielectric.
+fn reflectance_at_grazing(s: Surface) -> f32 {
+    return 1.0 - (1.0 - s.metallic) * (1.0 - s.dielectric.w);
+}
+
+// By how much less is left to be scattered than the reflection of each channel leaves: nothing is
+// scattered in the reflection's complementary colour (KHR_materials_specular).
+fn kept_from_scattering(s: Surface) -> vec3f {
+    let d = s.dielectric.xyz;
+    return (1.0 - s.metallic) * (max(d.x, max(d.y, d.z)) - d);
+}
+
+// What a surface mirrors by Fresnel's law, found once for all lights.
+struct Mirror {
+    at_normal: vec3f,
+    at_grazing: f32,
+    // As `kept_from_scattering`.
+    kept: vec3f,
+}
+
+fn mirror_of(s: Surface) -> Mirror {
+    return Mirror(reflectance_at_normal(s), reflectance_at_grazing(s), kept_from_scattering(s));
 }
 
 fn luminance(color: vec3f) -> f32 {
@@ -130,7 +154,7 @@ fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
     let r = s.roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
     let a004 = min(r.x * r.x, exp2(-9.28 * n_dot_v)) * r.x + r.y;
     let scale_bias = vec2f(-1.04, 1.04) * a004 + r.zw;
-    return f0 * scale_bias.x + scale_bias.y;
+    return f0 * scale_bias.x + scale_bias.y * reflectance_at_grazing(s);
 }
 
 // The table's entry for a surface.
@@ -144,7 +168,7 @@ fn environment_specular(s: Surface, v: vec3f) -> vec3f {
     let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
     if ENVIRONMENT == ENVIRONMENT_MAP {
         let terms = reflectance_terms(s, v);
-        let reflected = reflectance_at_normal(s) * terms.x + terms.y;
+        let reflected = reflectance_at_normal(s) * terms.x + terms.y * reflectance_at_grazing(s);
         return reflected * environment(normalize(mirror), s.roughness);
     }
     return environment_reflectance(s, v) * environment(normalize(mirror), s.roughness);
@@ -153,8 +177,9 @@ fn environment_specular(s: Surface, v: vec3f) -> vec3f {
 // What a surface scatters of the environment's light.
 fn environment_diffuse(s: Surface, v: vec3f) -> vec3f {
     if ENVIRONMENT == ENVIRONMENT_MAP {
-        let left = (1.0 - reflectance_at_normal(s)) * reflectance_terms(s, v).z;
-        return diffuse_color(s) * left * irradiance(s.normal);
+        let part = reflectance_terms(s, v).z;
+        let left = (1.0 - reflectance_at_normal(s)) * part + (1.0 - reflectance_at_grazing(s)) * (1.0 - part);
+        return diffuse_color(s) * (left - kept_from_scattering(s) * part) * irradiance(s.normal);
     }
     if ENVIRONMENT == ENVIRONMENT_GRADIENT {
         let around = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);

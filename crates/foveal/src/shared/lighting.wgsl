@@ -59,29 +59,35 @@ struct Reflection {
     specular: vec3f,
 }
 
-// Lambert and GGX: glTF 2.0 appendix B, with the height-correlated visibility term (Heitz 2014).
-fn reflect_ggx(s: Surface, v: vec3f, l: vec3f, n_dot_l: f32) -> Reflection {
-    let h = normalize(v + l);
-    let v_dot_h = saturate(dot(v, h));
-    let f0 = reflectance_at_normal(s);
+// Fresnel's reflectance (Schlick 1994).
+fn fresnel_of(mirror: Mirror, v_dot_h: f32) -> vec3f {
     let m = 1.0 - v_dot_h;
     let m2 = m * m;
-    let fresnel = f0 + (1.0 - f0) * (m2 * m2 * m);
-    return Reflection(1.0 - fresnel, fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s)));
+    return mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * (m2 * m2 * m);
+}
+
+// Lambert and GGX: glTF 2.0 appendix B, with the height-correlated visibility term (Heitz 2014).
+fn reflect_ggx(s: Surface, mirror: Mirror, v: vec3f, l: vec3f, n_dot_l: f32) -> Reflection {
+    let h = normalize(v + l);
+    let m = 1.0 - saturate(dot(v, h));
+    let m2 = m * m;
+    let m5 = m2 * m2 * m;
+    let fresnel = mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5;
+    let left = 1.0 - fresnel - mirror.kept * (1.0 - m5);
+    return Reflection(left, fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s)));
 }
 
 // Lambert and normalized Blinn-Phong, the exponent taken from the roughness.
-fn reflect_blinn_phong(s: Surface, v: vec3f, l: vec3f) -> Reflection {
+fn reflect_blinn_phong(s: Surface, mirror: Mirror, v: vec3f, l: vec3f) -> Reflection {
     let h = normalize(v + l);
     let alpha = max(s.roughness * s.roughness, 0.03);
     let exponent = 2.0 / (alpha * alpha) - 2.0;
-    let f0 = reflectance_at_normal(s);
     let highlight = (exponent + 8.0) / (8.0 * PI) * pow(max(dot(s.normal, h), 1e-6), exponent);
-    return Reflection(vec3f(1.0), f0 * highlight);
+    return Reflection(vec3f(1.0), mirror.at_normal * highlight);
 }
 
 // A light's part in the radiance of a surface, and in the light that falls on it.
-fn add_light(sum: Lit, s: Surface, v: vec3f, index: u32) -> Lit {
+fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit {
     let light = light_at(index);
     var a = incident(light, s.position);
     let n_dot_l = dot(s.normal, a.direction);
@@ -99,9 +105,9 @@ fn add_light(sum: Lit, s: Surface, v: vec3f, index: u32) -> Lit {
 #endif
     var r: Reflection;
     if BLINN_PHONG {
-        r = reflect_blinn_phong(s, v, a.direction);
+        r = reflect_blinn_phong(s, mirror, v, a.direction);
     } else {
-        r = reflect_ggx(s, v, a.direction, n_dot_l);
+        r = reflect_ggx(s, mirror, v, a.direction, n_dot_l);
     }
     let reflected = r.diffuse_weight * (1.0 - s.metallic) * s.base_color / PI + r.specular;
     return Lit(
@@ -130,6 +136,7 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
     var sum = Lit(s.emissive + ambient(s, v), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
     let first = cluster_words_at(pixel, distance);
+    let mirror = mirror_of(s);
     for (var word = 0u; word < light_words(); word++) {
         let valid = min(light_count() - word * 32u, 32u);
         var bits = select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
@@ -139,7 +146,7 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
         while bits != 0u {
             let bit = firstTrailingBit(bits);
             bits &= bits - 1u;
-            sum = add_light(sum, s, v, word * 32u + bit);
+            sum = add_light(sum, s, mirror, v, word * 32u + bit);
         }
     }
     return sum;

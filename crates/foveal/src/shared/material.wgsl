@@ -17,6 +17,10 @@ const IS_PROCEDURAL: u32 = 64u;
 const HAS_UV_MAP: u32 = 128u;
 // Its textures are read at different places.
 const HAS_OWN_UV_MAPS: u32 = 256u;
+const HAS_SPECULAR: u32 = 512u;
+const HAS_SPECULAR_COLOR: u32 = 1024u;
+// What is not metal has a reflectance of its own.
+const IS_SPECULAR: u32 = 2048u;
 
 struct UvMap {
     // u = dot(x.xyz, (u0, v0, 1)); x.w is the UV set.
@@ -33,9 +37,9 @@ struct Material {
     occlusion_strength: f32,
     // 0 where alpha is no mask.
     alpha_cutoff: f32,
-    // Base colour, metallic-roughness, normal, occlusion, emissive; the first one's for all where
-    // they share it.
-    uv: array<UvMap, 5>,
+    // Base colour, metallic-roughness, normal, occlusion, emissive, specular, specular colour; the
+    // first one's for all where they share it.
+    uv: array<UvMap, 7>,
     // Where the textures lie in their arrays, a byte each.
     layers: vec2u,
     // Which of the scene's materials it is.
@@ -43,9 +47,13 @@ struct Material {
     procedural_seed: u32,
     // Lumps per metre.
     procedural_frequency: f32,
+    // 0 where the surface has lobes, which are drawn forward; else 1.
+    without_lobes: f32,
     reserved_0: u32,
     reserved_1: u32,
-    reserved_2: u32,
+    // Reflectance at right angles of what is not metal, and at grazing angles: factor of both.
+    specular_color: vec3f,
+    specular: f32,
 }
 
 // Slots that share one have it in common, which spares shaders that look it up pixel by pixel.

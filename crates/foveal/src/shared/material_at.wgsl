@@ -58,9 +58,22 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
     if (MATERIAL_CLASS & HAS_EMISSIVE) != 0u {
         emissive *= sample_material(emissive_texture, emissive_sampler, 4u, uv).rgb;
     }
+    var dielectric = PLAIN_DIELECTRIC;
+    if (MATERIAL_CLASS & IS_SPECULAR) != 0u {
+        var tint = material.specular_color;
+        if (MATERIAL_CLASS & HAS_SPECULAR_COLOR) != 0u {
+            tint *= sample_material(specular_color_texture, specular_color_sampler, 6u, uv).rgb;
+        }
+        var strength = material.specular;
+        if (MATERIAL_CLASS & HAS_SPECULAR) != 0u {
+            strength *= sample_material(specular_texture, specular_sampler, 5u, uv).a;
+        }
+        dielectric = vec4f(min(tint, vec3f(1.0)), 1.0) * strength;
+    }
     if (MATERIAL_CLASS & IS_UNLIT) != 0u {
         // Black to all light: what is left is the colour itself.
-        return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb), base.a);
+        return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb, PLAIN_DIELECTRIC), base.a);
     }
-    return Shaded(Surface(position, n, base.rgb, saturate(metallic), saturate(roughness), occlusion, emissive), base.a);
+    let s = Surface(position, n, base.rgb, saturate(metallic), saturate(roughness), occlusion, emissive, dielectric);
+    return Shaded(s, base.a);
 }

@@ -16,10 +16,17 @@ struct Surface {
     // Negative: what the surface mirrors of its environment is in the emissive already.
     occlusion: f32,
     emissive: vec3f,
+    // Reflectance of what is not metal: at right angles, and in w at grazing angles.
+    dielectric: vec4f,
 }
+
+// Of a material that says nothing else: an index of refraction of 1.5.
+const PLAIN_DIELECTRIC: vec4f = vec4f(0.04, 0.04, 0.04, 1.0);
 
 // In the last word of a packed surface: the occlusion is negative.
 const MIRRORED: u32 = 1u << 28u;
+// In the last word of a packed surface: the dielectric is not the plain one.
+const OWN_DIELECTRIC: u32 = 1u << 29u;
 
 fn sign_not_zero(v: vec2f) -> vec2f {
     return select(vec2f(-1.0), vec2f(1.0), v >= vec2f(0.0));
@@ -62,28 +69,79 @@ fn exp2_integer(n: i32) -> f32 {
     return bitcast<f32>(u32(n + 127) << 23u);
 }
 
+// A dielectric in 22 bits: the square root of the largest channel (8), which channel that is (2),
+// the roots of the next two over it (4 each), grazing angles in fourteenths (4).
+fn dielectric_bits(d: vec4f) -> u32 {
+    let root = sqrt(saturate(d.xyz));
+    let largest = max(root.x, max(root.y, root.z));
+    let which = select(select(2u, 1u, root.y == largest), 0u, root.x == largest);
+    let others = select(select(root.xy, root.zx, which == 1u), root.yz, which == 0u);
+    let parts = vec2u(others / max(largest, 1e-6) * 15.0 + 0.5);
+    let grazing = u32(saturate(d.w) * 14.0 + 0.5);
+    return u32(largest * 255.0 + 0.5) | (which << 8u) | (parts.x << 10u) | (parts.y << 14u) | (grazing << 18u);
+}
+
+fn dielectric_from_bits(bits: u32) -> vec4f {
+    let largest = f32(bits & 255u) / 255.0;
+    let which = (bits >> 8u) & 3u;
+    let others = largest * vec2f(vec2u(bits >> 10u, bits >> 14u) & vec2u(15u)) / 15.0;
+    let first = vec3f(largest, others);
+    let root = select(select(first.yzx, first.zxy, which == 1u), first, which == 0u);
+    return vec4f(root * root, min(f32((bits >> 18u) & 15u) / 14.0, 1.0));
+}
+
+// A normal in 2 x 12 bits, at the upper end of each half of the word.
+fn coarse_normal_bits(n: vec3f) -> u32 {
+    let e = vec2i(round(octahedral_from_unit(n) * 2047.0));
+    return (u32(e.x << 4u) & 0xffffu) | u32(e.y << 20u);
+}
+
+fn normal_from_coarse_bits(word: u32) -> vec2f {
+    return vec2f(vec2i(i32(word << 16u) >> 20u, i32(word) >> 20u)) / 2047.0;
+}
+
+// Puts a dielectric's bits where only averages have bits of the base colour, and below the normal's
+// upper 12 bits.
+fn with_dielectric(words: vec4u, n: vec3f, bits: u32) -> vec4u {
+    let below = ((bits >> 14u) & 15u) | (((bits >> 18u) & 15u) << 16u);
+    let upper = ((bits & 0xfffu) << 16u) | (((bits >> 12u) & 3u) << 30u) | OWN_DIELECTRIC;
+    return vec4u(words.x, coarse_normal_bits(n) | below, words.z, words.w | upper);
+}
+
+fn dielectric_of(words: vec4u) -> u32 {
+    return ((words.w >> 16u) & 0xfffu) | ((words.w >> 30u) << 12u) | ((words.y & 15u) << 14u)
+        | (((words.y >> 16u) & 15u) << 18u);
+}
+
 // x: base colour (square roots, 8 bits each) and occlusion; y: normal; z: emissive; w: metallic,
-// roughness, and 4 more bits of each base colour and `MIRRORED`, which only an average has.
+// roughness, and 4 more bits of each base colour and `MIRRORED`, which only an average has, or the
+// dielectric.
 fn pack_surface(s: Surface) -> vec4u {
-    return vec4u(
+    let words = vec4u(
         pack4x8unorm(vec4f(sqrt(saturate(s.base_color)), s.occlusion)),
         pack2x16snorm(octahedral_from_unit(s.normal)),
         pack_shared_exponent(s.emissive),
         pack4x8unorm(vec4f(s.metallic, s.roughness, 0.0, 0.0)),
     );
+    if all(s.dielectric == PLAIN_DIELECTRIC) || s.metallic == 1.0 {
+        return words;
+    }
+    return with_dielectric(words, s.normal, dielectric_bits(s.dielectric));
 }
 
 fn unpack_surface(words: vec4u, position: vec3f) -> Surface {
+    let own = (words.w & OWN_DIELECTRIC) != 0u;
     let finer = vec3f((vec3u(words.w) >> vec3u(16u, 20u, 24u)) & vec3u(15u)) / 4080.0;
-    let color = unpack4x8unorm(words.x) + vec4f(finer, 0.0);
+    let color = unpack4x8unorm(words.x) + vec4f(select(finer, vec3f(0.0), own), 0.0);
     let material = unpack4x8unorm(words.w);
     return Surface(
         position,
-        unit_from_octahedral(unpack2x16snorm(words.y)),
+        unit_from_octahedral(select(unpack2x16snorm(words.y), normal_from_coarse_bits(words.y), own)),
         color.rgb * color.rgb,
         material.x,
         material.y,
         select(color.a, -color.a, (words.w & MIRRORED) != 0u),
         unpack_shared_exponent(words.z),
+        select(PLAIN_DIELECTRIC, dielectric_from_bits(dielectric_of(words)), own),
     );
 }

@@ -34,6 +34,8 @@ struct Surface {
     face: Vec3,
     base_color: Vec3,
     metallic: f32,
+    /// Reflectance of what is not metal: at right angles, at grazing angles.
+    dielectric: (Vec3, f32),
     a2: f32,
 }
 
@@ -178,6 +180,13 @@ impl<'a> Reference<'a> {
     }
 }
 
+/// KHR_materials_ior and KHR_materials_specular.
+fn dielectric(material: &Material) -> (Vec3, f32) {
+    let color = material.specular_color * ((material.ior - 1.0) / (material.ior + 1.0)).powi(2);
+    let strength = material.specular;
+    (color.min(Vec3::ONE) * strength, strength)
+}
+
 impl Surface {
     fn new(material: &Material, position: Vec3, normal: Vec3, face: Vec3) -> Self {
         Self {
@@ -186,6 +195,7 @@ impl Surface {
             face,
             base_color: material.base_color.truncate(),
             metallic: material.metallic,
+            dielectric: dielectric(material),
             a2: (material.roughness * material.roughness).max(0.002).powi(2),
         }
     }
@@ -202,11 +212,17 @@ impl Surface {
         let h = (v + l).normalize();
         let n_dot_l = self.normal.dot(l);
         let n_dot_v = self.normal.dot(v).max(1e-4);
-        let f0 = Vec3::splat(0.04).lerp(self.base_color, self.metallic);
-        let fresnel = f0 + (1.0 - f0) * (1.0 - v.dot(h).clamp(0.0, 1.0)).powi(5);
+        let m5 = (1.0 - v.dot(h).clamp(0.0, 1.0)).powi(5);
+        let (at_right_angles, at_grazing) = self.dielectric;
+        let dielectric = at_right_angles + (at_grazing - at_right_angles) * m5;
+        let metal = self.base_color + (1.0 - self.base_color) * m5;
+        let fresnel = dielectric.lerp(metal, self.metallic);
         let masked = |a: f32, b: f32| a * (b * b * (1.0 - self.a2) + self.a2).sqrt();
         let visibility = 0.5 / (masked(n_dot_l, n_dot_v) + masked(n_dot_v, n_dot_l));
-        let diffuse = (1.0 - fresnel) * (1.0 - self.metallic) * self.base_color / PI;
+        // Nothing is scattered in the colour that is complementary to the dielectric's.
+        let kept = (1.0 - self.metallic) * (dielectric.max_element() - dielectric);
+        let left = 1.0 - fresnel - kept;
+        let diffuse = left * (1.0 - self.metallic) * self.base_color / PI;
         diffuse + fresnel * self.distribution(h) * visibility
     }
 

@@ -1,6 +1,6 @@
 //! Vertices, indices, normals, tangents.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use serde_json::json;
 
 use super::{File, Loads, near, warnings};
@@ -222,6 +222,62 @@ fn tangents_point_along_u_and_bitangents_against_v() {
             let bitangent =
                 Vec3::from(v.normal).cross(Vec3::new(v.tangent[0], 0., 0.)) * v.tangent[3];
             assert!(bitangent.abs_diff_eq(Vec3::Y, 1e-5));
+        }
+    }
+}
+
+/// A triangle with a normal map, whose texture coordinates are these, read where the file's
+/// transform says.
+fn with_normal_map(uv: &[f32], transform: &serde_json::Value) -> crate::Scene {
+    let mut file = File::with_mesh();
+    let corners = [0., 0., 0., 1., 0., 0., 0.3, 1., 0.];
+    file.attribute("POSITION", &corners, "VEC3");
+    file.attribute("NORMAL", &[0., 0., 1.].repeat(3), "VEC3");
+    file.attribute("TEXCOORD_0", uv, "VEC2");
+    let texel = [128, 128, 255, 255].into();
+    let texture = file.texture(&image::RgbaImage::from_pixel(1, 1, texel));
+    let mut info = json!({ "index": texture });
+    if !transform.is_null() {
+        info["extensions"] = json!({ "KHR_texture_transform": transform });
+    }
+    file.material(json!({ "normalTexture": info }));
+    file.load()
+}
+
+#[test]
+fn tangents_follow_the_turned_and_mirrored_coordinates_that_the_normal_map_is_read_at() {
+    let uv = [0.1, 0.9, 1.0, 0.7, 0.2, 0.0];
+    let tangents = |scene: &crate::Scene| -> Vec<_> {
+        let vertices = scene.meshes[0].vertices.iter();
+        vertices.map(|v| v.tangent).collect()
+    };
+    let own = tangents(&with_normal_map(&uv, &json!(null)));
+    for (transform, turns) in [
+        (json!({ "rotation": 1.1 }), true),
+        (json!({ "scale": [-1, 1] }), true),
+        (json!({ "scale": [2, -3], "offset": [0.5, 4] }), true),
+        (json!({ "rotation": -0.4, "scale": [1, 2] }), true),
+        (json!({ "scale": [2, 3], "offset": [0.5, 4] }), false),
+        (json!({ "scale": [0, 0] }), false),
+    ] {
+        let scene = with_normal_map(&uv, &transform);
+        let slot = scene.materials[0].normal_texture.unwrap();
+        let moved: Vec<f32> = uv
+            .chunks(2)
+            .flat_map(|uv| {
+                let at = slot.uv_transform.transform_point2(Vec2::new(uv[0], uv[1]));
+                at.to_array()
+            })
+            .collect();
+        let found = tangents(&scene);
+        if turns {
+            let expected = tangents(&with_normal_map(&moved, &json!(null)));
+            for (a, b) in found.iter().zip(&expected) {
+                assert!(near(a, b), "{transform}: {a:?} not {b:?}");
+            }
+            assert!(!near(&found[0], &own[0]), "{transform}: {found:?}");
+        } else {
+            assert_eq!(found, own, "{transform}");
         }
     }
 }

@@ -163,6 +163,51 @@ fn samplers_say_whether_there_are_mip_levels() {
 }
 
 #[test]
+fn index_of_refraction_and_specular_are_read_with_their_textures() {
+    let mut file = File::with_triangle();
+    file.attribute("TEXCOORD_1", &[0., 0., 1., 0., 0., 1.], "VEC2");
+    let picture = file.texture(&checker());
+    file.json["extensionsUsed"] = json!(["KHR_materials_ior", "KHR_materials_specular"]);
+    file.material(json!({ "extensions": {
+        "KHR_materials_ior": { "ior": 1.33 },
+        "KHR_materials_specular": {
+            "specularFactor": 0.5,
+            "specularTexture": { "index": picture, "texCoord": 1 },
+            "specularColorFactor": [2, 0.5, 0.25],
+            "specularColorTexture": { "index": picture },
+        },
+    } }));
+    let scene = file.load();
+    assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
+    let m = &scene.materials[0];
+    assert_eq!((m.ior, m.specular), (1.33, 0.5));
+    assert_eq!(m.specular_color, Vec3::new(2.0, 0.5, 0.25));
+    assert!((m.ior_reflectance() - 0.02006).abs() < 1e-5 && m.has_own_specular());
+    let [strength, color] = [m.specular_texture, m.specular_color_texture].map(Option::unwrap);
+    assert_eq!((strength.uv_set, color.uv_set), (1, 0));
+    let space = |slot: crate::TextureRef| scene.textures[slot.texture as usize].color_space;
+    assert_eq!(space(strength), ColorSpace::Linear);
+    assert_eq!(space(color), ColorSpace::Srgb);
+}
+
+#[test]
+fn indices_of_refraction_that_nothing_has_become_the_nearest() {
+    for (given, kept, reflectance) in [
+        (0.0, 0.0, 1.0),
+        (-2.0, 0.0, 1.0),
+        (0.5, 1.0, 0.0),
+        (1.5, 1.5, 0.04),
+    ] {
+        let mut file = File::with_triangle();
+        file.material(json!({ "extensions": { "KHR_materials_ior": { "ior": given } } }));
+        let scene = file.load();
+        let m = &scene.materials[0];
+        assert_eq!((m.ior, m.ior_reflectance()), (kept, reflectance));
+        assert_eq!(m.has_own_specular(), given != 1.5);
+    }
+}
+
+#[test]
 fn a_broken_picture_is_a_warning_and_a_placeholder() {
     let mut file = File::with_triangle();
     let view = file.view(b"\x89PNG not really");

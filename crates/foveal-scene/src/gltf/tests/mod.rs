@@ -6,6 +6,7 @@ mod codes;
 mod compressed;
 mod geometry;
 mod hostile;
+mod lobes;
 mod materials;
 mod motion;
 mod nodes;

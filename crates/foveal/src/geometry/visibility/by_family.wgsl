@@ -17,6 +17,10 @@
 @group(1) @binding(9) var occlusion_sampler: sampler;
 @group(1) @binding(10) var emissive_texture: texture_2d_array<f32>;
 @group(1) @binding(11) var emissive_sampler: sampler;
+@group(1) @binding(12) var specular_texture: texture_2d_array<f32>;
+@group(1) @binding(13) var specular_sampler: sampler;
+@group(1) @binding(14) var specular_color_texture: texture_2d_array<f32>;
+@group(1) @binding(15) var specular_color_sampler: sampler;
 
 // The pixel's.
 var<private> material: Material;

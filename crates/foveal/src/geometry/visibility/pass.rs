@@ -31,7 +31,9 @@ pub(crate) struct VisibilityPass {
 }
 
 impl VisibilityPass {
-    /// `windows`: as many as a frame is drawn into at once, 1 to 8. `further`: the footprint of a
+    /// `windows`: as many as a frame is drawn into at once, 1 to 8; `black`: surfaces with
+    /// lobes are.
+    /// `further`: the footprint of a
     /// pixel's textures, in pixels, where [`VisibilityPass::resolve_further`] will be called;
     /// `rates`: materials will be evaluated there.
     pub(crate) fn new(
@@ -39,7 +41,7 @@ impl VisibilityPass {
         frame_layout: &wgpu::BindGroupLayout,
         (by, material_layout): (MaterialDispatch, &wgpu::BindGroupLayout),
         face_normals: FaceNormals,
-        windows: u32,
+        (windows, black): (u32, bool),
         (further, rates): (Option<f64>, Option<Rates>),
         eyes: (Submission, EyeLayout),
     ) -> Self {
@@ -60,7 +62,7 @@ impl VisibilityPass {
                     (listed, by),
                     layouts,
                     face_normals,
-                    windows,
+                    (windows, black),
                     further.unwrap_or(1.0),
                     rates,
                 ),
@@ -77,7 +79,7 @@ impl VisibilityPass {
                     (Listed::Further, by),
                     layouts,
                     none,
-                    1,
+                    (1, black),
                     footprint,
                     None,
                 )

@@ -62,6 +62,7 @@ impl VisiblePass {
             fragment,
             targets: vec![Some(IDENTITY_FORMAT.into()), Some(TRIANGLE_FORMAT.into())],
             writes_depth: true,
+            depth_compare: wgpu::CompareFunction::Greater,
             constants: eyes.0.constants().to_vec(),
             has_mask: true,
             multiview_mask: eyes.0.multiview_mask(),

@@ -68,7 +68,7 @@ impl ResolvePass {
         (listed, by): (Listed, MaterialDispatch),
         [frame, material, geometry]: [&wgpu::BindGroupLayout; 3],
         face_normals: FaceNormals,
-        windows: u32,
+        (windows, black): (u32, bool),
         footprint: f64,
         rates: Option<Rates>,
     ) -> Self {
@@ -102,6 +102,7 @@ impl ResolvePass {
             group_layout,
             constants: [
                 ("FACE_NORMAL", f64::from(written)),
+                ("BLACK_BELOW_LOBES", f64::from(u8::from(black))),
                 ("WINDOWS", f64::from(windows)),
                 ("FOOTPRINT", footprint),
             ]

@@ -11,6 +11,8 @@
 #variant BY_MATERIAL FURTHER
 #import geometry/visibility/family.wgsl
 #import shared/attributes.wgsl
+#import shared/below_lobes.wgsl
+#import shared/face_normal.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
 #import shared/material_at.wgsl
@@ -87,10 +89,9 @@ fn resolve(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index)
     uv_right = a.uv_right;
     uv_down = a.uv_down;
     let m = material_at(a.position, a.normal, a.tangent, a.uv, a.color, a.front);
-    var words = pack_surface(m.surface);
+    var words = pack_surface(below_lobes(m.surface, material.without_lobes));
     if FACE_NORMAL {
-        let e = octahedral_from_unit(unit_or(a.face, m.surface.normal));
-        words.w |= pack4x8snorm(vec4f(0.0, 0.0, e));
+        words = with_face_normal(words, unit_or(a.face, m.surface.normal));
     }
     let end = min(texel + covered_by(texel), whole_size(identity));
     for (var y = texel.y; y < end.y; y++) {

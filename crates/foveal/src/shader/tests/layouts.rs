@@ -174,9 +174,30 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             number,
             procedural_seed,
             procedural_frequency,
+            without_lobes,
             reserved_0,
             reserved_1,
-            reserved_2,
+            specular_color,
+            specular,
+        ]
+    );
+    assert_same_layout!(
+        FORWARD_FORWARD.variant(&["LOBES"]),
+        "Lobes",
+        crate::scene::LobesUniform,
+        [
+            sheen_color,
+            sheen_roughness,
+            clearcoat,
+            clearcoat_roughness,
+            clearcoat_normal_scale,
+            anisotropy,
+            anisotropy_turn,
+            transmission,
+            thickness,
+            absorption,
+            ior,
+            uv
         ]
     );
     for shader in [

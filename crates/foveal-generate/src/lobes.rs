@@ -1,0 +1,143 @@
+//! Spheres with lobes beside metallic-roughness.
+
+use glam::{Mat4, Vec3, Vec4};
+
+use super::build::{MeshBuilder, SceneBuilder, named};
+use super::lights::point;
+use foveal_scene::{
+    Anisotropy, Camera, Clearcoat, Environment, Material, Scene, Sheen, Transmission,
+};
+
+/// Five rows of five spheres, from the bottom: red paint under a clear coat of roughness 0 to 1;
+/// blue cloth with sheen of roughness 0.2 to 1; brushed metal of anisotropy 0 to 1; dielectrics of
+/// index 1 to 2.4; glass of roughness 0 to 1 before a bar. Camera: `front`.
+#[must_use]
+pub fn lobes() -> Scene {
+    let mut scene = SceneBuilder::new("lobes");
+    let mut sphere = MeshBuilder::new();
+    sphere.ellipsoid(Vec3::ZERO, Vec3::splat(0.42), 64, 32);
+    let sphere = scene.mesh(sphere.finish("sphere"));
+    for row in 0..5u8 {
+        for column in 0..5u8 {
+            let part = f32::from(column) / 4.0;
+            let material = scene.material(match row {
+                0 => coated(part),
+                1 => cloth(part),
+                2 => brushed(part),
+                3 => dielectric(part),
+                _ => glass(part),
+            });
+            let place = Vec3::new(f32::from(column) - 2.0, f32::from(row) - 2.0, 0.0);
+            let name = format!("sphere {row} {column}");
+            let transform = Mat4::from_translation(place);
+            scene.object(name, None, None, &[(sphere, material)], transform);
+        }
+    }
+    let mut bar = MeshBuilder::new();
+    bar.block(Vec3::new(-2.6, 2.25, -1.3), Vec3::new(2.6, 2.5, -1.2));
+    let bar = scene.mesh(bar.finish("bar"));
+    let orange = scene.material(Material {
+        name: "bar".to_owned(),
+        base_color: Vec4::new(0.9, 0.35, 0.05, 1.0),
+        metallic: 0.0,
+        roughness: 0.7,
+        ..Material::default()
+    });
+    let at = Mat4::IDENTITY;
+    scene.object("bar".to_owned(), None, None, &[(bar, orange)], at);
+    for (position, color, intensity) in [
+        ([-3.0, 3.0, 4.0], [1.0, 0.95, 0.9], 30.0),
+        ([3.5, 1.0, 3.0], [0.5, 0.7, 1.0], 12.0),
+        ([0.0, -3.5, 2.5], [1.0, 0.5, 0.3], 6.0),
+    ] {
+        scene.light(point(position.into(), color.into(), intensity, 20.0));
+    }
+    let eye = Vec3::new(0.0, 0.0, 7.6);
+    let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 40f32.to_radians());
+    scene.camera(named(camera, "front"));
+    let mut scene = scene.finish();
+    scene.environment = Environment {
+        zenith: Vec3::new(0.20, 0.26, 0.36),
+        horizon: Vec3::new(0.30, 0.28, 0.26),
+        nadir: Vec3::new(0.08, 0.07, 0.06),
+    };
+    scene
+}
+
+fn coated(part: f32) -> Material {
+    Material {
+        name: format!("coat of roughness {part}"),
+        base_color: Vec4::new(0.6, 0.04, 0.03, 1.0),
+        metallic: 0.3,
+        roughness: 0.5,
+        clearcoat: Some(Clearcoat {
+            factor: 1.0,
+            texture: None,
+            roughness: part,
+            roughness_texture: None,
+            normal_texture: None,
+            normal_scale: 1.0,
+        }),
+        ..Material::default()
+    }
+}
+
+fn cloth(part: f32) -> Material {
+    Material {
+        name: format!("sheen of roughness {}", 0.2 + 0.8 * part),
+        base_color: Vec4::new(0.03, 0.05, 0.25, 1.0),
+        metallic: 0.0,
+        roughness: 0.9,
+        sheen: Some(Sheen {
+            color: Vec3::new(0.9, 0.8, 0.7),
+            color_texture: None,
+            roughness: 0.2 + 0.8 * part,
+            roughness_texture: None,
+        }),
+        ..Material::default()
+    }
+}
+
+fn brushed(part: f32) -> Material {
+    Material {
+        name: format!("anisotropy {part}"),
+        base_color: Vec4::new(0.9, 0.75, 0.55, 1.0),
+        metallic: 1.0,
+        roughness: 0.35,
+        anisotropy: (part > 0.0).then_some(Anisotropy {
+            strength: part,
+            rotation_rad: 0.0,
+            texture: None,
+        }),
+        ..Material::default()
+    }
+}
+
+fn dielectric(part: f32) -> Material {
+    Material {
+        name: format!("index of refraction {}", 1.0 + 1.4 * part),
+        base_color: Vec4::new(0.1, 0.1, 0.1, 1.0),
+        metallic: 0.0,
+        roughness: 0.3,
+        ior: 1.0 + 1.4 * part,
+        ..Material::default()
+    }
+}
+
+fn glass(part: f32) -> Material {
+    Material {
+        name: format!("glass of roughness {part}"),
+        base_color: Vec4::ONE,
+        metallic: 0.0,
+        roughness: part,
+        transmission: Some(Transmission {
+            factor: 1.0,
+            texture: None,
+            thickness_m: 0.6,
+            thickness_texture: None,
+            attenuation_distance_m: 0.8,
+            attenuation_color: Vec3::new(0.5, 0.85, 0.7),
+        }),
+        ..Material::default()
+    }
+}

@@ -1,0 +1,96 @@
+//! Lobes of materials: KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
+//! KHR_materials_transmission with KHR_materials_volume.
+
+use glam::Vec3;
+
+use super::document::Counts;
+use super::json::Obj;
+use super::slots::texture;
+use crate::error::{Flaw, Parsed};
+use crate::{Anisotropy, Clearcoat, Material, Sheen, Transmission};
+
+/// Reads a material's lobes, with the file's numbers of textures. Lobes that show nothing are left
+/// out.
+pub(crate) fn read(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed<()> {
+    let within = |name: &'static str| move |e: Flaw| e.under(format_args!("extensions.{name}"));
+    if let Some(e) = o.extension("KHR_materials_clearcoat")? {
+        let coat = clearcoat(e, counts).map_err(within("KHR_materials_clearcoat"))?;
+        material.clearcoat = Some(coat).filter(|coat| coat.factor > 0.0);
+    }
+    if let Some(e) = o.extension("KHR_materials_sheen")? {
+        let sheen = sheen(e, counts).map_err(within("KHR_materials_sheen"))?;
+        material.sheen = Some(sheen).filter(|sheen| sheen.color != Vec3::ZERO);
+    }
+    if let Some(e) = o.extension("KHR_materials_anisotropy")? {
+        let found = anisotropy(e, counts).map_err(within("KHR_materials_anisotropy"))?;
+        material.anisotropy = Some(found).filter(|found| found.strength > 0.0);
+    }
+    if let Some(e) = o.extension("KHR_materials_transmission")? {
+        let found = transmission(e, counts).map_err(within("KHR_materials_transmission"))?;
+        material.transmission = Some(found).filter(|found| found.factor > 0.0);
+    }
+    // Without transmission nothing is seen of the volume.
+    if let (Some(e), Some(found)) = (
+        o.extension("KHR_materials_volume")?,
+        &mut material.transmission,
+    ) {
+        volume(found, e, counts).map_err(within("KHR_materials_volume"))?;
+    }
+    Ok(())
+}
+
+fn part(o: Obj<'_>, key: &str) -> Parsed<f32> {
+    Ok(o.float(key)?.unwrap_or(0.0).clamp(0.0, 1.0))
+}
+
+fn clearcoat(o: Obj<'_>, counts: &Counts) -> Parsed<Clearcoat> {
+    let normal = o.object("clearcoatNormalTexture")?;
+    let scale = normal.map(|normal| normal.float("scale")).transpose()?;
+    Ok(Clearcoat {
+        factor: part(o, "clearcoatFactor")?,
+        texture: texture(o, "clearcoatTexture", counts)?,
+        roughness: part(o, "clearcoatRoughnessFactor")?,
+        roughness_texture: texture(o, "clearcoatRoughnessTexture", counts)?,
+        normal_texture: texture(o, "clearcoatNormalTexture", counts)?,
+        normal_scale: scale.flatten().unwrap_or(1.0),
+    })
+}
+
+fn sheen(o: Obj<'_>, counts: &Counts) -> Parsed<Sheen> {
+    let color = o.floats("sheenColorFactor")?.map_or(Vec3::ZERO, Vec3::from);
+    Ok(Sheen {
+        color: color.clamp(Vec3::ZERO, Vec3::ONE),
+        color_texture: texture(o, "sheenColorTexture", counts)?,
+        roughness: part(o, "sheenRoughnessFactor")?,
+        roughness_texture: texture(o, "sheenRoughnessTexture", counts)?,
+    })
+}
+
+fn anisotropy(o: Obj<'_>, counts: &Counts) -> Parsed<Anisotropy> {
+    Ok(Anisotropy {
+        strength: part(o, "anisotropyStrength")?,
+        rotation_rad: o.float("anisotropyRotation")?.unwrap_or(0.0),
+        texture: texture(o, "anisotropyTexture", counts)?,
+    })
+}
+
+fn transmission(o: Obj<'_>, counts: &Counts) -> Parsed<Transmission> {
+    Ok(Transmission {
+        factor: part(o, "transmissionFactor")?,
+        texture: texture(o, "transmissionTexture", counts)?,
+        thickness_m: 0.0,
+        thickness_texture: None,
+        attenuation_distance_m: f32::INFINITY,
+        attenuation_color: Vec3::ONE,
+    })
+}
+
+fn volume(found: &mut Transmission, o: Obj<'_>, counts: &Counts) -> Parsed<()> {
+    found.thickness_m = o.float("thicknessFactor")?.unwrap_or(0.0).max(0.0);
+    found.thickness_texture = texture(o, "thicknessTexture", counts)?;
+    let distance = o.float("attenuationDistance")?.filter(|&d| d > 0.0);
+    found.attenuation_distance_m = distance.unwrap_or(f32::INFINITY);
+    let color = o.floats("attenuationColor")?.map_or(Vec3::ONE, Vec3::from);
+    found.attenuation_color = color.clamp(Vec3::ZERO, Vec3::ONE);
+    Ok(())
+}

@@ -1,0 +1,133 @@
+//! What the pipelines of the forward pass differ in.
+
+use crate::geometry::{PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+use crate::gpu::{Gpu, bind_group_layout};
+use crate::lights::SceneLights;
+use crate::scene::{LobeClass, lobes_layout};
+use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::stereo::Submission;
+use crate::{Antialiasing, Settings, shader};
+
+/// What a pipeline draws.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Kind {
+    Blended,
+    LobedOpaque,
+    LobedBlended,
+    Transmissive,
+}
+
+impl Kind {
+    pub(super) fn of_blended(key: PipelineKey) -> Self {
+        if key.lobes == LobeClass::default() {
+            Self::Blended
+        } else {
+            Self::LobedBlended
+        }
+    }
+
+    fn variant(self, gpu: &Gpu, submission: Submission) -> &'static [&'static str] {
+        match (self, submission) {
+            (Self::Blended, _) if submission.clips() => &["CLIPPED"],
+            (Self::Blended, Submission::Multiview) => &["LAYERED"],
+            (Self::Blended, _) if gpu.is_reduced() => &["REDUCED"],
+            (Self::Blended, _) => &[],
+            (Self::Transmissive, _) if submission.clips() => &["LOBES", "TRANSMISSION", "CLIPPED"],
+            (Self::Transmissive, Submission::Multiview) => &["LOBES", "TRANSMISSION", "LAYERED"],
+            (Self::Transmissive, _) => &["LOBES", "TRANSMISSION"],
+            _ if submission.clips() => &["LOBES", "CLIPPED"],
+            (_, Submission::Multiview) => &["LOBES", "LAYERED"],
+            _ => &["LOBES"],
+        }
+    }
+}
+
+/// What all kinds are made from.
+#[derive(Debug)]
+pub(super) struct Recipes {
+    submission: Submission,
+    adds_lobes: bool,
+    constants: Vec<(&'static str, f64)>,
+    /// Layouts of bind groups 0, 1 and 2.
+    pub(super) frame: wgpu::BindGroupLayout,
+    material: wgpu::BindGroupLayout,
+    pub(super) lights: wgpu::BindGroupLayout,
+}
+
+impl Recipes {
+    pub(super) fn new(
+        gpu: &Gpu,
+        settings: &Settings,
+        submission: Submission,
+        (frame, material): (&wgpu::BindGroupLayout, &wgpu::BindGroupLayout),
+    ) -> Self {
+        let mut constants = lighting_constants(gpu, settings);
+        constants.extend(submission.constants());
+        let layered = submission == Submission::Multiview;
+        constants.push(("LAYERED", f64::from(u8::from(layered))));
+        let sampled = settings.antialiasing.mode != Antialiasing::None;
+        constants.push(("SAMPLED", f64::from(u8::from(sampled))));
+        Self {
+            submission,
+            adds_lobes: crate::antialias::adds_lobes(settings),
+            constants,
+            frame: frame.clone(),
+            material: material.clone(),
+            lights: bind_group_layout(
+                &gpu.device,
+                "forward lights",
+                wgpu::ShaderStages::FRAGMENT,
+                &SceneLights::binding_types(gpu),
+            ),
+        }
+    }
+
+    /// The pipelines of a kind, none of them made yet; `behind`: the layout of bind group 3, for
+    /// what light passes.
+    pub(super) fn pipelines(
+        &self,
+        gpu: &Gpu,
+        kind: Kind,
+        behind: Option<&wgpu::BindGroupLayout>,
+    ) -> Pipelines {
+        let submission = self.submission;
+        let opaque = matches!(kind, Kind::LobedOpaque | Kind::Transmissive);
+        let transmissive = kind == Kind::Transmissive;
+        let mut constants = self.constants.clone();
+        if kind != Kind::Blended {
+            constants.push(("OPAQUE", f64::from(u8::from(opaque))));
+            let added = kind == Kind::LobedOpaque && self.adds_lobes;
+            constants.push(("ADDED", f64::from(u8::from(added))));
+        }
+        if transmissive {
+            // Drawn to the picture's own texels.
+            constants.retain(|(name, _)| *name != "SAMPLED");
+        }
+        let with_lobes = (kind != Kind::Blended).then(|| lobes_layout(gpu));
+        let material = with_lobes.as_ref().unwrap_or(&self.material);
+        let mut layouts = vec![&self.frame, material, &self.lights];
+        layouts.extend(behind.filter(|_| transmissive));
+        let shader = shader::FORWARD_FORWARD.variant(kind.variant(gpu, submission));
+        Pipelines::new(PipelineRecipe {
+            label: "forward",
+            module: shader::module(gpu, "forward", shader),
+            layout: shader::pipeline_layout(gpu, "forward", &layouts),
+            vertex: VertexSource::Buffers(submission.vertex_entry()),
+            fragment: "fragment",
+            targets: vec![Some(wgpu::ColorTargetState {
+                format: RADIANCE_FORMAT,
+                blend: (!opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
+                write_mask: wgpu::ColorWrites::ALL,
+            })],
+            writes_depth: transmissive,
+            depth_compare: if kind == Kind::LobedOpaque {
+                wgpu::CompareFunction::Equal
+            } else {
+                wgpu::CompareFunction::Greater
+            },
+            constants,
+            has_mask: transmissive,
+            multiview_mask: submission.multiview_mask(),
+        })
+    }
+}

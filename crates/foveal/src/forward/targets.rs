@@ -1,0 +1,39 @@
+//! What surfaces that light passes read and write besides the radiance.
+
+use crate::Settings;
+use crate::formats::{DEPTH_FORMAT, RADIANCE_FORMAT};
+use crate::gpu::{Gpu, MipChain, layered_target};
+use crate::stereo::{EyeLayout, Submission};
+
+/// The coarsest level of the picture behind: blocks of 64 x 64 pixels.
+pub(super) const COARSEST: u32 = 6;
+
+/// What transmissive surfaces read and write besides the radiance.
+#[derive(Debug)]
+pub(crate) struct TransmissionTargets {
+    /// The picture without them; level l holds means over about 2^l pixels.
+    pub(super) behind: MipChain,
+    /// The G-buffer's depth, and theirs.
+    pub(super) depth_view: wgpu::TextureView,
+}
+
+impl TransmissionTargets {
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings, submission: Submission) -> Self {
+        let layout = EyeLayout::of(settings);
+        let (size, layers) = layout.layers(submission);
+        let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
+        let (format, whole) = (RADIANCE_FORMAT, layout.target_size());
+        let label = "picture behind";
+        let copied = wgpu::TextureUsages::COPY_DST;
+        Self {
+            behind: MipChain::new(gpu, label, whole, 0..=COARSEST, format, read),
+            depth_view: layered_target(gpu, "forward depth", size, layers, DEPTH_FORMAT, copied),
+        }
+    }
+
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.depth_view.texture().size();
+        let texels = u64::from(size.width) * u64::from(size.height);
+        self.behind.bytes() + texels * u64::from(size.depth_or_array_layers) * 4
+    }
+}

@@ -1,0 +1,156 @@
+//! Materials' lobes on the device: a uniform block and textures beside the material's own.
+
+use bytemuck::{Pod, Zeroable};
+use foveal_scene::{Material, TextureRef};
+use glam::{Vec2, Vec3};
+
+use super::material_uniform::uv_rows;
+
+/// Places for textures in all lobes.
+const PLACES: usize = 8;
+
+/// Textures that are bound at once.
+pub(super) const BOUND: usize = Material::MAX_LOBE_TEXTURES;
+
+/// Mirrors `Lobes` in `forward/lobes.wgsl`, where the fields are explained.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct LobesUniform {
+    pub(crate) sheen_color: [f32; 3],
+    pub(crate) sheen_roughness: f32,
+    pub(crate) clearcoat: f32,
+    pub(crate) clearcoat_roughness: f32,
+    pub(crate) clearcoat_normal_scale: f32,
+    pub(crate) anisotropy: f32,
+    pub(crate) anisotropy_turn: [f32; 2],
+    pub(crate) transmission: f32,
+    pub(crate) thickness: f32,
+    pub(crate) absorption: [f32; 3],
+    pub(crate) ior: f32,
+    pub(crate) uv: [[[f32; 4]; 2]; PLACES],
+}
+
+impl LobesUniform {
+    pub(super) fn new(material: &Material) -> Self {
+        let sheen = material.sheen.as_ref();
+        let coat = material.clearcoat.as_ref();
+        let anisotropy = material.anisotropy.as_ref();
+        let transmission = material.transmission.as_ref();
+        Self {
+            sheen_color: sheen.map_or([0.0; 3], |s| s.color.to_array()),
+            sheen_roughness: sheen.map_or(0.0, |s| s.roughness),
+            clearcoat: coat.map_or(0.0, |c| c.factor),
+            clearcoat_roughness: coat.map_or(0.0, |c| c.roughness),
+            clearcoat_normal_scale: coat.map_or(0.0, |c| c.normal_scale),
+            anisotropy: anisotropy.map_or(0.0, |a| a.strength),
+            anisotropy_turn: Vec2::from_angle(anisotropy.map_or(0.0, |a| a.rotation_rad))
+                .to_array(),
+            transmission: transmission.map_or(0.0, |t| t.factor),
+            thickness: transmission.map_or(0.0, |t| t.thickness_m),
+            absorption: transmission.map_or([0.0; 3], |t| {
+                // Per metre; what is black after the distance is as good as black at once.
+                let passing = t.attenuation_color.max(Vec3::splat(1e-6));
+                (-passing.map(f32::ln) / t.attenuation_distance_m).to_array()
+            }),
+            ior: material.ior.max(1.0),
+            uv: material
+                .lobe_textures()
+                .map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
+        }
+    }
+}
+
+/// What a pipeline is specialized to besides the material's class.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct LobeClass {
+    /// Further bits of `MATERIAL_CLASS`; 0 without lobes.
+    pub(crate) flags: u32,
+    /// `LOBE_TEXTURES`.
+    pub(crate) textures: u32,
+}
+
+const HAS_TRANSMISSION: u32 = 32768;
+
+impl LobeClass {
+    /// The same for a surface that is blended.
+    pub(crate) fn without_transmission(self) -> Self {
+        let flags = self.flags & !HAS_TRANSMISSION;
+        let textures = if flags == 0 { 0 } else { self.textures };
+        Self { flags, textures }
+    }
+
+    /// Whether light passes.
+    pub(crate) fn transmits(self) -> bool {
+        self.flags & HAS_TRANSMISSION != 0
+    }
+
+    /// A material's, with the textures to bind.
+    pub(super) fn of(material: &Material) -> (Self, Vec<u32>) {
+        let flags = [
+            (material.clearcoat.is_some(), 4096),
+            (material.sheen.is_some(), 8192),
+            (material.anisotropy.is_some(), 16384),
+            (material.transmission.is_some(), HAS_TRANSMISSION),
+        ];
+        let mut bound: Vec<u32> = Vec::new();
+        let mut place = |slot: Option<TextureRef>| {
+            let Some(slot) = slot else { return 0 };
+            let known = bound.iter().position(|&texture| texture == slot.texture);
+            let at = known.unwrap_or(bound.len());
+            // One that is too many is left out.
+            if at == BOUND {
+                return 0;
+            }
+            if known.is_none() {
+                bound.push(slot.texture);
+            }
+            at as u32 + 1
+        };
+        let places = material.lobe_textures().map(&mut place);
+        let textures = (0..).zip(places).map(|(i, at)| at << (4 * i)).sum();
+        let flags = flags
+            .iter()
+            .map(|&(is, bit)| if is { bit } else { 0 })
+            .sum();
+        (Self { flags, textures }, bound)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use foveal_scene::{Clearcoat, Sheen};
+    use glam::Mat3;
+
+    use super::*;
+
+    #[test]
+    fn places_share_what_is_bound_and_the_sixth_texture_is_left_out() {
+        let slot = |texture| {
+            Some(TextureRef {
+                texture,
+                uv_set: 0,
+                uv_transform: Mat3::IDENTITY,
+            })
+        };
+        let material = Material {
+            clearcoat: Some(Clearcoat {
+                factor: 1.0,
+                texture: slot(7),
+                roughness: 0.0,
+                roughness_texture: slot(7),
+                normal_texture: slot(2),
+                normal_scale: 1.0,
+            }),
+            sheen: Some(Sheen {
+                color: Vec3::ONE,
+                color_texture: slot(7),
+                roughness: 0.5,
+                roughness_texture: None,
+            }),
+            ..Material::default()
+        };
+        let (class, bound) = LobeClass::of(&material);
+        assert_eq!((class.flags, class.textures), (4096 | 8192, 0x1211));
+        assert_eq!(bound, [7, 2]);
+    }
+}

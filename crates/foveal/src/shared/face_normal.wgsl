@@ -1,0 +1,24 @@
+// A packed surface with its triangle's own normal, by which anti-aliasing tells planes apart.
+
+#import shared/surface.wgsl
+
+// With a triangle's own normal in the upper half of the last word. Where that holds bits of a
+// dielectric, these go to the emissive as what emission never gives, the largest exponent with
+// small numbers; a surface that glows keeps no dielectric.
+fn with_face_normal(words: vec4u, face: vec3f) -> vec4u {
+    let bits = dielectric_of(words);
+    let moves = (words.w & OWN_DIELECTRIC) != 0u && words.z == 0u;
+    let moved = (31u << 27u) | (bits & 255u) | (((bits >> 8u) & 63u) << 9u);
+    let upper = pack4x8snorm(vec4f(0.0, 0.0, octahedral_from_unit(face)));
+    return vec4u(words.xy, select(words.z, moved, moves), (words.w & 0xffffu) | upper);
+}
+
+// The surface without it.
+fn without_face_normal(words: vec4u) -> vec4u {
+    let lower = words.w & 0xffffu;
+    let bits = (words.z & 255u) | (((words.z >> 9u) & 63u) << 8u);
+    let upper = ((bits & 0xfffu) << 16u) | ((bits >> 12u) << 30u) | OWN_DIELECTRIC;
+    let moved = vec4u(words.xy, 0u, lower | upper);
+    // Exponent 31, and each channel's highest bit 0.
+    return select(vec4u(words.xyz, lower), moved, (words.z & 0xfc020100u) == 0xf8000000u);
+}
