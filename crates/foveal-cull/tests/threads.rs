@@ -223,7 +223,7 @@ fn a_triangle_that_is_nearly_endless_is_drawn_where_it_is() {
         },
         projection: Projection::Orthographic {
             left: -1.357_552_692_820_332_3,
-            right: 2.602_824_798_388_634_7,
+            right: 2.602_824_798_388_635,
             bottom: -4.994_131_289_045_437,
             top: 6.542_053_089_894_359,
             near_m: -1.155_102_507_980_675_6,
