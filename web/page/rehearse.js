@@ -1,10 +1,22 @@
-// A worker that reads a dropped file before the page does, and nothing else. A file that takes too long, or so much
-// memory that the reader stops, ends this worker and not the page.
+// A worker that reads a dropped file before the page does, and nothing else. A file that takes too long, or more memory
+// than the reader may have here, ends this worker and not the page.
+
+import { capped } from './cap.js';
+
+/** Pages of 64 KiB that the reader may have: 2 GiB. The importer's own limits for files and textures lie below. */
+const MOST_PAGES = 32768;
+
+/** The bytes of the renderer's WebAssembly, beside its JavaScript. */
+async function webAssembly(renderer) {
+  const response = await fetch(new URL(renderer.replace(/\.js$/, '_bg.wasm'), import.meta.url));
+  if (!response.ok) throw new Error(`the reader cannot be fetched: ${response.status}`);
+  return new Uint8Array(await response.arrayBuffer());
+}
 
 addEventListener('message', async ({ data: { renderer, name, bytes } }) => {
   try {
     const module = await import(renderer);
-    await module.default();
+    await module.default({ module_or_path: capped(await webAssembly(renderer), MOST_PAGES) });
     postMessage({ ready: true });
     module.rehearse(name, new Uint8Array(bytes));
     postMessage({ cause: null });

@@ -6,9 +6,11 @@ mod common;
 use common::{Random, answers, eye, occluders, scene};
 use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use foveal_cull::{
-    Culler, OccludeeTree, SingleThread, Threads, ThreadsFn, View, Visibility, WorkerThreads,
+    Affine, BakeOptions, Culler, Eye, FrameOptions, OccludeeTree, OccluderMesh, OccluderSet,
+    Projection, SingleThread, Threads, ThreadsFn, View, Visibility, WorkerThreads,
 };
 use glam::DVec3;
+use std::sync::Arc;
 
 #[test]
 fn whoever_is_woken_and_when_every_task_runs_once() {
@@ -37,6 +39,43 @@ fn whoever_is_woken_and_when_every_task_runs_once() {
         });
     }
     SingleThread.wake();
+}
+
+/// The panic reaches the caller, whichever thread it happened on, and not before all threads have
+/// let go of the task; the threads work on afterwards.
+#[test]
+fn a_task_that_panics_is_the_callers_panic_and_the_threads_go_on() {
+    // Helpers would print theirs past the test's own output.
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !panic.to_string().contains("as it should") {
+            usual(panic);
+        }
+    }));
+    for threads in [1, 2, 4] {
+        let pool = WorkerThreads::new(threads);
+        for round in 0..100 {
+            let (started, ended) = (AtomicUsize::new(0), AtomicUsize::new(0));
+            let run = || {
+                pool.run(9, &|i| {
+                    started.fetch_add(1, Ordering::Relaxed);
+                    assert_ne!(i, round % 9, "as it should");
+                    std::thread::yield_now();
+                    ended.fetch_add(1, Ordering::Relaxed);
+                });
+            };
+            let ran = std::panic::catch_unwind(std::panic::AssertUnwindSafe(run));
+            assert!(ran.is_err(), "{threads} threads, round {round}");
+            // What was begun has ended: nobody holds the task any more.
+            let [started, ended] = [started, ended].map(AtomicUsize::into_inner);
+            assert_eq!(started, ended + 1, "{threads} threads, round {round}");
+            let ran: [AtomicU32; 7] = [const { AtomicU32::new(0) }; 7];
+            pool.run(ran.len(), &|i| {
+                ran[i].fetch_add(1, Ordering::Relaxed);
+            });
+            assert_eq!(ran.map(AtomicU32::into_inner), [1; 7]);
+        }
+    }
 }
 
 #[test]
@@ -127,4 +166,87 @@ fn with_a_corner_very_far_away_threads_change_nothing() {
         covered += depths[0].iter().filter(|d| **d > 0.0).count();
     }
     assert!(covered > 10_000, "{covered}");
+}
+
+/// A triangle with a corner 1e20 m away, which was clipped at a wrong place: one thread drew where
+/// nothing is, and others saw that nothing is there.
+#[test]
+fn a_triangle_that_is_nearly_endless_is_drawn_where_it_is() {
+    let positions = [
+        [0.751_321_26, -1.149_981_9, -0.602_543_2],
+        [1.147_489_8, -0.893_126_8, -0.368_228_23],
+        [0.795_318_07, -1.217_323_8, 1e20],
+    ];
+    let mesh = OccluderMesh::bake(&positions, &[0, 1, 2], BakeOptions::default()).unwrap();
+    let place = Affine {
+        x_axis: [
+            3.125_498_022_208_103_2,
+            -0.685_003_564_601_177_1,
+            -0.015_063_422_401_635_49,
+        ],
+        y_axis: [
+            0.549_736_126_118_158_8,
+            2.512_214_842_103_764_2,
+            -0.177_711_737_415_148_7,
+        ],
+        z_axis: [
+            -0.099_122_576_169_181_4,
+            -0.339_873_678_046_077_4,
+            -5.111_237_854_480_743,
+        ],
+        translation: [
+            1.577_363_133_411_797_2,
+            0.984_121_404_176_945_7,
+            -2.785_604_670_938_541_4,
+        ],
+    };
+    let mut set = OccluderSet::new();
+    set.add(Arc::new(mesh), place).unwrap();
+    let eye = Eye {
+        world_from_eye: Affine {
+            x_axis: [0.864_757_978_931_249_2, -0.0, 0.502_188_846_824_321_3],
+            y_axis: [
+                -0.161_893_670_602_782_98,
+                0.946_611_675_744_917_2,
+                0.278_777_285_233_495_54,
+            ],
+            z_axis: [
+                -0.475_377_825_832_778_04,
+                -0.322_376_077_498_625_96,
+                0.818_589_999_549_897_3,
+            ],
+            translation: [
+                2.509_955_680_025_163,
+                1.235_345_971_368_758_2,
+                -1.198_908_800_871_088_4,
+            ],
+        },
+        projection: Projection::Orthographic {
+            left: -1.357_552_692_820_332_3,
+            right: 2.602_824_798_388_635,
+            bottom: -4.994_131_289_045_437,
+            top: 6.542_053_089_894_359,
+            near_m: -1.155_102_507_980_675_6,
+            far_m: 30.0,
+        },
+    };
+    let mut first: Option<Vec<f32>> = None;
+    for threads in 1..6 {
+        let mut culler = Culler::new(19, 30).unwrap();
+        let all = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
+        let pool = WorkerThreads::new(threads);
+        culler
+            .rasterize(&View::mono(eye), &set, &all, &pool)
+            .unwrap();
+        let mut depth = vec![0.0; 19 * 30];
+        culler.read_depth(&mut depth).unwrap();
+        // It lies below sample 98 of 120.
+        assert!(depth[..24 * 19].iter().all(|d| *d == 0.0));
+        match &first {
+            Some(first) => assert!(*first == depth, "{threads} threads"),
+            None => first = Some(depth),
+        }
+    }
+    let first = first.unwrap();
+    assert!(first.iter().any(|d| *d > 0.0), "it is seen");
 }

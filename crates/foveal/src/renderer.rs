@@ -8,7 +8,7 @@ use crate::culling::CullingStage;
 use crate::environment::EnvironmentStage;
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
-use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer, read_buffer, submitted_work_done};
+use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer};
 
 use crate::lights::LightAssigner;
 use crate::output::{EyesPass, PresentPass, ToneMapPass, Upscale, ViewPass};
@@ -20,7 +20,7 @@ use crate::stereo::{Eye, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, Settings};
 use coarse::CoarseStages;
-use in_flight::{Counts, InFlight};
+use in_flight::InFlight;
 
 mod coarse;
 mod environment;
@@ -334,12 +334,12 @@ impl Renderer {
         let uploaded = uploaded?;
         let geometry = self.stages.settings.geometry.path;
         uploaded.geometry.check(&self.gpu, geometry)?;
+        let uniforms = uploaded.instance_uniforms();
+        FrameBindings::check_instances(&self.gpu, uniforms.len())?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's instances");
-        let written = self
-            .frame_bindings
-            .write_instances(&self.gpu, uploaded.instance_uniforms());
+        self.frame_bindings.write_instances(&self.gpu, uniforms);
         // The old scene's instances are gone from here on.
-        let written = trap.finish().await.and(written);
+        let written = trap.finish().await;
         self.torn(written)?;
         let settings = &self.stages.settings;
         let sky = &uploaded.environment;
@@ -355,7 +355,8 @@ impl Renderer {
     /// the previous one, from which motion vectors are taken.
     ///
     /// # Errors
-    /// [`Error::OutOfMemory`].
+    /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the
+    /// new pose, and meshes that deform may have the old shape.
     pub async fn update_pose(&mut self, scene: &Scene) -> Result<(), Error> {
         self.mend().await?;
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's pose");
@@ -375,10 +376,9 @@ impl Renderer {
             history.lights_changed(&change.lights_before, &self.scene.lights);
             history.shadows_changed(&shadows);
         }
-        let written = self
-            .frame_bindings
-            .write_instances(&self.gpu, self.scene.instance_uniforms());
-        let written = trap.finish().await.and(written);
+        let uniforms = self.scene.instance_uniforms();
+        self.frame_bindings.write_instances(&self.gpu, uniforms);
+        let written = trap.finish().await;
         self.torn(written)
     }
 
@@ -393,37 +393,17 @@ impl Renderer {
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
         let submitted = self.submit(frame, &seen, None, &mut cpu);
-        let drawn = self.wait_for(submitted, &cpu).await;
-        self.finish_frame(trap, drawn).await
-    }
-
-    /// Waits for the frame that was submitted, and reads its figures.
-    async fn wait_for(
-        &mut self,
-        submitted: FrameStats,
-        cpu: &CpuTimer,
-    ) -> Result<FrameStats, Error> {
-        submitted_work_done(&self.gpu).await?;
-        let frame_ms = cpu.since_start_ms();
+        let in_flight = InFlight::new(&self.gpu, submitted, &self.counters(), cpu);
+        let drawn = trap.finish().await;
+        self.torn(drawn)?;
+        let waited = in_flight.wait(&self.gpu).await;
+        let (submitted, counts, frame_ms) = self.torn(waited)?;
+        // What was too small for the frame grows now.
+        let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let gpu_ms = self.timer.collect(&self.gpu);
-        let counters = self.counters();
-        let mut counts = Counts::default();
-        if let Some(tiles) = counters.tiles {
-            counts.tiles = Some(read_buffer(&self.gpu, tiles).await?);
-        }
-        if let Some(unlit) = counters.unlit {
-            counts.unlit = Some(read_buffer(&self.gpu, unlit).await?);
-        }
-        if let Some(kept) = counters.kept {
-            counts.kept = Some(read_buffer(&self.gpu, kept).await?);
-        }
-        if let Some(edges) = counters.edges {
-            counts.edges = Some(read_buffer(&self.gpu, edges).await?);
-        }
-        if let Some(rates) = counters.rates {
-            counts.rates = Some(read_buffer(&self.gpu, rates).await?);
-        }
-        Ok(self.figures(submitted, &counts, gpu_ms, frame_ms))
+        let stats = self.figures(submitted, &counts, gpu_ms, frame_ms);
+        let grown = trap.finish().await;
+        self.torn(grown.map(|()| stats))
     }
 
     /// Draws one frame into the host's texture, stretched to its size, and waits for nothing. Given
@@ -448,17 +428,9 @@ impl Renderer {
         if self.in_flight.is_none() {
             self.in_flight = Some(InFlight::new(&self.gpu, submitted, &self.counters(), cpu));
         }
-        self.finish_frame(trap, Ok(finished)).await
-    }
-
-    /// What a frame that failed has left in the targets is not carried on to the next one.
-    async fn finish_frame<T>(
-        &mut self,
-        trap: ErrorTrap,
-        drawn: Result<T, Error>,
-    ) -> Result<T, Error> {
-        let drawn = trap.finish().await.and(drawn);
-        self.torn(drawn)
+        // What a frame that failed has left in the targets is not carried on to the next one.
+        let drawn = trap.finish().await;
+        self.torn(drawn.map(|()| finished))
     }
 
     /// Whether frames draw what culling found last, whatever their camera sees: to look at a result

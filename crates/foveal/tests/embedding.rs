@@ -1,6 +1,8 @@
 //! The renderer as a guest on the host's device.
 
-use foveal::{Antialiasing, Error, Frame, Gpu, Renderer, Settings, Shading, Target};
+use foveal::{
+    Antialiasing, Error, Frame, Gpu, Renderer, RendererOptions, Settings, Shading, Stereo, Target,
+};
 use foveal_generate as generate;
 
 fn clock() -> u64 {
@@ -95,7 +97,7 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
             let mut renderer = Renderer::new(
                 &gpu,
                 &settings,
-                foveal::RendererOptions::default().with_clock(clock),
+                RendererOptions::default().with_clock(clock),
             )
             .await
             .expect("fits");
@@ -149,7 +151,7 @@ fn a_host_with_too_little_is_told_what_is_missing() {
     let error = pollster::block_on(Renderer::new(
         &gpu,
         &Settings::default(),
-        foveal::RendererOptions::default(),
+        RendererOptions::default(),
     ));
     let error = error.expect_err("four storage buffers are too few");
     assert!(matches!(error, Error::Limit { .. }), "{error}");
@@ -173,12 +175,9 @@ fn the_hosts_own_handlers_stay_in_place() {
         s.picture.width = 32;
         s.picture.height = 32;
     });
-    let mut renderer = pollster::block_on(Renderer::new(
-        &gpu,
-        &settings,
-        foveal::RendererOptions::default(),
-    ))
-    .expect("fits");
+    let mut renderer =
+        pollster::block_on(Renderer::new(&gpu, &settings, RendererOptions::default()))
+            .expect("fits");
     device.destroy();
     let _ = device.poll(wgpu::PollType::wait_indefinitely());
     lost.recv().expect("the host's callback was called");
@@ -187,4 +186,46 @@ fn the_hosts_own_handlers_stay_in_place() {
     let frame = Frame::new(&scene.cameras[0]);
     let error = pollster::block_on(renderer.render(&frame)).expect_err("the device is gone");
     assert!(error.to_string().contains("the host said so"), "{error}");
+}
+
+/// Whatever a future waits for, it holds nothing meanwhile that belongs to a thread: a host may poll
+/// it anywhere, and other futures of the same device in between.
+#[test]
+fn futures_of_the_renderer_run_on_any_thread() {
+    fn elsewhere<T: Send>(future: impl Future<Output = T> + Send) -> T {
+        let run = || pollster::block_on(future);
+        std::thread::scope(|scope| scope.spawn(run).join()).expect("no panic")
+    }
+    let gpu = elsewhere(Gpu::open(None)).expect("the tests need a graphics adapter");
+    let settings = Settings::default().with(|s| {
+        s.picture.width = 64;
+        s.picture.height = 40;
+        s.shading.mode = Shading::Coarse;
+        s.rate.force = true;
+    });
+    let new = Renderer::new(&gpu, &settings, RendererOptions::default());
+    let mut renderer = elsewhere(new).expect("made");
+    let scene = generate::cornell();
+    elsewhere(renderer.set_scene(&scene)).expect("uploaded");
+    elsewhere(renderer.update_pose(&scene)).expect("uploaded");
+    let (width, height, rgb) = generate::surroundings(8);
+    let map = foveal::EnvironmentMap::new(width, height, &rgb).expect("it is a map");
+    elsewhere(renderer.set_environment(map)).expect("uploaded");
+    let frame = Frame::new(&scene.cameras[0]);
+    elsewhere(renderer.render(&frame)).expect("drawn");
+    let picture = elsewhere(renderer.read_picture()).expect("read");
+    elsewhere(renderer.read_radiance()).expect("read");
+    let texture = texture(&gpu.device, wgpu::TextureFormat::Rgba8Unorm);
+    let view = texture.create_view(&Default::default());
+    let target = Target {
+        view: &view,
+        format: texture.format(),
+    };
+    elsewhere(renderer.render_to(&frame, target)).expect("drawn");
+    // Two eyes are tried out first.
+    let stereo = settings.clone().with(|s| s.stereo.mode = Stereo::Instanced);
+    elsewhere(renderer.set_settings(&stereo)).expect("made");
+    elsewhere(renderer.set_settings(&settings)).expect("made");
+    elsewhere(renderer.render(&frame)).expect("drawn");
+    assert!(elsewhere(renderer.read_picture()).expect("read") == picture);
 }

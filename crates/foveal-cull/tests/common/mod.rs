@@ -274,42 +274,57 @@ pub fn answers(
     results
 }
 
-fn reference(scene: &Scene, eye: &Eye, (w, h): (u32, u32)) -> Reference {
-    let mut exact = Reference::new(eye, w, h).unwrap();
-    for o in &scene.objects {
-        exact.add(&o.positions, &o.indices, o.transform, o.two_sided);
-    }
-    exact.finish();
-    exact
+/// The reference of a scene at `n` times the samples of a buffer.
+pub struct Exact {
+    reference: Reference,
+    size: (u32, u32),
+    n: u32,
 }
 
-/// Per pixel, the farthest depth that the reference has at `n` times `n` samples; 0 where one is
-/// not covered.
-pub fn farthest_in_pixels(scene: &Scene, eye: &Eye, (w, h): (u32, u32), n: u32) -> Vec<f32> {
-    let exact = reference(scene, eye, (w * n, h * n));
-    let at = |x: u32, y: u32| exact.depth()[(y * w * n + x) as usize];
-    let pixel = |x: u32, y: u32| {
-        (0..n * n)
-            .map(|i| at(x * n + i % n, y * n + i / n))
-            .fold(f32::INFINITY, f32::min)
-    };
-    (0..w * h).map(|i| pixel(i % w, i / w)).collect()
+impl Exact {
+    pub fn new(scene: &Scene, eye: &Eye, (w, h): (u32, u32), n: u32) -> Self {
+        let mut reference = Reference::new(eye, w * n, h * n).unwrap();
+        for o in &scene.objects {
+            reference.add(&o.positions, &o.indices, o.transform, o.two_sided);
+        }
+        reference.finish();
+        let size = (w, h);
+        Self { reference, size, n }
+    }
+
+    /// Per pixel of the buffer, the farthest depth of its samples; 0 where one is not covered.
+    pub fn farthest(&self) -> Vec<f32> {
+        let ((w, h), n) = (self.size, self.n);
+        let at = |x: u32, y: u32| self.reference.depth()[(y * w * n + x) as usize];
+        let pixel = |x: u32, y: u32| {
+            (0..n * n)
+                .map(|i| at(x * n + i % n, y * n + i / n))
+                .fold(f32::INFINITY, f32::min)
+        };
+        (0..w * h).map(|i| pixel(i % w, i / w)).collect()
+    }
+
+    /// Boxes that are seen although they were culled.
+    pub fn wrongly_culled(&self, scene: &Scene, results: &[Visibility]) -> Vec<usize> {
+        let seen = |i: usize| self.reference.seen(&scene.boxes[i], scene.origin);
+        (0..results.len())
+            .filter(|&i| !results[i].is_visible() && seen(i) == Seen::Visible)
+            .collect()
+    }
 }
 
 /// Boxes that the reference at `n` times the size sees although they were culled.
 pub fn wrongly_culled(
     scene: &Scene,
     eye: &Eye,
-    (w, h): (u32, u32),
+    size: (u32, u32),
     n: u32,
     results: &[Visibility],
 ) -> Vec<usize> {
-    let exact = reference(scene, eye, (w * n, h * n));
-    (0..results.len())
-        .filter(|&i| {
-            !results[i].is_visible() && exact.seen(&scene.boxes[i], scene.origin) == Seen::Visible
-        })
-        .collect()
+    if results.iter().all(|r| r.is_visible()) {
+        return Vec::new();
+    }
+    Exact::new(scene, eye, size, n).wrongly_culled(scene, results)
 }
 
 /// Results of a set: what the list shows it shows, but for groups that are hidden as a whole.

@@ -1,6 +1,6 @@
 //! The promise: what is culled is never visible. Held against the reference in random scenes.
 
-use super::{Random, Scene, eye, farthest_in_pixels, occluders, scene, wrongly_culled};
+use super::{Exact, Random, Scene, eye, occluders, scene, wrongly_culled};
 use foveal_cull::{Culler, Eye, FrameOptions, SingleThread, View, Visibility};
 use glam::{DAffine3, DVec3};
 
@@ -43,17 +43,17 @@ pub fn culls_nothing_visible_in(
     let mut depth = vec![0.0; (w * h) as usize];
     culler.read_depth(&mut depth).unwrap();
     for n in [1, 4] {
-        let farthest = farthest_in_pixels(&scene, &eye, (w, h), n);
-        for (i, (claimed, farthest)) in depth.iter().zip(farthest).enumerate() {
+        let exact = Exact::new(&scene, &eye, (w, h), n);
+        for (i, (claimed, farthest)) in depth.iter().zip(exact.farthest()).enumerate() {
             if *claimed > farthest {
                 return Err(format!(
                     "seed {seed}, {n}x: pixel {i} of {w} x {h} claims {claimed}, the reference has {farthest}"
                 ));
             }
         }
+        let wrong = exact.wrongly_culled(&scene, &results);
+        none_culled(&scene, n, &wrong, &results).map_err(|e| format!("seed {seed}, {e}"))?;
     }
-    see_nothing_culled(&scene, &[eye], (w, h), &results)
-        .map_err(|e| format!("seed {seed}, {e}"))?;
     Ok(hidden(&results))
 }
 
@@ -65,13 +65,23 @@ fn see_nothing_culled(
 ) -> Result<(), String> {
     for (eye, n) in eyes.iter().flat_map(|e| [(e, 1), (e, 4)]) {
         let wrong = wrongly_culled(scene, eye, size, n, results);
-        if !wrong.is_empty() {
-            let which = |&i: &usize| (scene.boxes[i], results[i]);
-            let which: Vec<_> = wrong.iter().map(which).collect();
-            return Err(format!("{n}x: {wrong:?} {which:?}"));
-        }
+        none_culled(scene, n, &wrong, results)?;
     }
     Ok(())
+}
+
+fn none_culled(
+    scene: &Scene,
+    n: u32,
+    wrong: &[usize],
+    results: &[Visibility],
+) -> Result<(), String> {
+    if wrong.is_empty() {
+        return Ok(());
+    }
+    let which = |&i: &usize| (scene.boxes[i], results[i]);
+    let which: Vec<_> = wrong.iter().map(which).collect();
+    Err(format!("{n}x: {wrong:?} {which:?}"))
 }
 
 pub fn hidden(results: &[Visibility]) -> usize {

@@ -31,6 +31,13 @@ fn draw(mesh: OccluderMesh) {
     }
     let [eye, target, up] = [[0.3, 0.2, 6.0], [0.0; 3], [0.0, 1.0, 0.0]];
     let view = View::perspective(eye, target, up, 1.0, 1.25, 0.1);
+    // With a radius the mesh's adjacency is read too.
+    for view in [view, view.with_validity_radius(0.05)] {
+        draw_from(&view, &set);
+    }
+}
+
+fn draw_from(view: &View, set: &OccluderSet) {
     let Ok(mut culler) = Culler::new(40, 32) else {
         panic!("a culler of 40 x 32 pixels");
     };
@@ -38,7 +45,7 @@ fn draw(mesh: OccluderMesh) {
     for instruction_set in InstructionSet::available() {
         culler.set_instruction_set(instruction_set);
         // Numbers may be too large for this view.
-        let drawn = culler.rasterize(&view, &set, &FrameOptions::default(), &SingleThread);
+        let drawn = culler.rasterize(view, set, &FrameOptions::default(), &SingleThread);
         let mut depth = [0.0; 40 * 32];
         assert_eq!(culler.read_depth(&mut depth), Ok(()));
         let bits: Vec<u32> = depth

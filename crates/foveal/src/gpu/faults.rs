@@ -1,5 +1,5 @@
-//! A device and a queue that fail when a test says so: the nth creation or submission is refused, or
-//! the device is lost at it.
+//! A device and a queue that fail when a test says so: the nth creation, upload or submission is
+//! refused, or the device is lost at it.
 //!
 //! In tests they stand in for wgpu's own: their calls hide those of the same names, so that no stage
 //! knows of them.
@@ -22,7 +22,7 @@ pub enum Fault {
 /// Which call fails.
 #[derive(Debug, Default)]
 pub struct Plan {
-    /// Creations and submissions since the last [`Plan::arm`].
+    /// Creations, uploads and submissions since the last [`Plan::arm`].
     calls: u64,
     at: Option<(u64, Fault)>,
     has_struck: bool,
@@ -207,7 +207,7 @@ impl Device {
     }
 }
 
-/// A queue whose submissions may fail.
+/// A queue whose uploads and submissions may fail.
 #[derive(Clone, Debug)]
 pub struct Queue {
     queue: wgpu::Queue,
@@ -237,6 +237,20 @@ impl Queue {
         }
         // Commands that were refused are not executed.
         drop(commands);
+        self.refuse();
+        self.queue.submit([])
+    }
+
+    pub(crate) fn write_buffer(&self, buffer: &wgpu::Buffer, offset: u64, bytes: &[u8]) {
+        if self.device.fails() {
+            self.refuse();
+        } else {
+            self.queue.write_buffer(buffer, offset, bytes);
+        }
+    }
+
+    /// Reports an error.
+    fn refuse(&self) {
         let nothing = wgpu::BufferDescriptor {
             label: Some("refused"),
             size: 4,
@@ -244,6 +258,5 @@ impl Queue {
             mapped_at_creation: false,
         };
         drop(self.device.device.create_buffer(&nothing));
-        self.queue.submit([])
     }
 }

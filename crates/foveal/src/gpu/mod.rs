@@ -24,11 +24,9 @@ pub(crate) use layout::{
 };
 
 pub(crate) use mips::MipChain;
+pub(crate) use readback::{Arriving, Handover, start_reading, work_done};
 #[cfg(test)]
-pub(crate) use readback::read_level;
-pub(crate) use readback::{
-    Arriving, Handover, read_buffer, read_texture, submitted_work_done, work_done,
-};
+pub(crate) use readback::{read_buffer, read_level, read_texture};
 
 #[cfg(feature = "profiler")]
 pub(crate) use profiled::GpuTimer;

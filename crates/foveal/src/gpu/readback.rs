@@ -40,7 +40,7 @@ impl<T> Handover<T> {
     }
 
     /// Natively someone must drive the device; a browser does it by itself.
-    async fn take(self, gpu: &Gpu) -> Result<T, Error> {
+    pub(crate) async fn take(self, gpu: &Gpu) -> Result<T, Error> {
         #[cfg(not(target_arch = "wasm32"))]
         if let Err(cause) = gpu.device.poll(wgpu::PollType::wait_indefinitely()) {
             return Err(Error::DeviceLost {
@@ -64,11 +64,6 @@ impl<T> Handover<T> {
     }
 }
 
-/// Resolves when everything submitted so far is done.
-pub(crate) async fn submitted_work_done(gpu: &Gpu) -> Result<(), Error> {
-    work_done(gpu, || ()).take(gpu).await
-}
-
 /// What `now` says when everything submitted so far is done.
 pub(crate) fn work_done<T: Send + 'static>(
     gpu: &Gpu,
@@ -80,19 +75,36 @@ pub(crate) fn work_done<T: Send + 'static>(
     done
 }
 
+/// Begins to read mip 0 of a texture.
+pub(crate) fn start_reading(gpu: &Gpu, texture: &wgpu::Texture) -> Reading {
+    start_reading_level(gpu, texture, 0, (texture.width(), texture.height()))
+}
+
 /// The bytes of mip 0 of a texture, layer after layer, rows top to bottom without padding.
+#[cfg(test)]
 pub(crate) async fn read_texture(gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>, Error> {
-    read_level(gpu, texture, 0, (texture.width(), texture.height())).await
+    start_reading(gpu, texture).bytes(gpu).await
 }
 
 /// The bytes of the upper left `width` x `height` texels of a mip, layer after layer, rows top to
 /// bottom without padding.
+#[cfg(test)]
 pub(crate) async fn read_level(
     gpu: &Gpu,
     texture: &wgpu::Texture,
     mip_level: u32,
-    (width, height): (u32, u32),
+    size: (u32, u32),
 ) -> Result<Vec<u8>, Error> {
+    let reading = start_reading_level(gpu, texture, mip_level, size);
+    reading.bytes(gpu).await
+}
+
+fn start_reading_level(
+    gpu: &Gpu,
+    texture: &wgpu::Texture,
+    mip_level: u32,
+    (width, height): (u32, u32),
+) -> Reading {
     let bytes_per_texel = texture.format().block_copy_size(None).unwrap_or(4);
     let layers = texture.depth_or_array_layers();
     let row = width * bytes_per_texel;
@@ -122,21 +134,43 @@ pub(crate) async fn read_level(
         },
     );
     gpu.queue.submit([encoder.finish()]);
-    let bytes = map(gpu, &buffer).await?;
-    let rows = bytes.chunks_exact(padded as usize);
-    Ok(rows
-        .flat_map(|padded_row| &padded_row[..row as usize])
-        .copied()
-        .collect())
+    let arriving = Arriving::of(buffer);
+    arriving.submitted();
+    Reading {
+        arriving,
+        padded: padded as usize,
+        row: row as usize,
+    }
+}
+
+/// A texture's texels on their way to the caller, who waits for them.
+pub(crate) struct Reading {
+    arriving: Arriving,
+    /// Bytes of a row as they arrive, and of its texels.
+    padded: usize,
+    row: usize,
+}
+
+impl Reading {
+    /// The bytes, layer after layer, rows top to bottom without padding.
+    pub(crate) async fn bytes(self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let bytes = self.arriving.bytes(gpu).await?;
+        let rows = bytes.chunks_exact(self.padded);
+        Ok(rows
+            .flat_map(|padded_row| &padded_row[..self.row])
+            .copied()
+            .collect())
+    }
 }
 
 /// The bytes of a buffer that can be copied from.
+#[cfg(test)]
 pub(crate) async fn read_buffer(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
-    let copy = read_back_buffer(gpu, buffer.size());
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+    let arriving = Arriving::record(gpu, &mut encoder, buffer);
     gpu.queue.submit([encoder.finish()]);
-    map(gpu, &copy).await
+    arriving.submitted();
+    arriving.bytes(gpu).await
 }
 
 fn read_back_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {
@@ -148,7 +182,7 @@ fn read_back_buffer(gpu: &Gpu, size: u64) -> wgpu::Buffer {
     })
 }
 
-/// A buffer's bytes on their way to the caller, who does not wait for them.
+/// A buffer's bytes on their way to the caller.
 pub(crate) struct Arriving {
     copy: wgpu::Buffer,
     mapped: Handover<Result<(), wgpu::BufferAsyncError>>,
@@ -163,6 +197,10 @@ impl Arriving {
     ) -> Self {
         let copy = read_back_buffer(gpu, buffer.size());
         encoder.copy_buffer_to_buffer(buffer, 0, &copy, 0, buffer.size());
+        Self::of(copy)
+    }
+
+    fn of(copy: wgpu::Buffer) -> Self {
         Self {
             copy,
             mapped: Handover::new(),
@@ -189,22 +227,19 @@ impl Arriving {
         };
         Some(bytes.unwrap_or_default())
     }
-}
 
-async fn map(gpu: &Gpu, buffer: &wgpu::Buffer) -> Result<Vec<u8>, Error> {
-    let mapped = Handover::new();
-    let given = mapped.clone();
-    buffer.map_async(wgpu::MapMode::Read, .., move |result| given.give(result));
-    let failed = |cause: String| Error::Validation {
-        doing: "reading back".to_owned(),
-        cause,
-    };
-    mapped
-        .take(gpu)
-        .await?
-        .map_err(|cause| failed(cause.to_string()))?;
-    let view = buffer
-        .get_mapped_range(..)
-        .map_err(|cause| failed(cause.to_string()))?;
-    Ok(view.to_vec())
+    /// Waits for the bytes.
+    pub(crate) async fn bytes(self, gpu: &Gpu) -> Result<Vec<u8>, Error> {
+        let failed = |cause: wgpu::BufferAsyncError| Error::Validation {
+            doing: "reading back".to_owned(),
+            cause: cause.to_string(),
+        };
+        self.mapped.clone().take(gpu).await?.map_err(failed)?;
+        let view = self.copy.get_mapped_range(..);
+        let view = view.map_err(|cause| Error::Validation {
+            doing: "reading back".to_owned(),
+            cause: cause.to_string(),
+        })?;
+        Ok(view.to_vec())
+    }
 }

@@ -3,7 +3,11 @@
 use super::Gpu;
 use crate::Error;
 
-/// Catches what the device reports between its creation and [`ErrorTrap::finish`].
+/// Catches what the device reports on this thread between its creation and [`ErrorTrap::finish`].
+///
+/// Nothing may be waited for in between: scopes belong to a thread and close in the reverse order of
+/// their opening, whatever is polled meanwhile. It cannot happen unnoticed, since a future that
+/// holds one is not `Send`, and tests check that the renderer's are.
 pub(crate) struct ErrorTrap {
     gpu: Gpu,
     doing: &'static str,
@@ -25,36 +29,41 @@ impl ErrorTrap {
     }
 
     /// The worst of what was reported: a lost device, then memory, then the rest.
-    pub(crate) async fn finish(self) -> Result<(), Error> {
-        // Scopes close in the reverse order of their opening.
-        let (internal, validation, memory) = (
+    pub(crate) fn finish(self) -> impl Future<Output = Result<(), Error>> {
+        // Scopes close in the reverse order of their opening, and here: what is done before the
+        // future is polled is no longer caught.
+        let reports = (
             self.internal.pop(),
             self.validation.pop(),
             self.memory.pop(),
         );
-        let (internal, validation, memory) = (internal.await, validation.await, memory.await);
-        // A loss is told when the device is asked, and makes errors of all else.
-        #[cfg(not(target_arch = "wasm32"))]
-        if internal.is_some() || validation.is_some() || memory.is_some() {
-            let _ = self.gpu.device.poll(wgpu::PollType::Poll);
-        }
-        self.gpu.check_alive()?;
-        #[cfg(not(test))]
-        let is_full = memory.is_some();
-        #[cfg(test)]
-        let is_full = self.gpu.device.faults.take_out_of_memory() || memory.is_some();
-        let stray = self.gpu.take_stray();
-        if is_full {
-            return Err(Error::OutOfMemory {
-                doing: self.doing.to_owned(),
-            });
-        }
-        match validation.or(internal).map(|e| e.to_string()).or(stray) {
-            Some(cause) => Err(Error::Validation {
-                doing: self.doing.to_owned(),
-                cause,
-            }),
-            None => Ok(()),
+        let (gpu, doing) = (self.gpu, self.doing);
+        async move {
+            let (internal, validation, memory) = reports;
+            let (internal, validation, memory) = (internal.await, validation.await, memory.await);
+            // A loss is told when the device is asked, and makes errors of all else.
+            #[cfg(not(target_arch = "wasm32"))]
+            if internal.is_some() || validation.is_some() || memory.is_some() {
+                let _ = gpu.device.poll(wgpu::PollType::Poll);
+            }
+            gpu.check_alive()?;
+            #[cfg(not(test))]
+            let is_full = memory.is_some();
+            #[cfg(test)]
+            let is_full = gpu.device.faults.take_out_of_memory() || memory.is_some();
+            let stray = gpu.take_stray();
+            if is_full {
+                return Err(Error::OutOfMemory {
+                    doing: doing.to_owned(),
+                });
+            }
+            match validation.or(internal).map(|e| e.to_string()).or(stray) {
+                Some(cause) => Err(Error::Validation {
+                    doing: doing.to_owned(),
+                    cause,
+                }),
+                None => Ok(()),
+            }
         }
     }
 }

@@ -2,8 +2,6 @@
 
 use half::f16;
 
-use crate::Error;
-use crate::gpu::{Gpu, read_texture};
 use crate::stereo::EyeLayout;
 
 /// Linear light with the primaries and the white of sRGB.
@@ -20,20 +18,16 @@ pub struct RadianceImage {
 }
 
 impl RadianceImage {
-    /// Reads a texture of half floats back, in which eyes lie as `layout` says.
-    pub(crate) async fn read(
-        gpu: &Gpu,
-        texture: &wgpu::Texture,
-        layout: &EyeLayout,
-    ) -> Result<Self, Error> {
-        let bytes = read_texture(gpu, texture).await?;
+    /// From the bytes of a texture of half floats, `row` texels wide, in which eyes lie as `layout`
+    /// says.
+    pub(crate) fn new(bytes: &[u8], row: u32, layout: &EyeLayout) -> Self {
         let texels: Vec<[f16; 4]> = bytes
             .as_chunks::<8>()
             .0
             .iter()
             .map(|t| [0, 2, 4, 6].map(|i| f16::from_le_bytes([t[i], t[i + 1]])))
             .collect();
-        let row = texture.width() as usize;
+        let row = row as usize;
         let width = layout.width as usize;
         let columns = (0..layout.eyes as usize).flat_map(|eye| {
             let first = eye * layout.stride as usize;
@@ -46,10 +40,10 @@ impl RadianceImage {
                 [r, g, b].map(|v| v.to_f32().max(0.0))
             })
             .collect();
-        Ok(Self {
+        Self {
             width: layout.eyes * layout.width,
             height: layout.height,
             rgb,
-        })
+        }
     }
 }

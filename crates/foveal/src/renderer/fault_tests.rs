@@ -1,5 +1,5 @@
-//! A device that fails anywhere: at the nth creation or submission memory is out, the call is
-//! refused, or the device is gone.
+//! A device that fails anywhere: at the nth creation, upload or submission memory is out, the call
+//! is refused, or the device is gone.
 //!
 //! Each failure must be an error with a sentence, never a panic or a wait without end; and after it
 //! the same renderer, or where the device is gone a new one, draws what one draws that never failed.
@@ -19,6 +19,11 @@ use crate::{
 
 /// A device of the host's: what no error scope catches is a panic there.
 fn host_gpu() -> Gpu {
+    host_gpu_with(Gpu::wanted_limits)
+}
+
+/// The same with limits that are chosen from the adapter's.
+fn host_gpu_with(limits: impl Fn(&wgpu::Limits) -> wgpu::Limits) -> Gpu {
     block_on(async {
         let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle());
         let adapter = instance
@@ -28,7 +33,7 @@ fn host_gpu() -> Gpu {
         let (device, queue) = adapter
             .request_device(&wgpu::DeviceDescriptor {
                 required_features: Gpu::wanted_features() & adapter.features(),
-                required_limits: Gpu::wanted_limits(&adapter.limits()),
+                required_limits: limits(&adapter.limits()),
                 ..Default::default()
             })
             .await
@@ -295,6 +300,58 @@ fn a_scene_that_fails_anywhere_leaves_the_old_one_in_place() {
         block_on(draw(&mut renderer)).expect("the new scene");
         assert!(picture(&renderer) == new, "{what}: after");
     }
+}
+
+/// As [`scene`], with an object and a light elsewhere.
+fn moved() -> Scene {
+    let mut scene = scene();
+    scene.instances[0].world_from_object.w_axis.x += 0.3;
+    scene.lights[1].position.x += 0.5;
+    scene
+}
+
+#[test]
+fn a_pose_that_fails_anywhere_is_an_error_and_objects_and_lights_have_it() {
+    let gpu = host_gpu();
+    let settings = small(48, 32);
+    let pose = moved();
+    let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
+    let calls = calls(&gpu, || {
+        block_on(renderer.update_pose(&pose)).expect("nothing fails");
+    });
+    block_on(draw(&mut renderer)).expect("drawn");
+    let (old, new) = (expected(&gpu, &settings), picture(&renderer));
+    assert!(old != new && calls >= 3, "{calls}");
+    for (place, fault) in strikes(calls, calls) {
+        let what = format!("call {place} of {calls}");
+        let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
+        gpu.device.faults.arm(place, fault);
+        let failed = block_on(renderer.update_pose(&pose));
+        assert!(gpu.device.faults.disarm(), "{what}");
+        assert_told(&what, fault, failed);
+        block_on(draw(&mut renderer)).expect("memory is there again");
+        assert!(picture(&renderer) == new, "{what}: another picture");
+    }
+}
+
+/// Instances beyond the device's limit are noticed before anything of the old scene is gone.
+#[test]
+fn a_scene_beyond_a_limit_costs_the_renderer_nothing() {
+    let gpu = host_gpu_with(|_| Gpu::required_limits());
+    let settings = small(48, 32);
+    let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
+    block_on(draw(&mut renderer)).expect("drawn");
+    let old = picture(&renderer);
+    let limit = gpu.device.limits().max_storage_buffer_binding_size;
+    let many = limit as usize / size_of::<crate::scene::InstanceUniform>() + 1;
+    let mut scene = scene();
+    let one = scene.instances[0];
+    scene.instances.resize(many, one);
+    let refused = block_on(renderer.set_scene(&scene));
+    assert!(matches!(refused, Err(Error::Limit { .. })), "{refused:?}");
+    assert!(!renderer.is_torn);
+    block_on(draw(&mut renderer)).expect("the old scene");
+    assert!(picture(&renderer) == old);
 }
 
 #[test]

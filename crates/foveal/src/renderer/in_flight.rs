@@ -1,7 +1,7 @@
 //! A frame that the device has not finished.
 
-use crate::FrameStats;
 use crate::gpu::{Arriving, CpuTimer, Gpu, Handover, work_done};
+use crate::{Error, FrameStats};
 
 /// What the device counts, each where the settings ask for it.
 #[derive(Default)]
@@ -40,9 +40,10 @@ impl InFlight {
         counters: &Counts<&wgpu::Buffer>,
         cpu: CpuTimer,
     ) -> Self {
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = None;
         let mut record = |buffer: Option<&wgpu::Buffer>| {
-            buffer.map(|buffer| Arriving::record(gpu, &mut encoder, buffer))
+            let begin = || gpu.device.create_command_encoder(&Default::default());
+            buffer.map(|buffer| Arriving::record(gpu, encoder.get_or_insert_with(begin), buffer))
         };
         let counts = Counts {
             tiles: record(counters.tiles),
@@ -51,7 +52,9 @@ impl InFlight {
             edges: record(counters.edges),
             rates: record(counters.rates),
         };
-        gpu.queue.submit([encoder.finish()]);
+        if let Some(encoder) = encoder {
+            gpu.queue.submit([encoder.finish()]);
+        }
         let all = counts.tiles.iter().chain(&counts.unlit).chain(&counts.kept);
         for arriving in all.chain(&counts.edges).chain(&counts.rates) {
             arriving.submitted();
@@ -62,5 +65,26 @@ impl InFlight {
             counts,
             done,
         }
+    }
+
+    /// Waits until it is done: what the CPU knew of it, what the device counted, and how long it
+    /// took.
+    pub(super) async fn wait(self, gpu: &Gpu) -> Result<(FrameStats, Counts<Vec<u8>>, f64), Error> {
+        let frame_ms = self.done.take(gpu).await?;
+        let counts = Counts {
+            tiles: bytes(self.counts.tiles, gpu).await?,
+            unlit: bytes(self.counts.unlit, gpu).await?,
+            kept: bytes(self.counts.kept, gpu).await?,
+            edges: bytes(self.counts.edges, gpu).await?,
+            rates: bytes(self.counts.rates, gpu).await?,
+        };
+        Ok((self.stats, counts, frame_ms))
+    }
+}
+
+async fn bytes(arriving: Option<Arriving>, gpu: &Gpu) -> Result<Option<Vec<u8>>, Error> {
+    match arriving {
+        Some(arriving) => arriving.bytes(gpu).await.map(Some),
+        None => Ok(None),
     }
 }

@@ -19,7 +19,8 @@ impl Renderer {
     }
 
     /// Makes anew what a failure may have left half made: everything but the scene's own resources,
-    /// which are replaced only when all of them are there.
+    /// which are replaced only when all of them are there. Of these a pose changes the lights, which
+    /// are uploaded again, and the vertices of meshes that deform, which the host uploads again.
     pub(super) async fn mend(&mut self) -> Result<(), Error> {
         if !self.is_torn {
             return Ok(());
@@ -27,11 +28,12 @@ impl Renderer {
         self.gpu.check_alive()?;
         let trap = ErrorTrap::new(&self.gpu, "going on after a failure");
         let mut bindings = FrameBindings::new(&self.gpu, self.environment.map());
-        let written = bindings.write_instances(&self.gpu, self.scene.instance_uniforms());
+        bindings.write_instances(&self.gpu, self.scene.instance_uniforms());
+        self.scene.write_lights(&self.gpu);
         let present = PresentPass::new(&self.gpu);
         let timer = GpuTimer::new(&self.gpu);
         let upscale = Upscale::new(&self.gpu, &self.settings);
-        trap.finish().await.and(written)?;
+        trap.finish().await?;
         let timer = timer?;
         let settings = self.stages.settings.clone();
         let mut stages = self.new_stages(&settings, Some(&bindings)).await?;

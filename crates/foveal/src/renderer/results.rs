@@ -4,7 +4,7 @@ use foveal_cull::Visibility;
 
 use super::Renderer;
 use crate::culling::{CullingStage, CullingStats};
-use crate::gpu::{ErrorTrap, read_texture};
+use crate::gpu::{ErrorTrap, start_reading};
 use crate::output::RadianceImage;
 use crate::stereo::EyeLayout;
 use crate::{DebugView, Error, SceneStats};
@@ -17,9 +17,9 @@ impl Renderer {
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`].
     pub async fn read_picture(&self) -> Result<Vec<u8>, Error> {
         let trap = ErrorTrap::new(&self.gpu, "reading the picture back");
-        let bytes = read_texture(&self.gpu, self.picture().texture()).await;
+        let reading = start_reading(&self.gpu, self.picture().texture());
         trap.finish().await?;
-        bytes
+        reading.bytes(&self.gpu).await
     }
 
     /// The last frame's radiance, at the size at which the frame was drawn
@@ -40,9 +40,11 @@ impl Renderer {
         }
         let texture = self.stages.targets.radiance_view.texture();
         let trap = ErrorTrap::new(&self.gpu, "reading the radiance back");
-        let image = RadianceImage::read(&self.gpu, texture, &EyeLayout::of(settings)).await;
+        let reading = start_reading(&self.gpu, texture);
         trap.finish().await?;
-        image
+        let bytes = reading.bytes(&self.gpu).await?;
+        let layout = EyeLayout::of(settings);
+        Ok(RadianceImage::new(&bytes, texture.width(), &layout))
     }
 
     /// What the culler found in the last frame; `None` without culling.

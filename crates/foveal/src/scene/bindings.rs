@@ -98,21 +98,20 @@ impl FrameBindings {
             .write_buffer(&self.frame, 0, bytemuck::bytes_of(uniform));
     }
 
-    /// Uploads all instances of a scene.
+    /// Checks that so many instances can be uploaded.
     ///
     /// # Errors
     /// [`Error::Limit`] where they are more than the device can bind.
-    pub(crate) fn write_instances(
-        &mut self,
-        gpu: &Gpu,
-        uniforms: &[InstanceUniform],
-    ) -> Result<(), Error> {
+    pub(crate) fn check_instances(gpu: &Gpu, count: usize) -> Result<(), Error> {
         let what = "the scene's number of instances";
-        Table::check(gpu, what, uniforms.len(), size_of::<InstanceUniform>())?;
+        Table::check(gpu, what, count, size_of::<InstanceUniform>())
+    }
+
+    /// Uploads all instances of a scene that has passed [`FrameBindings::check_instances`].
+    pub(crate) fn write_instances(&mut self, gpu: &Gpu, uniforms: &[InstanceUniform]) {
         if self.instances.write(gpu, bytemuck::cast_slice(uniforms)) {
             self.group = self.group_of(gpu, &self.drawn);
         }
-        Ok(())
     }
 
     /// Uploads the list of drawn instances.

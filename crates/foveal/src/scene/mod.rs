@@ -161,6 +161,11 @@ impl SceneOnGpu {
         }
     }
 
+    /// Uploads the lights once more: where a call failed, theirs may have been refused.
+    pub(crate) fn write_lights(&self, gpu: &Gpu) {
+        write_lights(gpu, &self.light_buffer, &self.lights);
+    }
+
     /// The instances as the vertex shader reads them.
     pub(crate) fn instance_uniforms(&self) -> &[InstanceUniform] {
         &self.uniforms

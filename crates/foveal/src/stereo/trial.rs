@@ -6,7 +6,7 @@
 
 use super::Submission;
 use crate::clock::{self, ms_between};
-use crate::gpu::{self, ErrorTrap, Gpu, layered_target, read_texture, submitted_work_done};
+use crate::gpu::{self, ErrorTrap, Gpu, layered_target, start_reading, work_done};
 use crate::{Clock, Error, shader};
 
 /// Width and height of an eye's picture.
@@ -88,21 +88,28 @@ impl Trials {
 
 /// What each eye's texels show, the left eye's first, and how long that took.
 async fn draw(gpu: &Gpu, way: Submission, clock: Option<Clock>) -> Result<(Vec<u32>, f64), Error> {
-    let trap = ErrorTrap::new(gpu, "trying how two eyes are drawn");
+    let trap = || ErrorTrap::new(gpu, "trying how two eyes are drawn");
+    let making = trap();
     let trial = Trial::new(gpu, way);
+    making.finish().await?;
     let mut least = f64::MAX;
     for round in 0..=ROUNDS {
+        let drawing = trap();
         let start = clock::read(clock);
         trial.submit(gpu);
-        submitted_work_done(gpu).await?;
+        let done = work_done(gpu, move || clock::read(clock));
+        drawing.finish().await?;
+        let end = done.take(gpu).await?;
         // The first one makes the driver compile.
         if round > 0 {
-            least = least.min(ms_between(start, clock::read(clock)));
+            least = least.min(ms_between(start, end));
         }
     }
-    let bytes = read_texture(gpu, trial.color.texture()).await;
-    trap.finish().await?;
-    let texels: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes?);
+    let reading_back = trap();
+    let reading = start_reading(gpu, trial.color.texture());
+    reading_back.finish().await?;
+    let bytes = reading.bytes(gpu).await?;
+    let texels: Vec<u32> = bytemuck::pod_collect_to_vec(&bytes);
     if trial.layers == 2 {
         return Ok((texels, least));
     }
