@@ -6,6 +6,10 @@
 
 /// Samples per pixel and axis.
 pub(crate) const SAMPLES: u32 = 4;
+const _: () = assert!(
+    crate::limits::MAX_SIDE_PX * SAMPLES <= 16_384,
+    "places within rows of samples have 15 bits"
+);
 /// Pixels per block side.
 pub(crate) const BLOCK: u32 = 8;
 /// Samples per block side.

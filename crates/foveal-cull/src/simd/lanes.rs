@@ -135,7 +135,7 @@ pub(crate) trait Lanes: Vectors<8> {
     type D: Copy;
     /// 2 x 40 whole numbers: the first covered sample (or pixel, by its centre) of each of a
     /// block's 32 sample rows and 8 rows through pixel centres, and the first one after. At least
-    /// 16 bits.
+    /// 15 bits; what is left of the screen may be 0.
     type S: Copy;
     /// 4 x 40 x f64: the edges of a polygon in a block's 32 sample rows, and in 8 rows through
     /// pixel centres.

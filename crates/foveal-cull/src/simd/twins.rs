@@ -290,7 +290,7 @@ impl Kernel for All<'_> {
             ("dmin", d(g.min(h))),
             ("dmax", d(g.max(h))),
             ("gt", vec![g.gt(h)]),
-            ("apart", vec![g.apart(h, cap & 0x3fff)]),
+            ("apart", vec![g.apart(h, (cap & 0x7fff).min(0x7ffe))]),
             ("dselect", d(Depths::select(n.bits, g, h))),
             ("farthest", vec![g.farthest() as u64]),
             ("within", p(l, j.0)),
