@@ -3,8 +3,8 @@
 
 import { capped } from './cap.js';
 
-/** Pages of 64 KiB that the reader may have: 2 GiB. The importer's own limits for files and textures lie below. */
-const MOST_PAGES = 32768;
+/** Pages of 64 KiB that the reader may have: 3 GiB of the 4 that WebAssembly has. */
+const MOST_PAGES = 49152;
 
 /** The bytes of the renderer's WebAssembly, beside its JavaScript. */
 async function webAssembly(renderer) {
@@ -22,6 +22,6 @@ addEventListener('message', async ({ data: { renderer, name, bytes } }) => {
     postMessage({ cause: null });
   } catch (cause) {
     // The importer's sentences are strings; all else is the reader's own end.
-    postMessage({ cause: typeof cause === 'string' ? cause : `${name} made the reader stop (${cause}); nothing was loaded` });
+    postMessage({ cause: typeof cause === 'string' ? cause : `${name} made the reader stop, perhaps for want of memory (${cause}); nothing was loaded` });
   }
 });

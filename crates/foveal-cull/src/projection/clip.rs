@@ -2,8 +2,9 @@
 
 use glam::DVec4;
 
-/// Beyond this distance from a plane, `f64` keeps no 1/4096 of a sample.
-const FAR: f64 = 1e12;
+/// Beyond this distance from a plane, in metres, an edge is cut from its other end: numbers of the
+/// screen are some 1e5 times as large there, and their rounding would come near a sample's margin.
+const FAR: f64 = 1e5;
 
 /// A convex polygon of up to twelve corners in clip space.
 #[derive(Clone, Copy)]
@@ -68,7 +69,7 @@ mod tests {
     #[test]
     fn an_edge_from_very_far_away_is_cut_where_it_meets_the_plane() {
         let near = DVec4::new(56.0, 98.0, 1.03, 1.0);
-        for far in [1e3, 1e9, 1e15, 1e21, 1e30] {
+        for far in [1e3, 1e6, 7e6, 9e6, 1e9, 1e11, 7e13, 1e15, 1e21, 1e30] {
             let way = DVec4::new(-5.0, 1.8, -0.0125, 0.0);
             for corners in [[near, near + way * far], [near + way * far, near]] {
                 let mut polygon = ClipPolygon::new(&corners);

@@ -234,7 +234,10 @@ impl Arriving {
             doing: "reading back".to_owned(),
             cause: cause.to_string(),
         };
-        self.mapped.clone().take(gpu).await?.map_err(failed)?;
+        let mapped = self.mapped.clone().take(gpu).await?;
+        // A device that was lost meanwhile is the cause of all else.
+        gpu.check_alive()?;
+        mapped.map_err(failed)?;
         let view = self.copy.get_mapped_range(..);
         let view = view.map_err(|cause| Error::Validation {
             doing: "reading back".to_owned(),
