@@ -46,11 +46,14 @@ impl LobesUniform {
             anisotropy_turn: Vec2::from_angle(anisotropy.map_or(0.0, |a| a.rotation_rad))
                 .to_array(),
             transmission: transmission.map_or(0.0, |t| t.factor),
-            thickness: transmission.map_or(0.0, |t| t.thickness_m),
+            // Numbers whose product is finite, whatever a file says.
+            thickness: transmission.map_or(0.0, |t| t.thickness_m.clamp(0.0, 1e6)),
             absorption: transmission.map_or([0.0; 3], |t| {
                 // Per metre; what is black after the distance is as good as black at once.
                 let passing = t.attenuation_color.max(Vec3::splat(1e-6));
-                (-passing.map(f32::ln) / t.attenuation_distance_m).to_array()
+                let absorption =
+                    -passing.map(f32::ln) / t.attenuation_distance_m.max(f32::MIN_POSITIVE);
+                absorption.clamp(Vec3::ZERO, Vec3::splat(1e9)).to_array()
             }),
             ior: material.ior.max(1.0),
             uv: material

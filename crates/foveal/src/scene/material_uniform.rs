@@ -108,7 +108,7 @@ impl MaterialUniform {
             number,
             procedural_seed: material.procedural.map_or(0, |p| p.seed),
             procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
-            without_lobes: f32::from(u8::from(!material.has_lobes())),
+            without_lobes: f32::from(u8::from(!material.has_lobes() || material.unlit)),
             reserved_0: 0,
             reserved_1: 0,
             specular_color: (material.specular_color * material.ior_reflectance()).to_array(),

@@ -38,6 +38,7 @@ fn shade_together(first: vec2u, last: vec2u) -> vec4f {
         surface.roughness = 0.5 * (surface.roughness + other.roughness);
         surface.occlusion = 0.5 * (surface.occlusion + other.occlusion);
         surface.emissive = 0.5 * (surface.emissive + other.emissive);
+        surface.dielectric = 0.5 * (surface.dielectric + other.dielectric);
     }
     return vec4f(min(lit(surface, pixel, distance), vec3f(65504.0)), 1.0);
 }
