@@ -15,6 +15,7 @@ pub(super) struct Material {
     diffuse: Option<[f32; 3]>,
     emissive: Option<[f32; 3]>,
     opacity: Option<f32>,
+    transparency: Option<f32>,
     exponent: Option<f32>,
     metallic: Option<f32>,
     roughness: Option<f32>,
@@ -59,7 +60,7 @@ pub(super) fn parse(bytes: &[u8]) -> Vec<Material> {
             "kd" => material.diffuse = color(rest),
             "ke" => material.emissive = color(rest),
             "d" => material.opacity = number(rest),
-            "tr" => material.opacity = number(rest).map(|x| 1.0 - x).or(material.opacity),
+            "tr" => material.transparency = number(rest),
             "ns" => material.exponent = number(rest),
             "pm" => material.metallic = number(rest),
             "pr" => material.roughness = number(rest),
@@ -155,7 +156,10 @@ impl Material {
     /// roughness `sqrt(2 / (n + 2))`, squared in glTF's terms (Walter et al. 2007, section 5.2).
     pub(super) fn surface(&self, builder: &mut Builder, notes: &mut Vec<Warning>) -> Value {
         let unit = |x: f32| x.clamp(0.0, 1.0);
-        let opacity = unit(self.opacity.unwrap_or(1.0));
+        // `Tr 1` alone is what MeshLab writes for opaque surfaces.
+        let transparency = self.transparency.filter(|tr| *tr < 1.0);
+        let opacity = self.opacity.or(transparency.map(|tr| 1.0 - tr));
+        let opacity = unit(opacity.unwrap_or(1.0));
         let mut color = self.diffuse.unwrap_or([1.0; 3]).map(unit);
         if self.diffuse_map.is_some() && color == [0.0; 3] {
             // Exporters write black where the picture says it all.

@@ -130,6 +130,21 @@ fn colours_count_where_all_vertices_have_one() {
 }
 
 #[test]
+fn opacity_wins_over_transparency_and_nothing_is_wholly_transparent_by_it() {
+    for (lines, opacity) in [
+        ("Tr 1", 1.0),
+        ("Tr 0.25", 0.75),
+        ("Tr 1\nd 0.5", 0.5),
+        ("d 0.5\nTr 0", 0.5),
+    ] {
+        let material = format!("newmtl brick\n{lines}\nnewmtl glass\n");
+        let scene = load("house.obj", HOUSE.as_bytes(), &[("house.mtl", &material)]).unwrap();
+        let brick = &scene.materials[scene.instances[0].material as usize];
+        assert_eq!(brick.base_color.w, opacity, "{lines}");
+    }
+}
+
+#[test]
 fn scale_and_offset_of_a_map_are_kept() {
     let material = "newmtl brick\nmap_Kd -clamp on -s 2 3 1 -o 0.25 0.5 my wood.png\n";
     let scene = load("house.obj", HOUSE.as_bytes(), &[("house.mtl", material)]).unwrap();
