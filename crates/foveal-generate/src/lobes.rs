@@ -2,11 +2,9 @@
 
 use glam::{Mat4, Vec3, Vec4};
 
-use super::build::{MeshBuilder, SceneBuilder, named};
-use super::lights::point;
-use foveal_scene::{
-    Anisotropy, Camera, Clearcoat, Environment, Material, Scene, Sheen, Transmission,
-};
+use super::build::{MeshBuilder, SceneBuilder};
+use super::materials_grid::lit_from_the_front;
+use foveal_scene::{Anisotropy, Clearcoat, Material, Scene, Sheen, Transmission};
 
 /// Five rows of five spheres, from the bottom: red paint under a clear coat of roughness 0 to 1;
 /// blue cloth with sheen of roughness 0.2 to 1; brushed metal of anisotropy 0 to 1; dielectrics of
@@ -45,23 +43,7 @@ pub fn lobes() -> Scene {
     });
     let at = Mat4::IDENTITY;
     scene.object("bar".to_owned(), None, None, &[(bar, orange)], at);
-    for (position, color, intensity) in [
-        ([-3.0, 3.0, 4.0], [1.0, 0.95, 0.9], 30.0),
-        ([3.5, 1.0, 3.0], [0.5, 0.7, 1.0], 12.0),
-        ([0.0, -3.5, 2.5], [1.0, 0.5, 0.3], 6.0),
-    ] {
-        scene.light(point(position.into(), color.into(), intensity, 20.0));
-    }
-    let eye = Vec3::new(0.0, 0.0, 7.6);
-    let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 40f32.to_radians());
-    scene.camera(named(camera, "front"));
-    let mut scene = scene.finish();
-    scene.environment = Environment {
-        zenith: Vec3::new(0.20, 0.26, 0.36),
-        horizon: Vec3::new(0.30, 0.28, 0.26),
-        nadir: Vec3::new(0.08, 0.07, 0.06),
-    };
-    scene
+    lit_from_the_front(scene, 7.6)
 }
 
 fn coated(part: f32) -> Material {

@@ -34,6 +34,11 @@ pub fn materials_grid() -> Scene {
             );
         }
     }
+    lit_from_the_front(scene, 7.2)
+}
+
+/// The scene under three lights and a dim sky, seen from in front at a distance in metres.
+pub(super) fn lit_from_the_front(mut scene: SceneBuilder, distance_m: f32) -> Scene {
     for (position, color, intensity) in [
         ([-3.0, 3.0, 4.0], [1.0, 0.95, 0.9], 30.0),
         ([3.5, 1.0, 3.0], [0.5, 0.7, 1.0], 12.0),
@@ -41,7 +46,7 @@ pub fn materials_grid() -> Scene {
     ] {
         scene.light(point(position.into(), color.into(), intensity, 20.0));
     }
-    let eye = Vec3::new(0.0, 0.0, 7.2);
+    let eye = Vec3::new(0.0, 0.0, distance_m);
     let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 40f32.to_radians());
     scene.camera(named(camera, "front"));
     let mut scene = scene.finish();

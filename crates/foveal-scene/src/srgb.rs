@@ -1,8 +1,9 @@
-//! The sRGB transfer function as tables (IEC 61966-2-1).
+//! The sRGB transfer function, also as tables (IEC 61966-2-1).
 
 use std::sync::OnceLock;
 
-fn decode(code: f64) -> f64 {
+/// Light from 0 to 1 for a code from 0 to 1.
+pub(crate) fn decode(code: f64) -> f64 {
     if code <= 0.04045 {
         code / 12.92
     } else {

@@ -41,6 +41,7 @@ mod uri;
 #[cfg(test)]
 mod tests;
 
+pub(crate) use budget::Budget;
 pub(crate) use cameras::rigid;
 pub(crate) use geometry::used_bounds;
 pub(crate) use lights::place as place_light;

@@ -11,12 +11,9 @@ mod tests;
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
-use crate::error::{Limit, amount};
-use crate::gltf::Resolver;
-use crate::{LoadOptions, SceneError, Warning};
-
-/// Memory that any file may ask for, however short it is; the importer's own allowance.
-const FREE_BYTES: u64 = 160 << 20;
+use crate::error::Limit;
+use crate::gltf::{Budget, Resolver};
+use crate::{LoadOptions, SceneError, Warning, srgb};
 
 /// A format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,30 +105,18 @@ fn check_memory(
     input: usize,
     options: &LoadOptions,
 ) -> Result<(), Refusal> {
-    let allowed = FREE_BYTES.saturating_add(options.max_expansion.saturating_mul(input as u64));
     let wanted = each.saturating_mul(count as u64);
-    if wanted <= allowed {
-        return Ok(());
-    }
-    let cause = format!(
-        "wants {} for {count} {what}; the limit for {} of files is {}",
-        amount(wanted),
-        amount(input as u64),
-        amount(allowed)
-    );
-    Err(Refusal::TooLarge(Some(Limit::Expansion), cause))
+    Budget::new(input as u64, options)
+        .take(wanted, &format!("{count} {what}"))
+        .map_err(|flaw| Refusal::TooLarge(Some(Limit::Expansion), flaw.cause))
 }
 
 /// A colour's channel from 0 to 1 as displays show it, as linear light (IEC 61966-2-1).
 fn linear(x: f32) -> f32 {
-    let x = if x.is_finite() {
+    let code = if x.is_finite() {
         x.clamp(0.0, 1.0)
     } else {
         0.0
     };
-    if x <= 0.04045 {
-        x / 12.92
-    } else {
-        ((x + 0.055) / 1.055).powf(2.4)
-    }
+    srgb::decode(code.into()) as f32
 }
