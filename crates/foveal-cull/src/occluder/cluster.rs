@@ -4,18 +4,13 @@
 //! normal, so that clusters are compact, large quads lie apart from small ones, and normal cones
 //! are narrow. Each cluster has its own vertex list, whose numbers fit a byte.
 
-use super::in_parts::{in_parts, in_parts_of, part_range, parts_of};
 use super::mesh::{Cluster, OccluderMesh, bounds_of, hash_words};
 use super::neighbors::{self, LocalNumbers, Neighbors};
 use super::quads::Quad;
 use super::sah::{Cut, Item, Part, cut, is_lopsided, quad_normals};
-use crate::threads::Threads;
 use glam::Vec3;
 
 const MAX_QUADS: usize = 64;
-
-/// Fewest quads that are worth a part of their own.
-const LEAST_QUADS: usize = 2048;
 
 /// What clusters are built from.
 #[derive(Clone, Copy)]
@@ -24,62 +19,16 @@ struct Source<'a> {
     near: Option<&'a Neighbors<'a>>,
 }
 
+/// Appends the clusters of some quads over `points` to a mesh.
 pub(super) fn build(
     mesh: &mut OccluderMesh,
     points: &[Vec3],
     near: Option<&Neighbors<'_>>,
     quads: Vec<Quad>,
-    threads: &dyn Threads,
 ) {
-    let source = Source { points, near };
-    let parts = parts_of(threads, quads.len(), LEAST_QUADS);
-    let items = in_parts(threads, parts, &|i| {
-        let quads = &quads[part_range(quads.len(), parts, i)];
-        let item = |&quad: &Quad| Item::new(points, quad);
-        quads.iter().map(item).collect::<Vec<_>>()
-    });
-    let count = quads.len();
+    let mut items: Vec<Item> = quads.iter().map(|&quad| Item::new(points, quad)).collect();
     drop(quads);
-    let mut items = items.into_iter();
-    let mut all = items.next().unwrap_or_default();
-    all.reserve_exact(count - all.len());
-    items.for_each(|part| all.extend(part));
-    let mut items = all;
-    let mut ranges = cut_apart(&mut items, parts, threads);
-    let empty = mesh.clone();
-    let built = in_parts_of(threads, &mut ranges, &|range| {
-        let mut part = empty.clone();
-        split(&mut part, source, range);
-        part
-    });
-    for part in built {
-        mesh.append(part);
-    }
-    mesh.finish();
-}
-
-/// Cuts quads until there are `parts` ranges, as [`split`] would.
-fn cut_apart<'a>(items: &'a mut [Item], parts: usize, threads: &dyn Threads) -> Vec<Range<'a>> {
-    let mut ranges = vec![Range { items, lopsided: 0 }];
-    while ranges.len() < parts {
-        let cuts = in_parts_of(threads, &mut ranges, &|range| {
-            let large = range.items.len() >= LEAST_QUADS;
-            large.then(|| {
-                let best = cut(range.items, range.lopsided);
-                part(range.items, best)
-            })
-        });
-        if cuts.iter().all(Option::is_none) {
-            break;
-        }
-        let halves = |(range, cut): (Range<'a>, Option<usize>)| match cut {
-            Some(at) => range.halves(at).map(Some),
-            None => [Some(range), None],
-        };
-        let cut = ranges.into_iter().zip(cuts).flat_map(halves);
-        ranges = cut.flatten().collect();
-    }
-    ranges
+    split(mesh, Source { points, near }, &mut items);
 }
 
 /// Quads to be split.
@@ -98,14 +47,11 @@ impl Range<'_> {
     }
 }
 
-/// Appends the clusters of a range, in order.
-fn split(mesh: &mut OccluderMesh, source: Source<'_>, range: &mut Range<'_>) {
+/// Appends the clusters of quads, in order.
+fn split(mesh: &mut OccluderMesh, source: Source<'_>, items: &mut [Item]) {
     let mut local = LocalNumbers::new();
     // A list and no recursion: it may become long.
-    let mut rest = vec![Range {
-        items: &mut *range.items,
-        lopsided: range.lopsided,
-    }];
+    let mut rest = vec![Range { items, lopsided: 0 }];
     while let Some(range) = rest.pop() {
         let items = &mut *range.items;
         if items.is_empty() {

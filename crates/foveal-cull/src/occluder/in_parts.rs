@@ -1,6 +1,7 @@
 //! Baking in parts, one after the other or at once.
 
 use crate::threads::Threads;
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 /// What `make` gives for every part below `parts`, in their order. Threads that run a task twice, or
@@ -38,20 +39,53 @@ pub(super) fn in_parts_of<P: Send, T: Send>(
     })
 }
 
-/// Number of parts for `count` elements, at least `least` in each: some for each thread, since they
-/// differ in cost.
-pub(super) fn parts_of(threads: &dyn Threads, count: usize, least: usize) -> usize {
-    match threads.count() {
-        0 | 1 => 1,
-        n => n.saturating_mul(4).min(count / least).max(1),
+/// Hands what `make` gives for every part below `parts` to `take`, in their order and as soon as the
+/// parts before are there, so that few wait. Threads may run a task twice, or not at all.
+pub(super) fn in_order<T: Send>(
+    threads: &dyn Threads,
+    parts: usize,
+    make: &(dyn Fn(usize) -> T + Sync),
+    take: &mut (dyn FnMut(T) + Send),
+) {
+    if parts <= 1 || threads.count() <= 1 {
+        (0..parts).for_each(|i| take(make(i)));
+        return;
+    }
+    let line = Mutex::new(Line {
+        next: 0,
+        waiting: BTreeMap::new(),
+        take,
+    });
+    threads.run(parts, &|i| {
+        let part = make(i);
+        if let Ok(mut line) = line.lock() {
+            line.give(i, part);
+        }
+    });
+    let mut line = line.into_inner().unwrap_or_else(PoisonError::into_inner);
+    while line.next < parts {
+        let i = line.next;
+        line.give(i, make(i));
     }
 }
 
-/// The elements of part `i`.
-pub(super) fn part_range(count: usize, parts: usize, i: usize) -> core::ops::Range<usize> {
-    // 64 bits where the product exceeds 32.
-    let begin = |i: usize| (count as u64 * i as u64 / parts as u64) as usize;
-    begin(i)..begin(i + 1)
+/// Parts on their way to whoever takes them.
+struct Line<'a, T> {
+    next: usize,
+    waiting: BTreeMap<usize, T>,
+    take: &'a mut (dyn FnMut(T) + Send),
+}
+
+impl<T> Line<'_, T> {
+    fn give(&mut self, i: usize, part: T) {
+        if i >= self.next {
+            self.waiting.insert(i, part);
+        }
+        while let Some(part) = self.waiting.remove(&self.next) {
+            (self.take)(part);
+            self.next += 1;
+        }
+    }
 }
 
 #[cfg(test)]
@@ -91,19 +125,5 @@ mod tests {
         assert!(bake(&at_once) == one, "twice at once");
         let never = ThreadsFn::new(4, |_, _| ());
         assert!(bake(&never) == one, "never");
-    }
-
-    #[test]
-    fn parts_cover_everything_and_no_number_overflows() {
-        let countless = ThreadsFn::new(usize::MAX, |_, _| ());
-        assert_eq!(parts_of(&countless, 10_000, 10), 1000);
-        assert_eq!(parts_of(&SingleThread, 10_000, 10), 1);
-        for (count, parts) in [(10, 3), (7, 7), (u32::MAX as usize, 1 << 20)] {
-            assert_eq!(part_range(count, parts, 0).start, 0);
-            assert_eq!(part_range(count, parts, parts - 1).end, count);
-            let (one, next) = (part_range(count, parts, 1), part_range(count, parts, 2));
-            assert_eq!(one.end, next.start);
-            assert!(one.len().abs_diff(next.len()) <= 1);
-        }
     }
 }

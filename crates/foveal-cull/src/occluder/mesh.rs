@@ -1,6 +1,7 @@
 //! The baked mesh.
 
 use super::one_ring::OneRings;
+use super::room::make_room;
 use super::vertices::Vertices;
 use crate::bounds::Aabb;
 use crate::projection::boxes::Boxes8;
@@ -98,8 +99,12 @@ impl OccluderMesh {
         self.clusters.len()
     }
 
-    /// Sets what follows from the clusters.
+    /// Sets what follows from the clusters, and frees room that is left.
     pub(super) fn finish(&mut self) {
+        self.vertices.shrink();
+        self.quads.shrink_to_fit();
+        self.clusters.shrink_to_fit();
+        self.one_rings.shrink();
         let reach = |h: Vec3, c: &Cluster| h.max(c.center.abs() + c.half);
         self.half = self.clusters.iter().fold(Vec3::ZERO, reach);
         self.bounds8 = bounds8(&self.clusters);
@@ -109,12 +114,17 @@ impl OccluderMesh {
 
     /// Appends the clusters of another part of the same mesh.
     pub(super) fn append(&mut self, part: Self) {
+        self.triangles += part.triangles;
         if self.clusters.is_empty() {
-            *self = part;
+            *self = Self {
+                triangles: self.triangles,
+                ..part
+            };
             return;
         }
         let first_vertex = self.vertices.x.len() as u32;
         let first_group = self.quads.len() as u32;
+        make_room(&mut self.clusters, part.clusters.len());
         self.clusters
             .extend(part.clusters.into_iter().map(|c| Cluster {
                 first_vertex: first_vertex + c.first_vertex,
@@ -122,6 +132,7 @@ impl OccluderMesh {
                 ..c
             }));
         self.vertices.append(part.vertices);
+        make_room(&mut self.quads, part.quads.len());
         self.quads.extend(part.quads);
         self.one_rings.append(part.one_rings);
     }

@@ -1,12 +1,13 @@
 //! Occluders: baked meshes, and the set of placed ones.
 //!
-//! `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
+//! `chunks`, `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
 //! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
 //! what was read is a mesh, by `surface`; `set` places meshes in the world.
 
 mod bake;
 mod bytes;
 mod check;
+mod chunks;
 mod cluster;
 mod half_edges;
 mod in_parts;
@@ -14,6 +15,7 @@ pub(crate) mod mesh;
 mod neighbors;
 pub(crate) mod one_ring;
 mod quads;
+mod room;
 mod sah;
 pub(crate) mod set;
 mod surface;

@@ -3,6 +3,7 @@
 //! For view regions a cluster and its one-ring are one surface (see `raster::patch`). Without the
 //! one-ring every cluster would end in silhouette edges all around.
 
+use super::room::make_room;
 use super::vertices::Vertices;
 
 /// The number of no triangle: beyond an edge where the mesh ends. All numbers are below 384.
@@ -78,6 +79,7 @@ impl OneRings {
     /// Appends the one-rings of further clusters.
     pub(super) fn append(&mut self, other: Self) {
         let [first_vertex, first_group, first_edge] = self.ends();
+        make_room(&mut self.clusters, other.clusters.len());
         self.clusters
             .extend(other.clusters.into_iter().map(|c| OneRing {
                 first_vertex: first_vertex.saturating_add(c.first_vertex),
@@ -86,8 +88,17 @@ impl OneRings {
                 ..c
             }));
         self.vertices.append(other.vertices);
+        make_room(&mut self.triangles, other.triangles.len());
         self.triangles.extend(other.triangles);
+        make_room(&mut self.edges, other.edges.len());
         self.edges.extend(other.edges);
+    }
+
+    pub(super) fn shrink(&mut self) {
+        self.clusters.shrink_to_fit();
+        self.vertices.shrink();
+        self.triangles.shrink_to_fit();
+        self.edges.shrink_to_fit();
     }
 }
 

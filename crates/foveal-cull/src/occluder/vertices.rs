@@ -1,5 +1,7 @@
 //! Vertex positions in the layout that the transform reads.
 
+use super::room::make_room;
+
 /// Positions by coordinate, mesh space. Each cluster's part is padded to a multiple of eight.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Vertices {
@@ -10,8 +12,19 @@ pub(crate) struct Vertices {
 
 impl Vertices {
     pub(super) fn append(&mut self, other: Self) {
-        self.x.extend(other.x);
-        self.y.extend(other.y);
-        self.z.extend(other.z);
+        for (list, further) in [
+            (&mut self.x, other.x),
+            (&mut self.y, other.y),
+            (&mut self.z, other.z),
+        ] {
+            make_room(list, further.len());
+            list.extend(further);
+        }
+    }
+
+    pub(super) fn shrink(&mut self) {
+        for list in [&mut self.x, &mut self.y, &mut self.z] {
+            list.shrink_to_fit();
+        }
     }
 }

@@ -1,50 +1,90 @@
 //! Welding: positions that are bit-equal become one vertex, so that neighbours are found however a
 //! mesh was exported.
 
+use super::half_edges::HalfEdges;
 use super::word_hash::{WordHash, Words3};
 use glam::Vec3;
 use std::collections::HashMap;
 
 /// Points, and triangles that index them.
-pub(crate) struct Welded {
+pub(super) struct Welded {
     /// All points that any triangle has, degenerate ones too.
-    pub(crate) points: Vec<Vec3>,
-    pub(crate) triangles: Vec<[u32; 3]>,
+    pub(super) points: Vec<Vec3>,
+    pub(super) triangles: Vec<[u32; 3]>,
+    /// The first index of each point's position.
+    pub(super) sources: Vec<u32>,
 }
 
-/// No number yet.
-const NONE: u32 = u32::MAX;
+impl Welded {
+    pub(super) fn half_edges(&self) -> HalfEdges {
+        HalfEdges::new(self.points.len(), &self.triangles)
+    }
+}
 
-/// `None` if a position in use is not finite.
-pub(crate) fn weld(positions: &[Vec3], indices: &[u32]) -> Option<Welded> {
-    let most = positions.len().min(indices.len());
+/// Welds triangles over `positions` finite positions, which `position` gives, and leaves out
+/// degenerate triangles.
+pub(super) fn weld(
+    positions: usize,
+    position: &dyn Fn(u32) -> Vec3,
+    triangles: impl ExactSizeIterator<Item = [u32; 3]>,
+) -> Welded {
+    let corners = triangles.len().saturating_mul(3);
+    let most = positions.min(corners);
     let mut unique: HashMap<Words3, u32, WordHash> =
         HashMap::with_capacity_and_hasher(most, WordHash::default());
-    let mut numbers = vec![NONE; positions.len()];
-    let mut points = Vec::new();
+    let mut numbers = Numbers::new(positions, corners);
+    let (mut points, mut sources) = (Vec::new(), Vec::new());
     let mut renumber = |i: u32| {
-        let number = &mut numbers[i as usize];
-        if *number == NONE {
+        numbers.get_or(i, || {
             // + 0.0 makes -0.0 and 0.0 the same point.
-            let p = positions[i as usize] + Vec3::ZERO;
-            if !p.is_finite() {
-                return None;
-            }
+            let p = position(i) + Vec3::ZERO;
             let key = Words3(p.to_array().map(f32::to_bits));
-            *number = *unique.entry(key).or_insert_with(|| {
+            *unique.entry(key).or_insert_with(|| {
                 points.push(p);
+                sources.push(i);
                 (points.len() - 1) as u32
-            });
-        }
-        Some(*number)
+            })
+        })
     };
-    let mut triangles = Vec::with_capacity(indices.len() / 3);
-    for t in indices.chunks_exact(3) {
-        triangles.push([renumber(t[0])?, renumber(t[1])?, renumber(t[2])?]);
-    }
+    let mut triangles: Vec<[u32; 3]> = triangles.map(|t| t.map(&mut renumber)).collect();
     triangles.retain(|&[a, b, c]| {
         let [p, q, r] = [a, b, c].map(|i| points[i as usize].as_dvec3());
         (q - p).cross(r - p).length_squared() > 0.0
     });
-    Some(Welded { points, triangles })
+    Welded {
+        points,
+        triangles,
+        sources,
+    }
+}
+
+/// The numbers of indices.
+enum Numbers {
+    Table(Vec<u32>),
+    /// For few of very many.
+    Map(HashMap<u32, u32, WordHash>),
+}
+
+impl Numbers {
+    /// No number yet.
+    const NONE: u32 = u32::MAX;
+
+    fn new(positions: usize, corners: usize) -> Self {
+        if positions <= corners {
+            Self::Table(vec![Self::NONE; positions])
+        } else {
+            Self::Map(HashMap::default())
+        }
+    }
+
+    fn get_or(&mut self, index: u32, number: impl FnOnce() -> u32) -> u32 {
+        let place = match self {
+            Self::Table(numbers) => &mut numbers[index as usize],
+            Self::Map(numbers) => numbers.entry(index).or_insert(Self::NONE),
+        };
+        if *place == Self::NONE {
+            *place = number();
+        }
+        *place
+    }
 }
