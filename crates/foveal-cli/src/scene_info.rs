@@ -82,6 +82,8 @@ struct SceneInfo {
     objects: usize,
     instances: usize,
     triangles: u64,
+    lines: u64,
+    points: u64,
     vertices: u64,
     lights: usize,
     animated: bool,
@@ -137,6 +139,8 @@ impl SceneInfo {
             objects: scene.objects.len(),
             instances: scene.instances.len(),
             triangles: scene.triangle_count(),
+            lines: scene.line_count(),
+            points: scene.point_count(),
             vertices: scene.meshes.iter().map(|m| m.vertices.len() as u64).sum(),
             lights: scene.lights.len(),
             animated: scene.is_animated(),
@@ -187,6 +191,11 @@ impl SceneInfo {
             ),
         );
         line("triangles", grouped(self.triangles));
+        for (name, count) in [("lines", self.lines), ("points", self.points)] {
+            if count > 0 {
+                line(name, grouped(count));
+            }
+        }
         line(
             "meshes",
             format!(

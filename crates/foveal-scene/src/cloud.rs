@@ -1,6 +1,6 @@
 //! Exact world-space boxes of transformed meshes.
 //!
-//! A [`Cloud`] holds the positions that a mesh's triangles use, in blocks with boxes of their own.
+//! A [`Cloud`] holds the positions that a mesh's triangles, lines and points use, in blocks with boxes of their own.
 //! A block whose transformed box lies within what has been found already cannot widen the result
 //! and is skipped, so the answer is bit for bit that of transforming every point.
 
@@ -26,7 +26,7 @@ impl Cloud {
     /// call of [`Cloud::bounds`] is faster; the thresholds are where that begins to pay.
     pub(crate) fn of(mesh: &Mesh, uses: u64) -> Self {
         let mut used = vec![false; mesh.vertices.len()];
-        for &i in &mesh.indices {
+        for i in mesh.used() {
             if let Some(used) = used.get_mut(i as usize) {
                 *used = true;
             }

@@ -64,7 +64,7 @@ codes! {
     IndexOutOfRange = "INDEX_OUT_OF_RANGE",
     /// The file has no scene; all its nodes are shown.
     SceneMissing = "SCENE_MISSING",
-    /// The scene shows no triangles.
+    /// The scene shows no triangles, lines or points.
     SceneEmpty = "SCENE_EMPTY",
     /// A node is the child of two nodes.
     NodeTwoParents = "NODE_TWO_PARENTS",
@@ -88,11 +88,11 @@ codes! {
     AccessorCount = "ACCESSOR_COUNT",
     /// Draco or meshopt data are broken, or do not hold what the file promises.
     CompressedData = "COMPRESSED_DATA",
-    /// A primitive is made of points or lines, which are not drawn.
+    /// Geometry is made of what is not drawn: free-form surfaces, or triangle strips of a PLY file.
     PrimitiveMode = "PRIMITIVE_NOT_TRIANGLES",
     /// A primitive has no positions and is not drawn.
     PrimitivePositions = "PRIMITIVE_NO_POSITIONS",
-    /// Triangles name missing vertices, or vertices at no finite place, and are left out.
+    /// Triangles, lines or points name missing vertices, or vertices at no finite place, and are left out.
     TrianglesUnusable = "TRIANGLES_UNUSABLE",
     /// Normals have no direction and are made anew.
     Normals = "NORMALS_UNUSABLE",

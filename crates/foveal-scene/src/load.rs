@@ -54,7 +54,7 @@ pub struct LoadOptions {
     pub max_vertices: u64,
     /// Most [`Instance`](crate::Instance)s: primitives times nodes times instancing elements.
     pub max_instances: u64,
-    /// Most triangles, each counted once per instance.
+    /// Most triangles, lines and points, each counted once per instance.
     pub max_triangles: u64,
     /// Bytes of memory that a file may ask for per byte of its own, beyond 160 MiB that any file
     /// may have. Scenes stay far below the default; a file that goes beyond it was made to fill the

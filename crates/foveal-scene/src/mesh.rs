@@ -1,4 +1,4 @@
-//! Triangle meshes: the geometry of one glTF primitive.
+//! Meshes: the geometry of one glTF primitive, of triangles, lines or points.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -10,7 +10,7 @@ use crate::Aabb;
 pub struct Vertex {
     /// Object space, metres.
     pub position: [f32; 3],
-    /// Unit normal, object space.
+    /// Unit normal, object space; zero at points and lines without normals, which are not lit.
     pub normal: [f32; 3],
     /// Unit tangent, object space; w = ±1 is the bitangent's sign as glTF defines it.
     /// All zero when the material has no normal texture and the file gives no tangents.
@@ -24,7 +24,7 @@ pub struct Vertex {
     pub reserved: u32,
 }
 
-/// An indexed triangle list.
+/// An indexed list of triangles, of lines or of points; of several kinds where a program makes it so.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh {
     /// Name in the file, with the primitive's number where a glTF mesh has several.
@@ -33,7 +33,13 @@ pub struct Mesh {
     pub vertices: Vec<Vertex>,
     /// Three per triangle, each below `vertices.len()`; counter-clockwise seen from the front.
     pub indices: Vec<u32>,
-    /// Smallest box around the vertices that the indices use, object space.
+    /// Both ends of each straight line, each below `vertices.len()`. Lines are some pixels wide at any
+    /// distance, and unlit where the vertices have no normals.
+    pub lines: Vec<[u32; 2]>,
+    /// The vertex of each point, below `vertices.len()`. Points are squares of some pixels at any
+    /// distance, and unlit where the vertices have no normals.
+    pub points: Vec<u32>,
+    /// Smallest box around the vertices that triangles, lines and points use, object space.
     pub bounds: Aabb,
     /// Morph targets or a skin change its vertices from pose to pose. Such a mesh belongs to one
     /// node; the vertices of a skinned one are in world space, and its instances' matrices the
@@ -46,5 +52,42 @@ impl Mesh {
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.indices.len() / 3
+    }
+
+    /// Number of lines and points.
+    #[must_use]
+    pub fn stroke_count(&self) -> usize {
+        self.lines.len() + self.points.len()
+    }
+
+    /// Whether it has neither triangles nor lines nor points.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.triangle_count() + self.stroke_count() == 0
+    }
+
+    /// Whether its lines and points are lit: their vertices have normals.
+    #[must_use]
+    pub fn lights_strokes(&self) -> bool {
+        let first = match (self.lines.first(), self.points.first()) {
+            (Some([from, _]), _) => from,
+            (None, Some(point)) => point,
+            (None, None) => return false,
+        };
+        let vertex = self.vertices.get(*first as usize);
+        vertex.is_some_and(|vertex| vertex.normal != [0.0; 3])
+    }
+
+    /// The vertices that triangles, lines and points use, some of them several times.
+    pub(crate) fn used(&self) -> impl Iterator<Item = u32> {
+        let lines = self.lines.as_flattened().iter();
+        let all = self.indices.iter().chain(lines).chain(&self.points);
+        all.copied()
+    }
+
+    /// Smallest box around the vertices that are used; `vertices` in place of its own.
+    pub(crate) fn bounds_of(&self, vertices: &[Vertex]) -> Aabb {
+        let position = |i: u32| vertices.get(i as usize).map(|v| v.position.into());
+        Aabb::of_points(self.used().filter_map(position))
     }
 }

@@ -130,15 +130,17 @@ impl Scene {
             .fold(Aabb::EMPTY, |b, o| b.union(o.bounds))
     }
 
-    /// Whether an instance's surface can hide things for certain: opaque (masks have holes, blended
+    /// Whether an instance's surface can hide things for certain: made of triangles, opaque (masks have holes, blended
     /// and transmissive surfaces show what is behind them) and rigid (an occluder that deforms would have to be
     /// prepared in every pose).
     #[must_use]
     pub fn can_occlude(&self, instance: &Instance) -> bool {
         let material = &self.materials[instance.material as usize];
+        let mesh = &self.meshes[instance.mesh as usize];
         material.alpha_mode == AlphaMode::Opaque
             && material.transmission.is_none()
-            && !self.meshes[instance.mesh as usize].deforms
+            && mesh.triangle_count() > 0
+            && !mesh.deforms
     }
 
     /// Whether the scene says of any object that it is meant to occlude.
@@ -153,6 +155,24 @@ impl Scene {
         self.instances
             .iter()
             .map(|i| self.meshes[i.mesh as usize].triangle_count() as u64)
+            .sum()
+    }
+
+    /// Number of lines drawn: each mesh's, once per instance.
+    #[must_use]
+    pub fn line_count(&self) -> u64 {
+        self.instances
+            .iter()
+            .map(|i| self.meshes[i.mesh as usize].lines.len() as u64)
+            .sum()
+    }
+
+    /// Number of points drawn: each mesh's, once per instance.
+    #[must_use]
+    pub fn point_count(&self) -> u64 {
+        self.instances
+            .iter()
+            .map(|i| self.meshes[i.mesh as usize].points.len() as u64)
             .sum()
     }
 

@@ -15,6 +15,7 @@ mod basis;
 mod compressed;
 mod file;
 mod rich;
+mod strokes;
 
 pub use basis::{ETC1S, KTX2_SIZE, UASTC, UASTC_ZSTD, ktx2_file, ktx2_texel};
 pub use compressed::{
@@ -22,3 +23,4 @@ pub use compressed::{
 };
 pub use file::File;
 pub use rich::{extended, rich};
+pub use strokes::strokes;

@@ -63,9 +63,9 @@ pub(crate) struct FrameUniform {
     pub(crate) irradiance: [[f32; 4]; 9],
     pub(crate) environment_turn: [f32; 2],
     pub(crate) environment_intensity: f32,
-    pub(crate) reserved_0: f32,
+    pub(crate) point_size: f32,
     pub(crate) environment_levels: [f32; 3],
-    pub(crate) reserved_1: f32,
+    pub(crate) line_width: f32,
 }
 
 impl FrameUniform {
@@ -111,12 +111,13 @@ impl FrameUniform {
             irradiance: irradiance.map(|c| (intensity * c).extend(0.0).to_array()),
             environment_turn: [turn.cos(), turn.sin()],
             environment_intensity: intensity,
-            reserved_0: 0.0,
+            // Anything thinner would have gaps.
+            point_size: settings.geometry.point_size_px.max(1.0),
             environment_levels: map.map_or([0.0; 3], |map| {
                 let levels = map.levels();
                 [levels.last, levels.per_doubling, levels.sharpness]
             }),
-            reserved_1: 0.0,
+            line_width: settings.geometry.line_width_px.max(1.0),
         }
     }
 }

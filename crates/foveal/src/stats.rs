@@ -36,6 +36,10 @@ pub struct SceneStats {
     pub instances: u64,
     /// Triangles, instanced ones counted each time.
     pub triangles: u64,
+    /// Lines, instanced ones counted each time.
+    pub lines: u64,
+    /// Points, instanced ones counted each time.
+    pub points: u64,
     /// Punctual lights.
     pub lights: u64,
 }

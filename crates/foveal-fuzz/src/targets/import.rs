@@ -8,7 +8,7 @@
 use foveal_scene::{Clip, LoadOptions, MissingNormals, Scene, SceneError, load_bytes};
 use foveal_seeds::{
     ETC1S, File, UASTC, UASTC_ZSTD, draco_file, draco_stream, extended, grid_file, ktx2_file,
-    meshopt_file, rich, webp_file,
+    meshopt_file, rich, strokes, webp_file,
 };
 
 const WHOLE_FILE: u8 = 1;
@@ -70,7 +70,9 @@ fn container(parts: &[u8]) -> Vec<u8> {
 fn check(scene: &Scene) {
     for mesh in &scene.meshes {
         let count = mesh.vertices.len();
-        assert!(mesh.indices.iter().all(|&i| (i as usize) < count));
+        let lines = mesh.lines.as_flattened();
+        let used = mesh.indices.iter().chain(lines).chain(&mesh.points);
+        assert!(used.copied().all(|i| (i as usize) < count));
     }
     for instance in &scene.instances {
         assert!((instance.mesh as usize) < scene.meshes.len());
@@ -102,6 +104,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
     let files = [
         rich(),
         extended(),
+        strokes(),
         grid_file(),
         meshopt_file("EXT_meshopt_compression", 0),
         meshopt_file("KHR_meshopt_compression", 1),
@@ -137,7 +140,8 @@ mod tests {
             let options = LoadOptions::default();
             let scene = load_bytes(&bytes, "seed", &options, &|_| Err(String::new()));
             let scene = scene.unwrap_or_else(|e| panic!("seed {i}: {e}"));
-            assert!(scene.triangle_count() > 0, "seed {i}");
+            let strokes = scene.line_count() + scene.point_count();
+            assert!(scene.triangle_count() + strokes > 0, "seed {i}");
             for warning in &scene.warnings {
                 assert!(
                     warning.text.contains("SpecularGlossiness"),

@@ -93,7 +93,7 @@ impl MeshBuilder {
             ),
             vertices: self.vertices,
             indices: self.indices,
-            deforms: false,
+            ..Mesh::default()
         }
     }
 

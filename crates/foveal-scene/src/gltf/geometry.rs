@@ -11,7 +11,7 @@ use super::{morphs, normals, tangents, topology};
 use crate::error::{Flaw, Parsed};
 use crate::load::MissingNormals;
 use crate::pose::Shape;
-use crate::{Aabb, Code, Mesh, Vertex, Warning};
+use crate::{Code, Mesh, Vertex, Warning};
 
 /// What a primitive's geometry depends on; equal requests share one mesh.
 #[derive(Clone, PartialEq, Eq, Hash)]
@@ -31,13 +31,7 @@ pub(crate) struct Built {
     pub(crate) notes: Vec<Warning>,
 }
 
-/// Smallest box around the vertices that `indices` name.
-pub(crate) fn used_bounds(vertices: &[Vertex], indices: &[u32]) -> Aabb {
-    let position = |&i: &u32| vertices.get(i as usize).map(|v| v.position.into());
-    Aabb::of_points(indices.iter().filter_map(position))
-}
-
-/// Builds the mesh of a primitive; empty for one that makes no triangles.
+/// Builds the mesh of a primitive; empty for one that makes nothing.
 pub(crate) fn build(
     request: &Request,
     reader: Reader<'_>,
@@ -45,16 +39,6 @@ pub(crate) fn build(
 ) -> Parsed<Built> {
     let def = &request.primitive;
     let mut notes = Vec::new();
-    if def.mode == Mode::NoTriangles {
-        notes.push(Warning::new(
-            Code::PrimitiveMode,
-            "is made of points or lines, which are not drawn",
-        ));
-        return Ok(Built {
-            notes,
-            ..Built::default()
-        });
-    }
     let Some(position) = def.attributes.position else {
         notes.push(Warning::new(
             Code::PrimitivePositions,
@@ -77,16 +61,20 @@ pub(crate) fn build(
         ),
         None => None,
     };
-    let mut indices = topology::triangles(def.mode, indices, positions.len());
-    drop_unusable(&mut indices, &positions, &mut notes);
+    let mut indices = topology::lists(def.mode, indices, positions.len());
+    drop_unusable(&mut indices, def.mode, &positions, &mut notes);
 
     let mut source = compact(&mut indices, positions.len());
     let mut vertices = assemble(request, reader, &positions, &source, &mut notes)?;
     drop(positions);
 
+    let makes_triangles = def.mode.makes_triangles();
+    let triangles: &[u32] = if makes_triangles { &indices } else { &[] };
     let mut flat = false;
     if def.attributes.normal.is_some() {
-        repair_normals(&mut vertices, &indices, &mut notes);
+        repair_normals(&mut vertices, triangles, &mut notes);
+    } else if !makes_triangles {
+        // Unlit: their normals stay zero.
     } else if missing_normals == MissingNormals::Flat {
         let corners = normals::unweld(&mut vertices, &mut indices);
         source = corners.iter().map(|&i| source[i as usize]).collect();
@@ -97,7 +85,8 @@ pub(crate) fn build(
     }
     // Tangents of the file belong to normals of the file.
     let has_tangents = def.attributes.tangent.is_some() && def.attributes.normal.is_some();
-    if let Some(uvs) = request.tangents_for.filter(|_| !has_tangents)
+    let generates_tangents = makes_triangles && !has_tangents;
+    if let Some(uvs) = request.tangents_for.filter(|_| generates_tangents)
         && let Some(split) = tangents::generate(&mut vertices, &mut indices, uvs)
     {
         source = split.iter().map(|&i| source[i as usize]).collect();
@@ -107,19 +96,26 @@ pub(crate) fn build(
         shape.rest.clone_from(&vertices);
         shape.flat = flat;
     }
-    let mesh = Mesh {
-        name: String::new(),
-        bounds: used_bounds(&vertices, &indices),
+    let mut mesh = Mesh {
         vertices,
-        indices,
-        // Until a node gives it a skin or weights.
-        deforms: false,
+        ..Mesh::default()
     };
+    match def.mode.corners() {
+        1 => mesh.points = indices,
+        2 => mesh.lines = indices.as_chunks::<2>().0.to_vec(),
+        _ => mesh.indices = indices,
+    }
+    mesh.bounds = mesh.bounds_of(&mesh.vertices);
     Ok(Built { mesh, shape, notes })
 }
 
-/// Leaves out triangles that name missing vertices or vertices at no place.
-fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec<Warning>) {
+/// Leaves out triangles, lines and points that name missing vertices or vertices at no place.
+fn drop_unusable(
+    indices: &mut Vec<u32>,
+    mode: Mode,
+    positions: &[[f32; 3]],
+    notes: &mut Vec<Warning>,
+) {
     let finite = |p: &[f32; 3]| p.iter().all(|x| x.is_finite());
     let all_finite = positions.iter().all(finite);
     let all_there = indices.iter().all(|&i| (i as usize) < positions.len());
@@ -129,16 +125,21 @@ fn drop_unusable(indices: &mut Vec<u32>, positions: &[[f32; 3]], notes: &mut Vec
     let before = indices.len();
     let usable = |i: &u32| positions.get(*i as usize).is_some_and(finite);
     *indices = indices
-        .chunks_exact(3)
+        .chunks_exact(mode.corners())
         .filter(|t| t.iter().all(usable))
         .flatten()
         .copied()
         .collect();
-    let dropped = (before - indices.len()) / 3;
+    let dropped = (before - indices.len()) / mode.corners();
     if dropped > 0 {
+        let what = match mode.corners() {
+            1 => "points",
+            2 => "lines",
+            _ => "triangles",
+        };
         notes.push(Warning::new(Code::TrianglesUnusable, format!(
-            "{dropped} of {} triangles name vertices that do not exist or lie at no finite place, and are left out",
-            before / 3
+            "{dropped} of {} {what} name vertices that do not exist or lie at no finite place, and are left out",
+            before / mode.corners()
         )));
     }
 }

@@ -6,14 +6,40 @@ use super::json::Obj;
 use crate::Code;
 use crate::error::{Flaw, Parsed};
 
-/// What the vertices of a primitive make, as far as triangles can express it.
+/// What the vertices of a primitive make.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) enum Mode {
+    Points,
+    Lines,
+    LineLoop,
+    LineStrip,
     Triangles,
     Strip,
     Fan,
-    /// Points or lines.
-    NoTriangles,
+}
+
+impl Mode {
+    /// Corners of each of its things: 1 of a point, 2 of a line, 3 of a triangle.
+    pub(crate) fn corners(self) -> usize {
+        match self {
+            Self::Points => 1,
+            Self::Lines | Self::LineLoop | Self::LineStrip => 2,
+            Self::Triangles | Self::Strip | Self::Fan => 3,
+        }
+    }
+
+    pub(crate) fn makes_triangles(self) -> bool {
+        self.corners() == 3
+    }
+
+    /// The most corners that lists of it have for this many corners of the file.
+    pub(crate) fn corners_in_lists(self, named: u64) -> u64 {
+        match self {
+            Self::Points | Self::Lines | Self::Triangles => named,
+            Self::LineLoop | Self::LineStrip => named.saturating_mul(2),
+            Self::Strip | Self::Fan => named.saturating_mul(3),
+        }
+    }
 }
 
 /// Attribute accessors that are read; all others are left alone.
@@ -158,7 +184,10 @@ fn parse_primitive(o: Obj<'_>, counts: &Counts) -> Parsed<PrimitiveDef> {
         indices,
         draco,
         mode: match o.uint("mode")? {
-            Some(0..=3) => Mode::NoTriangles,
+            Some(0) => Mode::Points,
+            Some(1) => Mode::Lines,
+            Some(2) => Mode::LineLoop,
+            Some(3) => Mode::LineStrip,
             None | Some(4) => Mode::Triangles,
             Some(5) => Mode::Strip,
             Some(6) => Mode::Fan,

@@ -43,7 +43,6 @@ mod tests;
 
 pub(crate) use budget::Budget;
 pub(crate) use cameras::rigid;
-pub(crate) use geometry::used_bounds;
 pub(crate) use lights::place as place_light;
 pub(crate) use nodes::rotation;
 pub(crate) use normals::plane_normal;
@@ -197,7 +196,7 @@ fn build(
     if shown.is_empty() {
         warn.push(Warning::new(
             Code::SceneEmpty,
-            "the scene shows no triangles",
+            "the scene shows no triangles, lines or points",
         ));
     }
     let mut rig = rigging::Rigging::begin(reader, &hierarchy, options, warn)?;

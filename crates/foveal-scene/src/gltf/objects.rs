@@ -217,7 +217,8 @@ fn count_uses(shown: &[Shown], meshes: &[Mesh], options: &LoadOptions) -> Parsed
         for part in &one.parts {
             uses[part.mesh as usize] += elements;
             instances += elements;
-            triangles += elements * meshes[part.mesh as usize].triangle_count() as u64;
+            let mesh = &meshes[part.mesh as usize];
+            triangles += elements * (mesh.triangle_count() + mesh.stroke_count()) as u64;
         }
     }
     if instances > options.max_instances {
@@ -227,7 +228,7 @@ fn count_uses(shown: &[Shown], meshes: &[Mesh], options: &LoadOptions) -> Parsed
         return Err(Flaw::beyond(
             Limit::Triangles,
             format!(
-                "wants {triangles} triangles in all instances; the limit is {}",
+                "wants {triangles} triangles, lines and points in all instances; the limit is {}",
                 options.max_triangles
             ),
         )

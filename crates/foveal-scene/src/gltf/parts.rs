@@ -8,7 +8,7 @@ use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
 use super::materials::{DEFAULT_UV_SETS, MaterialDef, UvSets};
-use super::meshes::{Attributes, Mode, PrimitiveDef};
+use super::meshes::{Attributes, PrimitiveDef};
 use super::nodes::Hierarchy;
 use super::objects::{self, Part, Shown};
 use super::reader::Reader;
@@ -139,24 +139,22 @@ impl Geometry {
             let count = |a: u32| reader.accessor(a).count as u64;
             let positions = def.attributes.position.map_or(0, count);
             let named = def.indices.map_or(positions, count);
-            let of_triangles = match def.mode {
-                Mode::Strip | Mode::Fan => named.saturating_mul(3),
-                _ => named,
-            };
+            let made_corners = def.mode.corners_in_lists(named);
             // Flat shading gives every corner a vertex of its own.
-            let flat =
-                def.attributes.normal.is_none() && options.missing_normals == MissingNormals::Flat;
+            let flat = def.mode.makes_triangles()
+                && def.attributes.normal.is_none()
+                && options.missing_normals == MissingNormals::Flat;
             let made = if flat {
-                of_triangles
+                made_corners
             } else {
-                positions.min(of_triangles)
+                positions.min(made_corners)
             };
             let morphs = 1 + def.targets.len() as u64;
             vertices = vertices.saturating_add(made.saturating_mul(morphs));
-            corners = corners.saturating_add(of_triangles);
+            corners = corners.saturating_add(made_corners);
             bytes = bytes
                 .saturating_add(made.saturating_mul(vertex_bytes(def)))
-                .saturating_add(of_triangles.saturating_mul(INDEX_BYTES));
+                .saturating_add(made_corners.saturating_mul(INDEX_BYTES));
             if positions_are_unbacked(reader, def) {
                 unbacked = unbacked.saturating_add(made);
             }
@@ -185,7 +183,7 @@ impl Geometry {
     }
 }
 
-/// Memory per corner of a triangle while a mesh is built: as read, and as kept.
+/// Memory per corner while a mesh is built: as read, and as kept.
 const INDEX_BYTES: u64 = 8;
 
 /// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what
@@ -209,7 +207,7 @@ fn positions_are_unbacked(reader: Reader<'_>, def: &PrimitiveDef) -> bool {
     position.is_some_and(|a| reader.accessor(a).unbacked() > 0)
 }
 
-/// Forgets meshes without triangles: they have been noted, and there is nothing to draw.
+/// Forgets empty meshes: they have been noted, and there is nothing to draw.
 pub(crate) fn drop_empty_meshes(
     shown: &mut Vec<Shown>,
     shapes: Vec<Option<Shape>>,
@@ -219,8 +217,8 @@ pub(crate) fn drop_empty_meshes(
     let mut kept = Vec::new();
     let mut number: Vec<Option<u32>> = Vec::with_capacity(meshes.len());
     for (mesh, shape) in meshes.into_iter().zip(shapes) {
-        number.push((mesh.triangle_count() > 0).then_some(kept.len() as u32));
-        if mesh.triangle_count() > 0 {
+        number.push((!mesh.is_empty()).then_some(kept.len() as u32));
+        if !mesh.is_empty() {
             scene.meshes.push(mesh);
             kept.push(shape);
         }

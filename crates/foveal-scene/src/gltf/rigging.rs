@@ -127,8 +127,7 @@ impl Rigging {
                 let first = !std::mem::replace(&mut taken[part.mesh as usize], true);
                 if !first {
                     let mesh = &scene.meshes[part.mesh as usize];
-                    let bytes = size_of_val(mesh.vertices.as_slice()) * 2
-                        + size_of_val(mesh.indices.as_slice());
+                    let bytes = size_of_val(mesh.vertices.as_slice()) * 2 + 4 * mesh.used().count();
                     let budget = &reader.buffers.budget;
                     budget
                         .take(bytes as u64, "a deforming mesh of its own")

@@ -82,11 +82,12 @@ impl Builder {
         self.materials.push(material)
     }
 
-    /// A mesh of one primitive at a node of its own.
-    pub(super) fn object(&mut self, name: &str, primitive: &serde_json::Value) {
+    /// A mesh of these primitives, of at least one, at a node of its own.
+    pub(super) fn object(&mut self, name: &str, primitives: Vec<serde_json::Value>) {
         let name = json!(name);
+        let primitives = serde_json::Value::from(primitives);
         let mesh = self.meshes.push(format_args!(
-            "{{\"name\":{name},\"primitives\":[{primitive}]}}"
+            "{{\"name\":{name},\"primitives\":{primitives}}}"
         ));
         self.nodes
             .push(format_args!("{{\"name\":{name},\"mesh\":{mesh}}}"));

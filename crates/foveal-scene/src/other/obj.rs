@@ -3,6 +3,7 @@
 //! Read here and not by the crate `tobj` (4.0.5), which refuses what exporters write (comments after
 //! faces, bytes that are not UTF-8, `usemtl` without a name), fills lines as if they were polygons,
 //! and takes memory without bound for short files.
+//! Lines become lists of two vertices each.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -63,18 +64,43 @@ pub(super) fn name_of(text: &str) -> String {
     text[..end].to_owned()
 }
 
-/// Numbers of a face's corner: position, texture coordinates, normal.
+/// Numbers of a corner: position, texture coordinates, normal.
 type Corner = (u32, Option<u32>, Option<u32>);
 
-/// Triangles of one name and one material.
+/// Triangles, lines or points.
 #[derive(Default)]
-struct Group {
-    name: String,
-    material: Option<u32>,
+struct Shapes {
     corners: Vec<Corner>,
     number_of: HashMap<Corner, u32>,
     indices: Vec<u32>,
 }
+
+impl Shapes {
+    /// The number of a corner, which is added where it is new.
+    fn number(&mut self, corner: Corner) -> u32 {
+        let next = self.corners.len() as u32;
+        let number = *self.number_of.entry(corner).or_insert(next);
+        if number == next {
+            self.corners.push(corner);
+        }
+        number
+    }
+}
+
+/// What has one name and one material.
+#[derive(Default)]
+struct Group {
+    name: String,
+    material: Option<u32>,
+    triangles: Shapes,
+    lines: Shapes,
+    points: Shapes,
+}
+
+/// glTF's modes of primitives.
+pub(super) const POINTS: u32 = 0;
+pub(super) const LINES: u32 = 1;
+pub(super) const TRIANGLES: u32 = 4;
 
 #[derive(Default)]
 struct File {
@@ -87,7 +113,8 @@ struct File {
     libraries: Vec<String>,
     /// Names of materials, in the order of their first use.
     used: Vec<String>,
-    faces: usize,
+    /// Faces, lines and points.
+    shapes: usize,
     dropped: usize,
     not_drawn: usize,
 }
@@ -104,14 +131,14 @@ pub(super) fn convert(
     let materials = file.add_materials(bytes.len(), options, resolver, &mut builder, &mut notes)?;
     if file.dropped > 0 {
         let text = format!(
-            "{} of {} faces have fewer than three corners or name vertices that do not exist, and are left out",
-            file.dropped, file.faces
+            "{} of {} faces, lines and points have too few corners or name vertices that do not exist, and are left out",
+            file.dropped, file.shapes
         );
         notes.push(Warning::new(Code::TrianglesUnusable, text));
     }
     if file.not_drawn > 0 {
         let text = format!(
-            "has {} points, lines or free-form surfaces, which are not drawn",
+            "has {} free-form curves and surfaces, which are not drawn",
             file.not_drawn
         );
         notes.push(Warning::new(Code::PrimitiveMode, text));
@@ -167,7 +194,7 @@ impl File {
                     }
                     file.libraries.push(rest.to_owned());
                 }
-                "f" | "fo" => {
+                "f" | "fo" | "l" | "p" => {
                     let group = *current.get_or_insert_with(|| {
                         *group_of.entry((name.clone(), material)).or_insert_with(|| {
                             file.groups.push(Group {
@@ -178,7 +205,12 @@ impl File {
                             file.groups.len() - 1
                         })
                     });
-                    file.add_face(group, rest).map_err(|e| broken(&e))?;
+                    match key {
+                        "l" => file.add_line(group, rest),
+                        "p" => file.add_points(group, rest),
+                        _ => file.add_face(group, rest),
+                    }
+                    .map_err(|e| broken(&e))?;
                     if file.groups.len() as u64 > options.max_instances {
                         let cause = format!(
                             "wants more objects than the limit of {}",
@@ -187,7 +219,7 @@ impl File {
                         return Err(Refusal::TooLarge(Some(Limit::Instances), cause));
                     }
                 }
-                "p" | "l" | "curv" | "curv2" | "surf" => file.not_drawn += 1,
+                "curv" | "curv2" | "surf" => file.not_drawn += 1,
                 _ => {}
             }
         }
@@ -222,9 +254,9 @@ impl File {
 
     /// Adds the triangles of a polygon; one that names what does not exist is counted.
     fn add_face(&mut self, group: usize, text: &str) -> Result<(), String> {
-        self.faces += 1;
-        let counts = [self.positions.len(), self.uvs.len(), self.normals.len()];
-        let group = &mut self.groups[group];
+        self.shapes += 1;
+        let counts = self.counts();
+        let group = &mut self.groups[group].triangles;
         let (mut first, mut last) = (None, None);
         let mut corners = 0;
         let before = group.indices.len();
@@ -235,11 +267,7 @@ impl File {
                 return Ok(());
             };
             corners += 1;
-            let next = group.corners.len() as u32;
-            let number = *group.number_of.entry(corner).or_insert(next);
-            if number == next {
-                group.corners.push(corner);
-            }
+            let number = group.number(corner);
             match (first, last) {
                 (None, _) => first = Some(number),
                 (Some(first), Some(last)) => group.indices.extend([first, last, number]),
@@ -253,6 +281,48 @@ impl File {
             self.dropped += 1;
         }
         Ok(())
+    }
+
+    /// Adds the segments of a line; one that names what does not exist is counted.
+    fn add_line(&mut self, group: usize, text: &str) -> Result<(), String> {
+        self.shapes += 1;
+        let counts = self.counts();
+        let lines = &mut self.groups[group].lines;
+        let before = lines.indices.len();
+        let mut last = None;
+        for word in text.split_whitespace().take_while(|w| !w.starts_with('#')) {
+            let Some((position, uv, _)) = corner(word, counts)? else {
+                lines.indices.truncate(before);
+                break;
+            };
+            let number = lines.number((position, uv, None));
+            if let Some(last) = last.replace(number) {
+                lines.indices.extend([last, number]);
+            }
+        }
+        self.dropped += usize::from(lines.indices.len() == before);
+        Ok(())
+    }
+
+    /// Adds points; those that do not exist are counted.
+    fn add_points(&mut self, group: usize, text: &str) -> Result<(), String> {
+        let counts = self.counts();
+        let points = &mut self.groups[group].points;
+        for word in text.split_whitespace().take_while(|w| !w.starts_with('#')) {
+            self.shapes += 1;
+            match corner(word, counts)? {
+                Some((position, uv, _)) => {
+                    let number = points.number((position, uv, None));
+                    points.indices.push(number);
+                }
+                None => self.dropped += 1,
+            }
+        }
+        Ok(())
+    }
+
+    fn counts(&self) -> [usize; 3] {
+        [self.positions.len(), self.uvs.len(), self.normals.len()]
     }
 
     /// Adds the materials that faces use; returns the number of each in the document.
@@ -327,10 +397,39 @@ impl File {
         builder: &mut Builder,
         notes: &mut Vec<Warning>,
     ) {
-        if group.indices.is_empty() {
-            return;
+        let material = group.material.and_then(|m| materials[m as usize]);
+        let mut primitives = Vec::new();
+        let kinds = [
+            (&group.triangles, TRIANGLES),
+            (&group.lines, LINES),
+            (&group.points, POINTS),
+        ];
+        for (shapes, mode) in kinds {
+            if shapes.indices.is_empty() {
+                continue;
+            }
+            let attributes = self.attributes(&shapes.corners, &group.name, builder, notes);
+            let mut primitive = json!({
+                "attributes": attributes, "indices": builder.indices(&shapes.indices), "mode": mode
+            });
+            if let Some(material) = material {
+                primitive["material"] = json!(material);
+            }
+            primitives.push(primitive);
         }
-        let corners = &group.corners;
+        if !primitives.is_empty() {
+            builder.object(&group.name, primitives);
+        }
+    }
+
+    /// The attributes of these corners.
+    fn attributes(
+        &self,
+        corners: &[Corner],
+        object: &str,
+        builder: &mut Builder,
+        notes: &mut Vec<Warning>,
+    ) -> serde_json::Value {
         let positions: Vec<[f32; 3]> = corners
             .iter()
             .map(|c| self.positions[c.0 as usize])
@@ -342,10 +441,7 @@ impl File {
             let normals: Vec<[f32; 3]> = corners.iter().map(of).collect();
             attributes["NORMAL"] = json!(builder.vectors(&normals));
         } else if with_normal > 0 {
-            let text = format!(
-                "object {}: not all faces have normals; all are made anew",
-                group.name
-            );
+            let text = format!("object {object}: not all faces have normals; all are made anew");
             notes.push(Warning::new(Code::Normals, text));
         }
         if corners.iter().any(|c| c.1.is_some()) {
@@ -358,14 +454,7 @@ impl File {
             let colors: Vec<[f32; 3]> = corners.iter().map(of).collect();
             attributes["COLOR_0"] = json!(builder.vectors(&colors));
         }
-        let mut primitive = json!({
-            "attributes": attributes, "indices": builder.indices(&group.indices)
-        });
-        let material = group.material.and_then(|m| materials[m as usize]);
-        if let Some(material) = material {
-            primitive["material"] = json!(material);
-        }
-        builder.object(&group.name, &primitive);
+        attributes
     }
 }
 

@@ -7,7 +7,7 @@ use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
 use serde_json::json;
 
 use super::builder::Builder;
-use super::obj::too_large;
+use super::obj::{LINES, POINTS, TRIANGLES, too_large};
 use super::{Refusal, check_memory, linear};
 use crate::error::Limit;
 use crate::{Code, LoadOptions, Warning};
@@ -16,7 +16,8 @@ use crate::{Code, LoadOptions, Warning};
 const MAX_LINE: usize = 4 << 10;
 const MAX_LINES: usize = 10_000;
 
-/// The mesh as one object; polygons are cut into fans.
+/// The mesh as one object; polygons are cut into fans. Without faces its edges become lines, and
+/// without these its vertices points.
 pub(super) fn convert(
     bytes: &[u8],
     options: &LoadOptions,
@@ -27,7 +28,7 @@ pub(super) fn convert(
         .read_header(&mut reader)
         .map_err(|error| short(&error))?;
     check_counts(&header, bytes.len(), options)?;
-    let (mut vertices, mut faces) = (Vec::new(), Vec::new());
+    let (mut vertices, mut faces, mut edges) = (Vec::new(), Vec::new(), Vec::new());
     for (name, element) in &header.elements {
         match name.as_str() {
             "vertex" => {
@@ -37,6 +38,11 @@ pub(super) fn convert(
             }
             "face" => {
                 faces = Parser::<Face>::new()
+                    .read_payload_for_element(&mut reader, element, &header)
+                    .map_err(|error| short(&error))?;
+            }
+            "edge" => {
+                edges = Parser::<Edge>::new()
                     .read_payload_for_element(&mut reader, element, &header)
                     .map_err(|error| short(&error))?;
             }
@@ -52,15 +58,18 @@ pub(super) fn convert(
         element.is_some_and(|element| element.properties.contains_key(key))
     };
     let mut notes = Vec::new();
-    let indices = fans(&faces, vertices.len(), &mut notes);
-    if faces.is_empty() {
-        let text = if header.elements.contains_key("tristrips") {
-            "has triangle strips instead of faces, which are not drawn"
-        } else {
-            "has no faces: points are not drawn"
-        };
+    let has_strips = header.elements.contains_key("tristrips");
+    if faces.is_empty() && has_strips {
+        let text = "has triangle strips instead of faces, which are not drawn";
         notes.push(Warning::new(Code::PrimitiveMode, text));
     }
+    let (mode, indices) = if !faces.is_empty() || has_strips {
+        (TRIANGLES, fans(&faces, vertices.len(), &mut notes))
+    } else if !edges.is_empty() {
+        (LINES, segments(&edges, vertices.len(), &mut notes))
+    } else {
+        (POINTS, (0..vertices.len() as u32).collect())
+    };
     if has("face", "texcoord") {
         let text = "has texture coordinates of faces, which are not read; those of vertices are";
         notes.push(Warning::new(Code::MaterialIgnored, text));
@@ -93,11 +102,13 @@ pub(super) fn convert(
             let texture = json!({ "index": builder.texture(&file) });
             surface["pbrMetallicRoughness"]["baseColorTexture"] = texture;
         }
-        let primitive = json!({
-            "attributes": attributes, "indices": builder.indices(&indices),
-            "material": builder.material(&surface)
+        let mut primitive = json!({
+            "attributes": attributes, "mode": mode, "material": builder.material(&surface)
         });
-        builder.object("", &primitive);
+        if mode != POINTS {
+            primitive["indices"] = json!(builder.indices(&indices));
+        }
+        builder.object("", vec![primitive]);
     }
     Ok((builder.glb().map_err(too_large)?, notes))
 }
@@ -135,7 +146,7 @@ fn check_counts(header: &Header, len: usize, options: &LoadOptions) -> Result<()
         }
         let (limit, most) = match name.as_str() {
             "vertex" => (Limit::Vertices, options.max_vertices),
-            "face" => (Limit::Triangles, options.max_triangles),
+            "face" | "edge" => (Limit::Triangles, options.max_triangles),
             _ => continue,
         };
         if count as u64 > most {
@@ -145,9 +156,28 @@ fn check_counts(header: &Header, len: usize, options: &LoadOptions) -> Result<()
     }
     let vertices = header.elements.get("vertex").map_or(0, |e| e.count);
     let faces = header.elements.get("face").map_or(0, |e| e.count);
+    let edges = header.elements.get("edge").map_or(0, |e| e.count);
     let (corner, face) = (size_of::<Corner>() as u64 + 80, 64);
     check_memory("vertices", vertices, corner, len, options)?;
+    check_memory("edges", edges, face, len, options)?;
     check_memory("faces", faces, face, len, options)
+}
+
+/// Lines of all edges that name vertices that exist.
+fn segments(edges: &[Edge], vertices: usize, notes: &mut Vec<Warning>) -> Vec<u32> {
+    let is_there = |edge: &&Edge| edge.ends.iter().all(|&end| (end as usize) < vertices);
+    let indices: Vec<u32> = (edges.iter().filter(is_there))
+        .flat_map(|edge| edge.ends)
+        .collect();
+    let dropped = edges.len() - indices.len() / 2;
+    if dropped > 0 {
+        let text = format!(
+            "{dropped} of {} edges name vertices that do not exist, and are left out",
+            edges.len()
+        );
+        notes.push(Warning::new(Code::TrianglesUnusable, text));
+    }
+    indices
 }
 
 /// Triangles of all faces that name vertices that exist.
@@ -255,6 +285,38 @@ impl PropertyAccess for Face {
         }
         // Negative numbers name no vertex.
         self.corners = property.to_u32_list().unwrap_or_default();
+        PropertyAccessResult::Set
+    }
+}
+
+struct Edge {
+    ends: [u32; 2],
+}
+
+impl PropertyAccess for Edge {
+    fn new() -> Self {
+        Self {
+            ends: [u32::MAX; 2],
+        }
+    }
+
+    fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
+        let end = match name {
+            "vertex1" => 0,
+            "vertex2" => 1,
+            _ => return PropertyAccessResult::Ignored,
+        };
+        // Negative numbers, and what is none, name no vertex.
+        let number = match property {
+            Property::Char(n) => u32::try_from(n).ok(),
+            Property::Short(n) => u32::try_from(n).ok(),
+            Property::Int(n) => u32::try_from(n).ok(),
+            Property::UChar(n) => Some(n.into()),
+            Property::UShort(n) => Some(n.into()),
+            Property::UInt(n) => Some(n),
+            _ => None,
+        };
+        self.ends[end] = number.unwrap_or(u32::MAX);
         PropertyAccessResult::Set
     }
 }

@@ -99,7 +99,7 @@ fn what_exporters_write_is_understood() {
     assert_eq!(scene.triangle_count(), 2);
     let red = &scene.materials[scene.instances[0].material as usize];
     assert_eq!(red.base_color.to_array(), [0.5, 0.5, 0.5, 1.0]);
-    let text = "2 of 4 faces have fewer than three corners or name vertices that do not exist, and are left out";
+    let text = "2 of 4 faces, lines and points have too few corners or name vertices that do not exist, and are left out";
     let texts: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
     assert_eq!(texts, [text]);
 }
@@ -205,8 +205,30 @@ fn warnings_beyond_the_hundredth_are_counted_once() {
 }
 
 #[test]
-fn lines_alone_are_a_warning() {
-    let scene = load("a.obj", b"v 0 0 0\nv 1 0 0\nv 1 1 0\nl 1 2 3\n", &[]).unwrap();
+fn lines_and_points_of_an_obj_file_are_read() {
+    let text =
+        b"v 0 0 0\nv 1 0 0\nv 1 1 0\nv 5 5 5\nvt 0 0\nl 1/1 2 3/1 1\np 2 -1\nl 4\np 9\nl 1 9\n";
+    let scene = load("a.obj", text, &[]).unwrap();
+    let [lines, points] = &scene.meshes[..] else {
+        panic!("{} meshes", scene.meshes.len());
+    };
+    let ends: Vec<[[f32; 3]; 2]> = (lines.lines.iter())
+        .map(|ends| ends.map(|end| lines.vertices[end as usize].position))
+        .collect();
+    let [a, b, c] = [[0., 0., 0.], [1., 0., 0.], [1., 1., 0.]];
+    assert_eq!(ends, [[a, b], [b, c], [c, a]]);
+    let at = |&point: &u32| points.vertices[point as usize].position;
+    let places: Vec<[f32; 3]> = points.points.iter().map(at).collect();
+    assert_eq!(places, [b, [5.; 3]]);
+    assert_eq!(scene.objects.len(), 1);
+    assert_eq!((scene.line_count(), scene.point_count()), (3, 2));
+    let sentence = "3 of 6 faces, lines and points have too few corners or name vertices that do not exist, and are left out";
+    assert_eq!(scene.warnings[0].text, sentence);
+}
+
+#[test]
+fn curves_are_a_warning() {
+    let scene = load("a.obj", b"v 0 0 0\ncurv 0 1 1\n", &[]).unwrap();
     assert_eq!(scene.warnings[0].code, Code::PrimitiveMode);
 }
 
@@ -349,11 +371,20 @@ fn broken_files_are_named_with_their_format() {
 }
 
 #[test]
-fn points_alone_are_a_warning() {
-    let text = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n";
+fn a_ply_file_without_faces_is_points_or_lines() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty uchar red\nend_header\n1 255\n2 0\n";
     let scene = load("points.ply", text.as_bytes(), &[]).unwrap();
-    assert_eq!(scene.warnings[0].code, Code::PrimitiveMode);
-    assert_eq!(scene.triangle_count(), 0);
+    assert_eq!(scene.warnings, []);
+    let mesh = &scene.meshes[0];
+    assert_eq!(mesh.points, [0, 1]);
+    assert_eq!(mesh.vertices[0].color, [255, 0, 0, 255]);
+    assert!(!mesh.lights_strokes() && scene.triangle_count() == 0);
+
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float nx\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n1 1\n2 1\n1 0\n-1 0\n";
+    let scene = load("edges.ply", text.as_bytes(), &[]).unwrap();
+    assert_eq!(scene.meshes[0].lines, [[1, 0]]);
+    assert!(scene.meshes[0].lights_strokes());
+    assert_eq!(scene.warnings[0].code, Code::TrianglesUnusable);
 }
 
 proptest! {

@@ -154,7 +154,7 @@ impl RigData {
                 let matrices = deformer.skin.map(|s| joints[s as usize].as_slice());
                 deformer.shape.deform(weights, matrices, &mut vertices);
                 let bounds = match scene.meshes.get(deformer.mesh as usize) {
-                    Some(mesh) => gltf::used_bounds(&vertices, &mesh.indices),
+                    Some(mesh) => mesh.bounds_of(&vertices),
                     None => Aabb::EMPTY,
                 };
                 (vertices, bounds)

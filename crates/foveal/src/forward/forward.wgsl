@@ -1,10 +1,14 @@
-// Forward pass: surfaces with lobes, at the depth where the G-buffer has them, blended surfaces, back
-// to front over the deferred picture, and surfaces that light passes.
+// Forward pass: points and lines, surfaces with lobes, at the depth where the G-buffer has them, what
+// is blended, back to front over the deferred picture, and surfaces that light passes.
 
 #variant
 #variant CLIPPED
 #variant LAYERED
 #variant REDUCED
+#variant STROKES
+#variant STROKES CLIPPED
+#variant STROKES LAYERED
+#variant STROKES REDUCED
 #variant LOBES
 #variant LOBES CLIPPED
 #variant LOBES LAYERED
@@ -26,6 +30,9 @@
 #import shared/instances.wgsl
 #import shared/material_bindings.wgsl
 #endif
+#ifdef STROKES
+#import shared/material_bindings.wgsl
+#endif
 
 // Each eye is drawn to a layer of its own.
 override LAYERED: bool = false;
@@ -35,6 +42,14 @@ override SAMPLED: bool = false;
 #ifdef TRANSMISSION
 // Alpha cuts holes.
 override MASKED: bool = false;
+#endif
+#ifdef STROKES
+// Alpha cuts holes.
+override MASKED: bool = false;
+// Alpha is ignored.
+override OPAQUE: bool = false;
+// They have normals.
+override LIT: bool = false;
 #endif
 #ifdef LOBES
 // Alpha is ignored.
@@ -67,13 +82,23 @@ fn target_position(in: VertexOut) -> vec2f {
 
 @fragment
 fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) vec4f {
+#ifdef STROKES
+    // A quad that faces the eye: its winding says nothing.
+    let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, true);
+#else
     let m = material_at(in.world, in.normal, in.tangent, in.uv, in.color, front);
+#endif
 #ifdef LOBES
     let lobed = lobes_at(m.surface, in.normal, in.tangent, in.uv, select(-1.0, 1.0, front));
 #endif
     if is_beyond(in.now, in.instance) {
         discard;
     }
+#ifdef STROKES
+    if MASKED && m.alpha < material.alpha_cutoff {
+        discard;
+    }
+#endif
 #ifdef TRANSMISSION
     if MASKED && m.alpha < material.alpha_cutoff {
         discard;
@@ -94,8 +119,18 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) v
         return vec4f(radiance, 0.0);
     }
 #else
+#ifdef STROKES
+    // glTF 2.0, section 3.9.7: without normals, the sum of base colour and emission.
+    var light = m.surface.base_color + m.surface.emissive;
+    if LIT {
+        light = lit(m.surface, pixel, distance);
+    }
+    let radiance = min(light, vec3f(65504.0));
+    let alpha = select(saturate(m.alpha), 1.0, OPAQUE);
+#else
     let radiance = min(lit(m.surface, pixel, distance), vec3f(65504.0));
     let alpha = saturate(m.alpha);
+#endif
 #endif
     // Premultiplied.
     return vec4f(radiance * alpha, alpha);

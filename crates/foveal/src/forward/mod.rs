@@ -1,11 +1,13 @@
-//! Forward pass over the deferred picture: opaque surfaces with lobes, shaded at each pixel where the
-//! G-buffer shows them, then blended surfaces, back to front.
+//! Forward pass over the deferred picture: points and lines, opaque surfaces with lobes, shaded at each
+//! pixel where the G-buffer shows them, then what is blended, back to front.
 
 #[cfg(test)]
 mod lobes_tests;
 #[cfg(test)]
 mod lobes_twin;
 mod recipes;
+#[cfg(test)]
+mod strokes_tests;
 mod targets;
 mod transmission;
 #[cfg(test)]
@@ -36,12 +38,12 @@ enum Copied {
 struct ForwardTarget<'a> {
     color: Option<wgpu::RenderPassColorAttachment<'a>>,
     depth: &'a wgpu::TextureView,
-    /// With what light passes, which writes depth, the group of the picture behind; else opaque
-    /// surfaces with lobes are drawn, and blended ones.
+    /// With what light passes, the group of the picture behind; else points, lines, opaque surfaces
+    /// with lobes and blended ones are drawn.
     behind: Option<&'a wgpu::BindGroup>,
 }
 
-/// Draws surfaces with lobes, blended ones, and what light passes.
+/// Draws points, lines, surfaces with lobes, blended ones, and what light passes.
 #[derive(Debug)]
 pub(crate) struct ForwardPass {
     recipes: Recipes,
@@ -85,9 +87,14 @@ impl ForwardPass {
             .iter()
             .map(|b| (Kind::of_blended(b.key), b.key));
         let lobed = list.lobed.iter().map(|b| (Kind::LobedOpaque, b.key));
+        let strokes = list.strokes.iter().map(|b| (Kind::Strokes, b.key));
         let transmissive = list.transmissive.iter();
         let transmissive = transmissive.map(|b| (Kind::Transmissive, b.key));
-        let needed: BTreeSet<_> = blended.chain(lobed).chain(transmissive).collect();
+        let needed: BTreeSet<_> = blended
+            .chain(lobed)
+            .chain(strokes)
+            .chain(transmissive)
+            .collect();
         for (kind, key) in needed {
             let behind = self.behind.as_ref().map(|behind| &behind.layout);
             let make = || self.recipes.pipelines(gpu, kind, behind);
@@ -188,8 +195,8 @@ impl ForwardPass {
         );
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: depth,
-            // The G-buffer's is read-only: it is sampled by other passes of the frame.
-            depth_ops: behind.map(|_| wgpu::Operations {
+            // Read-only where nothing writes it. No later pass lights by it.
+            depth_ops: (behind.is_some() || !list.strokes.is_empty()).then_some(wgpu::Operations {
                 load: wgpu::LoadOp::Load,
                 store: wgpu::StoreOp::Store,
             }),
@@ -213,6 +220,7 @@ impl ForwardPass {
                 if behind.is_some() {
                     issue(&list.transmissive, |_| Kind::Transmissive);
                 } else {
+                    issue(&list.strokes, |_| Kind::Strokes);
                     issue(&list.lobed, |_| Kind::LobedOpaque);
                     issue(&list.blended, Kind::of_blended);
                 }

@@ -1,6 +1,6 @@
 //! What the pipelines of the forward pass differ in.
 
-use crate::geometry::{PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+use crate::geometry::{PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource};
 use crate::gpu::{Gpu, bind_group_layout};
 use crate::lights::SceneLights;
 use crate::scene::{LobeClass, lobes_layout};
@@ -15,15 +15,31 @@ pub(super) enum Kind {
     LobedOpaque,
     LobedBlended,
     Transmissive,
+    /// Opaque or masked points and lines.
+    Strokes,
+    BlendedStrokes,
 }
 
 impl Kind {
     pub(super) fn of_blended(key: PipelineKey) -> Self {
-        if key.lobes == LobeClass::default() {
+        if key.shape != Shape::Triangles {
+            Self::BlendedStrokes
+        } else if key.lobes == LobeClass::default() {
             Self::Blended
         } else {
             Self::LobedBlended
         }
+    }
+
+    fn has_lobes(self) -> bool {
+        matches!(
+            self,
+            Self::LobedOpaque | Self::LobedBlended | Self::Transmissive
+        )
+    }
+
+    fn draws_strokes(self) -> bool {
+        matches!(self, Self::Strokes | Self::BlendedStrokes)
     }
 
     fn variant(self, gpu: &Gpu, submission: Submission) -> &'static [&'static str] {
@@ -32,6 +48,16 @@ impl Kind {
             (Self::Blended, Submission::Multiview) => &["LAYERED"],
             (Self::Blended, _) if gpu.is_reduced() => &["REDUCED"],
             (Self::Blended, _) => &[],
+            (Self::Strokes | Self::BlendedStrokes, _) if submission.clips() => {
+                &["STROKES", "CLIPPED"]
+            }
+            (Self::Strokes | Self::BlendedStrokes, Submission::Multiview) => {
+                &["STROKES", "LAYERED"]
+            }
+            (Self::Strokes | Self::BlendedStrokes, _) if gpu.is_reduced() => {
+                &["STROKES", "REDUCED"]
+            }
+            (Self::Strokes | Self::BlendedStrokes, _) => &["STROKES"],
             (Self::Transmissive, _) if submission.clips() => &["LOBES", "TRANSMISSION", "CLIPPED"],
             (Self::Transmissive, Submission::Multiview) => &["LOBES", "TRANSMISSION", "LAYERED"],
             (Self::Transmissive, _) => &["LOBES", "TRANSMISSION"],
@@ -91,11 +117,13 @@ impl Recipes {
         behind: Option<&wgpu::BindGroupLayout>,
     ) -> Pipelines {
         let submission = self.submission;
-        let opaque = matches!(kind, Kind::LobedOpaque | Kind::Transmissive);
+        let opaque = matches!(kind, Kind::LobedOpaque | Kind::Transmissive | Kind::Strokes);
         let transmissive = kind == Kind::Transmissive;
         let mut constants = self.constants.clone();
         if kind != Kind::Blended {
             constants.push(("OPAQUE", f64::from(u8::from(opaque))));
+        }
+        if kind.has_lobes() {
             let added = kind == Kind::LobedOpaque && self.adds_lobes;
             constants.push(("ADDED", f64::from(u8::from(added))));
         }
@@ -103,7 +131,7 @@ impl Recipes {
             // Drawn to the picture's own texels.
             constants.retain(|(name, _)| *name != "SAMPLED");
         }
-        let with_lobes = (kind != Kind::Blended).then(|| lobes_layout(gpu));
+        let with_lobes = kind.has_lobes().then(|| lobes_layout(gpu));
         let material = with_lobes.as_ref().unwrap_or(&self.material);
         let mut layouts = vec![&self.frame, material, &self.lights];
         layouts.extend(behind.filter(|_| transmissive));
@@ -119,14 +147,14 @@ impl Recipes {
                 blend: (!opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
-            writes_depth: transmissive,
+            writes_depth: transmissive || kind == Kind::Strokes,
             depth_compare: if kind == Kind::LobedOpaque {
                 wgpu::CompareFunction::Equal
             } else {
                 wgpu::CompareFunction::Greater
             },
             constants,
-            has_mask: transmissive,
+            has_mask: transmissive || kind.draws_strokes(),
             multiview_mask: submission.multiview_mask(),
         })
     }

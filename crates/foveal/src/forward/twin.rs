@@ -23,7 +23,7 @@ fn quad() -> Mesh {
         vertices,
         indices: vec![0, 1, 2, 0, 2, 3],
         bounds,
-        deforms: false,
+        ..Mesh::default()
     }
 }
 

@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use foveal_scene::AlphaMode;
 use glam::Vec3;
 
-use super::{Faces, PipelineKey};
-use crate::scene::{LobeClass, SceneOnGpu};
+use super::{Faces, PipelineKey, Shape};
+use crate::scene::{DrawnInstance, LobeClass, SceneOnGpu};
 use crate::stereo::Drawn;
 
 /// One draw: equal meshes with equal materials, `count` instances from `first` in
@@ -29,12 +29,31 @@ pub(crate) struct DrawList {
     pub(crate) solid: Vec<Batch>,
     /// Those of `solid` that have lobes, which are shaded in a pass over what the G-buffer shows.
     pub(crate) lobed: Vec<Batch>,
+    /// Opaque and masked points and lines, which are not in the G-buffer.
+    pub(crate) strokes: Vec<Batch>,
     /// Surfaces that light passes, which are not in the G-buffer.
     pub(crate) transmissive: Vec<Batch>,
-    /// Blended surfaces, back to front.
+    /// Blended surfaces, points and lines, back to front.
     pub(crate) blended: Vec<Batch>,
     /// Triangles of all draws.
     pub(crate) triangles: u64,
+}
+
+/// The pipeline's key for an instance's points and lines. Lobes need a surface's tangents: they have
+/// none.
+fn key_of_strokes(instance: &DrawnInstance, lit: bool) -> PipelineKey {
+    PipelineKey {
+        class: instance.material_class,
+        masked: matches!(instance.alpha_mode, AlphaMode::Mask { .. }),
+        mirrored: false,
+        faces: Faces::Both,
+        lobes: LobeClass::default(),
+        shape: if lit {
+            Shape::LitStrokes
+        } else {
+            Shape::UnlitStrokes
+        },
+    }
 }
 
 /// A scene and what a frame draws of it.
@@ -57,14 +76,27 @@ impl DrawList {
         self.drawn.clear();
         self.solid.clear();
         self.lobed.clear();
+        self.strokes.clear();
         self.transmissive.clear();
         self.blended.clear();
         self.triangles = 0;
         let mut solid: Vec<(PipelineKey, u32, u32, u32)> =
             Vec::with_capacity(scene.instances.len());
-        let mut blended: Vec<(f32, u32)> = Vec::new();
+        let mut strokes: Vec<(PipelineKey, u32, u32, u32)> = Vec::new();
+        let mut blended: Vec<(f32, u32, Shape)> = Vec::new();
         for (index, instance) in (0..).zip(&scene.instances) {
-            if scene.geometry.mesh(instance.mesh).index_count == 0 || !is_visible(instance.object) {
+            let mesh = scene.geometry.mesh(instance.mesh);
+            let distance = || instance.bounds.center().distance_squared(eye);
+            // They reach beyond their boxes by half their width, so culling does not judge them.
+            if mesh.stroke_index_count > 0 {
+                let key = key_of_strokes(instance, mesh.lights_strokes);
+                if instance.alpha_mode == AlphaMode::Blend {
+                    blended.push((distance(), index, key.shape));
+                } else {
+                    strokes.push((key, instance.material, instance.mesh, index));
+                }
+            }
+            if mesh.index_count == 0 || !is_visible(instance.object) {
                 continue;
             }
             match instance.alpha_mode {
@@ -79,12 +111,11 @@ impl DrawList {
                             Faces::Front
                         },
                         lobes: LobeClass::default(),
+                        shape: Shape::Triangles,
                     };
                     solid.push((key, instance.material, instance.mesh, index));
                 }
-                AlphaMode::Blend => {
-                    blended.push((instance.bounds.center().distance_squared(eye), index))
-                }
+                AlphaMode::Blend => blended.push((distance(), index, Shape::Triangles)),
             }
         }
         solid.sort_unstable();
@@ -120,9 +151,27 @@ impl DrawList {
             let one = batch((key, material, mesh, index));
             Self::push(to, drawn, scene, merge, triangles, one);
         }
-        blended.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-        for (_, index) in blended {
+        strokes.sort_unstable();
+        for one in strokes {
+            Self::push(
+                &mut self.strokes,
+                drawn,
+                scene,
+                merge,
+                triangles,
+                batch(one),
+            );
+        }
+        blended.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        for (_, index, shape) in blended {
             let instance = &scene.instances[index as usize];
+            if shape != Shape::Triangles {
+                let key = key_of_strokes(instance, shape == Shape::LitStrokes);
+                let one = batch((key, instance.material, instance.mesh, index));
+                let to = &mut self.blended;
+                Self::push(to, &mut self.drawn, scene, merge, &mut self.triangles, one);
+                continue;
+            }
             // The far side of a two-sided thing lies behind its near side.
             let sides: &[Faces] = if instance.double_sided {
                 &[Faces::Back, Faces::Front]
@@ -138,6 +187,7 @@ impl DrawList {
                     // What is behind shows by alpha.
                     lobes: (scene.materials.lobes(instance.material))
                         .map_or_else(LobeClass::default, LobeClass::without_transmission),
+                    shape: Shape::Triangles,
                 };
                 Self::push(
                     &mut self.blended,
@@ -159,7 +209,7 @@ impl DrawList {
 
     /// Whether anything is drawn forward.
     pub(crate) fn has_forward(&self) -> bool {
-        !(self.lobed.is_empty() && self.blended.is_empty())
+        !(self.strokes.is_empty() && self.lobed.is_empty() && self.blended.is_empty())
     }
 
     /// Lists the draws of instances of which only the depth matters; `key` is the pipeline's for a
@@ -170,6 +220,10 @@ impl DrawList {
         key: impl Fn(u32, bool) -> PipelineKey,
     ) -> Self {
         let mut casters: Vec<_> = instances
+            .filter(|&index| {
+                let mesh = scene.instances[index as usize].mesh;
+                scene.geometry.mesh(mesh).index_count > 0
+            })
             .map(|index| {
                 let instance = &scene.instances[index as usize];
                 let masked = matches!(instance.alpha_mode, AlphaMode::Mask { .. });
@@ -204,7 +258,9 @@ impl DrawList {
         triangles: &mut u64,
         batch: Batch,
     ) {
-        *triangles += u64::from(scene.geometry.mesh(batch.mesh).index_count / 3);
+        if batch.key.shape == Shape::Triangles {
+            *triangles += u64::from(scene.geometry.mesh(batch.mesh).index_count / 3);
+        }
         let instance = batch.count;
         match list.last_mut() {
             Some(last)
@@ -262,7 +318,7 @@ impl DrawList {
                 pass.set_bind_group(1, group, &[]);
             }
             let mesh = scene.geometry.mesh(batch.mesh);
-            let indices = mesh.first_index..mesh.first_index + mesh.index_count;
+            let indices = mesh.indices(batch.key.shape != Shape::Triangles);
             let instances = drawn.range(batch.first, batch.count);
             if pulled {
                 pass.draw(indices, instances);

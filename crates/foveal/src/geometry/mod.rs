@@ -17,7 +17,7 @@ pub(crate) use crate::scene::geometry_layout;
 pub(crate) use draw_list::{Batch, DrawList, Draws};
 pub(crate) use face_normals::FaceNormals;
 pub(crate) use gbuffer::GeometryPass;
-pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+pub(crate) use pipelines::{Faces, PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource};
 pub(crate) use target::GBuffer;
 pub(crate) use visibility::{Rates, ResolveAt, VisibilityPass, VisibilityTargets};
 #[cfg(test)]

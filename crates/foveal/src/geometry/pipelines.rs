@@ -14,6 +14,17 @@ pub(crate) enum Faces {
     Both,
 }
 
+/// What a draw is made of.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Shape {
+    #[default]
+    Triangles,
+    /// Points and lines with normals.
+    LitStrokes,
+    /// Points and lines without.
+    UnlitStrokes,
+}
+
 /// What makes one pipeline of a pass differ from another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) struct PipelineKey {
@@ -26,6 +37,8 @@ pub(crate) struct PipelineKey {
     pub(crate) faces: Faces,
     /// Lobes that are shaded besides; none in the G-buffer.
     pub(crate) lobes: LobeClass,
+    /// Triangles everywhere but in the forward pass.
+    pub(crate) shape: Shape,
 }
 
 /// Where vertices come from, with the vertex shader's entry point.
@@ -92,6 +105,10 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
     constants.push(("MATERIAL_CLASS", f64::from(class)));
     if key.lobes.flags != 0 {
         constants.push(("LOBE_TEXTURES", f64::from(key.lobes.textures)));
+    }
+    if key.shape != Shape::Triangles {
+        let lit = key.shape == Shape::LitStrokes;
+        constants.push(("LIT", f64::from(u8::from(lit))));
     }
     if recipe.has_mask {
         constants.push(("MASKED", f64::from(u8::from(key.masked))));

@@ -240,14 +240,15 @@ impl Stages {
             } else {
                 geometry.draw_windows(recorder, draws, gbuffer, &windows);
             }
+            let shade = plan.is_lit;
+            let shadings = Shadings { input, shade };
+            antialias.merge(recorder, draws.scene, targets, band, shadings);
+            // Last of the band: points and lines write the sub-samples' depth.
             if let Some(blended) = blended {
                 let target = (&blended.samples_view, &gbuffer.depth_view);
                 forward.draw_alone(recorder, draws, lights, target, &windows);
                 antialias.average(recorder, blended, band);
             }
-            let shade = plan.is_lit;
-            let shadings = Shadings { input, shade };
-            antialias.merge(recorder, draws.scene, targets, band, shadings);
         }
         if let Some(further) = samples.further_gbuffer() {
             geometry.resolve(recorder, draws, &targets.gbuffer, &ResolveAt::FULL);
@@ -371,7 +372,7 @@ impl Stages {
         }
     }
 
-    /// Forward: lobes of opaque surfaces, blended surfaces over them, and at last what light passes.
+    /// Forward: points and lines, lobes of opaque surfaces, blended surfaces over them, and at last what light passes.
     fn blend(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
         match &self.antialias {
             Some(antialias) => antialias.blend(recorder, draws.list, &self.targets),

@@ -1,8 +1,9 @@
 //! All meshes in one vertex and one index buffer.
 
 use bytemuck::{Pod, Zeroable};
-use foveal_scene::{Scene, Vertex};
+use foveal_scene::{Mesh, Scene, Vertex};
 
+use super::strokes;
 use crate::gpu::{Gpu, bind_group, storage_read};
 use crate::{Error, Geometry};
 
@@ -27,11 +28,48 @@ pub(crate) const VERTEX_LAYOUTS: [Option<wgpu::VertexBufferLayout<'static>>; 2] 
 /// Where a mesh lies in the buffers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct MeshRange {
+    /// Of its triangles.
     pub(crate) first_index: u32,
     pub(crate) index_count: u32,
     pub(crate) base_vertex: i32,
     /// What its indices count from: the base vertex, or 0 where they hold it already.
     pub(crate) index_base: i32,
+    /// Of the quads of its points and lines, which follow its triangles.
+    pub(crate) stroke_index_count: u32,
+    /// Points and lines have normals.
+    pub(crate) lights_strokes: bool,
+    first_stroke_vertex: u32,
+}
+
+impl MeshRange {
+    /// Indices of its triangles, or of its points and lines.
+    pub(crate) fn indices(&self, strokes: bool) -> std::ops::Range<u32> {
+        let between = self.first_index + self.index_count;
+        if strokes {
+            between..between + self.stroke_index_count
+        } else {
+            self.first_index..between
+        }
+    }
+}
+
+/// Quads that are written to the device at a time: 4 MiB of vertices.
+const QUADS_AT_A_TIME: usize = 1 << 14;
+
+/// Vertices that a mesh takes on the device: those of its triangles, and its quads.
+fn vertex_counts(mesh: &Mesh) -> [u64; 2] {
+    let of_triangles = if mesh.indices.is_empty() {
+        0
+    } else {
+        mesh.vertices.len()
+    };
+    let of_quads = mesh.stroke_count() * strokes::CORNERS;
+    [of_triangles, of_quads].map(|count| count as u64)
+}
+
+fn index_counts(mesh: &Mesh) -> [u64; 2] {
+    let of_quads = mesh.stroke_count() * strokes::INDICES.len();
+    [mesh.indices.len(), of_quads].map(|count| count as u64)
 }
 
 /// Where shaders find an instance's triangles: mirrors `Place` in `shared/attributes.wgsl`.
@@ -81,32 +119,38 @@ pub(crate) struct SceneGeometry {
 impl SceneGeometry {
     /// `bins`: where the pixels of each material are sorted to.
     pub(crate) fn new(gpu: &Gpu, scene: &Scene, bins: &[u32]) -> Result<Self, Error> {
-        let vertex_count: usize = scene.meshes.iter().map(|m| m.vertices.len()).sum();
-        let index_count: usize = scene.meshes.iter().map(|m| m.indices.len()).sum();
+        let sum = |counts: fn(&Mesh) -> [u64; 2]| scene.meshes.iter().flat_map(counts).sum();
+        let (vertex_count, index_count): (u64, u64) = (sum(vertex_counts), sum(index_counts));
+        let has_strokes = scene.meshes.iter().any(|mesh| mesh.stroke_count() > 0);
         let limit = gpu.device.limits().max_buffer_size;
         for (what, count, bytes) in [
             ("vertices", vertex_count, STRIDE),
             ("indices", index_count, 4),
         ] {
-            if count as u64 * bytes > limit {
+            if count.saturating_mul(bytes) > limit {
+                let hint = if has_strokes {
+                    ": each point and line takes four vertices and six indices".to_owned()
+                } else {
+                    String::new()
+                };
                 return Err(Error::Limit {
                     what: format!("the scene's number of {what}"),
-                    value: count as u64,
+                    value: count,
                     limit: limit / bytes,
-                    hint: String::new(),
+                    hint,
                 });
             }
         }
         let vertices = buffer(
             gpu,
             "vertices",
-            vertex_count as u64 * STRIDE,
+            vertex_count * STRIDE,
             wgpu::BufferUsages::VERTEX | wgpu::BufferUsages::STORAGE,
         );
         let indices = buffer(
             gpu,
             "indices",
-            index_count as u64 * 4,
+            index_count * 4,
             if gpu.is_reduced() {
                 wgpu::BufferUsages::INDEX
             } else {
@@ -116,11 +160,22 @@ impl SceneGeometry {
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let (mut base_vertex, mut first_index) = (0u64, 0u64);
         for mesh in &scene.meshes {
-            gpu.queue.write_buffer(
-                &vertices,
-                base_vertex * STRIDE,
-                bytemuck::cast_slice(&mesh.vertices),
-            );
+            let [vertices_of_triangles, vertices_of_quads] = vertex_counts(mesh);
+            let index_base = if gpu.is_reduced() {
+                0
+            } else {
+                base_vertex as i32
+            };
+            let range = MeshRange {
+                first_index: first_index as u32,
+                index_count: mesh.indices.len() as u32,
+                base_vertex: base_vertex as i32,
+                index_base,
+                stroke_index_count: index_counts(mesh)[1] as u32,
+                lights_strokes: mesh.lights_strokes(),
+                first_stroke_vertex: (base_vertex + vertices_of_triangles) as u32,
+            };
+            write_vertices(gpu, &vertices, mesh, range);
             // WebGL 2 has no base vertex: there it is in the indices.
             let shifted: Vec<u32>;
             let mesh_indices = if gpu.is_reduced() {
@@ -136,18 +191,16 @@ impl SceneGeometry {
                 first_index * 4,
                 bytemuck::cast_slice(mesh_indices),
             );
-            meshes.push(MeshRange {
-                first_index: first_index as u32,
-                index_count: mesh.indices.len() as u32,
-                base_vertex: base_vertex as i32,
-                index_base: if gpu.is_reduced() {
-                    0
-                } else {
-                    base_vertex as i32
-                },
-            });
-            base_vertex += mesh.vertices.len() as u64;
             first_index += mesh.indices.len() as u64;
+            let first = range.first_stroke_vertex - index_base as u32;
+            let quads: Vec<u32> = (0..mesh.stroke_count() as u32)
+                .flat_map(|i| strokes::INDICES.map(|corner| first + 4 * i + corner))
+                .collect();
+            gpu.queue
+                .write_buffer(&indices, first_index * 4, bytemuck::cast_slice(&quads));
+            first_index += quads.len() as u64;
+            base_vertex += vertices_of_triangles + vertices_of_quads;
+            meshes.push(range);
         }
         let deforms = scene.meshes.iter().any(|m| m.deforms);
         let previous_vertices = if deforms {
@@ -232,12 +285,7 @@ impl SceneGeometry {
         gpu.queue.submit([encoder.finish()]);
         for (mesh, range) in scene.meshes.iter().zip(&self.meshes) {
             if mesh.deforms {
-                let offset = range.base_vertex as u64 * STRIDE;
-                gpu.queue.write_buffer(
-                    &self.vertices,
-                    offset,
-                    bytemuck::cast_slice(&mesh.vertices),
-                );
+                write_vertices(gpu, &self.vertices, mesh, *range);
             }
         }
     }
@@ -251,6 +299,33 @@ impl SceneGeometry {
         pass.set_vertex_buffer(0, self.vertices.slice(..));
         pass.set_vertex_buffer(1, self.previous_vertices.slice(..));
         pass.set_index_buffer(self.indices.slice(..), wgpu::IndexFormat::Uint32);
+    }
+}
+
+/// Uploads the vertices of triangles, and the quads.
+fn write_vertices(gpu: &Gpu, to: &wgpu::Buffer, mesh: &Mesh, range: MeshRange) {
+    let write = |vertices: &[Vertex], at: u64| {
+        gpu.queue
+            .write_buffer(to, at * STRIDE, bytemuck::cast_slice(vertices));
+    };
+    if range.index_count > 0 {
+        write(&mesh.vertices, range.base_vertex as u64);
+    }
+    if range.stroke_index_count == 0 {
+        return;
+    }
+    let mut at = u64::from(range.first_stroke_vertex);
+    let mut quads = strokes::quads(mesh);
+    let mut some = Vec::with_capacity(QUADS_AT_A_TIME.min(mesh.stroke_count()));
+    loop {
+        some.clear();
+        some.extend(quads.by_ref().take(QUADS_AT_A_TIME));
+        if some.is_empty() {
+            return;
+        }
+        let vertices = some.as_flattened();
+        write(vertices, at);
+        at += vertices.len() as u64;
     }
 }
 

@@ -8,6 +8,7 @@ mod lobes;
 mod material_uniform;
 mod materials;
 mod samplers;
+mod strokes;
 mod textures;
 
 pub(crate) use bindings::{BoundEnvironment, FrameBindings};
@@ -122,6 +123,8 @@ impl SceneOnGpu {
                 objects: scene.objects.len() as u64,
                 instances: scene.instances.len() as u64,
                 triangles: scene.triangle_count(),
+                lines: scene.line_count(),
+                points: scene.point_count(),
                 lights: scene.lights.len() as u64,
             },
             uniforms: scene

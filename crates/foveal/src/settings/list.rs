@@ -76,6 +76,11 @@ settings! {
         /// Merging of equal meshes with equal materials into instances of one draw. Off: every
         /// object is a draw of its own, as for measurements of many draws.
         merge_draws => merge_draws: bool = true, "Merge draws", Kind::Switch;
+        /// Side of points in pixels of the picture, at any distance. Points are squares that face
+        /// the eye. Raise it where a cloud of points is too thin to be seen.
+        point_size => point_size_px: f32 = 1.0, "Point size", Kind::Number { least: 1.0, most: 64.0 };
+        /// Width of lines in pixels of the picture, at any distance.
+        line_width => line_width_px: f32 = 1.0, "Line width", Kind::Number { least: 1.0, most: 64.0 };
     }
     /// Reflection, lights and textures.
     "Lighting" lighting: LightingSettings {
@@ -286,6 +291,8 @@ impl Settings {
         self.clone().with(|s| {
             s.picture.width = scaled(s.picture.width);
             s.picture.height = scaled(s.picture.height);
+            s.geometry.point_size_px *= self.picture.render_scale;
+            s.geometry.line_width_px *= self.picture.render_scale;
             s.picture.render_scale = 1.0;
         })
     }

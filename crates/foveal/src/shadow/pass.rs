@@ -3,7 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::atlas::Tile;
-use crate::geometry::{DrawList, Faces, PipelineKey, PipelineRecipe, Pipelines, VertexSource};
+use crate::geometry::{
+    DrawList, Faces, PipelineKey, PipelineRecipe, Pipelines, Shape, VertexSource,
+};
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout};
 use crate::recorder::Recorder;
 use crate::scene::{LobeClass, SceneOnGpu};
@@ -107,6 +109,7 @@ impl CasterPass {
             mirrored: false,
             faces: Faces::Both,
             lobes: LobeClass::default(),
+            shape: Shape::Triangles,
         }
     }
 

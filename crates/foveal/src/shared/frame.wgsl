@@ -54,10 +54,12 @@ struct Frame {
     // Cosine and sine of the angle by which the environment is turned about +y.
     environment_turn: vec2f,
     environment_intensity: f32,
-    reserved_0: f32,
+    // Side of a point, in pixels; at least 1.
+    point_size: f32,
     // Its last level, levels per doubling of the roughness, one over level 1's squared roughness.
     environment_levels: vec3f,
-    reserved_1: f32,
+    // Width of a line, in pixels; at least 1.
+    line_width: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

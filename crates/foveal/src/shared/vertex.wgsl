@@ -5,6 +5,9 @@ enable clip_distances;
 #endif
 #import shared/frame.wgsl
 #import shared/instances.wgsl
+#ifdef STROKES
+#import shared/stroke.wgsl
+#endif
 
 struct VertexIn {
     @builtin(instance_index) drawn_index: u32,
@@ -122,14 +125,28 @@ fn vertex(in: VertexIn) -> VertexOut {
 
 fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
     let i = instance_at(d.instance);
+#ifdef STROKES
+    let world = world_vertex(i, in.position, in.normal, vec4f(0.0));
+#else
     let world = world_vertex(i, in.position, in.normal, in.tangent);
+#endif
     let previous = previous_instance_position(i, in.previous_position);
 
     var out: VertexOut;
+#ifdef STROKES
+    let other_end = instance_position(i, in.tangent.xyz);
+    let here = frame.views[d.view].clip_from_world * vec4f(world.position, 1.0);
+    let there = frame.views[d.view].clip_from_world * vec4f(other_end, 1.0);
+    let clip = stroke_corner(here, there, in.tangent);
+    let cut = select(cut_at_near(here, there), 0.0, in.tangent.w == 0.0);
+    let position = mix(world.position, other_end, cut);
+#else
+    let position = world.position;
     let clip = frame.views[d.view].clip_from_world * vec4f(world.position, 1.0);
+#endif
     out.clip = in_target(clip, d.view);
     out.now = clip.xyw;
-    out.world = world.position;
+    out.world = position;
     out.normal = world.normal;
     out.tangent = world.tangent;
     out.uv = in.uv;

@@ -84,7 +84,7 @@ fn warnings_have_the_code_of_their_cause() {
             file.json["meshes"][0]["primitives"][0]["material"] = json!(0);
         }),
         (Code::SceneEmpty, |file| {
-            file.json["meshes"][0]["primitives"][0]["mode"] = json!(0);
+            file.json["scenes"][0]["nodes"] = json!([]);
         }),
         // The fault of a part that is left out keeps its own code.
         (Code::ValueOutOfRange, |file| {

@@ -35,7 +35,7 @@ fn flat_normals_give_each_triangle_its_own_vertices() {
 }
 
 #[test]
-fn strips_and_fans_become_lists_and_points_a_warning() {
+fn strips_and_fans_become_lists() {
     for (mode, expected) in [(5, [0, 1, 2, 1, 3, 2]), (6, [1, 2, 0, 2, 3, 0])] {
         let mut file = File::with_mesh();
         let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 0.];
@@ -44,11 +44,79 @@ fn strips_and_fans_become_lists_and_points_a_warning() {
         file.primitive()["mode"] = json!(mode);
         assert_eq!(file.load().meshes[0].indices, expected);
     }
-    let mut points = File::with_triangle();
-    points.primitive()["mode"] = json!(0);
-    let scene = points.load();
-    assert!(scene.meshes.is_empty() && scene.objects.is_empty());
-    assert!(warnings(&scene).contains("meshes[0].primitives[0]: is made of points or lines"));
+}
+
+#[test]
+fn points_and_lines_keep_the_attributes_of_their_vertices() {
+    let expected: [&[[u32; 2]]; 4] = [
+        &[],
+        &[[0, 1], [2, 3]],
+        &[[0, 1], [1, 2], [2, 3], [3, 0]],
+        &[[0, 1], [1, 2], [2, 3]],
+    ];
+    for (mode, lines) in expected.iter().enumerate() {
+        let mut file = File::with_mesh();
+        let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 2.];
+        file.attribute("POSITION", &corners, "VEC3");
+        file.attribute("COLOR_0", &[0., 1., 0., 1.].repeat(4), "VEC4");
+        file.primitive()["mode"] = json!(mode);
+        file.material(json!({ "normalTexture": { "index": 0 } }));
+        file.texture(&image::RgbaImage::from_pixel(1, 1, [128; 4].into()));
+        let scene = file.load();
+        let mesh = &scene.meshes[0];
+        assert_eq!(mesh.lines, *lines);
+        assert_eq!(mesh.points.len(), if mode == 0 { 4 } else { 0 });
+        assert!(mesh.indices.is_empty() && !mesh.lights_strokes());
+        assert!(mesh.vertices.iter().all(|v| v.color == [0, 255, 0, 255]));
+        assert!(mesh.vertices.iter().all(|v| v.tangent == [0.; 4]));
+        let bounds = Aabb {
+            min: Vec3::ZERO,
+            max: Vec3::new(1., 1., 2.),
+        };
+        assert_eq!(scene.instances[0].bounds, bounds);
+        assert!(!scene.can_occlude(&scene.instances[0]));
+        file.attribute("NORMAL", &[0., 2., 0.].repeat(4), "VEC3");
+        let scene = file.load();
+        assert!(scene.meshes[0].lights_strokes());
+        assert_eq!(scene.meshes[0].vertices[3].normal, [0., 1., 0.]);
+    }
+}
+
+#[test]
+fn lines_to_vertices_that_do_not_exist_are_left_out() {
+    let mut file = File::with_triangle();
+    file.indices(&[0, 1, 1, 7, 2, 1]);
+    file.primitive()["mode"] = json!(1);
+    let scene = file.load();
+    assert_eq!(scene.meshes[0].lines, [[0, 1], [2, 1]]);
+    assert!(warnings(&scene).contains("1 of 3 lines name vertices that do not exist"));
+}
+
+#[test]
+fn points_morph_and_follow_joints() {
+    let mut file = foveal_seeds::rich();
+    file.primitive()["mode"] = json!(0);
+    let mut scene = file.load();
+    assert!(scene.meshes.iter().all(|mesh| mesh.points.len() == 3));
+    let skinned = scene
+        .instances
+        .iter()
+        .map(|i| &scene.meshes[i.mesh as usize]);
+    let before: Vec<_> = skinned.map(|mesh| mesh.vertices[0].position).collect();
+    scene.pose(0.5);
+    let after = scene
+        .instances
+        .iter()
+        .map(|i| &scene.meshes[i.mesh as usize]);
+    let after: Vec<_> = after.map(|mesh| mesh.vertices[0].position).collect();
+    assert_ne!(before, after);
+    for instance in &scene.instances {
+        let mesh = &scene.meshes[instance.mesh as usize];
+        let place = instance
+            .world_from_object
+            .transform_point3(mesh.vertices[1].position.into());
+        assert!(instance.bounds.min.cmple(place).all() && instance.bounds.max.cmpge(place).all());
+    }
 }
 
 #[test]

@@ -60,9 +60,9 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             irradiance,
             environment_turn,
             environment_intensity,
-            reserved_0,
+            point_size,
             environment_levels,
-            reserved_1,
+            line_width,
         ]
     );
     assert_same_layout!(
