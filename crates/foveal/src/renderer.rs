@@ -1,7 +1,9 @@
 //! The renderer as its host sees it; `submit.rs` tells the frame.
 
+use std::borrow::Cow;
+
 use crate::{Clock, Target};
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{Camera, Scene, Texture};
 
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingStage;
@@ -163,7 +165,14 @@ impl Renderer {
         let present = PresentPass::new(gpu);
         let timer = GpuTimer::new(gpu);
         let limits = ArrayLimits::of(gpu);
-        let scene = SceneOnGpu::new(gpu, &Scene::default(), settings, &material_layout, limits);
+        let scene = SceneOnGpu::new(
+            gpu,
+            &Scene::default(),
+            Vec::new(),
+            settings,
+            &material_layout,
+            limits,
+        );
         trap.finish().await?;
         let (timer, scene) = (timer?, scene?);
         let mut trials = Trials::default();
@@ -315,10 +324,40 @@ impl Renderer {
             .await
     }
 
+    /// As [`Renderer::set_scene`], for a host that shows the scene once and is short of memory: the
+    /// texels of each texture are freed as soon as they are on the device, so that they are never
+    /// there twice. Afterwards, also after an error, [`Texture::levels`](foveal_scene::Texture::levels)
+    /// of all textures are empty, and the scene cannot be set again.
+    ///
+    /// # Errors
+    /// As [`Renderer::set_scene`].
+    pub async fn set_scene_and_free_textures(&mut self, scene: &mut Scene) -> Result<(), Error> {
+        let whole = std::mem::take(&mut scene.textures);
+        let emptied = |texture: &Texture| Texture {
+            name: texture.name.clone(),
+            levels: Vec::new(),
+            ..*texture
+        };
+        scene.textures = whole.iter().map(emptied).collect();
+        let textures = whole.into_iter().map(Cow::Owned).collect();
+        self.upload_scene(scene, textures, ArrayLimits::of(&self.gpu))
+            .await
+    }
+
     /// As [`Renderer::set_scene`], with arrays of textures no larger than `limits`.
     pub(crate) async fn set_scene_within(
         &mut self,
         scene: &Scene,
+        limits: ArrayLimits,
+    ) -> Result<(), Error> {
+        let textures = scene.textures.iter().map(Cow::Borrowed).collect();
+        self.upload_scene(scene, textures, limits).await
+    }
+
+    async fn upload_scene(
+        &mut self,
+        scene: &Scene,
+        textures: Vec<Cow<'_, Texture>>,
         limits: ArrayLimits,
     ) -> Result<(), Error> {
         self.mend().await?;
@@ -326,6 +365,7 @@ impl Renderer {
         let uploaded = SceneOnGpu::new(
             &self.gpu,
             scene,
+            textures,
             &self.stages.settings,
             &self.material_layout,
             limits,

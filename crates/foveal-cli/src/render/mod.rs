@@ -240,10 +240,11 @@ fn prepare(
             .for_each(|warning| console::warn(&warning.text));
     }
     let viewpoint = Viewpoint::choose(&args.camera, &scene, &args.scene)?;
-    timed(load_ms, "upload", || block_on(renderer.set_scene(&scene)))
-        .with_context(|| format!("cannot draw the scene '{}'", scene.name))?;
-    // They are on the device now, and nothing here reads them again.
-    scene.textures = Vec::new();
+    // Nothing here reads the texels again.
+    timed(load_ms, "upload", || {
+        block_on(renderer.set_scene_and_free_textures(&mut scene))
+    })
+    .with_context(|| format!("cannot draw the scene '{}'", scene.name))?;
     Ok((
         Drawing::new(renderer, scene, Rc::new(viewpoint)),
         gpu.adapter_stats(),

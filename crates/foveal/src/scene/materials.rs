@@ -1,5 +1,7 @@
 //! Materials as bind group 1: a uniform block, textures, samplers.
 
+use std::borrow::Cow;
+
 use super::material_uniform::{MaterialUniform, SLOTS, material_class, slots};
 use foveal_scene::{ColorSpace, Material, Sampler, Scene, Texture};
 
@@ -43,9 +45,11 @@ pub(crate) struct SceneMaterials {
 }
 
 impl SceneMaterials {
+    /// `textures`: the scene's, whose own may have lost their texels.
     pub(crate) fn new(
         gpu: &Gpu,
         scene: &Scene,
+        textures: Vec<Cow<'_, Texture>>,
         settings: &Settings,
         layout: &wgpu::BindGroupLayout,
         limits: ArrayLimits,
@@ -53,8 +57,8 @@ impl SceneMaterials {
         let white = white();
         // Bound where a material has no texture.
         let missing = scene.textures.len() as u32;
-        let textures: Vec<_> = scene.textures.iter().chain([&white]).collect();
-        let textures = Textures::new(gpu, &textures, limits)?;
+        let textures = textures.into_iter().chain([Cow::Owned(white)]).collect();
+        let textures = Textures::new(gpu, textures, limits)?;
         let mut samplers = Samplers::new(gpu, settings.lighting.anisotropy);
         let slots_of = |material: &Material| {
             slots(material).map(|slot| {

@@ -27,7 +27,9 @@ use material_uniform::material_class;
 pub(crate) use materials::{SceneMaterials, lobes_layout, material_layout};
 pub(crate) use textures::ArrayLimits;
 
-use foveal_scene::{Aabb, AlphaMode, Environment, Scene};
+use std::borrow::Cow;
+
+use foveal_scene::{Aabb, AlphaMode, Environment, Scene, Texture};
 use glam::Mat4;
 
 use crate::culling::CullingScene;
@@ -79,10 +81,11 @@ pub(crate) struct PoseChange {
 }
 
 impl SceneOnGpu {
-    /// Uploads `scene`.
+    /// Uploads `scene` with these textures, of which its own may have lost their texels.
     pub(crate) fn new(
         gpu: &Gpu,
         scene: &Scene,
+        textures: Vec<Cow<'_, Texture>>,
         settings: &Settings,
         material_layout: &wgpu::BindGroupLayout,
         limits: ArrayLimits,
@@ -104,7 +107,8 @@ impl SceneOnGpu {
             mapped_at_creation: false,
         });
         write_lights(gpu, &light_buffer, &lights);
-        let materials = SceneMaterials::new(gpu, scene, settings, material_layout, limits)?;
+        let materials =
+            SceneMaterials::new(gpu, scene, textures, settings, material_layout, limits)?;
         let material_families = materials.families().count() as u64;
         Ok(Self {
             geometry: SceneGeometry::new(gpu, scene, materials.families().ranks())?,

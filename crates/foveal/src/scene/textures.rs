@@ -4,6 +4,7 @@
 //! whole arrays (`families.rs`), because no device need offer an index into textures that differs
 //! from pixel to pixel.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 use foveal_scene::{ColorSpace, Texture};
@@ -143,13 +144,14 @@ pub(crate) struct Textures {
 }
 
 impl Textures {
-    /// Uploads `textures`; levels larger than the device's limit are left out.
+    /// Uploads `textures`; levels larger than the device's limit are left out. One that is owned is
+    /// freed once it is on the device.
     ///
     /// # Errors
     /// [`Error::Limit`] for a texture whose smallest level is larger than that.
     pub(crate) fn new(
         gpu: &Gpu,
-        textures: &[&Texture],
+        textures: Vec<Cow<'_, Texture>>,
         limits: ArrayLimits,
     ) -> Result<Self, Error> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
@@ -160,7 +162,7 @@ impl Textures {
         let (places, arrays) = arrange(&shapes, limits);
         let arrays: Vec<_> = arrays.iter().map(|a| create(gpu, *a)).collect();
         let mut staged = 0;
-        for ((texture, first), place) in textures.iter().zip(&firsts).zip(&places) {
+        for ((texture, first), place) in textures.into_iter().zip(&firsts).zip(&places) {
             let shape = arrays[place.array as usize].1;
             for (mip, level) in (0..).zip(&texture.levels[*first..]) {
                 write(
@@ -249,6 +251,29 @@ fn write(gpu: &Gpu, array: &wgpu::TextureView, shape: Shape, level: u32, at: Pla
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Frame;
+    use crate::testing::{picture, rendered, small};
+
+    #[test]
+    fn freed_textures_are_on_the_device() {
+        let mut scene = foveal_generate::by_name("alpha").expect("it is generated");
+        let camera = scene.cameras[0].clone();
+        let mut renderer = rendered(&scene, &camera, &small(64, 48));
+        let expected = picture(&renderer);
+        assert!(scene.textures.iter().any(|t| t.width > 1));
+        pollster::block_on(async {
+            let nothing = foveal_scene::Scene::default();
+            renderer.set_scene(&nothing).await.expect("it fits");
+            renderer.render(&Frame::new(&camera)).await.expect("drawn");
+            assert_ne!(renderer.read_picture().await.expect("read"), expected);
+            let freed = renderer.set_scene_and_free_textures(&mut scene).await;
+            freed.expect("it fits");
+            renderer.render(&Frame::new(&camera)).await.expect("drawn");
+            assert_eq!(renderer.read_picture().await.expect("read"), expected);
+        });
+        assert!(scene.textures.iter().all(|t| t.levels.is_empty()));
+        assert_eq!(renderer.scene_stats().textures, scene.textures.len() as u64);
+    }
 
     fn shape(width: u32, color_space: ColorSpace) -> Shape {
         Shape {
