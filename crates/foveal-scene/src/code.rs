@@ -100,7 +100,7 @@ codes! {
     TexcoordsMissing = "TEXCOORDS_MISSING",
     /// A material reads more than two sets of texture coordinates.
     TexcoordsTooMany = "TEXCOORDS_TOO_MANY",
-    /// A morph target moves texture coordinates or colours, which stay as they are.
+    /// A morph target moves texture coordinates or colours that the mesh does not have.
     MorphIgnored = "MORPH_IGNORED",
     /// The weights of morph targets are not as many as the targets.
     MorphWeights = "MORPH_WEIGHTS",

@@ -91,7 +91,7 @@ pub(crate) fn build(
     {
         source = split.iter().map(|&i| source[i as usize]).collect();
     }
-    let mut shape = morphs::read_shape(def, reader, &source, &mut notes)?;
+    let mut shape = morphs::read_shape(def, request.uv_sets, reader, &source, &mut notes)?;
     if let Some(shape) = &mut shape {
         shape.rest.clone_from(&vertices);
         shape.flat = flat;

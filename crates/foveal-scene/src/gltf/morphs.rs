@@ -1,8 +1,9 @@
 //! Morph targets and joint influences of one primitive.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 
 use super::accessor::Component;
+use super::materials::UvSets;
 use super::meshes::PrimitiveDef;
 use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
@@ -10,9 +11,10 @@ use crate::pose::{Influences, MorphTarget, Shape};
 use crate::{Code, Warning};
 
 /// Reads what deforms a primitive; `None` for rigid ones. `source` names each vertex's number in
-/// the file.
+/// the file, `uv_sets` the sets of texture coordinates that vertices have.
 pub(crate) fn read_shape(
     def: &PrimitiveDef,
+    uv_sets: UvSets,
     reader: Reader<'_>,
     source: &[u32],
     notes: &mut Vec<Warning>,
@@ -28,37 +30,49 @@ pub(crate) fn read_shape(
             let Some(accessor) = accessor else {
                 return Ok(Vec::new());
             };
-            let list = reader.floats::<3>(accessor).map_err(|e| place(e, name))?;
-            let pick = |&i: &u32| {
-                let delta = list.get(i as usize).copied().map(Vec3::from)?;
-                Some(if delta.is_finite() { delta } else { Vec3::ZERO })
-            };
-            source
-                .iter()
-                .map(pick)
-                .collect::<Option<_>>()
-                .ok_or_else(|| {
-                    place(
-                        Flaw::new(
-                            Code::AccessorCount,
-                            format!("has only {} elements", list.len()),
-                        ),
-                        name,
-                    )
-                })
+            let list = reader.floats::<3>(accessor);
+            let list = list.and_then(|list| pick(&list, source));
+            list.map(|l| l.into_iter().map(Vec3::from).collect())
+                .map_err(|e| place(e, name))
         };
-        if !target.uv.is_empty() || target.color.is_some() {
+        let has_base = |set: &u32| def.attributes.uv.iter().any(|(base, _)| base == set);
+        let lacks_base = target.uv.iter().any(|(set, _)| !has_base(set))
+            || target.color.is_some() && def.attributes.color.is_none();
+        if lacks_base {
             notes.push(Warning::new(
                 Code::MorphIgnored,
                 format!(
-                    "targets[{i}] morphs texture coordinates or colours, which stay as they are"
+                    "targets[{i}] morphs texture coordinates or colours that the primitive does not have"
                 ),
             ));
         }
+        let mut uvs = [Vec::new(), Vec::new()];
+        for (uvs, set) in uvs.iter_mut().zip(uv_sets) {
+            let of_set = |(number, _): &&(u32, u32)| Some(*number) == set;
+            let Some(&(set, accessor)) = target.uv.iter().find(of_set) else {
+                continue;
+            };
+            if has_base(&set) {
+                let list = reader.floats::<2>(accessor);
+                let list = list.and_then(|list| pick(&list, source));
+                *uvs = list
+                    .map(|l| l.into_iter().map(Vec2::from).collect())
+                    .map_err(|e| place(e, &format!("TEXCOORD_{set}")))?;
+            }
+        }
+        let colors = match target.color.filter(|_| def.attributes.color.is_some()) {
+            Some(accessor) => color_deltas(reader, accessor)
+                .and_then(|list| pick(&list, source))
+                .map(|l| l.into_iter().map(Vec4::from).collect())
+                .map_err(|e| place(e, "COLOR_0"))?,
+            None => Vec::new(),
+        };
         targets.push(MorphTarget {
             positions: deltas(target.position, "POSITION")?,
             normals: deltas(target.normal, "NORMAL")?,
             tangents: deltas(target.tangent, "TANGENT")?,
+            uvs,
+            colors,
         });
     }
     Ok(Some(Shape {
@@ -66,6 +80,32 @@ pub(crate) fn read_shape(
         influences,
         ..Shape::default()
     }))
+}
+
+/// The differences of the vertices that are kept; those that are no numbers are none.
+fn pick<const N: usize>(list: &[[f32; N]], source: &[u32]) -> Parsed<Vec<[f32; N]>> {
+    let one = |&i: &u32| {
+        let delta = *list.get(i as usize)?;
+        let finite = delta.iter().all(|x| x.is_finite());
+        Some(if finite { delta } else { [0.0; N] })
+    };
+    let picked: Option<_> = source.iter().map(one).collect();
+    picked.ok_or_else(|| {
+        Flaw::new(
+            Code::AccessorCount,
+            format!("has only {} elements", list.len()),
+        )
+    })
+}
+
+/// Differences of linear RGBA; of RGB alpha stays.
+fn color_deltas(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[f32; 4]>> {
+    if reader.accessor(accessor).width == 3 {
+        let list = reader.floats::<3>(accessor)?;
+        Ok(list.into_iter().map(|[r, g, b]| [r, g, b, 0.0]).collect())
+    } else {
+        reader.floats::<4>(accessor)
+    }
 }
 
 fn read_influences(

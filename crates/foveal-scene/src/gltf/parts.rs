@@ -192,7 +192,10 @@ fn vertex_bytes(def: &PrimitiveDef) -> u64 {
     let vertex = size_of::<Vertex>() as u64;
     let joints = def.attributes.joints.iter().flatten().count() as u64;
     let deltas = |t: &Attributes| [t.position, t.normal, t.tangent].iter().flatten().count();
-    let targets = def.targets.iter().map(|t| 12 * deltas(t) as u64);
+    let targets = def.targets.iter().map(|t| {
+        let further = 8 * t.uv.len().min(2) + 16 * usize::from(t.color.is_some());
+        (12 * deltas(t) + further) as u64
+    });
     let deforms = if def.targets.is_empty() && joints == 0 {
         0
     } else {

@@ -1,6 +1,6 @@
 //! Morph targets and skins: deformed vertices from a shape at rest.
 
-use glam::{Mat3, Mat4, Vec3, Vec4};
+use glam::{Mat3, Mat4, Vec2, Vec3, Vec4};
 
 use crate::Vertex;
 
@@ -19,6 +19,10 @@ pub(crate) struct MorphTarget {
     pub(crate) positions: Vec<Vec3>,
     pub(crate) normals: Vec<Vec3>,
     pub(crate) tangents: Vec<Vec3>,
+    /// Of the two UV sets that the material uses.
+    pub(crate) uvs: [Vec<Vec2>; 2],
+    /// Linear RGBA.
+    pub(crate) colors: Vec<Vec4>,
 }
 
 /// Up to eight joints per vertex.
@@ -67,6 +71,10 @@ impl Shape {
             .zip(weights.iter().copied())
             .filter(|(_, w)| *w != 0.0)
             .collect();
+        let moves_uvs = active
+            .iter()
+            .any(|(t, _)| t.uvs.iter().any(|list| !list.is_empty()));
+        let moves_colors = active.iter().any(|(t, _)| !t.colors.is_empty());
         let skinning = joint_matrices.zip(self.influences.as_ref());
         for (i, (vertex, rest)) in out.iter_mut().zip(&self.rest).enumerate() {
             let mut position = Vec3::from(rest.position);
@@ -85,6 +93,12 @@ impl Shape {
                 tangent = matrix
                     .transform_vector3(tangent.truncate())
                     .extend(tangent.w);
+            }
+            if moves_uvs {
+                vertex.uv = morphed_uvs(rest, &active, i);
+            }
+            if moves_colors {
+                vertex.color = morphed_color(rest, &active, i);
             }
             // Weights and matrices may lead beyond the range of numbers.
             vertex.position = if position.is_finite() {
@@ -108,6 +122,39 @@ impl Shape {
                 triangle.iter_mut().for_each(|v| v.normal = normal);
             }
         }
+    }
+}
+
+fn morphed_uvs(rest: &Vertex, active: &[(&MorphTarget, f32)], vertex: usize) -> [[f32; 2]; 2] {
+    std::array::from_fn(|set| {
+        let moved = active
+            .iter()
+            .fold(Vec2::from(rest.uv[set]), |uv, (t, weight)| {
+                let delta = t.uvs[set].get(vertex).copied();
+                uv + delta.unwrap_or(Vec2::ZERO) * *weight
+            });
+        if moved.is_finite() {
+            moved.to_array()
+        } else {
+            rest.uv[set]
+        }
+    })
+}
+
+/// Clamped to what colours can be, as the specification says (section 3.7.2.2).
+fn morphed_color(rest: &Vertex, active: &[(&MorphTarget, f32)], vertex: usize) -> [u8; 4] {
+    let at_rest = Vec4::from(rest.color.map(f32::from)) / 255.0;
+    let moved = active.iter().fold(at_rest, |color, (t, weight)| {
+        let delta = t.colors.get(vertex).copied();
+        color + delta.unwrap_or(Vec4::ZERO) * *weight
+    });
+    if moved.is_finite() {
+        (moved.clamp(Vec4::ZERO, Vec4::ONE) * 255.0)
+            .round()
+            .to_array()
+            .map(|x| x as u8)
+    } else {
+        rest.color
     }
 }
 

@@ -7,7 +7,7 @@ mod lobes_tests;
 mod lobes_twin;
 mod recipes;
 #[cfg(test)]
-mod strokes_tests;
+pub(crate) mod strokes_tests;
 mod targets;
 mod transmission;
 #[cfg(test)]

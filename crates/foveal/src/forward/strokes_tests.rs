@@ -41,6 +41,13 @@ fn black() -> Environment {
     }
 }
 
+/// Points and lines of one colour, and where they are seen from.
+pub(crate) fn strokes() -> (Scene, Camera) {
+    let mut scene = scene_of(lines(), white());
+    add(&mut scene, points(), white(), Mat4::IDENTITY);
+    (scene, camera())
+}
+
 /// A mesh that an object of its own shows.
 fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_object: Mat4) {
     mesh.bounds = Aabb::of_points(mesh.vertices.iter().map(|v| v.position.into()));

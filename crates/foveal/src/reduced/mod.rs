@@ -10,6 +10,7 @@ use std::sync::OnceLock;
 use foveal_generate as generate;
 use foveal_scene::{Camera, Scene};
 
+use crate::forward::strokes_tests::strokes;
 use crate::gpu::read_buffer;
 use crate::lights::cluster_bits;
 use crate::shader::{self, Shader};
@@ -75,6 +76,22 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
 }
 
 #[test]
+fn points_and_lines_are_those_of_the_full_renderer() {
+    let (scene, camera) = strokes();
+    for width in [1.0, 5.0] {
+        let settings = small(120, 80).with(|s| {
+            s.geometry.line_width_px = width;
+            s.geometry.point_size_px = width;
+        });
+        let full = picture(&rendered(&scene, &camera, &settings));
+        let ours = pollster::block_on(reduced(&scene, &camera, &settings).read_picture());
+        assert!(differing(&full, &ours.expect("read-back works"), 2) < 1e-3);
+        let shown = full.chunks_exact(4).filter(|p| p[0] > 100).count();
+        assert!(shown > 100, "{shown}");
+    }
+}
+
+#[test]
 fn two_eyes_in_one_submission_are_those_of_two_passes() {
     let scene = generate::by_name("demo:1000").expect("it is generated");
     let of = |stereo| {
@@ -120,7 +137,7 @@ fn the_cpu_assigns_lights_to_the_clusters_that_the_device_finds() {
 /// WebGL 2 takes GLSL ES 3.00 alone.
 #[test]
 fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
-    let all: [(Shader, [&str; 2]); 5] = [
+    let all: [(Shader, [&str; 2]); 6] = [
         (
             shader::REDUCED_GBUFFER.variant(&["REDUCED"]),
             ["vertex", "fragment"],
@@ -131,6 +148,10 @@ fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
         ),
         (
             shader::FORWARD_FORWARD.variant(&["REDUCED"]),
+            ["vertex", "fragment"],
+        ),
+        (
+            shader::FORWARD_FORWARD.variant(&["STROKES", "REDUCED"]),
             ["vertex", "fragment"],
         ),
         (shader::OUTPUT_TONE_MAP, ["full_screen", "tone_map"]),

@@ -194,3 +194,48 @@ fn a_skin_follows_its_joints_and_ignores_its_own_node() {
     assert!(!rigid.deforms);
     assert!(warnings(&scene).contains("no skin; it stays rigid"));
 }
+
+#[test]
+fn morph_targets_move_colours_and_texture_coordinates() {
+    let mut file = File::with_triangle();
+    file.attribute("COLOR_0", &[0.2, 0.4, 0.6].repeat(3), "VEC3");
+    file.attribute("TEXCOORD_0", &[0., 0., 1., 0., 0., 1.], "VEC2");
+    file.attribute("TEXCOORD_1", &[0.5; 6], "VEC2");
+    let picture = image::RgbaImage::from_pixel(1, 1, [9; 4].into());
+    let texture = file.texture(&picture);
+    file.material(json!({
+        "pbrMetallicRoughness": { "baseColorTexture": { "index": texture, "texCoord": 1 } },
+        "emissiveTexture": { "index": texture },
+    }));
+    let colors = file.floats(&[0.4, 0., -1.6, 0., 0., 0., 0., 0., 0.], "VEC3");
+    let first = file.floats(&[0., 0., 4., 0., 0., 0.], "VEC2");
+    let second = file.floats(&[0., 0., 0., 2., 0., f32::NAN], "VEC2");
+    file.primitive()["targets"] = json!([
+        { "COLOR_0": colors, "TEXCOORD_0": first, "TEXCOORD_1": second },
+        { "COLOR_0": colors },
+    ]);
+    file.json["meshes"][0]["weights"] = json!([0.5, 0.5]);
+    let scene = file.load();
+    assert_eq!(scene.warnings, []);
+    let vertices = &scene.meshes[scene.instances[0].mesh as usize].vertices;
+    // 0.2 + 0.4, and 0.6 - 1.6, which is clamped.
+    assert_eq!(vertices[0].color, [153, 102, 0, 255]);
+    assert_eq!(vertices[1].color, [51, 102, 153, 255]);
+    let material = &scene.materials[scene.instances[0].material as usize];
+    let set = |slot: Option<crate::TextureRef>| slot.unwrap().uv_set as usize;
+    let (base, emissive) = (
+        set(material.base_color_texture),
+        set(material.emissive_texture),
+    );
+    assert_ne!(base, emissive);
+    assert_eq!(vertices[1].uv[emissive], [3., 0.]);
+    assert_eq!(vertices[1].uv[base], [0.5, 1.5]);
+    assert_eq!(vertices[2].uv[base], [0.5, 0.5]);
+
+    file.primitive()["attributes"]
+        .as_object_mut()
+        .unwrap()
+        .remove("COLOR_0");
+    let text = "targets[0] morphs texture coordinates or colours that the primitive does not have";
+    assert!(warnings(&file.load()).contains(text));
+}
