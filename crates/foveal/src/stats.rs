@@ -144,8 +144,17 @@ pub struct ShadowStats {
     pub tiles: u64,
     /// Tiles that were drawn in this frame; all others were kept.
     pub tiles_drawn: u64,
-    /// Instances that were submitted to draw them, counted once per tile.
+    /// Kept tiles to which casters were added that had been left out: what they shade is seen now.
+    pub tiles_completed: u64,
+    /// Instances that were submitted to draw and to complete tiles, counted once per tile.
     pub casters: u64,
+    /// Instances in the parts of space that drawn tiles see, counted once per tile: what would have
+    /// been submitted without culling.
+    pub casters_in_reach: u64,
+    /// Those of them that others hide from the light.
+    pub casters_hidden: u64,
+    /// Those of them whose shadows fall on nothing that is seen.
+    pub casters_unneeded: u64,
     /// Triangles of these.
     pub triangles: u64,
     /// Texels of the tiles that the frame may look into.

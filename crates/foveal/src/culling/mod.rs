@@ -5,11 +5,12 @@
 //! then lie on the picture's own pixel centres, so that what is culled could not have changed a
 //! single pixel.
 
+mod cells;
 mod found_for;
 mod scene;
 mod workers;
 
-pub(crate) use scene::CullingScene;
+pub(crate) use scene::{CullingScene, affine};
 
 use foveal_cull::{Budget, CullStats, Culler, Eye, FrameOptions, Projection, View, Visibility};
 use foveal_scene::Camera;
@@ -18,7 +19,6 @@ use glam::Mat4;
 use crate::clock::{self, ms_between};
 use crate::{Clock, Culling, CullingEyes, Error, Settings};
 use found_for::FoundFor;
-use scene::affine;
 use workers::Workers;
 
 /// What the culler found in a frame, as Intel's occlusion culling sample shows it.
@@ -64,6 +64,9 @@ pub(crate) struct CullingStage {
     culler: Culler,
     results: Vec<Visibility>,
     of_eye: Vec<Visibility>,
+    /// What became of each of the scene's cells.
+    cells: Vec<Visibility>,
+    cells_of_eye: Vec<Visibility>,
     rasterize_ms: f64,
     test_ms: f64,
     /// Metres that eyes may move while the result holds.
@@ -107,6 +110,8 @@ impl CullingStage {
             culler,
             results: Vec::new(),
             of_eye: Vec::new(),
+            cells: Vec::new(),
+            cells_of_eye: Vec::new(),
             rasterize_ms: 0.0,
             test_ms: 0.0,
             radius_m: settings.culling.radius_m.into(),
@@ -164,6 +169,7 @@ impl CullingStage {
             return self.counts();
         }
         self.results.clear();
+        self.cells.clear();
         self.over_budget = 0;
         let both = match wanted.eyes {
             [Some(left), Some(right)] if self.eyes == CullingEyes::Shared => {
@@ -197,6 +203,8 @@ impl CullingStage {
             .with_budget(budget);
         self.of_eye.clear();
         self.of_eye.resize(scene.boxes.len(), Visibility::Visible);
+        self.cells_of_eye.clear();
+        (self.cells_of_eye).resize(scene.cells.boxes().len(), Visibility::Visible);
         let now = || clock::read(clock);
         let start = now();
         let threads = self.threads.threads();
@@ -212,17 +220,24 @@ impl CullingStage {
         {
             self.of_eye.fill(Visibility::Visible);
         }
+        if rasterized.is_ok()
+            && (self.culler)
+                .query_tree(&scene.cells.tree, &mut self.cells_of_eye)
+                .is_err()
+        {
+            self.cells_of_eye.fill(Visibility::Visible);
+        }
+        // A small cell of a larger object is drawn.
+        for cell in &mut self.cells_of_eye {
+            if *cell == Visibility::Small {
+                *cell = Visibility::Visible;
+            }
+        }
         self.over_budget += self.culler.stats().clusters_over_budget;
         self.rasterize_ms += ms_between(start, rasterized_at);
         self.test_ms += ms_between(rasterized_at, now());
-        if self.results.is_empty() {
-            self.results.extend(&self.of_eye);
-        }
-        for (result, of_eye) in self.results.iter_mut().zip(&self.of_eye) {
-            if !result.is_visible() {
-                *result = *of_eye;
-            }
-        }
+        join(&mut self.results, &self.of_eye);
+        join(&mut self.cells, &self.cells_of_eye);
         rasterized.is_ok()
     }
 
@@ -257,6 +272,21 @@ impl CullingStage {
         &self.results
     }
 
+    /// The scene's cells that the last frame may show, in ascending order; `None` without occlusion
+    /// culling. `by_object`: all cells of the objects that are drawn, for pictures that show more
+    /// than the culler has looked at.
+    pub(crate) fn cells_seen(&self, scene: &CullingScene, by_object: bool) -> Option<Vec<u32>> {
+        let cells = &scene.cells;
+        if !self.occlusion || self.cells.len() != cells.objects.len() || self.cells.is_empty() {
+            return None;
+        }
+        let seen = (0..).zip(self.cells.iter().zip(&cells.objects));
+        let seen = seen.filter(|(_, (cell, object))| {
+            self.is_visible(**object) && (by_object || cell.is_visible())
+        });
+        Some(seen.map(|(number, _)| number).collect())
+    }
+
     /// The occlusion buffer of the last frame.
     pub(crate) fn depth(&self) -> (u32, u32, Vec<f32>) {
         let (width, height) = self.culler.size();
@@ -271,6 +301,18 @@ impl CullingStage {
         self.results
             .get(object as usize)
             .is_none_or(|r| r.is_visible())
+    }
+}
+
+/// Adds what is seen in one more view.
+fn join(results: &mut Vec<Visibility>, of_eye: &[Visibility]) {
+    if results.is_empty() {
+        results.extend(of_eye);
+    }
+    for (result, of_eye) in results.iter_mut().zip(of_eye) {
+        if !result.is_visible() {
+            *result = *of_eye;
+        }
     }
 }
 

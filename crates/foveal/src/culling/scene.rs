@@ -1,5 +1,6 @@
 //! What is culled and what hides it: a scene's boxes and its occluders.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -7,21 +8,34 @@ use foveal_cull::{BakeOptions, OccludeeTree, OccluderId, OccluderMesh, OccluderS
 use foveal_scene::Scene;
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
+use super::cells::Cells;
 use crate::Culling;
 
 /// A scene's occluders and boxes.
 #[derive(Debug, Default)]
 pub(crate) struct CullingScene {
     pub(super) occluders: OccluderSet,
-    /// Which instance each occluder is.
-    placed: Vec<(OccluderId, u32)>,
+    placed: Vec<Placed>,
+    /// Where in `placed` each instance is that occludes.
+    placed_of: HashMap<u32, usize>,
     pub(super) boxes: Vec<foveal_cull::Aabb>,
     /// Per object.
     pub(super) triangles: Vec<u32>,
     /// Over the boxes.
     pub(super) objects: OccludeeTree,
+    /// What may receive shadows; empty without occlusion culling.
+    pub(crate) cells: Cells,
     /// No other scene, and no other pose, has this number.
     pub(super) pose: u64,
+}
+
+/// An instance that occludes.
+#[derive(Debug)]
+struct Placed {
+    id: OccluderId,
+    instance: u32,
+    mesh: Arc<OccluderMesh>,
+    world_from_mesh: DAffine3,
 }
 
 fn new_pose() -> u64 {
@@ -39,6 +53,7 @@ impl CullingScene {
         };
         if mode == Culling::Occlusion {
             this.bake(scene);
+            this.cells = Cells::new(scene);
         }
         this.take_boxes(scene);
         this.triangles = vec![0; scene.objects.len()];
@@ -54,8 +69,7 @@ impl CullingScene {
 
     fn bake(&mut self, scene: &Scene) {
         let marked = scene.marks_occluders();
-        let mut baked: std::collections::HashMap<(u32, bool), Option<Arc<OccluderMesh>>> =
-            Default::default();
+        let mut baked: HashMap<(u32, bool), Option<Arc<OccluderMesh>>> = HashMap::new();
         for (index, instance) in (0..).zip(&scene.instances) {
             let material = &scene.materials[instance.material as usize];
             let mesh = &scene.meshes[instance.mesh as usize];
@@ -73,12 +87,17 @@ impl CullingScene {
                     .ok()
                     .map(Arc::new)
             });
-            if let Some(occluder) = occluder
-                && let Ok(id) = self
-                    .occluders
-                    .add(Arc::clone(occluder), affine(instance.world_from_object))
+            let world_from_mesh = affine(instance.world_from_object);
+            if let Some(mesh) = occluder
+                && let Ok(id) = self.occluders.add(Arc::clone(mesh), world_from_mesh)
             {
-                self.placed.push((id, index));
+                self.placed_of.insert(index, self.placed.len());
+                self.placed.push(Placed {
+                    id,
+                    instance: index,
+                    mesh: Arc::clone(mesh),
+                    world_from_mesh,
+                });
             }
         }
     }
@@ -86,17 +105,31 @@ impl CullingScene {
     /// Takes over a new pose of the same scene.
     pub(crate) fn update_pose(&mut self, scene: &Scene) {
         self.pose = new_pose();
-        for &(id, instance) in &self.placed {
-            let place = affine(scene.instances[instance as usize].world_from_object);
-            if self.occluders.set_transform(id, place).is_err() {
+        for placed in &mut self.placed {
+            let instance = &scene.instances[placed.instance as usize];
+            placed.world_from_mesh = affine(instance.world_from_object);
+            let moved = (self.occluders).set_transform(placed.id, placed.world_from_mesh);
+            if moved.is_err() {
                 // A transform that is no transform: better no occluder than a wrong one.
-                let _ = self.occluders.set_enabled(id, false);
+                let _ = self.occluders.set_enabled(placed.id, false);
             }
         }
+        self.cells.update_pose(scene);
         self.take_boxes(scene);
         if self.objects.refit(&self.boxes).is_err() {
             self.objects = OccludeeTree::build(&self.boxes, DVec3::ZERO);
         }
+    }
+
+    /// Those of some instances that occlude, as a set of their own.
+    pub(crate) fn occluders_of(&self, instances: &[u32]) -> OccluderSet {
+        let mut set = OccluderSet::new();
+        let placed = instances.iter().filter_map(|i| self.placed_of.get(i));
+        for placed in placed.map(|&number| &self.placed[number]) {
+            // One without a place occludes nothing.
+            let _ = set.add(Arc::clone(&placed.mesh), placed.world_from_mesh);
+        }
+        set
     }
 
     fn take_boxes(&mut self, scene: &Scene) {
@@ -107,6 +140,6 @@ impl CullingScene {
     }
 }
 
-pub(super) fn affine(m: Mat4) -> DAffine3 {
+pub(crate) fn affine(m: Mat4) -> DAffine3 {
     DAffine3::from_mat4(m.as_dmat4())
 }

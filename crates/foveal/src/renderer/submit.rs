@@ -2,7 +2,6 @@
 
 use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
-use crate::FrameStats;
 use crate::antialias::Shadings;
 use crate::culling::CullingCounts;
 use crate::forward::TransmissionTargets;
@@ -12,7 +11,9 @@ use crate::gpu::CpuTimer;
 use crate::lights::{ClusterGrid, SceneLights};
 use crate::recorder::Recorder;
 use crate::shading::{HistoryStage, Samples};
+use crate::shadow::Receivers;
 use crate::stereo::EyeLayout;
+use crate::{Antialiasing, FrameStats, Shadows};
 use foveal_scene::Camera;
 
 impl Renderer {
@@ -123,12 +124,25 @@ impl Renderer {
     /// Finds the tiles of the shadow atlas that the frame needs and has not.
     fn find_shadows(&mut self, seen: &Seen) {
         let Stages {
-            settings, shadows, ..
+            settings,
+            shadows,
+            culling,
+            ..
         } = &mut self.stages;
-        if settings.picture.view.is_lit() {
-            let scene = (&self.scene, &self.draw_list);
-            shadows.prepare(&self.gpu, settings, scene, &seen.eyes);
+        if settings.lighting.shadows == Shadows::Off || !settings.picture.view.is_lit() {
+            return;
         }
+        // The culler answers for pixel centres of the view that it has seen last.
+        let by_object = self.frozen || settings.antialiasing.mode != Antialiasing::None;
+        let cells = culling
+            .as_ref()
+            .and_then(|culling| culling.cells_seen(&self.scene.culling, by_object));
+        let receivers = match cells {
+            Some(cells) => Receivers::Cells(cells),
+            None => Receivers::Instances(self.draw_list.drawn.clone()),
+        };
+        let scene = (&self.scene, receivers);
+        shadows.prepare(&self.gpu, settings, scene, &seen.eyes);
     }
 
     /// Encodes and submits the frame's passes.

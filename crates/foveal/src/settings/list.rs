@@ -35,7 +35,8 @@ settings! {
     /// Objects that are submitted.
     "Culling" culling: CullingSettings {
         /// Objects that are submitted: frustum takes those in view, occlusion only those in
-        /// view that nothing hides, off takes all (the reference). The picture is the same.
+        /// view that nothing hides, and leaves out shadow casters that nobody would miss; off takes
+        /// all (the reference). The picture is the same.
         culling => mode: Culling = Culling::default(), "Culling", Kind::choice::<Culling>();
         /// Smallest apparent size of an occluder. Smaller objects hide nothing: culling is then
         /// faster and finds less. An object is too small if radius^2 < distance * size^2 *

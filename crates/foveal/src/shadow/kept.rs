@@ -5,18 +5,32 @@ use std::collections::BTreeMap;
 use foveal_scene::Aabb;
 
 use super::atlas::{Atlas, Tile};
+use super::mask::Mask;
 use super::plan::Wanted;
 use super::volume::Volume;
 
 /// A tile with its place in the atlas.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(super) struct Kept {
     pub(super) tile: Tile,
     pub(super) volume: Volume,
-    /// It holds the shadows of the pose.
+    /// It holds the shadows of the pose, but for those of what is left out.
     pub(super) is_drawn: bool,
+    /// Casters whose shadows nobody has seen yet.
+    pub(super) left_out: Option<Box<LeftOut>>,
     /// The frame that wanted it last.
     wanted_in: u64,
+}
+
+/// Casters that a tile was drawn without.
+#[derive(Clone, Debug)]
+pub(super) struct LeftOut {
+    /// Instances, ascending.
+    pub(super) casters: Vec<u32>,
+    /// The receivers that the tile has been drawn for: shadows of what is left out fall on none.
+    pub(super) mask: Mask,
+    /// The frame whose receivers were added to the mask last.
+    pub(super) frame: u64,
 }
 
 /// The tiles in the atlas, by slot.
@@ -50,10 +64,24 @@ impl KeptTiles {
         self.tiles.get(&slot)
     }
 
-    /// The tile has been drawn.
-    pub(super) fn drawn(&mut self, slot: u32) {
+    pub(super) fn get_mut(&mut self, slot: u32) -> Option<&mut Kept> {
+        self.tiles.get_mut(&slot)
+    }
+
+    /// The tile has been drawn, without some casters.
+    pub(super) fn drawn(&mut self, slot: u32, left_out: Option<Box<LeftOut>>) {
         if let Some(kept) = self.tiles.get_mut(&slot) {
             kept.is_drawn = true;
+            kept.left_out = left_out;
+        }
+    }
+
+    /// Tiles that were drawn without some casters must be drawn again: nobody says any more what is
+    /// seen.
+    pub(super) fn draw_in_full(&mut self) {
+        for kept in self.tiles.values_mut().filter(|k| k.left_out.is_some()) {
+            kept.left_out = None;
+            kept.is_drawn = false;
         }
     }
 
@@ -118,6 +146,7 @@ impl KeptTiles {
             tile,
             volume: want.volume,
             is_drawn: false,
+            left_out: None,
             wanted_in: self.frame,
         };
         self.tiles.insert(want.slot, kept);
@@ -166,8 +195,8 @@ mod tests {
         let mut kept = KeptTiles::new(8);
         kept.place(&[want(0, 6), want(7, 5)]);
         let places = [0, 7].map(|slot| place_of(&kept, slot));
-        kept.drawn(0);
-        kept.drawn(7);
+        kept.drawn(0, None);
+        kept.drawn(7, None);
         // One frame does not want it, one wants others beside it.
         kept.place(&[want(7, 5)]);
         kept.place(&[want(0, 6), want(7, 5), want(9, 5)]);
@@ -205,8 +234,8 @@ mod tests {
         let mut kept = KeptTiles::new(8);
         // Side 0 looks along x from 0, side 1 against it.
         kept.place(&[want(0, 5), want(1, 5)]);
-        kept.drawn(0);
-        kept.drawn(1);
+        kept.drawn(0, None);
+        kept.drawn(1, None);
         let at = Vec3::new(1.5, 0.0, 0.0);
         kept.disturb(&[Aabb::new(at, at + 0.1)]);
         assert!(!kept.get(0).unwrap().is_drawn);

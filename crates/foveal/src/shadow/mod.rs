@@ -4,15 +4,23 @@
 //! light, one for a spot light, a few cascades for a directional one. A frame's tiles and their
 //! sizes follow from lights, view and settings alone ([`plan`]); tiles are kept from frame to frame
 //! ([`kept`]) and drawn again where a thing that casts shadows has moved, or their size has
-//! changed. Lighting looks into the atlas at each sample (`shadow/lookup.wgsl`).
+//! changed. With occlusion culling, what other casters hide from the light ([`hidden`]) and what
+//! shades nothing that is seen ([`mask`]) is left out. Lighting looks into the atlas at each sample
+//! (`shadow/lookup.wgsl`).
 
 mod atlas;
 mod changed;
+#[cfg(test)]
+mod culling_tests;
+mod footprint;
+mod hidden;
 mod kept;
+mod mask;
 mod pass;
 mod plan;
 #[cfg(test)]
 mod rays;
+mod receivers;
 mod records;
 mod stage;
 #[cfg(test)]
@@ -24,4 +32,5 @@ mod volume;
 pub(crate) use changed::Place;
 #[cfg(test)]
 pub(crate) use pass::TileUniform;
+pub(crate) use receivers::Receivers;
 pub(crate) use stage::ShadowStage;

@@ -22,6 +22,8 @@ pub(super) struct TileDraw {
     pub(super) tile: Tile,
     pub(super) clip_from_world: glam::Mat4,
     pub(super) casters: DrawList,
+    /// Whether it holds nothing yet; otherwise these casters are added to those that it holds.
+    pub(super) is_new: bool,
 }
 
 /// Mirrors `TileView` in `shadow/caster.wgsl`.
@@ -153,8 +155,10 @@ impl CasterPass {
             let side = draw.tile.side();
             pass.set_viewport(x as f32, y as f32, side as f32, side as f32, 0.0, 1.0);
             pass.set_scissor_rect(x, y, side, side);
-            pass.set_pipeline(&self.clear);
-            pass.draw(0..3, 0..1);
+            if draw.is_new {
+                pass.set_pipeline(&self.clear);
+                pass.draw(0..3, 0..1);
+            }
             pass.set_bind_group(0, &frame, &[]);
             pass.set_bind_group(2, &views, &[number * stride]);
             scene.geometry.bind(&mut pass);

@@ -5,9 +5,12 @@ use glam::Vec3;
 
 use super::atlas::Tile;
 use super::changed::{Place, changed_places};
-use super::kept::KeptTiles;
+use super::hidden::HiddenCasters;
+use super::kept::{KeptTiles, LeftOut};
+use super::mask::Mask;
 use super::pass::{CasterPass, TileDraw};
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
+use super::receivers::{Receivers, SeenSince};
 use super::records::{Row, rows};
 use super::volume::Volume;
 use crate::geometry::DrawList;
@@ -36,18 +39,30 @@ struct Drawing {
     atlas_level: u32,
     texels_moved: f32,
     plan: Plan,
-    /// What the frame draws.
+    hidden: HiddenCasters,
+    /// Since when cells are seen, and the frame that looked at them last.
+    seen: SeenSince,
+    frame: u64,
+    /// What the frame draws, and counts.
     draws: Vec<TileDraw>,
+    counts: Counts,
     /// What the last frame's tiles followed from; they stand while it is the same.
     settled: Option<Settled>,
+}
+
+/// Casters of the tiles that a frame draws.
+#[derive(Clone, Copy, Debug, Default)]
+struct Counts {
+    in_reach: u64,
+    hidden: u64,
+    unneeded: u64,
 }
 
 /// A frame after which the next one of the same needs nothing.
 #[derive(Debug, PartialEq)]
 struct Settled {
     view: ViewOfPlan,
-    /// Instances that are drawn.
-    receivers: Vec<u32>,
+    receivers: Receivers,
 }
 
 impl ShadowStage {
@@ -95,7 +110,11 @@ impl ShadowStage {
                     atlas_level,
                     texels_moved: lighting.shadow_bias,
                     plan: Plan::default(),
+                    hidden: HiddenCasters::default(),
+                    seen: SeenSince::default(),
+                    frame: 0,
                     draws: Vec::new(),
+                    counts: Counts::default(),
                     settled: None,
                 })
             }),
@@ -121,6 +140,7 @@ impl ShadowStage {
     pub(crate) fn forget(&mut self) {
         if let Some(drawing) = &mut self.drawing {
             drawing.kept.forget();
+            drawing.seen = SeenSince::default();
             drawing.settled = None;
         }
     }
@@ -154,12 +174,13 @@ impl ShadowStage {
         })
     }
 
-    /// Decides what the frame draws, and tells shaders where tiles lie. `list`: what is seen.
+    /// Decides what the frame draws, and tells shaders where tiles lie. `receivers`: what
+    /// is seen.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         settings: &Settings,
-        (scene, list): (&SceneOnGpu, &DrawList),
+        (scene, receivers): (&SceneOnGpu, Receivers),
         eyes: &[Eye; 2],
     ) {
         let Some(drawing) = &mut self.drawing else {
@@ -167,9 +188,10 @@ impl ShadowStage {
         };
         let now = Settled {
             view: ViewOfPlan::new(eyes, settings.picture.height),
-            receivers: list.drawn.clone(),
+            receivers,
         };
         drawing.draws.clear();
+        drawing.counts = Counts::default();
         if drawing.settled.as_ref() != Some(&now) {
             drawing.find_tiles(scene, &now);
             let rows = rows(
@@ -223,59 +245,175 @@ fn casts(instance: &DrawnInstance, light: Option<(Vec3, f32)>) -> bool {
     instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
 }
 
+fn light_of(want: &Wanted) -> u32 {
+    want.slot / TILES_PER_LIGHT as u32
+}
+
+/// Where a light of several tiles reaches.
+struct Reach {
+    /// Place and range; `None` for a directional light.
+    sphere: Option<(Vec3, f32)>,
+}
+
+impl Reach {
+    fn of(wanted: &[Wanted]) -> Self {
+        let sphere = match wanted.first().map(|w| w.volume) {
+            Some(Volume::Pyramid { apex, range, .. }) => Some((apex, range)),
+            _ => None,
+        };
+        Self { sphere }
+    }
+
+    fn meets(&self, b: &Aabb) -> bool {
+        self.sphere.is_none_or(|(apex, range)| {
+            apex.clamp(b.min, b.max).distance_squared(apex) <= range * range
+        })
+    }
+}
+
 impl Drawing {
     /// Finds the frame's tiles, and lists the draws of those that are seen and not there.
     fn find_tiles(&mut self, scene: &SceneOnGpu, now: &Settled) {
         self.plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
         self.kept.place(&self.plan.wanted);
+        self.frame += 1;
+        if let Receivers::Cells(cells) = &now.receivers {
+            self.seen
+                .see(self.frame, cells, scene.culling.cells.boxes());
+            self.complete_tiles(scene, &now.receivers);
+        } else {
+            self.kept.draw_in_full();
+        }
         let missing = |want: &&Wanted| self.kept.get(want.slot).is_some_and(|k| !k.is_drawn);
         let missing: Vec<Wanted> = self.plan.wanted.iter().filter(missing).copied().collect();
-        let per_light = |w: &Wanted| w.slot / TILES_PER_LIGHT as u32;
-        for of_light in missing.chunk_by(|a, b| per_light(a) == per_light(b)) {
-            self.list_draws(scene, now, of_light);
+        for of_light in missing.chunk_by(|a, b| light_of(a) == light_of(b)) {
+            self.list_draws(scene, &now.receivers, of_light);
         }
     }
 
-    /// Lists the draws of one light's tiles.
-    fn list_draws(&mut self, scene: &SceneOnGpu, now: &Settled, wanted: &[Wanted]) {
-        let sphere = match wanted.first().map(|w| w.volume) {
-            Some(Volume::Pyramid { apex, range, .. }) => Some((apex, range)),
-            _ => None,
-        };
-        let is_near = |b: &Aabb| {
-            sphere.is_none_or(|(apex, range)| {
-                apex.clamp(b.min, b.max).distance_squared(apex) <= range * range
-            })
-        };
+    /// Adds casters to tiles that were drawn without them, and whose shadows are seen by now.
+    fn complete_tiles(&mut self, scene: &SceneOnGpu, receivers: &Receivers) {
+        let boxes = scene.culling.cells.boxes();
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
-        let receivers = now.receivers.iter().filter(|&&i| is_near(bounds(i)));
-        let receivers: Vec<u32> = receivers.copied().collect();
+        let (frame, bias) = (self.frame, self.texels_moved);
+        let wanted = std::mem::take(&mut self.plan.wanted);
+        // Cells that the frame before did not see: most tiles were looked at then.
+        let is_new = |&&cell: &&u32| !self.seen.was_seen(cell, frame - 1);
+        let new: Vec<u32> = receivers.numbers().iter().filter(is_new).copied().collect();
+        for of_light in wanted.chunk_by(|a, b| light_of(a) == light_of(b)) {
+            let reach = Reach::of(of_light);
+            let is_near = |cell: &&u32| reach.meets(&boxes[**cell as usize]);
+            let new: Vec<u32> = new.iter().filter(is_near).copied().collect();
+            for want in of_light {
+                let Some(kept) = self.kept.get_mut(want.slot).filter(|kept| kept.is_drawn) else {
+                    continue;
+                };
+                let Some(left_out) = &mut kept.left_out else {
+                    continue;
+                };
+                let side = kept.tile.side() as f32;
+                let (volume, mask) = (&want.volume, &mut left_out.mask);
+                let mut receive = |cell: u32| {
+                    let at = &boxes[cell as usize];
+                    volume.meets(at, side) && mask.receive(volume, at, side, bias)
+                };
+                let before = std::mem::replace(&mut left_out.frame, frame);
+                let mut grows = false;
+                if before + 1 == frame {
+                    new.iter().for_each(|&cell| grows |= receive(cell));
+                } else {
+                    let since = receivers.numbers().iter();
+                    let since = since.filter(|&&cell| !self.seen.was_seen(cell, before));
+                    since.for_each(|&cell| grows |= receive(cell));
+                }
+                if !grows {
+                    continue;
+                }
+                let shown = |i: u32| left_out.mask.shows(volume, bounds(i), side);
+                let (shown, still): (Vec<u32>, Vec<u32>) =
+                    left_out.casters.iter().partition(|&&i| shown(i));
+                left_out.casters = still;
+                if left_out.casters.is_empty() {
+                    kept.left_out = None;
+                }
+                if !shown.is_empty() {
+                    self.draws.push(TileDraw {
+                        tile: kept.tile,
+                        clip_from_world: volume.clip_from_world(side),
+                        casters: DrawList::of_casters(scene, shown.into_iter(), CasterPass::key),
+                        is_new: false,
+                    });
+                }
+            }
+        }
+        self.plan.wanted = wanted;
+    }
+
+    /// Lists the draws of one light's tiles.
+    fn list_draws(&mut self, scene: &SceneOnGpu, receivers: &Receivers, wanted: &[Wanted]) {
+        let reach = Reach::of(wanted);
+        let bounds = |i: u32| &scene.instances[i as usize].bounds;
+        let by_cells = matches!(receivers, Receivers::Cells(_));
+        let cells = scene.culling.cells.boxes();
+        let receivers = receivers.numbers().iter().map(|&number| match by_cells {
+            true => &cells[number as usize],
+            false => bounds(number),
+        });
+        let receivers: Vec<&Aabb> = receivers.filter(|b| reach.meets(b)).collect();
         let mut casters: Option<Vec<u32>> = None;
         for want in wanted {
             let Some(tile) = self.kept.get(want.slot).map(|kept| kept.tile) else {
                 continue;
             };
-            let side = tile.side() as f32;
-            let meets = |i: u32| want.volume.meets(bounds(i), side);
-            if !receivers.iter().any(|&i| meets(i)) {
+            let (side, volume) = (tile.side() as f32, &want.volume);
+            let mut seen = receivers
+                .iter()
+                .filter(|b| volume.meets(b, side))
+                .peekable();
+            if seen.peek().is_none() {
                 continue;
             }
             let casters = casters.get_or_insert_with(|| {
                 (0..)
                     .zip(&scene.instances)
-                    .filter(|(_, i)| casts(i, sphere) && is_near(&i.bounds))
+                    .filter(|(_, i)| casts(i, reach.sphere) && reach.meets(&i.bounds))
                     .map(|(number, _)| number)
                     .collect()
             });
-            let is_resolved = |i: u32| want.volume.resolves(bounds(i), side);
-            let seen = casters.iter().copied();
-            let seen = seen.filter(|&i| is_resolved(i) && meets(i));
+            let is_cast =
+                |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
+            let mut casters: Vec<u32> = casters.iter().copied().filter(is_cast).collect();
+            self.counts.in_reach += casters.len() as u64;
+            let mut left_out = None;
+            if by_cells {
+                let all = casters.len();
+                self.hidden
+                    .take_out(scene, volume, tile.side(), &mut casters);
+                self.counts.hidden += (all - casters.len()) as u64;
+                let mut mask = Mask::default();
+                for b in seen {
+                    mask.receive(volume, b, side, self.texels_moved);
+                }
+                let (shown, others): (Vec<u32>, Vec<u32>) = casters
+                    .iter()
+                    .partition(|&&i| mask.shows(volume, bounds(i), side));
+                self.counts.unneeded += others.len() as u64;
+                casters = shown;
+                left_out = (!others.is_empty()).then(|| {
+                    Box::new(LeftOut {
+                        casters: others,
+                        mask,
+                        frame: self.frame,
+                    })
+                });
+            }
             self.draws.push(TileDraw {
                 tile,
-                clip_from_world: want.volume.clip_from_world(side),
-                casters: DrawList::of_casters(scene, seen, CasterPass::key),
+                clip_from_world: volume.clip_from_world(side),
+                casters: DrawList::of_casters(scene, casters.into_iter(), CasterPass::key),
+                is_new: true,
             });
-            self.kept.drawn(want.slot);
+            self.kept.drawn(want.slot, left_out);
         }
     }
 
@@ -289,8 +427,12 @@ impl Drawing {
         let casters = self.draws.iter().map(|d| d.casters.drawn.len() as u64);
         ShadowStats {
             tiles: in_use.len() as u64,
-            tiles_drawn: self.draws.len() as u64,
+            tiles_drawn: self.draws.iter().filter(|d| d.is_new).count() as u64,
+            tiles_completed: self.draws.iter().filter(|d| !d.is_new).count() as u64,
             casters: casters.sum(),
+            casters_in_reach: self.counts.in_reach,
+            casters_hidden: self.counts.hidden,
+            casters_unneeded: self.counts.unneeded,
             triangles: self.draws.iter().map(|d| d.casters.triangles).sum(),
             texels: in_use.iter().map(|t| u64::from(t.side()).pow(2)).sum(),
             atlas_bytes: 4 << (2 * self.atlas_level),

@@ -1,0 +1,137 @@
+//! What a tile sees of a box: a rectangle of its texels, and distances from the light.
+
+use foveal_scene::Aabb;
+use glam::{Vec2, Vec3};
+
+use super::volume::{BORDER, Volume, widening};
+
+/// Part of a tile that a box covers, as seen from the light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Footprint {
+    /// Least and greatest coordinates in texels from the tile's corner; may lie beyond the tile.
+    pub(super) low: Vec2,
+    pub(super) high: Vec2,
+    /// Distances along the tile's axis, metres.
+    pub(super) nearest: f32,
+    pub(super) farthest: f32,
+}
+
+/// Corners that share an edge with a corner, by bits of their numbers.
+const EDGES: [(usize, usize); 12] = [
+    (0, 1),
+    (2, 3),
+    (4, 5),
+    (6, 7),
+    (0, 2),
+    (1, 3),
+    (4, 6),
+    (5, 7),
+    (0, 4),
+    (1, 5),
+    (2, 6),
+    (3, 7),
+];
+
+impl Footprint {
+    /// What a tile of `side` texels sees of a box; `None` where it is nearer than all that casts a
+    /// shadow.
+    pub(super) fn new(volume: &Volume, b: &Aabb, side: f32) -> Option<Self> {
+        let corner = |i: usize| {
+            let pick = |bit: usize, low: f32, high: f32| if i >> bit & 1 == 0 { low } else { high };
+            Vec3::new(
+                pick(0, b.min.x, b.max.x),
+                pick(1, b.min.y, b.max.y),
+                pick(2, b.min.z, b.max.z),
+            )
+        };
+        match *volume {
+            Volume::Pyramid {
+                apex,
+                axes,
+                tangent,
+                near,
+                ..
+            } => {
+                let local = |i: usize| Vec3::from(axes.map(|axis| axis.dot(corner(i) - apex)));
+                let corners: [Vec3; 8] = std::array::from_fn(local);
+                let half = 0.5 * side;
+                let scale = half / (tangent * widening(side));
+                // Rounding may err, but never to the small side.
+                let near = 0.999 * near;
+                let mut around = Around::NOTHING;
+                let mut take = |p: Vec3| around.take(p.truncate() * (scale / p.z) + half, p.z);
+                for p in corners.iter().filter(|p| p.z >= near) {
+                    take(*p);
+                }
+                if corners.iter().any(|p| p.z < near) {
+                    for (a, c) in EDGES.map(|(i, j)| (corners[i], corners[j])) {
+                        if (a.z < near) != (c.z < near) {
+                            let cut = a.lerp(c, (near - a.z) / (c.z - a.z));
+                            take(cut.truncate().extend(near));
+                        }
+                    }
+                }
+                around.found()
+            }
+            Volume::Column {
+                axes: [x, y, z],
+                center,
+                radius,
+                ..
+            } => {
+                let (middle, half) = (b.center(), b.half_extent());
+                let scale = 0.5 * side / radius;
+                let at = Vec2::new(x.dot(middle) - center[0], y.dot(middle) - center[1]) * scale;
+                let reach = Vec2::new(x.abs().dot(half), y.abs().dot(half)) * scale;
+                let (along, deep) = (z.dot(middle), z.abs().dot(half));
+                Some(Self {
+                    low: at - reach + 0.5 * side,
+                    high: at + reach + 0.5 * side,
+                    nearest: along - deep,
+                    farthest: along + deep,
+                })
+            }
+        }
+    }
+
+    /// The same, grown by texels on all sides.
+    pub(super) fn grown(self, texels: f32) -> Self {
+        Self {
+            low: self.low - texels,
+            high: self.high + texels,
+            ..self
+        }
+    }
+}
+
+/// A rectangle and a range around points.
+struct Around(Footprint);
+
+impl Around {
+    const NOTHING: Self = Self(Footprint {
+        low: Vec2::INFINITY,
+        high: Vec2::NEG_INFINITY,
+        nearest: f32::INFINITY,
+        farthest: f32::NEG_INFINITY,
+    });
+
+    fn take(&mut self, at: Vec2, distance: f32) {
+        let all = &mut self.0;
+        all.low = all.low.min(at);
+        all.high = all.high.max(at);
+        all.nearest = all.nearest.min(distance);
+        all.farthest = all.farthest.max(distance);
+    }
+
+    fn found(self) -> Option<Footprint> {
+        (self.0.nearest <= self.0.farthest).then_some(self.0)
+    }
+}
+
+/// Metres that a texel of a tile spans at a distance along its axis.
+pub(super) fn texel_at(volume: &Volume, side: f32, distance: f32) -> f32 {
+    match *volume {
+        Volume::Pyramid { tangent, .. } => 2.0 * tangent * distance / (side - 2.0 * BORDER),
+        Volume::Column { radius, .. } => 2.0 * radius / side,
+    }
+}

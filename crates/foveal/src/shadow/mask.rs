@@ -1,0 +1,213 @@
+//! Receiver masks: where in a tile, and how far from the light, shadows may be seen. What lies
+//! beyond everything that is seen behind it casts no shadow that anybody sees.
+//!
+//! Source: Bittner, Mattausch, Silvennoinen and Wimmer 2011, 'Shadow Caster Culling for Efficient
+//! Shadow Mapping'; here on the CPU, from boxes.
+
+use foveal_scene::Aabb;
+
+use super::footprint::{Footprint, texel_at};
+use super::volume::Volume;
+
+/// Parts of a tile along each side.
+const PARTS: usize = 32;
+/// Texels that a filter reads beside the place that it is asked for.
+const FILTER: f32 = 3.0;
+/// As `shadow_offset` in `shadow/lookup.wgsl`: places are moved by up to so many texels, times the
+/// bias.
+const MOST_MOVED: f32 = 1.4;
+
+/// What may be seen of a tile's shadows.
+#[derive(Clone, Debug)]
+pub(super) struct Mask {
+    /// The farthest receiver in each part, along the tile's axis in metres.
+    farthest: Box<[f32]>,
+}
+
+impl Default for Mask {
+    fn default() -> Self {
+        Self {
+            farthest: vec![f32::NEG_INFINITY; PARTS * PARTS].into(),
+        }
+    }
+}
+
+/// The parts that a footprint touches, as rows of them.
+fn rows(of: &Footprint, side: f32) -> impl Iterator<Item = std::ops::RangeInclusive<usize>> {
+    // Lookups beyond the tile read its border.
+    let part = |at: f32| (at * (PARTS as f32 / side)).clamp(0.0, PARTS as f32 - 1.0) as usize;
+    let [left, right] = [of.low.x, of.high.x].map(part);
+    let [low, high] = [of.low.y, of.high.y].map(part);
+    (low..=high).map(move |y| y * PARTS + left..=y * PARTS + right)
+}
+
+impl Mask {
+    /// A receiver that meets a tile of `side` texels may be seen; whether the mask is larger for
+    /// it. `bias`: texels by which places are moved.
+    pub(super) fn receive(&mut self, volume: &Volume, b: &Aabb, side: f32, bias: f32) -> bool {
+        let reach = match *volume {
+            Volume::Pyramid { range, .. } => range,
+            Volume::Column { .. } => f32::INFINITY,
+        };
+        let Some(seen) = Footprint::new(volume, b, side) else {
+            return false;
+        };
+        let moved = texel_at(volume, side, seen.farthest.min(reach)) * (MOST_MOVED * bias + 0.1);
+        let around = Aabb::new(b.min - moved, b.max + moved);
+        let Some(seen) = Footprint::new(volume, &around, side) else {
+            return false;
+        };
+        let farthest = seen.farthest.min(reach + moved);
+        let mut grows = false;
+        for row in rows(&seen.grown(FILTER), side) {
+            for part in &mut self.farthest[row] {
+                grows |= *part < farthest;
+                *part = part.max(farthest);
+            }
+        }
+        grows
+    }
+
+    /// Whether a box may cast a shadow that is seen.
+    pub(super) fn shows(&self, volume: &Volume, b: &Aabb, side: f32) -> bool {
+        let Some(cast) = Footprint::new(volume, b, side) else {
+            return false;
+        };
+        let span = match *volume {
+            Volume::Pyramid { .. } => cast.nearest,
+            Volume::Column { span, .. } => span[1] - span[0],
+        };
+        let nearest = cast.nearest - 1e-4 * span;
+        rows(&cast.grown(1.0), side).any(|row| {
+            self.farthest[row]
+                .iter()
+                .any(|&receiver| receiver >= nearest)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shadow::volume::{axes_along, cube_axes};
+    use glam::Vec3;
+
+    fn around(at: Vec3, half: f32) -> Aabb {
+        Aabb::new(at - half, at + half)
+    }
+
+    fn side_of_a_cube() -> Volume {
+        Volume::Pyramid {
+            apex: Vec3::new(1.0, 2.0, 3.0),
+            axes: cube_axes(4),
+            tangent: 1.0,
+            range: 8.0,
+            near: 0.01,
+        }
+    }
+
+    fn column() -> Volume {
+        Volume::Column {
+            axes: axes_along(Vec3::NEG_Y),
+            center: [0.0, 0.0],
+            radius: 8.0,
+            span: [-10.0, 10.0],
+        }
+    }
+
+    #[test]
+    fn casters_before_a_receiver_count_and_those_behind_or_beside_it_do_not() {
+        let tile = side_of_a_cube();
+        let at = |x: f32, z: f32| around(Vec3::new(1.0 + x, 2.0, 3.0 + z), 0.2);
+        let mut mask = Mask::default();
+        assert!(!mask.shows(&tile, &at(0.0, 2.0), 256.0), "nothing is seen");
+        assert!(mask.receive(&tile, &at(0.0, 4.0), 256.0, 1.5));
+        assert!(!mask.receive(&tile, &at(0.0, 4.0), 256.0, 1.5), "known");
+        assert!(mask.shows(&tile, &at(0.0, 2.0), 256.0));
+        assert!(mask.shows(&tile, &at(0.0, 4.0), 256.0), "itself");
+        assert!(!mask.shows(&tile, &at(0.0, 6.0), 256.0), "behind");
+        assert!(!mask.shows(&tile, &at(1.0, 2.0), 256.0), "beside");
+        assert!(
+            mask.shows(&tile, &around(Vec3::new(1.0, 2.0, 3.0), 0.1), 256.0),
+            "around the light"
+        );
+    }
+
+    #[test]
+    fn the_sun_has_masks_too() {
+        let tile = column();
+        let mut mask = Mask::default();
+        assert!(mask.receive(&tile, &around(Vec3::new(2.0, 0.0, 1.0), 0.5), 512.0, 1.5));
+        assert!(mask.shows(&tile, &around(Vec3::new(2.0, 3.0, 1.0), 0.1), 512.0));
+        assert!(!mask.shows(&tile, &around(Vec3::new(2.0, -3.0, 1.0), 0.1), 512.0));
+        assert!(!mask.shows(&tile, &around(Vec3::new(-2.0, 3.0, 1.0), 0.1), 512.0));
+    }
+
+    /// Every lookup for a place in a receiver's box reads a part that the mask has, at a depth that
+    /// the mask reaches.
+    #[test]
+    fn every_lookup_in_a_receiver_lies_within_its_mask() {
+        let mut state = 7u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) as f32 / (1 << 24) as f32
+        };
+        for tile in [side_of_a_cube(), column()] {
+            for side in [16.0, 64.0, 512.0] {
+                for _ in 0..200 {
+                    let at =
+                        Vec3::new(random(), random(), random()) * 16.0 - Vec3::new(7.0, 6.0, 4.0);
+                    let half = 2.0 * Vec3::new(random(), random(), random());
+                    let b = Aabb::new(at - half, at + half);
+                    if !tile.meets(&b, side) {
+                        continue;
+                    }
+                    let bias = 3.0;
+                    let mut mask = Mask::default();
+                    mask.receive(&tile, &b, side, bias);
+                    for _ in 0..50 {
+                        let place = b.min + b.size() * Vec3::new(random(), random(), random());
+                        // Without the border.
+                        if !tile.meets(&Aabb::new(place, place), 1e6) {
+                            continue;
+                        }
+                        let along = match tile {
+                            Volume::Pyramid { axes, apex, .. } => axes[2].dot(place - apex),
+                            Volume::Column { axes, .. } => axes[2].dot(place),
+                        };
+                        if matches!(tile, Volume::Pyramid { near, .. } if along < near) {
+                            continue;
+                        }
+                        let away = (Vec3::new(random(), random(), random()) - 0.5).normalize();
+                        let offset = texel_at(&tile, side, along) * bias * MOST_MOVED;
+                        let moved = place + away * offset;
+                        let clip = tile.clip_from_world(side) * moved.extend(1.0);
+                        let depth = match tile {
+                            Volume::Pyramid { axes, apex, .. } => axes[2].dot(moved - apex),
+                            Volume::Column { axes, .. } => axes[2].dot(moved),
+                        };
+                        if matches!(tile, Volume::Pyramid { near, .. } if depth < near) {
+                            continue;
+                        }
+                        let inside = |ndc: f32| ((0.5 + 0.5 * ndc) * side).clamp(2.0, side - 2.0);
+                        let texel = [inside(clip.x / clip.w), inside(clip.y / clip.w)];
+                        for i in 0..16 {
+                            let read = [
+                                texel[0] + (i % 4) as f32 - 2.0,
+                                texel[1] + (i / 4) as f32 - 2.0,
+                            ];
+                            let part = read.map(|t| {
+                                (t * (PARTS as f32 / side)).clamp(0.0, PARTS as f32 - 1.0) as usize
+                            });
+                            let reached = mask.farthest[part[1] * PARTS + part[0]];
+                            assert!(
+                                reached >= depth * 0.9999 - 1e-4,
+                                "{tile:?} {b:?} {place} {side}"
+                            );
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
