@@ -5,14 +5,14 @@
 //! Positions stay as they are. Bounds are relative to the mesh's own centre, so that large local
 //! coordinates keep their precision. Large meshes are baked in chunks.
 
+use super::borders::{Around, Borders};
 use super::chunks;
-use super::half_edges::HalfEdges;
 use super::in_parts::in_order;
 use super::mesh::OccluderMesh;
 use super::neighbors::Neighbors;
 use super::one_ring::OneRings;
 use super::vertices::Vertices;
-use super::weld::{Welded, weld};
+use super::weld::weld;
 use super::{cluster, quads};
 use crate::bounds::Aabb;
 use crate::error::{CullError, Quantity};
@@ -135,6 +135,10 @@ impl OccluderMesh {
     }
 }
 
+/// Most triangles that are looked at around a chunk, so that vertices of very many triangles, which
+/// belong to many chunks, take no quadratic time.
+const MOST_AROUND: usize = 8 * chunks::MOST_TRIANGLES;
+
 /// What is baked.
 #[derive(Clone, Copy)]
 struct Input<'a> {
@@ -216,7 +220,7 @@ impl Input<'_> {
         let make = |chunk: usize| {
             let triangles = chunks[chunk].iter().map(|&t| self.triangle(t as usize));
             let welded = weld(self.positions, self.position, triangles);
-            let quads = quads::pair(&welded, &welded.half_edges());
+            let quads = quads::pair(&welded.points, &welded.triangles);
             let mut part = empty.clone();
             part.triangles = welded.triangles.len() as u32;
             cluster::build(&mut part, &welded.points, None, quads);
@@ -225,42 +229,112 @@ impl Input<'_> {
         in_order(threads, chunks.len(), &make, &mut |part| mesh.append(part));
     }
 
-    /// Chunks of a mesh that is welded as a whole, since one-rings reach beyond them.
+    /// Chunks of a mesh that is welded as a whole, each with the triangles around it, which its
+    /// one-rings reach.
     fn with_adjacency(&self, mesh: &mut OccluderMesh, threads: &dyn Threads) {
         let all = 0..self.indices.len() / 3;
-        let Welded {
-            points, triangles, ..
-        } = weld(self.positions, self.position, all.map(|t| self.triangle(t)));
-        let point = |i: u32| points[i as usize];
-        let corners = |t: usize| triangles[t].map(point);
-        let chunks = chunks::apart(triangles.len(), &corners, threads);
+        let all = weld(self.positions, self.position, all.map(|t| self.triangle(t)));
+        let point = |i: u32| all.points[i as usize];
+        let corners = |t: usize| all.triangles[t].map(point);
+        let chunks = chunks::apart(all.triangles.len(), &corners, threads);
         // Chunk by chunk, so that what lies together is together in memory.
-        let ends: Vec<usize> = chunks
-            .iter()
-            .scan(0, |end, chunk| {
-                *end += chunk.len();
-                Some(*end)
-            })
-            .collect();
+        let length = |end: &mut usize, chunk: &Vec<u32>| {
+            *end += chunk.len();
+            Some(*end)
+        };
+        let ends: Vec<usize> = chunks.iter().scan(0, length).collect();
         let order = chunks.into_iter().flatten();
-        let triangles: Vec<[u32; 3]> = order.map(|t| triangles[t as usize]).collect();
-        let edges = HalfEdges::new(points.len(), &triangles);
-        let near = Neighbors::new(&points, &triangles, &edges);
+        let triangles: Vec<[u32; 3]> = order.map(|t| all.triangles[t as usize]).collect();
+        let points = { all }.points;
+        let point = |i: u32| points[i as usize];
+        let borders = Borders::new(points.len(), &triangles, &ends);
         let empty = mesh.clone();
         let make = |chunk: usize| {
             let first = chunk.checked_sub(1).map_or(0, |before| ends[before]);
-            let own = &triangles[first..ends[chunk]];
-            let welded = weld(points.len(), &point, own.iter().copied());
-            let mut quads = quads::pair(&welded, &welded.half_edges());
-            for vertex in quads.as_flattened_mut() {
-                *vertex = welded.sources[*vertex as usize];
-            }
+            let own = first..ends[chunk];
+            let (around, known) = match borders.around(&triangles, own.clone(), MOST_AROUND) {
+                Around::Triangles(around) => (around, true),
+                Around::Unknown => (Vec::new(), false),
+            };
+            let (before, after) =
+                around.split_at(around.partition_point(|&t| (t as usize) < first));
+            // In the order of all triangles.
+            let near: Vec<[u32; 3]> = (before.iter().map(|&t| t as usize))
+                .chain(own.clone())
+                .chain(after.iter().map(|&t| t as usize))
+                .map(|t| triangles[t])
+                .collect();
+            let local = weld(points.len(), &point, near.iter().copied());
+            let unknown = |v: &u32| !known && borders.is_shared(*v);
+            let near = Neighbors::new(&local, local.sources.iter().map(unknown).collect());
+            let own_triangles = &local.triangles[before.len()..][..own.len()];
+            let quads = quads::pair(&local.points, own_triangles);
             let mut part = empty.clone();
             part.triangles = own.len() as u32;
-            cluster::build(&mut part, &points, Some(&near), quads);
+            cluster::build(&mut part, &local.points, Some(&near), quads);
             part
         };
         in_order(threads, ends.len(), &make, &mut |part| mesh.append(part));
         mesh.one_rings.keep_below(u32::MAX as usize);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::one_ring::NO_TRIANGLE;
+    use super::*;
+
+    /// A torus of `n` times `m` quads, 2 n m triangles, without an end anywhere.
+    fn torus(n: u32, m: u32) -> (Vec<[f32; 3]>, Vec<u32>) {
+        let turn = |i: u32, of: u32| (i as f32 / of as f32 * core::f32::consts::TAU).sin_cos();
+        let point = |i: u32, j: u32| {
+            let ((s, c), (up, out)) = (turn(i, n), turn(j, m));
+            [c * (3.0 + out), up, s * (3.0 + out)]
+        };
+        let points = (0..n).flat_map(|i| (0..m).map(move |j| point(i, j)));
+        let quad = |i: u32, j: u32| {
+            let at = |i: u32, j: u32| i % n * m + j % m;
+            let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+            [a, b, c, a, c, d]
+        };
+        let quads = (0..n).flat_map(|i| (0..m).flat_map(move |j| quad(i, j)));
+        (points.collect(), quads.collect())
+    }
+
+    #[test]
+    fn one_rings_reach_across_chunks() {
+        let (points, indices) = torus(300, 100);
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        assert!(mesh.triangle_count() > 3 * chunks::MOST_TRIANGLES);
+        let open = |edge: &&crate::occluder::one_ring::Edge| edge.triangles.contains(&NO_TRIANGLE);
+        assert_eq!(mesh.one_rings.edges.iter().filter(open).count(), 0);
+        assert!(mesh.clusters.iter().all(|c| c.creased == 0.0));
+    }
+
+    #[test]
+    fn surfaces_end_at_chunks_whose_vertices_have_very_many_triangles() {
+        // Twelve fans around two vertices that all have, then a strip of quads of its own.
+        let n = 12 * chunks::MOST_TRIANGLES as u32;
+        let rim = |i: u32| {
+            let angle = i as f32 / n as f32 * 6.0;
+            [angle.cos(), angle.sin(), 0.0]
+        };
+        let mut points = vec![[0.0, 0.0, 1.0]];
+        points.extend((0..=n).map(rim));
+        let indices: Vec<u32> = (1..=n).flat_map(|i| [0, i, i + 1]).collect();
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        assert_eq!(mesh.triangle_count(), n as usize);
+        // Chunks end in silhouettes, and the inner edges of a chunk are joined.
+        let edges = &mesh.one_rings.edges;
+        let open = edges
+            .iter()
+            .filter(|e| e.triangles[1] == NO_TRIANGLE)
+            .count();
+        assert!(
+            open > n as usize && open < edges.len(),
+            "{open} of {}",
+            edges.len()
+        );
+        assert!(OccluderMesh::from_bytes(&mesh.to_bytes()).is_ok());
     }
 }

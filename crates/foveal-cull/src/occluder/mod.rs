@@ -1,10 +1,11 @@
 //! Occluders: baked meshes, and the set of placed ones.
 //!
-//! `chunks`, `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
+//! `chunks`, `borders`, `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
 //! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
 //! what was read is a mesh, by `surface`; `set` places meshes in the world.
 
 mod bake;
+mod borders;
 mod bytes;
 mod check;
 mod chunks;

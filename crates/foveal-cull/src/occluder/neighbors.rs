@@ -4,6 +4,7 @@ use super::half_edges::HalfEdges;
 use super::mesh::OccluderMesh;
 use super::one_ring::{Edge, FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
 use super::quads::Quad;
+use super::weld::Welded;
 use super::word_hash::{WordHash, Words3};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
@@ -25,25 +26,30 @@ const SMOOTH: f64 = 0.94;
 pub(super) struct Neighbors<'a> {
     points: &'a [Vec3],
     triangles: &'a [[u32; 3]],
-    edges: &'a HalfEdges,
+    edges: HalfEdges,
+    /// Of every point whether further triangles may have it. What lies beyond an edge of two such
+    /// points is unknown; the surface ends there, which is safe.
+    unknown: Vec<bool>,
     hash: WordHash,
 }
 
 impl<'a> Neighbors<'a> {
-    pub(super) fn new(points: &'a [Vec3], triangles: &'a [[u32; 3]], edges: &'a HalfEdges) -> Self {
+    pub(super) fn new(mesh: &'a Welded, unknown: Vec<bool>) -> Self {
         Self {
-            points,
-            triangles,
-            edges,
+            points: &mesh.points,
+            triangles: &mesh.triangles,
+            edges: HalfEdges::new(mesh.points.len(), &mesh.triangles),
+            unknown,
             hash: WordHash::default(),
         }
     }
 
-    /// The triangle beyond the edge from `a` to `b`, if the edge and its reverse have at most one
-    /// triangle each.
-    fn beyond(&self, a: u32, b: u32) -> Option<u32> {
-        self.edges.only(a, b)?;
-        self.edges.only(b, a)
+    /// The triangles on either side of the edge from `a` to `b`, if there is one on each.
+    fn sides(&self, a: u32, b: u32) -> Option<[u32; 2]> {
+        if self.unknown[a as usize] && self.unknown[b as usize] {
+            return None;
+        }
+        Some([self.edges.only(a, b)?, self.edges.only(b, a)?])
     }
 
     /// Triangles at some vertices; the first ones, where they are very many. Those that a one-ring
@@ -62,8 +68,8 @@ impl<'a> Neighbors<'a> {
             let [a, b, c] = t.map(|v| self.points[v as usize].as_dvec3());
             (b - a).cross(c - a).try_normalize()
         };
-        let sides = (self.edges.only(a, b)).zip(self.edges.only(b, a));
-        let normals = sides.and_then(|(one, other)| normal(one).zip(normal(other)));
+        let sides = self.sides(a, b);
+        let normals = sides.and_then(|[one, other]| normal(one).zip(normal(other)));
         normals.is_some_and(|(m, n): (DVec3, DVec3)| m.dot(n) > SMOOTH)
     }
 }
@@ -201,8 +207,8 @@ pub(super) fn build(
                 continue;
             }
             let beyond = near
-                .beyond(a, b)
-                .and_then(|i| numbers.get(&name(near.triangles[i as usize])));
+                .sides(a, b)
+                .and_then(|[_, i]| numbers.get(&name(near.triangles[i as usize])));
             let other = beyond.copied().unwrap_or(NO_TRIANGLE);
             if n < other {
                 rings.edges.push(Edge {
@@ -249,6 +255,7 @@ pub(super) fn build(
 
 #[cfg(test)]
 mod tests {
+    use super::super::weld::weld;
     use super::*;
     use crate::BakeOptions;
 
@@ -275,9 +282,13 @@ mod tests {
             Vec3::new(angle.cos(), angle.sin(), 0.0)
         }));
         let triangles: Vec<[u32; 3]> = (1..=n).map(|i| [0, i, i + 1]).collect();
-        let edges = HalfEdges::new(points.len(), &triangles);
-        let near = Neighbors::new(&points, &triangles, &edges);
-        assert_eq!(edges.leaving(0).len(), n as usize);
+        let mesh = weld(
+            points.len(),
+            &|i| points[i as usize],
+            triangles.iter().copied(),
+        );
+        let near = Neighbors::new(&mesh, vec![false; points.len()]);
+        assert_eq!(near.edges.leaving(0).len(), n as usize);
         assert_eq!(near.touching(&[0, 1, 2]).count(), MOST_TOUCHING);
         assert_eq!(near.touching(&[5, 6]).count(), 4);
         // Triangles that are left out leave silhouette edges, and no edge is missing.

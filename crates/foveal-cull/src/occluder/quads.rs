@@ -6,8 +6,7 @@
 //! taken best first, and triangles with few other partners before those with many.
 
 use super::half_edges::HalfEdges;
-use super::weld::Welded;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// Vertices of a quad. A single triangle repeats its third.
 pub(crate) type Quad = [u32; 4];
@@ -15,12 +14,11 @@ pub(crate) type Quad = [u32; 4];
 /// Largest height of the fold, as a part of the shared edge's length.
 const MAX_FOLD: f64 = 0.08;
 
-/// Joins the triangles of a mesh whose directed edges are `edges`.
-pub(super) fn pair(mesh: &Welded, edges: &HalfEdges) -> Vec<Quad> {
-    let triangles = &mesh.triangles;
+/// Joins welded triangles, at most a chunk of them.
+pub(super) fn pair(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Quad> {
     let mut taken = vec![false; triangles.len()];
     let mut quads = Vec::with_capacity(triangles.len() / 2 + 1);
-    for key in in_order(mesh, edges) {
+    for key in in_order(points, triangles) {
         let [i, j, e] = places(key);
         if taken[i] || taken[j] {
             continue;
@@ -48,8 +46,8 @@ fn third(triangle: [u32; 3], a: u32, b: u32) -> Option<u32> {
 }
 
 /// The keys of all candidates, from the least on.
-fn in_order(mesh: &Welded, edges: &HalfEdges) -> Vec<u64> {
-    let triangles = &mesh.triangles;
+fn in_order(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<u64> {
+    let edges = HalfEdges::new(points.len(), triangles);
     debug_assert!(triangles.len() <= 1 << TRIANGLE_BITS);
     let mut candidates = Vec::with_capacity(triangles.len());
     // How many others each triangle can be joined with: at most three.
@@ -67,7 +65,7 @@ fn in_order(mesh: &Welded, edges: &HalfEdges) -> Vec<u64> {
             let Some(d) = third(triangles[j as usize], a, b).filter(|&d| d != c) else {
                 continue;
             };
-            if let Some(score) = fold(mesh, [a, b, c, d]) {
+            if let Some(score) = fold(points, [a, b, c, d]) {
                 partners[i as usize] += 1;
                 partners[j as usize] += 1;
                 candidates.push(candidate(score as f32, i, j, e as u8));
@@ -120,8 +118,8 @@ fn places(key: u64) -> [usize; 3] {
 }
 
 /// Fold of the pair (a, b, c) and (b, a, d), 0 if flat; `None` if the two cannot be joined.
-fn fold(mesh: &Welded, [a, b, c, d]: [u32; 4]) -> Option<f64> {
-    let [a, b, c, d] = [a, b, c, d].map(|i| mesh.points[i as usize].as_dvec3());
+fn fold(points: &[Vec3], [a, b, c, d]: [u32; 4]) -> Option<f64> {
+    let [a, b, c, d] = [a, b, c, d].map(|i| points[i as usize].as_dvec3());
     let n0 = (b - a).cross(c - a);
     let n1 = (d - a).cross(b - a);
     let n = (n0 + n1).try_normalize()?;

@@ -1,7 +1,6 @@
 //! Welding: positions that are bit-equal become one vertex, so that neighbours are found however a
 //! mesh was exported.
 
-use super::half_edges::HalfEdges;
 use super::word_hash::{WordHash, Words3};
 use glam::Vec3;
 use std::collections::HashMap;
@@ -13,12 +12,6 @@ pub(super) struct Welded {
     pub(super) triangles: Vec<[u32; 3]>,
     /// The first index of each point's position.
     pub(super) sources: Vec<u32>,
-}
-
-impl Welded {
-    pub(super) fn half_edges(&self) -> HalfEdges {
-        HalfEdges::new(self.points.len(), &self.triangles)
-    }
 }
 
 /// Welds triangles over `positions` finite positions, which `position` gives, and leaves out
