@@ -9,6 +9,8 @@
 //!     (target.run)(b"no good input");
 //! }
 //! ```
+//!
+//! Without the feature `renderer`, which is on by default, there are the culler's targets alone.
 #![deny(unsafe_code)]
 
 mod campaign;
@@ -19,7 +21,6 @@ mod targets;
 
 pub use campaign::{Campaign, Failure, Outcome};
 pub use memory::Counting;
-pub use targets::{
-    TARGETS, Target, c_calls, cameras, culler, environment, import, mesh_bytes, records, report,
-    settings, world,
-};
+pub use targets::{TARGETS, Target, c_calls, culler, mesh_bytes, world};
+#[cfg(feature = "renderer")]
+pub use targets::{cameras, environment, import, records, report, settings};

@@ -58,7 +58,8 @@ fn run(args: &Args) -> anyhow::Result<bool> {
     let chosen = |target: &&Target| args.target == "all" || args.target == target.name;
     let targets: Vec<&Target> = TARGETS.iter().filter(chosen).collect();
     if targets.is_empty() {
-        let names = TARGETS.map(|t| t.name).join(", ");
+        let names: Vec<&str> = TARGETS.iter().map(|t| t.name).collect();
+        let names = names.join(", ");
         bail!(
             "there is no target '{}'; there are {names}, all",
             args.target

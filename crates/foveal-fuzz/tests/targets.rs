@@ -20,7 +20,7 @@ fn some_seconds_of_each_target_find_nothing() {
             patience: Duration::from_secs(60),
             ..Campaign::new(3, seed)
         };
-        let outcome = campaign.run(&target);
+        let outcome = campaign.run(target);
         println!(
             "{}: {} inputs, at most {:.1} MB each",
             target.name,
@@ -42,7 +42,8 @@ fn every_target_is_one_of_cargo_fuzz() {
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
         .collect();
     files.sort();
-    assert_eq!(files, TARGETS.map(|t| format!("{}.rs", t.name)));
+    let names = TARGETS.iter().map(|t| format!("{}.rs", t.name));
+    assert_eq!(files, names.collect::<Vec<_>>());
     for target in TARGETS {
         let name = target.name;
         assert!(manifest.contains(&format!("name = \"{name}\"")), "{name}");

@@ -319,7 +319,7 @@ impl World {
                 } else if !r.one_in(8) {
                     let [a, b, c] = [r.numbers::<3>(), r.numbers(), r.numbers()];
                     let (fov, near) = (r.number().abs() * 0.2, r.number().abs() * 0.01);
-                    let at = [a, b, c].map(|p| p.as_ptr());
+                    let at = [&a, &b, &c].map(|p| p.as_ptr());
                     let status = foveal_cull_eye_look_at(at[0], at[1], at[2], fov, 1.3, near, eye);
                     self.note(status);
                 }
