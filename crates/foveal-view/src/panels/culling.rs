@@ -50,6 +50,7 @@ pub(super) fn show(app: &mut App, ui: &mut egui::Ui) {
         figure(ui, "Visible", grouped(s.occludee_triangles_visible));
         figure(ui, "Culled", grouped(s.occludee_triangles_culled()));
         figure(ui, "Test", look::ms(found.test_ms));
+        figure(ui, "Test for shadows", look::ms(found.receivers_ms));
         part(ui, "Buffer");
         figure(
             ui,

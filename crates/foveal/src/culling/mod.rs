@@ -8,6 +8,7 @@
 mod cells;
 mod found_for;
 mod scene;
+mod surface;
 mod workers;
 
 pub(crate) use scene::{CullingScene, affine};
@@ -17,7 +18,8 @@ use foveal_scene::Camera;
 use glam::Mat4;
 
 use crate::clock::{self, ms_between};
-use crate::{Clock, Culling, CullingEyes, Error, Settings};
+use crate::{Antialiasing, Clock, Culling, CullingEyes, Error, Settings, Shadows};
+use cells::Cells;
 use found_for::FoundFor;
 use workers::Workers;
 
@@ -34,6 +36,9 @@ pub struct CullingStats {
     pub rasterize_ms: f64,
     /// Time for the tests of all objects, in milliseconds; 0 without a clock.
     pub test_ms: f64,
+    /// Time for the tests of what may receive shadows, in milliseconds; 0 without a clock, without
+    /// shadows, and where all of each visible object counts.
+    pub receivers_ms: f64,
     /// Whether the result is an earlier frame's, which still holds.
     pub reused: bool,
 }
@@ -64,11 +69,14 @@ pub(crate) struct CullingStage {
     culler: Culler,
     results: Vec<Visibility>,
     of_eye: Vec<Visibility>,
+    /// Whether the scene's cells are tested too.
+    tests_cells: bool,
     /// What became of each of the scene's cells.
     cells: Vec<Visibility>,
     cells_of_eye: Vec<Visibility>,
     rasterize_ms: f64,
     test_ms: f64,
+    receivers_ms: f64,
     /// Metres that eyes may move while the result holds.
     radius_m: f64,
     eyes: CullingEyes,
@@ -110,10 +118,12 @@ impl CullingStage {
             culler,
             results: Vec::new(),
             of_eye: Vec::new(),
+            tests_cells: occlusion && has_receivers(settings) && answers_for_parts(settings),
             cells: Vec::new(),
             cells_of_eye: Vec::new(),
             rasterize_ms: 0.0,
             test_ms: 0.0,
+            receivers_ms: 0.0,
             radius_m: settings.culling.radius_m.into(),
             eyes: settings.culling.eyes,
             budget_ms: settings.culling.budget_ms.into(),
@@ -144,7 +154,7 @@ impl CullingStage {
         (width, height): (u32, u32),
         clock: Option<Clock>,
     ) -> CullingCounts {
-        (self.rasterize_ms, self.test_ms) = (0.0, 0.0);
+        (self.rasterize_ms, self.test_ms, self.receivers_ms) = (0.0, 0.0, 0.0);
         let size = (width, height);
         let eye = |world_from_view: Mat4, projection: Projection| {
             Eye::new(affine(world_from_view), projection)
@@ -203,8 +213,6 @@ impl CullingStage {
             .with_budget(budget);
         self.of_eye.clear();
         self.of_eye.resize(scene.boxes.len(), Visibility::Visible);
-        self.cells_of_eye.clear();
-        (self.cells_of_eye).resize(scene.cells.boxes().len(), Visibility::Visible);
         let now = || clock::read(clock);
         let start = now();
         let threads = self.threads.threads();
@@ -220,25 +228,33 @@ impl CullingStage {
         {
             self.of_eye.fill(Visibility::Visible);
         }
-        if rasterized.is_ok()
-            && (self.culler)
-                .query_tree(&scene.cells.tree, &mut self.cells_of_eye)
-                .is_err()
-        {
-            self.cells_of_eye.fill(Visibility::Visible);
+        let tested_at = now();
+        self.over_budget += self.culler.stats().clusters_over_budget;
+        self.rasterize_ms += ms_between(start, rasterized_at);
+        self.test_ms += ms_between(rasterized_at, tested_at);
+        join(&mut self.results, &self.of_eye);
+        if let Some(cells) = scene.cells.as_ref().filter(|_| self.tests_cells) {
+            self.test_cells(cells, rasterized.is_ok());
+            self.receivers_ms += ms_between(tested_at, now());
+        }
+        rasterized.is_ok()
+    }
+
+    /// Adds the cells that are seen in the view that has been rasterized last.
+    fn test_cells(&mut self, cells: &Cells, is_rasterized: bool) {
+        let results = &mut self.cells_of_eye;
+        results.clear();
+        results.resize(cells.boxes().len(), Visibility::Visible);
+        if is_rasterized && self.culler.query_tree(cells.tree(), results).is_err() {
+            results.fill(Visibility::Visible);
         }
         // A small cell of a larger object is drawn.
-        for cell in &mut self.cells_of_eye {
+        for cell in results.iter_mut() {
             if *cell == Visibility::Small {
                 *cell = Visibility::Visible;
             }
         }
-        self.over_budget += self.culler.stats().clusters_over_budget;
-        self.rasterize_ms += ms_between(start, rasterized_at);
-        self.test_ms += ms_between(rasterized_at, now());
-        join(&mut self.results, &self.of_eye);
-        join(&mut self.cells, &self.cells_of_eye);
-        rasterized.is_ok()
+        join(&mut self.cells, results);
     }
 
     /// What the last frame found.
@@ -263,6 +279,7 @@ impl CullingStage {
             threads: self.threads.threads().count(),
             rasterize_ms: self.rasterize_ms,
             test_ms: self.test_ms,
+            receivers_ms: self.receivers_ms,
             reused: self.reused,
         }
     }
@@ -272,19 +289,24 @@ impl CullingStage {
         &self.results
     }
 
-    /// The scene's cells that the last frame may show, in ascending order; `None` without occlusion
-    /// culling. `by_object`: all cells of the objects that are drawn, for pictures that show more
-    /// than the culler has looked at.
+    /// The scene's cells that the last frame may show, in ascending order; `None` where the scene has
+    /// none. `by_object`: all cells of the objects that are drawn, for pictures that show more than
+    /// the culler has looked at.
     pub(crate) fn cells_seen(&self, scene: &CullingScene, by_object: bool) -> Option<Vec<u32>> {
-        let cells = &scene.cells;
-        if !self.occlusion || self.cells.len() != cells.objects.len() || self.cells.is_empty() {
+        let cells = scene.cells.as_ref().filter(|_| self.occlusion)?;
+        let by_object = by_object || !self.tests_cells;
+        if !by_object && self.cells.len() != cells.boxes().len() {
             return None;
         }
-        let seen = (0..).zip(self.cells.iter().zip(&cells.objects));
-        let seen = seen.filter(|(_, (cell, object))| {
-            self.is_visible(**object) && (by_object || cell.is_visible())
-        });
-        Some(seen.map(|(number, _)| number).collect())
+        Some(cells.drawn(
+            |object| self.is_visible(object),
+            |cell| by_object || self.cells[cell].is_visible(),
+        ))
+    }
+
+    #[cfg(test)]
+    pub(crate) fn cells_tested(&self) -> usize {
+        self.cells.len()
     }
 
     /// The occlusion buffer of the last frame.
@@ -302,6 +324,19 @@ impl CullingStage {
             .get(object as usize)
             .is_none_or(|r| r.is_visible())
     }
+}
+
+/// Whether frames of these settings ask where shadows fall.
+pub(crate) fn has_receivers(settings: &Settings) -> bool {
+    settings.lighting.shadows != Shadows::Off && settings.picture.view.is_lit()
+}
+
+/// Whether no pixel of the picture shows what the culler calls hidden, of parts of objects too: its
+/// samples are the picture's pixel centres, or any within a radius.
+fn answers_for_parts(settings: &Settings) -> bool {
+    let culling = &settings.culling;
+    let at_centers = matches!(culling.buffer_scale, 1 | 4) || culling.radius_m > 0.0;
+    at_centers && settings.antialiasing.mode == Antialiasing::None
 }
 
 /// Adds what is seen in one more view.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use foveal_cull::{BakeOptions, OccludeeTree, OccluderId, OccluderMesh, OccluderSet};
-use foveal_scene::Scene;
+use foveal_scene::{Aabb, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
 use super::cells::Cells;
@@ -23,8 +23,8 @@ pub(crate) struct CullingScene {
     pub(super) triangles: Vec<u32>,
     /// Over the boxes.
     pub(super) objects: OccludeeTree,
-    /// What may receive shadows; empty without occlusion culling.
-    pub(crate) cells: Cells,
+    /// What may receive shadows; `None` without occlusion culling.
+    pub(super) cells: Option<Cells>,
     /// No other scene, and no other pose, has this number.
     pub(super) pose: u64,
 }
@@ -53,7 +53,7 @@ impl CullingScene {
         };
         if mode == Culling::Occlusion {
             this.bake(scene);
-            this.cells = Cells::new(scene);
+            this.cells = Some(Cells::new(scene));
         }
         this.take_boxes(scene);
         this.triangles = vec![0; scene.objects.len()];
@@ -114,11 +114,23 @@ impl CullingScene {
                 let _ = self.occluders.set_enabled(placed.id, false);
             }
         }
-        self.cells.update_pose(scene);
         self.take_boxes(scene);
         if self.objects.refit(&self.boxes).is_err() {
             self.objects = OccludeeTree::build(&self.boxes, DVec3::ZERO);
         }
+    }
+
+    /// Brings the cells that may receive shadows to the pose, where they are not: `instances` gives
+    /// the boxes and places of all instances.
+    pub(crate) fn place_cells(&mut self, instances: impl Iterator<Item = (Aabb, Mat4)>) {
+        if let Some(cells) = &mut self.cells {
+            cells.place(self.pose, instances);
+        }
+    }
+
+    /// The boxes of these cells, world space; none before they are placed.
+    pub(crate) fn cells(&self) -> &[Aabb] {
+        self.cells.as_ref().map_or(&[], Cells::boxes)
     }
 
     /// Those of some instances that occlude, as a set of their own.

@@ -2,8 +2,9 @@
 
 use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
+use crate::FrameStats;
 use crate::antialias::Shadings;
-use crate::culling::CullingCounts;
+use crate::culling::{CullingCounts, has_receivers};
 use crate::forward::TransmissionTargets;
 use crate::frame::FrameUniform;
 use crate::geometry::{Draws, ResolveAt};
@@ -13,7 +14,6 @@ use crate::recorder::Recorder;
 use crate::shading::{HistoryStage, Samples};
 use crate::shadow::Receivers;
 use crate::stereo::EyeLayout;
-use crate::{Antialiasing, FrameStats, Shadows};
 use foveal_scene::Camera;
 
 impl Renderer {
@@ -51,6 +51,9 @@ impl Renderer {
     fn cull(&mut self, frame: &Frame<'_>, seen: &Seen) -> CullingCounts {
         let settings = &self.stages.settings;
         let objects = self.scene.stats.objects;
+        if self.stages.culling.is_some() && has_receivers(settings) {
+            self.scene.place_cells();
+        }
         match &mut self.stages.culling {
             Some(culling) if self.frozen && culling.visibility().len() == objects as usize => {
                 culling.counts()
@@ -129,11 +132,11 @@ impl Renderer {
             culling,
             ..
         } = &mut self.stages;
-        if settings.lighting.shadows == Shadows::Off || !settings.picture.view.is_lit() {
+        if !has_receivers(settings) {
             return;
         }
-        // The culler answers for pixel centres of the view that it has seen last.
-        let by_object = self.frozen || settings.antialiasing.mode != Antialiasing::None;
+        // The culler answers for the view that it has seen last.
+        let by_object = self.frozen;
         let cells = culling
             .as_ref()
             .and_then(|culling| culling.cells_seen(&self.scene.culling, by_object));

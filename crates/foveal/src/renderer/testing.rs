@@ -45,6 +45,12 @@ impl Renderer {
         coarse.expect("coarse shading").set_balance(balance);
     }
 
+    /// How many cells may receive shadows, and of how many culling has said whether they are seen.
+    pub(crate) fn cells_placed_and_tested(&self) -> (usize, usize) {
+        let tested = self.stages.culling.as_ref().map_or(0, |c| c.cells_tested());
+        (self.scene.culling.cells().len(), tested)
+    }
+
     /// Encodes and submits passes besides a frame's.
     fn encode(&mut self, passes: impl FnOnce(&mut Recorder<'_>, &Stages, &SceneOnGpu)) {
         let Self {

@@ -39,6 +39,17 @@ impl InstanceUniform {
         }
     }
 
+    /// Its place.
+    pub(crate) fn world_from_object(&self) -> Mat4 {
+        let rows = [
+            self.world_x,
+            self.world_y,
+            self.world_z,
+            [0.0, 0.0, 0.0, 1.0],
+        ];
+        Mat4::from_cols_array_2d(&rows).transpose()
+    }
+
     /// Whether it is elsewhere than a frame ago.
     pub(crate) fn is_elsewhere(&self) -> bool {
         let (now, before) = (

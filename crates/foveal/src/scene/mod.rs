@@ -168,6 +168,13 @@ impl SceneOnGpu {
         }
     }
 
+    /// Brings the cells that may receive shadows to the pose.
+    pub(crate) fn place_cells(&mut self) {
+        let instances = self.instances.iter().map(|i| i.bounds);
+        let places = self.uniforms.iter().map(|u| u.world_from_object());
+        self.culling.place_cells(instances.zip(places));
+    }
+
     /// Uploads the lights once more: where a call failed, theirs may have been refused.
     pub(crate) fn write_lights(&self, gpu: &Gpu) {
         write_lights(gpu, &self.light_buffer, &self.lights);

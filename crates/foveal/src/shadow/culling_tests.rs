@@ -1,12 +1,18 @@
 //! Casters that are left out: pictures are the same to the byte, and fewer casters are submitted.
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Scene};
+use foveal_scene::{
+    Aabb, AlphaMode, Camera, Instance, Light, LightKind, Material, Mesh, Object, Scene,
+    Transmission, Vertex,
+};
 use glam::{Mat4, Vec3};
 
 use super::tests::{room, shadowed};
-use crate::testing::{Film, picture};
-use crate::{Antialiasing, Culling, Settings, Shading, ShadowStats, Shadows, Stereo};
+use crate::testing::{Film, picture, rendered};
+use crate::{
+    Antialiasing, Culling, CullingEyes, DebugView, Geometry, Settings, Shading, ShadowStats,
+    Shadows, Stereo,
+};
 
 /// A film of the scene, frame after frame, and what the shadows of each did.
 fn film(
@@ -76,20 +82,31 @@ fn a_walk_shows_the_same_with_casters_left_out() {
     }
 }
 
+/// Moves some instances.
+fn shift(scene: &mut Scene, instances: impl Iterator<Item = usize>, by: Vec3) {
+    let shift = Mat4::from_translation(by);
+    for number in instances {
+        let instance = &mut scene.instances[number];
+        instance.world_from_object = shift * instance.world_from_object;
+        instance.bounds = instance.bounds.transformed(shift);
+    }
+    for object in &mut scene.objects {
+        let instances = object.instances.start as usize..object.instances.end as usize;
+        let boxes = scene.instances[instances].iter().map(|i| i.bounds);
+        object.bounds = boxes.reduce(|a, b| a.union(b)).unwrap();
+    }
+}
+
 #[test]
 fn things_and_lights_that_move_show_the_same_with_casters_left_out() {
     let scene = market();
     let stats = assert_same(&scene, &shadowed(Shadows::Soft), 6, |i, scene| {
-        let shift = Mat4::from_translation(Vec3::new(0.3, 0.05, -0.2));
-        for instance in scene.instances.iter_mut().step_by(17) {
-            instance.world_from_object = shift * instance.world_from_object;
-            instance.bounds = instance.bounds.transformed(shift);
-        }
-        for object in &mut scene.objects {
-            let instances = object.instances.start as usize..object.instances.end as usize;
-            let boxes = scene.instances[instances].iter().map(|i| i.bounds);
-            object.bounds = boxes.reduce(|a, b| a.union(b)).unwrap();
-        }
+        let instances = scene.instances.len();
+        shift(
+            scene,
+            (0..instances).step_by(17),
+            Vec3::new(0.3, 0.05, -0.2),
+        );
         scene.lights[i].position.x += 0.3;
         walked(scene, i / 2)
     });
@@ -97,25 +114,301 @@ fn things_and_lights_that_move_show_the_same_with_casters_left_out() {
 }
 
 #[test]
-fn two_eyes_and_edges_show_the_same_with_casters_left_out() {
-    let mut room = room();
-    generate::add_point_lights(&mut room, 20, 3);
+fn ways_of_drawing_show_the_same_with_casters_left_out() {
     let two_eyes: fn(&mut Settings) = |s| {
         s.stereo.mode = Stereo::TwoPass;
         s.stereo.output = crate::Output::SideBySide;
     };
-    let ways: [fn(&mut Settings); 3] = [
+    let ways: [fn(&mut Settings); 6] = [
         two_eyes,
+        |s| {
+            s.stereo.mode = Stereo::TwoPass;
+            s.stereo.output = crate::Output::SideBySide;
+            s.culling.eyes = CullingEyes::Shared;
+        },
         |s| s.antialiasing.mode = Antialiasing::Msaa,
         |s| {
             s.shading.mode = Shading::Coarse;
             s.coarse.history = true;
         },
+        |s| {
+            s.geometry.path = Geometry::Visibility;
+            s.shading.mode = Shading::Variable;
+        },
+        |s| s.culling.radius_m = 0.5,
     ];
-    for way in ways {
+    for (number, way) in ways.into_iter().enumerate() {
         let settings = shadowed(Shadows::Soft).with(way);
-        assert_same(&room, &settings, 4, |i, scene| walked(scene, i));
+        let stats = assert_same(&market(), &settings, 3, |i, scene| walked(scene, i));
+        assert!(stats[0].casters_unneeded > 0, "way {number}");
     }
-    let settings = shadowed(Shadows::Soft).with(two_eyes);
-    assert_same(&market(), &settings, 3, |i, scene| walked(scene, i));
+}
+
+fn glass() -> Transmission {
+    Transmission {
+        factor: 0.7,
+        texture: None,
+        thickness_m: 0.1,
+        thickness_texture: None,
+        attenuation_distance_m: f32::INFINITY,
+        attenuation_color: Vec3::ONE,
+    }
+}
+
+#[test]
+fn surfaces_that_light_passes_show_the_same_with_casters_left_out() {
+    let mut scene = market();
+    for (number, material) in scene.materials.iter_mut().enumerate() {
+        match number % 4 {
+            0 => {
+                material.alpha_mode = AlphaMode::Blend;
+                material.base_color.w = 0.6;
+            }
+            1 => material.alpha_mode = AlphaMode::Mask { cutoff: 0.5 },
+            2 => material.transmission = Some(glass()),
+            _ => {}
+        }
+    }
+    let stats = assert_same(&scene, &shadowed(Shadows::Soft), 3, |i, scene| {
+        walked(scene, i)
+    });
+    assert!(stats[0].casters_unneeded > 0);
+}
+
+/// Tiles go out of sight and come back, having missed several frames.
+#[test]
+fn a_walk_there_and_back_shows_the_same_with_casters_left_out() {
+    for moves in [false, true] {
+        let way = [0, 2, 5, 8, 11, 8, 5, 2, 0, 0, 1];
+        let scene = market();
+        let stats = assert_same(&scene, &shadowed(Shadows::Soft), way.len(), |i, scene| {
+            if moves {
+                let instances = scene.instances.len();
+                shift(
+                    scene,
+                    (i * 5..instances).step_by(97),
+                    Vec3::new(0.4, 0.0, -0.3),
+                );
+            }
+            walked(scene, way[i])
+        });
+        let later = stats[5..].iter();
+        assert!(later.map(|s| s.tiles_completed).sum::<u64>() > 0);
+        // Without moves each caster is submitted at most once for a tile.
+        let last = stats.last().unwrap();
+        assert!(moves || last.casters == 0 || last.tiles_completed > 0);
+    }
+}
+
+/// A mesh of triangles around a convex outline.
+fn flat(corners: [Vec3; 4]) -> Mesh {
+    let [a, b, c, _] = corners;
+    let normal = (b - a).cross(c - a).normalize().to_array();
+    Mesh {
+        vertices: corners.map(|p| vertex(p, normal)).to_vec(),
+        indices: vec![0, 1, 2, 0, 2, 3],
+        bounds: Aabb::of_points(corners),
+        ..Mesh::default()
+    }
+}
+
+fn vertex(position: Vec3, normal: [f32; 3]) -> Vertex {
+    Vertex {
+        position: position.to_array(),
+        normal,
+        color: [255; 4],
+        ..bytemuck::Zeroable::zeroed()
+    }
+}
+
+/// Lit points that look to a side.
+fn points(places: impl IntoIterator<Item = Vec3>, normal: Vec3) -> Mesh {
+    let vertices = places.into_iter().map(|p| vertex(p, normal.to_array()));
+    let vertices: Vec<Vertex> = vertices.collect();
+    Mesh {
+        points: (0..vertices.len() as u32).collect(),
+        bounds: Aabb::of_points(vertices.iter().map(|v| v.position.into())),
+        vertices,
+        ..Mesh::default()
+    }
+}
+
+/// Adds an object that is made of these.
+fn add<const N: usize>(scene: &mut Scene, meshes: [Mesh; N]) {
+    let first = scene.instances.len() as u32;
+    let object = scene.objects.len() as u32;
+    scene.objects.push(Object {
+        name: "object".to_owned(),
+        node: object,
+        element: 0,
+        occluder: None,
+        set: None,
+        bounds: (meshes.iter()).fold(Aabb::EMPTY, |all, m| all.union(m.bounds)),
+        instances: first..first + N as u32,
+    });
+    for mesh in meshes {
+        scene.instances.push(Instance {
+            mesh: scene.meshes.len() as u32,
+            material: 0,
+            object,
+            world_from_object: Mat4::IDENTITY,
+            bounds: mesh.bounds,
+        });
+        scene.meshes.push(mesh);
+    }
+}
+
+fn bare() -> Scene {
+    let material = Material {
+        double_sided: true,
+        metallic: 0.0,
+        ..Material::default()
+    };
+    Scene {
+        materials: vec![material],
+        ..Scene::default()
+    }
+}
+
+fn lamp(position: Vec3, range: f32) -> Light {
+    Light {
+        kind: LightKind::Point,
+        color: Vec3::ONE,
+        intensity: 10.0,
+        position,
+        direction: -Vec3::Y,
+        range_m: Some(range),
+        node: None,
+    }
+}
+
+/// Points whose centres lie beside the picture, or behind a wall, where much of their squares is
+/// seen; what shades them is not seen.
+fn clouds(has_casters: [bool; 2]) -> Scene {
+    let mut scene = bare();
+    let upright = |x: [f32; 2], y: f32, z: f32| {
+        flat([
+            Vec3::new(x[0], -y, z),
+            Vec3::new(x[1], -y, z),
+            Vec3::new(x[1], y, z),
+            Vec3::new(x[0], y, z),
+        ])
+    };
+    // The picture ends at x = -3.8, where z is 0.
+    let beside = [-0.5, 0.0, 0.5].map(|y| Vec3::new(-4.25, y, 0.0));
+    add(&mut scene, [points(beside, Vec3::Z)]);
+    scene.lights.push(lamp(Vec3::new(-4.25, 0.0, 2.4), 40.0));
+    // The wall's edge is seen before x = 0.6, where z is 0.
+    add(&mut scene, [upright([0.5, 2.5], 1.5, 1.0)]);
+    let behind = [-0.3, 0.3].map(|y| Vec3::new(1.0, y, 0.0));
+    add(&mut scene, [points(behind, Vec3::Y)]);
+    scene.lights.push(lamp(Vec3::new(1.0, 1.3, 0.0), 40.0));
+    // Something that is seen anyway.
+    add(&mut scene, [upright([-1.5, -0.5], 1.0, -0.5)]);
+    if has_casters[0] {
+        add(&mut scene, [upright([-4.9, -3.6], 0.8, 1.2)]);
+    }
+    if has_casters[1] {
+        let roof = [(0.9, -0.1), (1.1, -0.1), (1.1, 0.1), (0.9, 0.1)];
+        add(&mut scene, [flat(roof.map(|(x, z)| Vec3::new(x, 0.45, z)))]);
+    }
+    scene
+}
+
+#[test]
+fn points_that_reach_beyond_their_boxes_keep_their_shadows() {
+    let eye = Vec3::new(0.0, 0.0, 6.0);
+    let camera = Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 0.8);
+    let settings = shadowed(Shadows::Hard).with(|s| {
+        s.geometry.point_size_px = 32.0;
+    });
+    let shows = |has_casters| picture(&rendered(&clouds(has_casters), &camera, &settings));
+    let bright = shows([false; 2]);
+    for has_casters in [[true, false], [false, true]] {
+        assert_same(&clouds(has_casters), &settings, 2, |_, _| camera.clone());
+        assert!(shows(has_casters) != bright, "the shadows are seen");
+    }
+}
+
+/// A wall, and behind it, of the same object, what shades ground that only another camera sees.
+fn yard() -> (Scene, [Camera; 2]) {
+    let mut scene = bare();
+    let level = |x: f32, y: f32, z: [f32; 2]| {
+        flat([
+            Vec3::new(-x, y, z[1]),
+            Vec3::new(x, y, z[1]),
+            Vec3::new(x, y, z[0]),
+            Vec3::new(-x, y, z[0]),
+        ])
+    };
+    add(&mut scene, [level(2.8, 0.0, [-6.0, 3.0])]);
+    let wall = flat([
+        Vec3::new(-3.0, 0.0, 0.0),
+        Vec3::new(3.0, 0.0, 0.0),
+        Vec3::new(3.0, 2.5, 0.0),
+        Vec3::new(-3.0, 2.5, 0.0),
+    ]);
+    add(&mut scene, [wall, level(0.5, 1.0, [-2.5, -1.5])]);
+    scene.lights.push(lamp(Vec3::new(0.0, 2.0, -2.0), 5.0));
+    scene.lights.push(lamp(Vec3::new(0.0, 2.0, 2.0), 5.0));
+    let look = |eye| Camera::look_at(eye, Vec3::new(0.0, 1.0, 0.0), Vec3::Y, 0.8);
+    (
+        scene,
+        [Vec3::new(0.0, 1.2, 5.0), Vec3::new(4.0, 6.0, -5.0)].map(look),
+    )
+}
+
+#[test]
+fn frozen_culling_shows_all_shadows_of_what_it_draws() {
+    let (scene, cameras) = yard();
+    let draw = |mode, freezes| {
+        let settings = shadowed(Shadows::Soft).with(|s| s.culling.mode = mode);
+        let mut film = Film::new(&scene, &settings);
+        let first = film.draw(&cameras[0]).shadows.unwrap();
+        film.renderer.freeze_culling(freezes);
+        film.draw(&cameras[1]);
+        film.renderer.freeze_culling(false);
+        let shown = picture(&film.renderer);
+        film.draw(&cameras[1]);
+        assert!(picture(&film.renderer) == shown, "all objects are seen");
+        (shown, first)
+    };
+    let (frozen, first) = draw(Culling::Occlusion, true);
+    let (thawed, _) = draw(Culling::Occlusion, false);
+    let (all, first_of_all) = draw(Culling::Off, false);
+    assert!(
+        first.tiles < first_of_all.tiles,
+        "some tiles are not needed"
+    );
+    assert!(frozen == all && thawed == all);
+}
+
+#[test]
+fn cells_are_placed_and_tested_where_shadows_ask_for_them_alone() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let cells = |change: fn(&mut Settings)| {
+        let settings = shadowed(Shadows::Hard).with(|s| {
+            s.culling.mode = Culling::Occlusion;
+            change(s);
+        });
+        rendered(&scene, camera, &settings).cells_placed_and_tested()
+    };
+    let (placed, tested) = cells(|_| {});
+    assert!(placed > scene.instances.len() && tested == placed);
+    assert_eq!(cells(|s| s.lighting.shadows = Shadows::Off), (0, 0));
+    assert_eq!(cells(|s| s.culling.mode = Culling::Frustum), (0, 0));
+    assert_eq!(cells(|s| s.picture.view = DebugView::Normals), (0, 0));
+    // Pixels may show what the culler's samples do not.
+    assert_eq!(
+        cells(|s| s.antialiasing.mode = Antialiasing::Msaa),
+        (placed, 0)
+    );
+    assert_eq!(cells(|s| s.culling.buffer_scale = 2), (placed, 0));
+    assert_eq!(cells(|s| s.culling.buffer_scale = 1), (placed, placed));
+    let (_, tested) = cells(|s| {
+        s.culling.buffer_scale = 8;
+        s.culling.radius_m = 0.1;
+    });
+    assert_eq!(tested, placed);
 }

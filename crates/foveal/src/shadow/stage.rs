@@ -278,8 +278,7 @@ impl Drawing {
         self.kept.place(&self.plan.wanted);
         self.frame += 1;
         if let Receivers::Cells(cells) = &now.receivers {
-            self.seen
-                .see(self.frame, cells, scene.culling.cells.boxes());
+            self.seen.see(self.frame, cells, scene.culling.cells());
             self.complete_tiles(scene, &now.receivers);
         } else {
             self.kept.draw_in_full();
@@ -293,7 +292,7 @@ impl Drawing {
 
     /// Adds casters to tiles that were drawn without them, and whose shadows are seen by now.
     fn complete_tiles(&mut self, scene: &SceneOnGpu, receivers: &Receivers) {
-        let boxes = scene.culling.cells.boxes();
+        let boxes = scene.culling.cells();
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
         let (frame, bias) = (self.frame, self.texels_moved);
         let wanted = std::mem::take(&mut self.plan.wanted);
@@ -354,7 +353,7 @@ impl Drawing {
         let reach = Reach::of(wanted);
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
         let by_cells = matches!(receivers, Receivers::Cells(_));
-        let cells = scene.culling.cells.boxes();
+        let cells = scene.culling.cells();
         let receivers = receivers.numbers().iter().map(|&number| match by_cells {
             true => &cells[number as usize],
             false => bounds(number),
