@@ -412,3 +412,22 @@ fn cells_are_placed_and_tested_where_shadows_ask_for_them_alone() {
     });
     assert_eq!(tested, placed);
 }
+
+#[test]
+fn what_has_no_triangles_is_no_caster() {
+    let (mut scene, cameras) = yard();
+    let of = |scene: &Scene| {
+        film(scene, &shadowed(Shadows::Hard), 1, |_, _| {
+            cameras[0].clone()
+        })
+    };
+    let before = of(&scene)[0].1;
+    add(
+        &mut scene,
+        [points([Vec3::new(0.1, 0.8, 1.0), Vec3::ONE], Vec3::Y)],
+    );
+    let after = of(&scene)[0].1;
+    assert_eq!(before.casters, after.casters);
+    assert_eq!(before.casters_in_reach, after.casters_in_reach);
+    assert_eq!(after.casters, after.casters_in_reach);
+}

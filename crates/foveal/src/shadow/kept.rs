@@ -16,21 +16,48 @@ pub(super) struct Kept {
     pub(super) volume: Volume,
     /// It holds the shadows of the pose, but for those of what is left out.
     pub(super) is_drawn: bool,
-    /// Casters whose shadows nobody has seen yet.
-    pub(super) left_out: Option<Box<LeftOut>>,
+    /// Casters that it was drawn without, as nobody has seen their shadows yet: instances, ascending.
+    pub(super) left_out: Vec<u32>,
+    /// What it has been drawn for: shadows of what is left out fall on none of it.
+    pub(super) received: Option<Box<Received>>,
     /// The frame that wanted it last.
     wanted_in: u64,
+    /// The frame after which it had to be drawn again last.
+    disturbed_in: Option<u64>,
+    /// The frame before had to draw it again too.
+    pub(super) is_restless: bool,
+    /// That, and its light has moved now.
+    pub(super) light_moves: bool,
 }
 
-/// Casters that a tile was drawn without.
+impl Kept {
+    /// What it holds is wrong from the frame after this one on.
+    fn disturb(&mut self, frame: u64) {
+        self.is_drawn = false;
+        self.is_restless = self.disturbed_in.is_some_and(|before| before + 1 >= frame);
+        self.light_moves = false;
+        self.disturbed_in = Some(frame);
+    }
+}
+
+/// Receivers that a tile has been drawn for.
 #[derive(Clone, Debug)]
-pub(super) struct LeftOut {
-    /// Instances, ascending.
-    pub(super) casters: Vec<u32>,
-    /// The receivers that the tile has been drawn for: shadows of what is left out fall on none.
+pub(super) struct Received {
     pub(super) mask: Mask,
-    /// The frame whose receivers were added to the mask last.
-    pub(super) frame: u64,
+    /// The frames whose receivers are in the mask, first and last.
+    pub(super) first: u64,
+    pub(super) last: u64,
+}
+
+impl Received {
+    /// A tile's of `side` texels, of which nothing has been seen.
+    pub(super) fn new(side: f32, frame: u64) -> Self {
+        Self {
+            mask: Mask::new(side),
+            first: frame,
+            last: 0,
+        }
+    }
 }
 
 /// The tiles in the atlas, by slot.
@@ -69,7 +96,7 @@ impl KeptTiles {
     }
 
     /// The tile has been drawn, without some casters.
-    pub(super) fn drawn(&mut self, slot: u32, left_out: Option<Box<LeftOut>>) {
+    pub(super) fn drawn(&mut self, slot: u32, left_out: Vec<u32>) {
         if let Some(kept) = self.tiles.get_mut(&slot) {
             kept.is_drawn = true;
             kept.left_out = left_out;
@@ -79,17 +106,19 @@ impl KeptTiles {
     /// Tiles that were drawn without some casters must be drawn again: nobody says any more what is
     /// seen.
     pub(super) fn draw_in_full(&mut self) {
-        for kept in self.tiles.values_mut().filter(|k| k.left_out.is_some()) {
-            kept.left_out = None;
+        for kept in self.tiles.values_mut().filter(|k| !k.left_out.is_empty()) {
+            kept.left_out.clear();
             kept.is_drawn = false;
         }
     }
 
-    /// Tiles that see any of these boxes must be drawn again.
+    /// Tiles that see any of these boxes must be drawn again, for what they were drawn for at least.
     pub(super) fn disturb(&mut self, boxes: &[Aabb]) {
         for kept in self.tiles.values_mut().filter(|kept| kept.is_drawn) {
             let side = kept.tile.side() as f32;
-            kept.is_drawn = !boxes.iter().any(|b| kept.volume.meets(b, side));
+            if boxes.iter().any(|b| kept.volume.meets(b, side)) {
+                kept.disturb(self.frame);
+            }
         }
     }
 
@@ -103,8 +132,12 @@ impl KeptTiles {
             match self.tiles.get_mut(&want.slot) {
                 Some(kept) if kept.tile.level == want.level => {
                     kept.wanted_in = self.frame;
-                    kept.is_drawn &= kept.volume == want.volume;
-                    kept.volume = want.volume;
+                    if kept.volume != want.volume {
+                        kept.volume = want.volume;
+                        kept.received = None;
+                        kept.disturb(self.frame - 1);
+                        kept.light_moves = kept.is_restless;
+                    }
                 }
                 Some(kept) => {
                     let tile = kept.tile;
@@ -146,8 +179,12 @@ impl KeptTiles {
             tile,
             volume: want.volume,
             is_drawn: false,
-            left_out: None,
+            left_out: Vec::new(),
+            received: None,
             wanted_in: self.frame,
+            disturbed_in: None,
+            is_restless: false,
+            light_moves: false,
         };
         self.tiles.insert(want.slot, kept);
     }
@@ -195,8 +232,8 @@ mod tests {
         let mut kept = KeptTiles::new(8);
         kept.place(&[want(0, 6), want(7, 5)]);
         let places = [0, 7].map(|slot| place_of(&kept, slot));
-        kept.drawn(0, None);
-        kept.drawn(7, None);
+        kept.drawn(0, Vec::new());
+        kept.drawn(7, Vec::new());
         // One frame does not want it, one wants others beside it.
         kept.place(&[want(7, 5)]);
         kept.place(&[want(0, 6), want(7, 5), want(9, 5)]);
@@ -234,11 +271,50 @@ mod tests {
         let mut kept = KeptTiles::new(8);
         // Side 0 looks along x from 0, side 1 against it.
         kept.place(&[want(0, 5), want(1, 5)]);
-        kept.drawn(0, None);
-        kept.drawn(1, None);
+        kept.drawn(0, Vec::new());
+        kept.drawn(1, Vec::new());
         let at = Vec3::new(1.5, 0.0, 0.0);
         kept.disturb(&[Aabb::new(at, at + 0.1)]);
         assert!(!kept.get(0).unwrap().is_drawn);
+        assert!(kept.get(1).unwrap().is_drawn);
+    }
+
+    #[test]
+    fn what_a_tile_was_drawn_for_outlives_moves_of_casters_and_not_of_the_light() {
+        let mut kept = KeptTiles::new(8);
+        kept.place(&[want(0, 5)]);
+        kept.drawn(0, vec![3]);
+        let received = Received::new(32.0, 1);
+        kept.get_mut(0).unwrap().received = Some(Box::new(received));
+        let at = Vec3::new(1.5, 0.0, 0.0);
+        let b = [Aabb::new(at, at + 0.1)];
+        for (frame, is_restless) in [(1, false), (2, true), (3, true), (4, false)] {
+            if frame == 4 {
+                kept.place(&[want(0, 5)]);
+            }
+            kept.disturb(&b);
+            let tile = kept.get(0).unwrap();
+            assert!(!tile.is_drawn && tile.received.is_some());
+            assert!(!tile.light_moves);
+            assert_eq!(tile.is_restless, is_restless, "frame {frame}");
+            kept.place(&[want(0, 5)]);
+            kept.drawn(0, vec![3]);
+        }
+        let mut moved = want(0, 5);
+        moved.volume = want(6, 5).volume;
+        kept.place(&[moved]);
+        let tile = kept.get(0).unwrap();
+        assert!(!tile.is_drawn && tile.received.is_none() && tile.light_moves);
+    }
+
+    #[test]
+    fn tiles_that_lack_casters_are_drawn_in_full_where_nobody_says_what_is_seen() {
+        let mut kept = KeptTiles::new(8);
+        kept.place(&[want(0, 5), want(1, 5)]);
+        kept.drawn(0, vec![3]);
+        kept.drawn(1, Vec::new());
+        kept.draw_in_full();
+        assert!(!kept.get(0).unwrap().is_drawn && kept.get(0).unwrap().left_out.is_empty());
         assert!(kept.get(1).unwrap().is_drawn);
     }
 }

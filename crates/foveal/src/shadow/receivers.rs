@@ -1,6 +1,13 @@
 //! What the camera sees in a frame, and since when it has seen it without a break.
 
+use std::cell::OnceCell;
+
 use foveal_scene::Aabb;
+use glam::Vec3;
+
+use super::kept::Received;
+use super::plan::Wanted;
+use super::volume::Volume;
 
 /// What a frame's shadows may fall on.
 #[derive(Clone, Debug, PartialEq)]
@@ -10,14 +17,6 @@ pub(crate) enum Receivers {
     /// Cells of the scene ([`crate::culling::CullingScene`]), by number, ascending: casters whose
     /// shadows fall on none of them are left out.
     Cells(Vec<u32>),
-}
-
-impl Receivers {
-    pub(super) fn numbers(&self) -> &[u32] {
-        match self {
-            Self::Instances(numbers) | Self::Cells(numbers) => numbers,
-        }
-    }
 }
 
 /// Since which frame each cell has been seen, without a break and at the same place.
@@ -61,10 +60,111 @@ impl SeenSince {
     }
 }
 
+/// Where a light of several tiles reaches.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reach {
+    /// Place and range; `None` for a directional light.
+    pub(super) sphere: Option<(Vec3, f32)>,
+}
+
+impl Reach {
+    /// Of the light of these tiles.
+    pub(super) fn of(wanted: &[Wanted]) -> Self {
+        let sphere = match wanted.first().map(|w| w.volume) {
+            Some(Volume::Pyramid { apex, range, .. }) => Some((apex, range)),
+            _ => None,
+        };
+        Self { sphere }
+    }
+
+    pub(super) fn meets(&self, b: &Aabb) -> bool {
+        self.sphere.is_none_or(|(apex, range)| {
+            apex.clamp(b.min, b.max).distance_squared(apex) <= range * range
+        })
+    }
+}
+
+/// The cells that a frame sees.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SeenCells<'a> {
+    /// Of all cells.
+    pub(super) boxes: &'a [Aabb],
+    pub(super) since: &'a SeenSince,
+    pub(super) frame: u64,
+    /// Those that are seen.
+    pub(super) all: &'a [u32],
+    /// Those of them that the frame before did not see: most tiles were looked at then.
+    pub(super) new: &'a [u32],
+    /// Texels by which places are moved before they are looked up.
+    pub(super) bias: f32,
+}
+
+impl<'a> SeenCells<'a> {
+    /// Those within a light's reach, which are looked for when they are asked for.
+    pub(super) fn near(self, reach: Reach) -> NearCells<'a> {
+        NearCells {
+            seen: self,
+            reach,
+            all: OnceCell::new(),
+            new: OnceCell::new(),
+        }
+    }
+}
+
+/// The cells that a frame sees within a light's reach.
+#[derive(Debug)]
+pub(super) struct NearCells<'a> {
+    seen: SeenCells<'a>,
+    reach: Reach,
+    all: OnceCell<Vec<u32>>,
+    new: OnceCell<Vec<u32>>,
+}
+
+impl NearCells<'_> {
+    fn within(&self, cells: &[u32]) -> Vec<u32> {
+        let is_near = |cell: &&u32| self.reach.meets(&self.seen.boxes[**cell as usize]);
+        cells.iter().filter(is_near).copied().collect()
+    }
+
+    fn all(&self) -> &[u32] {
+        self.all.get_or_init(|| self.within(self.seen.all))
+    }
+
+    /// Whether a tile of `side` texels sees any of them.
+    pub(super) fn meets(&self, volume: &Volume, side: f32) -> bool {
+        let mut boxes = self.all().iter().map(|&c| &self.seen.boxes[c as usize]);
+        boxes.any(|b| volume.meets(b, side))
+    }
+
+    /// Adds what has come into sight since a tile of `side` texels was looked at last; whether its
+    /// mask is larger for it.
+    pub(super) fn add_to(&self, received: &mut Received, volume: &Volume, side: f32) -> bool {
+        let SeenCells {
+            boxes,
+            since,
+            frame,
+            new,
+            bias,
+            ..
+        } = self.seen;
+        let before = std::mem::replace(&mut received.last, frame);
+        let cells = if before + 1 == frame {
+            self.new.get_or_init(|| self.within(new))
+        } else {
+            self.all()
+        };
+        let mut grows = false;
+        for &cell in cells.iter().filter(|&&cell| !since.was_seen(cell, before)) {
+            let b = &boxes[cell as usize];
+            grows |= volume.meets(b, side) && received.mask.receive(volume, b, bias);
+        }
+        grows
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn a_cell_that_was_away_or_has_moved_is_new() {

@@ -6,11 +6,10 @@ use glam::Vec3;
 use super::atlas::Tile;
 use super::changed::{Place, changed_places};
 use super::hidden::HiddenCasters;
-use super::kept::{KeptTiles, LeftOut};
-use super::mask::Mask;
+use super::kept::{KeptTiles, Received};
 use super::pass::{CasterPass, TileDraw};
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
-use super::receivers::{Receivers, SeenSince};
+use super::receivers::{NearCells, Reach, Receivers, SeenCells, SeenSince};
 use super::records::{Row, rows};
 use super::volume::Volume;
 use crate::geometry::DrawList;
@@ -234,40 +233,58 @@ const LARGEST_LAMP: f32 = 0.5;
 
 /// Whether an instance keeps a light, given by its place and range, from what is beyond. What
 /// glows, is small, and holds the light within its box is the light's own lamp.
-fn casts(instance: &DrawnInstance, light: Option<(Vec3, f32)>) -> bool {
+fn casts(scene: &SceneOnGpu, instance: &DrawnInstance, light: Option<(Vec3, f32)>) -> bool {
     let b = &instance.bounds;
+    let has_triangles = scene.geometry.mesh(instance.mesh).index_count > 0;
     let is_own_lamp = instance.glows
         && light.is_some_and(|(at, range)| {
             at.cmpge(b.min).all()
                 && at.cmple(b.max).all()
                 && b.size().length() <= LARGEST_LAMP * range
         });
-    instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
+    has_triangles && instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
 }
 
 fn light_of(want: &Wanted) -> u32 {
     want.slot / TILES_PER_LIGHT as u32
 }
 
-/// Where a light of several tiles reaches.
-struct Reach {
-    /// Place and range; `None` for a directional light.
-    sphere: Option<(Vec3, f32)>,
+/// Frames after which a tile that is drawn again forgets what only earlier ones saw.
+const MOST_FRAMES: u64 = 60;
+
+/// What a frame sees.
+#[derive(Clone, Copy, Debug)]
+enum Seen<'a> {
+    Instances(&'a [u32]),
+    Cells(SeenCells<'a>),
 }
 
-impl Reach {
-    fn of(wanted: &[Wanted]) -> Self {
-        let sphere = match wanted.first().map(|w| w.volume) {
-            Some(Volume::Pyramid { apex, range, .. }) => Some((apex, range)),
-            _ => None,
-        };
-        Self { sphere }
-    }
+/// What a frame sees within a light's reach.
+enum Near<'a> {
+    Instances(Vec<&'a Aabb>),
+    Cells(NearCells<'a>),
+}
 
-    fn meets(&self, b: &Aabb) -> bool {
-        self.sphere.is_none_or(|(apex, range)| {
-            apex.clamp(b.min, b.max).distance_squared(apex) <= range * range
-        })
+impl<'a> Seen<'a> {
+    fn near(self, scene: &'a SceneOnGpu, reach: Reach) -> Near<'a> {
+        match self {
+            Self::Instances(instances) => {
+                let boxes = instances.iter();
+                let boxes = boxes.map(|&i| &scene.instances[i as usize].bounds);
+                Near::Instances(boxes.filter(|b| reach.meets(b)).collect())
+            }
+            Self::Cells(cells) => Near::Cells(cells.near(reach)),
+        }
+    }
+}
+
+impl Near<'_> {
+    /// Whether a tile of `side` texels sees any of it.
+    fn meets(&self, volume: &Volume, side: f32) -> bool {
+        match self {
+            Self::Instances(boxes) => boxes.iter().any(|b| volume.meets(b, side)),
+            Self::Cells(cells) => cells.meets(volume, side),
+        }
     }
 }
 
@@ -277,64 +294,61 @@ impl Drawing {
         self.plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
         self.kept.place(&self.plan.wanted);
         self.frame += 1;
-        if let Receivers::Cells(cells) = &now.receivers {
-            self.seen.see(self.frame, cells, scene.culling.cells());
-            self.complete_tiles(scene, &now.receivers);
-        } else {
-            self.kept.draw_in_full();
-        }
+        let boxes = scene.culling.cells();
+        let cells = match &now.receivers {
+            Receivers::Cells(cells) => cells.as_slice(),
+            Receivers::Instances(_) => &[],
+        };
+        self.seen.see(self.frame, cells, boxes);
+        let is_new = |cell: &&u32| !self.seen.was_seen(**cell, self.frame - 1);
+        let new: Vec<u32> = cells.iter().filter(is_new).copied().collect();
+        let seen = std::mem::take(&mut self.seen);
+        let seen_cells = SeenCells {
+            boxes,
+            since: &seen,
+            frame: self.frame,
+            all: cells,
+            new: &new,
+            bias: self.texels_moved,
+        };
+        let receivers = match &now.receivers {
+            Receivers::Cells(_) => {
+                self.complete_tiles(scene, seen_cells);
+                Seen::Cells(seen_cells)
+            }
+            Receivers::Instances(instances) => {
+                self.kept.draw_in_full();
+                Seen::Instances(instances)
+            }
+        };
         let missing = |want: &&Wanted| self.kept.get(want.slot).is_some_and(|k| !k.is_drawn);
         let missing: Vec<Wanted> = self.plan.wanted.iter().filter(missing).copied().collect();
         for of_light in missing.chunk_by(|a, b| light_of(a) == light_of(b)) {
-            self.list_draws(scene, &now.receivers, of_light);
+            self.list_draws(scene, receivers, of_light);
         }
+        self.seen = seen;
     }
 
     /// Adds casters to tiles that were drawn without them, and whose shadows are seen by now.
-    fn complete_tiles(&mut self, scene: &SceneOnGpu, receivers: &Receivers) {
-        let boxes = scene.culling.cells();
+    fn complete_tiles(&mut self, scene: &SceneOnGpu, seen: SeenCells<'_>) {
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
-        let (frame, bias) = (self.frame, self.texels_moved);
-        let wanted = std::mem::take(&mut self.plan.wanted);
-        // Cells that the frame before did not see: most tiles were looked at then.
-        let is_new = |&&cell: &&u32| !self.seen.was_seen(cell, frame - 1);
-        let new: Vec<u32> = receivers.numbers().iter().filter(is_new).copied().collect();
-        for of_light in wanted.chunk_by(|a, b| light_of(a) == light_of(b)) {
-            let reach = Reach::of(of_light);
-            let is_near = |cell: &&u32| reach.meets(&boxes[**cell as usize]);
-            let new: Vec<u32> = new.iter().filter(is_near).copied().collect();
+        for of_light in (self.plan.wanted).chunk_by(|a, b| light_of(a) == light_of(b)) {
+            let near = seen.near(Reach::of(of_light));
             for want in of_light {
-                let Some(kept) = self.kept.get_mut(want.slot).filter(|kept| kept.is_drawn) else {
+                let Some(kept) = self.kept.get_mut(want.slot) else {
                     continue;
                 };
-                let Some(left_out) = &mut kept.left_out else {
+                let Some(received) = kept.received.as_mut().filter(|_| kept.is_drawn) else {
                     continue;
                 };
-                let side = kept.tile.side() as f32;
-                let (volume, mask) = (&want.volume, &mut left_out.mask);
-                let mut receive = |cell: u32| {
-                    let at = &boxes[cell as usize];
-                    volume.meets(at, side) && mask.receive(volume, at, side, bias)
-                };
-                let before = std::mem::replace(&mut left_out.frame, frame);
-                let mut grows = false;
-                if before + 1 == frame {
-                    new.iter().for_each(|&cell| grows |= receive(cell));
-                } else {
-                    let since = receivers.numbers().iter();
-                    let since = since.filter(|&&cell| !self.seen.was_seen(cell, before));
-                    since.for_each(|&cell| grows |= receive(cell));
-                }
-                if !grows {
+                let (side, volume) = (kept.tile.side() as f32, &want.volume);
+                if kept.left_out.is_empty() || !near.add_to(received, volume, side) {
                     continue;
                 }
-                let shown = |i: u32| left_out.mask.shows(volume, bounds(i), side);
+                let shown = |i: u32| received.mask.shows(volume, bounds(i));
                 let (shown, still): (Vec<u32>, Vec<u32>) =
-                    left_out.casters.iter().partition(|&&i| shown(i));
-                left_out.casters = still;
-                if left_out.casters.is_empty() {
-                    kept.left_out = None;
-                }
+                    kept.left_out.iter().partition(|&&i| shown(i));
+                kept.left_out = still;
                 if !shown.is_empty() {
                     self.draws.push(TileDraw {
                         tile: kept.tile,
@@ -345,37 +359,27 @@ impl Drawing {
                 }
             }
         }
-        self.plan.wanted = wanted;
     }
 
     /// Lists the draws of one light's tiles.
-    fn list_draws(&mut self, scene: &SceneOnGpu, receivers: &Receivers, wanted: &[Wanted]) {
+    fn list_draws(&mut self, scene: &SceneOnGpu, receivers: Seen<'_>, wanted: &[Wanted]) {
         let reach = Reach::of(wanted);
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
-        let by_cells = matches!(receivers, Receivers::Cells(_));
-        let cells = scene.culling.cells();
-        let receivers = receivers.numbers().iter().map(|&number| match by_cells {
-            true => &cells[number as usize],
-            false => bounds(number),
-        });
-        let receivers: Vec<&Aabb> = receivers.filter(|b| reach.meets(b)).collect();
+        let near = receivers.near(scene, reach);
         let mut casters: Option<Vec<u32>> = None;
         for want in wanted {
-            let Some(tile) = self.kept.get(want.slot).map(|kept| kept.tile) else {
+            let Some(kept) = self.kept.get_mut(want.slot) else {
                 continue;
             };
-            let (side, volume) = (tile.side() as f32, &want.volume);
-            let mut seen = receivers
-                .iter()
-                .filter(|b| volume.meets(b, side))
-                .peekable();
-            if seen.peek().is_none() {
+            let (tile, volume) = (kept.tile, &want.volume);
+            let side = tile.side() as f32;
+            if !near.meets(volume, side) {
                 continue;
             }
             let casters = casters.get_or_insert_with(|| {
                 (0..)
                     .zip(&scene.instances)
-                    .filter(|(_, i)| casts(i, reach.sphere) && reach.meets(&i.bounds))
+                    .filter(|(_, i)| casts(scene, i, reach.sphere) && reach.meets(&i.bounds))
                     .map(|(number, _)| number)
                     .collect()
             });
@@ -383,28 +387,31 @@ impl Drawing {
                 |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
             let mut casters: Vec<u32> = casters.iter().copied().filter(is_cast).collect();
             self.counts.in_reach += casters.len() as u64;
-            let mut left_out = None;
-            if by_cells {
+            let mut left_out = Vec::new();
+            // A light that moves asks anew of all that is seen, for one frame: that takes longer than
+            // drawing what it would leave out.
+            if let Near::Cells(near) = &near
+                && !kept.light_moves
+            {
                 let all = casters.len();
-                self.hidden
-                    .take_out(scene, volume, tile.side(), &mut casters);
-                self.counts.hidden += (all - casters.len()) as u64;
-                let mut mask = Mask::default();
-                for b in seen {
-                    mask.receive(volume, b, side, self.texels_moved);
+                // What changes in each frame is drawn sooner than it is searched.
+                if !kept.is_restless {
+                    self.hidden
+                        .take_out(scene, volume, tile.side(), &mut casters);
                 }
-                let (shown, others): (Vec<u32>, Vec<u32>) = casters
+                self.counts.hidden += (all - casters.len()) as u64;
+                let received = (kept.received.take())
+                    .filter(|received| received.first + MOST_FRAMES > self.frame);
+                let mut received =
+                    received.unwrap_or_else(|| Box::new(Received::new(side, self.frame)));
+                near.add_to(&mut received, volume, side);
+                (casters, left_out) = casters
                     .iter()
-                    .partition(|&&i| mask.shows(volume, bounds(i), side));
-                self.counts.unneeded += others.len() as u64;
-                casters = shown;
-                left_out = (!others.is_empty()).then(|| {
-                    Box::new(LeftOut {
-                        casters: others,
-                        mask,
-                        frame: self.frame,
-                    })
-                });
+                    .partition(|&&i| received.mask.shows(volume, bounds(i)));
+                self.counts.unneeded += left_out.len() as u64;
+                if kept.is_restless || !left_out.is_empty() {
+                    kept.received = Some(received);
+                }
             }
             self.draws.push(TileDraw {
                 tile,
