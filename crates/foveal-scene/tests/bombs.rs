@@ -276,6 +276,20 @@ fn small_files_that_ask_for_much_are_refused_before_anything_is_allocated() {
         json!({ "componentType": 5126, "count": 16_000_000, "type": "VEC3" });
     bomb.refused(None);
     assert_small("vertices without values");
+
+    // One vertex, named so often that its points take gigabytes where they are drawn; then lines, a
+    // strip of which names each vertex twice.
+    for mode in 0..4 {
+        let mut bomb = Bomb::new();
+        let zeros = json!({ "componentType": 5125, "count": 15_000_000, "type": "SCALAR" });
+        bomb.json["accessors"].as_array_mut().unwrap().push(zeros);
+        let primitive = &mut bomb.json["meshes"][0]["primitives"][0];
+        primitive["indices"] = json!(1);
+        primitive["mode"] = json!(mode);
+        let text = bomb.refused(Some(Limit::Expansion));
+        assert!(text.contains("for vertices and indices"), "{text}");
+        assert_small("points and lines of one vertex");
+    }
 }
 
 #[test]

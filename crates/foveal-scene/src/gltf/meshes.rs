@@ -90,6 +90,13 @@ pub(crate) struct PrimitiveDef {
     pub(crate) draco: Option<DracoDef>,
 }
 
+impl PrimitiveDef {
+    /// Whether it has morph targets or joints.
+    pub(crate) fn deforms(&self) -> bool {
+        !self.targets.is_empty() || self.attributes.joints.iter().flatten().count() > 0
+    }
+}
+
 /// A mesh as the file has it.
 pub(crate) struct MeshDef {
     pub(crate) name: Option<String>,

@@ -154,7 +154,8 @@ impl Geometry {
             corners = corners.saturating_add(made_corners);
             bytes = bytes
                 .saturating_add(made.saturating_mul(vertex_bytes(def)))
-                .saturating_add(made_corners.saturating_mul(INDEX_BYTES));
+                .saturating_add(made_corners.saturating_mul(INDEX_BYTES))
+                .saturating_add(stroke_bytes(def, made_corners));
             if positions_are_unbacked(reader, def) {
                 unbacked = unbacked.saturating_add(made);
             }
@@ -186,6 +187,19 @@ impl Geometry {
 /// Memory per corner while a mesh is built: as read, and as kept.
 const INDEX_BYTES: u64 = 8;
 
+/// Memory of a point or line where it is drawn: four vertices and six indices.
+pub(crate) const STROKE_BYTES: u64 = 4 * size_of::<Vertex>() as u64 + 6 * 4;
+
+/// Memory that the points and lines of a primitive take where they are drawn.
+fn stroke_bytes(def: &PrimitiveDef, corners: u64) -> u64 {
+    if def.mode.makes_triangles() {
+        return 0;
+    }
+    // What deforms is there as in the pose before, too.
+    let poses = 1 + u64::from(def.deforms());
+    (corners / def.mode.corners() as u64).saturating_mul(STROKE_BYTES * poses)
+}
+
 /// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what
 /// deforms it.
 fn vertex_bytes(def: &PrimitiveDef) -> u64 {
@@ -196,11 +210,11 @@ fn vertex_bytes(def: &PrimitiveDef) -> u64 {
         let further = 8 * t.uv.len().min(2) + 16 * usize::from(t.color.is_some());
         (12 * deltas(t) + further) as u64
     });
-    let deforms = if def.targets.is_empty() && joints == 0 {
-        0
-    } else {
+    let deforms = if def.deforms() {
         // At rest and as posed.
         2 * vertex
+    } else {
+        0
     };
     vertex + 28 + deforms + 48 * joints + targets.sum::<u64>()
 }

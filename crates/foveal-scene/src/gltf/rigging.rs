@@ -8,6 +8,7 @@ use glam::Mat4;
 use super::document::Document;
 use super::nodes::Hierarchy;
 use super::objects::Shown;
+use super::parts::STROKE_BYTES;
 use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
@@ -128,9 +129,10 @@ impl Rigging {
                 if !first {
                     let mesh = &scene.meshes[part.mesh as usize];
                     let bytes = size_of_val(mesh.vertices.as_slice()) * 2 + 4 * mesh.used().count();
+                    let strokes = mesh.stroke_count() as u64 * STROKE_BYTES * 2;
                     let budget = &reader.buffers.budget;
                     budget
-                        .take(bytes as u64, "a deforming mesh of its own")
+                        .take(bytes as u64 + strokes, "a deforming mesh of its own")
                         .map_err(|e| e.under(format_args!("nodes[{node}]")))?;
                     let copy = scene.meshes[part.mesh as usize].clone();
                     scene.meshes.push(copy);
