@@ -12,7 +12,7 @@ use crate::{
     Antialiasing, Geometry, Output, Renderer, SamplePattern, Settings, Shading, Shadows, Stereo,
 };
 
-const SIZE: (u32, u32) = (47, 31);
+pub(super) const SIZE: (u32, u32) = (47, 31);
 
 /// Further from an edge than this, in pixels, the device must agree; where a line is cut by the near
 /// plane, its end lies far outside the picture, and rasterizers count in fractions of a pixel.
@@ -24,7 +24,7 @@ fn camera() -> Camera {
     Camera::look_at(eye, Vec3::ZERO, Vec3::new(0.2, 1.0, 0.0), 0.8)
 }
 
-fn vertex(position: Vec3, color: [u8; 3]) -> Vertex {
+pub(super) fn vertex(position: Vec3, color: [u8; 3]) -> Vertex {
     let [r, g, b] = color;
     Vertex {
         position: position.to_array(),
@@ -33,7 +33,7 @@ fn vertex(position: Vec3, color: [u8; 3]) -> Vertex {
     }
 }
 
-fn black() -> Environment {
+pub(super) fn black() -> Environment {
     Environment {
         zenith: Vec3::ZERO,
         horizon: Vec3::ZERO,
@@ -49,7 +49,7 @@ pub(crate) fn strokes() -> (Scene, Camera) {
 }
 
 /// A mesh that an object of its own shows.
-fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_object: Mat4) {
+pub(super) fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_object: Mat4) {
     mesh.bounds = Aabb::of_points(mesh.vertices.iter().map(|v| v.position.into()));
     let bounds = mesh.bounds.transformed(world_from_object);
     let number = scene.instances.len() as u32;
@@ -73,7 +73,7 @@ fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_from_object:
     scene.meshes.push(mesh);
 }
 
-fn scene_of(mesh: Mesh, material: Material) -> Scene {
+pub(super) fn scene_of(mesh: Mesh, material: Material) -> Scene {
     let mut scene = Scene {
         environment: black(),
         ..Scene::default()
@@ -83,7 +83,7 @@ fn scene_of(mesh: Mesh, material: Material) -> Scene {
 }
 
 /// Lines of one colour to all sides, the last from behind the eye.
-fn lines() -> Mesh {
+pub(super) fn lines() -> Mesh {
     let ends = [
         [Vec3::new(-1.3, -0.7, 0.2), Vec3::new(1.2, 0.8, -0.4)],
         [Vec3::new(-1.0, 0.9, 0.0), Vec3::new(1.5, 0.85, 0.3)],
@@ -99,7 +99,7 @@ fn lines() -> Mesh {
     }
 }
 
-fn points() -> Mesh {
+pub(super) fn points() -> Mesh {
     let places = (0..25).map(|i| {
         let (x, y) = ((i % 5) as f32, (i / 5) as f32);
         Vec3::new(x * 0.53 - 1.1, y * 0.41 - 0.8, 0.3 * (x - y))
@@ -127,7 +127,8 @@ fn within_line(clip: [Vec4; 2], width: f32, size: Vec2, at: Vec2) -> f32 {
         clip[i].lerp(clip[other], ahead[i] / (ahead[i] - ahead[other]))
     };
     let [a, b] = [cut(0, 1), cut(1, 0)].map(|c| on_screen(c, size));
-    let along = (b - a).normalize();
+    // Seen end-on it is a point.
+    let along = (b - a).try_normalize().unwrap_or(Vec2::X);
     let (x, y) = ((at - a).dot(along), (at - a).perp_dot(along));
     let beyond_ends = (x + width / 2.0).min((b - a).length() + width / 2.0 - x);
     beyond_ends.min(width / 2.0 - y.abs())
@@ -158,21 +159,21 @@ fn within(mesh: &Mesh, camera: &Camera, settings: &Settings, pixel: u32) -> f32 
     lines.chain(points).fold(f32::NEG_INFINITY, f32::max)
 }
 
-fn radiance(renderer: &Renderer) -> Vec<Vec3> {
+pub(super) fn radiance(renderer: &Renderer) -> Vec<Vec3> {
     texels::<[u16; 4]>(&renderer.targets().radiance_view)
         .into_iter()
         .map(|t| Vec3::new(f32_of_half(t[0]), f32_of_half(t[1]), f32_of_half(t[2])))
         .collect()
 }
 
-fn sized(width: f32) -> Settings {
+pub(super) fn sized(width: f32) -> Settings {
     small(SIZE.0, SIZE.1).with(|s| {
         s.geometry.line_width_px = width;
         s.geometry.point_size_px = width;
     })
 }
 
-fn white() -> Material {
+pub(super) fn white() -> Material {
     Material {
         base_color: Vec4::new(1.0, 0.5, 0.25, 1.0),
         ..Material::default()
@@ -180,7 +181,7 @@ fn white() -> Material {
 }
 
 /// Compares a picture on black with the twin; returns how many pixels are covered.
-fn compare(mesh: &Mesh, camera: &Camera, settings: &Settings, drawn: &[Vec3]) -> usize {
+pub(super) fn compare(mesh: &Mesh, camera: &Camera, settings: &Settings, drawn: &[Vec3]) -> usize {
     let mut covered = 0;
     let view_from_world = camera.world_from_view.inverse();
     let is_behind = |v: &Vertex| view_from_world.transform_point3(v.position.into()).z > 0.0;
@@ -236,7 +237,7 @@ fn every_way_of_drawing_shows_the_same_points_and_lines() {
     mesh.points = points().points.iter().map(|p| p + count).collect();
     mesh.vertices.extend(points().vertices);
     let mut scene = scene_of(mesh, white());
-    // A wall behind some and in front of others, and something deep that is culled by occlusion.
+    // A wall behind some and in front of others.
     let wall = Material {
         base_color: Vec4::new(0.1, 0.2, 0.9, 1.0),
         unlit: true,
@@ -436,4 +437,26 @@ fn strokes_with_normals_are_lit_and_others_are_not() {
             );
         }
     }
+}
+
+#[test]
+fn the_last_of_many_strokes_is_drawn_and_missing_vertices_are_not() {
+    // More than are written to the device at a time, of vertices as of indices.
+    let count = 50_000;
+    let mut mesh = Mesh {
+        vertices: vec![vertex(Vec3::splat(1000.0), [255; 3]); 3],
+        points: vec![0; count],
+        ..Mesh::default()
+    };
+    mesh.vertices[1].position = [0.5, 0.5, 0.0];
+    mesh.vertices[2].position = [-0.5, -0.5, 0.0];
+    mesh.lines = vec![[1, 7], [u32::MAX, 2]];
+    mesh.points[count - 1] = 1;
+    mesh.points.extend([3, u32::MAX]);
+    mesh.points.push(2);
+    let scene = scene_of(mesh, Material::default());
+    let settings = sized(3.0);
+    let drawn = radiance(&rendered(&scene, &super::twin::front(), &settings));
+    let lit = drawn.iter().filter(|c| c.x > 0.5).count();
+    assert_eq!(lit, 2 * 9);
 }

@@ -4,6 +4,7 @@ use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Mesh, Scene, Vertex};
 
 use super::strokes;
+use super::uploads::Uploads;
 use crate::gpu::{Gpu, bind_group, storage_read};
 use crate::{Error, Geometry};
 
@@ -53,8 +54,11 @@ impl MeshRange {
     }
 }
 
-/// Quads that are written to the device at a time: 4 MiB of vertices.
+/// Quads that are made and written to the device at a time: 4 MiB of vertices.
 const QUADS_AT_A_TIME: usize = 1 << 14;
+
+/// Indices that are written at a time: 1 MiB.
+const INDICES_AT_A_TIME: usize = 1 << 18;
 
 /// Vertices that a mesh takes on the device: those of its triangles, and its quads.
 fn vertex_counts(mesh: &Mesh) -> [u64; 2] {
@@ -157,6 +161,7 @@ impl SceneGeometry {
                 wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE
             },
         );
+        let mut uploads = Uploads::new(gpu);
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let (mut base_vertex, mut first_index) = (0u64, 0u64);
         for mesh in &scene.meshes {
@@ -175,30 +180,25 @@ impl SceneGeometry {
                 lights_strokes: mesh.lights_strokes(),
                 first_stroke_vertex: (base_vertex + vertices_of_triangles) as u32,
             };
-            write_vertices(gpu, &vertices, mesh, range);
-            // WebGL 2 has no base vertex: there it is in the indices.
-            let shifted: Vec<u32>;
-            let mesh_indices = if gpu.is_reduced() {
-                shifted = (mesh.indices.iter())
-                    .map(|&index| index + base_vertex as u32)
-                    .collect();
-                &shifted
-            } else {
-                &mesh.indices
+            write_vertices(&mut uploads, &vertices, mesh, range);
+            let mut write = |some: &[u32]| {
+                uploads.write(&indices, first_index * 4, bytemuck::cast_slice(some));
+                first_index += some.len() as u64;
             };
-            gpu.queue.write_buffer(
-                &indices,
-                first_index * 4,
-                bytemuck::cast_slice(mesh_indices),
-            );
-            first_index += mesh.indices.len() as u64;
+            if gpu.is_reduced() {
+                // WebGL 2 has no base vertex: there it is in the indices.
+                let shifted = mesh
+                    .indices
+                    .iter()
+                    .map(|i| i.wrapping_add(base_vertex as u32));
+                in_pieces(shifted, INDICES_AT_A_TIME, &mut write);
+            } else {
+                write(&mesh.indices);
+            }
             let first = range.first_stroke_vertex - index_base as u32;
-            let quads: Vec<u32> = (0..mesh.stroke_count() as u32)
-                .flat_map(|i| strokes::INDICES.map(|corner| first + 4 * i + corner))
-                .collect();
-            gpu.queue
-                .write_buffer(&indices, first_index * 4, bytemuck::cast_slice(&quads));
-            first_index += quads.len() as u64;
+            let quads = (0..mesh.stroke_count() as u32)
+                .flat_map(|i| strokes::INDICES.map(|corner| first + 4 * i + corner));
+            in_pieces(quads, INDICES_AT_A_TIME, &mut write);
             base_vertex += vertices_of_triangles + vertices_of_quads;
             meshes.push(range);
         }
@@ -283,9 +283,10 @@ impl SceneGeometry {
             self.vertices.size(),
         );
         gpu.queue.submit([encoder.finish()]);
+        let mut uploads = Uploads::new(gpu);
         for (mesh, range) in scene.meshes.iter().zip(&self.meshes) {
             if mesh.deforms {
-                write_vertices(gpu, &self.vertices, mesh, *range);
+                write_vertices(&mut uploads, &self.vertices, mesh, *range);
             }
         }
     }
@@ -303,29 +304,30 @@ impl SceneGeometry {
 }
 
 /// Uploads the vertices of triangles, and the quads.
-fn write_vertices(gpu: &Gpu, to: &wgpu::Buffer, mesh: &Mesh, range: MeshRange) {
-    let write = |vertices: &[Vertex], at: u64| {
-        gpu.queue
-            .write_buffer(to, at * STRIDE, bytemuck::cast_slice(vertices));
-    };
+fn write_vertices(uploads: &mut Uploads<'_>, to: &wgpu::Buffer, mesh: &Mesh, range: MeshRange) {
     if range.index_count > 0 {
-        write(&mesh.vertices, range.base_vertex as u64);
+        let at = range.base_vertex as u64 * STRIDE;
+        uploads.write(to, at, bytemuck::cast_slice(&mesh.vertices));
     }
-    if range.stroke_index_count == 0 {
-        return;
-    }
-    let mut at = u64::from(range.first_stroke_vertex);
-    let mut quads = strokes::quads(mesh);
-    let mut some = Vec::with_capacity(QUADS_AT_A_TIME.min(mesh.stroke_count()));
+    let mut at = u64::from(range.first_stroke_vertex) * STRIDE;
+    in_pieces(strokes::quads(mesh), QUADS_AT_A_TIME, |quads| {
+        let bytes = bytemuck::cast_slice(quads.as_flattened());
+        uploads.write(to, at, bytes);
+        at += bytes.len() as u64;
+    });
+}
+
+/// Calls `take` with all items, so many at a time.
+fn in_pieces<T>(items: impl Iterator<Item = T>, at_a_time: usize, mut take: impl FnMut(&[T])) {
+    let mut items = items;
+    let mut some = Vec::new();
     loop {
-        some.clear();
-        some.extend(quads.by_ref().take(QUADS_AT_A_TIME));
+        some.extend(items.by_ref().take(at_a_time));
         if some.is_empty() {
             return;
         }
-        let vertices = some.as_flattened();
-        write(vertices, at);
-        at += vertices.len() as u64;
+        take(&some);
+        some.clear();
     }
 }
 

@@ -10,6 +10,7 @@ mod materials;
 mod samplers;
 mod strokes;
 mod textures;
+mod uploads;
 
 pub(crate) use bindings::{BoundEnvironment, FrameBindings};
 #[cfg(test)]

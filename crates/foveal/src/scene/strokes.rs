@@ -4,6 +4,7 @@
 //! A corner is a vertex whose tangent tells it from the others. Of a point: x and y are -1 or 1, z and
 //! w 0. Of a line: xyz is the other end, w the side, -1 or 1.
 
+use bytemuck::Zeroable;
 use foveal_scene::{Mesh, Vertex};
 
 /// Vertices of a quad.
@@ -12,14 +13,16 @@ pub(super) const CORNERS: usize = 4;
 /// Its two triangles.
 pub(super) const INDICES: [u32; 6] = [0, 1, 2, 0, 2, 3];
 
-/// Quads of a mesh's lines, then of its points.
+/// Quads of a mesh's lines, then of its points. One that names a missing vertex has no area.
 pub(super) fn quads(mesh: &Mesh) -> impl Iterator<Item = [Vertex; CORNERS]> {
-    let lines = mesh.lines.iter().map(|&[from, to]| line(mesh, from, to));
-    lines.chain(mesh.points.iter().map(|&at| point(mesh, at)))
+    let vertex = |&i: &u32| mesh.vertices.get(i as usize).copied();
+    let line = move |[from, to]: &[u32; 2]| Some(line(vertex(from)?, vertex(to)?));
+    let point = move |at: &u32| Some(point(vertex(at)?));
+    let all = (mesh.lines.iter().map(line)).chain(mesh.points.iter().map(point));
+    all.map(|quad| quad.unwrap_or([Vertex::zeroed(); CORNERS]))
 }
 
-fn line(mesh: &Mesh, from: u32, to: u32) -> [Vertex; CORNERS] {
-    let [from, to] = [from, to].map(|end| mesh.vertices[end as usize]);
+fn line(from: Vertex, to: Vertex) -> [Vertex; CORNERS] {
     let corner = |end: Vertex, other: Vertex, side: f32| {
         let [x, y, z] = other.position;
         Vertex {
@@ -36,10 +39,27 @@ fn line(mesh: &Mesh, from: u32, to: u32) -> [Vertex; CORNERS] {
     ]
 }
 
-fn point(mesh: &Mesh, at: u32) -> [Vertex; CORNERS] {
-    let at = mesh.vertices[at as usize];
+fn point(at: Vertex) -> [Vertex; CORNERS] {
     [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[x, y]| Vertex {
         tangent: [x, y, 0.0, 0.0],
         ..at
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strokes_of_missing_vertices_have_no_area() {
+        let mesh = Mesh {
+            vertices: vec![Vertex::zeroed(); 2],
+            lines: vec![[0, 1], [0, 2], [u32::MAX, 1]],
+            points: vec![1, 2],
+            ..Mesh::default()
+        };
+        let empty = |quad: &[Vertex; CORNERS]| quad.iter().all(|v| v.tangent == [0.0; 4]);
+        let found: Vec<bool> = quads(&mesh).map(|quad| empty(&quad)).collect();
+        assert_eq!(found, [false, true, true, false, true]);
+    }
 }

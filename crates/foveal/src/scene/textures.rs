@@ -9,6 +9,7 @@ use std::collections::HashMap;
 
 use foveal_scene::{ColorSpace, Texture};
 
+use super::uploads::Uploads;
 use crate::Error;
 use crate::gpu::{Gpu, layer_of, layers_of};
 
@@ -130,10 +131,6 @@ fn arrange(shapes: &[Shape], limits: ArrayLimits) -> (Vec<Place>, Vec<(Shape, u3
     (places, arrays)
 }
 
-/// Texels that wait for their upload at a time, about: without a bound there would be a second copy
-/// of all of them.
-const STAGED_BYTES: usize = 32 << 20;
-
 /// A scene's textures.
 #[derive(Debug)]
 pub(crate) struct Textures {
@@ -161,7 +158,7 @@ impl Textures {
         let (shapes, firsts): (Vec<_>, Vec<_>) = shapes.into_iter().unzip();
         let (places, arrays) = arrange(&shapes, limits);
         let arrays: Vec<_> = arrays.iter().map(|a| create(gpu, *a)).collect();
-        let mut staged = 0;
+        let mut uploads = Uploads::new(gpu);
         for ((texture, first), place) in textures.into_iter().zip(&firsts).zip(&places) {
             let shape = arrays[place.array as usize].1;
             for (mip, level) in (0..).zip(&texture.levels[*first..]) {
@@ -173,14 +170,7 @@ impl Textures {
                     *place,
                     level,
                 );
-                staged += level.len();
-            }
-            if staged > STAGED_BYTES {
-                // What is written waits in buffers of its own until it is submitted, and they until
-                // someone looks.
-                gpu.queue.submit([]);
-                let _ = gpu.device.poll(wgpu::PollType::Poll);
-                staged = 0;
+                uploads.add(level.len());
             }
         }
         let arrays: Vec<_> = arrays.into_iter().map(|(view, _)| view).collect();
