@@ -42,6 +42,14 @@ pub enum Error {
         /// What it must be.
         expected: &'static str,
     },
+    /// A scene is set again whose textures were freed, or has textures without levels.
+    #[error(
+        "the texture '{texture}' has no texels: where they were freed with the scene's upload, load the scene again"
+    )]
+    NoTexels {
+        /// The texture's name.
+        texture: String,
+    },
     /// A picture that is no environment.
     #[error("the environment cannot be used: {cause}")]
     Environment {

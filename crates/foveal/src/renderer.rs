@@ -317,8 +317,8 @@ impl Renderer {
     /// Uploads a scene in place of the last one.
     ///
     /// # Errors
-    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::OutOfMemory`]; the
-    /// renderer keeps its old scene then.
+    /// [`Error::Limit`] where the scene exceeds the device's limits, [`Error::NoTexels`],
+    /// [`Error::OutOfMemory`]; the renderer keeps its old scene then.
     pub async fn set_scene(&mut self, scene: &Scene) -> Result<(), Error> {
         self.set_scene_within(scene, ArrayLimits::of(&self.gpu))
             .await
@@ -330,7 +330,7 @@ impl Renderer {
     /// of all textures are empty, and the scene cannot be set again.
     ///
     /// # Errors
-    /// As [`Renderer::set_scene`].
+    /// As [`Renderer::set_scene`], which refuses it then with [`Error::NoTexels`].
     pub async fn set_scene_and_free_textures(&mut self, scene: &mut Scene) -> Result<(), Error> {
         let whole = std::mem::take(&mut scene.textures);
         let emptied = |texture: &Texture| Texture {

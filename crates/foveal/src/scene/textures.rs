@@ -64,6 +64,10 @@ impl Shape {
         };
         let fitting = (0..texture.levels.len()).find(|&l| side(l).0.max(side(l).1) <= limit);
         let Some(first) = fitting else {
+            if texture.levels.is_empty() {
+                let texture = texture.name.clone();
+                return Err(Error::NoTexels { texture });
+            }
             return Err(Error::Limit {
                 what: format!("the larger side of the texture '{}'", texture.name),
                 value: u64::from(texture.width.max(texture.height)),
@@ -145,7 +149,8 @@ impl Textures {
     /// freed once it is on the device.
     ///
     /// # Errors
-    /// [`Error::Limit`] for a texture whose smallest level is larger than that.
+    /// [`Error::Limit`] for a texture whose smallest level is larger than that,
+    /// [`Error::NoTexels`] for one without levels.
     pub(crate) fn new(
         gpu: &Gpu,
         textures: Vec<Cow<'_, Texture>>,
@@ -263,6 +268,9 @@ mod tests {
         });
         assert!(scene.textures.iter().all(|t| t.levels.is_empty()));
         assert_eq!(renderer.scene_stats().textures, scene.textures.len() as u64);
+        let again = pollster::block_on(renderer.set_scene(&scene));
+        let text = again.expect_err("it has no texels").to_string();
+        assert!(text.contains("' has no texels"), "{text}");
     }
 
     fn shape(width: u32, color_space: ColorSpace) -> Shape {
