@@ -111,13 +111,12 @@ impl FrameUniform {
             irradiance: irradiance.map(|c| (intensity * c).extend(0.0).to_array()),
             environment_turn: [turn.cos(), turn.sin()],
             environment_intensity: intensity,
-            // Anything thinner would have gaps.
-            point_size: settings.geometry.point_size_px.max(1.0),
+            point_size: settings.geometry.point_size_px,
             environment_levels: map.map_or([0.0; 3], |map| {
                 let levels = map.levels();
                 [levels.last, levels.per_doubling, levels.sharpness]
             }),
-            line_width: settings.geometry.line_width_px.max(1.0),
+            line_width: settings.geometry.line_width_px,
         }
     }
 }

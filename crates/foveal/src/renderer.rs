@@ -260,13 +260,17 @@ impl Renderer {
         self.scene
             .geometry
             .check(&self.gpu, settings.geometry.path)?;
-        let looking = old.clone().with(|s| {
-            s.eye.gaze = settings.eye.gaze;
-            s.stereo.gaze_shift = settings.stereo.gaze_shift;
+        let stroked = old.clone().with(|s| {
+            s.geometry.point_size_px = settings.geometry.point_size_px;
+            s.geometry.line_width_px = settings.geometry.line_width_px;
         });
-        let sized = old.clone().with(|s| {
+        let sized = stroked.clone().with(|s| {
             s.picture.width = settings.picture.width;
             s.picture.height = settings.picture.height;
+        });
+        let looking = stroked.with(|s| {
+            s.eye.gaze = settings.eye.gaze;
+            s.stereo.gaze_shift = settings.stereo.gaze_shift;
         });
         if looking == *settings {
             self.stages.settings = settings.clone();

@@ -7,6 +7,8 @@ mod lobes_tests;
 mod lobes_twin;
 mod recipes;
 #[cfg(test)]
+mod strokes_among_others_tests;
+#[cfg(test)]
 pub(crate) mod strokes_tests;
 mod targets;
 mod transmission;

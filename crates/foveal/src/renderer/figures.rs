@@ -46,7 +46,13 @@ impl Renderer {
         } = &self.stages;
         let (width, height) = self.settings.picture_size();
         let list = &self.draw_list;
-        let forward = list.lobed.len() + list.blended.len() + list.transmissive.len();
+        let forward = [
+            &list.strokes,
+            &list.lobed,
+            &list.blended,
+            &list.transmissive,
+        ];
+        let forward: usize = forward.map(Vec::len).iter().sum();
         let draws = (list.solid.len() + forward) as u64;
         FrameStats {
             width,

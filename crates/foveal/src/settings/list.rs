@@ -78,9 +78,11 @@ settings! {
         /// object is a draw of its own, as for measurements of many draws.
         merge_draws => merge_draws: bool = true, "Merge draws", Kind::Switch;
         /// Side of points in pixels of the picture, at any distance. Points are squares that face
-        /// the eye. Raise it where a cloud of points is too thin to be seen.
+        /// the eye, at least a pixel of what is drawn. Raise it where a cloud of points is too thin
+        /// to be seen.
         point_size => point_size_px: f32 = 1.0, "Point size", Kind::Number { least: 1.0, most: 64.0 };
-        /// Width of lines in pixels of the picture, at any distance.
+        /// Width of lines in pixels of the picture, at any distance; at least a pixel of what is
+        /// drawn.
         line_width => line_width_px: f32 = 1.0, "Line width", Kind::Number { least: 1.0, most: 64.0 };
     }
     /// Reflection, lights and textures.
@@ -292,8 +294,10 @@ impl Settings {
         self.clone().with(|s| {
             s.picture.width = scaled(s.picture.width);
             s.picture.height = scaled(s.picture.height);
-            s.geometry.point_size_px *= self.picture.render_scale;
-            s.geometry.line_width_px *= self.picture.render_scale;
+            // Anything thinner would have gaps.
+            for pixels in [&mut s.geometry.point_size_px, &mut s.geometry.line_width_px] {
+                *pixels = (*pixels * self.picture.render_scale).max(1.0);
+            }
             s.picture.render_scale = 1.0;
         })
     }

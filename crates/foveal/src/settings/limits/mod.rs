@@ -52,6 +52,18 @@ impl Settings {
                 expected: "between 0.5 and 1",
             });
         }
+        for (name, value) in [
+            ("point-size", self.geometry.point_size_px),
+            ("line-width", self.geometry.line_width_px),
+        ] {
+            if !(1.0..=64.0).contains(&value) {
+                return Err(Error::Setting {
+                    name,
+                    value: value.to_string(),
+                    expected: "between 1 and 64",
+                });
+            }
+        }
         if !(1..=16).contains(&self.lighting.anisotropy) {
             let value = self.lighting.anisotropy.to_string();
             return Err(Error::Setting {
