@@ -94,7 +94,7 @@ codes! {
     PrimitivePositions = "PRIMITIVE_NO_POSITIONS",
     /// Triangles, lines or points name missing vertices, or vertices at no finite place, and are left out.
     TrianglesUnusable = "TRIANGLES_UNUSABLE",
-    /// Normals have no direction and are made anew.
+    /// Normals have no direction and are made anew; points and lines without are not lit.
     Normals = "NORMALS_UNUSABLE",
     /// A material reads texture coordinates that the mesh does not have.
     TexcoordsMissing = "TEXCOORDS_MISSING",

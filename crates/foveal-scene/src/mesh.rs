@@ -24,7 +24,8 @@ pub struct Vertex {
     pub reserved: u32,
 }
 
-/// An indexed list of triangles, of lines or of points; of several kinds where a program makes it so.
+/// Vertices, and what they make: triangles, lines or points, or several of these in a mesh that a
+/// program puts together. Make it with `..Mesh::default()`: it may get more fields.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Mesh {
     /// Name in the file, with the primitive's number where a glTF mesh has several.
@@ -34,10 +35,10 @@ pub struct Mesh {
     /// Three per triangle, each below `vertices.len()`; counter-clockwise seen from the front.
     pub indices: Vec<u32>,
     /// Both ends of each straight line, each below `vertices.len()`. Lines are some pixels wide at any
-    /// distance, and unlit where the vertices have no normals.
+    /// distance. A line is lit where both its ends have normals; others show base colour and emission.
     pub lines: Vec<[u32; 2]>,
     /// The vertex of each point, below `vertices.len()`. Points are squares of some pixels at any
-    /// distance, and unlit where the vertices have no normals.
+    /// distance. A point is lit where its vertex has a normal; others show base colour and emission.
     pub points: Vec<u32>,
     /// Smallest box around the vertices that triangles, lines and points use, object space.
     pub bounds: Aabb,
@@ -66,16 +67,15 @@ impl Mesh {
         self.triangle_count() + self.stroke_count() == 0
     }
 
-    /// Whether its lines and points are lit: their vertices have normals.
+    /// Whether any of its lines and points is lit: all its vertices have normals.
     #[must_use]
     pub fn lights_strokes(&self) -> bool {
-        let first = match (self.lines.first(), self.points.first()) {
-            (Some([from, _]), _) => from,
-            (None, Some(point)) => point,
-            (None, None) => return false,
+        let has_normal = |i: &u32| {
+            let vertex = self.vertices.get(*i as usize);
+            vertex.is_some_and(|vertex| vertex.normal != [0.0; 3])
         };
-        let vertex = self.vertices.get(*first as usize);
-        vertex.is_some_and(|vertex| vertex.normal != [0.0; 3])
+        self.points.iter().any(has_normal)
+            || self.lines.iter().any(|ends| ends.iter().all(has_normal))
     }
 
     /// The vertices that triangles, lines and points use, some of them several times.

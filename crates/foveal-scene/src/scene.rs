@@ -130,9 +130,9 @@ impl Scene {
             .fold(Aabb::EMPTY, |b, o| b.union(o.bounds))
     }
 
-    /// Whether an instance's surface can hide things for certain: made of triangles, opaque (masks have holes, blended
-    /// and transmissive surfaces show what is behind them) and rigid (an occluder that deforms would have to be
-    /// prepared in every pose).
+    /// Whether an instance's surface can hide things for certain: made of triangles, opaque (masks
+    /// have holes, blended and transmissive surfaces show what is behind them) and rigid (an occluder
+    /// that deforms would have to be prepared in every pose).
     #[must_use]
     pub fn can_occlude(&self, instance: &Instance) -> bool {
         let material = &self.materials[instance.material as usize];

@@ -69,9 +69,9 @@ pub(crate) fn build(
     drop(positions);
 
     let makes_triangles = def.mode.makes_triangles();
-    let triangles: &[u32] = if makes_triangles { &indices } else { &[] };
     let mut flat = false;
     if def.attributes.normal.is_some() {
+        let triangles = makes_triangles.then_some(indices.as_slice());
         repair_normals(&mut vertices, triangles, &mut notes);
     } else if !makes_triangles {
         // Unlit: their normals stay zero.
@@ -288,8 +288,9 @@ fn unit_tangent([x, y, z, w]: [f32; 4]) -> [f32; 4] {
         .to_array()
 }
 
-/// Makes normals unit vectors; those without a direction become those of the surface.
-fn repair_normals(vertices: &mut [Vertex], indices: &[u32], notes: &mut Vec<Warning>) {
+/// Makes normals unit vectors; those without a direction become those of the triangles, or zero for
+/// points and lines, which have no surface.
+fn repair_normals(vertices: &mut [Vertex], triangles: Option<&[u32]>, notes: &mut Vec<Warning>) {
     let mut bad = Vec::new();
     for (i, vertex) in vertices.iter_mut().enumerate() {
         match glam::Vec3::from(vertex.normal).try_normalize() {
@@ -297,15 +298,25 @@ fn repair_normals(vertices: &mut [Vertex], indices: &[u32], notes: &mut Vec<Warn
             None => bad.push(i),
         }
     }
-    if !bad.is_empty() {
-        notes.push(Warning::new(
-            Code::Normals,
-            format!(
-                "{} of {} normals have no direction and are made anew",
-                bad.len(),
-                vertices.len()
-            ),
-        ));
-        normals::smooth(vertices, indices, |i| bad.binary_search(&i).is_ok());
+    if bad.is_empty() {
+        return;
+    }
+    let then = match triangles {
+        Some(_) => " and are made anew",
+        None => ": the points and lines there are not lit",
+    };
+    notes.push(Warning::new(
+        Code::Normals,
+        format!(
+            "{} of {} normals have no direction{then}",
+            bad.len(),
+            vertices.len()
+        ),
+    ));
+    match triangles {
+        Some(triangles) => {
+            normals::smooth(vertices, triangles, |i| bad.binary_search(&i).is_ok());
+        }
+        None => (bad.iter()).for_each(|&i| vertices[i].normal = [0.0; 3]),
     }
 }

@@ -131,7 +131,8 @@ pub(super) fn convert(
     let materials = file.add_materials(bytes.len(), options, resolver, &mut builder, &mut notes)?;
     if file.dropped > 0 {
         let text = format!(
-            "{} of {} faces, lines and points have too few corners or name vertices that do not exist, and are left out",
+            "{} of {} faces, lines and points have too few corners or name vertices that do not exist, \
+             and are left out",
             file.dropped, file.shapes
         );
         notes.push(Warning::new(Code::TrianglesUnusable, text));

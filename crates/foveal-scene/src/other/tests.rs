@@ -99,7 +99,8 @@ fn what_exporters_write_is_understood() {
     assert_eq!(scene.triangle_count(), 2);
     let red = &scene.materials[scene.instances[0].material as usize];
     assert_eq!(red.base_color.to_array(), [0.5, 0.5, 0.5, 1.0]);
-    let text = "2 of 4 faces, lines and points have too few corners or name vertices that do not exist, and are left out";
+    let text = "2 of 4 faces, lines and points have too few corners or name vertices that do not exist, \
+                and are left out";
     let texts: Vec<&str> = scene.warnings.iter().map(|w| w.text.as_str()).collect();
     assert_eq!(texts, [text]);
 }
@@ -222,7 +223,8 @@ fn lines_and_points_of_an_obj_file_are_read() {
     assert_eq!(places, [b, [5.; 3]]);
     assert_eq!(scene.objects.len(), 1);
     assert_eq!((scene.line_count(), scene.point_count()), (3, 2));
-    let sentence = "3 of 6 faces, lines and points have too few corners or name vertices that do not exist, and are left out";
+    let sentence = "3 of 6 faces, lines and points have too few corners or name vertices that do not exist, \
+                    and are left out";
     assert_eq!(scene.warnings[0].text, sentence);
 }
 
@@ -372,7 +374,8 @@ fn broken_files_are_named_with_their_format() {
 
 #[test]
 fn a_ply_file_without_faces_is_points_or_lines() {
-    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty uchar red\nend_header\n1 255\n2 0\n";
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty uchar red\n\
+                end_header\n1 255\n2 0\n";
     let scene = load("points.ply", text.as_bytes(), &[]).unwrap();
     assert_eq!(scene.warnings, []);
     let mesh = &scene.meshes[0];
@@ -380,11 +383,20 @@ fn a_ply_file_without_faces_is_points_or_lines() {
     assert_eq!(mesh.vertices[0].color, [255, 0, 0, 255]);
     assert!(!mesh.lights_strokes() && scene.triangle_count() == 0);
 
-    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float nx\nelement edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n1 1\n2 1\n1 0\n-1 0\n";
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float nx\n\
+                element edge 2\nproperty int vertex1\nproperty int vertex2\nend_header\n\
+                1 1\n2 1\n1 0\n-1 0\n";
     let scene = load("edges.ply", text.as_bytes(), &[]).unwrap();
     assert_eq!(scene.meshes[0].lines, [[1, 0]]);
     assert!(scene.meshes[0].lights_strokes());
     assert_eq!(scene.warnings[0].code, Code::TrianglesUnusable);
+
+    // Scanners write zeros where they know no normal.
+    let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float nx\n\
+                end_header\n1 0\n2 0\n";
+    let scene = load("scan.ply", text.as_bytes(), &[]).unwrap();
+    assert!(!scene.meshes[0].lights_strokes());
+    assert_eq!(scene.warnings[0].code, Code::Normals);
 }
 
 proptest! {

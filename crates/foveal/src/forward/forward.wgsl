@@ -48,7 +48,7 @@ override MASKED: bool = false;
 override MASKED: bool = false;
 // Alpha is ignored.
 override OPAQUE: bool = false;
-// They have normals.
+// Some have normals.
 override LIT: bool = false;
 #endif
 #ifdef LOBES
@@ -123,7 +123,7 @@ fn fragment(in: VertexOut, @builtin(front_facing) front: bool) -> @location(0) v
     // glTF 2.0, section 3.9.7: without normals, the sum of base colour and emission.
     var light = m.surface.base_color + m.surface.emissive;
     if LIT {
-        light = lit(m.surface, pixel, distance);
+        light = select(light, lit(m.surface, pixel, distance), any(in.normal != vec3f(0.0)));
     }
     let radiance = min(light, vec3f(65504.0));
     let alpha = select(saturate(m.alpha), 1.0, OPAQUE);

@@ -1,6 +1,6 @@
 //! Points and lines among other things: what hides them and what they hide, light, and settings.
 
-use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene};
+use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene, Vertex};
 use glam::{Mat4, Vec3, Vec4};
 use pollster::block_on;
 
@@ -224,6 +224,45 @@ fn lit_strokes_receive_shadows_and_cast_none() {
         cosine,
         "no shadow of a line",
     );
+}
+
+#[test]
+fn each_stroke_is_lit_by_its_own_normals() {
+    let at = |x: f32, y: f32, normal: [f32; 3]| Vertex {
+        normal,
+        ..vertex(Vec3::new(x, y, 0.0), [255; 3])
+    };
+    let (none, away) = ([0.0; 3], [0.0, 0.0, -1.0]);
+    let mesh = Mesh {
+        vertices: vec![
+            at(-0.8, 0.8, none),
+            at(0.8, 0.8, away),
+            // Two ends without, one of two, none.
+            at(-0.8, 0.0, none),
+            at(0.8, 0.0, none),
+            at(-0.8, -0.4, none),
+            at(0.8, -0.4, away),
+            at(-0.8, -0.8, away),
+            at(0.8, -0.8, away),
+        ],
+        points: vec![0, 1],
+        lines: vec![[2, 3], [4, 5], [6, 7]],
+        ..Mesh::default()
+    };
+    let mut scene = scene_of(mesh.clone(), Material::default());
+    scene.lights.push(sun(-Vec3::Z));
+    let drawn = rendered(&scene, &front(), &wide(3.0));
+    let drawn = radiance(&drawn);
+    let top = 4.0 * 20f32.to_radians().tan();
+    let pixel = |x: f32, y: f32| {
+        let place = |at: f32| ((at / top * 0.5 + 0.5) * SIDE as f32) as usize;
+        drawn[place(-y) * SIDE as usize + place(x)]
+    };
+    assert_near(pixel(-0.8, 0.8), Vec3::ONE, "a point without a normal");
+    assert_near(pixel(0.8, 0.8), Vec3::ZERO, "a point that looks away");
+    assert_near(pixel(0.4, 0.0), Vec3::ONE, "a line without normals");
+    assert_near(pixel(0.4, -0.4), Vec3::ONE, "a line with one normal");
+    assert_near(pixel(0.4, -0.8), Vec3::ZERO, "a line that looks away");
 }
 
 #[test]

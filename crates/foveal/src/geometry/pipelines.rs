@@ -19,7 +19,7 @@ pub(crate) enum Faces {
 pub(crate) enum Shape {
     #[default]
     Triangles,
-    /// Points and lines with normals.
+    /// Points and lines of which some have normals.
     LitStrokes,
     /// Points and lines without.
     UnlitStrokes,

@@ -3,6 +3,7 @@
 //!
 //! A corner is a vertex whose tangent tells it from the others. Of a point: x and y are -1 or 1, z and
 //! w 0. Of a line: xyz is the other end, w the side, -1 or 1.
+//! A normal of zero says that the point or line is not lit.
 
 use bytemuck::Zeroable;
 use foveal_scene::{Mesh, Vertex};
@@ -22,7 +23,10 @@ pub(super) fn quads(mesh: &Mesh) -> impl Iterator<Item = [Vertex; CORNERS]> {
     all.map(|quad| quad.unwrap_or([Vertex::zeroed(); CORNERS]))
 }
 
-fn line(from: Vertex, to: Vertex) -> [Vertex; CORNERS] {
+fn line(mut from: Vertex, mut to: Vertex) -> [Vertex; CORNERS] {
+    if [from.normal, to.normal].contains(&[0.0; 3]) {
+        (from.normal, to.normal) = ([0.0; 3], [0.0; 3]);
+    }
     let corner = |end: Vertex, other: Vertex, side: f32| {
         let [x, y, z] = other.position;
         Vertex {

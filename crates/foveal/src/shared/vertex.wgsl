@@ -147,7 +147,12 @@ fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
     out.clip = in_target(clip, d.view);
     out.now = clip.xyw;
     out.world = position;
+#ifdef STROKES
+    // Zero: not lit.
+    out.normal = select(world.normal, vec3f(0.0), all(in.normal == vec3f(0.0)));
+#else
     out.normal = world.normal;
+#endif
     out.tangent = world.tangent;
     out.uv = in.uv;
     out.color = in.color;

@@ -83,6 +83,29 @@ fn points_and_lines_keep_the_attributes_of_their_vertices() {
 }
 
 #[test]
+fn strokes_whose_normals_have_no_direction_are_not_lit() {
+    for mode in 0..4 {
+        let mut file = File::with_mesh();
+        let corners = [0., 0., 0., 1., 0., 0., 0., 1., 0., 1., 1., 2.];
+        file.attribute("POSITION", &corners, "VEC3");
+        file.attribute("NORMAL", &[0.; 12], "VEC3");
+        file.primitive()["mode"] = json!(mode);
+        let scene = file.load();
+        assert!(!scene.meshes[0].lights_strokes());
+        let text = "4 of 4 normals have no direction: the points and lines there are not lit";
+        assert!(warnings(&scene).contains(text), "{}", warnings(&scene));
+        let normals = [0., 0., 0., 0., 0., 3., 0., f32::NAN, 0., 0., 1., 0.];
+        file.attribute("NORMAL", &normals, "VEC3");
+        let scene = file.load();
+        let mesh = &scene.meshes[0];
+        let found: Vec<_> = mesh.vertices.iter().map(|v| v.normal).collect();
+        assert_eq!(found, [[0.; 3], [0., 0., 1.], [0.; 3], [0., 1., 0.]]);
+        // A line is lit where both of its ends are.
+        assert_eq!(mesh.lights_strokes(), mode == 0);
+    }
+}
+
+#[test]
 fn lines_to_vertices_that_do_not_exist_are_left_out() {
     let mut file = File::with_triangle();
     file.indices(&[0, 1, 1, 7, 2, 1]);
