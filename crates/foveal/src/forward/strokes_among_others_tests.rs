@@ -179,6 +179,65 @@ fn culling_leaves_strokes_whose_width_reaches_further_than_their_boxes() {
 }
 
 #[test]
+fn lines_on_a_sloped_surface_do_not_sink_into_it() {
+    let slope = Mat4::from_rotation_y(0.7);
+    let mut scene = surfaces(vec![unlit(Vec3::Y)], &[0.0]);
+    scene.instances[0].world_from_object = slope;
+    let bounds = scene.meshes[0].bounds.transformed(slope);
+    scene.instances[0].bounds = bounds;
+    scene.objects[0].bounds = bounds;
+    let ends = [[0.3, -0.9], [0.3, 0.9], [-0.4, -0.9], [-0.2, 0.9]];
+    let mesh = Mesh {
+        vertices: ends
+            .map(|[x, y]| vertex(Vec3::new(x, y, 0.0), [255; 3]))
+            .to_vec(),
+        lines: vec![[0, 1], [2, 3]],
+        ..Mesh::default()
+    };
+    let bare = scene_of(mesh.clone(), white());
+    let turned = {
+        let mut scene = bare;
+        scene.instances[0].world_from_object = slope;
+        scene.instances[0].bounds = scene.meshes[0].bounds.transformed(slope);
+        scene
+    };
+    add(&mut scene, mesh, white(), slope);
+    for (camera, width) in [
+        (front(), 1.0),
+        (front(), 3.0),
+        (orthographic(), 1.0),
+        (orthographic(), 3.0),
+    ] {
+        let shown = |scene: &Scene| -> Vec<bool> {
+            let drawn = radiance(&rendered(scene, &camera, &wide(width)));
+            drawn.iter().map(|c| c.x > 0.9).collect()
+        };
+        let alone = shown(&turned);
+        assert!(alone.iter().filter(|shown| **shown).count() > 20);
+        assert_eq!(shown(&scene), alone, "{width}");
+    }
+    // What lies well before them hides them.
+    add(
+        &mut scene,
+        quads(vec![unlit(Vec3::Z)], &[0.0]).meshes.remove(0),
+        unlit(Vec3::Z),
+        Mat4::from_translation(Vec3::new(0.0, 0.0, 0.4)) * slope,
+    );
+    let drawn = radiance(&rendered(&scene, &front(), &wide(3.0)));
+    assert!(drawn.iter().all(|c| c.x < 0.1));
+}
+
+fn orthographic() -> foveal_scene::Camera {
+    let mut camera = front();
+    camera.projection = foveal_scene::Projection::Orthographic {
+        height_m: 2.9,
+        near_m: 1.0,
+        far_m: 20.0,
+    };
+    camera
+}
+
+#[test]
 fn lit_strokes_receive_shadows_and_cast_none() {
     let matte = Material {
         metallic: 0.0,

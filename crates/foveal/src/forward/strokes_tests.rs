@@ -231,6 +231,36 @@ fn points_and_lines_cover_the_pixels_of_their_width() {
 }
 
 #[test]
+fn lines_that_are_seen_end_on_are_points() {
+    let mut camera = super::twin::front();
+    camera.projection = Projection::Orthographic {
+        height_m: 2.0,
+        near_m: 1.0,
+        far_m: 20.0,
+    };
+    let ends = |x: f32, z: [f32; 2]| z.map(|z| vertex(Vec3::new(x, 0.21, z), [255; 3]));
+    let vertices = [
+        ends(-0.5, [-1.0, 1.0]),
+        ends(0.02, [1.0, -1.0]),
+        ends(0.6, [0.0, 0.0]),
+        // From behind the eye.
+        ends(0.95, [-1.0, 9.0]),
+    ];
+    let mesh = Mesh {
+        vertices: vertices.as_flattened().to_vec(),
+        lines: (0..4).map(|i| [2 * i, 2 * i + 1]).collect(),
+        ..Mesh::default()
+    };
+    let scene = scene_of(mesh, white());
+    for width in [1.0, 4.0] {
+        let settings = sized(width);
+        let drawn = radiance(&rendered(&scene, &camera, &settings));
+        let covered = compare(&scene.meshes[0], &camera, &settings, &drawn);
+        assert_eq!(covered as f32, 4.0 * width * width);
+    }
+}
+
+#[test]
 fn every_way_of_drawing_shows_the_same_points_and_lines() {
     let mut mesh = lines();
     let count = mesh.vertices.len() as u32;

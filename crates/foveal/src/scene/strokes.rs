@@ -2,7 +2,7 @@
 //! in pixels (`stroke_corner` in `shared/stroke.wgsl`).
 //!
 //! A corner is a vertex whose tangent tells it from the others. Of a point: x and y are -1 or 1, z and
-//! w 0. Of a line: xyz is the other end, w the side, -1 or 1.
+//! w 0. Of a line: xyz is the other end, w the side: -1 or 1 at the first end, -2 or 2 at the second.
 //! A normal of zero says that the point or line is not lit.
 
 use bytemuck::Zeroable;
@@ -38,8 +38,8 @@ fn line(mut from: Vertex, mut to: Vertex) -> [Vertex; CORNERS] {
     [
         corner(from, to, 1.0),
         corner(from, to, -1.0),
-        corner(to, from, 1.0),
-        corner(to, from, -1.0),
+        corner(to, from, 2.0),
+        corner(to, from, -2.0),
     ]
 }
 

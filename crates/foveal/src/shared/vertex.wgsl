@@ -137,7 +137,7 @@ fn vertex_of(in: VertexIn, d: Drawn) -> VertexOut {
     let other_end = instance_position(i, in.tangent.xyz);
     let here = frame.views[d.view].clip_from_world * vec4f(world.position, 1.0);
     let there = frame.views[d.view].clip_from_world * vec4f(other_end, 1.0);
-    let clip = stroke_corner(here, there, in.tangent);
+    let clip = stroke_corner(here, there, in.tangent, d.view);
     let cut = select(cut_at_near(here, there), 0.0, in.tangent.w == 0.0);
     let position = mix(world.position, other_end, cut);
 #else
