@@ -36,13 +36,22 @@ enum Copied {
     Back,
 }
 
-/// What blended surfaces are drawn to, and tested against.
+/// What a pass draws.
+#[derive(Clone, Copy)]
+enum Content<'a> {
+    /// Points, lines, opaque surfaces with lobes, and what is blended.
+    Surfaces,
+    /// The depth of opaque points and lines.
+    StrokesDepth,
+    /// What light passes, with the group of the picture behind.
+    Transmissive(&'a wgpu::BindGroup),
+}
+
+/// What a pass draws to, and tests against.
 struct ForwardTarget<'a> {
     color: Option<wgpu::RenderPassColorAttachment<'a>>,
     depth: &'a wgpu::TextureView,
-    /// With what light passes, the group of the picture behind; else points, lines, opaque surfaces
-    /// with lobes and blended ones are drawn.
-    behind: Option<&'a wgpu::BindGroup>,
+    content: Content<'a>,
 }
 
 /// Draws points, lines, surfaces with lobes, blended ones, and what light passes.
@@ -92,9 +101,12 @@ impl ForwardPass {
         let strokes = list.strokes.iter().map(|b| (Kind::Strokes, b.key));
         let transmissive = list.transmissive.iter();
         let transmissive = transmissive.map(|b| (Kind::Transmissive, b.key));
+        let before_glass = list.strokes.iter().filter(|_| self.draws_depth_of(list));
+        let before_glass = before_glass.map(|b| (Kind::StrokesDepth, b.key));
         let needed: BTreeSet<_> = blended
             .chain(lobed)
             .chain(strokes)
+            .chain(before_glass)
             .chain(transmissive)
             .collect();
         for (kind, key) in needed {
@@ -103,6 +115,12 @@ impl ForwardPass {
             let pipelines = self.pipelines.entry(kind).or_insert_with(make);
             pipelines.prepare(gpu, key);
         }
+    }
+
+    /// Whether points and lines are drawn to the depth against which glass is tested: with
+    /// anti-aliasing only the sub-samples' depth has them.
+    fn draws_depth_of(&self, list: &DrawList) -> bool {
+        self.recipes.is_sampled && !list.strokes.is_empty() && !list.transmissive.is_empty()
     }
 
     /// Encodes the pass, unless it has nothing to draw.
@@ -120,7 +138,7 @@ impl ForwardPass {
         let target = ForwardTarget {
             color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
             depth: &targets.gbuffer.depth_view,
-            behind: None,
+            content: Content::Surfaces,
         };
         let (width, height) = self.layout.target_size();
         let whole = [Window::sized(width, height)];
@@ -144,14 +162,22 @@ impl ForwardPass {
             return;
         }
         let behind = behind.draw(recorder, targets, own);
+        let (width, height) = self.layout.target_size();
+        let whole = [Window::sized(width, height)];
+        if self.draws_depth_of(draws.list) {
+            let target = ForwardTarget {
+                color: None,
+                depth: &own.depth_view,
+                content: Content::StrokesDepth,
+            };
+            self.draw_windows(recorder, draws, lights, target, &whole);
+        }
         let radiance = targets.radiance_layers.as_ref();
         let target = ForwardTarget {
             color: drawn_over(radiance.unwrap_or(&targets.radiance_view)),
             depth: &own.depth_view,
-            behind: Some(&behind),
+            content: Content::Transmissive(&behind),
         };
-        let (width, height) = self.layout.target_size();
-        let whole = [Window::sized(width, height)];
         self.copy_radiance(recorder.encoder, targets, Copied::ToLayers);
         self.draw_windows(recorder, draws, lights, target, &whole);
         self.copy_radiance(recorder.encoder, targets, Copied::Back);
@@ -171,7 +197,7 @@ impl ForwardPass {
         let target = ForwardTarget {
             color,
             depth,
-            behind: None,
+            content: Content::Surfaces,
         };
         self.draw_windows(recorder, draws, lights, target, windows);
     }
@@ -184,7 +210,7 @@ impl ForwardPass {
         ForwardTarget {
             color,
             depth,
-            behind,
+            content,
         }: ForwardTarget<'_>,
         windows: &[Window],
     ) {
@@ -195,10 +221,11 @@ impl ForwardPass {
             &self.recipes.lights,
             &lights.resources(),
         );
+        let writes_depth = !matches!(content, Content::Surfaces) || !list.strokes.is_empty();
         let depth = wgpu::RenderPassDepthStencilAttachment {
             view: depth,
             // Read-only where nothing writes it. No later pass lights by it.
-            depth_ops: (behind.is_some() || !list.strokes.is_empty()).then_some(wgpu::Operations {
+            depth_ops: writes_depth.then_some(wgpu::Operations {
                 load: wgpu::LoadOp::Load,
                 store: wgpu::StoreOp::Store,
             }),
@@ -207,7 +234,7 @@ impl ForwardPass {
         let mask = self.submission.multiview_mask();
         let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
-        if let Some(behind) = behind {
+        if let Content::Transmissive(behind) = content {
             pass.set_bind_group(3, behind, &[]);
         }
         scene.geometry.bind(&mut pass);
@@ -219,12 +246,14 @@ impl ForwardPass {
                     let pipeline = |key| self.pipelines[&kind(key)].get(key);
                     DrawList::issue_with(batches, &mut pass, scene, pipeline, false, drawn);
                 };
-                if behind.is_some() {
-                    issue(&list.transmissive, |_| Kind::Transmissive);
-                } else {
-                    issue(&list.strokes, |_| Kind::Strokes);
-                    issue(&list.lobed, |_| Kind::LobedOpaque);
-                    issue(&list.blended, Kind::of_blended);
+                match content {
+                    Content::Surfaces => {
+                        issue(&list.strokes, |_| Kind::Strokes);
+                        issue(&list.lobed, |_| Kind::LobedOpaque);
+                        issue(&list.blended, Kind::of_blended);
+                    }
+                    Content::StrokesDepth => issue(&list.strokes, |_| Kind::StrokesDepth),
+                    Content::Transmissive(_) => issue(&list.transmissive, |_| Kind::Transmissive),
                 }
             }
         }

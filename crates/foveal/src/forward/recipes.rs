@@ -18,6 +18,8 @@ pub(super) enum Kind {
     /// Opaque or masked points and lines.
     Strokes,
     BlendedStrokes,
+    /// The depth of [`Kind::Strokes`] at the picture's own pixels.
+    StrokesDepth,
 }
 
 impl Kind {
@@ -39,7 +41,10 @@ impl Kind {
     }
 
     fn draws_strokes(self) -> bool {
-        matches!(self, Self::Strokes | Self::BlendedStrokes)
+        matches!(
+            self,
+            Self::Strokes | Self::BlendedStrokes | Self::StrokesDepth
+        )
     }
 
     fn variant(self, gpu: &Gpu, submission: Submission) -> &'static [&'static str] {
@@ -48,16 +53,10 @@ impl Kind {
             (Self::Blended, Submission::Multiview) => &["LAYERED"],
             (Self::Blended, _) if gpu.is_reduced() => &["REDUCED"],
             (Self::Blended, _) => &[],
-            (Self::Strokes | Self::BlendedStrokes, _) if submission.clips() => {
-                &["STROKES", "CLIPPED"]
-            }
-            (Self::Strokes | Self::BlendedStrokes, Submission::Multiview) => {
-                &["STROKES", "LAYERED"]
-            }
-            (Self::Strokes | Self::BlendedStrokes, _) if gpu.is_reduced() => {
-                &["STROKES", "REDUCED"]
-            }
-            (Self::Strokes | Self::BlendedStrokes, _) => &["STROKES"],
+            (kind, _) if kind.draws_strokes() && submission.clips() => &["STROKES", "CLIPPED"],
+            (kind, Submission::Multiview) if kind.draws_strokes() => &["STROKES", "LAYERED"],
+            (kind, _) if kind.draws_strokes() && gpu.is_reduced() => &["STROKES", "REDUCED"],
+            (kind, _) if kind.draws_strokes() => &["STROKES"],
             (Self::Transmissive, _) if submission.clips() => &["LOBES", "TRANSMISSION", "CLIPPED"],
             (Self::Transmissive, Submission::Multiview) => &["LOBES", "TRANSMISSION", "LAYERED"],
             (Self::Transmissive, _) => &["LOBES", "TRANSMISSION"],
@@ -73,6 +72,8 @@ impl Kind {
 pub(super) struct Recipes {
     submission: Submission,
     adds_lobes: bool,
+    /// What is drawn goes to sub-samples, except what light passes.
+    pub(super) is_sampled: bool,
     constants: Vec<(&'static str, f64)>,
     /// Layouts of bind groups 0, 1 and 2.
     pub(super) frame: wgpu::BindGroupLayout,
@@ -96,6 +97,7 @@ impl Recipes {
         Self {
             submission,
             adds_lobes: crate::antialias::adds_lobes(settings),
+            is_sampled: sampled,
             constants,
             frame: frame.clone(),
             material: material.clone(),
@@ -117,8 +119,12 @@ impl Recipes {
         behind: Option<&wgpu::BindGroupLayout>,
     ) -> Pipelines {
         let submission = self.submission;
-        let opaque = matches!(kind, Kind::LobedOpaque | Kind::Transmissive | Kind::Strokes);
+        let opaque = matches!(
+            kind,
+            Kind::LobedOpaque | Kind::Transmissive | Kind::Strokes | Kind::StrokesDepth
+        );
         let transmissive = kind == Kind::Transmissive;
+        let depth_alone = kind == Kind::StrokesDepth;
         let mut constants = self.constants.clone();
         if kind != Kind::Blended {
             constants.push(("OPAQUE", f64::from(u8::from(opaque))));
@@ -127,7 +133,7 @@ impl Recipes {
             let added = kind == Kind::LobedOpaque && self.adds_lobes;
             constants.push(("ADDED", f64::from(u8::from(added))));
         }
-        if transmissive {
+        if transmissive || depth_alone {
             // Drawn to the picture's own texels.
             constants.retain(|(name, _)| *name != "SAMPLED");
         }
@@ -142,12 +148,12 @@ impl Recipes {
             layout: shader::pipeline_layout(gpu, "forward", &layouts),
             vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",
-            targets: vec![Some(wgpu::ColorTargetState {
+            targets: vec![(!depth_alone).then_some(wgpu::ColorTargetState {
                 format: RADIANCE_FORMAT,
                 blend: (!opaque).then_some(wgpu::BlendState::PREMULTIPLIED_ALPHA_BLENDING),
                 write_mask: wgpu::ColorWrites::ALL,
             })],
-            writes_depth: transmissive || kind == Kind::Strokes,
+            writes_depth: transmissive || depth_alone || kind == Kind::Strokes,
             depth_compare: if kind == Kind::LobedOpaque {
                 wgpu::CompareFunction::Equal
             } else {

@@ -1,6 +1,6 @@
 //! Points and lines among other things: what hides them and what they hide, light, and settings.
 
-use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene, Vertex};
+use foveal_scene::{AlphaMode, Light, LightKind, Material, Mesh, Scene, Transmission, Vertex};
 use glam::{Mat4, Vec3, Vec4};
 use pollster::block_on;
 
@@ -9,7 +9,7 @@ use super::strokes_tests::{
 };
 use super::twin::{front, quads};
 use crate::testing::{Film, picture, rendered, rendered_on, small};
-use crate::{Antialiasing, Culling, Geometry, Gpu, Settings, Shadows};
+use crate::{Antialiasing, Culling, Geometry, Gpu, Settings, Shadows, Stereo};
 
 const SIDE: u32 = 31;
 
@@ -43,6 +43,26 @@ fn unlit(color: Vec3) -> Material {
     }
 }
 
+/// It reflects nothing.
+fn glass(color: Vec3) -> Material {
+    Material {
+        base_color: color.extend(1.0),
+        metallic: 0.0,
+        roughness: 0.0,
+        ior: 1.0,
+        specular: 0.0,
+        transmission: Some(Transmission {
+            factor: 1.0,
+            texture: None,
+            thickness_m: 0.0,
+            thickness_texture: None,
+            attenuation_distance_m: f32::INFINITY,
+            attenuation_color: Vec3::ONE,
+        }),
+        ..Material::default()
+    }
+}
+
 fn sun(direction: Vec3) -> Light {
     Light {
         kind: LightKind::Directional,
@@ -72,6 +92,36 @@ fn middle(scene: &Scene, settings: &Settings) -> Vec3 {
 fn assert_near(found: Vec3, expected: Vec3, what: &str) {
     let off = (found - expected).abs().max_element();
     assert!(off < 4e-3, "{what}: {found} not {expected}");
+}
+
+#[test]
+fn glass_behind_strokes_leaves_them_and_before_them_shows_them() {
+    let green = Vec3::new(0.2, 0.9, 0.5);
+    let ways = ALL.map(|mode| (mode, Stereo::Off));
+    for (mode, stereo) in ways
+        .into_iter()
+        .chain([(Antialiasing::Msaa, Stereo::TwoPass)])
+    {
+        let settings = wide(5.0).with(|s| {
+            s.antialiasing.mode = mode;
+            s.stereo.mode = stereo;
+            s.stereo.ipd_m = 0.0;
+        });
+        // Through the holes of masked strokes the glass is seen.
+        let mut hole = unlit(Vec3::X);
+        hole.alpha_mode = AlphaMode::Mask { cutoff: 0.5 };
+        hole.base_color.w = 0.25;
+        for (z, material, expected) in [
+            (0.5, unlit(Vec3::X), Vec3::X),
+            (-0.5, unlit(Vec3::X), green * Vec3::X),
+            (0.5, hole, green),
+        ] {
+            let mut scene = surfaces(vec![unlit(Vec3::ONE), glass(green)], &[-1.0, 0.0]);
+            add(&mut scene, across(z, [255; 3]), material, Mat4::IDENTITY);
+            let what = format!("{mode:?} {stereo:?} {z}");
+            assert_near(middle(&scene, &settings), expected, &what);
+        }
+    }
 }
 
 #[test]

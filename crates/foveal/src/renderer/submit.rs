@@ -389,7 +389,8 @@ impl Stages {
         }
     }
 
-    /// Forward: points and lines, lobes of opaque surfaces, blended surfaces over them, and at last what light passes.
+    /// Forward: points and lines, lobes of opaque surfaces, blended surfaces over them, and at last
+    /// what light passes.
     fn blend(&self, recorder: &mut Recorder<'_>, draws: Draws<'_>) {
         match &self.antialias {
             Some(antialias) => antialias.blend(recorder, draws.list, &self.targets),
