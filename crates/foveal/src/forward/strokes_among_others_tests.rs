@@ -453,3 +453,52 @@ fn strokes_are_counted_as_draws() {
     let mut film = Film::new(&scene, &wide(1.0));
     assert_eq!(film.draw(&front()).draws, 1);
 }
+
+#[test]
+fn strokes_that_move_disturb_no_shadow() {
+    let mut scene = surfaces(vec![white()], &[-1.0]);
+    scene.lights.push(Light {
+        kind: LightKind::Point,
+        position: Vec3::new(0.0, 0.0, 1.5),
+        range_m: Some(6.0),
+        ..sun(-Vec3::Z)
+    });
+    add(&mut scene, lines(), white(), Mat4::IDENTITY);
+    let settings = wide(1.0).with(|s| s.lighting.shadows = Shadows::Hard);
+    let mut film = Film::new(&scene, &settings);
+    assert!(
+        film.draw(&front())
+            .shadows
+            .expect("there are some")
+            .tiles_drawn
+            > 0
+    );
+    let shift = Mat4::from_translation(Vec3::new(0.1, 0.2, 0.0));
+    let mut moved = |scene: &mut Scene, number: usize| {
+        let instance = &mut scene.instances[number];
+        instance.world_from_object = shift * instance.world_from_object;
+        instance.bounds = instance.bounds.transformed(shift);
+        block_on(film.renderer.update_pose(scene)).expect("it fits");
+        let drawn = film
+            .draw(&front())
+            .shadows
+            .expect("there are some")
+            .tiles_drawn;
+        // What moved until now rests in the frame after.
+        block_on(film.renderer.update_pose(scene)).expect("it fits");
+        film.draw(&front());
+        drawn
+    };
+    assert_eq!(moved(&mut scene, 1), 0);
+    assert!(moved(&mut scene, 0) > 0);
+    // Far away they do not make the sun's map coarser.
+    let far = Mat4::from_translation(Vec3::splat(500.0));
+    let mesh = Mesh {
+        vertices: vec![vertex(Vec3::ZERO, [255; 3])],
+        points: vec![0],
+        ..Mesh::default()
+    };
+    let before = rendered(&scene, &front(), &settings).scene().bounds;
+    add(&mut scene, mesh, white(), far);
+    assert_eq!(rendered(&scene, &front(), &settings).scene().bounds, before);
+}

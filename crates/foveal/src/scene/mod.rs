@@ -64,7 +64,7 @@ pub(crate) struct SceneOnGpu {
     pub(crate) lights: Vec<LightUniform>,
     pub(crate) light_buffer: wgpu::Buffer,
     pub(crate) environment: Environment,
-    /// The box around all instances.
+    /// The box around all that casts or receives shadows.
     pub(crate) bounds: Aabb,
     pub(crate) stats: SceneStats,
     pub(crate) culling: CullingScene,
@@ -76,7 +76,8 @@ pub(crate) struct SceneOnGpu {
 pub(crate) struct PoseChange {
     /// Anything has moved, now or a pose before.
     pub(crate) moves: bool,
-    /// Around each instance that has moved or may have changed its shape: where it was and is.
+    /// Around each instance that casts shadows and has moved or may have changed its shape: where it
+    /// was and is.
     pub(crate) boxes: Vec<Aabb>,
     pub(crate) lights_before: Vec<LightUniform>,
 }
@@ -118,7 +119,7 @@ impl SceneOnGpu {
             lights,
             light_buffer,
             environment: scene.environment,
-            bounds: scene.bounds(),
+            bounds: shadowed_bounds(scene),
             culling: CullingScene::new(scene, settings.culling.mode),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
@@ -148,14 +149,16 @@ impl SceneOnGpu {
         for ((uniform, instance), before) in pairs.zip(&self.instances) {
             let moved = uniform.moved_to(instance.world_from_object);
             moves |= bytemuck::bytes_of(&moved) != bytemuck::bytes_of(uniform);
-            let is_elsewhere = moved.is_elsewhere() || scene.meshes[instance.mesh as usize].deforms;
+            let mesh = &scene.meshes[instance.mesh as usize];
+            let is_elsewhere = moved.is_elsewhere() || mesh.deforms;
+            let casts = before.alpha_mode != AlphaMode::Blend && mesh.triangle_count() > 0;
             let around = before.bounds.union(instance.bounds);
-            if is_elsewhere && before.alpha_mode != AlphaMode::Blend && around.is_valid() {
+            if is_elsewhere && casts && around.is_valid() {
                 boxes.push(around);
             }
             *uniform = moved;
         }
-        self.bounds = scene.bounds();
+        self.bounds = shadowed_bounds(scene);
         self.instances = drawn_instances(scene);
         let lights = scene.lights.iter().map(LightUniform::new).collect();
         let lights_before = std::mem::replace(&mut self.lights, lights);
@@ -196,6 +199,17 @@ fn write_lights(gpu: &Gpu, buffer: &wgpu::Buffer, lights: &[LightUniform]) {
         size_of::<LightsHeader>() as u64,
         bytemuck::cast_slice(lights),
     );
+}
+
+/// The box around all but points and lines that are not lit: no shadow comes from them or falls on
+/// them.
+fn shadowed_bounds(scene: &Scene) -> Aabb {
+    let takes_part: Vec<bool> = (scene.meshes.iter())
+        .map(|mesh| mesh.triangle_count() > 0 || mesh.lights_strokes())
+        .collect();
+    (scene.instances.iter())
+        .filter(|instance| takes_part[instance.mesh as usize])
+        .fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
 }
 
 fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
