@@ -1,6 +1,7 @@
 // One level of the picture behind from the next finer one: 4 x 4 texels, weighted 1, 3, 3, 1 each
 // way, so that it is smooth when it is magnified. Each eye's picture by itself.
 
+#import forward/behind.wgsl
 #import shared/frame.wgsl
 #import shared/level.wgsl
 
@@ -9,9 +10,10 @@
 @fragment
 fn halve(in: LevelVertex) -> @location(0) vec4f {
     let block = vec2u(in.position.xy);
-    let picture = picture_of(block << vec2u(in.level));
-    let low = vec2i(picture.low >> vec2u(in.level - 1u));
-    let high = vec2i((picture.end - 1u) >> vec2u(in.level - 1u));
+    let first_column = select(0u, behind_stride(), (block.x << in.level) >= behind_stride());
+    let picture = vec2u(first_column, 0u);
+    let low = vec2i(picture >> vec2u(in.level - 1u));
+    let high = vec2i((picture + vec2u(frame.size) - 1u) >> vec2u(in.level - 1u));
     let first = vec2i(block) * 2 - 1;
     var sum = vec4f(0.0);
     for (var i = 0; i < 16; i++) {

@@ -161,7 +161,7 @@ impl ForwardPass {
         if draws.list.transmissive.is_empty() {
             return;
         }
-        let behind = behind.draw(recorder, targets, own);
+        let behind = behind.draw(recorder, self.layout, targets, own);
         let (width, height) = self.layout.target_size();
         let whole = [Window::sized(width, height)];
         if self.draws_depth_of(draws.list) {

@@ -8,6 +8,13 @@ use crate::stereo::{EyeLayout, Submission};
 /// The coarsest level of the picture behind: blocks of 64 x 64 pixels.
 pub(super) const COARSEST: u32 = 6;
 
+/// First column of the right eye's picture in the picture behind. No texel of the coarsest level
+/// spans both eyes' (`behind.wgsl`).
+pub(super) fn behind_stride(width: u32) -> u32 {
+    let block = 1 << COARSEST;
+    width.checked_next_multiple_of(block).unwrap_or(width)
+}
+
 /// What transmissive surfaces read and write besides the radiance.
 #[derive(Debug)]
 pub(crate) struct TransmissionTargets {
@@ -22,7 +29,10 @@ impl TransmissionTargets {
         let layout = EyeLayout::of(settings);
         let (size, layers) = layout.layers(submission);
         let read = wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST;
-        let (format, whole) = (RADIANCE_FORMAT, layout.target_size());
+        let format = RADIANCE_FORMAT;
+        let stride = behind_stride(layout.width);
+        let before = stride.saturating_mul(layout.eyes - 1);
+        let whole = (before.saturating_add(layout.width), layout.height);
         let label = "picture behind";
         let copied = wgpu::TextureUsages::COPY_DST;
         Self {

@@ -1,11 +1,12 @@
 //! Surfaces that light passes: drawn last, over what the picture shows without them, which they read
 //! at the coarseness of their roughness.
 
-use super::targets::{COARSEST, TransmissionTargets};
+use super::targets::{COARSEST, TransmissionTargets, behind_stride};
 use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled};
 use crate::recorder::{Recorder, overwritten};
 use crate::shader::{self, Screen};
 use crate::shading::RADIANCE_FORMAT;
+use crate::stereo::EyeLayout;
 use crate::targets::Targets;
 
 /// Copies what is behind, and makes it coarser.
@@ -44,14 +45,25 @@ impl BehindPass {
     pub(super) fn draw(
         &self,
         recorder: &mut Recorder<'_>,
+        layout: EyeLayout,
         targets: &Targets,
         to: &TransmissionTargets,
     ) -> wgpu::BindGroup {
         let radiance = targets.radiance_view.texture();
         let depth = targets.gbuffer.depth_view.texture();
         let encoder = &mut *recorder.encoder;
-        let behind = to.behind.texture.as_image_copy();
-        encoder.copy_texture_to_texture(radiance.as_image_copy(), behind, radiance.size());
+        for eye in 0..layout.eyes {
+            let (mut from, mut behind) =
+                (radiance.as_image_copy(), to.behind.texture.as_image_copy());
+            from.origin.x = eye * layout.stride;
+            behind.origin.x = eye * behind_stride(layout.width);
+            let picture = wgpu::Extent3d {
+                width: layout.width,
+                height: layout.height,
+                depth_or_array_layers: 1,
+            };
+            encoder.copy_texture_to_texture(from, behind, picture);
+        }
         let forward = to.depth_view.texture().as_image_copy();
         encoder.copy_texture_to_texture(depth.as_image_copy(), forward, depth.size());
         let device = &recorder.gpu.device;
@@ -78,7 +90,9 @@ mod tests {
 
     use crate::forward::twin::{front, quads};
     use crate::testing::{f32_of_half, rendered, small, texels};
-    use crate::{Antialiasing, EnvironmentSource, Geometry, Renderer, Settings, Shading, Stereo};
+    use crate::{
+        Antialiasing, EnvironmentSource, EyeFrusta, Geometry, Renderer, Settings, Shading, Stereo,
+    };
 
     const SIDE: u32 = 31;
 
@@ -223,17 +237,60 @@ mod tests {
     }
 
     #[test]
-    fn each_eye_sees_its_own_picture_behind_glass() {
-        let scene = quads(vec![wall(WALL), glass(GREEN)], &[0.0, 0.5]);
-        let settings = settings().with(|s| s.stereo.mode = Stereo::Instanced);
-        let drawn = rendered(&scene, &front(), &settings);
-        let all = radiance(&drawn);
-        let width = drawn.targets().radiance_view.texture().width();
-        for eye in 0..2 {
-            let x = eye * (width - SIDE) + SIDE / 2;
-            let at = all[(SIDE / 2 * width + x) as usize];
-            assert_near(at, WALL * GREEN, &format!("eye {eye}"));
+    fn each_eye_sees_its_own_picture_behind_rough_glass() {
+        // Each eye's picture is as if it were alone, at widths that no block divides.
+        let mut scene = quads(
+            vec![wall(RED), wall(20.0 * GREEN), glass(Vec3::ONE)],
+            &[0.0, 0.0, 0.5],
+        );
+        for (instance, x) in [(0, -1.0), (1, 1.0)] {
+            let shift = glam::Mat4::from_translation(Vec3::new(x, 0.0, 0.0));
+            scene.instances[instance].world_from_object = shift;
         }
+        scene.materials[2].ior = 1.5;
+        scene.materials[2].roughness = 0.6;
+        let ipd = 0.5;
+        let (width, height) = (37, SIDE);
+        let up = 20f32.to_radians().tan();
+        let right = up * width as f32 / height as f32;
+        let tangents = [-right, right, -up, up];
+        let alone = small(width, height).with(|s| s.lighting.environment = EnvironmentSource::None);
+        for mode in [Stereo::Instanced, Stereo::TwoPass] {
+            let both = alone.clone().with(|s| {
+                s.stereo.mode = mode;
+                s.stereo.ipd_m = ipd;
+                s.stereo.frusta = EyeFrusta::Tangents([tangents; 2]);
+            });
+            let drawn = rendered(&scene, &front(), &both);
+            let target = drawn.targets().radiance_view.texture().width();
+            let found = radiance(&drawn);
+            for (eye, side) in [(0, -0.5), (1, 0.5)] {
+                let mut camera = front();
+                camera.world_from_view.w_axis.x += side * ipd;
+                let expected = radiance(&rendered(&scene, &camera, &alone));
+                for (i, &expected) in expected.iter().enumerate() {
+                    let (x, y) = (i as u32 % width, i as u32 / width);
+                    let at = y * target + eye * (target - width) + x;
+                    let found = found[at as usize];
+                    let off =
+                        (found - expected).abs().max_element() / (1.0 + expected.max_element());
+                    assert!(
+                        off < 4e-3,
+                        "{mode:?}, eye {eye}, {x}, {y}: {found} not {expected}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn rough_glass_over_all_of_a_narrow_picture_shows_nothing_beside_it() {
+        let mut scene = quads(vec![wall(WALL), glass(Vec3::ONE)], &[0.0, 0.5]);
+        scene.materials[1].ior = 1.5;
+        scene.materials[1].roughness = 1.0;
+        let narrow = settings().with(|s| (s.picture.width, s.picture.height) = (5, 160));
+        let drawn = rendered(&scene, &front(), &narrow);
+        assert_near(radiance(&drawn)[80 * 5 + 2], WALL, "the middle");
     }
 
     #[test]

@@ -1,6 +1,7 @@
 // Light that passes a surface (KHR_materials_transmission, KHR_materials_volume): what the picture
 // shows behind it, at the level of its roughness, where the refracted ray leaves the volume.
 
+#import forward/behind.wgsl
 #import forward/lobes.wgsl
 #import shared/environment.wgsl
 #import shared/frame.wgsl
@@ -19,12 +20,16 @@ fn seen_at(position: vec3f, pixel: vec2f) -> vec2f {
 
 // The picture behind at a position in pixels of the target, within its eye's picture.
 fn behind_at(at: vec2f, pixel: vec2f, roughness: f32) -> vec3f {
-    // As blurred as a mirror of that roughness at a distance of about the picture's height.
-    let level = min(log2(frame.size.y) * roughness * clamp(2.0 * lobes.ior - 2.0, 0.0, 1.0), 6.0);
+    // As blurred as a mirror of that roughness at a distance of about the picture's shorter side.
+    let side = min(frame.size.x, frame.size.y);
+    let level = min(log2(side) * roughness * clamp(2.0 * lobes.ior - 2.0, 0.0, 1.0), 6.0);
     let picture = picture_of(vec2u(pixel));
-    let margin = 0.5 * exp2(level);
+    // Half a texel of the coarser level that is read, so that no texel beside the picture is.
+    let margin = 0.5 * exp2(ceil(level));
     let inside = clamp(at, vec2f(picture.low) + margin, max(vec2f(picture.end) - margin, vec2f(picture.low) + margin));
-    let uv = inside / vec2f(textureDimensions(picture_behind));
+    // In the picture behind both are further apart.
+    let apart = f32(view_at(pixel)) * (f32(behind_stride()) - f32(frame.eye_stride));
+    let uv = (inside + vec2f(apart, 0.0)) / vec2f(textureDimensions(picture_behind));
     return textureSampleLevel(picture_behind, environment_sampler, uv, level).rgb;
 }
 
