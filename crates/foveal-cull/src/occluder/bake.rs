@@ -6,7 +6,7 @@
 //! coordinates keep their precision. Large meshes are baked in chunks.
 
 use super::borders::{Around, Borders};
-use super::chunks;
+use super::chunks::{self, Chunking};
 use super::in_parts::in_order;
 use super::mesh::OccluderMesh;
 use super::neighbors::Neighbors;
@@ -96,11 +96,23 @@ impl OccluderMesh {
         options: BakeOptions,
         threads: &dyn Threads,
     ) -> Result<Self, CullError> {
+        Self::bake_in(positions, indices, options, Chunking::USUAL, threads)
+    }
+
+    /// [`bake_on`](Self::bake_on) in chunks of another size.
+    pub(super) fn bake_in<P: Copy + Into<[f32; 3]> + Sync>(
+        positions: &[P],
+        indices: &[u32],
+        options: BakeOptions,
+        chunking: Chunking,
+        threads: &dyn Threads,
+    ) -> Result<Self, CullError> {
         let position = |i: u32| Vec3::from(positions[i as usize].into());
         Input {
             positions: positions.len(),
             position: &position,
             indices,
+            chunking,
         }
         .bake(options, threads)
     }
@@ -135,10 +147,6 @@ impl OccluderMesh {
     }
 }
 
-/// Most triangles that are looked at around a chunk, so that vertices of very many triangles, which
-/// belong to many chunks, take no quadratic time.
-const MOST_AROUND: usize = 8 * chunks::MOST_TRIANGLES;
-
 /// What is baked.
 #[derive(Clone, Copy)]
 struct Input<'a> {
@@ -146,6 +154,7 @@ struct Input<'a> {
     positions: usize,
     position: &'a (dyn Fn(u32) -> Vec3 + Sync),
     indices: &'a [u32],
+    chunking: Chunking,
 }
 
 impl Input<'_> {
@@ -215,7 +224,12 @@ impl Input<'_> {
     /// Each chunk by itself.
     fn without_adjacency(&self, mesh: &mut OccluderMesh, threads: &dyn Threads) {
         let corners = |t: usize| self.triangle(t).map(self.position);
-        let chunks = chunks::apart(self.indices.len() / 3, &corners, threads);
+        let chunks = chunks::apart(
+            self.indices.len() / 3,
+            &corners,
+            self.chunking.triangles,
+            threads,
+        );
         let empty = mesh.clone();
         let make = |chunk: usize| {
             let triangles = chunks[chunk].iter().map(|&t| self.triangle(t as usize));
@@ -236,7 +250,15 @@ impl Input<'_> {
         let all = weld(self.positions, self.position, all.map(|t| self.triangle(t)));
         let point = |i: u32| all.points[i as usize];
         let corners = |t: usize| all.triangles[t].map(point);
-        let chunks = chunks::apart(all.triangles.len(), &corners, threads);
+        let most = self.chunking.triangles;
+        let chunks = chunks::apart(all.triangles.len(), &corners, most, threads);
+        if chunks.len() == 1 {
+            mesh.triangles = all.triangles.len() as u32;
+            let quads = quads::pair(&all.points, &all.triangles);
+            let near = Neighbors::new(&all, vec![false; all.points.len()]);
+            cluster::build(mesh, &all.points, Some(&near), quads);
+            return;
+        }
         // Chunk by chunk, so that what lies together is together in memory.
         let length = |end: &mut usize, chunk: &Vec<u32>| {
             *end += chunk.len();
@@ -248,11 +270,12 @@ impl Input<'_> {
         let points = { all }.points;
         let point = |i: u32| points[i as usize];
         let borders = Borders::new(points.len(), &triangles, &ends);
+        let most = self.chunking.corners_around;
         let empty = mesh.clone();
         let make = |chunk: usize| {
             let first = chunk.checked_sub(1).map_or(0, |before| ends[before]);
             let own = first..ends[chunk];
-            let (around, known) = match borders.around(&triangles, own.clone(), MOST_AROUND) {
+            let (around, known) = match borders.around(&triangles, own.clone(), most) {
                 Around::Triangles(around) => (around, true),
                 Around::Unknown => (Vec::new(), false),
             };
@@ -281,7 +304,7 @@ impl Input<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::one_ring::NO_TRIANGLE;
+    use super::super::one_ring::{Edge, NO_TRIANGLE};
     use super::*;
 
     /// A torus of `n` times `m` quads, 2 n m triangles, without an end anywhere.
@@ -306,35 +329,30 @@ mod tests {
         let (points, indices) = torus(300, 100);
         let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
         assert!(mesh.triangle_count() > 3 * chunks::MOST_TRIANGLES);
-        let open = |edge: &&crate::occluder::one_ring::Edge| edge.triangles.contains(&NO_TRIANGLE);
+        let open = |edge: &&Edge| edge.triangles.contains(&NO_TRIANGLE);
         assert_eq!(mesh.one_rings.edges.iter().filter(open).count(), 0);
         assert!(mesh.clusters.iter().all(|c| c.creased == 0.0));
     }
 
     #[test]
-    fn surfaces_end_at_chunks_whose_vertices_have_very_many_triangles() {
-        // Twelve fans around two vertices that all have, then a strip of quads of its own.
-        let n = 12 * chunks::MOST_TRIANGLES as u32;
-        let rim = |i: u32| {
-            let angle = i as f32 / n as f32 * 6.0;
-            [angle.cos(), angle.sin(), 0.0]
+    fn surfaces_end_where_what_is_around_a_chunk_is_not_looked_at() {
+        let (points, indices) = torus(40, 20);
+        let edges = |corners_around| {
+            let chunking = Chunking {
+                triangles: 200,
+                corners_around,
+            };
+            let options = BakeOptions::default();
+            let mesh =
+                OccluderMesh::bake_in(&points, &indices, options, chunking, &SingleThread).unwrap();
+            assert_eq!(mesh.triangle_count(), 1600);
+            assert!(OccluderMesh::from_bytes(&mesh.to_bytes()).is_ok());
+            let open = |edge: &&Edge| edge.triangles.contains(&NO_TRIANGLE);
+            let all = mesh.one_rings.edges;
+            [all.iter().filter(open).count(), all.len()]
         };
-        let mut points = vec![[0.0, 0.0, 1.0]];
-        points.extend((0..=n).map(rim));
-        let indices: Vec<u32> = (1..=n).flat_map(|i| [0, i, i + 1]).collect();
-        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
-        assert_eq!(mesh.triangle_count(), n as usize);
-        // Chunks end in silhouettes, and the inner edges of a chunk are joined.
-        let edges = &mesh.one_rings.edges;
-        let open = edges
-            .iter()
-            .filter(|e| e.triangles[1] == NO_TRIANGLE)
-            .count();
-        assert!(
-            open > n as usize && open < edges.len(),
-            "{open} of {}",
-            edges.len()
-        );
-        assert!(OccluderMesh::from_bytes(&mesh.to_bytes()).is_ok());
+        assert_eq!(edges(usize::MAX)[0], 0);
+        let [open, all] = edges(0);
+        assert!(open > 100 && open < all / 2, "{open} of {all}");
     }
 }

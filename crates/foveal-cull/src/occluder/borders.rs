@@ -49,8 +49,8 @@ impl Borders {
         self.shared[vertex as usize]
     }
 
-    /// What lies around the chunk `own` of all `triangles`, if its vertices have at most `most`
-    /// triangles in others and itself.
+    /// What lies around the chunk `own` of all `triangles`, if at most `most` corners of triangles,
+    /// its own included, lie at vertices that it shares.
     pub(super) fn around(&self, triangles: &[[u32; 3]], own: Range<usize>, most: usize) -> Around {
         let corners = triangles[own.clone()].as_flattened().iter().copied();
         let mut vertices: Vec<u32> = corners.filter(|&v| self.is_shared(v)).collect();
@@ -60,7 +60,7 @@ impl Borders {
         for v in vertices {
             let first = self.triangles.partition_point(|&(other, _)| other < v);
             let of_vertex = self.triangles[first..].iter();
-            let room = most + 1 - around.len();
+            let room = most.saturating_add(1) - around.len();
             let of_vertex = of_vertex.take_while(|&&(other, _)| other == v).take(room);
             around.extend(of_vertex.map(|&(_, t)| t));
             if around.len() > most {

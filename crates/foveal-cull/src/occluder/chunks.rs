@@ -11,6 +11,24 @@ use glam::Vec3;
 /// Most triangles of a chunk.
 pub(super) const MOST_TRIANGLES: usize = 16_384;
 
+/// How a mesh is cut into chunks.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Chunking {
+    /// Most triangles of a chunk, [`MOST_TRIANGLES`] or fewer.
+    pub(super) triangles: usize,
+    /// Most corners of triangles that are looked at for what lies around a chunk, its own at its
+    /// border included, so that vertices of very many triangles, which belong to many chunks, take
+    /// no quadratic time.
+    pub(super) corners_around: usize,
+}
+
+impl Chunking {
+    pub(super) const USUAL: Self = Self {
+        triangles: MOST_TRIANGLES,
+        corners_around: 8 * MOST_TRIANGLES,
+    };
+}
+
 /// Where a triangle is.
 #[derive(Clone, Copy)]
 struct Center {
@@ -18,14 +36,15 @@ struct Center {
     triangle: u32,
 }
 
-/// The numbers of `count` triangles by chunk, ascending in each. `corners` gives a triangle's
+/// The numbers of `count` triangles by chunk, at most `most` and ascending in each. `corners` gives a triangle's
 /// positions, which are finite.
 pub(super) fn apart(
     count: usize,
     corners: &(dyn Fn(usize) -> [Vec3; 3] + Sync),
+    most: usize,
     threads: &dyn Threads,
 ) -> Vec<Vec<u32>> {
-    if count <= MOST_TRIANGLES {
+    if count <= most {
         return vec![(0..count as u32).collect()];
     }
     let nowhere = Center {
@@ -50,7 +69,7 @@ pub(super) fn apart(
     });
     drop(parts);
     let mut ranges = vec![&mut centers[..]];
-    while ranges.iter().any(|r| r.len() > MOST_TRIANGLES) {
+    while ranges.iter().any(|r| r.len() > most) {
         in_parts_of(threads, &mut ranges, &|range| halve(range));
         let halves = |range| {
             let range: &mut [Center] = range;
@@ -105,7 +124,7 @@ mod tests {
             let p = Vec3::new((t / high) as f32, (t % high) as f32, 0.0);
             [p, p + Vec3::X * 0.5, p + Vec3::Y * 0.5]
         };
-        let chunks = apart(wide * high, &corners, &SingleThread);
+        let chunks = apart(wide * high, &corners, MOST_TRIANGLES, &SingleThread);
         assert_eq!(chunks.len(), 4);
         let mut all: Vec<u32> = chunks.concat();
         all.sort_unstable();
@@ -128,7 +147,7 @@ mod tests {
         for place in [0.0, 1e-45, 3e38] {
             let corners =
                 |t: usize| [Vec3::splat(if t.is_multiple_of(2) { place } else { -place }); 3];
-            let chunks = apart(100_000, &corners, &SingleThread);
+            let chunks = apart(100_000, &corners, MOST_TRIANGLES, &SingleThread);
             assert_eq!(chunks.iter().map(Vec::len).sum::<usize>(), 100_000);
             assert_eq!(chunks.len(), 8, "{place}");
         }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::occluder::chunks::Chunking;
 use crate::occluder::one_ring::{FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE};
 use crate::reference::{Reference, Seen};
 use crate::{
@@ -24,6 +25,10 @@ impl Random {
 
 /// A bumpy wall of 12 x 12 quads, 4 m wide, with a hole, some triangles twice, and some in a soup.
 fn wall(r: &mut Random, options: BakeOptions) -> OccluderMesh {
+    wall_in(r, options, Chunking::USUAL)
+}
+
+fn wall_in(r: &mut Random, options: BakeOptions, chunking: Chunking) -> OccluderMesh {
     let n = 12u32;
     let mut points: Vec<Vec3> = (0..=n * (n + 2))
         .map(|i| {
@@ -52,7 +57,7 @@ fn wall(r: &mut Random, options: BakeOptions) -> OccluderMesh {
         points.extend((0..3).map(|_| Vec3::new(r.unit(), r.unit(), r.unit()) * 2.0 - 1.0));
         indices.extend([at, at + 1, at + 2]);
     }
-    OccluderMesh::bake(&points, &indices, options).unwrap()
+    OccluderMesh::bake_in(&points, &indices, options, chunking, &SingleThread).unwrap()
 }
 
 fn options(r: &mut Random) -> BakeOptions {
@@ -139,18 +144,19 @@ fn triangles(mesh: &OccluderMesh) -> (Vec<Vec3>, Vec<u32>) {
     (points.collect(), indices)
 }
 
-/// Bytes with right checksums and wrong contents are refused, or are another mesh, behind whose own
-/// triangles nothing visible is culled: neither for one eye nor for a view region.
-#[test]
-fn wrong_bytes_with_a_right_checksum_cull_nothing_that_is_visible() {
-    let mut r = Random(11);
-    let boxes: Vec<Aabb> = (0..60)
-        .map(|_| {
-            let [x, y, z] = [0; 3].map(|_| r.unit() * 6.0 - 3.0);
-            let h = 0.02 + 0.3 * r.unit();
-            Aabb::new([x - h, y - h, z - 3.0 - h], [x + h, y + h, z - 3.0 + h])
-        })
-        .collect();
+/// Small boxes behind the wall and beside it.
+fn boxes(r: &mut Random) -> Vec<Aabb> {
+    let one = |_| {
+        let [x, y, z] = [0; 3].map(|_| r.unit() * 6.0 - 3.0);
+        let h = 0.02 + 0.3 * r.unit();
+        Aabb::new([x - h, y - h, z - 3.0 - h], [x + h, y + h, z - 3.0 + h])
+    };
+    (0..60).map(one).collect()
+}
+
+/// How many boxes are culled behind a mesh, for one eye and for a view region, none of which is
+/// visible beside the mesh's own triangles.
+fn culled_and_hidden(mesh: OccluderMesh, boxes: &[Aabb]) -> usize {
     let eye = |x: f64, y: f64| {
         let position = [x, y, 4.0];
         let target = [x, y, 0.0];
@@ -158,6 +164,45 @@ fn wrong_bytes_with_a_right_checksum_cull_nothing_that_is_visible() {
         Eye::look_at(position, target, [0.0, 1.0, 0.0], projection)
     };
     let radius = 0.05;
+    let mut culled = 0;
+    let (points, indices) = triangles(&mesh);
+    let two_sided = mesh.two_sided;
+    let mut set = OccluderSet::new();
+    set.add(Arc::new(mesh), Affine::IDENTITY).unwrap();
+    let mut culler = Culler::new(64, 48).unwrap();
+    for views in [
+        &[[0.0, 0.0]][..],
+        &[[radius * 0.999, 0.0], [0.0, -radius * 0.999]],
+    ] {
+        let region = if views.len() == 1 { 0.0 } else { radius };
+        let view = View::mono(eye(0.0, 0.0)).with_validity_radius(region);
+        let frame = FrameOptions::default();
+        culler
+            .rasterize(&view, &set, &frame, &SingleThread)
+            .unwrap();
+        let mut results = vec![Visibility::Visible; boxes.len()];
+        culler.query(boxes, [0.0; 3], &mut results).unwrap();
+        for &[x, y] in views {
+            let mut exact = Reference::new(&eye(x, y), 64, 48).unwrap();
+            exact.add(&points, &indices, Affine::IDENTITY, two_sided);
+            exact.finish();
+            for (b, result) in boxes.iter().zip(&results) {
+                if *result == Visibility::Occluded {
+                    culled += 1;
+                    assert_ne!(exact.seen(b, [0.0; 3]), Seen::Visible, "{b:?}");
+                }
+            }
+        }
+    }
+    culled
+}
+
+/// Bytes with right checksums and wrong contents are refused, or are another mesh, behind whose own
+/// triangles nothing visible is culled: neither for one eye nor for a view region.
+#[test]
+fn wrong_bytes_with_a_right_checksum_cull_nothing_that_is_visible() {
+    let mut r = Random(11);
+    let boxes = boxes(&mut r);
     let (mut accepted, mut refused, mut culled) = (0, 0, 0);
     for _ in 0..1500 {
         let options = options(&mut r);
@@ -186,38 +231,29 @@ fn wrong_bytes_with_a_right_checksum_cull_nothing_that_is_visible() {
             Err(other) => panic!("{other}"),
         };
         accepted += 1;
-        let (points, indices) = triangles(&mesh);
-        let two_sided = mesh.two_sided;
-        let mut set = OccluderSet::new();
-        set.add(Arc::new(mesh), Affine::IDENTITY).unwrap();
-        let mut culler = Culler::new(64, 48).unwrap();
-        for views in [
-            &[[0.0, 0.0]][..],
-            &[[radius * 0.999, 0.0], [0.0, -radius * 0.999]],
-        ] {
-            let region = if views.len() == 1 { 0.0 } else { radius };
-            let view = View::mono(eye(0.0, 0.0)).with_validity_radius(region);
-            let frame = FrameOptions::default();
-            culler
-                .rasterize(&view, &set, &frame, &SingleThread)
-                .unwrap();
-            let mut results = vec![Visibility::Visible; boxes.len()];
-            culler.query(&boxes, [0.0; 3], &mut results).unwrap();
-            for &[x, y] in views {
-                let mut exact = Reference::new(&eye(x, y), 64, 48).unwrap();
-                exact.add(&points, &indices, Affine::IDENTITY, two_sided);
-                exact.finish();
-                for (b, result) in boxes.iter().zip(&results) {
-                    if *result == Visibility::Occluded {
-                        culled += 1;
-                        assert_ne!(exact.seen(b, [0.0; 3]), Seen::Visible, "{b:?}");
-                    }
-                }
-            }
-        }
+        culled += culled_and_hidden(mesh, &boxes);
     }
     assert!(accepted > 100 && refused > 100, "{accepted} {refused}");
     assert!(culled > 10_000, "{culled}");
+}
+
+/// Walls in very small chunks, with holes, doubled triangles and loose ones across their borders.
+#[test]
+fn meshes_in_chunks_cull_nothing_that_is_visible() {
+    let mut r = Random(5);
+    let boxes = boxes(&mut r);
+    for corners_around in [0, 40, usize::MAX] {
+        let mut culled = 0;
+        for triangles in [1, 7, 16, 100].into_iter().cycle().take(40) {
+            let chunking = Chunking {
+                triangles,
+                corners_around,
+            };
+            let options = options(&mut r);
+            culled += culled_and_hidden(wall_in(&mut r, options, chunking), &boxes);
+        }
+        assert!(culled > 1000, "{corners_around}: {culled}");
+    }
 }
 
 #[test]
