@@ -15,6 +15,8 @@ const CELLS_ALONG: f32 = 64.0;
 /// more, cells are twice as large.
 const MOST_ALONG: u32 = 64;
 const MOST: usize = 1 << 17;
+/// Most looks into cells for all meshes, beyond one for each triangle.
+const MOST_LOOKS: f32 = (1 << 26) as f32;
 
 /// What a part of an instance may be moved by as numbers are rounded, as a share of the terms that
 /// make up its place.
@@ -67,42 +69,49 @@ pub(crate) struct Cells {
 }
 
 impl Cells {
-    /// Looks at the meshes; places no cells.
-    pub(super) fn new(scene: &Scene) -> Self {
-        let diagonal = scene.bounds().size().length();
-        let mut cells_along = CELLS_ALONG;
-        loop {
-            let this = Self::of_size(scene, diagonal / cells_along);
-            if this.count() <= MOST || cells_along < 1.0 {
-                return this;
-            }
-            cells_along *= 0.5;
+    /// Looks at the meshes; places no cells. `None` where there are more instances than cells may
+    /// be.
+    pub(super) fn new(scene: &Scene) -> Option<Self> {
+        if scene.instances.len() > MOST {
+            return None;
         }
+        let diagonal = scene.bounds().size().length();
+        let sizes = std::iter::successors(Some(CELLS_ALONG), |along| Some(0.5 * along));
+        sizes
+            .take_while(|along| *along >= 0.5)
+            .find_map(|along| Self::of_size(scene, diagonal / along))
     }
 
-    fn of_size(scene: &Scene, side: f32) -> Self {
-        let mut cuts = Vec::new();
+    /// `None` where there are too many cells.
+    fn of_size(scene: &Scene, side: f32) -> Option<Self> {
+        let mut cuts: Vec<Cut> = Vec::new();
         let mut known = HashMap::new();
-        let mut cut_of = |instance: &Instance| {
+        let mut looks = MOST_LOOKS;
+        let (mut owners, mut count) = (Vec::new(), 0);
+        for instance in &scene.instances {
             let mesh = &scene.meshes[instance.mesh as usize];
             let grid = grid(mesh.deforms, &mesh.bounds, instance, side);
-            *known.entry((instance.mesh, grid)).or_insert_with(|| {
+            let cut = *known.entry((instance.mesh, grid)).or_insert_with(|| {
                 let parts = if mesh.deforms {
                     None
                 } else {
-                    parts(mesh, grid)
+                    parts(mesh, grid, &mut looks)
                 };
                 cuts.push(parts.map_or(Cut::Box(grid), Cut::Surface));
-                cuts.len() as u32 - 1
-            })
-        };
-        let owners = scene.instances.iter().map(|instance| Owner {
-            cut: cut_of(instance),
-            object: instance.object,
-            has_strokes: scene.meshes[instance.mesh as usize].stroke_count() > 0,
-        });
-        Self {
-            owners: owners.collect(),
+                cuts.len() - 1
+            });
+            count += cuts[cut].count();
+            if count > MOST {
+                return None;
+            }
+            owners.push(Owner {
+                cut: cut as u32,
+                object: instance.object,
+                has_strokes: mesh.stroke_count() > 0,
+            });
+        }
+        Some(Self {
+            owners,
             cuts,
             pose: None,
             places: Vec::new(),
@@ -110,15 +119,11 @@ impl Cells {
             plain_boxes: Vec::new(),
             of: Vec::new(),
             tree: OccludeeTree::default(),
-        }
+        })
     }
 
     fn cut(&self, owner: &Owner) -> &Cut {
         &self.cuts[owner.cut as usize]
-    }
-
-    fn count(&self) -> usize {
-        self.owners.iter().map(|o| self.cut(o).count()).sum()
     }
 
     /// Brings the cells to a pose, of which `instances` gives the boxes and places.
@@ -247,7 +252,7 @@ mod tests {
     use super::*;
 
     fn cells(scene: &Scene) -> Cells {
-        let mut cells = Cells::new(scene);
+        let mut cells = Cells::new(scene).unwrap();
         let instances = scene.instances.iter();
         cells.place(1, instances.map(|i| (i.bounds, i.world_from_object)));
         cells

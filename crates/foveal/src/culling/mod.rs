@@ -18,7 +18,7 @@ use foveal_scene::Camera;
 use glam::Mat4;
 
 use crate::clock::{self, ms_between};
-use crate::{Antialiasing, Clock, Culling, CullingEyes, Error, Settings, Shadows};
+use crate::{Antialiasing, Clock, Culling, CullingEyes, Error, Settings, Shading, Shadows};
 use cells::Cells;
 use found_for::FoundFor;
 use workers::Workers;
@@ -69,7 +69,8 @@ pub(crate) struct CullingStage {
     culler: Culler,
     results: Vec<Visibility>,
     of_eye: Vec<Visibility>,
-    /// Whether the scene's cells are tested too.
+    /// Whether shadows ask for the scene's cells, and whether they are tested too.
+    has_cells: bool,
     tests_cells: bool,
     /// What became of each of the scene's cells.
     cells: Vec<Visibility>,
@@ -118,7 +119,8 @@ impl CullingStage {
             culler,
             results: Vec::new(),
             of_eye: Vec::new(),
-            tests_cells: occlusion && has_receivers(settings) && answers_for_parts(settings),
+            has_cells: occlusion && has_cells(settings),
+            tests_cells: occlusion && has_cells(settings) && answers_for_parts(settings),
             cells: Vec::new(),
             cells_of_eye: Vec::new(),
             rasterize_ms: 0.0,
@@ -293,7 +295,7 @@ impl CullingStage {
     /// none. `by_object`: all cells of the objects that are drawn, for pictures that show more than
     /// the culler has looked at.
     pub(crate) fn cells_seen(&self, scene: &CullingScene, by_object: bool) -> Option<Vec<u32>> {
-        let cells = scene.cells.as_ref().filter(|_| self.occlusion)?;
+        let cells = scene.cells.as_ref().filter(|_| self.has_cells)?;
         let by_object = by_object || !self.tests_cells;
         if !by_object && self.cells.len() != cells.boxes().len() {
             return None;
@@ -331,12 +333,19 @@ pub(crate) fn has_receivers(settings: &Settings) -> bool {
     settings.lighting.shadows != Shadows::Off && settings.picture.view.is_lit()
 }
 
+/// Whether frames of these settings ask on which parts of things shadows fall. Variable shading and
+/// anti-aliasing light the mean of several places, which need not be on any surface.
+pub(crate) fn has_cells(settings: &Settings) -> bool {
+    has_receivers(settings)
+        && settings.shading.mode != Shading::Variable
+        && settings.antialiasing.mode == Antialiasing::None
+}
+
 /// Whether no pixel of the picture shows what the culler calls hidden, of parts of objects too: its
 /// samples are the picture's pixel centres, or any within a radius.
 fn answers_for_parts(settings: &Settings) -> bool {
     let culling = &settings.culling;
-    let at_centers = matches!(culling.buffer_scale, 1 | 4) || culling.radius_m > 0.0;
-    at_centers && settings.antialiasing.mode == Antialiasing::None
+    matches!(culling.buffer_scale, 1 | 4) || culling.radius_m > 0.0
 }
 
 /// Adds what is seen in one more view.

@@ -53,7 +53,7 @@ impl CullingScene {
         };
         if mode == Culling::Occlusion {
             this.bake(scene);
-            this.cells = Some(Cells::new(scene));
+            this.cells = Cells::new(scene);
         }
         this.take_boxes(scene);
         this.triangles = vec![0; scene.objects.len()];

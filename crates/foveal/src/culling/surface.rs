@@ -11,8 +11,9 @@ const OVERLAP: f32 = 1e-3;
 const MOST_LOOKS: f32 = (1 << 22) as f32;
 
 /// Boxes in object space that hold all of a mesh, in the grid's order, at most one for each cell;
-/// `None` for a mesh with numbers that make no sense.
-pub(super) fn parts(mesh: &Mesh, mut grid: UVec3) -> Option<Vec<Aabb>> {
+/// `None` for a mesh with numbers that make no sense. `left`: how many looks all meshes together
+/// have left.
+pub(super) fn parts(mesh: &Mesh, mut grid: UVec3, left: &mut f32) -> Option<Vec<Aabb>> {
     if !mesh.bounds.is_valid() {
         return mesh.is_empty().then(Vec::new);
     }
@@ -21,7 +22,9 @@ pub(super) fn parts(mesh: &Mesh, mut grid: UVec3) -> Option<Vec<Aabb>> {
     }
     let grid = loop {
         let looks = Grid::new(&mesh.bounds, grid).looks_beyond_one(mesh)?;
-        if looks <= MOST_LOOKS || grid == UVec3::ONE {
+        let looks = looks + grid.element_product() as f32;
+        if looks <= MOST_LOOKS.min(*left) || grid == UVec3::ONE {
+            *left -= looks;
             break Grid::new(&mesh.bounds, grid);
         }
         grid = (grid / 2).max(UVec3::ONE);
@@ -32,6 +35,7 @@ pub(super) fn parts(mesh: &Mesh, mut grid: UVec3) -> Option<Vec<Aabb>> {
         grid.cut(&corners?, 0, 0, &mut room, &mut found);
     }
     found.retain(|b| !b.is_empty());
+    found.shrink_to_fit();
     Some(found)
 }
 
@@ -169,6 +173,10 @@ mod tests {
         }
     }
 
+    fn all_parts(mesh: &Mesh, grid: UVec3) -> Option<Vec<Aabb>> {
+        parts(mesh, grid, &mut 1e9)
+    }
+
     fn random() -> impl FnMut() -> f32 {
         let mut state = 5u32;
         move || {
@@ -184,7 +192,8 @@ mod tests {
             for _ in 0..20 {
                 let mut place = || Vec3::new(random() * 9.0 - 4.0, random(), random() * 3.0);
                 let corners: [Vec3; 6] = std::array::from_fn(|_| place());
-                let parts = parts(&mesh(&corners), UVec3::new(grid, grid.min(4), grid)).unwrap();
+                let parts =
+                    all_parts(&mesh(&corners), UVec3::new(grid, grid.min(4), grid)).unwrap();
                 for _ in 0..200 {
                     let (mut u, mut v) = (random(), random());
                     if u + v > 1.0 {
@@ -214,10 +223,10 @@ mod tests {
         ];
         let halves = sides.map(|[a, b, c, d]| [a, b, c, a, c, d]);
         let places: Vec<Vec3> = halves.as_flattened().iter().map(|&i| corners[i]).collect();
-        let found = parts(&mesh(&places), UVec3::splat(8)).unwrap();
+        let found = all_parts(&mesh(&places), UVec3::splat(8)).unwrap();
         assert_eq!(found.len(), 8 * 8 * 8 - 6 * 6 * 6);
         // One side alone.
-        let found = parts(&mesh(&places[..6]), UVec3::new(8, 8, 1)).unwrap();
+        let found = all_parts(&mesh(&places[..6]), UVec3::new(8, 8, 1)).unwrap();
         assert_eq!(found.len(), 64);
         assert!(found.iter().all(|b| b.size().z == 0.0 && b.size().x < 0.51));
     }
@@ -229,7 +238,10 @@ mod tests {
         mesh.indices.clear();
         mesh.lines = vec![[0, 1]];
         mesh.points = vec![2];
-        assert_eq!(parts(&mesh, UVec3::splat(4)).unwrap().len(), 4 + 3 * 6 + 1);
+        assert_eq!(
+            all_parts(&mesh, UVec3::splat(4)).unwrap().len(),
+            4 + 3 * 6 + 1
+        );
     }
 
     #[test]
@@ -237,13 +249,23 @@ mod tests {
         let corners = [Vec3::ZERO, Vec3::ONE, Vec3::X];
         let mut bad = mesh(&corners);
         bad.vertices[1].position[2] = f32::NAN;
-        assert!(parts(&bad, UVec3::splat(4)).is_none());
+        assert!(all_parts(&bad, UVec3::splat(4)).is_none());
         bad = mesh(&corners);
         bad.indices[1] = 9;
-        assert!(parts(&bad, UVec3::splat(4)).is_none());
-        assert_eq!(parts(&Mesh::default(), UVec3::ONE).unwrap().len(), 0);
+        assert!(all_parts(&bad, UVec3::splat(4)).is_none());
+        assert_eq!(all_parts(&Mesh::default(), UVec3::ONE).unwrap().len(), 0);
         let many: Vec<Vec3> = std::iter::repeat_n(corners, 200).flatten().collect();
-        let found = parts(&mesh(&many), UVec3::splat(64)).unwrap();
+        let found = all_parts(&mesh(&many), UVec3::splat(64)).unwrap();
         assert!(!found.is_empty() && found.len() < 64 * 64);
+        let mut left = 9000.0;
+        let few = parts(&mesh(&corners), UVec3::splat(16), &mut left).unwrap();
+        assert_eq!(
+            few.len(),
+            all_parts(&mesh(&corners), UVec3::splat(16)).unwrap().len()
+        );
+        assert!((0.0..1000.0).contains(&left), "{left}");
+        // Too few looks are left for as many.
+        let fewer = parts(&mesh(&corners), UVec3::splat(16), &mut left).unwrap();
+        assert!(fewer.len() < few.len() && left >= 0.0);
     }
 }

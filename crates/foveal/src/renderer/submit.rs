@@ -4,7 +4,7 @@ use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
 use crate::FrameStats;
 use crate::antialias::Shadings;
-use crate::culling::{CullingCounts, has_receivers};
+use crate::culling::{CullingCounts, has_cells, has_receivers};
 use crate::forward::TransmissionTargets;
 use crate::frame::FrameUniform;
 use crate::geometry::{Draws, ResolveAt};
@@ -51,7 +51,7 @@ impl Renderer {
     fn cull(&mut self, frame: &Frame<'_>, seen: &Seen) -> CullingCounts {
         let settings = &self.stages.settings;
         let objects = self.scene.stats.objects;
-        if self.stages.culling.is_some() && has_receivers(settings) {
+        if self.stages.culling.is_some() && has_cells(settings) {
             self.scene.place_cells();
         }
         match &mut self.stages.culling {

@@ -140,7 +140,10 @@ fn ways_of_drawing_show_the_same_with_casters_left_out() {
     for (number, way) in ways.into_iter().enumerate() {
         let settings = shadowed(Shadows::Soft).with(way);
         let stats = assert_same(&market(), &settings, 3, |i, scene| walked(scene, i));
-        assert!(stats[0].casters_unneeded > 0, "way {number}");
+        // What lights the mean of several places asks nothing.
+        let means = settings.antialiasing.mode != Antialiasing::None
+            || settings.shading.mode == Shading::Variable;
+        assert_eq!(stats[0].casters_unneeded > 0, !means, "way {number}");
     }
 }
 
@@ -399,11 +402,10 @@ fn cells_are_placed_and_tested_where_shadows_ask_for_them_alone() {
     assert_eq!(cells(|s| s.lighting.shadows = Shadows::Off), (0, 0));
     assert_eq!(cells(|s| s.culling.mode = Culling::Frustum), (0, 0));
     assert_eq!(cells(|s| s.picture.view = DebugView::Normals), (0, 0));
+    // These light the mean of several places.
+    assert_eq!(cells(|s| s.antialiasing.mode = Antialiasing::Msaa), (0, 0));
+    assert_eq!(cells(|s| s.shading.mode = Shading::Variable), (0, 0));
     // Pixels may show what the culler's samples do not.
-    assert_eq!(
-        cells(|s| s.antialiasing.mode = Antialiasing::Msaa),
-        (placed, 0)
-    );
     assert_eq!(cells(|s| s.culling.buffer_scale = 2), (placed, 0));
     assert_eq!(cells(|s| s.culling.buffer_scale = 1), (placed, placed));
     let (_, tested) = cells(|s| {

@@ -91,7 +91,7 @@ struct Request {
 }
 
 impl Plan {
-    /// `scene`: the box around everything.
+    /// `scene`: the box around everything that casts or receives shadows.
     pub(super) fn new(
         lights: &[LightUniform],
         view: &ViewOfPlan,
