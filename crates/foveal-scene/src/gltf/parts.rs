@@ -187,17 +187,20 @@ impl Geometry {
 /// Memory per corner while a mesh is built: as read, and as kept.
 const INDEX_BYTES: u64 = 8;
 
-/// Memory of a point or line where it is drawn: four vertices and six indices.
-pub(crate) const STROKE_BYTES: u64 = 4 * size_of::<Vertex>() as u64 + 6 * 4;
+/// Memory of a point or line where it is drawn: four vertices, in the pose before too where it
+/// deforms, and six indices.
+pub(crate) fn bytes_of_stroke(deforms: bool) -> u64 {
+    let vertices = if deforms { 8 } else { 4 };
+    vertices * size_of::<Vertex>() as u64 + 6 * 4
+}
 
 /// Memory that the points and lines of a primitive take where they are drawn.
 fn stroke_bytes(def: &PrimitiveDef, corners: u64) -> u64 {
     if def.mode.makes_triangles() {
         return 0;
     }
-    // What deforms is there as in the pose before, too.
-    let poses = 1 + u64::from(def.deforms());
-    (corners / def.mode.corners() as u64).saturating_mul(STROKE_BYTES * poses)
+    let strokes = corners / def.mode.corners() as u64;
+    strokes.saturating_mul(bytes_of_stroke(def.deforms()))
 }
 
 /// Memory per vertex while a mesh is built: the vertex, its position as read and in its cloud, what

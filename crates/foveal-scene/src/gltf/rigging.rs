@@ -8,7 +8,7 @@ use glam::Mat4;
 use super::document::Document;
 use super::nodes::Hierarchy;
 use super::objects::Shown;
-use super::parts::STROKE_BYTES;
+use super::parts::bytes_of_stroke;
 use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
@@ -129,7 +129,7 @@ impl Rigging {
                 if !first {
                     let mesh = &scene.meshes[part.mesh as usize];
                     let bytes = size_of_val(mesh.vertices.as_slice()) * 2 + 4 * mesh.used().count();
-                    let strokes = mesh.stroke_count() as u64 * STROKE_BYTES * 2;
+                    let strokes = mesh.stroke_count() as u64 * bytes_of_stroke(true);
                     let budget = &reader.buffers.budget;
                     budget
                         .take(bytes as u64 + strokes, "a deforming mesh of its own")

@@ -111,7 +111,7 @@ pub(crate) struct SceneGeometry {
     /// The pose of the frame before; the same buffer where nothing deforms.
     previous_vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    meshes: Vec<MeshRange>,
+    pub(super) meshes: Vec<MeshRange>,
     deforms: bool,
     places: wgpu::Buffer,
     /// The layout is [`geometry_layout`]; `None` where shaders cannot read so much.

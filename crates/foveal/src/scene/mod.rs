@@ -16,6 +16,7 @@ pub(crate) use bindings::{BoundEnvironment, FrameBindings};
 #[cfg(test)]
 pub(crate) use families::FamilyUniform;
 pub(crate) use families::{FAMILY_BYTES, MaterialDispatch, family_layout};
+use geometry::MeshRange;
 #[cfg(test)]
 pub(crate) use geometry::PlaceUniform;
 pub(crate) use geometry::{SceneGeometry, VERTEX_LAYOUTS, geometry_layout};
@@ -112,14 +113,15 @@ impl SceneOnGpu {
         let materials =
             SceneMaterials::new(gpu, scene, textures, settings, material_layout, limits)?;
         let material_families = materials.families().count() as u64;
+        let geometry = SceneGeometry::new(gpu, scene, materials.families().ranks())?;
         Ok(Self {
-            geometry: SceneGeometry::new(gpu, scene, materials.families().ranks())?,
+            bounds: shadowed_bounds(scene, &geometry.meshes),
+            geometry,
             materials,
             instances: drawn_instances(scene),
             lights,
             light_buffer,
             environment: scene.environment,
-            bounds: shadowed_bounds(scene),
             culling: CullingScene::new(scene, settings.culling.mode),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
@@ -158,7 +160,7 @@ impl SceneOnGpu {
             }
             *uniform = moved;
         }
-        self.bounds = shadowed_bounds(scene);
+        self.bounds = shadowed_bounds(scene, &self.geometry.meshes);
         self.instances = drawn_instances(scene);
         let lights = scene.lights.iter().map(LightUniform::new).collect();
         let lights_before = std::mem::replace(&mut self.lights, lights);
@@ -203,12 +205,10 @@ fn write_lights(gpu: &Gpu, buffer: &wgpu::Buffer, lights: &[LightUniform]) {
 
 /// The box around all but points and lines that are not lit: no shadow comes from them or falls on
 /// them.
-fn shadowed_bounds(scene: &Scene) -> Aabb {
-    let takes_part: Vec<bool> = (scene.meshes.iter())
-        .map(|mesh| mesh.triangle_count() > 0 || mesh.lights_strokes())
-        .collect();
+fn shadowed_bounds(scene: &Scene, meshes: &[MeshRange]) -> Aabb {
+    let takes_part = |mesh: &MeshRange| mesh.index_count > 0 || mesh.lights_strokes;
     (scene.instances.iter())
-        .filter(|instance| takes_part[instance.mesh as usize])
+        .filter(|instance| takes_part(&meshes[instance.mesh as usize]))
         .fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
 }
 

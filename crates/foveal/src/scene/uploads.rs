@@ -21,7 +21,7 @@ impl<'a> Uploads<'a> {
     /// Counts bytes that have been written to the queue, and submits once they are many.
     pub(super) fn add(&mut self, bytes: usize) {
         self.waiting += bytes as u64;
-        if self.waiting > WAITING_BYTES {
+        if self.waiting >= WAITING_BYTES {
             self.gpu.queue.submit([]);
             let _ = self.gpu.device.poll(wgpu::PollType::Poll);
             self.waiting = 0;
