@@ -137,6 +137,11 @@ typedef struct FovealCullMeshSource {
     uint32_t two_sided;
     /* 1: bake what results for two eyes or a radius need. 0: less memory and time. */
     uint32_t adjacency;
+    /* 1: occluders of the mesh can be given other positions (foveal_cull_occluders_deform). Then only
+     * vertices with the same index are one. 0: they cannot. */
+    uint32_t deformable;
+    /* 0. */
+    uint32_t reserved;
 } FovealCullMeshSource;
 
 /* One eye: a rigid pose and a frustum. */
@@ -271,6 +276,15 @@ FovealCullStatus foveal_cull_mesh_bake(const FovealCullMeshSource *source, Fovea
 /* Bakes a box whose faces look outwards, min to max (three numbers each) in mesh space, metres. */
 FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, FovealCullMesh **out);
 
+/* Bakes a terrain of a grid of heights that is seen from above (+y): sample i of row j lies at x =
+ * i * spacing_x, y = heights[j * columns + i], z = j * spacing_z, metres. Every `step`th sample is kept, and
+ * the surface lies under the terrain everywhere: fewer triangles, which hide somewhat less. NaN is a hole:
+ * cells with one are left out. The ground is solid besides: nothing may be seen under the surface, neither
+ * through its sides nor, except over holes, from below. */
+FovealCullStatus foveal_cull_mesh_from_heights(const float *heights, size_t columns, size_t rows,
+                                               float spacing_x, float spacing_z, size_t step,
+                                               FovealCullMesh **out);
+
 /* Copies a baked mesh as bytes, for a file: all of them, or none if they are more than `size`. Returns how
  * many it has; 0 for null. `bytes` may be null to ask for that. The same on every machine. */
 size_t foveal_cull_mesh_to_bytes(const FovealCullMesh *mesh, uint8_t *bytes, size_t size);
@@ -302,6 +316,11 @@ FovealCullStatus foveal_cull_occluders_add(FovealCullOccluders *occluders, const
 /* Moves `count` occluders, with twelve numbers each. After an error none has moved. */
 FovealCullStatus foveal_cull_occluders_move(FovealCullOccluders *occluders, const FovealCullOccluderId *ids,
                                             const double *world_from_mesh, size_t count);
+
+/* Gives an occluder of a deformable mesh another shape: all `count` positions of the mesh in their order,
+ * `stride` bytes apart. Other occluders of the mesh keep theirs. After an error it keeps its shape. */
+FovealCullStatus foveal_cull_occluders_deform(FovealCullOccluders *occluders, FovealCullOccluderId id,
+                                              const float *positions, size_t count, size_t stride);
 
 /* Switches an occluder off (0) or on (1). A new one is on. */
 FovealCullStatus foveal_cull_occluders_enable(FovealCullOccluders *occluders, FovealCullOccluderId id,

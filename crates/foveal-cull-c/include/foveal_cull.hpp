@@ -143,7 +143,7 @@ public:
     /// Bakes triangles: three floats per position, `stride` bytes apart.
     template <class Index>
     Mesh(const float *positions, std::size_t position_count, std::size_t stride, const Index *indices,
-         std::size_t index_count, bool two_sided = false, bool adjacency = true) {
+         std::size_t index_count, bool two_sided = false, bool adjacency = true, bool deformable = false) {
         static_assert(sizeof(Index) == 2 || sizeof(Index) == 4, "indices have 16 or 32 bits");
         FovealCullMeshSource source{};
         expect_ok(foveal_cull_mesh_source_init(&source));
@@ -155,6 +155,7 @@ public:
         source.index_bytes = sizeof(Index);
         source.two_sided = two_sided ? 1 : 0;
         source.adjacency = adjacency ? 1 : 0;
+        source.deformable = deformable ? 1 : 0;
         FovealCullMesh *mesh = nullptr;
         expect_ok(foveal_cull_mesh_bake(&source, &mesh));
         mesh_.reset(mesh);
@@ -163,6 +164,13 @@ public:
     static Mesh box(const Box &bounds) {
         FovealCullMesh *mesh = nullptr;
         expect_ok(foveal_cull_mesh_from_box(bounds.min, bounds.max, &mesh));
+        return Mesh(mesh);
+    }
+    /// A terrain of rows of heights, seen from above; every `step`th sample is kept.
+    static Mesh terrain(const float *heights, std::size_t columns, std::size_t rows, float spacing_x,
+                        float spacing_z, std::size_t step) {
+        FovealCullMesh *mesh = nullptr;
+        expect_ok(foveal_cull_mesh_from_heights(heights, columns, rows, spacing_x, spacing_z, step, &mesh));
         return Mesh(mesh);
     }
     /// A mesh that was written by to_bytes.
@@ -207,6 +215,10 @@ public:
         }
         const double *numbers = ids.empty() ? nullptr : world_from_mesh[0].data();
         expect_ok(foveal_cull_occluders_move(set_.get(), ids.data(), numbers, ids.size()));
+    }
+    /// Gives an occluder of a deformable mesh other positions, `stride` bytes apart.
+    void deform(OccluderId id, const float *positions, std::size_t count, std::size_t stride) {
+        expect_ok(foveal_cull_occluders_deform(set_.get(), id, positions, count, stride));
     }
     void enable(OccluderId id, bool enabled) {
         expect_ok(foveal_cull_occluders_enable(set_.get(), id, enabled ? 1 : 0));

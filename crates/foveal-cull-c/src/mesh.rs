@@ -33,6 +33,11 @@ pub struct FovealCullMeshSource {
     pub two_sided: u32,
     /// 1: bake what results for two eyes or a radius need. 0: less memory and time.
     pub adjacency: u32,
+    /// 1: occluders of the mesh can be given other positions. Then only vertices with the same index
+    /// are one. 0: they cannot.
+    pub deformable: u32,
+    /// 0.
+    pub reserved: u32,
 }
 
 // SAFETY: numbers and pointers.
@@ -53,6 +58,8 @@ impl FovealCullMeshSource {
         index_count: 0,
         two_sided: 0,
         adjacency: 1,
+        deformable: 0,
+        reserved: 0,
     };
 }
 
@@ -81,11 +88,29 @@ fn at<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
     core::array::from_fn(|i| bytes[offset + i])
 }
 
+/// Three numbers of each of `count` vertices, `stride` bytes apart.
+///
+/// # Safety
+/// The pointer is null, or that many vertices are there and nothing changes them meanwhile.
+pub(crate) unsafe fn vertices(
+    positions: *const f32,
+    count: usize,
+    stride: usize,
+) -> Result<Vec<[f32; 3]>, Fault> {
+    if stride < 12 {
+        return Err(Fault::argument("'position_stride' is less than 12 bytes"));
+    }
+    // SAFETY: the caller's word.
+    let vertices = unsafe { bytes(positions.cast(), count, stride, 12, "positions") }?;
+    let position = |i: usize| [0, 4, 8].map(|a| f32::from_ne_bytes(at(vertices, i * stride + a)));
+    Ok((0..count).map(position).collect())
+}
+
 /// # Safety
 /// Arrays and counts of the source belong together.
 unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
-    if source.position_stride < 12 {
-        return Err(Fault::argument("'position_stride' is less than 12 bytes"));
+    if source.reserved != 0 {
+        return Err(Fault::argument("'reserved' is not 0"));
     }
     let index_bytes = match source.index_bytes {
         2 => 2,
@@ -95,14 +120,20 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
     for (value, name) in [
         (source.two_sided, "two_sided"),
         (source.adjacency, "adjacency"),
+        (source.deformable, "deformable"),
     ] {
         if value > 1 {
             return Err(Fault::argument(format!("'{name}' is neither 0 nor 1")));
         }
     }
-    let (count, stride) = (source.position_count, source.position_stride);
     // SAFETY: the caller's word.
-    let vertices = unsafe { bytes(source.positions.cast(), count, stride, 12, "positions") }?;
+    let positions = unsafe {
+        vertices(
+            source.positions,
+            source.position_count,
+            source.position_stride,
+        )
+    }?;
     // SAFETY: the caller's word.
     let indices = unsafe {
         bytes(
@@ -113,9 +144,6 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
             "indices",
         )
     }?;
-    let positions: Vec<[f32; 3]> = (0..count)
-        .map(|i| [0, 4, 8].map(|axis| f32::from_ne_bytes(at(vertices, i * stride + axis))))
-        .collect();
     let indices: Vec<u32> = if index_bytes == 2 {
         indices
             .chunks_exact(2)
@@ -129,7 +157,8 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
     };
     let options = BakeOptions::default()
         .with_two_sided(source.two_sided == 1)
-        .with_adjacency(source.adjacency == 1);
+        .with_adjacency(source.adjacency == 1)
+        .with_deformable(source.deformable == 1);
     Ok(OccluderMesh::bake(&positions, &indices, options)?)
 }
 
@@ -193,6 +222,37 @@ pub unsafe extern "C" fn foveal_cull_mesh_from_box(
                     min,
                     max,
                 })?)))
+            })
+        }
+    })
+}
+
+/// Bakes a terrain of a grid of heights that is seen from above: sample `i` of row `j` lies at x = i *
+/// `spacing_x`, y = `heights[j * columns + i]`, z = j * `spacing_z`, metres. Every `step`th sample is
+/// kept, and the surface lies under the terrain everywhere. NaN is a hole; the ground is solid
+/// besides.
+///
+/// # Safety
+/// `heights` is null or `columns * rows` numbers. `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_mesh_from_heights(
+    heights: *const f32,
+    columns: usize,
+    rows: usize,
+    spacing_x: f32,
+    spacing_z: f32,
+    step: usize,
+    out: *mut *mut FovealCullMesh,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            border::give(out, || {
+                let count = columns.saturating_mul(rows);
+                let heights = border::list(heights, count, "heights")?;
+                let (spacing, options) = ([spacing_x, spacing_z], BakeOptions::default());
+                let mesh = OccluderMesh::from_heights(heights, columns, spacing, step, options)?;
+                Ok(FovealCullMesh(Arc::new(mesh)))
             })
         }
     })

@@ -154,6 +154,32 @@ pub unsafe extern "C" fn foveal_cull_occluders_move(
     })
 }
 
+/// Gives an occluder of a deformable mesh another shape: all positions of the mesh in their order,
+/// `stride` bytes apart. Other occluders of the mesh keep theirs. After an error it keeps its shape.
+///
+/// # Safety
+/// `occluders` is null or lives; `positions` is null or `count` vertices.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_occluders_deform(
+    occluders: *mut FovealCullOccluders,
+    id: FovealCullOccluderId,
+    positions: *const f32,
+    count: usize,
+    stride: usize,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        let (occluders, positions) = unsafe {
+            (
+                border::object(occluders, "occluders")?,
+                crate::mesh::vertices(positions, count, stride)?,
+            )
+        };
+        let id = occluders.own(id)?;
+        Ok(border::write(&occluders.set)?.set_positions(id, &positions)?)
+    })
+}
+
 /// Switches an occluder off (0) or on (1).
 ///
 /// # Safety

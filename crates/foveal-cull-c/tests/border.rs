@@ -81,6 +81,9 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             foveal_cull_mesh_from_box(some, some, null_mut()),
             null_pointer
         );
+        let heights = foveal_cull_mesh_from_heights;
+        assert_eq!(heights(null(), 2, 2, 1.0, 1.0, 1, &mut out), null_pointer);
+        assert_eq!(heights(some, 1, 3, 1.0, 1.0, 1, null_mut()), null_pointer);
         assert_eq!(foveal_cull_mesh_triangle_count(null()), 0);
         assert_eq!(foveal_cull_mesh_to_bytes(null(), null_mut(), 8), 0);
         assert_eq!(
@@ -115,6 +118,11 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
             null_pointer
         );
         assert_eq!(foveal_cull_occluders_remove(null_mut(), id), null_pointer);
+        let deform = foveal_cull_occluders_deform;
+        assert_eq!(deform(null_mut(), id, some, 1, 12), null_pointer);
+        assert_eq!(deform(set, id, null(), 1, 12), null_pointer);
+        assert_eq!(deform(set, id, some, 1, 11), Status::BadArgument);
+        assert_eq!(deform(set, id, some, usize::MAX, 12), Status::BadArgument);
         assert_eq!(
             foveal_cull_occluders_count(null(), &mut count),
             null_pointer
@@ -343,6 +351,20 @@ fn meshes_with_wrong_sizes_or_numbers_are_refused() {
         (
             FovealCullMeshSource {
                 adjacency: 9,
+                ..good
+            },
+            Status::BadArgument,
+        ),
+        (
+            FovealCullMeshSource {
+                deformable: 2,
+                ..good
+            },
+            Status::BadArgument,
+        ),
+        (
+            FovealCullMeshSource {
+                reserved: 1,
                 ..good
             },
             Status::BadArgument,

@@ -438,3 +438,78 @@ fn matrices_and_origins_pass_the_border() {
         foveal_culler_destroy(culler);
     }
 }
+
+#[test]
+fn occluders_that_deform_and_terrains_hide_what_is_behind_them() {
+    // A wall 5 m in front of the eye, and one beside it.
+    let wall = |x: f32| {
+        [(-3.0, -3.0), (3.0, -3.0), (3.0, 3.0), (-3.0, 3.0)].map(|(dx, y)| [x + dx, y, -5.0])
+    };
+    let (before, after) = (wall(40.0), wall(0.0));
+    let indices = [0u16, 1, 2, 0, 2, 3];
+    let culler = culler();
+    // SAFETY: live handles, structs as long as they say, lists as long as is said.
+    unsafe {
+        let mut source = core::mem::zeroed::<FovealCullMeshSource>();
+        let size = size_of::<FovealCullMeshSource>();
+        assert_eq!(
+            foveal_cull_mesh_source_init_sized(&mut source, size),
+            Status::Ok
+        );
+        source.index_bytes = 2;
+        source.positions = before.as_ptr().cast();
+        source.position_count = 4;
+        source.indices = indices.as_ptr().cast();
+        source.index_count = 6;
+        source.deformable = 1;
+        let mut mesh = null_mut();
+        assert_eq!(foveal_cull_mesh_bake(&source, &mut mesh), Status::Ok);
+        let set = set();
+        let mut id = FovealCullOccluderId {
+            set: 0,
+            occluder: 0,
+        };
+        let added = foveal_cull_occluders_add(set, mesh, null(), &mut id);
+        assert_eq!(added, Status::Ok);
+        let seen = |set: *mut FovealCullOccluders| {
+            let drawn = foveal_culler_rasterize(culler, &view(), set, null(), null());
+            assert_eq!(drawn, Status::Ok);
+            test(culler)
+        };
+        assert_eq!(seen(set), FovealCullVisibility::Visible as u8);
+        let deform = |set, positions: &[[f32; 3]]| {
+            let (first, count) = (positions.as_ptr().cast(), positions.len());
+            foveal_cull_occluders_deform(set, id, first, count, 12)
+        };
+        assert_eq!(deform(set, &after[..3]), Status::WrongLength);
+        assert_eq!(seen(set), FovealCullVisibility::Visible as u8);
+        assert_eq!(deform(set, &after), Status::Ok);
+        assert_eq!(seen(set), FovealCullVisibility::Occluded as u8);
+        let other = self::set();
+        assert_eq!(deform(other, &after), Status::OtherSet);
+
+        // A hill whose ridge is across the view.
+        let heights: Vec<f32> = (0..9 * 9)
+            .map(|i| 12.0 - 4.0 * f32::abs((i / 9) as f32 - 4.0))
+            .collect();
+        let mut hill = null_mut();
+        let bake = foveal_cull_mesh_from_heights;
+        let of =
+            |columns, rows, spacing, to| bake(heights.as_ptr(), columns, rows, spacing, 0.5, 2, to);
+        assert_eq!(of(9, 9, 0.0, &mut hill), Status::NotFinite);
+        assert_eq!(of(usize::MAX, 9, 2.0, &mut hill), Status::BadArgument);
+        assert_eq!(of(9, 9, 2.0, &mut hill), Status::Ok);
+        assert_eq!(foveal_cull_mesh_triangle_count(hill), 2 * 4 * 4);
+        let place = [
+            1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, -8.0, -4.0, -6.0,
+        ];
+        let added = foveal_cull_occluders_add(other, hill, place.as_ptr(), &mut id);
+        assert_eq!(added, Status::Ok);
+        assert_eq!(seen(other), FovealCullVisibility::Occluded as u8);
+        foveal_cull_mesh_destroy(hill);
+        foveal_cull_mesh_destroy(mesh);
+        foveal_cull_occluders_destroy(other);
+        foveal_cull_occluders_destroy(set);
+        foveal_culler_destroy(culler);
+    }
+}

@@ -47,6 +47,9 @@ pub enum CullError {
     UnknownOccluder,
     /// The set has no occludee with this id, for instance since it was removed.
     UnknownOccludee,
+    /// A mesh was not baked to be given new positions
+    /// ([`BakeOptions::deformable`](crate::BakeOptions::deformable)).
+    NotDeformable,
     /// The last row of a transform's matrix is not 0, 0, 0, 1.
     NotAffine,
     /// A mesh has too many triangles for the 32-bit offsets of a baked mesh.
@@ -93,8 +96,10 @@ pub enum MeshBytesError {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
-    /// A vertex position of a mesh.
+    /// A vertex position of a mesh, or a height.
     Position,
+    /// The distance between the samples of a grid of heights. It must be above zero, too.
+    Spacing,
     /// The transform of an occluder.
     Transform,
     /// The pose of an eye.
@@ -156,6 +161,7 @@ impl fmt::Display for CullError {
             }
             Self::UnknownOccluder => f.write_str("the set has no occluder with this id"),
             Self::UnknownOccludee => f.write_str("the set has no occludee with this id"),
+            Self::NotDeformable => f.write_str("the mesh was not baked to be deformed"),
             Self::NotAffine => f.write_str("the last row of a transform must be 0, 0, 0, 1"),
             Self::TooManyTriangles { triangles, most } => {
                 write!(
@@ -172,6 +178,7 @@ impl fmt::Display for Quantity {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Position => "a vertex position",
+            Self::Spacing => "the spacing of heights (which must be above zero)",
             Self::Transform => "the transform of an occluder",
             Self::Pose => "the pose of an eye",
             Self::ClipMatrix => "a matrix from the world to clip space",

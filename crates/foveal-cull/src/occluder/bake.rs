@@ -12,7 +12,7 @@ use super::mesh::OccluderMesh;
 use super::neighbors::Neighbors;
 use super::one_ring::OneRings;
 use super::vertices::Vertices;
-use super::weld::weld;
+use super::weld::{Welded, weld};
 use super::{cluster, quads};
 use crate::bounds::Aabb;
 use crate::error::{CullError, Quantity};
@@ -34,6 +34,10 @@ pub struct BakeOptions {
     /// it view regions are just as safe but hide less, since every polygon shrinks by itself. Views
     /// of one exact eye do not need it. Two-sided meshes never have it.
     pub adjacency: bool,
+    /// Whether the mesh can be given new positions by
+    /// [`set_positions`](OccluderMesh::set_positions); `false` by default. Then equal positions are
+    /// not joined, since they may part: triangles are neighbours only where they share indices.
+    pub deformable: bool,
 }
 
 impl Default for BakeOptions {
@@ -41,6 +45,7 @@ impl Default for BakeOptions {
         Self {
             two_sided: false,
             adjacency: true,
+            deformable: false,
         }
     }
 }
@@ -57,6 +62,13 @@ impl BakeOptions {
     #[must_use]
     pub fn with_adjacency(mut self, adjacency: bool) -> Self {
         self.adjacency = adjacency;
+        self
+    }
+
+    /// Sets [`deformable`](Self::deformable).
+    #[must_use]
+    pub fn with_deformable(mut self, deformable: bool) -> Self {
+        self.deformable = deformable;
         self
     }
 }
@@ -170,11 +182,15 @@ impl Input<'_> {
             two_sided: options.two_sided,
             hash: 0,
             triangles: 0,
+            positions: options.deformable.then_some(self.positions),
         };
         if options.adjacency && !options.two_sided {
             self.with_adjacency(&mut mesh, threads);
         } else {
             self.without_adjacency(&mut mesh, threads);
+        }
+        if options.deformable {
+            mesh.reshape();
         }
         mesh.finish();
         Ok(mesh)
@@ -231,13 +247,19 @@ impl Input<'_> {
             threads,
         );
         let empty = mesh.clone();
+        let by = mesh.welded_by();
         let make = |chunk: usize| {
             let triangles = chunks[chunk].iter().map(|&t| self.triangle(t as usize));
-            let welded = weld(self.positions, self.position, triangles);
+            let welded = weld(by, self.positions, self.position, triangles);
             let quads = quads::pair(&welded.points, &welded.triangles);
             let mut part = empty.clone();
             part.triangles = welded.triangles.len() as u32;
-            cluster::build(&mut part, &welded.points, None, quads);
+            let source = cluster::Source {
+                points: &welded.points,
+                sources: empty.positions.map(|_| &welded.sources[..]),
+                near: None,
+            };
+            cluster::build(&mut part, source, quads);
             part
         };
         in_order(threads, chunks.len(), &make, &mut |part| mesh.append(part));
@@ -246,8 +268,9 @@ impl Input<'_> {
     /// Chunks of a mesh that is welded as a whole, each with the triangles around it, which its
     /// one-rings reach.
     fn with_adjacency(&self, mesh: &mut OccluderMesh, threads: &dyn Threads) {
-        let all = 0..self.indices.len() / 3;
-        let all = weld(self.positions, self.position, all.map(|t| self.triangle(t)));
+        let by = mesh.welded_by();
+        let triangles = (0..self.indices.len() / 3).map(|t| self.triangle(t));
+        let all = weld(by, self.positions, self.position, triangles);
         let point = |i: u32| all.points[i as usize];
         let corners = |t: usize| all.triangles[t].map(point);
         let most = self.chunking.triangles;
@@ -256,7 +279,12 @@ impl Input<'_> {
             mesh.triangles = all.triangles.len() as u32;
             let quads = quads::pair(&all.points, &all.triangles);
             let near = Neighbors::new(&all, vec![false; all.points.len()]);
-            cluster::build(mesh, &all.points, Some(&near), quads);
+            let source = cluster::Source {
+                points: &all.points,
+                sources: mesh.positions.map(|_| &all.sources[..]),
+                near: Some(&near),
+            };
+            cluster::build(mesh, source, quads);
             return;
         }
         // Chunk by chunk, so that what lies together is together in memory.
@@ -267,7 +295,10 @@ impl Input<'_> {
         let ends: Vec<usize> = chunks.iter().scan(0, length).collect();
         let order = chunks.into_iter().flatten();
         let triangles: Vec<[u32; 3]> = order.map(|t| all.triangles[t as usize]).collect();
-        let points = { all }.points;
+        let Welded {
+            points, sources, ..
+        } = all;
+        let sources = mesh.positions.map(|_| sources);
         let point = |i: u32| points[i as usize];
         let borders = Borders::new(points.len(), &triangles, &ends);
         let most = self.chunking.corners_around;
@@ -287,14 +318,21 @@ impl Input<'_> {
                 .chain(after.iter().map(|&t| t as usize))
                 .map(|t| triangles[t])
                 .collect();
-            let local = weld(points.len(), &point, near.iter().copied());
+            let local = weld(by, points.len(), &point, near.iter().copied());
             let unknown = |v: &u32| !known && borders.is_shared(*v);
             let near = Neighbors::new(&local, local.sources.iter().map(unknown).collect());
             let own_triangles = &local.triangles[before.len()..][..own.len()];
             let quads = quads::pair(&local.points, own_triangles);
             let mut part = empty.clone();
             part.triangles = own.len() as u32;
-            cluster::build(&mut part, &local.points, Some(&near), quads);
+            let of_positions: Option<Vec<u32>> =
+                (sources.as_ref()).map(|s| local.sources.iter().map(|&v| s[v as usize]).collect());
+            let source = cluster::Source {
+                points: &local.points,
+                sources: of_positions.as_deref(),
+                near: Some(&near),
+            };
+            cluster::build(&mut part, source, quads);
             part
         };
         in_order(threads, ends.len(), &make, &mut |part| mesh.append(part));

@@ -240,6 +240,7 @@ impl<'a> Reader<'a> {
             x: list()?,
             y: list()?,
             z: list()?,
+            sources: Vec::new(),
         })
     }
 
@@ -335,6 +336,7 @@ fn read(bytes: &[u8]) -> Result<OccluderMesh, MeshBytesError> {
         two_sided,
         hash: 0,
         triangles,
+        positions: None,
     };
     let wide = has_wide_homes(counts);
     let homes = from.list(homes, |from| home(from, wide))?;
@@ -446,8 +448,7 @@ impl OccluderMesh {
             let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
             let first = c.first_vertex as usize;
             for i in first..first + usize::from(c.vertex_count) {
-                let v = &self.vertices;
-                let p = Vec3::new(v.x[i], v.y[i], v.z[i]);
+                let p = self.vertices.at(i);
                 (lo, hi) = (lo.min(p), hi.max(p));
             }
             // Of infinite numbers bounds would be NaN, which is left out of the mesh's.

@@ -8,27 +8,27 @@ use super::mesh::{Cluster, OccluderMesh, bounds_of, hash_words};
 use super::neighbors::{self, LocalNumbers, Neighbors};
 use super::quads::Quad;
 use super::sah::{Cut, Item, Part, cut, is_lopsided, quad_normals};
-use glam::Vec3;
+use super::vertices::Vertices;
+use glam::{DVec3, Vec3};
 
 const MAX_QUADS: usize = 64;
 
 /// What clusters are built from.
 #[derive(Clone, Copy)]
-struct Source<'a> {
-    points: &'a [Vec3],
-    near: Option<&'a Neighbors<'a>>,
+pub(super) struct Source<'a> {
+    pub(super) points: &'a [Vec3],
+    /// Of a mesh that deforms, which of its positions each point is.
+    pub(super) sources: Option<&'a [u32]>,
+    pub(super) near: Option<&'a Neighbors<'a>>,
 }
 
-/// Appends the clusters of some quads over `points` to a mesh.
-pub(super) fn build(
-    mesh: &mut OccluderMesh,
-    points: &[Vec3],
-    near: Option<&Neighbors<'_>>,
-    quads: Vec<Quad>,
-) {
-    let mut items: Vec<Item> = quads.iter().map(|&quad| Item::new(points, quad)).collect();
+/// Appends the clusters of some quads to a mesh.
+pub(super) fn build(mesh: &mut OccluderMesh, source: Source<'_>, quads: Vec<Quad>) {
+    let mut items: Vec<Item> = (quads.iter())
+        .map(|&quad| Item::new(source.points, quad))
+        .collect();
     drop(quads);
-    split(mesh, Source { points, near }, &mut items);
+    split(mesh, source, &mut items);
 }
 
 /// Quads to be split.
@@ -123,10 +123,11 @@ fn creased(
 /// Appends one cluster; false if it has more than 256 vertices.
 fn emit(
     mesh: &mut OccluderMesh,
-    Source { points, near }: Source<'_>,
+    source: Source<'_>,
     local: &mut LocalNumbers,
     items: &[Item],
 ) -> bool {
+    let Source { points, near, .. } = source;
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
     used.sort_unstable();
     used.dedup();
@@ -139,25 +140,11 @@ fn emit(
     }
     let first_vertex = mesh.vertices.x.len() as u32;
     let first_group = mesh.quads.len() as u32;
-    let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for &v in &used {
-        let p = points[v as usize];
-        (lo, hi) = (lo.min(p), hi.max(p));
-        mesh.vertices.x.push(p.x);
-        mesh.vertices.y.push(p.y);
-        mesh.vertices.z.push(p.z);
+        source.push(&mut mesh.vertices, v);
     }
-    let pad = used.len().next_multiple_of(8) - used.len();
-    for list in [
-        &mut mesh.vertices.x,
-        &mut mesh.vertices.y,
-        &mut mesh.vertices.z,
-    ] {
-        let last = list.last().copied().unwrap_or(0.0);
-        list.extend(core::iter::repeat_n(last, pad));
-    }
+    mesh.vertices.pad();
     let mut triangles = 0u8;
-    let mut normals = Vec::with_capacity(items.len() * 2);
     // Whole groups of eight for the set-up. Padding repeats a vertex and has no area.
     mesh.quads
         .extend(core::iter::repeat_n([[0u8; 8]; 4], items.len().div_ceil(8)));
@@ -167,33 +154,21 @@ fn emit(
             mesh.quads[first_group as usize + i / 8][corner][i % 8] = number;
         }
         triangles += if item.quad[2] == item.quad[3] { 1 } else { 2 };
-        normals.extend(
-            quad_normals(item.quad.map(|v| points[v as usize]))
-                .into_iter()
-                .flatten(),
-        );
     }
-    let axis = normals.iter().sum::<Vec3>().normalize_or_zero();
-    let cos = normals.iter().fold(1.0f32, |m, n| m.min(n.dot(axis)));
-    // A little wider than measured, for rounding.
-    let cos = if axis == Vec3::ZERO { -1.0 } else { cos - 1e-4 };
-    let fill = fill(
-        items.iter().map(|i| i.quad.map(|v| points[v as usize])),
-        hi - lo,
-    );
-    let (center, half) = bounds_of(mesh.center, lo, hi);
+    let corners = items.iter().map(|i| i.quad.map(|v| points[v as usize]));
+    let shape = Shape::of(mesh.center, corners);
     mesh.clusters.push(Cluster {
-        center,
-        half,
-        cone_axis: axis,
-        cone_sin: (1.0 - cos * cos).max(0.0).sqrt(),
-        cone_cos: cos,
+        center: shape.center,
+        half: shape.half,
+        cone_axis: shape.cone_axis,
+        cone_sin: shape.cone_sin,
+        cone_cos: shape.cone_cos,
         first_vertex,
         first_group,
         vertex_count: used.len() as u16,
         quad_count: items.len() as u8,
         triangle_count: triangles,
-        fill,
+        fill: shape.fill,
         creased: creased(points, near, items.iter().map(|i| i.quad)),
         hash: hash_words(
             items.len() as u32,
@@ -203,9 +178,57 @@ fn emit(
         ),
     });
     if let Some(near) = near {
-        neighbors::build(mesh, near, local, &used, items.iter().map(|i| i.quad));
+        let quads = items.iter().map(|i| i.quad);
+        neighbors::build(mesh, source, near, local, &used, quads);
     }
     true
+}
+
+impl Source<'_> {
+    /// Appends a point to the vertices of a mesh.
+    pub(super) fn push(&self, vertices: &mut Vertices, point: u32) {
+        let source = self.sources.map(|sources| sources[point as usize]);
+        vertices.push(self.points[point as usize], source);
+    }
+}
+
+/// What of a cluster follows from the positions of its quads' corners.
+pub(super) struct Shape {
+    pub(super) center: Vec3,
+    pub(super) half: Vec3,
+    pub(super) cone_axis: Vec3,
+    pub(super) cone_sin: f32,
+    pub(super) cone_cos: f32,
+    pub(super) fill: f32,
+}
+
+impl Shape {
+    pub(super) fn of(
+        mesh_center: DVec3,
+        quads: impl ExactSizeIterator<Item = [Vec3; 4]> + Clone,
+    ) -> Self {
+        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut normals = Vec::with_capacity(quads.len() * 2);
+        for corners in quads.clone() {
+            for p in corners {
+                (lo, hi) = (lo.min(p), hi.max(p));
+            }
+            normals.extend(quad_normals(corners).into_iter().flatten());
+        }
+        let axis = normals.iter().sum::<Vec3>().normalize_or_zero();
+        let cos = normals.iter().fold(1.0f32, |m, n| m.min(n.dot(axis)));
+        // A little wider than measured, for rounding.
+        let cos = if axis == Vec3::ZERO { -1.0 } else { cos - 1e-4 };
+        let (center, half) = bounds_of(mesh_center, lo, hi);
+        Self {
+            center,
+            half,
+            cone_axis: axis,
+            cone_sin: (1.0 - cos * cos).max(0.0).sqrt(),
+            cone_cos: cos,
+            fill: fill(quads, hi - lo),
+        }
+    }
 }
 
 #[cfg(test)]

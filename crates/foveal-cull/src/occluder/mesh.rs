@@ -29,6 +29,8 @@ pub struct OccluderMesh {
     pub(crate) two_sided: bool,
     pub(crate) hash: u32,
     pub(super) triangles: u32,
+    /// Number of positions of a mesh that deforms.
+    pub(super) positions: Option<usize>,
 }
 
 /// A cluster: up to 64 quads over up to 256 vertices.

@@ -2,7 +2,8 @@
 //!
 //! `chunks`, `borders`, `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
 //! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
-//! what was read is a mesh, by `surface`; `set` places meshes in the world.
+//! what was read is a mesh, by `surface`; `deform` gives a mesh other positions, `heights` makes one
+//! of a terrain's heights; `set` places meshes in the world.
 
 mod bake;
 mod borders;
@@ -10,7 +11,9 @@ mod bytes;
 mod check;
 mod chunks;
 mod cluster;
+mod deform;
 mod half_edges;
+mod heights;
 mod in_parts;
 pub(crate) mod mesh;
 mod neighbors;

@@ -1,5 +1,6 @@
 //! Adjacency of a welded mesh, and the one-ring of each cluster that is built from it.
 
+use super::cluster::Source;
 use super::half_edges::HalfEdges;
 use super::mesh::OccluderMesh;
 use super::one_ring::{Edge, FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
@@ -148,6 +149,7 @@ impl LocalNumbers {
 /// order, whose local numbers are known.
 pub(super) fn build(
     mesh: &mut OccluderMesh,
+    source: Source<'_>,
     near: &Neighbors<'_>,
     local: &mut LocalNumbers,
     own: &[u32],
@@ -231,21 +233,13 @@ pub(super) fn build(
         }
         rings.triangles.push(group);
     }
-    let padding = others.len().next_multiple_of(8) - others.len();
-    let last = others.last().copied();
-    for v in others
-        .iter()
-        .copied()
-        .chain(last.into_iter().cycle().take(padding))
-    {
-        let p = near.points[v as usize];
-        rings.vertices.x.push(p.x);
-        rings.vertices.y.push(p.y);
-        rings.vertices.z.push(p.z);
+    for &v in &others {
+        source.push(&mut rings.vertices, v);
     }
+    rings.vertices.pad();
     rings.clusters.push(OneRing {
         first_vertex,
-        vertex_count: (others.len() + padding) as u16,
+        vertex_count: others.len().next_multiple_of(8) as u16,
         first_group,
         triangle_count: around.len() as u16,
         first_edge,
@@ -255,7 +249,7 @@ pub(super) fn build(
 
 #[cfg(test)]
 mod tests {
-    use super::super::weld::weld;
+    use super::super::weld::{By, weld};
     use super::*;
     use crate::BakeOptions;
 
@@ -283,6 +277,7 @@ mod tests {
         }));
         let triangles: Vec<[u32; 3]> = (1..=n).map(|i| [0, i, i + 1]).collect();
         let mesh = weld(
+            By::Position,
             points.len(),
             &|i| points[i as usize],
             triangles.iter().copied(),

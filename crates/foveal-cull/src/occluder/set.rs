@@ -117,13 +117,29 @@ impl OccluderSet {
     ) -> Result<(), CullError> {
         let slot = self.slot(id)?;
         let mesh = slot.mesh.clone().ok_or(CullError::UnknownOccluder)?;
-        let (enabled, generation) = (slot.enabled, slot.generation);
-        *slot = Instance {
-            enabled,
-            generation,
-            ..Instance::new(mesh, world_from_mesh.into().to_glam())?
-        };
-        Ok(())
+        slot.place(mesh, world_from_mesh.into().to_glam())
+    }
+
+    /// Gives an occluder whose mesh was baked
+    /// [`deformable`](crate::BakeOptions::deformable) another shape, as
+    /// [`OccluderMesh::set_positions`] does. Where other occluders or the caller share the mesh,
+    /// this one gets a copy of its own first, once.
+    ///
+    /// # Errors
+    /// [`CullError::UnknownOccluder`], or as [`OccluderMesh::set_positions`]. Then the occluder
+    /// keeps its shape.
+    pub fn set_positions<P: Copy + Into<[f32; 3]>>(
+        &mut self,
+        id: OccluderId,
+        positions: &[P],
+    ) -> Result<(), CullError> {
+        let slot = self.slot(id)?;
+        let mesh = slot.mesh.as_mut().ok_or(CullError::UnknownOccluder)?;
+        mesh.check_positions(positions)?;
+        Arc::make_mut(mesh).set_positions(positions)?;
+        let mesh = Arc::clone(mesh);
+        let place = slot.world_from_mesh;
+        slot.place(mesh, place)
     }
 
     /// Switches an occluder off, or on again. A new one is on. O(1).
@@ -191,6 +207,21 @@ impl OccluderSet {
 }
 
 impl Instance {
+    /// The same occluder with another mesh or place.
+    fn place(
+        &mut self,
+        mesh: Arc<OccluderMesh>,
+        world_from_mesh: DAffine3,
+    ) -> Result<(), CullError> {
+        let (enabled, generation) = (self.enabled, self.generation);
+        *self = Self {
+            enabled,
+            generation,
+            ..Self::new(mesh, world_from_mesh)?
+        };
+        Ok(())
+    }
+
     fn new(mesh: Arc<OccluderMesh>, world_from_mesh: DAffine3) -> Result<Self, CullError> {
         if !world_from_mesh.is_finite() {
             return Err(CullError::NotFinite(Quantity::Transform));

@@ -1,5 +1,5 @@
 //! Welding: positions that are bit-equal become one vertex, so that neighbours are found however a
-//! mesh was exported.
+//! mesh was exported. In a mesh that deforms they may part, so each index stays a vertex.
 
 use super::word_hash::{WordHash, Words3};
 use glam::Vec3;
@@ -14,15 +14,28 @@ pub(super) struct Welded {
     pub(super) sources: Vec<u32>,
 }
 
+/// What becomes one vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum By {
+    /// Equal positions. Triangles without area are left out.
+    Position,
+    /// Equal indices. Triangles with an index twice are left out.
+    Index,
+}
+
 /// Welds triangles over `positions` finite positions, which `position` gives, and leaves out
 /// degenerate triangles.
 pub(super) fn weld(
+    by: By,
     positions: usize,
     position: &dyn Fn(u32) -> Vec3,
     triangles: impl ExactSizeIterator<Item = [u32; 3]>,
 ) -> Welded {
     let corners = triangles.len().saturating_mul(3);
-    let most = positions.min(corners);
+    let most = match by {
+        By::Position => positions.min(corners),
+        By::Index => 0,
+    };
     let mut unique: HashMap<Words3, u32, WordHash> =
         HashMap::with_capacity_and_hasher(most, WordHash::default());
     let mut numbers = Numbers::new(positions, corners);
@@ -31,18 +44,27 @@ pub(super) fn weld(
         numbers.get_or(i, || {
             // + 0.0 makes -0.0 and 0.0 the same point.
             let p = position(i) + Vec3::ZERO;
-            let key = Words3(p.to_array().map(f32::to_bits));
-            *unique.entry(key).or_insert_with(|| {
+            let mut next = || {
                 points.push(p);
                 sources.push(i);
                 (points.len() - 1) as u32
-            })
+            };
+            match by {
+                By::Index => next(),
+                By::Position => {
+                    let key = Words3(p.to_array().map(f32::to_bits));
+                    *unique.entry(key).or_insert_with(next)
+                }
+            }
         })
     };
     let mut triangles: Vec<[u32; 3]> = triangles.map(|t| t.map(&mut renumber)).collect();
     triangles.retain(|&[a, b, c]| {
         let [p, q, r] = [a, b, c].map(|i| points[i as usize].as_dvec3());
-        (q - p).cross(r - p).length_squared() > 0.0
+        match by {
+            By::Index => a != b && b != c && c != a,
+            By::Position => (q - p).cross(r - p).length_squared() > 0.0,
+        }
     });
     Welded {
         points,

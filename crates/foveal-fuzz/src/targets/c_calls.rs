@@ -19,9 +19,10 @@ pub fn c_calls(input: &[u8]) {
     let r = &mut choices;
     let mut world = World::default();
     for _ in 0..60 + r.below(90) {
-        match r.below(13) {
+        match r.below(14) {
             0..2 => world.create(r),
             2..4 => world.bake(r),
+            13 => world.bake_heights(r),
             4..9 => world.change_occluders(r),
             9..11 => world.frame(r),
             11 => world.reload(r),
@@ -149,6 +150,8 @@ impl World {
             index_count: indices.len(),
             two_sided: r.below(2) as u32,
             adjacency: r.below(2) as u32,
+            deformable: r.below(2) as u32,
+            reserved: 0,
         };
         // Larger sizes than the struct has bytes are the caller's broken word.
         if source.size as usize > size_of::<FovealCullMeshSource>() {
@@ -161,6 +164,27 @@ impl World {
             self.meshes.push(mesh);
         } else {
             assert!(mesh.is_null());
+        }
+    }
+
+    fn bake_heights(&mut self, r: &mut Choices<'_>) {
+        let (columns, rows) = (r.below(9), r.below(9));
+        let heights: Vec<f32> = (0..columns * rows).map(|_| r.number() as f32).collect();
+        let [x, z] = [0, 1].map(|_| r.number().abs() as f32);
+        let step = if r.one_in(30) {
+            r.bits() as usize
+        } else {
+            r.below(6)
+        };
+        let mut mesh = null_mut();
+        // SAFETY: as many heights as are said, and a place for the mesh.
+        let status = unsafe {
+            foveal_cull_mesh_from_heights(heights.as_ptr(), columns, rows, x, z, step, &mut mesh)
+        };
+        if self.note(status) == Status::Ok {
+            self.meshes.push(mesh);
+        } else {
+            assert!(mesh.is_null() && status == Status::NotFinite);
         }
     }
 
@@ -239,9 +263,11 @@ impl World {
                 expected = Status::UnknownOccluder;
             }
         }
-        // SAFETY: live handles, one id, twelve numbers.
+        // Fits few meshes.
+        let positions: Vec<f32> = (0..3 * r.below(40)).map(|_| r.number() as f32).collect();
+        // SAFETY: live handles, one id, twelve numbers, and as many positions as are said.
         let status = unsafe {
-            match r.below(4) {
+            match r.below(5) {
                 0 => {
                     let status = foveal_cull_occluders_remove(set, id);
                     if status == Status::Ok {
@@ -250,6 +276,17 @@ impl World {
                     status
                 }
                 1 => foveal_cull_occluders_enable(set, id, r.below(2) as u32),
+                2 => {
+                    let count = positions.len() / 3;
+                    let positions = positions.as_ptr();
+                    let status = foveal_cull_occluders_deform(set, id, positions, count, 12);
+                    // Of a mesh that may be deformable or not.
+                    let refused = [Status::BadArgument, Status::WrongLength, Status::NotFinite];
+                    if expected == Status::Ok && refused.contains(&status) {
+                        expected = status;
+                    }
+                    status
+                }
                 _ => {
                     let place = r.place();
                     if !place.iter().all(|v| v.is_finite()) {

@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use super::scenes::promise::{
     culls_nothing_that_either_eye_sees, culls_nothing_visible, culls_nothing_visible_around, size,
 };
-use super::scenes::{Random, Scene, eye, scene, wrongly_culled};
+use super::scenes::{Object, Random, Scene, eye, scene, wrongly_culled};
 use crate::random::{Choices, random_bytes};
 
 /// Culls a random scene as it is, and another one with odd numbers in it.
@@ -175,7 +175,8 @@ fn occluders(scene: &mut Scene, choices: &mut Choices<'_>) -> OccluderSet {
             .with_two_sided(object.two_sided)
             .with_adjacency(!choices.one_in(3));
         let finite = object.positions.iter().all(|p| Vec3::is_finite(*p));
-        match OccluderMesh::bake(&object.positions, &object.indices, options) {
+        let deforms = choices.one_in(4);
+        match bake(object, options.with_deformable(deforms), choices) {
             Ok(mesh) => {
                 assert!(finite, "positions that are not finite were baked");
                 let bytes = mesh.to_bytes();
@@ -190,6 +191,29 @@ fn occluders(scene: &mut Scene, choices: &mut Choices<'_>) -> OccluderSet {
         }
     });
     set
+}
+
+/// Bakes an object, or where it deforms another shape of it that then takes the object's.
+fn bake(
+    object: &Object,
+    options: BakeOptions,
+    choices: &mut Choices<'_>,
+) -> Result<OccluderMesh, CullError> {
+    if !options.deformable {
+        return OccluderMesh::bake(&object.positions, &object.indices, options);
+    }
+    let mut moved = |p: &Vec3| {
+        let by = [0, 1, 2].map(|_| choices.below(9) as f32 * 0.25 - 1.0);
+        if p.is_finite() {
+            *p * 0.5 + Vec3::from(by)
+        } else {
+            Vec3::from(by)
+        }
+    };
+    let other: Vec<Vec3> = object.positions.iter().map(&mut moved).collect();
+    let mut mesh = OccluderMesh::bake(&other, &object.indices, options)?;
+    mesh.set_positions(&object.positions)?;
+    Ok(mesh)
 }
 
 /// Threads that stay from input to input.
