@@ -44,6 +44,10 @@ override DISCARD_BEYOND: bool = false;
 // Highest bit of an instance's number on its way to the fragments: it is seen by the right eye.
 const RIGHT_EYE: u32 = 0x80000000u;
 
+// Which bit of the number that is drawn tells the eye that is drawn by itself. Rust:
+// `stereo/submission.rs`.
+const EYE_BIT: u32 = 26u;
+
 // An instance's number, and the view that it is drawn for.
 struct Drawn {
     instance: u32,
@@ -52,7 +56,7 @@ struct Drawn {
 
 fn drawn_as(instance_index: u32) -> Drawn {
     if EYES == 1u {
-        return Drawn(drawn_at(instance_index & ~RIGHT_EYE), instance_index >> 31u);
+        return Drawn(drawn_at(extractBits(instance_index, 0u, EYE_BIT)), instance_index >> EYE_BIT);
     } else if EYES == 2u {
         return Drawn(drawn_at(instance_index >> 1u), instance_index & 1u);
     }

@@ -19,12 +19,17 @@ pub(crate) enum Submission {
     Multiview,
 }
 
+/// Above all numbers of instances, and low enough for devices with multiview: what they take as a
+/// number is below 2^27 (Vulkan, `maxMultiviewInstanceIndex`), and validation layers hold every draw
+/// to that. `EYE_BIT` in `shared/vertex.wgsl` and `stereo/trial.wgsl`.
+const EYE_BIT: u32 = 26;
+
 /// Which instances a draw issues.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Drawn {
     /// Each once.
     Once,
-    /// Each for this eye: the number's highest bit tells the shader.
+    /// Each for this eye: [`EYE_BIT`] of the number tells the shader.
     ForEye(u32),
     /// Each twice, the eyes in turn.
     Twice,
@@ -37,7 +42,7 @@ impl Drawn {
     pub(crate) fn range(self, first: u32, count: u32) -> std::ops::Range<u32> {
         match self {
             Self::Once | Self::ForEachLayer => first..first + count,
-            Self::ForEye(eye) => (first | eye << 31)..((first + count) | eye << 31),
+            Self::ForEye(eye) => (first | eye << EYE_BIT)..((first + count) | eye << EYE_BIT),
             Self::Twice => 2 * first..2 * (first + count),
         }
     }
@@ -112,5 +117,32 @@ impl Submission {
             Self::Multiview => "vertex_layered",
             _ => "vertex",
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_instances_are_below_what_multiview_allows() {
+        // As many instances of 96 bytes as fit a binding of 4 GiB.
+        let most = u32::MAX / 96;
+        for eye in [0, 1] {
+            let range = Drawn::ForEye(eye).range(most - 3, 3);
+            assert!(range.end < 1 << 27 && range.len() == 3, "{range:?}");
+            assert_eq!(range.start >> EYE_BIT, eye);
+        }
+        assert!(Drawn::Twice.range(most - 3, 3).end < 1 << 27);
+    }
+
+    #[test]
+    fn shaders_look_for_the_eye_at_the_same_bit() {
+        let line = format!("const EYE_BIT: u32 = {EYE_BIT}u;");
+        let shaders = [
+            include_str!("../shared/vertex.wgsl"),
+            include_str!("trial.wgsl"),
+        ];
+        assert!(shaders.iter().all(|text| text.contains(&line)));
     }
 }

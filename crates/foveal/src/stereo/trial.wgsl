@@ -44,10 +44,12 @@ fn corner(drawn: u32, vertex: u32, eye: u32) -> Corner {
     return Corner(vec4f(center + away + vec2f(shift, 0.0), depth, 1.0), triangle + 1u, 1.0);
 }
 
-// One eye alone: the number's highest bit tells which.
+// One eye alone: a bit of the number tells which. Rust: `stereo/submission.rs`.
+const EYE_BIT: u32 = 26u;
+
 @vertex
 fn eye_alone(@builtin(instance_index) drawn: u32, @builtin(vertex_index) vertex: u32) -> Corner {
-    return corner(drawn & 0x7fffffffu, vertex, drawn >> 31u);
+    return corner(extractBits(drawn, 0u, EYE_BIT), vertex, drawn >> EYE_BIT);
 }
 
 fn beside(drawn: u32, vertex: u32) -> Corner {
