@@ -19,6 +19,8 @@ pub(crate) struct CullingScene {
     /// Where in `placed` each instance is that occludes.
     placed_of: HashMap<u32, usize>,
     pub(super) boxes: Vec<foveal_cull::Aabb>,
+    /// Objects that are not drawn in this pose, whatever is seen of them.
+    hidden: Vec<bool>,
     /// Per object.
     pub(super) triangles: Vec<u32>,
     /// Over the boxes.
@@ -91,6 +93,7 @@ impl CullingScene {
             if let Some(mesh) = occluder
                 && let Ok(id) = self.occluders.add(Arc::clone(mesh), world_from_mesh)
             {
+                let _ = self.occluders.set_enabled(id, scene.is_visible(instance));
                 self.placed_of.insert(index, self.placed.len());
                 self.placed.push(Placed {
                     id,
@@ -109,10 +112,9 @@ impl CullingScene {
             let instance = &scene.instances[placed.instance as usize];
             placed.world_from_mesh = affine(instance.world_from_object);
             let moved = (self.occluders).set_transform(placed.id, placed.world_from_mesh);
-            if moved.is_err() {
-                // A transform that is no transform: better no occluder than a wrong one.
-                let _ = self.occluders.set_enabled(placed.id, false);
-            }
+            // A transform that is no transform: better no occluder than a wrong one.
+            let is_there = moved.is_ok() && scene.is_visible(instance);
+            let _ = self.occluders.set_enabled(placed.id, is_there);
         }
         self.take_boxes(scene);
         if self.objects.refit(&self.boxes).is_err() {
@@ -126,6 +128,13 @@ impl CullingScene {
         if let Some(cells) = &mut self.cells {
             cells.place(self.pose, instances);
         }
+    }
+
+    /// Whether an object is drawn in this pose where it is seen.
+    pub(super) fn is_shown(&self, object: u32) -> bool {
+        self.hidden
+            .get(object as usize)
+            .is_none_or(|hidden| !hidden)
     }
 
     /// The boxes of these cells, world space; none before they are placed.
@@ -149,6 +158,8 @@ impl CullingScene {
         let boxes = scene.objects.iter().map(|o| o.bounds);
         let boxes = boxes.map(|b| foveal_cull::Aabb::new(b.min, b.max));
         self.boxes.extend(boxes);
+        self.hidden.clear();
+        self.hidden.extend(scene.objects.iter().map(|o| !o.visible));
     }
 }
 

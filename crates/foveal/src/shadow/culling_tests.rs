@@ -244,6 +244,7 @@ fn add<const N: usize>(scene: &mut Scene, meshes: [Mesh; N]) {
         name: "object".to_owned(),
         node: object,
         element: 0,
+        visible: true,
         occluder: None,
         set: None,
         bounds: (meshes.iter()).fold(Aabb::EMPTY, |all, m| all.union(m.bounds)),
