@@ -219,7 +219,8 @@ impl Renderer {
     /// alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
     /// A change of [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
-    /// takes effect with the next [`Renderer::set_scene`].
+    /// takes effect with the next [`Renderer::set_scene`]; so does leaving out casters where shadows
+    /// were off.
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.

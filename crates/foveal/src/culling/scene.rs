@@ -9,7 +9,7 @@ use foveal_scene::{Aabb, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
 use super::cells::Cells;
-use crate::Culling;
+use crate::{Culling, Settings, Shadows};
 
 /// A scene's occluders and boxes.
 #[derive(Debug, Default)]
@@ -25,7 +25,7 @@ pub(crate) struct CullingScene {
     pub(super) triangles: Vec<u32>,
     /// Over the boxes.
     pub(super) objects: OccludeeTree,
-    /// What may receive shadows; `None` without occlusion culling.
+    /// What may receive shadows; `None` without occlusion culling or shadows.
     pub(super) cells: Option<Cells>,
     /// No other scene, and no other pose, has this number.
     pub(super) pose: u64,
@@ -47,15 +47,17 @@ fn new_pose() -> u64 {
 
 impl CullingScene {
     /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the
-    /// objects that are marked as occluders, or of all objects where none is marked.
-    pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
+    /// objects that are marked as occluders, or of all objects where none is marked; with shadows,
+    /// what may receive them too.
+    pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
         let mut this = Self {
             pose: new_pose(),
             ..Self::default()
         };
-        if mode == Culling::Occlusion {
+        if settings.culling.mode == Culling::Occlusion {
             this.bake(scene);
-            this.cells = Cells::new(scene);
+            let has_shadows = settings.lighting.shadows != Shadows::Off;
+            this.cells = has_shadows.then(|| Cells::new(scene)).flatten();
         }
         this.take_boxes(scene);
         this.triangles = vec![0; scene.objects.len()];

@@ -128,7 +128,7 @@ impl SceneOnGpu {
             lights,
             light_buffer,
             environment: scene.environment,
-            culling: CullingScene::new(scene, settings.culling.mode),
+            culling: CullingScene::new(scene, settings),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
                 materials: scene.materials.len() as u64,
