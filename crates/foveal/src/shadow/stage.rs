@@ -251,7 +251,7 @@ fn light_of(want: &Wanted) -> u32 {
 }
 
 /// Frames after which a tile that is drawn again forgets what only earlier ones saw.
-const MOST_FRAMES: u64 = 60;
+pub(super) const MOST_FRAMES: u64 = 60;
 
 /// What a frame sees.
 #[derive(Clone, Copy, Debug)]
