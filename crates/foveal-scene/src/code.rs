@@ -110,6 +110,8 @@ codes! {
     Animation = "ANIMATION",
     /// An animation moves what is not moved here.
     AnimationUnsupported = "ANIMATION_UNSUPPORTED",
+    /// The pointer of an animation channel names nothing in the file; the channel is not played.
+    AnimationPointer = "ANIMATION_POINTER",
     /// Two channels of an animation move the same.
     AnimationTwice = "ANIMATION_TWICE",
     /// The materials of an OBJ file cannot be read and are left out.

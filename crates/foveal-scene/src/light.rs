@@ -1,5 +1,7 @@
 //! Lights: punctual ones as in KHR_lights_punctual, and the surroundings.
 
+use std::f32::consts::FRAC_PI_2;
+
 use glam::Vec3;
 
 /// What kind of punctual light it is.
@@ -16,6 +18,18 @@ pub enum LightKind {
         /// Half angle in radians where the light ends, ≤ π/2.
         outer_rad: f32,
     },
+}
+
+impl LightKind {
+    /// A spot light, its half angles in radians brought into their ranges; both must be numbers.
+    pub(crate) fn spot(inner_rad: f32, outer_rad: f32) -> Self {
+        let outer_rad = outer_rad.clamp(1e-4, FRAC_PI_2);
+        Self::Spot {
+            // Shaders divide by the difference of the cosines.
+            inner_rad: inner_rad.clamp(0.0, outer_rad * 0.9999),
+            outer_rad,
+        }
+    }
 }
 
 /// A punctual light in world space.

@@ -71,6 +71,21 @@ pub struct Material {
     pub transmission: Option<Transmission>,
     /// Noise that is computed at each point instead of looked up in textures.
     pub procedural: Option<ProceduralLayers>,
+    /// What poses change of it.
+    pub animated: AnimatedParts,
+    /// How far a pose has turned the texture coordinates that generated tangents follow since the
+    /// tangents were made, in radians; 0 for a mesh with tangents of its own.
+    pub tangent_turn_rad: f32,
+}
+
+/// What poses change of a material, where a renderer that prepares a shader for each kind of material
+/// has to know. Lobes that poses change are there at rest too, if only with a factor of 0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AnimatedParts {
+    /// The index of refraction, or strength or colour of KHR_materials_specular.
+    pub specular: bool,
+    /// Where textures are read: [`TextureRef::uv_transform`].
+    pub uv_transforms: bool,
 }
 
 /// A surface of eight layers of noise in world space, each over those before where its height is
@@ -121,6 +136,12 @@ impl Material {
         ]
     }
 
+    /// An index of refraction as near to this one as there are: 0 reflects everything, and nothing
+    /// real lies between it and 1.
+    pub(crate) fn usable_ior(ior: f32) -> f32 {
+        if ior <= 0.0 { 0.0 } else { ior.max(1.0) }
+    }
+
     /// Reflectance at right angles that the index of refraction gives what is not metal.
     #[must_use]
     pub fn ior_reflectance(&self) -> f32 {
@@ -131,13 +152,14 @@ impl Material {
     }
 
     /// Whether what is not metal reflects otherwise than by default: by the index of refraction, or
-    /// by KHR_materials_specular.
+    /// by KHR_materials_specular, now or in another pose.
     #[must_use]
     pub fn has_own_specular(&self) -> bool {
         let default = (DEFAULT_IOR, 1.0, Vec3::ONE);
         let textures = [self.specular_texture, self.specular_color_texture];
         (self.ior, self.specular, self.specular_color) != default
             || textures.iter().any(Option::is_some)
+            || self.animated.specular
     }
 }
 
@@ -170,6 +192,8 @@ impl Default for Material {
             anisotropy: None,
             transmission: None,
             procedural: None,
+            animated: AnimatedParts::default(),
+            tangent_turn_rad: 0.0,
         }
     }
 }

@@ -19,6 +19,8 @@ pub struct Object {
     pub node: u32,
     /// The element's number within EXT_mesh_gpu_instancing, 0 without.
     pub element: u32,
+    /// Whether it is drawn. Poses change it (KHR_node_visibility), and so may a program.
+    pub visible: bool,
     /// The node's `extras.occluder`, where the file says it: whether it is meant to occlude.
     pub occluder: Option<bool>,
     /// The node's `extras.set`, where the file says it: the part of the scene that it belongs to.
@@ -122,7 +124,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// The box around all objects; [`Aabb::EMPTY`] for a scene without geometry.
+    /// The box around all objects, visible or not; [`Aabb::EMPTY`] for a scene without geometry.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
         self.objects
@@ -130,7 +132,14 @@ impl Scene {
             .fold(Aabb::EMPTY, |b, o| b.union(o.bounds))
     }
 
-    /// Whether an instance's surface can hide things for certain: made of triangles, opaque (masks
+    /// Whether an instance is drawn: its object is visible.
+    #[must_use]
+    pub fn is_visible(&self, instance: &Instance) -> bool {
+        let object = self.objects.get(instance.object as usize);
+        object.is_none_or(|object| object.visible)
+    }
+
+    /// Whether an instance's surface, where it is visible, can hide things for certain: made of triangles, opaque (masks
     /// have holes, blended and transmissive surfaces show what is behind them) and rigid (an occluder
     /// that deforms would have to be prepared in every pose).
     #[must_use]
@@ -241,6 +250,7 @@ mod tests {
             name: "box".to_owned(),
             node: 0,
             element: 0,
+            visible: true,
             occluder: None,
             set: None,
             bounds: Aabb { min, max },

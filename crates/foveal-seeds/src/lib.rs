@@ -14,6 +14,7 @@
 mod basis;
 mod compressed;
 mod file;
+pub mod pointers;
 mod rich;
 mod strokes;
 

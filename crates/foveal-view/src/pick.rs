@@ -26,6 +26,7 @@ pub(crate) struct Picked {
 /// from there alone.
 pub(crate) fn pick(scene: &Scene, ray: Ray) -> Option<Picked> {
     let mut candidates: Vec<(f32, usize)> = (scene.objects.iter().enumerate())
+        .filter(|(_, object)| object.visible)
         .filter_map(|(i, object)| Some((ray.enters(object.bounds)?, i)))
         .collect();
     candidates.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -219,7 +219,8 @@ impl Renderer {
     /// alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
     /// A change of [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
-    /// takes effect with the next [`Renderer::set_scene`].
+    /// takes effect with the next [`Renderer::set_scene`]; so does leaving out casters where shadows
+    /// were off.
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.
@@ -395,8 +396,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Takes over a new pose of the same scene (after [`Scene::pose`]). The pose before it becomes
-    /// the previous one, from which motion vectors are taken.
+    /// Takes over a new pose of the same scene (after [`Scene::pose`]): places and shapes, lights,
+    /// which objects are visible, and the numbers of materials. Their textures and alpha modes, and
+    /// what kinds of reflection they have, stay as [`Renderer::set_scene`] found them. The pose
+    /// before it becomes the previous one, from which motion vectors are taken.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the
@@ -418,7 +421,8 @@ impl Renderer {
                 history.scene_moved();
             }
             history.lights_changed(&change.lights_before, &self.scene.lights);
-            history.shadows_changed(&shadows);
+            history.light_changed(&shadows);
+            history.light_changed(&change.places);
         }
         let uniforms = self.scene.instance_uniforms();
         self.frame_bindings.write_instances(&self.gpu, uniforms);

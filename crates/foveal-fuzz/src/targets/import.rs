@@ -8,7 +8,7 @@
 use foveal_scene::{Clip, LoadOptions, MissingNormals, Scene, SceneError, load_bytes};
 use foveal_seeds::{
     ETC1S, File, UASTC, UASTC_ZSTD, draco_file, draco_stream, extended, grid_file, ktx2_file,
-    meshopt_file, rich, strokes, webp_file,
+    meshopt_file, pointers, rich, strokes, webp_file,
 };
 
 const WHOLE_FILE: u8 = 1;
@@ -105,6 +105,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
         rich(),
         extended(),
         strokes(),
+        pointers::pointers(),
         grid_file(),
         meshopt_file("EXT_meshopt_compression", 0),
         meshopt_file("KHR_meshopt_compression", 1),

@@ -75,6 +75,7 @@ impl SceneBuilder {
             name,
             node: object,
             element: 0,
+            visible: true,
             occluder,
             set: set.map(str::to_owned),
             bounds: Aabb::EMPTY,

@@ -2,11 +2,17 @@
 //!
 //! A channel that cannot be played is left out with a warning: the rest of the scene still moves.
 
+use serde_json::Value;
+
+use super::accessor::Component;
 use super::document::Counts;
 use super::json::Obj;
+use super::pointers::{Pointed, pointed};
 use super::reader::Reader;
 use crate::error::{Flaw, Parsed};
-use crate::pose::{Animation, Channel, Interpolation, Target};
+use crate::pose::{
+    Animation, Channel, Factor, Interpolation, LightPart, MaterialPart, Target, UvPart,
+};
 use crate::{Code, Warning};
 
 struct SamplerDef {
@@ -17,8 +23,8 @@ struct SamplerDef {
 
 struct ChannelDef {
     sampler: u32,
-    node: Option<u32>,
-    path: String,
+    /// `None` without a node; or why it cannot be played.
+    target: Result<Option<Pointed>, Flaw>,
 }
 
 /// An animation as the file has it.
@@ -29,7 +35,8 @@ pub(crate) struct AnimationDef {
 }
 
 impl AnimationDef {
-    pub(crate) fn parse(o: Obj<'_>, counts: &Counts) -> Parsed<Self> {
+    /// `root` is the whole file, into which pointers lead.
+    pub(crate) fn parse(o: Obj<'_>, root: &Value, counts: &Counts) -> Parsed<Self> {
         let samplers = o.objects("samplers", |s| {
             Ok(SamplerDef {
                 input: s.need("input", s.index("input", counts.accessors)?)?,
@@ -53,11 +60,12 @@ impl AnimationDef {
             let within = |e: Flaw| e.under("target");
             Ok(ChannelDef {
                 sampler: c.need("sampler", c.index("sampler", samplers.len())?)?,
-                node: target.index("node", counts.nodes).map_err(within)?,
-                path: target
-                    .need("path", target.string("path").map_err(within)?)
-                    .map_err(within)?
-                    .to_owned(),
+                target: {
+                    let node = target.index("node", counts.nodes).map_err(within)?;
+                    let path = target.string("path").map_err(within)?;
+                    let path = target.need("path", path).map_err(within)?;
+                    parse_target(path, node, target, root, counts).map_err(within)
+                },
             })
         })?;
         Ok(Self {
@@ -65,6 +73,12 @@ impl AnimationDef {
             samplers,
             channels,
         })
+    }
+
+    /// What its channels move.
+    pub(crate) fn targets(&self) -> impl Iterator<Item = &Pointed> {
+        let targets = self.channels.iter();
+        targets.filter_map(|channel| channel.target.as_ref().ok()?.as_ref())
     }
 
     /// The key frames. `weights_of` gives the number of morph targets of a node's mesh.
@@ -79,7 +93,8 @@ impl AnimationDef {
             let place = format!("channels[{i}]");
             match self.read_channel(def, reader, &weights_of) {
                 Ok(Some(channel)) => {
-                    let twin = |c: &Channel| c.node == channel.node && c.target == channel.target;
+                    let twin =
+                        |c: &Channel| c.number == channel.number && c.target.meets(channel.target);
                     if channels.iter().rev().take(8).any(twin) {
                         let flaw = Flaw::new(
                             Code::AnimationTwice,
@@ -108,28 +123,9 @@ impl AnimationDef {
         reader: Reader<'_>,
         weights_of: impl Fn(u32) -> usize,
     ) -> Parsed<Option<Channel>> {
-        let target = match def.path.as_str() {
-            "translation" => Target::Translation,
-            "rotation" => Target::Rotation,
-            "scale" => Target::Scale,
-            "weights" => Target::Weights,
-            "pointer" => {
-                return Err(Flaw::new(
-                    Code::AnimationUnsupported,
-                    "is a pointer (KHR_animation_pointer), which is not supported",
-                )
-                .under("target.path"));
-            }
-            other => {
-                return Err(Flaw::new(
-                    Code::AnimationUnsupported,
-                    format!("\"{other}\" cannot be animated"),
-                )
-                .under("target.path"));
-            }
-        };
+        let pointed = def.target.as_ref().map_err(Flaw::clone)?;
         // The specification lets channels without a node be ignored.
-        let Some(node) = def.node else {
+        let Some(&Pointed { number, target, .. }) = pointed.as_ref() else {
             return Ok(None);
         };
         let place = |e: Flaw, part: &str| e.under(format_args!("sampler {} {part}", def.sampler));
@@ -152,20 +148,22 @@ impl AnimationDef {
             ));
         }
         let width = match target {
-            Target::Translation | Target::Scale => 3,
-            Target::Rotation => 4,
-            Target::Weights => weights_of(node),
+            Target::Weights => weights_of(number),
+            Target::Weight(weight) => usize::from((weight as usize) < weights_of(number)),
+            _ => width_of(target),
         };
-        let values: Vec<f32> = match target {
-            Target::Translation | Target::Scale => reader
-                .floats::<3>(sampler.output)
-                .map(|v| v.into_flattened()),
-            Target::Rotation => reader
-                .floats::<4>(sampler.output)
-                .map(|v| v.into_flattened()),
-            Target::Weights => reader
-                .floats::<1>(sampler.output)
-                .map(|v| v.into_flattened()),
+        if target == Target::Visible {
+            let component = reader.accessor(sampler.output).component;
+            if sampler.interpolation != Interpolation::Step || component != Component::U8 {
+                let cause = "is of a boolean, which needs unsigned bytes and STEP";
+                return Err(place(Flaw::new(Code::Animation, cause), "output"));
+            }
+        }
+        let values: Vec<f32> = match width_of(target) {
+            2 => (reader.floats::<2>(sampler.output)).map(|v| v.into_flattened()),
+            3 => (reader.floats::<3>(sampler.output)).map(|v| v.into_flattened()),
+            4 => (reader.floats::<4>(sampler.output)).map(|v| v.into_flattened()),
+            _ => (reader.floats::<1>(sampler.output)).map(|v| v.into_flattened()),
         }
         .map_err(|e| place(e, "output"))?;
         let per_key = match sampler.interpolation {
@@ -176,7 +174,7 @@ impl AnimationDef {
         if width == 0 {
             return Err(Flaw::new(
                 Code::Animation,
-                "moves the weights of a node without morph targets",
+                "moves the weights of a node without such morph targets",
             ));
         }
         if values.len() < needed || !values.iter().all(|v| v.is_finite()) {
@@ -184,12 +182,52 @@ impl AnimationDef {
             return Err(place(Flaw::new(Code::Animation, cause), "output"));
         }
         Ok(Some(Channel {
-            node,
+            number,
             target,
             interpolation: sampler.interpolation,
             width,
             times,
             values,
         }))
+    }
+}
+
+/// What a channel's target object points at.
+fn parse_target(
+    path: &str,
+    node: Option<u32>,
+    target: Obj<'_>,
+    root: &Value,
+    counts: &Counts,
+) -> Parsed<Option<Pointed>> {
+    let property = match path {
+        "translation" => Target::Translation,
+        "rotation" => Target::Rotation,
+        "scale" => Target::Scale,
+        "weights" => Target::Weights,
+        "pointer" => return pointed(target, root, counts).map(Some),
+        other => {
+            let cause = format!("\"{other}\" cannot be animated");
+            return Err(Flaw::new(Code::AnimationUnsupported, cause).under("path"));
+        }
+    };
+    Ok(node.map(|node| Pointed::new(node, property)))
+}
+
+/// Numbers of an element of the accessor with a target's values.
+fn width_of(target: Target) -> usize {
+    match target {
+        Target::Translation | Target::Scale => 3,
+        Target::Rotation => 4,
+        Target::Light(LightPart::Color) => 3,
+        Target::Material(MaterialPart::Uv(_, UvPart::Offset | UvPart::Scale)) => 2,
+        Target::Material(MaterialPart::Factor(Factor::BaseColor)) => 4,
+        Target::Material(MaterialPart::Factor(
+            Factor::Emissive
+            | Factor::SpecularColor
+            | Factor::SheenColor
+            | Factor::AttenuationColor,
+        )) => 3,
+        _ => 1,
     }
 }

@@ -18,6 +18,7 @@ use super::meshopt::Coded;
 use super::nodes::NodeDef;
 use super::skins::SkinDef;
 use crate::error::{Flaw, Parsed};
+use crate::pose::Target;
 use crate::{Code, Sampler, Warning};
 
 /// How many of each thing there are; references are checked against these.
@@ -79,6 +80,7 @@ pub(crate) struct Document {
 impl Document {
     /// Reads the document; `warn` takes what is odd but harmless.
     pub(crate) fn parse(root: &Value, warn: &mut Vec<Warning>) -> Parsed<Self> {
+        let file = root;
         let root = Obj::of(root)?;
         check_version(root)?;
         super::extensions::check(root, warn)?;
@@ -132,16 +134,26 @@ impl Document {
                 accessor.draco = accessor.view.is_none();
             }
         }
+        let mut materials = root.objects("materials", |o| MaterialDef::parse(o, &counts))?;
+        let animations = root.objects("animations", |o| AnimationDef::parse(o, file, &counts))?;
+        for pointed in animations.iter().flat_map(AnimationDef::targets) {
+            if let Target::Material(part) = pointed.target {
+                materials[pointed.number as usize].animate(part);
+            }
+        }
+        for material in &mut materials {
+            material.drop_unseen_lobes();
+        }
         Ok(Self {
             accessors,
             images,
             samplers: root.objects("samplers", super::images::parse_sampler)?,
             textures,
-            materials: root.objects("materials", |o| MaterialDef::parse(o, &counts))?,
+            materials,
             meshes,
             skins: root.objects("skins", |o| SkinDef::parse(o, &counts))?,
             cameras: root.objects("cameras", CameraDef::parse)?,
-            animations: root.objects("animations", |o| AnimationDef::parse(o, &counts))?,
+            animations,
             lights: light_defs,
             variants,
             roots: parse_roots(root, &counts, warn)?,

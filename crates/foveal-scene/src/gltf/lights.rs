@@ -1,6 +1,6 @@
 //! KHR_lights_punctual: definitions and placement.
 
-use std::f32::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::f32::consts::FRAC_PI_4;
 
 use glam::{Mat4, Vec3};
 
@@ -27,19 +27,15 @@ fn parse_light(o: Obj<'_>) -> Parsed<Light> {
         "directional" => LightKind::Directional,
         "point" => LightKind::Point,
         "spot" => {
-            let spot = o.object("spot")?;
+            let angles = o.object("spot")?;
             let angle = |key, default| -> Parsed<f32> {
-                match spot {
-                    Some(spot) => Ok(spot.float(key)?.unwrap_or(default)),
+                match angles {
+                    Some(angles) => Ok(angles.float(key)?.unwrap_or(default)),
                     None => Ok(default),
                 }
             };
-            let outer_rad = angle("outerConeAngle", FRAC_PI_4)?.clamp(1e-4, FRAC_PI_2);
-            LightKind::Spot {
-                // Shaders divide by the difference of the cosines.
-                inner_rad: angle("innerConeAngle", 0.0)?.clamp(0.0, outer_rad * 0.9999),
-                outer_rad,
-            }
+            let outer_rad = angle("outerConeAngle", FRAC_PI_4)?;
+            LightKind::spot(angle("innerConeAngle", 0.0)?, outer_rad)
         }
         other => {
             return Err(Flaw::new(

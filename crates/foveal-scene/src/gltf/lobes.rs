@@ -7,27 +7,61 @@ use super::document::Counts;
 use super::json::Obj;
 use super::slots::texture;
 use crate::error::{Flaw, Parsed};
+use crate::pose::Factor;
 use crate::{Anisotropy, Clearcoat, Material, Sheen, Transmission};
 
-/// Reads a material's lobes, with the file's numbers of textures. Lobes that show nothing are left
-/// out.
+/// Lobes that stay although they show nothing at rest: animations change how much of them there is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct KeptLobes {
+    clearcoat: bool,
+    sheen: bool,
+    anisotropy: bool,
+    transmission: bool,
+}
+
+impl KeptLobes {
+    /// Keeps what a factor that is animated may show.
+    pub(super) fn add(&mut self, factor: Factor) {
+        match factor {
+            Factor::Clearcoat => self.clearcoat = true,
+            Factor::SheenColor => self.sheen = true,
+            Factor::Anisotropy => self.anisotropy = true,
+            Factor::Transmission => self.transmission = true,
+            _ => {}
+        }
+    }
+}
+
+/// Leaves out lobes that show nothing, and that are not kept.
+pub(super) fn drop_unseen(material: &mut Material, kept: KeptLobes) {
+    let coat = material.clearcoat;
+    material.clearcoat = coat.filter(|coat| coat.factor > 0.0 || kept.clearcoat);
+    let sheen = material.sheen;
+    material.sheen = sheen.filter(|sheen| sheen.color != Vec3::ZERO || kept.sheen);
+    let anisotropy = material.anisotropy;
+    material.anisotropy = anisotropy.filter(|found| found.strength > 0.0 || kept.anisotropy);
+    let transmission = material.transmission;
+    material.transmission = transmission.filter(|found| found.factor > 0.0 || kept.transmission);
+}
+
+/// Reads a material's lobes, with the file's numbers of textures.
 pub(crate) fn read(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed<()> {
     let within = |name: &'static str| move |e: Flaw| e.under(format_args!("extensions.{name}"));
     if let Some(e) = o.extension("KHR_materials_clearcoat")? {
         let coat = clearcoat(e, counts).map_err(within("KHR_materials_clearcoat"))?;
-        material.clearcoat = Some(coat).filter(|coat| coat.factor > 0.0);
+        material.clearcoat = Some(coat);
     }
     if let Some(e) = o.extension("KHR_materials_sheen")? {
         let sheen = sheen(e, counts).map_err(within("KHR_materials_sheen"))?;
-        material.sheen = Some(sheen).filter(|sheen| sheen.color != Vec3::ZERO);
+        material.sheen = Some(sheen);
     }
     if let Some(e) = o.extension("KHR_materials_anisotropy")? {
         let found = anisotropy(e, counts).map_err(within("KHR_materials_anisotropy"))?;
-        material.anisotropy = Some(found).filter(|found| found.strength > 0.0);
+        material.anisotropy = Some(found);
     }
     if let Some(e) = o.extension("KHR_materials_transmission")? {
         let found = transmission(e, counts).map_err(within("KHR_materials_transmission"))?;
-        material.transmission = Some(found).filter(|found| found.factor > 0.0);
+        material.transmission = Some(found);
     }
     // Without transmission nothing is seen of the volume.
     if let (Some(e), Some(found)) = (

@@ -4,9 +4,10 @@ use glam::{Mat3, Vec3, Vec4};
 
 use super::document::Counts;
 use super::json::Obj;
-use super::lobes;
+use super::lobes::{self, KeptLobes};
 use super::slots::{SlotDef, parse_slot, texture};
 use crate::error::{Flaw, Parsed};
+use crate::pose::{Factor, MaterialPart, TextureSlot};
 use crate::{AlphaMode, Code, Material, TextureRef};
 
 /// A material whose texture slots are still numbers of the file.
@@ -18,6 +19,11 @@ pub(crate) struct MaterialDef {
     pub(crate) normal: Option<SlotDef>,
     pub(crate) occlusion: Option<SlotDef>,
     pub(crate) emissive: Option<SlotDef>,
+    /// The two factors of the material's emission.
+    pub(crate) emissive_factor: Vec3,
+    pub(crate) emissive_strength: f32,
+    /// Lobes that stay although they show nothing at rest.
+    kept: KeptLobes,
 }
 
 /// The file's UV sets that a material reads, in the order of a vertex's two slots.
@@ -36,15 +42,17 @@ impl MaterialDef {
             alpha_mode: parse_alpha(o)?,
             double_sided: o.boolean("doubleSided")?.unwrap_or(false),
             unlit: o.extension("KHR_materials_unlit")?.is_some(),
-            emissive: o.floats("emissiveFactor")?.map_or(Vec3::ZERO, Vec3::from),
             ..Material::default()
         };
+        let emissive_factor = o.floats("emissiveFactor")?.map_or(Vec3::ZERO, Vec3::from);
+        let mut emissive_strength = 1.0;
         if let Some(e) = o.extension("KHR_materials_emissive_strength")? {
             let strength = e
                 .float("emissiveStrength")
                 .map_err(|e| e.under("extensions.KHR_materials_emissive_strength"))?;
-            material.emissive *= strength.unwrap_or(1.0).max(0.0);
+            emissive_strength = strength.unwrap_or(1.0).max(0.0);
         }
+        material.emissive = emissive_factor * emissive_strength;
         let (mut base_color, mut metallic_roughness) = (None, None);
         if let Some(pbr) = o.object("pbrMetallicRoughness")? {
             let within = |e: Flaw| e.under("pbrMetallicRoughness");
@@ -90,7 +98,27 @@ impl MaterialDef {
             normal: slot(o, "normalTexture")?,
             occlusion: slot(o, "occlusionTexture")?,
             emissive: slot(o, "emissiveTexture")?,
+            emissive_factor,
+            emissive_strength,
+            kept: KeptLobes::default(),
         })
+    }
+
+    /// Prepares for an animation that changes this part.
+    pub(crate) fn animate(&mut self, part: MaterialPart) {
+        let animated = &mut self.material.animated;
+        match part {
+            MaterialPart::Uv(..) => animated.uv_transforms = true,
+            MaterialPart::Factor(Factor::Ior | Factor::Specular | Factor::SpecularColor) => {
+                animated.specular = true;
+            }
+            MaterialPart::Factor(factor) => self.kept.add(factor),
+        }
+    }
+
+    /// Leaves out lobes that never show anything. Follows the last [`Self::animate`].
+    pub(crate) fn drop_unseen_lobes(&mut self) {
+        lobes::drop_unseen(&mut self.material, self.kept);
     }
 
     /// The set of texture coordinates that tangents follow, and what becomes of them: of normals,
@@ -104,6 +132,16 @@ impl MaterialDef {
             found.texture.map_or(first, of)
         });
         normal.or(coat.map(of)).or(anisotropy)
+    }
+
+    /// The texture whose coordinates tangents follow, where it is one.
+    pub(crate) fn tangent_slot(&self) -> Option<TextureSlot> {
+        let coat = self.material.clearcoat.and_then(|coat| coat.normal_texture);
+        let anisotropy = self.material.anisotropy.and_then(|found| found.texture);
+        let normal = self.normal.map(|_| TextureSlot::Normal);
+        normal
+            .or(coat.map(|_| TextureSlot::ClearcoatNormal))
+            .or(anisotropy.map(|_| TextureSlot::Anisotropy))
     }
 
     /// Maps the sets in use to the two slots, lowest set first; true when some did not fit.
@@ -150,8 +188,7 @@ fn read_specular(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Parsed
     if let Some(e) = o.extension("KHR_materials_ior")? {
         let within = |e: Flaw| e.under("extensions.KHR_materials_ior");
         let ior = e.float("ior").map_err(within)?.unwrap_or(material.ior);
-        // 0 is allowed and reflects everything; nothing real lies between it and 1.
-        material.ior = if ior <= 0.0 { 0.0 } else { ior.max(1.0) };
+        material.ior = Material::usable_ior(ior);
     }
     if let Some(e) = o.extension("KHR_materials_specular")? {
         let within = |e: Flaw| e.under("extensions.KHR_materials_specular");

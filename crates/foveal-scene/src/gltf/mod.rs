@@ -28,6 +28,7 @@ mod normals;
 mod objects;
 mod parts;
 mod pictures;
+mod pointers;
 mod reader;
 mod rigging;
 mod skins;
@@ -44,7 +45,7 @@ mod tests;
 pub(crate) use budget::Budget;
 pub(crate) use cameras::rigid;
 pub(crate) use lights::place as place_light;
-pub(crate) use nodes::rotation;
+pub(crate) use nodes::{all_the_way_up, rotation};
 pub(crate) use normals::plane_normal;
 
 use std::collections::HashSet;
@@ -221,8 +222,9 @@ fn build(
     scene.objects = placed.objects;
     scene.instances = placed.instances;
     name_objects(&mut scene, document);
-    let cameras = place_cameras_and_lights(&mut scene, document, &hierarchy, &world, warn);
-    rig.finish(&mut scene, &shown, &placed.clouds, &cameras);
+    let carriers = place_cameras_and_lights(&mut scene, document, &hierarchy, &world, warn);
+    rig.finish(&mut scene, document, &shown, &placed.clouds, &carriers);
+    scene.show(&hierarchy.visible);
     choose_clip(&mut scene, &options.clip)?;
     scene.pose(options.time_s);
     scene.timings.bounds_ms = watch.lap_ms();
@@ -296,15 +298,24 @@ fn name_objects(scene: &mut Scene, document: &Document) {
     }
 }
 
-/// Places what the shown nodes carry; returns each camera's node.
+/// Nodes of the scene's cameras, and numbers of cameras and lights in the file.
+#[derive(Default)]
+struct Carriers {
+    /// Of each camera: its node, and its number.
+    cameras: Vec<(u32, u32)>,
+    /// Of each light: its number.
+    lights: Vec<u32>,
+}
+
+/// Places what the shown nodes carry.
 fn place_cameras_and_lights(
     scene: &mut Scene,
     document: &Document,
     hierarchy: &Hierarchy,
     world: &[Mat4],
     warn: &mut Vec<Warning>,
-) -> Vec<u32> {
-    let mut camera_nodes = Vec::new();
+) -> Carriers {
+    let mut carriers = Carriers::default();
     let visible = document.nodes.iter().enumerate();
     for (i, node) in visible.filter(|(i, _)| hierarchy.shown[*i]) {
         if let Some(camera) = node.camera {
@@ -312,9 +323,9 @@ fn place_cameras_and_lights(
             match &def.projection {
                 Ok(projection) => {
                     let number = scene.cameras.len();
-                    let camera = def.place(*projection, node.name.as_deref(), number, world[i]);
-                    scene.cameras.push(camera);
-                    camera_nodes.push(i as u32);
+                    let placed = def.place(*projection, node.name.as_deref(), number, world[i]);
+                    scene.cameras.push(placed);
+                    carriers.cameras.push((i as u32, camera));
                 }
                 Err(flaw) => warn.push(
                     flaw.warning()
@@ -330,6 +341,7 @@ fn place_cameras_and_lights(
                     placed.node = Some(i as u32);
                     place_light(&mut placed, world[i]);
                     scene.lights.push(placed);
+                    carriers.lights.push(light);
                 }
                 Err(flaw) => warn.push(
                     flaw.warning()
@@ -341,5 +353,5 @@ fn place_cameras_and_lights(
             }
         }
     }
-    camera_nodes
+    carriers
 }

@@ -2,10 +2,11 @@
 
 use glam::{Mat4, Quat, Vec3};
 
+use super::animations::AnimationDef;
 use super::document::{Counts, Document};
 use super::json::Obj;
 use crate::error::{Flaw, Parsed};
-use crate::pose::Local;
+use crate::pose::{Local, Target};
 use crate::{Code, Warning};
 
 /// EXT_mesh_gpu_instancing: the accessors of its attributes.
@@ -141,12 +142,27 @@ fn parse_instancing(o: Obj<'_>, counts: &Counts) -> Parsed<Option<Instancing>> {
     Ok(Some(found))
 }
 
+/// Of each node whether this is so of itself and of all above it; `order` has parents first.
+pub(crate) fn all_the_way_up(
+    order: &[u32],
+    parent: &[Option<u32>],
+    is_so: impl Fn(usize) -> bool,
+) -> Vec<bool> {
+    let mut all = vec![true; parent.len()];
+    for i in order.iter().map(|&i| i as usize) {
+        all[i] = is_so(i) && parent[i].is_none_or(|p| all[p as usize]);
+    }
+    all
+}
+
 /// The node forest: parents, and an order in which every parent precedes its children.
 pub(crate) struct Hierarchy {
     pub(crate) parent: Vec<Option<u32>>,
     pub(crate) order: Vec<u32>,
-    /// Nodes that the shown scene reaches and no KHR_node_visibility hides.
+    /// Nodes that the shown scene reaches and no KHR_node_visibility hides in every pose.
     pub(crate) shown: Vec<bool>,
+    /// Of these, whether none hides them at rest.
+    pub(crate) visible: Vec<bool>,
 }
 
 impl Hierarchy {
@@ -198,13 +214,18 @@ impl Hierarchy {
             shown[i as usize] |= above;
         }
         // Hidden in a second pass: a root below a hidden node is hidden with it.
-        let mut hidden = vec![false; nodes.len()];
-        for &i in &order {
-            let above = parent[i as usize].is_some_and(|p| hidden[p as usize]);
-            hidden[i as usize] = above || !nodes[i as usize].visible;
-            shown[i as usize] &= !hidden[i as usize];
+        let mut appears = vec![false; nodes.len()];
+        let targets = document.animations.iter().flat_map(AnimationDef::targets);
+        for pointed in targets.filter(|pointed| pointed.target == Target::Visible) {
+            appears[pointed.number as usize] = true;
+        }
+        let own = |i: usize| nodes[i].visible || appears[i];
+        let stays = all_the_way_up(&order, &parent, own);
+        for (shown, stays) in shown.iter_mut().zip(stays) {
+            *shown &= stays;
         }
         Ok(Self {
+            visible: all_the_way_up(&order, &parent, |i| nodes[i].visible),
             parent,
             order,
             shown,

@@ -190,6 +190,7 @@ pub(crate) fn place(
             name: node.name.clone().unwrap_or_default(),
             node: shown.node,
             element: element as u32,
+            visible: true,
             occluder: node.occluder,
             set: node.set.clone(),
             bounds,

@@ -1,10 +1,13 @@
 //! From nodes, skins, morph targets and animations to the rig that
 //! [`Scene::pose`](crate::Scene::pose) plays.
 
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use glam::Mat4;
 
+use super::Carriers;
+use super::animations::AnimationDef;
 use super::document::Document;
 use super::nodes::Hierarchy;
 use super::objects::Shown;
@@ -12,8 +15,11 @@ use super::parts::bytes_of_stroke;
 use super::reader::Reader;
 use crate::cloud::Cloud;
 use crate::error::{Flaw, Parsed};
-use crate::pose::{Binding, Deformer, Local, Node, Rig, RigData, Shape, world_from_nodes};
-use crate::{Code, LoadOptions, Scene, Warning};
+use crate::pose::{
+    Binding, Deformer, Local, MaterialPart, MaterialState, Node, Rig, RigData, Shape, Target,
+    world_from_nodes,
+};
+use crate::{Code, LoadOptions, Material, Scene, Warning};
 
 /// Each pose writes all of these anew, and each node has its own: more would not move in real time.
 const MAX_DEFORMING: u64 = 16 << 20;
@@ -70,6 +76,9 @@ impl Rigging {
             data.skins.push(skin);
         }
         let moving = moving_nodes(&mut data, document, warn);
+        if data.moves_visibility() {
+            data.visible = Some(document.nodes.iter().map(|n| n.visible).collect());
+        }
         Ok(Self { data, moving })
     }
 
@@ -174,15 +183,15 @@ impl Rigging {
     pub(crate) fn finish(
         mut self,
         scene: &mut Scene,
+        document: &Document,
         shown: &[Shown],
         clouds: &[Option<Arc<Cloud>>],
-        camera_nodes: &[u32],
+        carriers: &Carriers,
     ) {
         if self.data.deformers.is_empty() && !self.data.plays() {
             return;
         }
-        let deforming: std::collections::HashSet<u32> =
-            self.data.deformers.iter().map(|d| d.node).collect();
+        let deforming: HashSet<u32> = self.data.deformers.iter().map(|d| d.node).collect();
         let by_node: std::collections::HashMap<u32, &Shown> =
             shown.iter().map(|s| (s.node, s)).collect();
         for (i, object) in scene.objects.iter().enumerate() {
@@ -204,7 +213,7 @@ impl Rigging {
                 }
             }
         }
-        for (i, &node) in camera_nodes.iter().enumerate() {
+        for (i, &(node, _)) in carriers.cameras.iter().enumerate() {
             if self.moving[node as usize] {
                 self.data.cameras.push((i as u32, node));
             }
@@ -216,6 +225,7 @@ impl Rigging {
                 self.data.lights.push((i as u32, node));
             }
         }
+        self.keep_at_rest(scene, document, carriers);
         scene.rig = Rig {
             data: Some(Arc::new(self.data)),
             played: 0..0,
@@ -223,19 +233,94 @@ impl Rigging {
     }
 }
 
-/// Marks animated nodes and everything below them. Nodes with a matrix cannot be animated.
+impl Rigging {
+    /// Keeps the values at rest of what animations change besides nodes.
+    fn keep_at_rest(&mut self, scene: &Scene, document: &Document, carriers: &Carriers) {
+        let data = &mut self.data;
+        let (mut cameras, mut lights) = (HashSet::new(), HashSet::new());
+        let channels = data.animations.iter().flat_map(|a| &a.channels);
+        for channel in channels {
+            match channel.target {
+                Target::Camera(_) => {
+                    cameras.insert(channel.number);
+                }
+                Target::Light(_) => {
+                    lights.insert(channel.number);
+                }
+                Target::Material(_) => {
+                    let number = channel.number as usize;
+                    let Some(material) = scene.materials.get(number) else {
+                        continue;
+                    };
+                    let def = &document.materials[number];
+                    let at_rest = || MaterialState {
+                        // The scene's own name stays.
+                        material: Material {
+                            name: String::new(),
+                            ..material.clone()
+                        },
+                        emissive: def.emissive_factor,
+                        emissive_strength: def.emissive_strength,
+                        transforms: Vec::new(),
+                        tangents: None,
+                    };
+                    data.materials.entry(channel.number).or_insert_with(at_rest);
+                }
+                _ => {}
+            }
+        }
+        for pointed in document.animations.iter().flat_map(AnimationDef::targets) {
+            if let Target::Material(MaterialPart::Uv(slot, _)) = pointed.target
+                && let Some(transform) = pointed.at_rest
+                && let Some(state) = data.materials.get_mut(&pointed.number)
+                && state.transforms.iter().all(|(known, _)| *known != slot)
+            {
+                state.transforms.push((slot, transform));
+            }
+        }
+        // Tangents of the file are taken as they are.
+        let meshes = document.meshes.iter();
+        let pairs = meshes.flat_map(|mesh| mesh.primitives.iter().zip(&mesh.materials));
+        let own = pairs.filter(|(primitive, _)| primitive.attributes.tangent.is_some());
+        let own: HashSet<u32> = own.filter_map(|(_, material)| *material).collect();
+        for (number, state) in &mut data.materials {
+            let slot = document.materials[*number as usize].tangent_slot();
+            let moved = slot.filter(|_| !own.contains(number));
+            let moved = moved.and_then(|slot| state.transforms.iter().find(|(s, _)| *s == slot));
+            state.tangents = moved.map(|(slot, transform)| (*slot, transform.rotation_rad));
+        }
+        for (i, (_, number)) in carriers.cameras.iter().enumerate() {
+            if let Some(camera) = scene.cameras.get(i).filter(|_| cameras.contains(number)) {
+                data.zooming.push((i as u32, *number));
+                data.projections.insert(*number, camera.projection);
+            }
+        }
+        let all = data.visible.is_some();
+        for (i, number) in carriers.lights.iter().enumerate() {
+            let changes = all || lights.contains(number);
+            if let Some(light) = scene.lights.get(i).filter(|_| changes) {
+                data.shining.push((i as u32, *number));
+                data.emission.insert(*number, light.clone());
+            }
+        }
+    }
+}
+
+/// Marks animated nodes and everything below them. Rotation and scale of nodes with a matrix cannot
+/// be animated.
 fn moving_nodes(data: &mut RigData, document: &Document, warn: &mut Vec<Warning>) -> Vec<bool> {
     let mut moving = vec![false; data.nodes.len()];
     for channel in data.animations.iter().flat_map(|a| &a.channels) {
-        let node = channel.node as usize;
+        if !channel.target.is_transform() && !channel.target.is_weight() {
+            continue;
+        }
+        let node = channel.number as usize;
         if matches!(document.nodes[node].local, Local::Matrix(_))
-            && channel.target != crate::pose::Target::Weights
+            && matches!(channel.target, Target::Rotation | Target::Scale)
         {
             warn.push(Warning::new(
                 Code::AnimationUnsupported,
-                format!(
-                    "nodes[{node}]: is animated but has a matrix; its own transform stays as it is"
-                ),
+                format!("nodes[{node}]: has a matrix: its rotation and scale are not animated"),
             ));
         }
         moving[node] = true;

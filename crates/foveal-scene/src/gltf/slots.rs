@@ -1,11 +1,12 @@
 //! Places of materials for textures: which texture, and where it is read.
 
-use glam::{Mat3, Vec3};
+use glam::{Mat3, Vec2};
 
 use super::document::Counts;
 use super::json::Obj;
 use crate::TextureRef;
 use crate::error::{Flaw, Parsed};
+use crate::pose::UvTransform;
 
 /// A texture as a material slot names it, with the file's own UV set number.
 #[derive(Clone, Copy)]
@@ -38,7 +39,7 @@ pub(super) fn parse_slot(o: Obj<'_>, counts: &Counts) -> Parsed<SlotDef> {
     if let Some(e) = o.extension("KHR_texture_transform")? {
         let within = |e: Flaw| e.under("extensions.KHR_texture_transform");
         slot.set = parse_set(e).map_err(within)?.unwrap_or(slot.set);
-        slot.transform = parse_transform(e).map_err(within)?;
+        slot.transform = parse_transform(e).map_err(within)?.matrix();
     }
     Ok(slot)
 }
@@ -48,18 +49,11 @@ fn parse_set(o: Obj<'_>) -> Parsed<Option<u32>> {
         .map(|s| s.min(u64::from(u32::MAX)) as u32))
 }
 
-/// KHR_texture_transform: offset · rotation · scale.
-///
-/// The rotation is counter-clockwise as seen with v upwards. glTF's v points down, so the angle
-/// is negated; so do the reference viewer and the other engines, against the letter of the
-/// extension's GLSL.
-fn parse_transform(o: Obj<'_>) -> Parsed<Mat3> {
-    let [x, y] = o.floats("offset")?.unwrap_or([0.0, 0.0]);
-    let [sx, sy] = o.floats("scale")?.unwrap_or([1.0, 1.0]);
-    let (sin, cos) = o.float("rotation")?.unwrap_or(0.0).sin_cos();
-    Ok(Mat3::from_cols(
-        Vec3::new(cos * sx, -sin * sx, 0.0),
-        Vec3::new(sin * sy, cos * sy, 0.0),
-        Vec3::new(x, y, 1.0),
-    ))
+/// KHR_texture_transform.
+pub(super) fn parse_transform(o: Obj<'_>) -> Parsed<UvTransform> {
+    Ok(UvTransform {
+        offset: o.floats("offset")?.map_or(Vec2::ZERO, Vec2::from),
+        rotation_rad: o.float("rotation")?.unwrap_or(0.0),
+        scale: o.floats("scale")?.map_or(Vec2::ONE, Vec2::from),
+    })
 }

@@ -2,6 +2,8 @@
 
 use glam::{Quat, Vec4};
 
+use super::{CameraPart, LightPart, MaterialPart};
+
 /// How values between key frames are found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Interpolation {
@@ -11,19 +13,46 @@ pub(crate) enum Interpolation {
     CubicSpline,
 }
 
-/// Which property of a node a channel moves.
+/// Which property a channel moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Target {
     Translation,
     Rotation,
     Scale,
+    /// All morph weights of a node.
     Weights,
+    /// One of them.
+    Weight(u32),
+    /// Whether a node, and what is below it, is drawn.
+    Visible,
+    Camera(CameraPart),
+    Light(LightPart),
+    Material(MaterialPart),
 }
 
-/// One property of one node over time.
+impl Target {
+    /// Whether it moves the node itself, and with it all that is below it.
+    pub(crate) fn is_transform(self) -> bool {
+        matches!(self, Self::Translation | Self::Rotation | Self::Scale)
+    }
+
+    /// Whether it changes the shape of the node's mesh.
+    pub(crate) fn is_weight(self) -> bool {
+        matches!(self, Self::Weights | Self::Weight(_))
+    }
+
+    /// Whether both, of one thing, move the same.
+    pub(crate) fn meets(self, other: Self) -> bool {
+        let whole = self == Self::Weights || other == Self::Weights;
+        self == other || whole && self.is_weight() && other.is_weight()
+    }
+}
+
+/// One property of one thing over time.
 #[derive(Clone, Debug)]
 pub(crate) struct Channel {
-    pub(crate) node: u32,
+    /// Number in the file of the node, camera, light or material.
+    pub(crate) number: u32,
     pub(crate) target: Target,
     pub(crate) interpolation: Interpolation,
     /// Numbers per value.
@@ -71,6 +100,14 @@ impl Animation {
 }
 
 impl Channel {
+    /// The value at a time, filled up with zeros, of a channel with up to four numbers; `None` where
+    /// the curve leads beyond the range of numbers.
+    pub(crate) fn at(&self, time_s: f32) -> Option<[f32; 4]> {
+        let mut value = [0.0; 4];
+        self.sample(time_s, value.get_mut(..self.width)?);
+        value.iter().all(|x| x.is_finite()).then_some(value)
+    }
+
     /// The value at a time: clamped to the first and last key. `out` has `width` numbers.
     pub(crate) fn sample(&self, time_s: f32, out: &mut [f32]) {
         let next = self.times.partition_point(|&t| t <= time_s);
@@ -139,7 +176,7 @@ mod tests {
         values: &[f32],
     ) -> Channel {
         Channel {
-            node: 0,
+            number: 0,
             target,
             interpolation,
             width,

@@ -4,11 +4,15 @@
 mod animation;
 mod clip;
 mod deform;
+mod properties;
 mod rig;
 
 pub(crate) use animation::{Animation, Channel, Interpolation, Target};
 pub use clip::Clip;
 pub(crate) use deform::{Deformer, Influences, MorphTarget, Shape, Skin};
+pub(crate) use properties::{
+    CameraPart, Factor, LightPart, MaterialPart, MaterialState, TextureSlot, UvPart, UvTransform,
+};
 pub use rig::Rig;
 pub(crate) use rig::{Binding, Node, RigData, world_from_nodes};
 

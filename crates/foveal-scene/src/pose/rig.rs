@@ -1,14 +1,15 @@
 //! The rig of a scene and how it poses it.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::sync::Arc;
 
-use glam::Mat4;
+use glam::{Mat4, Vec4};
 
-use super::{Animation, Clip, Deformer, Local, Skin, Target};
+use super::properties::{finish_light, is_usable, set_light, set_projection};
+use super::{Animation, Channel, Clip, Deformer, Local, MaterialState, Skin, Target};
 use crate::cloud::Cloud;
-use crate::{Aabb, Scene, Vertex, gltf, threads};
+use crate::{Aabb, Light, Projection, Scene, Vertex, gltf, threads};
 
 /// How a scene moves: node hierarchy, animations, skins, morph targets. Opaque; the default does
 /// not move.
@@ -53,6 +54,18 @@ pub(crate) struct RigData {
     pub(crate) cameras: Vec<(u32, u32)>,
     /// (light, node).
     pub(crate) lights: Vec<(u32, u32)>,
+    /// Cameras whose projection changes: number in the scene, and in the file.
+    pub(crate) zooming: Vec<(u32, u32)>,
+    /// Their projections at rest, by number in the file.
+    pub(crate) projections: BTreeMap<u32, Projection>,
+    /// Lights that change or may be hidden: number in the scene, and in the file.
+    pub(crate) shining: Vec<(u32, u32)>,
+    /// The lights at rest, by number in the file; their places mean nothing.
+    pub(crate) emission: BTreeMap<u32, Light>,
+    /// Materials that change, at rest, by their number.
+    pub(crate) materials: BTreeMap<u32, MaterialState>,
+    /// Of each node whether it is visible at rest, itself; `None` where that never changes.
+    pub(crate) visible: Option<Vec<bool>>,
     /// Bounding points of rigid meshes that move, by mesh.
     pub(crate) clouds: HashMap<u32, Arc<Cloud>>,
     pub(crate) parallel: bool,
@@ -82,38 +95,65 @@ impl RigData {
         self.animations.iter().any(|a| !a.channels.is_empty())
     }
 
+    /// Whether any animation hides or shows a node.
+    pub(crate) fn moves_visibility(&self) -> bool {
+        let channels = self.animations.iter().flat_map(|a| &a.channels);
+        channels.into_iter().any(|c| c.target == Target::Visible)
+    }
+
+    /// The channels that play, each with its animation's own time.
+    fn channels(&self, played: Range<usize>, time_s: f32) -> impl Iterator<Item = (&Channel, f32)> {
+        let played = self.animations.get(played).unwrap_or_default().iter();
+        played.flat_map(move |animation| {
+            let time = animation.looped(time_s);
+            animation
+                .channels
+                .iter()
+                .map(move |channel| (channel, time))
+        })
+    }
+
     /// Local transforms and morph weights at a time of the animations that play.
     fn sample(&self, played: Range<usize>, time_s: f32) -> (Vec<Local>, HashMap<u32, Vec<f32>>) {
         let mut locals: Vec<Local> = self.nodes.iter().map(|n| n.local).collect();
         let mut weights: HashMap<u32, Vec<f32>> = HashMap::new();
-        for animation in self.animations.get(played).unwrap_or_default() {
-            let time = animation.looped(time_s);
-            for channel in &animation.channels {
-                let mut value = [0.0; 4];
-                let Some(local) = locals.get_mut(channel.node as usize) else {
-                    continue;
-                };
-                if channel.target == Target::Weights {
-                    let mut list = vec![0.0; channel.width];
-                    channel.sample(time, &mut list);
-                    weights.insert(channel.node, list);
-                    continue;
+        for (channel, time) in self.channels(played, time_s) {
+            let target = channel.target;
+            if target == Target::Weights {
+                let mut list = vec![0.0; channel.width];
+                channel.sample(time, &mut list);
+                weights.insert(channel.number, list);
+                continue;
+            }
+            let (Some(value), Some(local)) = (
+                channel
+                    .at(time)
+                    .filter(|_| target.is_transform() || target.is_weight()),
+                locals.get_mut(channel.number as usize),
+            ) else {
+                continue;
+            };
+            let [x, y, z, _] = value;
+            match (target, local) {
+                (Target::Weight(number), _) => {
+                    let at_rest = || self.nodes[channel.number as usize].weights.clone();
+                    let list = weights.entry(channel.number).or_insert_with(at_rest);
+                    list.iter_mut()
+                        .skip(number as usize)
+                        .take(1)
+                        .for_each(|w| *w = x);
                 }
-                channel.sample(time, &mut value[..channel.width]);
-                if let Local::Trs {
-                    translation,
-                    rotation,
-                    scale,
-                } = local
-                {
-                    let [x, y, z, _] = value;
-                    match channel.target {
-                        Target::Translation => *translation = [x, y, z].into(),
-                        Target::Scale => *scale = [x, y, z].into(),
-                        Target::Rotation => *rotation = gltf::rotation(value),
-                        Target::Weights => {}
-                    }
+                (Target::Translation, Local::Trs { translation, .. }) => {
+                    *translation = [x, y, z].into();
                 }
+                (Target::Scale, Local::Trs { scale, .. }) => *scale = [x, y, z].into(),
+                (Target::Rotation, Local::Trs { rotation, .. }) => {
+                    *rotation = gltf::rotation(value)
+                }
+                (Target::Translation, Local::Matrix(matrix)) => {
+                    matrix.w_axis = Vec4::new(x, y, z, 1.0);
+                }
+                _ => {}
             }
         }
         (locals, weights)
@@ -133,6 +173,81 @@ impl RigData {
             if let Some(light) = scene.lights.get_mut(light as usize) {
                 gltf::place_light(light, world[node as usize]);
             }
+        }
+        self.change(scene, time_s);
+    }
+
+    /// Changes materials, lights, projections of cameras, and what is visible.
+    fn change(&self, scene: &mut Scene, time_s: f32) {
+        let mut materials = self.materials.clone();
+        let mut emission = self.emission.clone();
+        let mut projections = self.projections.clone();
+        let mut visible = self.visible.clone();
+        for (channel, time) in self.channels(scene.rig.played.clone(), time_s) {
+            let target = channel.target;
+            if target.is_transform() || target.is_weight() {
+                continue;
+            }
+            let Some(value) = channel.at(time) else {
+                continue;
+            };
+            match target {
+                Target::Material(part) => {
+                    if let Some(state) = materials.get_mut(&channel.number) {
+                        state.set(part, value);
+                    }
+                }
+                Target::Light(part) => {
+                    if let Some(light) = emission.get_mut(&channel.number) {
+                        set_light(light, part, value);
+                    }
+                }
+                Target::Camera(part) => {
+                    if let Some(projection) = projections.get_mut(&channel.number) {
+                        set_projection(projection, part, value[0]);
+                    }
+                }
+                Target::Visible => {
+                    let of_it = visible.as_mut();
+                    let of_it = of_it.and_then(|v| v.get_mut(channel.number as usize));
+                    of_it.into_iter().for_each(|v| *v = value[0] != 0.0);
+                }
+                _ => {}
+            }
+        }
+        for (number, state) in materials {
+            if let Some(material) = scene.materials.get_mut(number as usize) {
+                let name = std::mem::take(&mut material.name);
+                *material = state.finish();
+                material.name = name;
+            }
+        }
+        emission.values_mut().for_each(finish_light);
+        for (number, in_file) in &self.shining {
+            if let (Some(light), Some(now)) = (
+                scene.lights.get_mut(*number as usize),
+                emission.get(in_file),
+            ) {
+                light.kind = now.kind;
+                light.color = now.color;
+                light.intensity = now.intensity;
+                light.range_m = now.range_m;
+            }
+        }
+        for (number, in_file) in &self.zooming {
+            // What no picture can be drawn by stays as it is at rest.
+            let now = projections.get(in_file).filter(|p| is_usable(p));
+            if let (Some(camera), Some(now)) = (
+                scene.cameras.get_mut(*number as usize),
+                now.or_else(|| self.projections.get(in_file)),
+            ) {
+                camera.projection = *now;
+            }
+        }
+        if let Some(own) = visible {
+            let parent: Vec<Option<u32>> = self.nodes.iter().map(|n| n.parent).collect();
+            let visible = gltf::all_the_way_up(&self.order, &parent, |i| own[i]);
+            scene.show(&visible);
         }
     }
 
@@ -217,6 +332,20 @@ impl RigData {
 }
 
 impl Scene {
+    /// Shows the objects and lights of the nodes that are visible, and hides the others: a hidden
+    /// light has no intensity.
+    pub(crate) fn show(&mut self, visible: &[bool]) {
+        for object in &mut self.objects {
+            object.visible = visible.get(object.node as usize).is_none_or(|v| *v);
+        }
+        for light in &mut self.lights {
+            let node = light.node.and_then(|node| visible.get(node as usize));
+            if node.is_some_and(|visible| !visible) {
+                light.intensity = 0.0;
+            }
+        }
+    }
+
     /// True when [`Scene::pose`] at different times gives different scenes.
     #[must_use]
     pub fn is_animated(&self) -> bool {
@@ -261,8 +390,10 @@ impl Scene {
     }
 
     /// Moves everything that moves to where it is at `time_s` seconds: instance matrices, boxes of
-    /// instances and objects, vertices of deforming meshes, lights and cameras. The clip that
-    /// [`Scene::play`] chose plays, the first without. Does nothing for a scene that does not move.
+    /// instances and objects, vertices of deforming meshes, lights and cameras; and gives materials,
+    /// lights, cameras and [`Object::visible`](crate::Object::visible) the values that they have
+    /// then. The clip that [`Scene::play`] chose plays, the first without. Does nothing for a scene
+    /// that does not move.
     pub fn pose(&mut self, time_s: f32) {
         if let Some(rig) = self.rig.data.clone() {
             rig.pose(self, time_s);

@@ -301,7 +301,7 @@ impl CullingStage {
             return None;
         }
         Some(cells.drawn(
-            |object| self.is_visible(object),
+            |object| scene.is_shown(object) && self.is_visible(object),
             |cell| by_object || self.cells[cell].is_visible(),
         ))
     }

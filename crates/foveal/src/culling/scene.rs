@@ -9,7 +9,7 @@ use foveal_scene::{Aabb, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
 
 use super::cells::Cells;
-use crate::Culling;
+use crate::{Culling, Settings, Shadows};
 
 /// A scene's occluders and boxes.
 #[derive(Debug, Default)]
@@ -19,11 +19,13 @@ pub(crate) struct CullingScene {
     /// Where in `placed` each instance is that occludes.
     placed_of: HashMap<u32, usize>,
     pub(super) boxes: Vec<foveal_cull::Aabb>,
+    /// Objects that are not drawn in this pose, whatever is seen of them.
+    hidden: Vec<bool>,
     /// Per object.
     pub(super) triangles: Vec<u32>,
     /// Over the boxes.
     pub(super) objects: OccludeeTree,
-    /// What may receive shadows; `None` without occlusion culling.
+    /// What may receive shadows; `None` without occlusion culling or shadows.
     pub(super) cells: Option<Cells>,
     /// No other scene, and no other pose, has this number.
     pub(super) pose: u64,
@@ -45,15 +47,17 @@ fn new_pose() -> u64 {
 
 impl CullingScene {
     /// A scene's boxes and, for occlusion culling, its occluders: the opaque instances of the
-    /// objects that are marked as occluders, or of all objects where none is marked.
-    pub(crate) fn new(scene: &Scene, mode: Culling) -> Self {
+    /// objects that are marked as occluders, or of all objects where none is marked; with shadows,
+    /// what may receive them too.
+    pub(crate) fn new(scene: &Scene, settings: &Settings) -> Self {
         let mut this = Self {
             pose: new_pose(),
             ..Self::default()
         };
-        if mode == Culling::Occlusion {
+        if settings.culling.mode == Culling::Occlusion {
             this.bake(scene);
-            this.cells = Cells::new(scene);
+            let has_shadows = settings.lighting.shadows != Shadows::Off;
+            this.cells = has_shadows.then(|| Cells::new(scene)).flatten();
         }
         this.take_boxes(scene);
         this.triangles = vec![0; scene.objects.len()];
@@ -91,6 +95,7 @@ impl CullingScene {
             if let Some(mesh) = occluder
                 && let Ok(id) = self.occluders.add(Arc::clone(mesh), world_from_mesh)
             {
+                let _ = self.occluders.set_enabled(id, scene.is_visible(instance));
                 self.placed_of.insert(index, self.placed.len());
                 self.placed.push(Placed {
                     id,
@@ -109,10 +114,9 @@ impl CullingScene {
             let instance = &scene.instances[placed.instance as usize];
             placed.world_from_mesh = affine(instance.world_from_object);
             let moved = (self.occluders).set_transform(placed.id, placed.world_from_mesh);
-            if moved.is_err() {
-                // A transform that is no transform: better no occluder than a wrong one.
-                let _ = self.occluders.set_enabled(placed.id, false);
-            }
+            // A transform that is no transform: better no occluder than a wrong one.
+            let is_there = moved.is_ok() && scene.is_visible(instance);
+            let _ = self.occluders.set_enabled(placed.id, is_there);
         }
         self.take_boxes(scene);
         if self.objects.refit(&self.boxes).is_err() {
@@ -126,6 +130,13 @@ impl CullingScene {
         if let Some(cells) = &mut self.cells {
             cells.place(self.pose, instances);
         }
+    }
+
+    /// Whether an object is drawn in this pose where it is seen.
+    pub(super) fn is_shown(&self, object: u32) -> bool {
+        self.hidden
+            .get(object as usize)
+            .is_none_or(|hidden| !hidden)
     }
 
     /// The boxes of these cells, world space; none before they are placed.
@@ -149,6 +160,8 @@ impl CullingScene {
         let boxes = scene.objects.iter().map(|o| o.bounds);
         let boxes = boxes.map(|b| foveal_cull::Aabb::new(b.min, b.max));
         self.boxes.extend(boxes);
+        self.hidden.clear();
+        self.hidden.extend(scene.objects.iter().map(|o| !o.visible));
     }
 }
 

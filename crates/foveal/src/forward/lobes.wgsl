@@ -104,7 +104,8 @@ fn sample_lobe(place: u32, uv: vec4f) -> vec4f {
 }
 
 // Normal, tangent and uv as interpolated; `facing` is -1 where the back is seen.
-fn lobes_at(s: Surface, normal: vec3f, tangent: vec4f, uv: vec4f, facing: f32) -> LobedSurface {
+fn lobes_at(s: Surface, normal: vec3f, tangent_at_rest: vec4f, uv: vec4f, facing: f32) -> LobedSurface {
+    let tangent = turned(normal, tangent_at_rest);
     let bitangent = cross(normal, tangent.xyz) * tangent.w;
     let has_tangent = dot(tangent.xyz, tangent.xyz) > 0.0;
     let geometric = normalize(normal) * facing;

@@ -57,6 +57,7 @@ pub(super) fn add(scene: &mut Scene, mut mesh: Mesh, material: Material, world_f
         name: "strokes".to_owned(),
         node: number,
         element: 0,
+        visible: true,
         occluder: None,
         set: None,
         bounds,

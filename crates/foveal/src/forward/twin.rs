@@ -50,6 +50,7 @@ pub(crate) fn quads(materials: Vec<Material>, z: &[f32]) -> Scene {
             name: format!("quad {i}"),
             node: i,
             element: 0,
+            visible: true,
             occluder: None,
             set: None,
             bounds: instance.bounds,

@@ -84,7 +84,8 @@ impl DrawList {
             Vec::with_capacity(scene.instances.len());
         let mut strokes: Vec<(PipelineKey, u32, u32, u32)> = Vec::new();
         let mut blended: Vec<(f32, u32, Shape)> = Vec::new();
-        for (index, instance) in (0..).zip(&scene.instances) {
+        let all = (0..).zip(&scene.instances);
+        for (index, instance) in all.filter(|(_, instance)| instance.visible) {
             let mesh = scene.geometry.mesh(instance.mesh);
             let distance = || instance.bounds.center().distance_squared(eye);
             // They reach beyond their boxes by half their width, so culling does not judge them.

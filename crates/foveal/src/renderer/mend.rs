@@ -19,8 +19,8 @@ impl Renderer {
     }
 
     /// Makes anew what a failure may have left half made: everything but the scene's own resources,
-    /// which are replaced only when all of them are there. Of these a pose changes the lights, which
-    /// are uploaded again, and the vertices of meshes that deform, which the host uploads again.
+    /// which are replaced only when all of them are there. Of these a pose changes lights and
+    /// materials, which are uploaded again, and the vertices of meshes that deform, which the host uploads again.
     pub(super) async fn mend(&mut self) -> Result<(), Error> {
         if !self.is_torn {
             return Ok(());
@@ -29,7 +29,7 @@ impl Renderer {
         let trap = ErrorTrap::new(&self.gpu, "going on after a failure");
         let mut bindings = FrameBindings::new(&self.gpu, self.environment.map());
         bindings.write_instances(&self.gpu, self.scene.instance_uniforms());
-        self.scene.write_lights(&self.gpu);
+        self.scene.write_posed(&self.gpu);
         let present = PresentPass::new(&self.gpu);
         let timer = GpuTimer::new(&self.gpu);
         let upscale = Upscale::new(&self.gpu, &self.settings);

@@ -159,6 +159,8 @@ pub(crate) fn family_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 /// Families as passes bind them.
 #[derive(Debug)]
 pub(crate) struct FamilyBindings {
+    /// All materials, by number.
+    materials: wgpu::Buffer,
     by_family: wgpu::Buffer,
     by_material: wgpu::Buffer,
     groups: Vec<wgpu::BindGroup>,
@@ -229,11 +231,19 @@ impl FamilyBindings {
             }
             bind_group(&gpu.device, "material family", &layout, &resources)
         });
+        let groups = groups.collect();
         Self {
-            groups: groups.collect(),
+            materials,
+            groups,
             by_family: dispatches(&mut families.ranges.iter().cloned()),
             by_material: dispatches(&mut families.ranks.iter().map(|&rank| rank..rank + 1)),
         }
+    }
+
+    /// Replaces a material.
+    pub(super) fn write(&self, gpu: &Gpu, number: usize, material: &MaterialUniform) {
+        let offset = (number * size_of::<MaterialUniform>()) as u64;
+        (gpu.queue).write_buffer(&self.materials, offset, bytemuck::bytes_of(material));
     }
 
     /// The layout is [`family_layout`].

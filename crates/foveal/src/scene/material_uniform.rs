@@ -2,7 +2,7 @@
 
 use bytemuck::{Pod, Zeroable};
 use foveal_scene::{AlphaMode, Material, TextureRef};
-use glam::Mat3;
+use glam::{Mat3, Vec2};
 
 /// Mirrors `Material` in `shared/material.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -21,8 +21,7 @@ pub(crate) struct MaterialUniform {
     pub(crate) procedural_seed: u32,
     pub(crate) procedural_frequency: f32,
     pub(crate) without_lobes: f32,
-    pub(crate) reserved_0: u32,
-    pub(crate) reserved_1: u32,
+    pub(crate) tangent_turn: [f32; 2],
     pub(crate) specular_color: [f32; 3],
     pub(crate) specular: f32,
 }
@@ -61,11 +60,13 @@ pub(crate) fn material_class(material: &Material) -> u32 {
         .iter()
         .zip(HAS_TEXTURE)
         .map(|(slot, flag)| if slot.is_some() { flag } else { 0 });
+    // In some pose they may be anywhere.
+    let moves = material.animated.uv_transforms;
     let flags = [
         (material.unlit, IS_UNLIT),
         (material.procedural.is_some(), IS_PROCEDURAL),
-        (slots.iter().flatten().any(has_uv_map), HAS_UV_MAP),
-        (shared_uv_map(&slots).is_none(), HAS_OWN_UV_MAPS),
+        (moves || slots.iter().flatten().any(has_uv_map), HAS_UV_MAP),
+        (moves || shared_uv_map(&slots).is_none(), HAS_OWN_UV_MAPS),
         (material.has_own_specular(), IS_SPECULAR),
     ];
     let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
@@ -109,11 +110,37 @@ impl MaterialUniform {
             procedural_seed: material.procedural.map_or(0, |p| p.seed),
             procedural_frequency: material.procedural.map_or(0.0, |p| p.frequency),
             without_lobes: f32::from(u8::from(!material.has_lobes() || material.unlit)),
-            reserved_0: 0,
-            reserved_1: 0,
+            tangent_turn: Vec2::from_angle(material.tangent_turn_rad).to_array(),
             specular_color: (material.specular_color * material.ior_reflectance()).to_array(),
             specular: material.specular,
         }
+    }
+}
+
+impl MaterialUniform {
+    /// The same place on the device with the numbers that the material has in another pose.
+    pub(super) fn with_numbers_of(&self, material: &Material) -> Self {
+        Self {
+            layers: self.layers,
+            without_lobes: self.without_lobes,
+            ..Self::new(material, self.number, [0; SLOTS])
+        }
+    }
+
+    /// Whether only the base colour or emission is another than before.
+    pub(super) fn differs_in_color_alone(&self, before: &Self) -> bool {
+        let same = Self {
+            base_color: before.base_color,
+            emissive: before.emissive,
+            ..*self
+        };
+        bytemuck::bytes_of(&same) == bytemuck::bytes_of(before)
+    }
+
+    /// Whether holes that alpha cuts may lie elsewhere than before.
+    pub(super) fn has_other_holes(&self, before: &Self) -> bool {
+        let of = |m: &Self| (m.base_color[3], m.alpha_cutoff, m.uv[0]);
+        of(self) != of(before)
     }
 }
 

@@ -33,12 +33,40 @@ pub(crate) fn lobes_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     bind_group_layout(&gpu.device, "lobes", stages, &all)
 }
 
+/// A material's lobes.
+#[derive(Debug)]
+struct Lobes {
+    class: LobeClass,
+    group: wgpu::BindGroup,
+    uniform: LobesUniform,
+    /// The same on the device.
+    block: wgpu::Buffer,
+}
+
+/// How a pose has changed a material.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct MaterialChange {
+    /// Shaders are told something else.
+    pub(crate) is_other: bool,
+    /// What light does at it may be something else: more than its colour or emission.
+    pub(crate) is_lit_otherwise: bool,
+    /// Its holes may be elsewhere.
+    pub(crate) holes: bool,
+}
+
 /// The bind groups of a scene's materials.
 #[derive(Debug)]
 pub(crate) struct SceneMaterials {
     groups: Vec<wgpu::BindGroup>,
     /// Of each material that has lobes.
-    lobes: Vec<Option<(LobeClass, wgpu::BindGroup)>>,
+    lobes: Vec<Option<Lobes>>,
+    /// What shaders are told of each material.
+    uniforms: Vec<MaterialUniform>,
+    /// The same on the device, each at a multiple of `stride`.
+    buffer: wgpu::Buffer,
+    stride: u64,
+    /// [`material_class`] of each, for all poses.
+    classes: Vec<u32>,
     families: Families,
     /// `None` on devices without storage buffers.
     family_bindings: Option<FamilyBindings>,
@@ -75,8 +103,9 @@ impl SceneMaterials {
                 MaterialUniform::new(material, number, layers)
             })
             .collect();
-        let families =
-            Families::new((scene.materials.iter()).map(|m| (material_class(m), slots_of(m))));
+        let classes: Vec<u32> = scene.materials.iter().map(material_class).collect();
+        let materials = classes.iter().zip(&scene.materials);
+        let families = Families::new(materials.map(|(class, m)| (*class, slots_of(m))));
         let family_bindings = (!gpu.is_reduced()).then(|| {
             let white = textures.place(missing);
             FamilyBindings::new(gpu, &families, &uniforms, &textures, white, &mut samplers)
@@ -133,14 +162,74 @@ impl SceneMaterials {
                 resources.push(wgpu::BindingResource::Sampler(sampler));
             }
             let group = bind_group(&gpu.device, &material.name, &lobes_layout, &resources);
-            lobes.push(Some((class, group)));
+            lobes.push(Some(Lobes {
+                class,
+                group,
+                uniform: own,
+                block,
+            }));
         }
         Ok(Self {
             groups,
             lobes,
+            uniforms,
+            buffer,
+            stride,
+            classes,
             families,
             family_bindings,
         })
+    }
+
+    /// Takes over the numbers of the same materials in another pose, of all of them; their textures,
+    /// and the class and lobes for which their shaders are made, stay.
+    pub(crate) fn update(&mut self, gpu: &Gpu, materials: &[Material]) -> Vec<MaterialChange> {
+        let mut changes = vec![MaterialChange::default(); self.uniforms.len()];
+        let pairs = changes.iter_mut().zip(materials);
+        for (number, (change, material)) in pairs.enumerate() {
+            let before = self.uniforms[number];
+            let now = before.with_numbers_of(material);
+            if let Some(lobes) = &mut self.lobes[number] {
+                let uniform = LobesUniform::new(material);
+                if bytemuck::bytes_of(&uniform) != bytemuck::bytes_of(&lobes.uniform) {
+                    lobes.uniform = uniform;
+                    change.is_other = true;
+                    change.is_lit_otherwise = true;
+                }
+            }
+            if bytemuck::bytes_of(&now) != bytemuck::bytes_of(&before) {
+                self.uniforms[number] = now;
+                change.is_other = true;
+                change.is_lit_otherwise |= !now.differs_in_color_alone(&before);
+                change.holes = now.has_other_holes(&before);
+            }
+            if change.is_other {
+                self.write(gpu, number);
+            }
+        }
+        changes
+    }
+
+    /// Uploads all materials once more: where a call failed, theirs may have been refused.
+    pub(crate) fn write_all(&self, gpu: &Gpu) {
+        (0..self.uniforms.len()).for_each(|number| self.write(gpu, number));
+    }
+
+    fn write(&self, gpu: &Gpu, number: usize) {
+        let uniform = &self.uniforms[number];
+        let offset = number as u64 * self.stride;
+        (gpu.queue).write_buffer(&self.buffer, offset, bytemuck::bytes_of(uniform));
+        if let Some(families) = &self.family_bindings {
+            families.write(gpu, number, uniform);
+        }
+        if let Some(lobes) = &self.lobes[number] {
+            (gpu.queue).write_buffer(&lobes.block, 0, bytemuck::bytes_of(&lobes.uniform));
+        }
+    }
+
+    /// What a material's shaders are specialized to.
+    pub(crate) fn class(&self, material: u32) -> u32 {
+        self.classes[material as usize]
     }
 
     pub(crate) fn group(&self, material: u32) -> &wgpu::BindGroup {
@@ -150,13 +239,13 @@ impl SceneMaterials {
     /// A material's lobes, where it has some and this device shades them.
     pub(crate) fn lobes(&self, material: u32) -> Option<LobeClass> {
         let lobes = self.lobes[material as usize].as_ref();
-        lobes.map(|(class, _)| *class)
+        lobes.map(|lobes| lobes.class)
     }
 
     /// The group of a material with its lobes, where it has some; else as [`Self::group`].
     pub(crate) fn group_with_lobes(&self, material: u32) -> &wgpu::BindGroup {
         let lobes = self.lobes[material as usize].as_ref();
-        lobes.map_or(self.group(material), |(_, group)| group)
+        lobes.map_or(self.group(material), |lobes| &lobes.group)
     }
 
     /// What materials share dispatches.

@@ -7,6 +7,8 @@ mod instances;
 mod lobes;
 mod material_uniform;
 mod materials;
+#[cfg(test)]
+mod posed_tests;
 mod samplers;
 mod strokes;
 mod textures;
@@ -25,7 +27,6 @@ pub(crate) use lobes::LobeClass;
 #[cfg(test)]
 pub(crate) use lobes::LobesUniform;
 pub(crate) use material_uniform::MaterialUniform;
-use material_uniform::material_class;
 pub(crate) use materials::{SceneMaterials, lobes_layout, material_layout};
 pub(crate) use textures::ArrayLimits;
 
@@ -46,13 +47,15 @@ pub(crate) struct DrawnInstance {
     pub(crate) material: u32,
     pub(crate) object: u32,
     pub(crate) bounds: Aabb,
+    /// Its object is drawn.
+    pub(crate) visible: bool,
     /// Its transform turns front faces into clockwise ones.
     pub(crate) mirrored: bool,
     pub(crate) alpha_mode: AlphaMode,
     pub(crate) double_sided: bool,
     /// Its material emits light.
     pub(crate) glows: bool,
-    /// [`material_class`].
+    /// `material_class` of its material.
     pub(crate) material_class: u32,
 }
 
@@ -77,9 +80,12 @@ pub(crate) struct SceneOnGpu {
 pub(crate) struct PoseChange {
     /// Anything has moved, now or a pose before.
     pub(crate) moves: bool,
-    /// Around each instance that casts shadows and has moved or may have changed its shape: where it
-    /// was and is.
+    /// Around each instance that casts shadows, now or before, and has moved, may have changed its
+    /// shape or its holes, has appeared or disappeared: where it was and is.
     pub(crate) boxes: Vec<Aabb>,
+    /// Around each instance whose material treats light otherwise: centre and radius in metres,
+    /// world space.
+    pub(crate) places: Vec<[f32; 4]>,
     pub(crate) lights_before: Vec<LightUniform>,
 }
 
@@ -117,12 +123,12 @@ impl SceneOnGpu {
         Ok(Self {
             bounds: shadowed_bounds(scene, &geometry.meshes),
             geometry,
+            instances: drawn_instances(scene, &materials),
             materials,
-            instances: drawn_instances(scene),
             lights,
             light_buffer,
             environment: scene.environment,
-            culling: CullingScene::new(scene, settings.culling.mode),
+            culling: CullingScene::new(scene, settings),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,
                 materials: scene.materials.len() as u64,
@@ -145,23 +151,42 @@ impl SceneOnGpu {
 
     /// Takes over a new pose of the same scene; the pose so far becomes the previous one.
     pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) -> PoseChange {
-        let mut moves = self.geometry.deforms();
-        let mut boxes = Vec::new();
+        let changes = self.materials.update(gpu, &scene.materials);
+        let mut moves = self.geometry.deforms() || changes.iter().any(|c| c.is_other);
+        let (mut boxes, mut places) = (Vec::new(), Vec::new());
+        let instances = drawn_instances(scene, &self.materials);
         let pairs = self.uniforms.iter_mut().zip(&scene.instances);
-        for ((uniform, instance), before) in pairs.zip(&self.instances) {
+        let drawn = self.instances.iter().zip(&instances);
+        for ((uniform, instance), (before, now)) in pairs.zip(drawn) {
             let moved = uniform.moved_to(instance.world_from_object);
             moves |= bytemuck::bytes_of(&moved) != bytemuck::bytes_of(uniform);
+            *uniform = moved;
+            if !before.visible && !now.visible {
+                continue;
+            }
+            let change = changes.get(instance.material as usize);
+            let change = change.copied().unwrap_or_default();
             let mesh = &scene.meshes[instance.mesh as usize];
+            let is_masked = matches!(before.alpha_mode, AlphaMode::Mask { .. });
+            let appears = before.visible != now.visible;
+            moves |= appears;
             let is_elsewhere = moved.is_elsewhere() || mesh.deforms;
+            let casts_otherwise = appears || before.glows != now.glows || is_masked && change.holes;
             let casts = before.alpha_mode != AlphaMode::Blend && mesh.triangle_count() > 0;
             let around = before.bounds.union(instance.bounds);
-            if is_elsewhere && casts && around.is_valid() {
+            if !around.is_valid() {
+                continue;
+            }
+            if (is_elsewhere || casts_otherwise) && casts {
                 boxes.push(around);
             }
-            *uniform = moved;
+            if change.is_lit_otherwise {
+                let radius = around.half_extent().length();
+                places.push(around.center().extend(radius).to_array());
+            }
         }
         self.bounds = shadowed_bounds(scene, &self.geometry.meshes);
-        self.instances = drawn_instances(scene);
+        self.instances = instances;
         let lights = scene.lights.iter().map(LightUniform::new).collect();
         let lights_before = std::mem::replace(&mut self.lights, lights);
         write_lights(gpu, &self.light_buffer, &self.lights);
@@ -170,6 +195,7 @@ impl SceneOnGpu {
         PoseChange {
             moves,
             boxes,
+            places,
             lights_before,
         }
     }
@@ -181,9 +207,10 @@ impl SceneOnGpu {
         self.culling.place_cells(instances.zip(places));
     }
 
-    /// Uploads the lights once more: where a call failed, theirs may have been refused.
-    pub(crate) fn write_lights(&self, gpu: &Gpu) {
+    /// Uploads lights and materials once more: where a call failed, theirs may have been refused.
+    pub(crate) fn write_posed(&self, gpu: &Gpu) {
         write_lights(gpu, &self.light_buffer, &self.lights);
+        self.materials.write_all(gpu);
     }
 
     /// The instances as the vertex shader reads them.
@@ -203,17 +230,17 @@ fn write_lights(gpu: &Gpu, buffer: &wgpu::Buffer, lights: &[LightUniform]) {
     );
 }
 
-/// The box around all but points and lines that are not lit: no shadow comes from them or falls on
+/// The box around all that is visible, but points and lines that are not lit: no shadow comes from them or falls on
 /// them.
 fn shadowed_bounds(scene: &Scene, meshes: &[MeshRange]) -> Aabb {
     let takes_part = |mesh: &MeshRange| mesh.index_count > 0 || mesh.lights_strokes;
     (scene.instances.iter())
+        .filter(|instance| scene.is_visible(instance))
         .filter(|instance| takes_part(&meshes[instance.mesh as usize]))
         .fold(Aabb::EMPTY, |all, instance| all.union(instance.bounds))
 }
 
-fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
-    let classes: Vec<u32> = scene.materials.iter().map(material_class).collect();
+fn drawn_instances(scene: &Scene, materials: &SceneMaterials) -> Vec<DrawnInstance> {
     scene
         .instances
         .iter()
@@ -224,11 +251,12 @@ fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
                 material: i.material,
                 object: i.object,
                 bounds: i.bounds,
+                visible: scene.is_visible(i),
                 mirrored: is_mirrored(i.world_from_object),
                 alpha_mode: material.alpha_mode,
                 double_sided: material.double_sided,
                 glows: material.emissive != glam::Vec3::ZERO,
-                material_class: classes[i.material as usize],
+                material_class: materials.class(i.material),
             }
         })
         .collect()

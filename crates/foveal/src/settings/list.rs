@@ -277,12 +277,14 @@ impl Settings {
     }
 
     /// Whether a scene that was set with the settings `before` must be set again to be drawn with
-    /// these: occluders and samplers are made with it.
+    /// these: occluders, samplers and what may receive shadows are made with it.
     #[must_use]
     pub fn needs_scene_again(&self, before: &Self) -> bool {
-        let occlusion = self.culling.mode == Culling::Occlusion;
+        let occludes = |s: &Self| s.culling.mode == Culling::Occlusion;
+        let cuts = |s: &Self| occludes(s) && s.lighting.shadows != Shadows::Off;
         self.lighting.anisotropy != before.lighting.anisotropy
-            || occlusion && before.culling.mode != Culling::Occlusion
+            || occludes(self) && !occludes(before)
+            || cuts(self) && !cuts(before)
     }
 
     /// The same settings at the size at which the frame is drawn, before

@@ -7,6 +7,7 @@ use foveal_scene::{
 };
 use glam::{Mat4, Vec3};
 
+use super::stage::MOST_FRAMES;
 use super::tests::{room, shadowed};
 use crate::testing::{Film, picture, rendered};
 use crate::{
@@ -203,6 +204,34 @@ fn a_walk_there_and_back_shows_the_same_with_casters_left_out() {
     }
 }
 
+/// What a tile was drawn for is forgotten after some frames, and seen anew.
+#[test]
+fn things_that_move_for_long_show_the_same_with_casters_left_out() {
+    let options = generate::DemoOptions {
+        instances: 1_000,
+        lights: 3,
+        ..Default::default()
+    };
+    let scene = generate::demo(&options).unwrap();
+    let settings = shadowed(Shadows::Hard).with(|s| {
+        s.picture.width = 64;
+        s.picture.height = 40;
+        s.lighting.shadow_atlas = 1024;
+    });
+    let frames = MOST_FRAMES as usize + 8;
+    let stats = assert_same(&scene, &settings, frames, |i, scene| {
+        let instances = scene.instances.len();
+        let by = Vec3::new(if i % 2 == 0 { 0.05 } else { -0.05 }, 0.0, 0.01);
+        shift(scene, (0..instances).step_by(53), by);
+        walked(scene, i / 20)
+    });
+    assert!(
+        stats.iter().all(|s| s.tiles_drawn > 0),
+        "tiles are drawn in each frame"
+    );
+    assert!(stats.last().unwrap().casters_unneeded > 0);
+}
+
 /// A mesh of triangles around a convex outline.
 fn flat(corners: [Vec3; 4]) -> Mesh {
     let [a, b, c, _] = corners;
@@ -244,6 +273,7 @@ fn add<const N: usize>(scene: &mut Scene, meshes: [Mesh; N]) {
         name: "object".to_owned(),
         node: object,
         element: 0,
+        visible: true,
         occluder: None,
         set: None,
         bounds: (meshes.iter()).fold(Aabb::EMPTY, |all, m| all.union(m.bounds)),

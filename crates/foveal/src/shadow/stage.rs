@@ -242,7 +242,8 @@ fn casts(scene: &SceneOnGpu, instance: &DrawnInstance, light: Option<(Vec3, f32)
                 && at.cmple(b.max).all()
                 && b.size().length() <= LARGEST_LAMP * range
         });
-    has_triangles && instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
+    let is_shown = has_triangles && instance.visible;
+    is_shown && instance.alpha_mode != AlphaMode::Blend && b.is_valid() && !is_own_lamp
 }
 
 fn light_of(want: &Wanted) -> u32 {
@@ -250,7 +251,7 @@ fn light_of(want: &Wanted) -> u32 {
 }
 
 /// Frames after which a tile that is drawn again forgets what only earlier ones saw.
-const MOST_FRAMES: u64 = 60;
+pub(super) const MOST_FRAMES: u64 = 60;
 
 /// What a frame sees.
 #[derive(Clone, Copy, Debug)]

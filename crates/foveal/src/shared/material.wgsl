@@ -49,8 +49,9 @@ struct Material {
     procedural_frequency: f32,
     // 0 where the surface has lobes, which are drawn forward; else 1.
     without_lobes: f32,
-    reserved_0: u32,
-    reserved_1: u32,
+    // Cosine and sine of the angle by which the coordinates that tangents follow have turned since
+    // the tangents were made.
+    tangent_turn: vec2f,
     // Reflectance at right angles of what is not metal, and at grazing angles: factor of both.
     specular_color: vec3f,
     specular: f32,
@@ -71,4 +72,10 @@ fn uv_of(slot: u32, uv: vec4f) -> vec2f {
     let map = uv_map(slot);
     let p = vec3f(select(uv.xy, uv.zw, map.x.w > 0.5), 1.0);
     return vec2f(dot(map.x.xyz, p), dot(map.y.xyz, p));
+}
+
+// A tangent that follows the coordinates' turn; w is the bitangent's sign.
+fn turned(normal: vec3f, tangent: vec4f) -> vec4f {
+    let bitangent = cross(normal, tangent.xyz) * tangent.w;
+    return vec4f(material.tangent_turn.x * tangent.xyz - material.tangent_turn.y * bitangent, tangent.w);
 }

@@ -37,10 +37,11 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
     if (MATERIAL_CLASS & HAS_NORMAL) != 0u {
         let texel = sample_material(normal_texture, normal_sampler, 2u, uv).xyz * 2.0 - 1.0;
         if dot(tangent.xyz, tangent.xyz) > 0.0 {
+            let t = turned(normal, tangent);
             // As MikkTSpace bakes: interpolated vectors, not normalized before the sum.
-            let bitangent = cross(normal, tangent.xyz) * tangent.w;
+            let bitangent = cross(normal, t.xyz) * t.w;
             let scaled = vec3f(texel.xy * material.normal_scale, texel.z);
-            n = normalize(scaled.x * tangent.xyz + scaled.y * bitangent + scaled.z * normal) * facing;
+            n = normalize(scaled.x * t.xyz + scaled.y * bitangent + scaled.z * normal) * facing;
         }
     }
     if (MATERIAL_CLASS & IS_PROCEDURAL) != 0u {

@@ -45,6 +45,7 @@ fn hollow_box(world_from_object: Mat4) -> Scene {
             name: String::new(),
             node: 0,
             element: 0,
+            visible: true,
             occluder: None,
             set: None,
             bounds,

@@ -10,6 +10,7 @@ mod lobes;
 mod materials;
 mod motion;
 mod nodes;
+mod pointers;
 
 pub(super) use foveal_seeds::File;
 

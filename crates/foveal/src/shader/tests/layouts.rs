@@ -175,8 +175,7 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             procedural_seed,
             procedural_frequency,
             without_lobes,
-            reserved_0,
-            reserved_1,
+            tangent_turn,
             specular_color,
             specular,
         ]

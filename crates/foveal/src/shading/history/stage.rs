@@ -86,8 +86,8 @@ impl HistoryStage {
         self.changed.add(before, now);
     }
 
-    /// The next frame's shadows differ within these spheres.
-    pub(crate) fn shadows_changed(&mut self, places: &[Place]) {
+    /// Light differs within these spheres in the next frame: other shadows, or other surfaces.
+    pub(crate) fn light_changed(&mut self, places: &[Place]) {
         self.changed.add_places(places);
     }
 

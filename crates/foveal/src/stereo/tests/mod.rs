@@ -68,6 +68,7 @@ fn shape(corners: &[Vec3]) -> Scene {
             name: "shape".to_owned(),
             node: 0,
             element: 0,
+            visible: true,
             occluder: None,
             set: None,
             bounds,

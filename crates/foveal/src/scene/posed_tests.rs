@@ -1,0 +1,232 @@
+//! What poses change besides places (KHR_animation_pointer): pictures of a pose are, to the bit,
+//! those of a file with the values that the pose has.
+
+use foveal_scene::{Camera, LoadOptions, Scene, load_bytes};
+use foveal_seeds::File;
+use foveal_seeds::pointers::{MOVES, Moved, animate, hold, movable};
+use pollster::block_on;
+
+use crate::testing::{Film, picture, small};
+use crate::{
+    Antialiasing, Culling, Geometry, MaterialDispatch, RateSource, Settings, Shading, Shadows,
+};
+
+/// Frames after which a picture at rest no longer changes.
+const ROUND: usize = 18;
+
+fn load(file: &File) -> Scene {
+    let options = LoadOptions::default();
+    let no_files = |_: &str| Err("no files".to_owned());
+    load_bytes(&file.glb(), "test.glb", &options, &no_files).expect("a good file")
+}
+
+fn moving(moves: &[Moved]) -> Scene {
+    let mut file = movable();
+    hold(&mut file, moves, 0.0);
+    animate(&mut file, moves);
+    load(&file)
+}
+
+fn still(moves: &[Moved], time_s: f32) -> Scene {
+    let mut file = movable();
+    hold(&mut file, moves, time_s);
+    load(&file)
+}
+
+fn settings() -> Settings {
+    small(120, 80).with(|s| {
+        s.lighting.shadows = Shadows::Soft;
+        s.lighting.shadow_atlas = 1024;
+    })
+}
+
+/// What the settings show of a scene that rests.
+fn at_rest(film: &mut Film, camera: &Camera, settings: &Settings) -> Vec<u8> {
+    let frames = match settings.shading.mode {
+        Shading::Full => 1,
+        Shading::Coarse | Shading::Variable => ROUND,
+    };
+    for _ in 0..frames {
+        film.draw(camera);
+    }
+    picture(&film.renderer)
+}
+
+fn fresh(scene: &Scene, settings: &Settings) -> Vec<u8> {
+    at_rest(&mut Film::new(scene, settings), &scene.cameras[0], settings)
+}
+
+/// A film that goes forth and back in a clip shows at each time what the file with that time's values
+/// shows.
+fn assert_pictures(moves: &[Moved], settings: &Settings) {
+    let mut scene = moving(moves);
+    scene.pose(0.0);
+    let mut film = Film::new(&scene, settings);
+    let mut known: Vec<(f32, Vec<u8>)> = Vec::new();
+    for time_s in [0.25, 1.0, 0.75, 0.25] {
+        scene.pose(time_s);
+        block_on(film.renderer.update_pose(&scene)).expect("it fits");
+        let found = at_rest(&mut film, &scene.cameras[0].clone(), settings);
+        let before = known.iter().find(|(at, _)| *at == time_s);
+        let expected = match before {
+            Some((_, picture)) => picture.clone(),
+            None => fresh(&still(moves, time_s), settings),
+        };
+        let texels = found
+            .as_chunks::<4>()
+            .0
+            .iter()
+            .zip(expected.as_chunks::<4>().0);
+        let differing = texels.filter(|(a, b)| a != b).count();
+        let pointers: Vec<&str> = moves.iter().map(|m| m.pointer).take(3).collect();
+        assert_eq!(differing, 0, "{pointers:?} at {time_s}");
+        assert!(
+            before.is_some() || known.iter().all(|(_, other)| *other != expected),
+            "{pointers:?}: nothing is seen of it at {time_s}"
+        );
+        known.push((time_s, expected));
+    }
+}
+
+#[test]
+fn a_pose_is_drawn_as_a_file_with_its_values() {
+    assert_pictures(MOVES, &settings());
+    let visibility = settings().with(|s| s.geometry.path = Geometry::Visibility);
+    for by in [MaterialDispatch::Material, MaterialDispatch::Family] {
+        let settings = visibility
+            .clone()
+            .with(|s| s.geometry.material_dispatch = by);
+        assert_pictures(MOVES, &settings);
+    }
+}
+
+#[test]
+fn light_that_is_kept_becomes_that_of_the_pose() {
+    for path in [Geometry::Gbuffer, Geometry::Visibility] {
+        assert_pictures(
+            MOVES,
+            &settings().with(|s| {
+                s.geometry.path = path;
+                s.shading.mode = Shading::Coarse;
+                s.coarse.history = true;
+                s.coarse.source = RateSource::Radii;
+                s.coarse.fovea_inner = 0.1;
+                s.coarse.fovea_outer = 1.0;
+            }),
+        );
+    }
+}
+
+#[test]
+fn rates_become_those_of_the_pose() {
+    assert_pictures(
+        MOVES,
+        &settings().with(|s| s.shading.mode = Shading::Variable),
+    );
+}
+
+#[test]
+fn sub_samples_and_culling_follow_the_pose() {
+    assert_pictures(
+        MOVES,
+        &settings().with(|s| s.antialiasing.mode = Antialiasing::Msaa),
+    );
+    assert_pictures(
+        MOVES,
+        &settings().with(|s| s.culling.mode = Culling::Occlusion),
+    );
+}
+
+/// One kind of change at a time: nothing else tells the stages that something has changed.
+#[test]
+fn each_change_alone_is_seen_and_shadows_follow() {
+    let kept = settings().with(|s| {
+        s.shading.mode = Shading::Coarse;
+        s.coarse.history = true;
+        s.culling.mode = Culling::Occlusion;
+    });
+    for pointer in [
+        "/nodes/4/extensions/KHR_node_visibility/visible",
+        "/nodes/5/extensions/KHR_node_visibility/visible",
+        "/materials/2/alphaCutoff",
+        "/materials/2/pbrMetallicRoughness/baseColorTexture/extensions/KHR_texture_transform/offset",
+        "/materials/0/pbrMetallicRoughness/roughnessFactor",
+        "/materials/0/pbrMetallicRoughness/baseColorFactor",
+        "/materials/0/emissiveFactor",
+        "/materials/4/extensions/KHR_materials_transmission/transmissionFactor",
+        "/extensions/KHR_lights_punctual/lights/0/intensity",
+        "/cameras/0/perspective/yfov",
+    ] {
+        let moved: Vec<Moved> = MOVES
+            .iter()
+            .copied()
+            .filter(|m| m.pointer == pointer)
+            .collect();
+        assert_eq!(moved.len(), 1, "{pointer}");
+        assert_alone(&moved, &kept);
+    }
+}
+
+/// As [`assert_pictures`] at the end of the clip and back at its beginning.
+fn assert_alone(moves: &[Moved], settings: &Settings) {
+    let mut scene = moving(moves);
+    let mut film = Film::new(&scene, settings);
+    let mut pictures = Vec::new();
+    for time_s in [0.5, 1.0, 0.5] {
+        scene.pose(time_s);
+        block_on(film.renderer.update_pose(&scene)).expect("it fits");
+        pictures.push(at_rest(&mut film, &scene.cameras[0].clone(), settings));
+    }
+    let pointer = moves[0].pointer;
+    assert!(pictures[0] == pictures[2], "{pointer}: there and back");
+    assert!(pictures[0] != pictures[1], "{pointer} changes nothing");
+    let expected = fresh(&still(moves, 1.0), settings);
+    let texels = pictures[1]
+        .as_chunks::<4>()
+        .0
+        .iter()
+        .zip(expected.as_chunks::<4>().0);
+    let differing = texels.filter(|(a, b)| a != b).count();
+    assert_eq!(differing, 0, "{pointer}");
+}
+
+#[test]
+fn generated_tangents_turn_with_the_normal_map() {
+    let moves: Vec<Moved> = MOVES
+        .iter()
+        .copied()
+        .filter(|m| {
+            m.pointer == "/materials/0/normalTexture/extensions/KHR_texture_transform/rotation"
+        })
+        .collect();
+    let bare = |mut file: File| {
+        for mesh in file.json["meshes"].as_array_mut().expect("meshes") {
+            let attributes = &mut mesh["primitives"][0]["attributes"];
+            attributes
+                .as_object_mut()
+                .expect("attributes")
+                .remove("TANGENT");
+        }
+        load(&file)
+    };
+    let (mut moving, mut still) = (movable(), movable());
+    hold(&mut moving, &moves, 0.0);
+    animate(&mut moving, &moves);
+    hold(&mut still, &moves, 1.0);
+    let (mut moving, still) = (bare(moving), bare(still));
+    moving.pose(1.0);
+    assert_eq!(moving.materials[0].tangent_turn_rad, 1.5);
+    let expected = fresh(&still, &settings());
+    let off = |scene: &Scene| -> f64 {
+        let found = fresh(scene, &settings());
+        let pairs = found.iter().zip(&expected);
+        pairs.map(|(a, b)| f64::from(a.abs_diff(*b))).sum()
+    };
+    let turned = off(&moving);
+    moving.materials[0].tangent_turn_rad = 0.0;
+    let unturned = off(&moving);
+    println!("turned {turned}, unturned {unturned}");
+    // Where u and v do not meet at right angles on the surface, turned tangents are not quite new ones.
+    let is_near = turned < 0.15 * unturned;
+    assert!(unturned > 1000.0 && is_near, "{turned} {unturned}");
+}
