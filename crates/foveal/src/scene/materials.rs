@@ -42,6 +42,7 @@ pub(crate) struct SceneMaterials {
     families: Families,
     /// `None` on devices without storage buffers.
     family_bindings: Option<FamilyBindings>,
+    texture_bytes: u64,
 }
 
 impl SceneMaterials {
@@ -75,8 +76,8 @@ impl SceneMaterials {
                 MaterialUniform::new(material, number, layers)
             })
             .collect();
-        let families =
-            Families::new((scene.materials.iter()).map(|m| (material_class(m), slots_of(m))));
+        let class_of = |material| material_class(material, &scene.textures);
+        let families = Families::new((scene.materials.iter()).map(|m| (class_of(m), slots_of(m))));
         let family_bindings = (!gpu.is_reduced()).then(|| {
             let white = textures.place(missing);
             FamilyBindings::new(gpu, &families, &uniforms, &textures, white, &mut samplers)
@@ -116,7 +117,7 @@ impl SceneMaterials {
                 lobes.push(None);
                 continue;
             }
-            let (class, bound) = LobeClass::of(material);
+            let (class, bound) = LobeClass::of(material, &scene.textures);
             let own = LobesUniform::new(material);
             let block = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("lobes"),
@@ -140,7 +141,13 @@ impl SceneMaterials {
             lobes,
             families,
             family_bindings,
+            texture_bytes: textures.bytes(),
         })
+    }
+
+    /// Bytes of all textures on the device.
+    pub(crate) fn texture_bytes(&self) -> u64 {
+        self.texture_bytes
     }
 
     pub(crate) fn group(&self, material: u32) -> &wgpu::BindGroup {
@@ -178,6 +185,7 @@ fn white() -> Texture {
         height: 1,
         color_space: ColorSpace::Linear,
         sampler: Sampler::default(),
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: vec![vec![255; 4]],
     }
 }

@@ -1,6 +1,8 @@
 //! A scene on the device: geometry, textures, materials, instances, lights.
 
 mod bindings;
+#[cfg(test)]
+mod blocks_tests;
 mod families;
 mod geometry;
 mod instances;
@@ -113,6 +115,7 @@ impl SceneOnGpu {
         let materials =
             SceneMaterials::new(gpu, scene, textures, settings, material_layout, limits)?;
         let material_families = materials.families().count() as u64;
+        let texture_bytes = materials.texture_bytes();
         let geometry = SceneGeometry::new(gpu, scene, materials.families().ranks())?;
         Ok(Self {
             bounds: shadowed_bounds(scene, &geometry.meshes),
@@ -128,6 +131,7 @@ impl SceneOnGpu {
                 materials: scene.materials.len() as u64,
                 material_families,
                 textures: scene.textures.len() as u64,
+                texture_bytes,
                 objects: scene.objects.len() as u64,
                 instances: scene.instances.len() as u64,
                 triangles: scene.triangle_count(),
@@ -213,7 +217,9 @@ fn shadowed_bounds(scene: &Scene, meshes: &[MeshRange]) -> Aabb {
 }
 
 fn drawn_instances(scene: &Scene) -> Vec<DrawnInstance> {
-    let classes: Vec<u32> = scene.materials.iter().map(material_class).collect();
+    let classes: Vec<u32> = (scene.materials.iter())
+        .map(|material| material_class(material, &scene.textures))
+        .collect();
     scene
         .instances
         .iter()
