@@ -71,6 +71,44 @@ fn stats_say_what_was_drawn() {
 }
 
 #[test]
+fn textures_in_blocks_take_a_part_and_look_nearly_the_same() {
+    let folder = folder();
+    let drawn = |name: &str, flag: Option<&str>| {
+        let (picture, json) = (format!("{name}.png"), format!("{name}.json"));
+        let mut words = vec!["render", "materials", "--size", "320x200", "-o", &picture];
+        words.extend(["--stats", &json]);
+        words.extend(flag);
+        let output = succeed(folder.path(), &words);
+        let stats = fs::read_to_string(folder.path().join(json)).unwrap();
+        let stats: Value = serde_json::from_str(&stats).unwrap();
+        let bytes = stats["scene"]["texture_bytes"].as_u64().unwrap();
+        // A device that does not read blocks has texels, and a warning says so.
+        let said = common::stderr(&output);
+        (bytes, !said.contains("does not read textures in blocks"))
+    };
+    let (plain, _) = drawn("plain", None);
+    for (name, flag, part, most, least) in [
+        ("small", "--texture-compression", 0.18, "0.003", "0.00001"),
+        (
+            "fine",
+            "--texture-compression=fine",
+            0.26,
+            "0.01",
+            "0.000001",
+        ),
+    ] {
+        let (bytes, reads) = drawn(name, Some(flag));
+        let found = bytes as f64 / plain as f64;
+        assert!(if reads { found < part } else { bytes == plain }, "{found}");
+        let picture = format!("{name}.png");
+        let compared = ["compare", "plain.png", &picture, "--max-flip"];
+        succeed(folder.path(), &[&compared[..], &[most]].concat());
+        let other = common::foveal_in(folder.path(), &[&compared[..], &[least]].concat());
+        assert_eq!(other.status.code(), Some(1), "they differ");
+    }
+}
+
+#[test]
 fn adapters_are_listed_for_programs_and_for_people() {
     let folder = folder();
     let json: Value =

@@ -40,6 +40,21 @@ pub fn open(wanted: Option<&str>) -> anyhow::Result<Gpu> {
     }
 }
 
+/// Warns where textures are to stay in blocks and the device does not read them.
+pub fn check_blocks(gpu: &Gpu) {
+    if !gpu.reads_blocks() {
+        console::warn(&without_blocks(&gpu.adapter_stats()));
+    }
+}
+
+fn without_blocks(adapter: &AdapterStats) -> String {
+    format!(
+        "'{}' ({}) does not read textures in blocks: they are decoded on the way to it, take as much memory as without \
+         --texture-compression, and look as with it",
+        adapter.name, adapter.driver
+    )
+}
+
 /// Fails where there is no adapter, for those who open the device themselves; warns where the one
 /// that they will get has OpenGL alone.
 pub fn check(wanted: Option<&str>) -> anyhow::Result<()> {

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use foveal_scene::{Clip, Code, Limit, LoadOptions, SceneError};
+use foveal_scene::{Clip, Code, Limit, LoadOptions, SceneError, TextureCompression};
 
 use crate::values;
 
@@ -18,6 +18,19 @@ pub struct ImportArgs {
     /// Variant of materials to show, by name or by number from 0 [default: none]
     #[arg(long, value_name = "NAME|NUMBER")]
     variant: Option<String>,
+
+    /// Keep textures in blocks on the device. `small`, also without a value: BC1, BC4 and BC5, and
+    /// BC7 where alpha is read; `fine`: BC7 for BC1. Loading takes longer, and textures are not
+    /// quite the same [default: off]
+    #[arg(
+        long,
+        value_name = "off|small|fine",
+        value_parser = texture_compression,
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "small"
+    )]
+    texture_compression: Option<TextureCompression>,
 
     /// Most memory for textures while they are loaded; larger pictures are reduced to fit [default:
     /// 4.3GB]
@@ -55,7 +68,26 @@ pub struct ImportArgs {
     outside_files: bool,
 }
 
+fn texture_compression(text: &str) -> Result<TextureCompression, String> {
+    match text {
+        "off" => Ok(TextureCompression::Off),
+        "small" => Ok(TextureCompression::Small),
+        "fine" => Ok(TextureCompression::Fine),
+        _ => Err("it is off, small or fine".to_owned()),
+    }
+}
+
 impl ImportArgs {
+    /// The flag that keeps textures in blocks, where they are.
+    #[must_use]
+    pub fn texture_flag(&self) -> Option<&'static str> {
+        match self.texture_compression.unwrap_or_default() {
+            TextureCompression::Off => None,
+            TextureCompression::Small => Some("--texture-compression=small"),
+            TextureCompression::Fine => Some("--texture-compression=fine"),
+        }
+    }
+
     /// The flags that decide what of a scene is shown, as a command has them.
     pub fn shown_flags(&self) -> Vec<String> {
         let clip = self.clip.as_ref().map(ToString::to_string);
@@ -75,6 +107,7 @@ impl ImportArgs {
             clip: self.clip.clone().unwrap_or_default(),
             variant: self.variant.clone(),
             outside_files: self.outside_files,
+            texture_compression: self.texture_compression.unwrap_or_default(),
             max_file_bytes: self.max_file_size.unwrap_or(d.max_file_bytes),
             max_texture_size: self.max_texture_size.unwrap_or(d.max_texture_size),
             max_texture_bytes: self.max_texture_memory.unwrap_or(d.max_texture_bytes),
@@ -171,6 +204,7 @@ mod tests {
             "--max-vertices",
             "7",
             "--outside-files",
+            "--texture-compression",
             "--clip",
             "Run",
             "--variant",
@@ -181,11 +215,26 @@ mod tests {
             max_texture_bytes: 1_500_000_000,
             max_vertices: 7,
             outside_files: true,
+            texture_compression: TextureCompression::Small,
             clip: Clip::Named("Run".to_owned()),
             variant: Some("red".to_owned()),
             ..LoadOptions::default()
         };
         assert_eq!(some, expected);
+    }
+
+    #[test]
+    fn the_flag_of_textures_is_read_as_it_is_written() {
+        for flag in ["--texture-compression=small", "--texture-compression=fine"] {
+            let line = Line::try_parse_from(["foveal", flag]).unwrap();
+            assert_eq!(line.import.texture_flag(), Some(flag));
+        }
+        for words in [&["foveal"][..], &["foveal", "--texture-compression=off"]] {
+            let line = Line::try_parse_from(words).unwrap();
+            assert_eq!(line.import.texture_flag(), None);
+        }
+        let wrong = Line::try_parse_from(["foveal", "--texture-compression=bc9"]);
+        assert!(wrong.is_err());
     }
 
     #[test]

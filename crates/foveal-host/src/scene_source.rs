@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use foveal::Timing;
 use foveal_generate as generate;
 use foveal_generate::{DemoOptions, GenerateError};
-use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene};
+use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene, TextureCompression};
 
 use crate::import_args::{self, NoSuchScene};
 
@@ -39,8 +39,13 @@ pub fn load_timed(
         Ok(_) if options.variant.is_some() || matches!(options.clip, Clip::Named(_)) => {
             bail!("the generated scene '{name}' has neither clips nor variants")
         }
-        Ok(scene) => {
+        Ok(mut scene) => {
             load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
+            if options.texture_compression != TextureCompression::Off {
+                let start = Instant::now();
+                scene.compress_textures(options.texture_compression, options.parallel);
+                load_ms.push(timing("compress", start.elapsed().as_secs_f64() * 1e3));
+            }
             Ok(scene)
         }
         Err(GenerateError::UnknownScene { .. }) => from_file(name, options, load_ms),

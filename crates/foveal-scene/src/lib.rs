@@ -17,9 +17,11 @@
 #![forbid(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 
+mod blocks;
 mod camera;
 mod cloud;
 mod code;
+mod compress;
 mod error;
 mod gltf;
 mod light;
@@ -50,5 +52,7 @@ pub use mesh::{Mesh, Vertex};
 pub use pose::{Clip, Rig};
 pub use printable::printable;
 pub use scene::{Instance, Object, Scene, Warning};
-pub use texture::{ColorSpace, Filter, Sampler, Texture, TextureRef, Wrap};
+pub use texture::{
+    ColorSpace, Encoding, Filter, Sampler, Texture, TextureCompression, TextureRef, Wrap,
+};
 pub use timings::LoadTimings;

@@ -9,7 +9,7 @@ use std::path::{Component, Path};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use crate::error::{Limit, amount};
-use crate::{Clip, Scene, SceneError, gltf};
+use crate::{Clip, Scene, SceneError, TextureCompression, gltf};
 
 /// What to do with a primitive that brings no normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -42,6 +42,11 @@ pub struct LoadOptions {
     /// Read what nothing shown uses, too, meshes and pictures, and warn of what is wrong with it. It
     /// is freed again.
     pub check_unused: bool,
+    /// Whether textures are kept in blocks that graphics devices read as they are: a quarter to an
+    /// eighth of the memory, not quite the same, and loading takes longer. KTX2 pictures become BC7
+    /// without going through texels. Textures whose sides are no multiples of 4 stay as they are. On
+    /// WebAssembly nothing is done.
+    pub texture_compression: TextureCompression,
     /// Most bytes of the file and all files that it names, together.
     pub max_file_bytes: u64,
     /// Largest width and height of a texture in texels; larger pictures are halved until they fit.
@@ -64,8 +69,8 @@ pub struct LoadOptions {
 
 impl Default for LoadOptions {
     /// At time 0 of the first clip, no variant, parallel, flat normals, own folder only, only what
-    /// is shown; 4 GiB of files, 8192-texel textures, 4 GiB of them, 64 Mi vertices, 4 Mi instances,
-    /// 4 Gi triangles, 256 bytes per byte.
+    /// is shown, textures as texels; 4 GiB of files, 8192-texel textures, 4 GiB of them, 64 Mi
+    /// vertices, 4 Mi instances, 4 Gi triangles, 256 bytes per byte.
     fn default() -> Self {
         Self {
             time_s: 0.0,
@@ -75,6 +80,7 @@ impl Default for LoadOptions {
             missing_normals: MissingNormals::Flat,
             outside_files: false,
             check_unused: false,
+            texture_compression: TextureCompression::Off,
             max_file_bytes: 4 << 30,
             max_texture_size: 8192,
             max_texture_bytes: 4 << 30,

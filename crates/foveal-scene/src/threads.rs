@@ -31,6 +31,16 @@ pub(crate) fn map_few<T: Sync, R: Send>(
         .collect()
 }
 
+/// Calls `f` on each item, on the rayon pool when `parallel`.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn each<T: Send>(parallel: bool, items: &mut [T], f: impl Fn(&mut T) + Sync + Send) {
+    if parallel {
+        items.par_iter_mut().for_each(f);
+    } else {
+        items.iter_mut().for_each(f);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -30,6 +30,8 @@ pub struct SceneStats {
     pub material_families: u64,
     /// Textures.
     pub textures: u64,
+    /// Bytes of all textures on the device, mip levels included.
+    pub texture_bytes: u64,
     /// Objects (nodes with a mesh, GPU instances counted singly).
     pub objects: u64,
     /// Instances (one per object and primitive).

@@ -208,6 +208,9 @@ fn prepare(
     let gpu = timed(&mut device_ms, "device", || {
         gpu::open(args.adapter.as_deref())
     })?;
+    if args.import.texture_flag().is_some() && !args.quiet {
+        gpu::check_blocks(&gpu);
+    }
     let mut renderer = timed(&mut device_ms, "pipelines", || {
         block_on(Renderer::new(
             &gpu,

@@ -5,7 +5,9 @@
 //! container follow from that, so that changes reach what is inside. With the first bit of the
 //! options the rest is a whole file instead.
 
-use foveal_scene::{Clip, LoadOptions, MissingNormals, Scene, SceneError, load_bytes};
+use foveal_scene::{
+    Clip, LoadOptions, MissingNormals, Scene, SceneError, TextureCompression, load_bytes,
+};
 use foveal_seeds::{
     ETC1S, File, UASTC, UASTC_ZSTD, draco_file, draco_stream, extended, grid_file, ktx2_file,
     meshopt_file, pointers, rich, strokes, webp_file,
@@ -15,6 +17,7 @@ const WHOLE_FILE: u8 = 1;
 const VARIANT: u8 = 2;
 const SMOOTH: u8 = 4;
 const SMALL_TEXTURES: u8 = 8;
+const IN_BLOCKS: u8 = 16;
 
 /// Loads the file that an input stands for.
 pub fn import(input: &[u8]) {
@@ -35,6 +38,11 @@ pub fn import(input: &[u8]) {
             MissingNormals::Flat
         } else {
             MissingNormals::Smooth
+        },
+        texture_compression: if flags & IN_BLOCKS == 0 {
+            TextureCompression::Off
+        } else {
+            TextureCompression::Small
         },
         max_texture_size: if flags & SMALL_TEXTURES == 0 { 8192 } else { 4 },
         ..LoadOptions::default()
@@ -81,8 +89,9 @@ fn check(scene: &Scene) {
     }
     for texture in &scene.textures {
         for (k, level) in texture.levels.iter().enumerate() {
-            let side = |size: u32| (size >> k).max(1) as usize;
-            assert_eq!(level.len(), side(texture.width) * side(texture.height) * 4);
+            let (width, height) = texture.level_size(k);
+            let bytes = texture.encoding.level_bytes(width, height);
+            assert_eq!(level.len() as u64, bytes);
         }
     }
 }
@@ -121,6 +130,10 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
     whole.extend(files[1].glb());
     seeds.push(whole);
     seeds[1][0] = VARIANT | SMOOTH | SMALL_TEXTURES;
+    // The KTX2 files come last before the whole one.
+    for at in [0, 8, 9, 10, 11] {
+        seeds[at][0] |= IN_BLOCKS;
+    }
     seeds
 }
 

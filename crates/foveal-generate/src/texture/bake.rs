@@ -167,6 +167,7 @@ fn picture(name: &str, size: u32, level_0: Vec<u8>, content: Content) -> Texture
             Content::Data | Content::Normal => ColorSpace::Linear,
         },
         sampler: Sampler::default(),
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: mip::chain(level_0, size, size, content),
     }
 }

@@ -204,7 +204,7 @@ fn build(
     rig.give_own_meshes(&mut shown, &shapes, &mut scene, reader, options, warn)?;
     scene.timings.geometry_ms = watch.lap_ms();
 
-    scene.textures = textures::decode(&wanted, reader, resolver, options, warn)?;
+    scene.textures = textures::decode(&wanted, &scene.materials, reader, resolver, options, warn)?;
     if options.check_unused {
         unused::check(reader, resolver, options, &hierarchy, &wanted, warn);
     }

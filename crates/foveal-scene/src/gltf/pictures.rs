@@ -16,6 +16,8 @@ use super::reader::Reader;
 use super::uri::{self, Uri};
 use crate::Code;
 use crate::error::{Flaw, Parsed};
+#[cfg(not(target_arch = "wasm32"))]
+use crate::{Encoding, mip};
 
 /// RGBA8 texels.
 pub(crate) struct Picture {
@@ -177,6 +179,43 @@ pub(crate) fn promise(bytes: &[u8]) -> Result<Promise, String> {
         }
         Ok(promise)
     })
+}
+
+/// The mip levels of a KTX2 file whose header is known, as blocks of BC7 and without going through
+/// texels. `None` for other files, where the picture's size is not one of whole blocks, and where the
+/// file lacks levels that are wanted: `all`, or else the first.
+#[cfg(not(target_arch = "wasm32"))]
+pub(crate) fn blocks(
+    bytes: &[u8],
+    promise: Promise,
+    all: bool,
+) -> Option<Result<Vec<Vec<u8>>, String>> {
+    let size = (promise.width, promise.height);
+    if !basis::is_ktx2(bytes) || !Encoding::Bc7.fits(size.0, size.1) {
+        return None;
+    }
+    let count = if all {
+        mip::level_count(size.0, size.1)
+    } else {
+        1
+    };
+    if basis::level_count(bytes, size) < count {
+        return None;
+    }
+    Some(netted(|| {
+        let levels = basis::blocks(bytes, count)?;
+        let needed = |level: u32| {
+            let side = |size: u32| (size >> level).max(1);
+            Encoding::Bc7.level_bytes(side(size.0), side(size.1))
+        };
+        if (0..)
+            .zip(&levels)
+            .any(|(k, level)| level.len() as u64 != needed(k))
+        {
+            return Err("has another size than its header says".to_owned());
+        }
+        Ok(levels)
+    }))
 }
 
 /// Decodes a file whose header is known.

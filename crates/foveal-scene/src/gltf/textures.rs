@@ -13,11 +13,12 @@ use super::materials::MaterialDef;
 use super::pictures::{self, Picture, Promise};
 use super::reader::Reader;
 use super::slots::SlotDef;
+use crate::compress::{self, Channels};
 use crate::error::{Flaw, Limit, Parsed, amount};
 use crate::mip::{self, Content};
 use crate::{
-    AlphaMode, Code, ColorSpace, LoadOptions, Material, Sampler, Texture, TextureRef, Warning,
-    threads,
+    AlphaMode, Code, ColorSpace, Encoding, LoadOptions, Material, Sampler, Texture,
+    TextureCompression, TextureRef, Warning, threads,
 };
 
 /// Why a material reads a texture; what its mip levels depend on.
@@ -173,23 +174,55 @@ struct Source<'a> {
     image: Option<u32>,
     /// Its file, and what the header promises; or why it cannot be had.
     encoded: Result<(Cow<'a, [u8]>, Promise), Flaw>,
-    /// Numbers of the textures made from it.
-    uses: Vec<usize>,
+    uses: Vec<Use>,
 }
 
-/// Decodes every wanted texture. A picture that cannot be had is a warning and a placeholder; one
-/// that is beyond a limit is an error before anything is decoded.
+/// A texture made from a picture.
+#[derive(Clone, Copy)]
+struct Use {
+    number: usize,
+    kept: Option<Kept>,
+}
+
+/// What is read of a texture that is to be in blocks, and by what choice they are.
+#[derive(Clone, Copy)]
+struct Kept {
+    read: Channels,
+    by: TextureCompression,
+}
+
+impl Use {
+    fn encoding(self, width: u32, height: u32) -> Encoding {
+        self.kept.map_or(Encoding::Rgba8, |kept| {
+            kept.read.encoding(kept.by, (width, height))
+        })
+    }
+}
+
+/// Decodes every wanted texture of these materials. A picture that cannot be had is a warning and a
+/// placeholder; one that is beyond a limit is an error before anything is decoded.
 pub(crate) fn decode(
     wanted: &Wanted,
+    materials: &[Material],
     reader: Reader<'_>,
     resolver: &Resolver<'_>,
     options: &LoadOptions,
     warn: &mut Vec<Warning>,
 ) -> Parsed<Vec<Texture>> {
     let document = reader.document;
-    let sources = sources(wanted, reader, resolver);
+    let by = options.texture_compression;
+    let keeps = by != TextureCompression::Off && cfg!(not(target_arch = "wasm32"));
+    let kept = keeps.then(|| {
+        let read = compress::channels(materials, wanted.keys.len()).into_iter();
+        read.map(|read| Kept { read, by }).collect::<Vec<_>>()
+    });
+    let sources = sources(wanted, kept.as_deref(), reader, resolver);
     let plan = plan(&sources, document, options, &reader.buffers.budget, warn)?;
     let decoded = threads::map_few(options.parallel, plan.at_once, &sources, |source| {
+        #[cfg(not(target_arch = "wasm32"))]
+        if let Some(finished) = transcoded(source, wanted, document, plan.largest) {
+            return finished;
+        }
         let picture = match &source.encoded {
             Ok((bytes, promise)) => pictures::decode(bytes, *promise).map_err(unreadable),
             Err(flaw) => Err(flaw.clone()),
@@ -208,7 +241,12 @@ pub(crate) fn decode(
 
 /// The wanted pictures, each once. Files are read here, one after the other: a resolver need not be
 /// quick or parallel.
-fn sources<'a>(wanted: &Wanted, reader: Reader<'a>, resolver: &Resolver<'_>) -> Vec<Source<'a>> {
+fn sources<'a>(
+    wanted: &Wanted,
+    kept: Option<&[Kept]>,
+    reader: Reader<'a>,
+    resolver: &Resolver<'_>,
+) -> Vec<Source<'a>> {
     let mut sources: Vec<Source<'a>> = Vec::new();
     let mut number: HashMap<Option<u32>, usize> = HashMap::new();
     for (i, key) in wanted.keys.iter().enumerate() {
@@ -224,7 +262,10 @@ fn sources<'a>(wanted: &Wanted, reader: Reader<'a>, resolver: &Resolver<'_>) -> 
             });
             sources.len() - 1
         });
-        sources[at].uses.push(i);
+        sources[at].uses.push(Use {
+            number: i,
+            kept: kept.map(|kept| kept[i]),
+        });
     }
     sources
 }
@@ -249,9 +290,19 @@ impl Source<'_> {
     fn kept_bytes(&self, largest: u32) -> u64 {
         self.promise().map_or(0, |promise| {
             let drop = levels_to_drop(promise.width, promise.height, largest);
-            let side = |size: u32| u64::from((size >> drop).max(1));
-            let texels = side(promise.width) * side(promise.height);
-            (texels * 16 / 3 + 4) * self.uses.len() as u64
+            let [width, height] = [promise.width, promise.height].map(|s| (s >> drop).max(1));
+            let bytes = |one: &Use| match one.encoding(width, height) {
+                Encoding::Rgba8 => rgba_chain_bytes(width, height),
+                // KTX2 pictures are BC7 whatever is read of them; BC1 and BC4 take half of it.
+                _ => {
+                    let levels = 0..mip::level_count(width, height);
+                    let side = |size: u32, level: u32| (size >> level).max(1);
+                    levels
+                        .map(|l| Encoding::Bc7.level_bytes(side(width, l), side(height, l)))
+                        .sum()
+                }
+            };
+            self.uses.iter().map(bytes).sum()
         })
     }
 
@@ -261,9 +312,21 @@ impl Source<'_> {
         self.promise().map_or(0, |promise| {
             let reduced = levels_to_drop(promise.width, promise.height, largest) > 0;
             let copies = u64::from(reduced) + u64::from(self.uses.len() > 1);
-            promise.decoding_bytes() + copies * promise.rgba_bytes()
+            // The levels as texels, before they are in blocks.
+            let in_blocks = self.uses.iter().any(|one| one.kept.is_some());
+            let texels = if in_blocks {
+                rgba_chain_bytes(promise.width, promise.height)
+            } else {
+                0
+            };
+            promise.decoding_bytes() + copies * promise.rgba_bytes() + texels
         })
     }
+}
+
+/// Memory of a picture as RGBA8 with its mip levels.
+fn rgba_chain_bytes(width: u32, height: u32) -> u64 {
+    u64::from(width) * u64::from(height) * 16 / 3 + 4
 }
 
 /// How to decode within the limits.
@@ -356,9 +419,48 @@ struct Finished {
     notes: Vec<Warning>,
 }
 
+/// The textures of a KTX2 file whose own blocks and levels are those that are wanted; else `None`.
+#[cfg(not(target_arch = "wasm32"))]
+fn transcoded(
+    source: &Source<'_>,
+    wanted: &Wanted,
+    document: &Document,
+    largest: u32,
+) -> Option<Finished> {
+    let Ok((bytes, promise)) = &source.encoded else {
+        return None;
+    };
+    let size = (promise.width, promise.height);
+    let in_blocks = source.uses.iter().all(|one| one.kept.is_some());
+    if !in_blocks || levels_to_drop(size.0, size.1, largest) > 0 {
+        return None;
+    }
+    let has_levels = |one: &Use| wanted.keys[one.number].sampler.mip.is_some();
+    let all = source.uses.iter().any(has_levels);
+    // What cannot be transcoded is decoded, or says why not.
+    let mut levels = pictures::blocks(bytes, *promise, all)?.ok()?;
+    let mut textures = Vec::with_capacity(source.uses.len());
+    for (nth, one) in source.uses.iter().enumerate() {
+        let levels = if nth + 1 == source.uses.len() {
+            std::mem::take(&mut levels)
+        } else {
+            levels.clone()
+        };
+        let key = &wanted.keys[one.number];
+        let mut texture = texture(key, document, size, levels);
+        texture.encoding = Encoding::Bc7;
+        if key.sampler.mip.is_none() {
+            texture.levels.truncate(1);
+        }
+        textures.push((one.number, texture));
+    }
+    let notes = Vec::new();
+    Some(Finished { textures, notes })
+}
+
 fn finish(
     picture: Parsed<Picture>,
-    uses: &[usize],
+    uses: &[Use],
     wanted: &Wanted,
     document: &Document,
     largest: u32,
@@ -371,14 +473,15 @@ fn finish(
             height,
             mut pixels,
         }) => {
-            for (nth, &i) in uses.iter().enumerate() {
+            for (nth, one) in uses.iter().enumerate() {
                 let last = nth + 1 == uses.len();
                 let pixels = if last {
                     std::mem::take(&mut pixels)
                 } else {
                     pixels.clone()
                 };
-                let texture = build(&wanted.keys[i], document, pixels, (width, height), largest);
+                let key = &wanted.keys[one.number];
+                let texture = build(key, one.kept, document, pixels, (width, height), largest);
                 if last && texture.width < width {
                     notes.push(Warning::new(
                         Code::TexturesReduced,
@@ -388,16 +491,17 @@ fn finish(
                         ),
                     ));
                 }
-                textures.push((i, texture));
+                textures.push((one.number, texture));
             }
         }
         Err(flaw) => {
             let text = format!("{}; a placeholder is shown", flaw.cause);
             notes.push(Warning::new(flaw.code, text));
-            for &i in uses {
-                let key = &wanted.keys[i];
-                let (pixels, side) = placeholder(key.role, wanted.only_emissive[i]);
-                textures.push((i, build(key, document, pixels, (side, side), largest)));
+            for one in uses {
+                let key = &wanted.keys[one.number];
+                let (pixels, side) = placeholder(key.role, wanted.only_emissive[one.number]);
+                let texture = build(key, None, document, pixels, (side, side), largest);
+                textures.push((one.number, texture));
             }
         }
     }
@@ -406,6 +510,7 @@ fn finish(
 
 fn build(
     key: &Key,
+    kept: Option<Kept>,
     document: &Document,
     pixels: Vec<u8>,
     (width, height): (u32, u32),
@@ -421,16 +526,31 @@ fn build(
     if key.sampler.mip.is_none() {
         levels.truncate(1);
     }
+    let size = ((width >> drop).max(1), (height >> drop).max(1));
+    let mut texture = texture(key, document, size, levels);
+    if let Some(kept) = kept {
+        compress::compress(&mut texture, kept.read, kept.by);
+    }
+    texture
+}
+
+fn texture(
+    key: &Key,
+    document: &Document,
+    (width, height): (u32, u32),
+    levels: Vec<Vec<u8>>,
+) -> Texture {
     let name = key.image.map_or_else(
         || "no picture".to_owned(),
         |i| document.images[i as usize].label(i as usize),
     );
     Texture {
         name,
-        width: (width >> drop).max(1),
-        height: (height >> drop).max(1),
+        width,
+        height,
         color_space: key.role.color_space(),
         sampler: key.sampler,
+        encoding: Encoding::Rgba8,
         levels,
     }
 }

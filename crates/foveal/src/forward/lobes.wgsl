@@ -17,6 +17,8 @@ const HAS_CLEARCOAT: u32 = 4096u;
 const HAS_SHEEN: u32 = 8192u;
 const HAS_ANISOTROPY: u32 = 16384u;
 const HAS_TRANSMISSION: u32 = 32768u;
+// The coat's normal map has x and y alone (BC5).
+const COAT_NORMAL_OF_TWO: u32 = 131072u;
 
 const CLEARCOAT: u32 = 0u;
 const CLEARCOAT_ROUGHNESS: u32 = 1u;
@@ -115,7 +117,10 @@ fn lobes_at(s: Surface, normal: vec3f, tangent_at_rest: vec4f, uv: vec4f, facing
         found.clearcoat = lobes.clearcoat * sample_lobe(CLEARCOAT, uv).r;
         var n = geometric;
         if bound_texture(CLEARCOAT_NORMAL) != 0u {
-            let texel = sample_lobe(CLEARCOAT_NORMAL, uv).xyz * 2.0 - 1.0;
+            var texel = sample_lobe(CLEARCOAT_NORMAL, uv).xyz * 2.0 - 1.0;
+            if (MATERIAL_CLASS & COAT_NORMAL_OF_TWO) != 0u {
+                texel = unit_above(texel.xy);
+            }
             let bent = texel.x * lobes.clearcoat_normal_scale * tangent.xyz
                 + texel.y * lobes.clearcoat_normal_scale * bitangent + texel.z * normal;
             n = select(n, normalize(bent) * facing, has_tangent);

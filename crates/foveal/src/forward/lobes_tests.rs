@@ -320,6 +320,7 @@ fn textures_of_lobes_are_read_where_their_places_say() {
         height: 1,
         color_space: ColorSpace::Linear,
         sampler: Sampler::default(),
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: vec![texel.to_vec()],
     };
     let slot = |texture| {

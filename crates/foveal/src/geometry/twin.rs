@@ -180,6 +180,7 @@ fn tiny_texture(color_space: ColorSpace) -> Texture {
             mip: None,
             ..Sampler::default()
         },
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: vec![
             (0..8u8)
                 .flat_map(|i| [i * 30, 255 - i * 30, i * 16, if i == 3 { 0 } else { 255 }])

@@ -144,6 +144,14 @@ impl Gpu {
         is_reduced(&self.device.limits())
     }
 
+    /// Whether the device keeps textures in blocks ([`foveal_scene::Encoding`]) as they are. Where
+    /// not, they are decoded on the way to it and take as much memory as plain ones.
+    #[must_use]
+    pub fn reads_blocks(&self) -> bool {
+        let blocks = wgpu::Features::TEXTURE_COMPRESSION_BC;
+        self.device.features().contains(blocks)
+    }
+
     /// Whether passes tell how long they took.
     pub(crate) fn tells_times(&self) -> bool {
         let features = self.device.features();
@@ -178,6 +186,7 @@ impl Gpu {
             | wgpu::Features::CLIP_DISTANCES
             | wgpu::Features::MULTIVIEW
             | wgpu::Features::SUBGROUP
+            | wgpu::Features::TEXTURE_COMPRESSION_BC
     }
 
     /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.

@@ -76,6 +76,23 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
 }
 
 #[test]
+fn textures_in_blocks_are_those_of_the_full_renderer() {
+    let mut scene = generate::by_name("alpha").expect("it is generated");
+    let (camera, settings) = (scene.cameras[0].clone(), small(161, 99));
+    let plain = picture(&rendered(&scene, &camera, &settings));
+    scene.compress_textures(foveal_scene::TextureCompression::Small, true);
+    let full = picture(&rendered(&scene, &camera, &settings));
+    let ours = reduced(&scene, &camera, &settings);
+    let texels = scene.textures.iter().map(foveal_scene::Texture::bytes);
+    assert!(ours.scene_stats().texture_bytes > 3 * texels.sum::<u64>());
+    let ours = pollster::block_on(ours.read_picture()).expect("read-back works");
+    // Blocks of one channel or two have more than 8 bits.
+    let share = differing(&full, &ours, 2);
+    assert!(share < 5e-3, "{share} of the channels");
+    assert!(differing(&plain, &ours, 2) > 2.0 * share);
+}
+
+#[test]
 fn points_and_lines_are_those_of_the_full_renderer() {
     let (scene, camera) = strokes();
     for width in [1.0, 5.0] {

@@ -1,10 +1,10 @@
 //! Materials' lobes on the device: a uniform block and textures beside the material's own.
 
 use bytemuck::{Pod, Zeroable};
-use foveal_scene::{Material, TextureRef};
+use foveal_scene::{Material, Texture, TextureRef};
 use glam::{Vec2, Vec3};
 
-use super::material_uniform::uv_rows;
+use super::material_uniform::{is_of_two, uv_rows};
 
 /// Places for textures in all lobes.
 const PLACES: usize = 8;
@@ -72,7 +72,9 @@ pub(crate) struct LobeClass {
     pub(crate) textures: u32,
 }
 
+const HAS_CLEARCOAT: u32 = 4096;
 const HAS_TRANSMISSION: u32 = 32768;
+const COAT_NORMAL_OF_TWO: u32 = 131_072;
 
 impl LobeClass {
     /// The same for a surface that is blended.
@@ -87,10 +89,12 @@ impl LobeClass {
         self.flags & HAS_TRANSMISSION != 0
     }
 
-    /// A material's, with the textures to bind.
-    pub(super) fn of(material: &Material) -> (Self, Vec<u32>) {
+    /// A material's, with the textures to bind; `textures`: the scene's, with or without texels.
+    pub(super) fn of(material: &Material, textures: &[Texture]) -> (Self, Vec<u32>) {
+        let coat_normal = (material.clearcoat.as_ref()).and_then(|coat| coat.normal_texture);
         let flags = [
-            (material.clearcoat.is_some(), 4096),
+            (material.clearcoat.is_some(), HAS_CLEARCOAT),
+            (is_of_two(coat_normal, textures), COAT_NORMAL_OF_TWO),
             (material.sheen.is_some(), 8192),
             (material.anisotropy.is_some(), 16384),
             (material.transmission.is_some(), HAS_TRANSMISSION),
@@ -152,7 +156,7 @@ mod tests {
             }),
             ..Material::default()
         };
-        let (class, bound) = LobeClass::of(&material);
+        let (class, bound) = LobeClass::of(&material, &[]);
         assert_eq!((class.flags, class.textures), (4096 | 8192, 0x1211));
         assert_eq!(bound, [7, 2]);
     }

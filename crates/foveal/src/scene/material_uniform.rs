@@ -1,7 +1,7 @@
 //! What shaders are told of a material, and what class it is of.
 
 use bytemuck::{Pod, Zeroable};
-use foveal_scene::{AlphaMode, Material, TextureRef};
+use foveal_scene::{AlphaMode, Encoding, Material, Texture, TextureRef};
 use glam::{Mat3, Vec2};
 
 /// Mirrors `Material` in `shared/material.wgsl`, where the fields are explained.
@@ -50,13 +50,21 @@ const IS_PROCEDURAL: u32 = 64;
 const HAS_UV_MAP: u32 = 128;
 const HAS_OWN_UV_MAPS: u32 = 256;
 const IS_SPECULAR: u32 = 2048;
+const NORMAL_OF_TWO: u32 = 65536;
+
+/// Whether a normal map has x and y alone.
+pub(super) fn is_of_two(slot: Option<TextureRef>, textures: &[Texture]) -> bool {
+    let texture = slot.and_then(|slot| textures.get(slot.texture as usize));
+    texture.is_some_and(|texture| texture.encoding == Encoding::Bc5)
+}
 
 /// What the shader is specialized to: one bit per texture slot in use, one for unlit, one for
 /// procedural, one where a texture is read elsewhere than at the first UV set as it is, one where
-/// textures are read at different places, one where what is not metal has a reflectance of its own.
-pub(crate) fn material_class(material: &Material) -> u32 {
+/// textures are read at different places, one where what is not metal has a reflectance of its own,
+/// one where the normal map has x and y alone. `textures`: the scene's, with or without texels.
+pub(crate) fn material_class(material: &Material, textures: &[Texture]) -> u32 {
     let slots = slots(material);
-    let textures = slots
+    let in_use = slots
         .iter()
         .zip(HAS_TEXTURE)
         .map(|(slot, flag)| if slot.is_some() { flag } else { 0 });
@@ -68,9 +76,10 @@ pub(crate) fn material_class(material: &Material) -> u32 {
         (moves || slots.iter().flatten().any(has_uv_map), HAS_UV_MAP),
         (moves || shared_uv_map(&slots).is_none(), HAS_OWN_UV_MAPS),
         (material.has_own_specular(), IS_SPECULAR),
+        (is_of_two(material.normal_texture, textures), NORMAL_OF_TWO),
     ];
     let flags = flags.iter().map(|&(is, bit)| if is { bit } else { 0 });
-    textures.sum::<u32>() | flags.sum::<u32>()
+    in_use.sum::<u32>() | flags.sum::<u32>()
 }
 
 fn has_uv_map(slot: &TextureRef) -> bool {

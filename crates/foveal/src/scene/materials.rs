@@ -70,6 +70,7 @@ pub(crate) struct SceneMaterials {
     families: Families,
     /// `None` on devices without storage buffers.
     family_bindings: Option<FamilyBindings>,
+    texture_bytes: u64,
 }
 
 impl SceneMaterials {
@@ -103,7 +104,9 @@ impl SceneMaterials {
                 MaterialUniform::new(material, number, layers)
             })
             .collect();
-        let classes: Vec<u32> = scene.materials.iter().map(material_class).collect();
+        let classes: Vec<u32> = (scene.materials.iter())
+            .map(|material| material_class(material, &scene.textures))
+            .collect();
         let materials = classes.iter().zip(&scene.materials);
         let families = Families::new(materials.map(|(class, m)| (*class, slots_of(m))));
         let family_bindings = (!gpu.is_reduced()).then(|| {
@@ -145,7 +148,7 @@ impl SceneMaterials {
                 lobes.push(None);
                 continue;
             }
-            let (class, bound) = LobeClass::of(material);
+            let (class, bound) = LobeClass::of(material, &scene.textures);
             let own = LobesUniform::new(material);
             let block = gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("lobes"),
@@ -178,6 +181,7 @@ impl SceneMaterials {
             classes,
             families,
             family_bindings,
+            texture_bytes: textures.bytes(),
         })
     }
 
@@ -232,6 +236,11 @@ impl SceneMaterials {
         self.classes[material as usize]
     }
 
+    /// Bytes of all textures on the device.
+    pub(crate) fn texture_bytes(&self) -> u64 {
+        self.texture_bytes
+    }
+
     pub(crate) fn group(&self, material: u32) -> &wgpu::BindGroup {
         &self.groups[material as usize]
     }
@@ -267,6 +276,7 @@ fn white() -> Texture {
         height: 1,
         color_space: ColorSpace::Linear,
         sampler: Sampler::default(),
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: vec![vec![255; 4]],
     }
 }

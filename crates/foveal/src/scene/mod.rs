@@ -1,6 +1,8 @@
 //! A scene on the device: geometry, textures, materials, instances, lights.
 
 mod bindings;
+#[cfg(test)]
+mod blocks_tests;
 mod families;
 mod geometry;
 mod instances;
@@ -119,6 +121,7 @@ impl SceneOnGpu {
         let materials =
             SceneMaterials::new(gpu, scene, textures, settings, material_layout, limits)?;
         let material_families = materials.families().count() as u64;
+        let texture_bytes = materials.texture_bytes();
         let geometry = SceneGeometry::new(gpu, scene, materials.families().ranks())?;
         Ok(Self {
             bounds: shadowed_bounds(scene, &geometry.meshes),
@@ -134,6 +137,7 @@ impl SceneOnGpu {
                 materials: scene.materials.len() as u64,
                 material_families,
                 textures: scene.textures.len() as u64,
+                texture_bytes,
                 objects: scene.objects.len() as u64,
                 instances: scene.instances.len() as u64,
                 triangles: scene.triangle_count(),

@@ -7,19 +7,21 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use foveal_scene::{ColorSpace, Texture};
+use foveal_scene::{ColorSpace, Encoding, Texture};
 
 use super::uploads::Uploads;
 use crate::Error;
 use crate::gpu::{Gpu, layer_of, layers_of};
 
-/// How large arrays of textures may become.
+/// How large arrays of textures may become, and what they may hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct ArrayLimits {
     /// Layers of one array, 1 to 256.
     pub(crate) layers: u32,
     /// Bytes of one array, but for textures that are larger by themselves.
     pub(crate) bytes: u64,
+    /// Whether the device reads blocks; where not, they are decoded on the way to it.
+    pub(crate) blocks: bool,
 }
 
 impl ArrayLimits {
@@ -39,6 +41,7 @@ impl ArrayLimits {
                 layers.min(Self::MOST_LAYERS)
             },
             bytes: Self::MOST_BYTES,
+            blocks: gpu.reads_blocks(),
         }
     }
 }
@@ -47,6 +50,7 @@ impl ArrayLimits {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 struct Shape {
     color_space: ColorSpace,
+    encoding: Encoding,
     width: u32,
     height: u32,
     levels: u32,
@@ -54,14 +58,9 @@ struct Shape {
 
 impl Shape {
     /// Of `texture` without the levels that are larger than the device's limit, and how many those
-    /// are.
-    fn of(texture: &Texture, limit: u32) -> Result<(Self, usize), Error> {
-        let side = |level: usize| {
-            (
-                (texture.width >> level).max(1),
-                (texture.height >> level).max(1),
-            )
-        };
+    /// are. Without `blocks`, and where the rest is not of whole ones, it is one of texels.
+    fn of(texture: &Texture, limit: u32, blocks: bool) -> Result<(Self, usize), Error> {
+        let side = |level: usize| texture.level_size(level);
         let fitting = (0..texture.levels.len()).find(|&l| side(l).0.max(side(l).1) <= limit);
         let Some(first) = fitting else {
             if texture.levels.is_empty() {
@@ -76,8 +75,14 @@ impl Shape {
             });
         };
         let (width, height) = side(first);
+        let keeps = blocks && texture.encoding.fits(width, height);
         let shape = Self {
             color_space: texture.color_space,
+            encoding: if keeps {
+                texture.encoding
+            } else {
+                Encoding::Rgba8
+            },
             width,
             height,
             levels: (texture.levels.len() - first) as u32,
@@ -97,8 +102,23 @@ impl Shape {
     fn bytes(self) -> u64 {
         let levels = (0..self.levels).map(|level| self.extent(level, 1));
         levels
-            .map(|e| u64::from(e.width) * u64::from(e.height) * 4)
+            .map(|e| self.encoding.level_bytes(e.width, e.height))
             .sum()
+    }
+
+    fn format(self) -> wgpu::TextureFormat {
+        use wgpu::TextureFormat as Format;
+        match (self.encoding, self.color_space) {
+            (Encoding::Rgba8, ColorSpace::Srgb) => Format::Rgba8UnormSrgb,
+            (Encoding::Rgba8, ColorSpace::Linear) => Format::Rgba8Unorm,
+            (Encoding::Bc1, ColorSpace::Srgb) => Format::Bc1RgbaUnormSrgb,
+            (Encoding::Bc1, ColorSpace::Linear) => Format::Bc1RgbaUnorm,
+            (Encoding::Bc7, ColorSpace::Srgb) => Format::Bc7RgbaUnormSrgb,
+            (Encoding::Bc7, ColorSpace::Linear) => Format::Bc7RgbaUnorm,
+            // There is no sRGB of one channel or two.
+            (Encoding::Bc4, _) => Format::Bc4RUnorm,
+            (Encoding::Bc5, _) => Format::Bc5RgUnorm,
+        }
     }
 }
 
@@ -142,6 +162,8 @@ pub(crate) struct Textures {
     arrays: Vec<wgpu::TextureView>,
     /// Of each texture alone.
     alone: Vec<wgpu::TextureView>,
+    /// Of all arrays.
+    bytes: u64,
 }
 
 impl Textures {
@@ -158,24 +180,25 @@ impl Textures {
     ) -> Result<Self, Error> {
         let limit = gpu.device.limits().max_texture_dimension_2d;
         let shapes = (textures.iter())
-            .map(|t| Shape::of(t, limit))
+            .map(|t| Shape::of(t, limit, limits.blocks))
             .collect::<Result<Vec<_>, _>>()?;
         let (shapes, firsts): (Vec<_>, Vec<_>) = shapes.into_iter().unzip();
         let (places, arrays) = arrange(&shapes, limits);
+        let of_array = |(shape, layers): &(Shape, u32)| shape.bytes() * u64::from(*layers);
+        let bytes = arrays.iter().map(of_array).sum();
         let arrays: Vec<_> = arrays.iter().map(|a| create(gpu, *a)).collect();
         let mut uploads = Uploads::new(gpu);
         for ((texture, first), place) in textures.into_iter().zip(&firsts).zip(&places) {
             let shape = arrays[place.array as usize].1;
-            for (mip, level) in (0..).zip(&texture.levels[*first..]) {
-                write(
-                    gpu,
-                    &arrays[place.array as usize].0,
-                    shape,
-                    mip,
-                    *place,
-                    level,
-                );
-                uploads.add(level.len());
+            for (mip, level) in (0..).zip(*first..texture.levels.len()) {
+                let texels = if shape.encoding == texture.encoding {
+                    Cow::Borrowed(&texture.levels[level][..])
+                } else {
+                    texture.decoded_level(level)
+                };
+                let array = &arrays[place.array as usize].0;
+                write(gpu, array, shape, mip, *place, &texels);
+                uploads.add(texels.len());
             }
         }
         let arrays: Vec<_> = arrays.into_iter().map(|(view, _)| view).collect();
@@ -185,7 +208,13 @@ impl Textures {
                 .collect(),
             arrays,
             places,
+            bytes,
         })
+    }
+
+    /// Bytes of the texels or blocks of all textures on the device.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.bytes
     }
 
     /// Where a texture lies.
@@ -211,10 +240,7 @@ fn create(gpu: &Gpu, (shape, layers): (Shape, u32)) -> (wgpu::TextureView, Shape
         mip_level_count: shape.levels,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: match shape.color_space {
-            ColorSpace::Srgb => wgpu::TextureFormat::Rgba8UnormSrgb,
-            ColorSpace::Linear => wgpu::TextureFormat::Rgba8Unorm,
-        },
+        format: shape.format(),
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
@@ -222,7 +248,14 @@ fn create(gpu: &Gpu, (shape, layers): (Shape, u32)) -> (wgpu::TextureView, Shape
 }
 
 fn write(gpu: &Gpu, array: &wgpu::TextureView, shape: Shape, level: u32, at: Place, texels: &[u8]) {
-    let extent = shape.extent(level, 1);
+    let (side, extent) = (shape.encoding.block_side(), shape.extent(level, 1));
+    // Whole blocks, also beyond the border of the last levels.
+    let extent = wgpu::Extent3d {
+        width: extent.width.next_multiple_of(side),
+        height: extent.height.next_multiple_of(side),
+        ..extent
+    };
+    let row_bytes = extent.width / side * shape.encoding.block_bytes();
     gpu.queue.write_texture(
         wgpu::TexelCopyTextureInfo {
             mip_level: level,
@@ -236,7 +269,7 @@ fn write(gpu: &Gpu, array: &wgpu::TextureView, shape: Shape, level: u32, at: Pla
         texels,
         wgpu::TexelCopyBufferLayout {
             offset: 0,
-            bytes_per_row: Some(extent.width * 4),
+            bytes_per_row: Some(row_bytes),
             rows_per_image: None,
         },
         extent,
@@ -273,12 +306,44 @@ mod tests {
         assert!(text.contains("' has no texels"), "{text}");
     }
 
+    fn limited(layers: u32, bytes: u64) -> ArrayLimits {
+        ArrayLimits {
+            layers,
+            bytes,
+            blocks: true,
+        }
+    }
+
     fn shape(width: u32, color_space: ColorSpace) -> Shape {
         Shape {
             color_space,
+            encoding: Encoding::Rgba8,
             width,
             height: 7,
             levels: 3,
+        }
+    }
+
+    #[test]
+    fn levels_that_a_device_drops_may_leave_no_whole_blocks() {
+        let levels = [64, 16, 16, 16].map(|bytes| vec![0; bytes]);
+        let texture = Texture {
+            name: String::new(),
+            width: 8,
+            height: 8,
+            color_space: ColorSpace::Linear,
+            sampler: foveal_scene::Sampler::default(),
+            encoding: Encoding::Bc5,
+            levels: levels.to_vec(),
+        };
+        for (limit, blocks, encoding) in [
+            (8, true, Encoding::Bc5),
+            (4, true, Encoding::Bc5),
+            (3, true, Encoding::Rgba8),
+            (8, false, Encoding::Rgba8),
+        ] {
+            let (shape, _) = Shape::of(&texture, limit, blocks).expect("it fits");
+            assert_eq!(shape.encoding, encoding, "{limit} {blocks}");
         }
     }
 
@@ -294,7 +359,7 @@ mod tests {
             (256, 400),
             (9, 1),
         ] {
-            let limits = ArrayLimits { layers, bytes };
+            let limits = limited(layers, bytes);
             let (places, arrays) = arrange(&shapes, limits);
             let mut seen = std::collections::BTreeSet::new();
             for (shape, place) in shapes.iter().zip(&places) {
@@ -312,7 +377,7 @@ mod tests {
         }
         // 5 x 7, 2 x 3 and 1 x 1 texels of 4 bytes.
         assert_eq!(a.bytes(), 168);
-        let arrays_of = |layers, bytes| arrange(&shapes, ArrayLimits { layers, bytes }).1.len();
+        let arrays_of = |layers, bytes| arrange(&shapes, limited(layers, bytes)).1.len();
         assert_eq!(arrays_of(256, 1 << 20), 3);
         assert_eq!(arrays_of(2, 1 << 20), 5);
         assert_eq!(arrays_of(256, 400), 5);

@@ -4,7 +4,7 @@
 use crate::gpu::Gpu;
 
 /// Bytes that wait at a time, about.
-const WAITING_BYTES: u64 = 32 << 20;
+const WAITING_BYTES: u64 = 8 << 20;
 
 /// What has been written and not yet submitted.
 #[derive(Debug)]

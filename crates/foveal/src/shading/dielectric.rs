@@ -171,6 +171,7 @@ fn textures_of_strength_and_colour_are_read() {
         height: 1,
         color_space,
         sampler: Sampler::default(),
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: vec![texel.to_vec()],
     };
     let slot = |texture| {

@@ -21,6 +21,8 @@ const HAS_SPECULAR: u32 = 512u;
 const HAS_SPECULAR_COLOR: u32 = 1024u;
 // What is not metal has a reflectance of its own.
 const IS_SPECULAR: u32 = 2048u;
+// The normal map has x and y alone (BC5).
+const NORMAL_OF_TWO: u32 = 65536u;
 
 struct UvMap {
     // u = dot(x.xyz, (u0, v0, 1)); x.w is the UV set.
@@ -55,6 +57,11 @@ struct Material {
     // Reflectance at right angles of what is not metal, and at grazing angles: factor of both.
     specular_color: vec3f,
     specular: f32,
+}
+
+// The unit vector above a plane that has this x and y.
+fn unit_above(n: vec2f) -> vec3f {
+    return vec3f(n, sqrt(saturate(1.0 - dot(n, n))));
 }
 
 // Slots that share one have it in common, which spares shaders that look it up pixel by pixel.

@@ -35,7 +35,10 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
     let facing = select(-1.0, 1.0, front);
     var n = normalize(normal) * facing;
     if (MATERIAL_CLASS & HAS_NORMAL) != 0u {
-        let texel = sample_material(normal_texture, normal_sampler, 2u, uv).xyz * 2.0 - 1.0;
+        var texel = sample_material(normal_texture, normal_sampler, 2u, uv).xyz * 2.0 - 1.0;
+        if (MATERIAL_CLASS & NORMAL_OF_TWO) != 0u {
+            texel = unit_above(texel.xy);
+        }
         if dot(tangent.xyz, tangent.xyz) > 0.0 {
             let t = turned(normal, tangent);
             // As MikkTSpace bakes: interpolated vectors, not normalized before the sum.

@@ -3,7 +3,7 @@
 use foveal_seeds::{ETC1S, KTX2_SIZE, UASTC, UASTC_ZSTD, ktx2_file, ktx2_texel};
 
 use super::{Loads, warnings};
-use crate::LoadOptions;
+use crate::{Encoding, LoadOptions, Scene};
 
 /// With a word of the file replaced.
 fn changed(file: &[u8], at: usize, word: u32) -> Vec<u8> {
@@ -125,6 +125,113 @@ fn any_byte_may_be_wrong() {
         }
         for end in (0..original.len()).step_by(7) {
             let _ = ktx2_file(&original[..end]).load_with(&LoadOptions::default());
+        }
+    }
+}
+
+/// With the options that keep blocks.
+fn in_blocks() -> LoadOptions {
+    LoadOptions {
+        texture_compression: crate::TextureCompression::Fine,
+        ..LoadOptions::default()
+    }
+}
+
+/// The file's scene, where only the first level is read if not `mips`.
+fn loaded(bytes: &[u8], mips: bool, options: &LoadOptions) -> Scene {
+    let mut file = ktx2_file(bytes);
+    if !mips {
+        file.json["samplers"] = serde_json::json!([{ "minFilter": 9729 }]);
+        file.json["textures"][0]["sampler"] = serde_json::json!(0);
+    }
+    let scene = file.load_with(options).unwrap();
+    assert_eq!(warnings(&scene), "");
+    scene
+}
+
+/// A KTX2 file of 16 x 8 texels with all mip levels, of the blocks of `UASTC`.
+fn chain() -> Vec<u8> {
+    let word = |at: usize| u32::from_le_bytes(*UASTC[at..].first_chunk().unwrap()) as usize;
+    let (descriptor, blocks) = (&UASTC[word(48)..word(48) + word(52)], &UASTC[word(80)..]);
+    let counts = [8, 2, 1, 1, 1];
+    let mut file = changed(&changed(UASTC, 20, 16), 24, 8);
+    file = changed(&changed(&file, 40, 5), 48, 200);
+    // Neither keys nor global data.
+    file.truncate(56);
+    file.resize(80, 0);
+    let mut at = 200 + descriptor.len() as u64;
+    for count in counts {
+        for value in [at, 16 * count, 16 * count] {
+            file.extend(value.to_le_bytes());
+        }
+        at += 16 * count;
+    }
+    file.extend(descriptor);
+    for (first, count) in [(0, 8), (2, 2), (5, 1), (6, 1), (7, 1)] {
+        file.extend(&blocks[16 * first..16 * (first + count)]);
+    }
+    file
+}
+
+#[test]
+fn ktx2_pictures_of_whole_blocks_become_bc7_without_going_through_texels() {
+    let whole = |bytes| changed(&changed(bytes, 20, 20), 24, 12);
+    let cases = [
+        (whole(ETC1S), false, 2.0),
+        (whole(UASTC), false, 2.0),
+        (whole(UASTC_ZSTD), false, 2.0),
+        (chain(), true, 2.0),
+    ];
+    for (number, (bytes, mips, most)) in cases.iter().enumerate() {
+        let plain = &loaded(bytes, *mips, &LoadOptions::default()).textures[0];
+        let blocks = &loaded(bytes, *mips, &in_blocks()).textures[0];
+        assert_eq!(plain.encoding, Encoding::Rgba8);
+        assert_eq!(blocks.encoding, Encoding::Bc7);
+        assert_eq!((blocks.width, blocks.height), (plain.width, plain.height));
+        assert_eq!(blocks.levels.len(), plain.levels.len());
+        let (a, b) = (plain.decoded_level(0), blocks.decoded_level(0));
+        let squares = a.iter().zip(b.iter());
+        let squares = squares.map(|(a, b)| f64::from(a.abs_diff(*b)).powi(2));
+        let off = (squares.sum::<f64>() / a.len() as f64).sqrt();
+        assert!(off < *most, "{number}: {off}");
+    }
+}
+
+#[test]
+fn mip_levels_are_the_files_own_where_it_has_them_all() {
+    let blocks = &loaded(&chain(), true, &in_blocks()).textures[0];
+    assert_eq!(blocks.levels.len(), 5);
+    // Levels of 8 x 4 texels are the third and fourth block of the first level.
+    assert_eq!(blocks.levels[1], blocks.levels[0][32..64]);
+    assert_eq!(blocks.levels[4], blocks.levels[0][112..]);
+    // One that is cut off, or has another length, makes them anew.
+    let file = chain();
+    for broken in [
+        file[..file.len() - 1].to_vec(),
+        changed(&file, 80 + 4 * 24 + 8, 15),
+        changed(&file, 40, 4),
+    ] {
+        let made = &loaded(&broken, true, &in_blocks()).textures[0];
+        assert_eq!((made.encoding, made.levels.len()), (Encoding::Bc7, 5));
+        assert_ne!(made.levels[1], blocks.levels[1]);
+    }
+    // 18 x 10 texels are no whole blocks.
+    let odd = &loaded(UASTC, true, &in_blocks()).textures[0];
+    assert_eq!(
+        odd,
+        &loaded(UASTC, true, &LoadOptions::default()).textures[0]
+    );
+}
+
+#[test]
+fn any_byte_may_be_wrong_where_blocks_are_kept() {
+    for original in [changed(&changed(ETC1S, 20, 20), 24, 12), chain()] {
+        for at in 12..original.len() {
+            for value in [0, 0xFF, original[at] ^ 1] {
+                let mut bytes = original.clone();
+                bytes[at] = value;
+                let _ = ktx2_file(&bytes).load_with(&in_blocks());
+            }
         }
     }
 }

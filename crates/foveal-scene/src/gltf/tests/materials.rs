@@ -326,3 +326,84 @@ fn large_pictures_are_halved_until_they_fit() {
         "{text}"
     );
 }
+
+#[test]
+fn pictures_are_kept_in_blocks_by_what_is_read_of_them() {
+    let picture = |side: u32, texel: fn(u32, u32) -> [u8; 4]| {
+        RgbaImage::from_fn(side, side, |x, y| Rgba(texel(x, y)))
+    };
+    let mut file = File::with_triangle();
+    let color = file.texture(&picture(16, |x, y| [x as u8 * 5, 200, y as u8 * 4, 255]));
+    let normal = file.texture(&picture(16, |x, y| {
+        [128 + x as u8, 128 - y as u8, 250, 255]
+    }));
+    let open = file.texture(&picture(8, |x, _| [100 + x as u8 * 9, 3, 7, 255]));
+    let odd = file.texture(&picture(10, |x, y| [x as u8, y as u8, 9, 255]));
+    let index = |i: usize| json!({ "index": i });
+    file.material(json!({
+        "pbrMetallicRoughness": {
+            "baseColorTexture": index(color),
+            "metallicRoughnessTexture": index(odd),
+        },
+        "normalTexture": index(normal),
+        "occlusionTexture": index(open),
+    }));
+    let options = LoadOptions {
+        texture_compression: crate::TextureCompression::Fine,
+        ..LoadOptions::default()
+    };
+    let (plain, blocks) = (file.load(), file.load_with(&options).unwrap());
+    let material = &blocks.materials[0];
+    use crate::Encoding::{Bc4, Bc5, Bc7, Rgba8};
+    for (slot, encoding, read) in [
+        (material.base_color_texture, Bc7, 3),
+        (material.normal_texture, Bc5, 2),
+        (material.occlusion_texture, Bc4, 1),
+        (material.metallic_roughness_texture, Rgba8, 4),
+    ] {
+        let at = slot.unwrap().texture as usize;
+        let (old, new) = (&plain.textures[at], &blocks.textures[at]);
+        assert_eq!(new.encoding, encoding);
+        assert_eq!(
+            (new.name.as_str(), new.levels.len()),
+            (old.name.as_str(), old.levels.len())
+        );
+        for level in 0..new.levels.len() {
+            let (old, new) = (old.decoded_level(level), new.decoded_level(level));
+            for (a, b) in old.chunks_exact(4).zip(new.chunks_exact(4)) {
+                assert!((0..read).all(|c| a[c].abs_diff(b[c]) < 16), "{a:?} {b:?}");
+            }
+        }
+    }
+    // A placeholder is what it was.
+    let mut broken = File::with_triangle();
+    broken.push("textures", json!({}));
+    broken.material(json!({ "normalTexture": index(0) }));
+    let scenes = [&options, &LoadOptions::default()].map(|o| broken.load_with(o).unwrap());
+    assert_eq!(scenes[0].textures, scenes[1].textures);
+}
+
+#[test]
+fn textures_in_blocks_are_counted_as_what_they_take() {
+    use crate::TextureCompression::{Fine, Off};
+    let mut file = File::with_triangle();
+    let count = 8;
+    for _ in 0..count {
+        let texture = file.texture(&RgbaImage::from_pixel(64, 64, Rgba([10, 20, 30, 255])));
+        file.material(json!({ "emissiveTexture": { "index": texture } }));
+    }
+    let width = |texture_compression, max_texture_bytes| {
+        let options = LoadOptions {
+            texture_compression,
+            max_texture_bytes,
+            ..LoadOptions::default()
+        };
+        file.load_with(&options).unwrap().textures[0].width
+    };
+    // Blocks of all levels of all textures; the decoder's output and the levels as texels of one.
+    let kept = count * 16 * (256 + 64 + 16 + 4 + 1 + 1 + 1);
+    let decoding = 64 * 64 * 4 + (64 * 64 * 16 / 3 + 4);
+    assert_eq!(width(Fine, kept + decoding), 64);
+    assert_eq!(width(Fine, kept + decoding - 1), 32);
+    assert_eq!(width(Off, kept + decoding), 32);
+}

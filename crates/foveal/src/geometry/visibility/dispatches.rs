@@ -57,6 +57,7 @@ fn texture(n: &mut Numbers, number: u32) -> Texture {
             mip: mip.then_some(filter),
             ..Sampler::default()
         },
+        encoding: foveal_scene::Encoding::Rgba8,
         levels,
     }
 }
@@ -135,7 +136,11 @@ fn patchwork() -> Scene {
 }
 
 fn limits(layers: u32, bytes: u64) -> ArrayLimits {
-    ArrayLimits { layers, bytes }
+    ArrayLimits {
+        layers,
+        bytes,
+        blocks: true,
+    }
 }
 
 /// Two frames of the scene, its arrays of textures within `limits`.

@@ -124,6 +124,7 @@ fn level_texture(side: u32) -> Texture {
             mip: Some(Filter::Linear),
             ..Sampler::default()
         },
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: levels.collect(),
     }
 }
@@ -215,6 +216,7 @@ fn extreme_perspective_keeps_every_attribute() {
             mip: None,
             ..Sampler::default()
         },
+        encoding: foveal_scene::Encoding::Rgba8,
         levels: vec![[[10; 4], [250; 4], [130; 4], [70; 4]].concat()],
     };
     let (mut scene, camera) = floor(checker);
