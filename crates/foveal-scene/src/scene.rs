@@ -19,7 +19,8 @@ pub struct Object {
     pub node: u32,
     /// The element's number within EXT_mesh_gpu_instancing, 0 without.
     pub element: u32,
-    /// Whether it is drawn. Poses change it (KHR_node_visibility), and so may a program.
+    /// Whether it is drawn. In a scene whose clips change visibility each pose sets it for all objects;
+    /// in others it is a program's own.
     pub visible: bool,
     /// The node's `extras.occluder`, where the file says it: whether it is meant to occlude.
     pub occluder: Option<bool>,

@@ -11,7 +11,7 @@ use super::in_parts::in_order;
 use super::mesh::OccluderMesh;
 use super::neighbors::Neighbors;
 use super::one_ring::OneRings;
-use super::vertices::Vertices;
+use super::vertices::{Points, Vertices};
 use super::weld::{Welded, weld};
 use super::{cluster, quads};
 use crate::bounds::Aabb;
@@ -255,8 +255,10 @@ impl Input<'_> {
             let mut part = empty.clone();
             part.triangles = welded.triangles.len() as u32;
             let source = cluster::Source {
-                points: &welded.points,
-                sources: empty.positions.map(|_| &welded.sources[..]),
+                points: Points {
+                    points: &welded.points,
+                    sources: empty.positions.map(|_| &welded.sources[..]),
+                },
                 near: None,
             };
             cluster::build(&mut part, source, quads);
@@ -280,8 +282,10 @@ impl Input<'_> {
             let quads = quads::pair(&all.points, &all.triangles);
             let near = Neighbors::new(&all, vec![false; all.points.len()]);
             let source = cluster::Source {
-                points: &all.points,
-                sources: mesh.positions.map(|_| &all.sources[..]),
+                points: Points {
+                    points: &all.points,
+                    sources: mesh.positions.map(|_| &all.sources[..]),
+                },
                 near: Some(&near),
             };
             cluster::build(mesh, source, quads);
@@ -328,8 +332,10 @@ impl Input<'_> {
             let of_positions: Option<Vec<u32>> =
                 (sources.as_ref()).map(|s| local.sources.iter().map(|&v| s[v as usize]).collect());
             let source = cluster::Source {
-                points: &local.points,
-                sources: of_positions.as_deref(),
+                points: Points {
+                    points: &local.points,
+                    sources: of_positions.as_deref(),
+                },
                 near: Some(&near),
             };
             cluster::build(&mut part, source, quads);

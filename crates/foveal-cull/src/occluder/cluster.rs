@@ -8,7 +8,7 @@ use super::mesh::{Cluster, OccluderMesh, bounds_of, hash_words};
 use super::neighbors::{self, LocalNumbers, Neighbors};
 use super::quads::Quad;
 use super::sah::{Cut, Item, Part, cut, is_lopsided, quad_normals};
-use super::vertices::Vertices;
+use super::vertices::Points;
 use glam::{DVec3, Vec3};
 
 const MAX_QUADS: usize = 64;
@@ -16,16 +16,14 @@ const MAX_QUADS: usize = 64;
 /// What clusters are built from.
 #[derive(Clone, Copy)]
 pub(super) struct Source<'a> {
-    pub(super) points: &'a [Vec3],
-    /// Of a mesh that deforms, which of its positions each point is.
-    pub(super) sources: Option<&'a [u32]>,
+    pub(super) points: Points<'a>,
     pub(super) near: Option<&'a Neighbors<'a>>,
 }
 
 /// Appends the clusters of some quads to a mesh.
 pub(super) fn build(mesh: &mut OccluderMesh, source: Source<'_>, quads: Vec<Quad>) {
     let mut items: Vec<Item> = (quads.iter())
-        .map(|&quad| Item::new(source.points, quad))
+        .map(|&quad| Item::new(source.points.points, quad))
         .collect();
     drop(quads);
     split(mesh, source, &mut items);
@@ -127,7 +125,7 @@ fn emit(
     local: &mut LocalNumbers,
     items: &[Item],
 ) -> bool {
-    let Source { points, near, .. } = source;
+    let Source { points, near } = source;
     let mut used: Vec<u32> = items.iter().flat_map(|i| i.quad).collect();
     used.sort_unstable();
     used.dedup();
@@ -141,7 +139,7 @@ fn emit(
     let first_vertex = mesh.vertices.x.len() as u32;
     let first_group = mesh.quads.len() as u32;
     for &v in &used {
-        source.push(&mut mesh.vertices, v);
+        points.push(&mut mesh.vertices, v);
     }
     mesh.vertices.pad();
     let mut triangles = 0u8;
@@ -155,7 +153,7 @@ fn emit(
         }
         triangles += if item.quad[2] == item.quad[3] { 1 } else { 2 };
     }
-    let corners = items.iter().map(|i| i.quad.map(|v| points[v as usize]));
+    let corners = items.iter().map(|i| i.quad.map(|v| points.at(v)));
     let shape = Shape::of(mesh.center, corners);
     mesh.clusters.push(Cluster {
         center: shape.center,
@@ -169,27 +167,19 @@ fn emit(
         quad_count: items.len() as u8,
         triangle_count: triangles,
         fill: shape.fill,
-        creased: creased(points, near, items.iter().map(|i| i.quad)),
+        creased: creased(points.points, near, items.iter().map(|i| i.quad)),
         hash: hash_words(
             items.len() as u32,
             used.iter()
-                .flat_map(|&v| points[v as usize].to_array().map(f32::to_bits))
+                .flat_map(|&v| points.at(v).to_array().map(f32::to_bits))
                 .chain(items.iter().flat_map(|i| i.quad)),
         ),
     });
     if let Some(near) = near {
         let quads = items.iter().map(|i| i.quad);
-        neighbors::build(mesh, source, near, local, &used, quads);
+        neighbors::build(mesh, points, near, local, &used, quads);
     }
     true
-}
-
-impl Source<'_> {
-    /// Appends a point to the vertices of a mesh.
-    pub(super) fn push(&self, vertices: &mut Vertices, point: u32) {
-        let source = self.sources.map(|sources| sources[point as usize]);
-        vertices.push(self.points[point as usize], source);
-    }
 }
 
 /// What of a cluster follows from the positions of its quads' corners.

@@ -1,10 +1,10 @@
 //! Adjacency of a welded mesh, and the one-ring of each cluster that is built from it.
 
-use super::cluster::Source;
 use super::half_edges::HalfEdges;
 use super::mesh::OccluderMesh;
 use super::one_ring::{Edge, FIRST_OF_RING, FIRST_OF_SECOND, NO_TRIANGLE, OneRing};
 use super::quads::Quad;
+use super::vertices::Points;
 use super::weld::Welded;
 use super::word_hash::{WordHash, Words3};
 use glam::{DVec3, Vec3};
@@ -149,7 +149,7 @@ impl LocalNumbers {
 /// order, whose local numbers are known.
 pub(super) fn build(
     mesh: &mut OccluderMesh,
-    source: Source<'_>,
+    points: Points<'_>,
     near: &Neighbors<'_>,
     local: &mut LocalNumbers,
     own: &[u32],
@@ -234,7 +234,7 @@ pub(super) fn build(
         rings.triangles.push(group);
     }
     for &v in &others {
-        source.push(&mut rings.vertices, v);
+        points.push(&mut rings.vertices, v);
     }
     rings.vertices.pad();
     rings.clusters.push(OneRing {

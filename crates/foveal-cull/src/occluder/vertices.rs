@@ -58,6 +58,26 @@ impl Vertices {
     }
 }
 
+/// Points of which some become vertices.
+#[derive(Clone, Copy)]
+pub(super) struct Points<'a> {
+    pub(super) points: &'a [Vec3],
+    /// Of a mesh that deforms, which of its positions each point is.
+    pub(super) sources: Option<&'a [u32]>,
+}
+
+impl Points<'_> {
+    pub(super) fn at(&self, point: u32) -> Vec3 {
+        self.points[point as usize]
+    }
+
+    /// Appends a point to the vertices of a mesh.
+    pub(super) fn push(&self, vertices: &mut Vertices, point: u32) {
+        let source = self.sources.map(|sources| sources[point as usize]);
+        vertices.push(self.at(point), source);
+    }
+}
+
 fn pad<T: Copy>(list: &mut Vec<T>) {
     if let Some(&last) = list.last() {
         list.resize(list.len().next_multiple_of(8), last);

@@ -72,7 +72,8 @@ impl Occluders {
             let material = &scene.materials[instance.material as usize];
             let mesh = &scene.meshes[instance.mesh as usize];
             let object = &scene.objects[instance.object as usize];
-            if !scene.can_occlude(instance) || !chosen(object) {
+            let occludes = scene.can_occlude(instance) && scene.is_visible(instance);
+            if !occludes || !chosen(object) {
                 continue;
             }
             let two_sided = material.double_sided;

@@ -126,14 +126,24 @@ impl<'a> Obj<'a> {
     }
 
     pub(crate) fn floats<const N: usize>(self, key: &str) -> Parsed<Option<[f32; N]>> {
-        let list = self.each(key, to_float)?;
         if !self.has(key) {
             return Ok(None);
         }
+        let other = |len: usize| {
+            let text = format!("has {len} numbers instead of {N}");
+            Flaw::new(Code::ValueType, text).under(key)
+        };
+        // Before the numbers are read: a file may come back to a long list very often.
+        if let Some(list) = self
+            .get(key)
+            .and_then(Value::as_array)
+            .filter(|l| l.len() != N)
+        {
+            return Err(other(list.len()));
+        }
+        let list = self.each(key, to_float)?;
         let len = list.len();
-        <[f32; N]>::try_from(list).map(Some).map_err(|_| {
-            Flaw::new(Code::ValueType, format!("has {len} numbers instead of {N}")).under(key)
-        })
+        <[f32; N]>::try_from(list).map(Some).map_err(|_| other(len))
     }
 
     pub(crate) fn float_list(self, key: &str) -> Parsed<Vec<f32>> {

@@ -76,7 +76,9 @@ impl Rigging {
             data.skins.push(skin);
         }
         let moving = moving_nodes(&mut data, document, warn);
-        if data.moves_visibility() {
+        // Where a channel cannot be read too: the hierarchy has kept what it would show.
+        let mut targets = document.animations.iter().flat_map(AnimationDef::targets);
+        if targets.any(|pointed| pointed.target == Target::Visible) {
             data.visible = Some(document.nodes.iter().map(|n| n.visible).collect());
         }
         Ok(Self { data, moving })

@@ -178,7 +178,7 @@ impl MaterialState {
             Factor::BaseColor => m.base_color = Vec4::from(value).clamp(Vec4::ZERO, Vec4::ONE),
             Factor::Metallic => m.metallic = part,
             Factor::Roughness => m.roughness = part,
-            Factor::Emissive => self.emissive = color,
+            Factor::Emissive => self.emissive = color.max(Vec3::ZERO),
             Factor::EmissiveStrength => self.emissive_strength = x.max(0.0),
             Factor::AlphaCutoff => {
                 if let AlphaMode::Mask { cutoff } = &mut m.alpha_mode {
@@ -214,13 +214,16 @@ impl MaterialState {
 
     /// The material with all that has been set.
     pub(crate) fn finish(mut self) -> Material {
-        self.material.emissive = self.emissive * self.emissive_strength;
+        // An infinite one would be NaN where its texture is black.
+        let emissive = self.emissive * self.emissive_strength;
+        self.material.emissive = emissive.min(Vec3::MAX);
         for (slot, transform) in &self.transforms {
             if let Some(texture) = slot.of(&mut self.material) {
                 texture.uv_transform = transform.matrix();
             }
             if let Some((_, made_for)) = self.tangents.filter(|(of, _)| of == slot) {
-                self.material.tangent_turn_rad = transform.rotation_rad - made_for;
+                let turn = transform.rotation_rad - made_for;
+                self.material.tangent_turn_rad = if turn.is_finite() { turn } else { 0.0 };
             }
         }
         self.material

@@ -95,12 +95,6 @@ impl RigData {
         self.animations.iter().any(|a| !a.channels.is_empty())
     }
 
-    /// Whether any animation hides or shows a node.
-    pub(crate) fn moves_visibility(&self) -> bool {
-        let channels = self.animations.iter().flat_map(|a| &a.channels);
-        channels.into_iter().any(|c| c.target == Target::Visible)
-    }
-
     /// The channels that play, each with its animation's own time.
     fn channels(&self, played: Range<usize>, time_s: f32) -> impl Iterator<Item = (&Channel, f32)> {
         let played = self.animations.get(played).unwrap_or_default().iter();

@@ -184,8 +184,10 @@ impl SceneOnGpu {
             if (is_elsewhere || casts_otherwise) && casts {
                 boxes.push(around);
             }
-            if change.is_lit_otherwise {
-                let radius = around.half_extent().length();
+            // What is blended keeps no light from frame to frame.
+            if change.is_lit_otherwise && before.alpha_mode != AlphaMode::Blend {
+                // Corners are not to be missed by rounding.
+                let radius = around.half_extent().length() * 1.001;
                 places.push(around.center().extend(radius).to_array());
             }
         }

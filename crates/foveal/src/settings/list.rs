@@ -277,14 +277,13 @@ impl Settings {
     }
 
     /// Whether a scene that was set with the settings `before` must be set again to be drawn with
-    /// these: occluders, samplers and what may receive shadows are made with it.
+    /// these: occluders and samplers are made with it. What may receive shadows is, too, with
+    /// occlusion culling and shadows on: a scene that was set without shadows draws all casters.
     #[must_use]
     pub fn needs_scene_again(&self, before: &Self) -> bool {
         let occludes = |s: &Self| s.culling.mode == Culling::Occlusion;
-        let cuts = |s: &Self| occludes(s) && s.lighting.shadows != Shadows::Off;
         self.lighting.anisotropy != before.lighting.anisotropy
             || occludes(self) && !occludes(before)
-            || cuts(self) && !cuts(before)
     }
 
     /// The same settings at the size at which the frame is drawn, before

@@ -26,17 +26,21 @@ pub(super) fn changed_places(
             continue;
         }
         for b in boxes.iter().filter(|b| reaches(light, b)) {
-            let place = shadow_of(light, b, scene);
-            match places.iter_mut().find(|p| holds(**p, place)) {
-                Some(_) => {}
-                None => places.push(place),
-            }
-            if places.len() > MOST {
-                join_nearest(&mut places);
-            }
+            add_place(&mut places, shadow_of(light, b, scene), MOST);
         }
     }
     places
+}
+
+/// Adds a place, and where there are more than `most` puts the nearest together.
+pub(crate) fn add_place(places: &mut Vec<Place>, place: Place, most: usize) {
+    if places.iter().any(|p| holds(*p, place)) {
+        return;
+    }
+    places.push(place);
+    if places.len() > most {
+        join_nearest(places);
+    }
 }
 
 fn reaches(light: &LightUniform, b: &Aabb) -> bool {

@@ -29,7 +29,7 @@ mod tests;
 mod twin;
 mod volume;
 
-pub(crate) use changed::Place;
+pub(crate) use changed::{Place, add_place};
 #[cfg(test)]
 pub(crate) use pass::TileUniform;
 pub(crate) use receivers::Receivers;

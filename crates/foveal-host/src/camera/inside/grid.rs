@@ -47,7 +47,8 @@ impl Grid {
         for instance in &scene.instances {
             let mesh = &scene.meshes[instance.mesh as usize];
             let material = scene.materials.get(instance.material as usize);
-            if material.is_some_and(|m| m.alpha_mode == AlphaMode::Blend) {
+            let is_glass = material.is_some_and(|m| m.alpha_mode == AlphaMode::Blend);
+            if is_glass || !scene.is_visible(instance) {
                 continue;
             }
             let mirrored = instance.world_from_object.determinant() < 0.0;

@@ -230,6 +230,36 @@ fn a_pointer_that_cannot_be_followed_gives_one_warning() {
 }
 
 #[test]
+fn a_hidden_light_stays_dark_where_the_channel_that_would_show_it_cannot_be_read() {
+    let mut file = movable();
+    let nodes = file.json["nodes"].as_array().expect("a list").clone();
+    let light = |node: &Value| node["extensions"]["KHR_lights_punctual"]["light"].as_u64();
+    let (node, light) = (nodes.iter().enumerate())
+        .find_map(|(i, node)| Some((i, light(node)?)))
+        .expect("a light");
+    let lit_before = lit(&file.load()).len();
+    let hidden = json!({ "visible": false });
+    file.json["nodes"][node]["extensions"]["KHR_node_visibility"] = hidden;
+    // A switch that is interpolated.
+    let pointer = json!(format!(
+        "/nodes/{node}/extensions/KHR_node_visibility/visible"
+    ));
+    point(&mut file, pointer, "LINEAR", &[0.0, 1.0], "SCALAR");
+    let pointer = json!(format!(
+        "/extensions/KHR_lights_punctual/lights/{light}/intensity"
+    ));
+    point(&mut file, pointer, "LINEAR", &[3.0, 7.0], "SCALAR");
+    let mut scene = file.load();
+    assert_eq!(scene.warnings.len(), 1, "{}", warnings(&scene));
+    assert!(lit(&scene).len() < lit_before);
+    for clip in [0, 1] {
+        scene.play(&Clip::Number(clip));
+        scene.pose(0.5);
+        assert!(lit(&scene).len() < lit_before, "clip {clip}");
+    }
+}
+
+#[test]
 fn values_are_brought_into_range_as_those_of_the_file_are() {
     let cases = [
         ("/materials/0/pbrMetallicRoughness/roughnessFactor", 7.0),

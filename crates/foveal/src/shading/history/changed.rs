@@ -1,10 +1,12 @@
 //! Where lights have changed from one frame to the next.
 
 use crate::lights::LightUniform;
-use crate::shadow::Place;
+use crate::shadow::{Place, add_place};
 
 /// Most places that are told apart.
 const MOST: usize = 16;
+/// Most places for which it is worth finding out which lie together.
+const MOST_ADDED: usize = 256;
 /// As `LIGHT_DIRECTIONAL` in `shared/light.wgsl`.
 const DIRECTIONAL: u32 = 0;
 
@@ -60,10 +62,12 @@ impl Changed {
                 return;
             }
         };
+        if added.len() > MOST_ADDED {
+            *self = Self::Everywhere;
+            return;
+        }
         for place in added {
-            if !places.contains(place) {
-                places.push(*place);
-            }
+            add_place(&mut places, *place, MOST);
         }
         *self = Self::of(places);
     }
@@ -124,6 +128,28 @@ mod tests {
             ..sun
         };
         assert_eq!(changed(&[sun], &[dim]), Changed::Everywhere);
+    }
+
+    #[test]
+    fn many_places_become_fewer_that_hold_them() {
+        let place = |i: u32| [i as f32, (i % 7) as f32, 0.0, 0.5];
+        let all: Vec<Place> = (0..40).map(place).collect();
+        let mut changed = Changed::default();
+        changed.add_places(&all);
+        let Changed::Within(places) = changed else {
+            panic!("{changed:?}");
+        };
+        assert!(places.len() <= MOST);
+        let holds = |[x, y, z, r]: &Place, [a, b, c, s]: Place| {
+            let apart = glam::Vec3::new(x - a, y - b, z - c).length();
+            apart + s <= r * 1.001
+        };
+        for place in all {
+            assert!(places.iter().any(|p| holds(p, place)), "{place:?}");
+        }
+        let mut changed = Changed::default();
+        changed.add_places(&[place(0); MOST_ADDED + 1]);
+        assert_eq!(changed, Changed::Everywhere);
     }
 
     #[test]
