@@ -224,6 +224,24 @@ fn mip_levels_are_the_files_own_where_it_has_them_all() {
 }
 
 #[test]
+fn mip_levels_of_alpha_masks_are_made_anew_to_keep_their_coverage() {
+    let base = |alpha_mode: &str| {
+        let mut file = ktx2_file(&chain());
+        file.json["materials"][0] = serde_json::json!({
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+            "alphaMode": alpha_mode,
+        });
+        file.load_with(&in_blocks()).unwrap().textures.remove(0)
+    };
+    let (blend, mask) = (base("BLEND"), base("MASK"));
+    let own = |texture: &crate::Texture| texture.levels[1] == texture.levels[0][32..64];
+    for texture in [&blend, &mask] {
+        assert_eq!((texture.encoding, texture.levels.len()), (Encoding::Bc7, 5));
+    }
+    assert!(own(&blend) && !own(&mask));
+}
+
+#[test]
 fn any_byte_may_be_wrong_where_blocks_are_kept() {
     for original in [changed(&changed(ETC1S, 20, 20), 24, 12), chain()] {
         for at in 12..original.len() {
