@@ -80,7 +80,7 @@ fn decode_block(block: &[u8], encoding: Encoding) -> [u8; SIDE * ROW] {
 }
 
 #[cfg(not(target_arch = "wasm32"))]
-pub(crate) use encoder::encode;
+pub(crate) use encoder::{encode, make_opaque};
 
 #[cfg(not(target_arch = "wasm32"))]
 mod encoder {
@@ -132,7 +132,7 @@ mod encoder {
                 if alpha {
                     bc7f::fast_pack_bc7_auto_rgba(out, texels, bc7f::flags::DEFAULT);
                     if texels.iter().all(|texel| texel[3] == 255) {
-                        make_opaque(out);
+                        set_parity(out);
                     }
                 } else {
                     bc7f::fast_pack_bc7_auto_rgb(out, texels, bc7f::flags::DEFAULT);
@@ -144,13 +144,28 @@ mod encoder {
         compress_rgba8(variant, texels, out, side, side, ROW as u32);
     }
 
-    /// The encoder may give an opaque block an alpha of 254: in mode 6 the lowest bit of all channels
-    /// of an endpoint is one (Khronos Data Format 1.3, section 21), and it looks at colour alone.
-    fn make_opaque(block: &mut [u8; 16]) {
-        let is_mode_6 = block[0].trailing_zeros() == 6;
-        if is_mode_6 {
+    /// The encoder and the transcoder may give an opaque block an alpha of 254: in mode 6 the lowest
+    /// bit of all channels of an endpoint is one (Khronos Data Format 1.3, section 21), and they look
+    /// at colour alone.
+    fn set_parity(block: &mut [u8; 16]) {
+        if is_mode_6(block) {
             block[7] |= 0x80;
             block[8] |= 1;
+        }
+    }
+
+    fn is_mode_6(block: &[u8; 16]) -> bool {
+        block[0].trailing_zeros() == 6
+    }
+
+    /// Brings blocks of BC7 whose alpha is 254 or more at either end to 255.
+    pub(crate) fn make_opaque(blocks: &mut [u8]) {
+        for block in blocks.as_chunks_mut::<16>().0 {
+            // The seven bits of alpha above the parity bit, of either end.
+            let is_full = block[6] & 0xFE == 0xFE && block[7] & 0x7F == 0x7F;
+            if is_full {
+                set_parity(block);
+            }
         }
     }
 }
@@ -227,6 +242,30 @@ mod tests {
             }
         }
         assert!((500..1000).contains(&opaque), "{opaque}");
+    }
+
+    #[test]
+    fn blocks_of_nearly_full_alpha_are_made_opaque_and_no_others() {
+        let block = |mode: u32, alpha: [u64; 2]| {
+            let bits = 1 << mode | 0x55 << 7 | alpha[0] << 49 | alpha[1] << 56;
+            let mut block = [0xA4; 16];
+            block[..8].copy_from_slice(&u64::to_le_bytes(bits));
+            block
+        };
+        let alphas = |block: &[u8]| -> Vec<u8> {
+            let texels = decode(block, (4, 4), Encoding::Bc7);
+            texels.iter().skip(3).step_by(4).copied().collect()
+        };
+        let mut full = block(6, [127, 127]);
+        assert_eq!(alphas(&full), [254; 16]);
+        make_opaque(&mut full);
+        assert_eq!(alphas(&full), [255; 16]);
+        for (mode, alpha) in [(6, [126, 127]), (6, [127, 63]), (5, [127, 127])] {
+            let before = block(mode, alpha);
+            let mut after = before;
+            make_opaque(&mut after);
+            assert_eq!(after, before);
+        }
     }
 
     #[test]

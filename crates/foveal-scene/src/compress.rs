@@ -7,10 +7,11 @@
 //! | no alpha | BC1 or BC7 | 0.5 or 1 |
 //! | anything else | BC7 | 1 |
 //!
-//! Textures whose sides are no multiples of 4 stay as they are: WebGPU has no blocks for them, and
-//! another size would move their texels.
+//! BC4 and BC5 have no sRGB: a texture of that colour space is BC1 or BC7. Textures whose sides are
+//! no multiples of 4 stay as they are: WebGPU has no blocks for them, and another size would move
+//! their texels.
 
-use crate::{AlphaMode, Encoding, Material, TextureCompression};
+use crate::{AlphaMode, ColorSpace, Encoding, Material, TextureCompression};
 
 /// What materials read of a texture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -24,13 +25,18 @@ impl Channels {
     /// A direction in tangent space.
     const NORMAL: Self = Self(16);
 
-    /// How a texture of this size that is read so is kept.
-    pub(crate) fn encoding(self, by: TextureCompression, (width, height): (u32, u32)) -> Encoding {
-        let encoding = match (self, by) {
-            (_, TextureCompression::Off) => Encoding::Rgba8,
-            (Self::NORMAL, _) => Encoding::Bc5,
-            (Self::RED, _) => Encoding::Bc4,
-            (read, TextureCompression::Small) if read.0 & !Self::RGB.0 == 0 => Encoding::Bc1,
+    /// How a texture of this colour space and size that is read so is kept.
+    pub(crate) fn encoding(
+        self,
+        by: TextureCompression,
+        color_space: ColorSpace,
+        (width, height): (u32, u32),
+    ) -> Encoding {
+        let encoding = match (self, color_space, by) {
+            (_, _, TextureCompression::Off) => Encoding::Rgba8,
+            (Self::NORMAL, ColorSpace::Linear, _) => Encoding::Bc5,
+            (Self::RED, ColorSpace::Linear, _) => Encoding::Bc4,
+            (read, _, TextureCompression::Small) if read.0 & !Self::RGB.0 == 0 => Encoding::Bc1,
             _ => Encoding::Bc7,
         };
         if encoding.fits(width, height) {
@@ -88,14 +94,19 @@ pub(crate) fn channels(materials: &[Material], textures: usize) -> Vec<Channels>
 
 #[cfg(not(target_arch = "wasm32"))]
 mod encoder {
+    use std::panic::{AssertUnwindSafe, catch_unwind};
+
     use super::{Channels, channels};
     use crate::{Encoding, Scene, Texture, TextureCompression, blocks, threads};
 
     impl Scene {
-        /// Keeps textures of plain texels in blocks, but for those whose sides are no multiples of 4.
-        /// For scenes that programs make; the importer has
+        /// Keeps textures of plain texels in blocks, but for those whose sides are no multiples of 4
+        /// and those that the encoder fails on. Decides by what the materials read as they are now:
+        /// one that later reads another channel finds what its blocks have of it
+        /// ([`Encoding`]). For scenes that programs make; the importer has
         /// [`LoadOptions::texture_compression`](crate::LoadOptions::texture_compression), which never
-        /// holds all texels at once. Uses the threads of the current rayon pool where `parallel`.
+        /// holds all texels at once. Uses the threads of the current rayon pool where `parallel`. Not
+        /// there on wasm32, which has no encoder.
         pub fn compress_textures(&mut self, by: TextureCompression, parallel: bool) {
             let read = channels(&self.materials, self.textures.len());
             let mut textures: Vec<_> = self.textures.iter_mut().zip(read).collect();
@@ -105,9 +116,20 @@ mod encoder {
         }
     }
 
-    /// Encodes the texels level by level, and frees each.
+    /// Encodes the texels, and frees them where all levels are encoded.
     pub(crate) fn compress(texture: &mut Texture, read: Channels, by: TextureCompression) {
-        let encoding = read.encoding(by, (texture.width, texture.height));
+        compress_with(texture, read, by, blocks::encode);
+    }
+
+    /// An encoder's panic leaves the texture as it is.
+    pub(super) fn compress_with(
+        texture: &mut Texture,
+        read: Channels,
+        by: TextureCompression,
+        encode: impl Fn(&[u8], (u32, u32), Encoding, bool) -> Vec<u8>,
+    ) {
+        let size = (texture.width, texture.height);
+        let encoding = read.encoding(by, texture.color_space, size);
         if texture.encoding != Encoding::Rgba8 || encoding == Encoding::Rgba8 {
             return;
         }
@@ -119,12 +141,22 @@ mod encoder {
         if !(0..texture.levels.len()).all(fits) {
             return;
         }
-        for level in 0..texture.levels.len() {
-            let size = texture.level_size(level);
-            let texels = std::mem::take(&mut texture.levels[level]);
-            texture.levels[level] = blocks::encode(&texels, size, encoding, read.has_alpha());
+        let levels = catch_unwind(AssertUnwindSafe(|| {
+            let levels = texture.levels.iter().enumerate();
+            let in_blocks = levels.map(|(level, texels)| {
+                encode(
+                    texels,
+                    texture.level_size(level),
+                    encoding,
+                    read.has_alpha(),
+                )
+            });
+            in_blocks.collect()
+        }));
+        if let Ok(levels) = levels {
+            texture.levels = levels;
+            texture.encoding = encoding;
         }
-        texture.encoding = encoding;
     }
 }
 
@@ -140,7 +172,7 @@ mod tests {
     use glam::Mat3;
 
     use super::*;
-    use crate::{Clearcoat, ColorSpace, Sampler, Scene, Texture, TextureRef};
+    use crate::{Clearcoat, Sampler, Scene, Texture, TextureRef};
 
     fn texture(side: u32, texel: impl Fn(u32) -> [u8; 4]) -> Texture {
         let texels = (0..side * side).flat_map(texel).collect();
@@ -223,6 +255,34 @@ mod tests {
         assert_eq!(parallel.textures, scene.textures);
         scene.compress_textures(Fine, true);
         assert_eq!(scene.textures, again.textures, "what is encoded stays");
+    }
+
+    #[test]
+    fn srgb_textures_have_no_blocks_of_one_channel_or_two() {
+        use TextureCompression::{Fine, Small};
+        for (read, by, linear, srgb) in [
+            (Channels::RED, Small, Encoding::Bc4, Encoding::Bc1),
+            (Channels::RED, Fine, Encoding::Bc4, Encoding::Bc7),
+            (Channels::NORMAL, Small, Encoding::Bc5, Encoding::Bc7),
+            (Channels::NORMAL, Fine, Encoding::Bc5, Encoding::Bc7),
+        ] {
+            assert_eq!(read.encoding(by, ColorSpace::Linear, (8, 8)), linear);
+            assert_eq!(read.encoding(by, ColorSpace::Srgb, (8, 8)), srgb);
+        }
+    }
+
+    #[test]
+    fn an_encoders_panic_leaves_the_texture_as_it_is() {
+        let before = texture(8, |i| [i as u8; 4]);
+        let mut after = before.clone();
+        let fine = TextureCompression::Fine;
+        encoder::compress_with(&mut after, Channels::RGB, fine, |_, size, encoding, _| {
+            assert!(size.0 > 2, "a level that the encoder fails on");
+            vec![0; encoding.level_bytes(size.0, size.1) as usize]
+        });
+        assert_eq!(after, before);
+        compress(&mut after, Channels::RGB, fine);
+        assert_eq!(after.encoding, Encoding::Bc7);
     }
 
     #[test]

@@ -44,8 +44,9 @@ pub struct LoadOptions {
     pub check_unused: bool,
     /// Whether textures are kept in blocks that graphics devices read as they are: a quarter to an
     /// eighth of the memory, not quite the same, and loading takes longer. KTX2 pictures become BC7
-    /// without going through texels. Textures whose sides are no multiples of 4 stay as they are. On
-    /// WebAssembly nothing is done.
+    /// without going through texels, unless they are reduced, lack mip levels that are wanted, or are
+    /// alpha masks with mip levels. Textures whose sides are no multiples of 4 stay as they are. What
+    /// materials read decides, as the file gives them. On WebAssembly nothing is done.
     pub texture_compression: TextureCompression,
     /// Most bytes of the file and all files that it names, together.
     pub max_file_bytes: u64,

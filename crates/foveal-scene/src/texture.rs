@@ -69,10 +69,11 @@ pub enum Encoding {
     Rgba8,
     /// Red, green, blue: 8 bytes a block. Alpha is 1.
     Bc1,
-    /// Red alone: 8 bytes a block. Green and blue are 0, alpha is 1.
+    /// Red alone: 8 bytes a block. Green and blue are 0, alpha is 1. Always linear: there is no sRGB
+    /// of it.
     Bc4,
-    /// Red and green: 16 bytes a block. Blue is 0, alpha is 1. As a material's normal map it holds x
-    /// and y, and z is `sqrt(1 - x² - y²)`.
+    /// Red and green: 16 bytes a block. Blue is 0, alpha is 1. Always linear, like BC4. As a
+    /// material's normal map it holds x and y, and z is `sqrt(1 - x² - y²)`, at least 0.001.
     Bc5,
     /// Red, green, blue, alpha: 16 bytes a block.
     Bc7,
@@ -84,8 +85,8 @@ pub enum TextureCompression {
     /// RGBA8 texels.
     #[default]
     Off,
-    /// BC5 for normal maps, BC4 for what only red is read of, BC1 for other textures whose alpha is
-    /// not read, BC7 for the rest.
+    /// BC5 for normal maps, BC4 for what only red is read of (both where it is linear), BC1 for other
+    /// textures whose alpha is not read, BC7 for the rest.
     Small,
     /// The same with BC7 for BC1: twice the bytes, less error.
     Fine,

@@ -126,6 +126,7 @@ mod native {
     use ruzstd::decoding::StreamingDecoder;
 
     use super::{NONE, ZSTANDARD};
+    use crate::blocks::make_opaque;
 
     /// The texels of a file whose [`size`](super::size) is known.
     pub(crate) fn decode(bytes: &[u8]) -> Result<Vec<u8>, String> {
@@ -140,7 +141,12 @@ mod native {
     pub(crate) fn blocks(bytes: &[u8], count: u32) -> Result<Vec<Vec<u8>>, String> {
         let to = TargetFormat::Bc7Rgba;
         // As the texels are, which are not smoothed either.
-        transcode(bytes, count, to, DecodeFlags::NO_ETC1S_CHROMA_FILTERING).ok_or_else(broken)
+        let flags = DecodeFlags::NO_ETC1S_CHROMA_FILTERING;
+        let mut levels = transcode(bytes, count, to, flags).ok_or_else(broken)?;
+        for level in &mut levels {
+            make_opaque(level);
+        }
+        Ok(levels)
     }
 
     fn broken() -> String {
@@ -170,9 +176,15 @@ mod native {
     /// [`size`](super::size) and [`level_count`](super::level_count) have checked.
     fn unpacked(bytes: &[u8], count: u32) -> Option<Vec<u8>> {
         let long = |at: usize| Some(u64::from_le_bytes(*bytes.get(at..)?.first_chunk()?) as usize);
-        let mut file = bytes.to_vec();
+        let entries = (80..).step_by(24).take(count as usize);
+        let mut wants = entries.clone().map(|entry| long(entry + 16));
+        let wanted = wants.try_fold(0, |sum: usize, want| sum.checked_add(want?))?;
+        let mut file = Vec::new();
+        // All at once and no more: a vector that grows takes up to twice as much.
+        (file.try_reserve_exact(bytes.len().checked_add(wanted)?)).ok()?;
+        file.extend_from_slice(bytes);
         file[44..48].copy_from_slice(&NONE.to_le_bytes());
-        for entry in (80..).step_by(24).take(count as usize) {
+        for entry in entries {
             let (offset, length, want) = (long(entry)?, long(entry + 8)?, long(entry + 16)?);
             let packed = bytes.get(offset..offset.checked_add(length)?)?;
             let window = (want as u64).max(MOST_WINDOW);

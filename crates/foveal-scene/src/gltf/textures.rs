@@ -7,6 +7,7 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 
 use super::Resolver;
+use super::basis;
 use super::budget::Budget;
 use super::document::Document;
 use super::materials::MaterialDef;
@@ -181,6 +182,7 @@ struct Source<'a> {
 #[derive(Clone, Copy)]
 struct Use {
     number: usize,
+    color_space: ColorSpace,
     kept: Option<Kept>,
 }
 
@@ -194,7 +196,7 @@ struct Kept {
 impl Use {
     fn encoding(self, width: u32, height: u32) -> Encoding {
         self.kept.map_or(Encoding::Rgba8, |kept| {
-            kept.read.encoding(kept.by, (width, height))
+            (kept.read).encoding(kept.by, self.color_space, (width, height))
         })
     }
 }
@@ -264,6 +266,7 @@ fn sources<'a>(
         });
         sources[at].uses.push(Use {
             number: i,
+            color_space: key.role.color_space(),
             kept: kept.map(|kept| kept[i]),
         });
     }
@@ -288,39 +291,50 @@ impl Source<'_> {
     /// Memory of the textures made from it, with their mip levels, where none is larger than
     /// `largest`.
     fn kept_bytes(&self, largest: u32) -> u64 {
-        self.promise().map_or(0, |promise| {
-            let drop = levels_to_drop(promise.width, promise.height, largest);
-            let [width, height] = [promise.width, promise.height].map(|s| (s >> drop).max(1));
-            let bytes = |one: &Use| match one.encoding(width, height) {
-                Encoding::Rgba8 => rgba_chain_bytes(width, height),
-                // KTX2 pictures are BC7 whatever is read of them; BC1 and BC4 take half of it.
-                _ => {
-                    let levels = 0..mip::level_count(width, height);
-                    let side = |size: u32, level: u32| (size >> level).max(1);
-                    levels
-                        .map(|l| Encoding::Bc7.level_bytes(side(width, l), side(height, l)))
-                        .sum()
-                }
-            };
-            self.uses.iter().map(bytes).sum()
+        self.reduced_size(largest).map_or(0, |size| {
+            self.uses.iter().map(|one| self.bytes_of(*one, size)).sum()
         })
+    }
+
+    /// Width and height of its textures in texels.
+    fn reduced_size(&self, largest: u32) -> Option<(u32, u32)> {
+        let promise = self.promise()?;
+        let drop = levels_to_drop(promise.width, promise.height, largest);
+        let side = |size: u32| (size >> drop).max(1);
+        Some((side(promise.width), side(promise.height)))
+    }
+
+    /// Memory of a texture made from it, of this size and with its mip levels.
+    fn bytes_of(&self, one: Use, (width, height): (u32, u32)) -> u64 {
+        let encoding = match one.encoding(width, height) {
+            Encoding::Rgba8 => return rgba_chain_bytes(width, height),
+            // KTX2 pictures are BC7 whatever is read of them.
+            _ if self.is_ktx2() => Encoding::Bc7,
+            encoding => encoding,
+        };
+        let side = |size: u32, level: u32| (size >> level).max(1);
+        let level = |l| encoding.level_bytes(side(width, l), side(height, l));
+        (0..mip::level_count(width, height)).map(level).sum()
+    }
+
+    fn is_ktx2(&self) -> bool {
+        (self.encoded.as_ref()).is_ok_and(|(bytes, _)| basis::is_ktx2(bytes))
     }
 
     /// Memory while it is decoded, beside what is kept. What is reduced is not kept as it was
     /// decoded, and of several uses one after the other has a copy.
     fn decoding_bytes(&self, largest: u32) -> u64 {
-        self.promise().map_or(0, |promise| {
-            let reduced = levels_to_drop(promise.width, promise.height, largest) > 0;
-            let copies = u64::from(reduced) + u64::from(self.uses.len() > 1);
-            // The levels as texels, before they are in blocks.
-            let in_blocks = self.uses.iter().any(|one| one.kept.is_some());
-            let texels = if in_blocks {
-                rgba_chain_bytes(promise.width, promise.height)
-            } else {
-                0
-            };
-            promise.decoding_bytes() + copies * promise.rgba_bytes() + texels
-        })
+        let (Some(promise), Some(size)) = (self.promise(), self.reduced_size(largest)) else {
+            return 0;
+        };
+        let reduced = size != (promise.width, promise.height);
+        let copies = u64::from(reduced) + u64::from(self.uses.len() > 1);
+        // The levels as texels are there before they are in blocks. The decoder's share is free again
+        // when these are made, and larger than they are: so compression never asks for more.
+        let texels = rgba_chain_bytes(size.0, size.1);
+        let before_blocks = |one: &Use| texels.saturating_sub(self.bytes_of(*one, size));
+        let texels = self.uses.iter().map(before_blocks).max().unwrap_or(0);
+        promise.decoding_bytes() + copies * promise.rgba_bytes() + texels
     }
 }
 
@@ -419,7 +433,8 @@ struct Finished {
     notes: Vec<Warning>,
 }
 
-/// The textures of a KTX2 file whose own blocks and levels are those that are wanted; else `None`.
+/// The textures of a KTX2 file whose own blocks and levels are those that are wanted; else `None`. Mip
+/// levels of an alpha mask are made anew: the file's own need not keep its coverage.
 #[cfg(not(target_arch = "wasm32"))]
 fn transcoded(
     source: &Source<'_>,
@@ -437,6 +452,10 @@ fn transcoded(
     }
     let has_levels = |one: &Use| wanted.keys[one.number].sampler.mip.is_some();
     let all = source.uses.iter().any(has_levels);
+    let is_mask = |one: &Use| matches!(wanted.keys[one.number].role, Role::Cutout(Some(_)));
+    if (source.uses.iter()).any(|one| is_mask(one) && has_levels(one)) {
+        return None;
+    }
     // What cannot be transcoded is decoded, or says why not.
     let mut levels = pictures::blocks(bytes, *promise, all)?.ok()?;
     let mut textures = Vec::with_capacity(source.uses.len());

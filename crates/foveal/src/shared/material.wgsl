@@ -59,9 +59,10 @@ struct Material {
     specular: f32,
 }
 
-// The unit vector above a plane that has this x and y.
+// The unit vector above a plane that has this x and y. Never in the plane: scaled by 0 it still has a
+// direction.
 fn unit_above(n: vec2f) -> vec3f {
-    return vec3f(n, sqrt(saturate(1.0 - dot(n, n))));
+    return vec3f(n, sqrt(max(1.0 - dot(n, n), 1e-6)));
 }
 
 // Slots that share one have it in common, which spares shaders that look it up pixel by pixel.

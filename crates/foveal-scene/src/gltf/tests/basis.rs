@@ -224,6 +224,45 @@ fn mip_levels_are_the_files_own_where_it_has_them_all() {
 }
 
 #[test]
+fn opaque_blocks_stay_opaque() {
+    // Blocks of UASTC's mode 0, which has no alpha, and of any other bits.
+    let mut file = changed(&changed(UASTC, 20, 20), 24, 12);
+    let at = u32::from_le_bytes(*file[80..].first_chunk().unwrap()) as usize;
+    let mut bits = 1u32;
+    for block in file[at..at + 15 * 16].chunks_exact_mut(16) {
+        for byte in &mut *block {
+            bits = bits.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            *byte = (bits >> 24) as u8;
+        }
+        block[0] = block[0] & 0xF0 | 1;
+    }
+    for options in [LoadOptions::default(), in_blocks()] {
+        let texels = loaded(&file, false, &options).textures[0]
+            .decoded_level(0)
+            .into_owned();
+        assert!(texels.iter().skip(3).step_by(4).all(|&alpha| alpha == 255));
+    }
+}
+
+#[test]
+fn mip_levels_of_alpha_masks_are_made_anew_to_keep_their_coverage() {
+    let base = |alpha_mode: &str| {
+        let mut file = ktx2_file(&chain());
+        file.json["materials"][0] = serde_json::json!({
+            "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } },
+            "alphaMode": alpha_mode,
+        });
+        file.load_with(&in_blocks()).unwrap().textures.remove(0)
+    };
+    let (blend, mask) = (base("BLEND"), base("MASK"));
+    let own = |texture: &crate::Texture| texture.levels[1] == texture.levels[0][32..64];
+    for texture in [&blend, &mask] {
+        assert_eq!((texture.encoding, texture.levels.len()), (Encoding::Bc7, 5));
+    }
+    assert!(own(&blend) && !own(&mask));
+}
+
+#[test]
 fn any_byte_may_be_wrong_where_blocks_are_kept() {
     for original in [changed(&changed(ETC1S, 20, 20), 24, 12), chain()] {
         for at in 12..original.len() {

@@ -385,7 +385,7 @@ fn pictures_are_kept_in_blocks_by_what_is_read_of_them() {
 
 #[test]
 fn textures_in_blocks_are_counted_as_what_they_take() {
-    use crate::TextureCompression::{Fine, Off};
+    use crate::TextureCompression::{Fine, Off, Small};
     let mut file = File::with_triangle();
     let count = 8;
     for _ in 0..count {
@@ -400,10 +400,48 @@ fn textures_in_blocks_are_counted_as_what_they_take() {
         };
         file.load_with(&options).unwrap().textures[0].width
     };
-    // Blocks of all levels of all textures; the decoder's output and the levels as texels of one.
-    let kept = count * 16 * (256 + 64 + 16 + 4 + 1 + 1 + 1);
-    let decoding = 64 * 64 * 4 + (64 * 64 * 16 / 3 + 4);
-    assert_eq!(width(Fine, kept + decoding), 64);
-    assert_eq!(width(Fine, kept + decoding - 1), 32);
-    assert_eq!(width(Off, kept + decoding), 32);
+    // Blocks of all levels of all textures; the decoder's output and the levels as texels of one,
+    // whose blocks come after that output.
+    for (by, block) in [(Fine, 16), (Small, 8)] {
+        let one = block * (256 + 64 + 16 + 4 + 1 + 1 + 1);
+        let total = count * one + 64 * 64 * 4 + (64 * 64 * 16 / 3 + 4) - one;
+        assert_eq!(width(by, total), 64);
+        assert_eq!(width(by, total - 1), 32);
+        assert!(width(Off, total) <= 32);
+    }
+}
+
+#[test]
+fn no_picture_is_reduced_or_refused_because_of_blocks() {
+    use crate::TextureCompression::{Fine, Off, Small};
+    for (width, height) in [(10, 10), (20, 9), (16, 16), (32, 8)] {
+        let mut file = File::with_triangle();
+        let texture = file.texture(&RgbaImage::from_pixel(width, height, Rgba([9, 8, 7, 255])));
+        let index = json!({ "index": texture });
+        file.material(json!({ "emissiveTexture": index, "normalTexture": index }));
+        let size = |texture_compression, max_texture_bytes| {
+            let options = LoadOptions {
+                texture_compression,
+                max_texture_bytes,
+                ..LoadOptions::default()
+            };
+            let scene = file.load_with(&options).ok()?;
+            Some((scene.textures[0].width, scene.textures[0].height))
+        };
+        let (mut refused, mut whole) = (0, 0);
+        for limit in (1_000..6_000).step_by(7) {
+            let off = size(Off, limit);
+            refused += usize::from(off.is_none());
+            whole += usize::from(off == Some((width, height)));
+            for by in [Small, Fine] {
+                let on = size(by, limit);
+                assert_eq!(on.is_none(), off.is_none(), "{limit}");
+                assert!(on >= off, "{limit}: {on:?}, {off:?}");
+                if width % 4 != 0 || height % 4 != 0 {
+                    assert!(on == off || off != Some((width, height)), "{limit}");
+                }
+            }
+        }
+        assert!(refused > 20 && whole > 20, "{refused} {whole}");
+    }
 }
