@@ -2,8 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use foveal_cull::{
-    BakeOptions, CullStats, Culler, FrameOptions, OccluderMesh, OccluderSet, SingleThread, Threads,
-    View, WorkerThreads,
+    BakeOptions, CullStats, Culler, Eye, FrameOptions, OccluderMesh, OccluderSet, Projection,
+    SingleThread, Threads, View, WorkerThreads,
 };
 use glam::{DAffine3, DVec3, Vec3};
 use std::sync::Arc;
@@ -69,5 +69,46 @@ fn large_occluders_cut_into_parts_are_drawn_as_by_one_thread() {
         let (other, counted) = frame(&set, &WorkerThreads::new(threads));
         assert_eq!(counted, stats, "{threads} threads");
         assert!(other == depth, "{threads} threads");
+    }
+}
+
+#[test]
+fn what_reaches_beyond_the_far_plane_is_drawn_as_by_one_thread() {
+    // Strips of a floor that begins behind the eye and ends far behind the far plane.
+    let strip = |i: u32| {
+        let x = 0.2 * i as f32 - 1.0;
+        [
+            Vec3::new(x, -1.5, 3.0),
+            Vec3::new(x + 0.15, -1.5, 3.0),
+            Vec3::new(x + 0.15, -1.5, -80.0),
+            Vec3::new(x, -1.5, -80.0),
+        ]
+    };
+    let points: Vec<Vec3> = (0..10).flat_map(strip).collect();
+    let indices = (0..10).flat_map(|i| [0, 1, 2, 0, 2, 3].map(|k| 4 * i + k));
+    let indices: Vec<u32> = indices.collect();
+    let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+    let mut set = OccluderSet::new();
+    set.add(Arc::new(mesh), DAffine3::IDENTITY).unwrap();
+    let options = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
+    for far_m in [2.5, 8.0, 20.0] {
+        let lens = Projection::perspective(1.2, 1.0, 0.2, far_m);
+        let eye = Eye::look_at(DVec3::ZERO, DVec3::new(0.0, -0.2, -1.0), DVec3::Y, lens);
+        let depth = |threads: &dyn Threads| {
+            let mut culler = Culler::new(64, 256).unwrap();
+            let view = View::mono(eye);
+            culler.rasterize(&view, &set, &options, threads).unwrap();
+            let mut depth = vec![0.0; 64 * 256];
+            culler.read_depth(&mut depth).unwrap();
+            depth
+        };
+        let one = depth(&SingleThread);
+        assert!(one.iter().filter(|d| **d > 0.0).count() > 500);
+        for threads in [2, 3, 8] {
+            assert!(
+                depth(&WorkerThreads::new(threads)) == one,
+                "{far_m} m, {threads} threads"
+            );
+        }
     }
 }

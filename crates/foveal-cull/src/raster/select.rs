@@ -324,8 +324,9 @@ fn rounding(screen: &Screen<'_>, cluster: &Cluster) -> f32 {
     (size(x) + size(y) + size(w) * widest) * f32::EPSILON
 }
 
-/// The place of a cluster whose box crosses the near plane: of the part of the box within the
-/// frustum. None if there is no such part.
+/// The place of a cluster whose box crosses the near plane: of the part of the box that is on the
+/// screen, beyond the far plane too, since polygons are not cut there and every band must draw the
+/// same. None if there is no such part, or if all of it is beyond the far plane.
 #[inline(never)]
 fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
     let rounding = rounding(screen, cluster);
@@ -336,8 +337,10 @@ fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
             crossing: true,
         });
     }
+    let far_depth = screen.far_depth;
     let screen = Screen {
         dilate: rounding.max(GROWN),
+        far_depth: f32::MIN,
         ..*screen
     };
     if screen.is_beside(cluster.center, cluster.half) {
@@ -346,6 +349,7 @@ fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
     let (rect, depth) = match clip_box(&screen, cluster.center, cluster.half) {
         Clipped::Outside => return None,
         Clipped::Visible => ([0.0, 0.0, screen.width, screen.height], f32::INFINITY),
+        Clipped::Rect(_, depth) if depth < far_depth => return None,
         Clipped::Rect(rect, depth) => (rect, depth),
     };
     Some(Place {
