@@ -56,7 +56,7 @@ struct Drawn {
 
 fn drawn_as(instance_index: u32) -> Drawn {
     if EYES == 1u {
-        return Drawn(drawn_at(extractBits(instance_index, 0u, EYE_BIT)), instance_index >> EYE_BIT);
+        return Drawn(drawn_at(instance_index & ((1u << EYE_BIT) - 1u)), instance_index >> EYE_BIT);
     } else if EYES == 2u {
         return Drawn(drawn_at(instance_index >> 1u), instance_index & 1u);
     }

@@ -49,7 +49,7 @@ const EYE_BIT: u32 = 26u;
 
 @vertex
 fn eye_alone(@builtin(instance_index) drawn: u32, @builtin(vertex_index) vertex: u32) -> Corner {
-    return corner(extractBits(drawn, 0u, EYE_BIT), vertex, drawn >> EYE_BIT);
+    return corner(drawn & ((1u << EYE_BIT) - 1u), vertex, drawn >> EYE_BIT);
 }
 
 fn beside(drawn: u32, vertex: u32) -> Corner {
