@@ -280,13 +280,15 @@ FovealCullStatus foveal_cull_mesh_from_box(const float *min, const float *max, F
  * i * spacing_x, y = heights[j * columns + i], z = j * spacing_z, metres. Every `step`th sample is kept, and
  * the surface lies under the terrain everywhere: fewer triangles, which hide somewhat less. NaN is a hole:
  * cells with one are left out. The ground is solid besides: nothing may be seen under the surface, neither
- * through its sides nor, except over holes, from below. */
+ * through its sides nor, except over holes, from below. A step of 0 is one of 1. Heights are aligned as
+ * floats are: other than a source's positions. */
 FovealCullStatus foveal_cull_mesh_from_heights(const float *heights, size_t columns, size_t rows,
                                                float spacing_x, float spacing_z, size_t step,
                                                FovealCullMesh **out);
 
 /* Copies a baked mesh as bytes, for a file: all of them, or none if they are more than `size`. Returns how
- * many it has; 0 for null. `bytes` may be null to ask for that. The same on every machine. */
+ * many it has; 0 for null. `bytes` may be null to ask for that. The same on every machine. A
+ * deformable mesh keeps the shape that it has, and can be deformed no more. */
 size_t foveal_cull_mesh_to_bytes(const FovealCullMesh *mesh, uint8_t *bytes, size_t size);
 
 /* The mesh of foveal_cull_mesh_to_bytes, without baking. Bytes that were changed, or come from elsewhere or
@@ -297,7 +299,8 @@ FovealCullStatus foveal_cull_mesh_from_bytes(const uint8_t *bytes, size_t size, 
 /* Drops a mesh. Occluders that were made of it keep it. Null is nothing. */
 void foveal_cull_mesh_destroy(FovealCullMesh *mesh);
 
-/* The number of triangles, without degenerate ones; 0 for null. */
+/* The number of triangles, without degenerate ones (in a deformable mesh only those with the same index
+ * twice are); 0 for null. */
 size_t foveal_cull_mesh_triangle_count(const FovealCullMesh *mesh);
 
 /* ---- Occluders ---- */

@@ -92,18 +92,19 @@ fn at<const N: usize>(bytes: &[u8], offset: usize) -> [u8; N] {
 ///
 /// # Safety
 /// The pointer is null, or that many vertices are there and nothing changes them meanwhile.
-pub(crate) unsafe fn vertices(
+pub(crate) unsafe fn vertices<'a>(
     positions: *const f32,
     count: usize,
     stride: usize,
-) -> Result<Vec<[f32; 3]>, Fault> {
+) -> Result<impl ExactSizeIterator<Item = [f32; 3]> + 'a, Fault> {
     if stride < 12 {
         return Err(Fault::argument("'position_stride' is less than 12 bytes"));
     }
     // SAFETY: the caller's word.
     let vertices = unsafe { bytes(positions.cast(), count, stride, 12, "positions") }?;
-    let position = |i: usize| [0, 4, 8].map(|a| f32::from_ne_bytes(at(vertices, i * stride + a)));
-    Ok((0..count).map(position).collect())
+    let position =
+        move |i: usize| [0, 4, 8].map(|a| f32::from_ne_bytes(at(vertices, i * stride + a)));
+    Ok((0..count).map(position))
 }
 
 /// # Safety
@@ -134,6 +135,7 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
             source.position_stride,
         )
     }?;
+    let positions: Vec<[f32; 3]> = positions.collect();
     // SAFETY: the caller's word.
     let indices = unsafe {
         bytes(

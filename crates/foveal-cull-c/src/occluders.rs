@@ -176,7 +176,18 @@ pub unsafe extern "C" fn foveal_cull_occluders_deform(
             )
         };
         let id = occluders.own(id)?;
-        Ok(border::write(&occluders.set)?.set_positions(id, &positions)?)
+        let mut set = border::write(&occluders.set)?;
+        let expected = set.mesh(id)?.position_count();
+        let expected = expected.ok_or(CullError::NotDeformable)?;
+        // Before they are read.
+        if count != expected {
+            return Err(Fault::new(
+                FovealCullStatus::WrongLength,
+                format!("the mesh has {expected} positions, and {count} are given"),
+            ));
+        }
+        let positions: Vec<[f32; 3]> = positions.collect();
+        Ok(set.set_positions(id, &positions)?)
     })
 }
 

@@ -84,6 +84,14 @@ fn null_is_an_error_everywhere_and_destroying_it_is_nothing() {
         let heights = foveal_cull_mesh_from_heights;
         assert_eq!(heights(null(), 2, 2, 1.0, 1.0, 1, &mut out), null_pointer);
         assert_eq!(heights(some, 1, 3, 1.0, 1.0, 1, null_mut()), null_pointer);
+        // No rows, however long.
+        let mut empty = null_mut();
+        assert_eq!(
+            heights(null(), usize::MAX, 0, 1.0, 1.0, 1, &mut empty),
+            FovealCullStatus::Ok
+        );
+        assert_eq!(foveal_cull_mesh_triangle_count(empty), 0);
+        foveal_cull_mesh_destroy(empty);
         assert_eq!(foveal_cull_mesh_triangle_count(null()), 0);
         assert_eq!(foveal_cull_mesh_to_bytes(null(), null_mut(), 8), 0);
         assert_eq!(

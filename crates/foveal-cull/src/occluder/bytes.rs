@@ -46,7 +46,9 @@ const WIDER_HOME: u64 = 2;
 
 impl OccluderMesh {
     /// The mesh as bytes, for a file: 12 to 17 a triangle, 25 to 40 with adjacency. The same on
-    /// every machine. [`from_bytes`](Self::from_bytes) reads them.
+    /// every machine. [`from_bytes`](Self::from_bytes) reads them. A
+    /// [`deformable`](crate::BakeOptions::deformable) mesh keeps the shape that it has, and can be
+    /// deformed no more.
     ///
     /// ```
     /// use foveal_cull::{Aabb, OccluderMesh};

@@ -42,18 +42,8 @@ impl OccluderMesh {
     ) -> Result<(), CullError> {
         self.check_positions(positions)?;
         let position = |i: u32| Vec3::from(positions[i as usize].into()) + Vec3::ZERO;
-        let (mut lo, mut hi) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        move_to(&mut self.vertices, |i| {
-            let p = position(i);
-            (lo, hi) = (lo.min(p), hi.max(p));
-            p
-        });
+        move_to(&mut self.vertices, position);
         move_to(&mut self.one_rings.vertices, position);
-        self.center = if self.clusters.is_empty() {
-            DVec3::ZERO
-        } else {
-            (lo.as_dvec3() + hi.as_dvec3()) * 0.5
-        };
         self.reshape();
         self.finish();
         Ok(())
@@ -89,8 +79,17 @@ impl OccluderMesh {
         }
     }
 
-    /// Sets what of each cluster follows from its vertices.
+    /// Sets the centre, and what of each cluster follows from its vertices.
     pub(super) fn reshape(&mut self) {
+        let corners = (0..self.vertices.sources.len()).map(|i| self.vertices.at(i));
+        let (lo, hi) = corners.fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(lo, hi), p| {
+            (lo.min(p), hi.max(p))
+        });
+        self.center = if self.clusters.is_empty() {
+            DVec3::ZERO
+        } else {
+            (lo.as_dvec3() + hi.as_dvec3()) * 0.5
+        };
         for cluster in &mut self.clusters {
             let first = cluster.first_vertex as usize;
             let groups = &self.quads[cluster.first_group as usize..];

@@ -36,7 +36,8 @@ impl OccluderMesh {
     ///
     /// # Errors
     /// [`CullError::LengthMismatch`] if the heights are not whole rows, [`CullError::NotFinite`] for an
-    /// infinite height or for a spacing that is not above zero, [`CullError::TooManyTriangles`]. A
+    /// infinite height, for one that is lowered beyond what `f32` holds or for a spacing that is not
+    /// above zero, [`CullError::TooManyTriangles`]. A
     /// `step` of 0 is one of 1, and fewer than two rows or columns have no triangles.
     /// `options.deformable` is not looked at.
     pub fn from_heights(
@@ -63,6 +64,10 @@ impl OccluderMesh {
         if heights.iter().any(|h| h.is_infinite()) {
             return Err(CullError::NotFinite(Quantity::Position));
         }
+        // Nothing bounds the one where the other is 0.
+        if columns < 2 || rows < 2 {
+            return Self::bake::<[f32; 3]>(&[], &[], options.with_deformable(false));
+        }
         let grid = Grid {
             heights,
             columns,
@@ -75,9 +80,6 @@ impl OccluderMesh {
                 triangles,
                 most: MAX_TRIANGLES,
             });
-        }
-        if columns < 2 || rows < 2 {
-            return Self::bake::<[f32; 3]>(&[], &[], options.with_deformable(false));
         }
         let corners = grid.lowered();
         let positions: Vec<[f32; 3]> = (grid.z.iter())
@@ -286,6 +288,10 @@ mod tests {
                 let (u, v) = (at[0] - cell[0], at[1] - cell[1]);
                 let first = cell[1] as usize * columns + cell[0] as usize;
                 let [a, b, c, d] = [0, columns, columns + 1, 1].map(|k| f64::from(heights[first + k]));
+                // At the border of a coarse cell, the fine cell may be one of the next.
+                if [a, b, c, d].iter().any(|height| height.is_nan()) {
+                    continue;
+                }
                 // Cut along one diagonal, along the other, and bilinear.
                 let one = if u < v { a * (1.0 - v) + b * (v - u) + c * u } else { a * (1.0 - u) + d * (u - v) + c * v };
                 let other = if u + v < 1.0 { a * (1.0 - u - v) + b * v + d * u } else { c * (u + v - 1.0) + b * (1.0 - u) + d * (1.0 - v) };
@@ -304,6 +310,13 @@ mod tests {
             }
             prop_assert!(under > 0 || holes > 0);
         }
+    }
+
+    #[test]
+    fn rows_without_end_that_are_none_make_an_empty_mesh() {
+        let options = BakeOptions::default();
+        let mesh = OccluderMesh::from_heights(&[], usize::MAX, [1.0; 2], 1, options).unwrap();
+        assert_eq!(mesh.triangle_count(), 0);
     }
 
     #[test]

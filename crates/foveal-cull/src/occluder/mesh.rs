@@ -9,7 +9,8 @@ use glam::{DVec3, Vec3};
 
 /// A baked occluder mesh.
 ///
-/// Immutable; share it between occluders by `Arc`. [`BakeOptions`](crate::BakeOptions) decide its
+/// Share it between occluders by `Arc`. It stays as it is, unless it was baked
+/// [`deformable`](crate::BakeOptions::deformable). [`BakeOptions`](crate::BakeOptions) decide its
 /// size.
 #[derive(Clone, Debug)]
 pub struct OccluderMesh {
@@ -89,10 +90,18 @@ impl OccluderMesh {
         )
     }
 
-    /// Number of triangles, without degenerate ones.
+    /// Number of triangles, without degenerate ones. In a
+    /// [`deformable`](crate::BakeOptions::deformable) mesh only those with the same index twice are.
     #[must_use]
     pub fn triangle_count(&self) -> usize {
         self.triangles as usize
+    }
+
+    /// Number of positions that [`set_positions`](Self::set_positions) takes; `None` for a mesh that
+    /// was not baked [`deformable`](crate::BakeOptions::deformable).
+    #[must_use]
+    pub fn position_count(&self) -> Option<usize> {
+        self.positions
     }
 
     /// Number of clusters.

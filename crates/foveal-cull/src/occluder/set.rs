@@ -170,8 +170,18 @@ impl OccluderSet {
     /// Whether an id names an occluder of this set. O(1).
     #[must_use]
     pub fn contains(&self, id: OccluderId) -> bool {
+        self.mesh(id).is_ok()
+    }
+
+    /// The mesh of an occluder.
+    ///
+    /// # Errors
+    /// [`CullError::UnknownOccluder`].
+    pub fn mesh(&self, id: OccluderId) -> Result<&Arc<OccluderMesh>, CullError> {
         let slot = self.instances.get(id.slot as usize);
-        slot.is_some_and(|i| i.mesh.is_some() && i.generation == id.generation)
+        slot.filter(|i| i.generation == id.generation)
+            .and_then(|i| i.mesh.as_ref())
+            .ok_or(CullError::UnknownOccluder)
     }
 
     /// Number of occluders, whether on or off.

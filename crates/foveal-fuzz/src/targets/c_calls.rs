@@ -168,7 +168,10 @@ impl World {
     }
 
     fn bake_heights(&mut self, r: &mut Choices<'_>) {
-        let (columns, rows) = (r.below(9), r.below(9));
+        let (mut columns, rows) = (r.below(9), r.below(9));
+        if rows == 0 && r.one_in(3) {
+            columns = r.bits() as usize;
+        }
         let heights: Vec<f32> = (0..columns * rows).map(|_| r.number() as f32).collect();
         let [x, z] = [0, 1].map(|_| r.number().abs() as f32);
         let step = if r.one_in(30) {
