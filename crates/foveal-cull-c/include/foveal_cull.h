@@ -402,8 +402,8 @@ void foveal_cull_tree_destroy(FovealCullTree *tree);
  *
  * In each frame: insert, move and remove, refit once, then foveal_culler_test_occludees. Now and then, when
  * foveal_cull_occludees_wants_rebuild says so, build the hierarchy again: by foveal_cull_occludees_rebuild,
- * or on another thread while frames go on, by a snapshot that is built there and adopted afterwards. Neither
- * changes what is proven: it only makes tests faster. */
+ * or on another thread while frames go on, by a snapshot that is built there and adopted afterwards. Results
+ * are right without it too; tests take longer. */
 
 /* Makes an empty set for boxes in metres relative to `origin` (three numbers; null is zero). */
 FovealCullStatus foveal_cull_occludees_create(const double *origin, FovealCullOccludees **out);

@@ -178,8 +178,14 @@ mod tests {
                 foveal_cull_occludees_snapshot(set, &mut rebuild),
                 Status::Ok
             );
-            assert_eq!(foveal_cull_rebuild_build(rebuild), Status::Ok);
             let (lock, step) = (&(*set).set, &(*rebuild).step);
+            {
+                // Without the lock: a builder could be about to take it.
+                let _builder = step.write();
+                let adopted = foveal_cull_occludees_adopt(set, rebuild);
+                assert_eq!(adopted, Status::BadArgument);
+            }
+            assert_eq!(foveal_cull_rebuild_build(rebuild), Status::Ok);
             let change = || {
                 [
                     insert(),
