@@ -1,4 +1,5 @@
-// Culling from C++ with the program's own jobs: a door that opens, two eyes, tests on many threads.
+// Culling from C++ with the program's own jobs: a door that opens, carts that drive, two eyes, tests on many
+// threads.
 #include "foveal_cull.hpp"
 
 #include <atomic>
@@ -62,6 +63,17 @@ private:
     bool stop_ = false;
 };
 
+/// The results of carts in the order of their ids.
+static std::vector<cull::Visibility> carts_seen(const cull::Culler &culler, const cull::Occludees &carts,
+                                                const std::vector<cull::OccludeeId> &ids) {
+    const auto results = culler.test(carts);
+    std::vector<cull::Visibility> of_ids;
+    for (const auto index : carts.indices(ids)) {
+        of_ids.push_back(results[index]);
+    }
+    return of_ids;
+}
+
 int main() try {
     // A wall with a doorway 2 m wide, and a door in it. Indices of 16 bits.
     const float wall[] = {-20, -3, -5, -1, -3, -5, -1, 4, -5, -20, 4, -5, 1, -3, -5, 20, -3, -5, 20, 4, -5, 1, 4, -5};
@@ -112,6 +124,51 @@ int main() try {
     std::printf("%zu boxes: %zu visible through the closed door, %zu through the open one\n", boxes.size(), seen[0],
                 seen[1]);
 
+    // Carts drive past the open door. Their hierarchy follows, and is built again by another thread meanwhile.
+    const auto cart = [](int i, int frame) {
+        const float x = static_cast<float>(i % 60) - 30 + 0.3f * static_cast<float>(frame * (i % 7));
+        const float z = -8 - static_cast<float>(i / 60);
+        return cull::Box{{x, 0, z}, {x + 0.5f, 0.5f, z + 0.5f}};
+    };
+    std::vector<cull::Box> places;
+    for (int i = 0; i < 2400; ++i) {
+        places.push_back(cart(i, 0));
+    }
+    cull::Occludees carts;
+    std::vector<cull::OccludeeId> ids = carts.insert(places);
+    culler.rasterize(view, occluders, jobs);
+    cull::Rebuild rebuild = carts.snapshot();
+    std::thread builder([&] { rebuild.build(); });
+    std::size_t passed[2] = {0, 0};
+    for (int frame = 0; frame < 8; ++frame) {
+        if (frame == 4) {
+            builder.join();
+            carts.adopt(std::move(rebuild));
+        }
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            places[i] = cart(static_cast<int>(i), frame);
+        }
+        carts.move(ids, places);
+        carts.refit();
+        const auto results = carts_seen(culler, carts, ids);
+        const auto one_by_one = culler.test(places);
+        for (std::size_t i = 0; i < ids.size(); ++i) {
+            passed[frame / 4] += results[i] == cull::Visibility::visible;
+            if (results[i] == cull::Visibility::visible && one_by_one[i] != results[i]) {
+                throw std::logic_error("a set sees what a list hides");
+            }
+        }
+    }
+    const cull::Box last = carts.bounds(ids.back());
+    const bool where = last.min[0] == places.back().min[0] && last.max[2] == places.back().max[2];
+    carts.remove(ids.back());
+    const cull::OccludeeId next = carts.insert(last);
+    const bool known = carts.contains(next) && !carts.contains(ids.back());
+    if (!where || !known || carts.index(next) >= carts.result_count() || carts.count() != ids.size()) {
+        throw std::logic_error("carts are not where they were put");
+    }
+    std::printf("%zu carts, %zu and %zu times seen through the door\n", carts.count(), passed[0], passed[1]);
+
     // Errors say what is wrong.
     occluders.remove(door);
     try {
@@ -120,6 +177,15 @@ int main() try {
     } catch (const cull::Error &error) {
         std::printf("moving a door that is gone: %s\n", error.what());
         if (error.status() != FOVEAL_CULL_UNKNOWN_OCCLUDER) {
+            return 1;
+        }
+    }
+    try {
+        carts.move(ids, places);
+        return 1;
+    } catch (const cull::Error &error) {
+        std::printf("moving a cart that is gone: %s\n", error.what());
+        if (error.status() != FOVEAL_CULL_UNKNOWN_OCCLUDEE) {
             return 1;
         }
     }

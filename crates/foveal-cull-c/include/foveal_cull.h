@@ -10,8 +10,8 @@
  * an origin. The front of a triangle is the side that (b - a) x (c - a) points to.
  *
  * Errors. Functions return a FovealCullStatus. Noticed are null and misaligned pointers, wrong lengths,
- * numbers that are not finite, ids of removed occluders and of other sets, unknown enumerators, structs
- * of another version, and an object that another thread is changing. Not noticed, and undefined as in
+ * numbers that are not finite, ids of removed objects and of other sets, unknown enumerators, structs of
+ * another version, and an object that another thread is changing. Not noticed, and undefined as in
  * free(), are destroyed objects and arrays that are shorter than said. A function that fails leaves its
  * result as it was or null, and its object unchanged, unless it says otherwise.
  *
@@ -22,8 +22,8 @@
  *
  * Structs begin with their size: set `size` to sizeof, or use the init function. New versions only add
  * fields at the end. Functions named _sized take the size of the struct that the caller has and write no
- * more; the functions without the word pass the sizeof of this header. FovealCullEye and
- * FovealCullOccluderId have no size and never change. Strides and sizes are bytes.
+ * more; the functions without the word pass the sizeof of this header. FovealCullEye,
+ * FovealCullOccluderId and FovealCullOccludeeId have no size and never change. Strides and sizes are bytes.
  *
  * Memory is allocated by the library's own allocator, which cannot be replaced.
  *
@@ -66,14 +66,16 @@ typedef enum FovealCullStatus {
     FOVEAL_CULL_WRONG_LENGTH = 9,
     /* No occluder has this id, for instance since it was removed. */
     FOVEAL_CULL_UNKNOWN_OCCLUDER = 10,
-    /* The id belongs to another set of occluders. */
+    /* The id, or the hierarchy, belongs to another set. */
     FOVEAL_CULL_OTHER_SET = 11,
     /* The object is in use by another call. */
     FOVEAL_CULL_BUSY = 12,
     /* An error inside the library. Please report it. The object stays usable. */
     FOVEAL_CULL_INTERNAL = 13,
     /* Bytes are not a baked mesh of this version. */
-    FOVEAL_CULL_BAD_MESH_BYTES = 14
+    FOVEAL_CULL_BAD_MESH_BYTES = 14,
+    /* No occludee has this id, for instance since it was removed. */
+    FOVEAL_CULL_UNKNOWN_OCCLUDEE = 15
 } FovealCullStatus;
 
 /* The result for one box, one byte each. Draw what is FOVEAL_CULL_VISIBLE. */
@@ -104,6 +106,10 @@ typedef struct FovealCullMesh FovealCullMesh;
 typedef struct FovealCullOccluders FovealCullOccluders;
 /* A hierarchy over boxes that are tested in many frames. */
 typedef struct FovealCullTree FovealCullTree;
+/* A set of occludees that come, move and go, with a hierarchy that follows them. */
+typedef struct FovealCullOccludees FovealCullOccludees;
+/* The occludees of a set at one moment, then a new hierarchy over them. */
+typedef struct FovealCullRebuild FovealCullRebuild;
 /* A culler with its occlusion buffer: one per view that is tested at the same time. */
 typedef struct FovealCuller FovealCuller;
 /* Threads of the library. */
@@ -116,6 +122,14 @@ typedef struct FovealCullOccluderId {
     /* The occluder in it. */
     uint64_t occluder;
 } FovealCullOccluderId;
+
+/* The id of one occludee. The id of a removed occludee never names another one. All zero: none. */
+typedef struct FovealCullOccludeeId {
+    /* The set that it belongs to. */
+    uint64_t set;
+    /* The occludee in it. */
+    uint64_t occludee;
+} FovealCullOccludeeId;
 
 /* Triangles to be baked. */
 typedef struct FovealCullMeshSource {
@@ -387,6 +401,80 @@ FovealCullStatus foveal_cull_tree_refit(FovealCullTree *tree, const float *boxes
 /* Drops a tree. Null is nothing. */
 void foveal_cull_tree_destroy(FovealCullTree *tree);
 
+/* ---- Occludees that come, move and go ----
+ *
+ * In each frame: insert, move and remove, refit once, then foveal_culler_test_occludees. Now and then, when
+ * foveal_cull_occludees_wants_rebuild says so, build the hierarchy again: by foveal_cull_occludees_rebuild,
+ * or on another thread while frames go on, by a snapshot that is built there and adopted afterwards. Results
+ * are right without it too; tests take longer. */
+
+/* Makes an empty set for boxes in metres relative to `origin` (three numbers; null is zero). */
+FovealCullStatus foveal_cull_occludees_create(const double *origin, FovealCullOccludees **out);
+
+/* Drops a set with its occludees. Null is nothing. */
+void foveal_cull_occludees_destroy(FovealCullOccludees *occludees);
+
+/* Inserts `count` occludees with boxes of six floats each (min, then max), and writes their ids to `out`. A
+ * box that is not a volume is always visible. Constant time for each. A set has at most 2^28 occludees. After
+ * an error none was inserted. */
+FovealCullStatus foveal_cull_occludees_insert(FovealCullOccludees *occludees, const float *boxes, size_t count,
+                                              FovealCullOccludeeId *out);
+
+/* Moves or resizes `count` occludees, with six floats each. Constant time for each. The last box counts for an
+ * id that is listed twice. After an error none has moved. */
+FovealCullStatus foveal_cull_occludees_move(FovealCullOccludees *occludees, const FovealCullOccludeeId *ids,
+                                            const float *boxes, size_t count);
+
+/* Removes `count` occludees. Their ids name nothing from then on. After an error, as by an id that is listed
+ * twice (FOVEAL_CULL_BAD_ARGUMENT), none was removed. */
+FovealCullStatus foveal_cull_occludees_remove(FovealCullOccludees *occludees, const FovealCullOccludeeId *ids,
+                                              size_t count);
+
+/* Writes 1 if the id names an occludee of this set, 0 if not. */
+FovealCullStatus foveal_cull_occludees_contains(const FovealCullOccludees *occludees, FovealCullOccludeeId id,
+                                                uint32_t *out);
+
+/* Writes the box of an occludee, six floats. */
+FovealCullStatus foveal_cull_occludees_bounds(const FovealCullOccludees *occludees, FovealCullOccludeeId id,
+                                              float *out);
+
+/* Writes the places that `count` occludees have among the results of foveal_culler_test_occludees. The place
+ * of an occludee never changes; when it is removed another one may get it. */
+FovealCullStatus foveal_cull_occludees_indices(const FovealCullOccludees *occludees,
+                                               const FovealCullOccludeeId *ids, size_t count, uint32_t *out);
+
+/* Writes the number of occludees. */
+FovealCullStatus foveal_cull_occludees_count(const FovealCullOccludees *occludees, size_t *out);
+
+/* Writes the number of results: more than the largest index. It never falls. */
+FovealCullStatus foveal_cull_occludees_result_count(const FovealCullOccludees *occludees, size_t *out);
+
+/* Fits the hierarchy to what has moved. Call it once before the tests of a frame; without it boxes are tested
+ * one by one, which is as right but slower. */
+FovealCullStatus foveal_cull_occludees_refit(FovealCullOccludees *occludees);
+
+/* Writes 1 if the hierarchy is worth being built again, since many occludees are new or have moved away from
+ * their neighbours; 0 if not. */
+FovealCullStatus foveal_cull_occludees_wants_rebuild(const FovealCullOccludees *occludees, uint32_t *out);
+
+/* Builds the hierarchy again on this thread, about half a microsecond per occludee. */
+FovealCullStatus foveal_cull_occludees_rebuild(FovealCullOccludees *occludees);
+
+/* Copies what foveal_cull_rebuild_build needs. The set may change and be tested while it is built, and may
+ * even be destroyed. */
+FovealCullStatus foveal_cull_occludees_snapshot(const FovealCullOccludees *occludees, FovealCullRebuild **out);
+
+/* Builds the hierarchy of a snapshot, on any thread. Once it is built, nothing. */
+FovealCullStatus foveal_cull_rebuild_build(FovealCullRebuild *rebuild);
+
+/* Gives a hierarchy to the set that the snapshot is of, fits it to what has moved since and leaves out what
+ * was removed. FOVEAL_CULL_BUSY while it is being built, FOVEAL_CULL_BAD_ARGUMENT if it is not built yet or
+ * was adopted already, FOVEAL_CULL_OTHER_SET for another set. Destroy the rebuild afterwards. */
+FovealCullStatus foveal_cull_occludees_adopt(FovealCullOccludees *occludees, FovealCullRebuild *rebuild);
+
+/* Drops a snapshot or a hierarchy. Null is nothing. */
+void foveal_cull_rebuild_destroy(FovealCullRebuild *rebuild);
+
 /* ---- Cullers ---- */
 
 /* Fills options with the defaults. */
@@ -420,6 +508,11 @@ FovealCullStatus foveal_culler_test_boxes(const FovealCuller *culler, const floa
 /* Classifies the boxes of a tree. `count` is the number of its boxes. */
 FovealCullStatus foveal_culler_test_tree(const FovealCuller *culler, const FovealCullTree *tree,
                                          uint8_t *results, size_t count);
+
+/* Classifies the occludees of a set. `count` is that of foveal_cull_occludees_result_count, and results lie
+ * where foveal_cull_occludees_indices says; those at places that no occludee has mean nothing. */
+FovealCullStatus foveal_culler_test_occludees(const FovealCuller *culler, const FovealCullOccludees *occludees,
+                                              uint8_t *results, size_t count);
 
 /* Copies the depth of the last frame, row by row from the top left, for pictures while debugging:
  * near / distance, or 1 at the near to 0 at the far plane if orthographic; 0 where nothing is proven.

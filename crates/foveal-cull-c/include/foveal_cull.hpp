@@ -54,6 +54,7 @@ inline void expect_ok(FovealCullStatus status) {
 }
 
 using OccluderId = FovealCullOccluderId;
+using OccludeeId = FovealCullOccludeeId;
 using Eye = FovealCullEye;
 using Options = FovealCullFrameOptions;
 using Point = std::array<double, 3>;
@@ -261,6 +262,116 @@ private:
     detail::Handle<FovealCullTree, foveal_cull_tree_destroy> tree_;
 };
 
+/// The hierarchy of a set of occludees, built again: snapshot it, build it on any thread, adopt it.
+class Rebuild {
+public:
+    /// Builds the hierarchy.
+    void build() { expect_ok(foveal_cull_rebuild_build(rebuild_.get())); }
+
+private:
+    friend class Occludees;
+    explicit Rebuild(FovealCullRebuild *rebuild) : rebuild_(rebuild) {}
+    detail::Handle<FovealCullRebuild, foveal_cull_rebuild_destroy> rebuild_;
+};
+
+/// Occludees that come, move and go. In each frame: change what has changed, refit, then Culler::test.
+class Occludees {
+public:
+    explicit Occludees(const Point &origin = {}) {
+        FovealCullOccludees *set = nullptr;
+        expect_ok(foveal_cull_occludees_create(origin.data(), &set));
+        set_.reset(set);
+    }
+    OccludeeId insert(const Box &bounds) {
+        OccludeeId id{};
+        expect_ok(foveal_cull_occludees_insert(set_.get(), bounds.min, 1, &id));
+        return id;
+    }
+    std::vector<OccludeeId> insert(const std::vector<Box> &boxes) {
+        std::vector<OccludeeId> ids(boxes.size());
+        expect_ok(foveal_cull_occludees_insert(set_.get(), numbers(boxes), boxes.size(), ids.data()));
+        return ids;
+    }
+    /// Moves or resizes an occludee.
+    void move(OccludeeId id, const Box &bounds) {
+        expect_ok(foveal_cull_occludees_move(set_.get(), &id, bounds.min, 1));
+    }
+    /// After an error none has moved.
+    void move(const std::vector<OccludeeId> &ids, const std::vector<Box> &boxes) {
+        if (ids.size() != boxes.size()) {
+            FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many boxes as ids are needed");
+        }
+        expect_ok(foveal_cull_occludees_move(set_.get(), ids.data(), numbers(boxes), ids.size()));
+    }
+    void remove(OccludeeId id) { expect_ok(foveal_cull_occludees_remove(set_.get(), &id, 1)); }
+    /// After an error none was removed.
+    void remove(const std::vector<OccludeeId> &ids) {
+        expect_ok(foveal_cull_occludees_remove(set_.get(), ids.data(), ids.size()));
+    }
+    bool contains(OccludeeId id) const {
+        std::uint32_t contains = 0;
+        expect_ok(foveal_cull_occludees_contains(set_.get(), id, &contains));
+        return contains != 0;
+    }
+    Box bounds(OccludeeId id) const {
+        Box bounds{};
+        float both[6] = {};
+        expect_ok(foveal_cull_occludees_bounds(set_.get(), id, both));
+        for (std::size_t i = 0; i < 3; ++i) {
+            bounds.min[i] = both[i];
+            bounds.max[i] = both[i + 3];
+        }
+        return bounds;
+    }
+    /// The place of an occludee's result in the results of a test. It never changes.
+    std::uint32_t index(OccludeeId id) const {
+        std::uint32_t index = 0;
+        expect_ok(foveal_cull_occludees_indices(set_.get(), &id, 1, &index));
+        return index;
+    }
+    std::vector<std::uint32_t> indices(const std::vector<OccludeeId> &ids) const {
+        std::vector<std::uint32_t> indices(ids.size());
+        expect_ok(foveal_cull_occludees_indices(set_.get(), ids.data(), ids.size(), indices.data()));
+        return indices;
+    }
+    std::size_t count() const {
+        std::size_t count = 0;
+        expect_ok(foveal_cull_occludees_count(set_.get(), &count));
+        return count;
+    }
+    /// The number of results of a test.
+    std::size_t result_count() const {
+        std::size_t count = 0;
+        expect_ok(foveal_cull_occludees_result_count(set_.get(), &count));
+        return count;
+    }
+    /// Fits the hierarchy to what has moved: once before the tests of a frame.
+    void refit() { expect_ok(foveal_cull_occludees_refit(set_.get())); }
+    bool wants_rebuild() const {
+        std::uint32_t wants = 0;
+        expect_ok(foveal_cull_occludees_wants_rebuild(set_.get(), &wants));
+        return wants != 0;
+    }
+    /// Builds the hierarchy again on this thread.
+    void rebuild() { expect_ok(foveal_cull_occludees_rebuild(set_.get())); }
+    /// The occludees of now, to be built on another thread and adopted afterwards.
+    Rebuild snapshot() const {
+        FovealCullRebuild *rebuild = nullptr;
+        expect_ok(foveal_cull_occludees_snapshot(set_.get(), &rebuild));
+        return Rebuild(rebuild);
+    }
+    /// Takes over a hierarchy that was built from a snapshot of this set. After an error it stays with `rebuild`.
+    void adopt(Rebuild &&rebuild) {
+        expect_ok(foveal_cull_occludees_adopt(set_.get(), rebuild.rebuild_.get()));
+        rebuild.rebuild_.reset();
+    }
+    const FovealCullOccludees *get() const noexcept { return set_.get(); }
+
+private:
+    static const float *numbers(const std::vector<Box> &boxes) { return boxes.empty() ? nullptr : boxes[0].min; }
+    detail::Handle<FovealCullOccludees, foveal_cull_occludees_destroy> set_;
+};
+
 /// Work that a frame is done by. Lives while a frame is rasterized.
 class Jobs {
 public:
@@ -366,6 +477,16 @@ public:
         std::vector<Visibility> results(tree.size());
         expect_ok(foveal_culler_test_tree(culler_.get(), tree.get(), reinterpret_cast<std::uint8_t *>(results.data()),
                                       results.size()));
+        return results;
+    }
+    /// `count` is the set's result_count.
+    void test(const Occludees &occludees, Visibility *results, std::size_t count) const {
+        expect_ok(foveal_culler_test_occludees(culler_.get(), occludees.get(),
+                                               reinterpret_cast<std::uint8_t *>(results), count));
+    }
+    std::vector<Visibility> test(const Occludees &occludees) const {
+        std::vector<Visibility> results(occludees.result_count());
+        test(occludees, results.data(), results.size());
         return results;
     }
     std::pair<std::uint32_t, std::uint32_t> size() const {

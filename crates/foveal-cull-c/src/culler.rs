@@ -4,6 +4,7 @@
 use crate::border;
 use crate::frame::{Clock, FovealCullFrameOptions, FovealCullStats};
 use crate::jobs::{CallerJobs, FovealCullJobs};
+use crate::occludees::FovealCullOccludees;
 use crate::occluders::FovealCullOccluders;
 use crate::place;
 use crate::status::{Fault, FovealCullStatus, guard};
@@ -203,6 +204,36 @@ pub unsafe extern "C" fn foveal_culler_test_tree(
         let results =
             unsafe { border::zeroed_list(results.cast::<Visibility>(), count, "results") }?;
         Ok(culler.query_tree(&tree, results)?)
+    })
+}
+
+/// Classifies a set of occludees against the last frame. `count` is its result count.
+///
+/// # Safety
+/// Handles are null or live; `results` is null, or `count` bytes can be written to it.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_culler_test_occludees(
+    culler: *const FovealCuller,
+    occludees: *const FovealCullOccludees,
+    results: *mut u8,
+    count: usize,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        let (culler, occludees) = unsafe {
+            (
+                border::object(culler, "culler")?,
+                border::object(occludees, "occludees")?,
+            )
+        };
+        border::check_list(results, count, "results")?;
+        let set = border::read(&occludees.set)?;
+        let culler = border::read(&culler.0)?;
+        same_length(set.result_count(), count)?;
+        // SAFETY: the caller's word; zero is `Visibility::Visible`.
+        let results =
+            unsafe { border::zeroed_list(results.cast::<Visibility>(), count, "results") }?;
+        Ok(culler.query_set(&set, results)?)
     })
 }
 

@@ -7,7 +7,7 @@
 //!
 //! # The border
 //! Everything that C can get wrong and that can be noticed is an error code: null and misaligned
-//! pointers, wrong lengths, numbers that are not finite, ids of removed occluders and of other
+//! pointers, wrong lengths, numbers that are not finite, ids of removed objects and of other
 //! sets, unknown enumerators, structs of another version, an object that another thread is
 //! changing. No panic crosses the border. What cannot be noticed is the caller's promise: pointers
 //! that are neither null nor valid, objects that were destroyed, and arrays that are shorter than
@@ -23,8 +23,11 @@ mod errors;
 mod frame;
 mod jobs;
 mod mesh;
+mod numbers;
+mod occludees;
 mod occluders;
 mod place;
+mod rebuild;
 mod status;
 mod tree;
 mod version;
@@ -35,7 +38,9 @@ pub use errors::*;
 pub use frame::*;
 pub use jobs::*;
 pub use mesh::*;
+pub use occludees::*;
 pub use occluders::*;
+pub use rebuild::*;
 pub use status::FovealCullStatus;
 pub use tree::*;
 pub use version::*;

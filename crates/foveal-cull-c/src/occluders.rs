@@ -3,8 +3,8 @@
 
 use crate::border::{self, Plain};
 use crate::mesh::FovealCullMesh;
+use crate::numbers::set_number;
 use crate::status::{Fault, FovealCullStatus, guard};
-use core::sync::atomic::{AtomicU64, Ordering};
 use foveal_cull::{CullError, OccluderId, OccluderSet, Quantity};
 use std::sync::{Arc, RwLock};
 
@@ -28,8 +28,6 @@ pub struct FovealCullOccluderId {
 
 // SAFETY: two numbers.
 unsafe impl Plain for FovealCullOccluderId {}
-
-static NUMBERS: AtomicU64 = AtomicU64::new(1);
 
 impl FovealCullOccluders {
     fn own(&self, id: FovealCullOccluderId) -> Result<OccluderId, Fault> {
@@ -56,7 +54,7 @@ pub unsafe extern "C" fn foveal_cull_occluders_create(
     guard(|| {
         let set = || {
             Ok(FovealCullOccluders {
-                number: NUMBERS.fetch_add(1, Ordering::Relaxed),
+                number: set_number(),
                 set: RwLock::default(),
             })
         };

@@ -32,7 +32,7 @@ pub enum FovealCullStatus {
     WrongLength = 9,
     /// No occluder has this id, for instance since it was removed.
     UnknownOccluder = 10,
-    /// The id belongs to another set of occluders.
+    /// The id, or the hierarchy, belongs to another set.
     OtherSet = 11,
     /// The object is in use by another call that changes it, or that this call would disturb.
     Busy = 12,
@@ -40,10 +40,12 @@ pub enum FovealCullStatus {
     Internal = 13,
     /// Bytes are not a baked mesh of this version.
     BadMeshBytes = 14,
+    /// No occludee has this id, for instance since it was removed.
+    UnknownOccludee = 15,
 }
 
 impl FovealCullStatus {
-    pub(crate) const ALL: [Self; 15] = [
+    pub(crate) const ALL: [Self; 16] = [
         Self::Ok,
         Self::NullPointer,
         Self::BadStructSize,
@@ -59,6 +61,7 @@ impl FovealCullStatus {
         Self::Busy,
         Self::Internal,
         Self::BadMeshBytes,
+        Self::UnknownOccludee,
     ];
 
     pub(crate) const fn text(self) -> &'static CStr {
@@ -74,10 +77,11 @@ impl FovealCullStatus {
             Self::TooLarge => c"the mesh has too many triangles",
             Self::WrongLength => c"two lists that belong together differ in length",
             Self::UnknownOccluder => c"no occluder has this id",
-            Self::OtherSet => c"the id belongs to another set of occluders",
+            Self::OtherSet => c"the id, or the hierarchy, belongs to another set",
             Self::Busy => c"the object is in use by another call",
             Self::Internal => c"an error inside the library",
             Self::BadMeshBytes => c"the bytes are not a baked mesh of this version",
+            Self::UnknownOccludee => c"no occludee has this id",
         }
     }
 }
@@ -122,6 +126,7 @@ impl From<CullError> for Fault {
             CullError::TooManyTriangles { .. } => Status::TooLarge,
             CullError::LengthMismatch { .. } => Status::WrongLength,
             CullError::UnknownOccluder => Status::UnknownOccluder,
+            CullError::UnknownOccludee => Status::UnknownOccludee,
             CullError::BadMeshBytes(_) => Status::BadMeshBytes,
             _ => Status::BadArgument,
         };

@@ -189,6 +189,7 @@ fn layouts_enumerators_and_version_of_the_header_are_those_of_the_library() {
         };
     }
     layout!(FovealCullOccluderId: set, occluder);
+    layout!(FovealCullOccludeeId: set, occludee);
     layout!(FovealCullMeshSource: size, index_bytes, positions, position_count, position_stride,
         indices, index_count, two_sided, adjacency, deformable, reserved);
     layout!(FovealCullEye: world_from_eye, left, right, bottom, top, near_m, far_m, orthographic,
@@ -201,7 +202,7 @@ fn layouts_enumerators_and_version_of_the_header_are_those_of_the_library() {
         occluder_triangles, occluder_triangles_rasterized, polygons_rasterized, clusters,
         clusters_rasterized, clusters_over_budget);
     let enumerators = enumerators();
-    assert_eq!(enumerators.len(), 15 + 4 + 3);
+    assert_eq!(enumerators.len(), 16 + 4 + 3);
     let code = code(&header());
     let words = code.split(|c: char| !(c.is_alphanumeric() || c == '_'));
     let named: BTreeSet<&str> = words.filter(|w| w.starts_with("FOVEAL_CULL_")).collect();

@@ -8,11 +8,12 @@ use common::{Language, compiler, crate_dir, done, library_dir, program, scratch}
 use std::path::Path;
 use std::process::Command;
 
-const EXAMPLES: [(&str, Language); 4] = [
+const EXAMPLES: [(&str, Language); 5] = [
     ("examples/street.c", Language::C),
     ("examples/jobs.cpp", Language::Cpp),
     ("tests/moc_shim.cpp", Language::Cpp),
     ("tests/macros.cpp", Language::Cpp),
+    ("tests/occludees.c", Language::C),
 ];
 
 fn run(program: &Path) -> String {
@@ -28,10 +29,12 @@ fn examples_run_with_the_static_library() {
         .map(|(source, language)| run(&program(language, &crate_dir().join(source), &folder, &[])));
     assert!(outputs[0].contains("400 carts"), "{}", outputs[0]);
     assert!(
-        outputs[1].contains("no occluder with this id"),
+        outputs[1].contains("no occluder with this id")
+            && outputs[1].contains("'ids'[2399]: the set has no occludee with this id"),
         "{}",
         outputs[1]
     );
+    assert!(outputs[4].contains("carts hidden"), "{}", outputs[4]);
 }
 
 #[test]

@@ -209,3 +209,68 @@ fn invalid_boxes_and_rebuilds_of_other_sets_do_no_harm() {
     set.adopt(other.snapshot().build());
     assert_eq!(set.len(), 300);
 }
+
+#[test]
+fn the_hierarchy_of_another_set_changes_no_answer() {
+    let mut r = Random::new(17);
+    let scene = scene(&mut r, 6, 3000, DVec3::ZERO);
+    let view = View::mono(eye(&mut r, DVec3::ZERO, false));
+    let occluders = occluders(&scene, &[0, 1, 2, 3, 4, 5]);
+    let mut culler = Culler::new(96, 64).unwrap();
+    answers(&mut culler, &view, &occluders, &scene, &SingleThread);
+    let of = |boxes: &[Aabb]| {
+        let mut set = OccludeeSet::new(DVec3::ZERO);
+        let ids: Vec<OccludeeId> = boxes.iter().map(|b| set.insert(*b)).collect();
+        (set, ids)
+    };
+    let (mut set, mut ids) = of(&scene.boxes[..1500]);
+    set.rebuild();
+    // The same ids for other boxes, some of them removed or used again in either set.
+    let (mut other, others) = of(&scene.boxes[1500..2900]);
+    for (k, id) in others.iter().enumerate().step_by(3) {
+        other.remove(*id).unwrap();
+        if k % 2 == 0 {
+            other.insert(scene.boxes[k]);
+        }
+    }
+    for _ in 0..200 {
+        let id = ids.swap_remove(r.below(ids.len()));
+        set.remove(id).unwrap();
+        ids.extend((r.below(2) == 0).then(|| set.insert(scene.boxes[2900])));
+    }
+    set.adopt(other.snapshot().build());
+    assert_eq!(set.len(), ids.len());
+    assert_as_a_list(&culler, &set, &ids);
+    for id in &ids {
+        let bounds = set.bounds(*id).unwrap();
+        set.set_bounds(*id, moved(&mut r, bounds, 0.4)).unwrap();
+    }
+    set.refit();
+    assert_as_a_list(&culler, &set, &ids);
+}
+
+#[test]
+fn ids_go_through_numbers_and_those_from_elsewhere_name_nothing() {
+    let mut set = OccludeeSet::new([0.0; 3]);
+    let first = set.insert(Aabb::new([0.0; 3], [1.0; 3]));
+    set.remove(first).unwrap();
+    let second = set.insert(Aabb::new([0.0; 3], [1.0; 3]));
+    assert_eq!(first.index(), second.index(), "the slot is used again");
+    assert_ne!(first.to_bits(), second.to_bits());
+    assert_eq!(OccludeeId::from_bits(second.to_bits()), Some(second));
+    assert_eq!(OccludeeId::from_bits(7), None, "no generation");
+    for bits in [
+        first.to_bits(),
+        1 << 32 | 1,
+        u64::MAX,
+        2 << 32 | 0xffff_ffff,
+    ] {
+        let id = OccludeeId::from_bits(bits).unwrap();
+        let unknown = CullError::UnknownOccludee;
+        assert!(!set.contains(id), "{bits:x}");
+        assert_eq!(set.bounds(id), Err(unknown));
+        assert_eq!(set.set_bounds(id, Aabb::EMPTY), Err(unknown));
+        assert_eq!(set.remove(id), Err(unknown));
+    }
+    assert!(set.contains(second));
+}

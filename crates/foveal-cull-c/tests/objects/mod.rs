@@ -7,6 +7,7 @@
 
 use core::ffi::{CStr, c_char};
 use core::ptr::{null, null_mut};
+use foveal_cull::Aabb;
 use foveal_cull_c::*;
 
 use FovealCullStatus as Status;
@@ -78,4 +79,42 @@ pub fn test(culler: *const FovealCuller) -> u8 {
     };
     assert_eq!(status, Status::Ok);
     result[0]
+}
+
+pub const NONE: FovealCullOccludeeId = FovealCullOccludeeId {
+    set: 0,
+    occludee: 0,
+};
+
+pub fn occludees(origin: [f64; 3]) -> *mut FovealCullOccludees {
+    let mut set = null_mut();
+    // SAFETY: three numbers and a place for the set.
+    let status = unsafe { foveal_cull_occludees_create(origin.as_ptr(), &mut set) };
+    assert_eq!(status, Status::Ok);
+    set
+}
+
+pub fn insert(set: *mut FovealCullOccludees, boxes: &[Aabb]) -> Vec<FovealCullOccludeeId> {
+    let mut ids = vec![NONE; boxes.len()];
+    // SAFETY: a live set; as many boxes and places for ids as are said.
+    let status = unsafe {
+        foveal_cull_occludees_insert(set, boxes.as_ptr().cast(), boxes.len(), ids.as_mut_ptr())
+    };
+    assert_eq!(status, Status::Ok);
+    ids
+}
+
+pub fn count(set: *const FovealCullOccludees) -> usize {
+    let mut count = usize::MAX;
+    // SAFETY: a live set and a place for the count.
+    let status = unsafe { foveal_cull_occludees_count(set, &mut count) };
+    assert_eq!(status, Status::Ok);
+    count
+}
+
+pub fn bounds(set: *const FovealCullOccludees, id: FovealCullOccludeeId) -> Result<Aabb, Status> {
+    let mut bounds = Aabb::EMPTY;
+    // SAFETY: a live set and a place for six numbers.
+    let status = unsafe { foveal_cull_occludees_bounds(set, id, (&raw mut bounds).cast::<f32>()) };
+    (status == Status::Ok).then_some(bounds).ok_or(status)
 }

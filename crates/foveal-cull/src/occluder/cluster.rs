@@ -206,6 +206,12 @@ impl Shape {
             normals.extend(quad_normals(corners).into_iter().flatten());
         }
         let axis = normals.iter().sum::<Vec3>().normalize_or_zero();
+        // Normals that cancel each other out leave a sum too small for its length to be exact.
+        let axis = if axis.is_normalized() {
+            axis
+        } else {
+            Vec3::ZERO
+        };
         let cos = normals.iter().fold(1.0f32, |m, n| m.min(n.dot(axis)));
         // A little wider than measured, for rounding.
         let cos = if axis == Vec3::ZERO { -1.0 } else { cos - 1e-4 };

@@ -16,7 +16,7 @@ use glam::{DVec3, Vec3};
 /// The id of one occludee of an [`OccludeeSet`].
 ///
 /// Generational, as [`OccluderId`](crate::OccluderId): the id of a removed occludee never names
-/// another one.
+/// another one. An id is valid only in the set that gave it out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct OccludeeId {
     slot: u32,
@@ -29,6 +29,22 @@ impl OccludeeId {
     #[must_use]
     pub fn index(self) -> usize {
         self.slot as usize
+    }
+
+    /// The id as one number, never zero, for engines that keep ids of their own.
+    #[must_use]
+    pub fn to_bits(self) -> u64 {
+        u64::from(self.generation.get()) << 32 | u64::from(self.slot)
+    }
+
+    /// The id of [`to_bits`](Self::to_bits). Numbers that come from elsewhere name no occludee, or
+    /// another one.
+    #[must_use]
+    pub fn from_bits(bits: u64) -> Option<Self> {
+        Some(Self {
+            slot: bits as u32,
+            generation: NonZeroU32::new((bits >> 32) as u32)?,
+        })
     }
 }
 
@@ -266,6 +282,9 @@ impl OccludeeSet {
 
     /// Takes over a hierarchy that was built from a snapshot of this set, fits it to what has moved
     /// since, and leaves out what was removed since. O(n).
+    ///
+    /// A hierarchy of another set is not refused. Results stay right with it, but groups that do not
+    /// fit the objects make queries slower until the next rebuild.
     pub fn adopt(&mut self, rebuild: OccludeeRebuild) {
         let OccludeeRebuild { tree, ids } = rebuild;
         if ids.last().is_some_and(|id| id.index() >= self.slots.len()) {

@@ -11,6 +11,8 @@ use foveal_cull_c::*;
 
 use FovealCullStatus as Status;
 
+use super::c_arguments::{Arguments, Calls, boxes};
+use super::c_occludees::Occludees;
 use crate::random::{Choices, random_bytes};
 
 /// Makes 60 to 150 calls.
@@ -19,56 +21,17 @@ pub fn c_calls(input: &[u8]) {
     let r = &mut choices;
     let mut world = World::default();
     for _ in 0..60 + r.below(90) {
-        match r.below(14) {
+        match r.below(19) {
             0..2 => world.create(r),
             2..4 => world.bake(r),
             13 => world.bake_heights(r),
             4..9 => world.change_occluders(r),
             9..11 => world.frame(r),
             11 => world.reload(r),
+            14..18 => world.occludees.change(r),
+            18 => world.occludees.create(r),
             _ => world.destroy_some(r),
         }
-    }
-}
-
-/// Arguments.
-trait Arguments {
-    fn number(&mut self) -> f64;
-    fn numbers<const N: usize>(&mut self) -> [f64; N];
-    fn place(&mut self) -> [f64; 12];
-    fn or_null<T>(&mut self, pointer: *mut T) -> *mut T;
-}
-
-impl Arguments for Choices<'_> {
-    /// Mostly a number of a world; now and then an odd one.
-    fn number(&mut self) -> f64 {
-        match self.below(400) {
-            0 => f64::NAN,
-            1 => f64::INFINITY,
-            2 => -f64::INFINITY,
-            3 => f64::MAX,
-            4 => 1e-320,
-            5 => f64::from_bits(self.bits()),
-            6..30 => 0.0,
-            _ => (self.bits() >> 11) as f64 / (1u64 << 53) as f64 * 20.0 - 10.0,
-        }
-    }
-
-    fn numbers<const N: usize>(&mut self) -> [f64; N] {
-        core::array::from_fn(|_| self.number())
-    }
-
-    fn place(&mut self) -> [f64; 12] {
-        if self.one_in(3) {
-            return self.numbers();
-        }
-        let [x, y, z] = self.numbers();
-        [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, x, y, z]
-    }
-
-    /// Null now and then.
-    fn or_null<T>(&mut self, pointer: *mut T) -> *mut T {
-        if self.one_in(40) { null_mut() } else { pointer }
     }
 }
 
@@ -87,8 +50,8 @@ struct World {
     ids: Vec<(FovealCullOccluderId, usize, Id)>,
     trees: Vec<(*mut FovealCullTree, usize)>,
     cullers: Vec<(*mut FovealCuller, usize)>,
-    /// Refused and done.
-    calls: [u64; 2],
+    occludees: Occludees,
+    calls: Calls,
 }
 
 extern "C" fn run_some(user: *mut c_void, tasks: u32, task: FovealCullTask, context: *mut c_void) {
@@ -101,10 +64,7 @@ extern "C" fn run_some(user: *mut c_void, tasks: u32, task: FovealCullTask, cont
 
 impl World {
     fn note(&mut self, status: Status) -> Status {
-        self.calls[usize::from(status == Status::Ok)] += 1;
-        assert_ne!(status, Status::Internal);
-        assert_ne!(status, Status::Busy);
-        status
+        self.calls.note(status)
     }
 
     fn bake(&mut self, r: &mut Choices<'_>) {
@@ -310,23 +270,6 @@ impl World {
         );
     }
 
-    fn boxes(r: &mut Choices<'_>, count: usize) -> Vec<f32> {
-        (0..count)
-            .flat_map(|_| {
-                let [x, y, z, a, b, c] = r.numbers().map(|v| v as f32);
-                let size = 0.3;
-                [
-                    x,
-                    y,
-                    z,
-                    x + size * a.abs(),
-                    y + size * b.abs(),
-                    z + size * c.abs(),
-                ]
-            })
-            .collect()
-    }
-
     fn frame(&mut self, r: &mut Choices<'_>) {
         if self.cullers.is_empty() || self.sets.is_empty() {
             return;
@@ -392,7 +335,7 @@ impl World {
             let status = foveal_culler_rasterize(culler, &view, set, &options, jobs);
             let drawn = self.note(status) == Status::Ok;
             let count = r.below(300);
-            let boxes = Self::boxes(r, count);
+            let boxes = boxes(r, count);
             let mut results = vec![9u8; count];
             let origin: [f64; 3] = r.numbers();
             let to = results.as_mut_ptr();
@@ -416,6 +359,7 @@ impl World {
                     assert!(results.iter().all(|v| *v == 9), "results of a failure");
                 }
             }
+            self.occludees.test(r, culler, most);
             let mut depth = vec![9.0f32; pixels];
             let status = foveal_culler_read_depth(culler, depth.as_mut_ptr(), pixels);
             assert_eq!(status, Status::Ok);
@@ -448,7 +392,7 @@ impl World {
                 }
                 2 if self.trees.len() < 4 => {
                     let count = r.below(200);
-                    let boxes = Self::boxes(r, count);
+                    let boxes = boxes(r, count);
                     let mut tree = null_mut();
                     let status = foveal_cull_tree_build(boxes.as_ptr(), count, null(), &mut tree);
                     assert_eq!(self.note(status), Status::Ok);
@@ -457,7 +401,7 @@ impl World {
                 _ => {
                     for n in 0..self.trees.len() {
                         let (tree, count) = self.trees[n];
-                        let boxes = Self::boxes(r, count);
+                        let boxes = boxes(r, count);
                         let status = foveal_cull_tree_refit(tree, boxes.as_ptr(), count);
                         assert_eq!(self.note(status), Status::Ok);
                     }
@@ -514,7 +458,7 @@ mod tests {
     /// A model that refuses everything, or nothing, would prove nothing.
     #[test]
     fn calls_of_random_bytes_are_both_refused_and_done() {
-        let mut calls = [0; 2];
+        let mut calls = [0; 4];
         for seed in seeds() {
             let mut r = Choices::new(&seed);
             let mut world = World::default();
@@ -522,10 +466,15 @@ mod tests {
                 world.create(&mut r);
                 world.bake(&mut r);
                 world.change_occluders(&mut r);
+                world.occludees.create(&mut r);
+                for _ in 0..8 {
+                    world.occludees.change(&mut r);
+                }
                 world.frame(&mut r);
             }
-            calls = [0, 1].map(|k| calls[k] + world.calls[k]);
+            let all = [world.calls.0, world.occludees.calls.0].concat();
+            calls.iter_mut().zip(all).for_each(|(sum, n)| *sum += n);
         }
-        assert!(calls[0] > 50 && calls[1] > 50, "{calls:?}");
+        assert!(calls.iter().all(|n| *n > 50), "{calls:?}");
     }
 }

@@ -1,6 +1,8 @@
 //! Targets: what each of them does with an input, and the good inputs that it begins with.
 
+mod c_arguments;
 mod c_calls;
+mod c_occludees;
 #[cfg(feature = "renderer")]
 mod cameras;
 mod culler;

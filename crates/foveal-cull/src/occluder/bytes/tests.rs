@@ -91,6 +91,20 @@ fn every_mesh_comes_back_as_it_was() {
     }
 }
 
+/// The sum of two opposite normals is as short as their rounding, and its square is not exact.
+#[test]
+fn triangles_back_to_back_come_back_from_bytes() {
+    for tilt in [1e-19f32, 1e-21, 1.9967e-22, 1e-22, 5e-23, 1e-40] {
+        let points = [Vec3::ZERO, Vec3::Y, Vec3::Z, Vec3::new(tilt, 1.0, 0.0)];
+        let indices = [0, 1, 2, 0, 2, 3];
+        let mesh = OccluderMesh::bake(&points, &indices, BakeOptions::default()).unwrap();
+        let axis = mesh.clusters[0].cone_axis;
+        assert!(axis == Vec3::ZERO || axis.is_normalized(), "{tilt}: {axis}");
+        assert_eq!(mesh.triangle_count(), 2, "{tilt}");
+        OccluderMesh::from_bytes(&mesh.to_bytes()).unwrap();
+    }
+}
+
 #[test]
 fn any_wrong_byte_is_noticed() {
     let mut r = Random(3);
