@@ -261,7 +261,7 @@ impl Mode {
         if self.picture.is_none() {
             let bytes = block_on(self.renderer.read_picture())?;
             let (width, height) = (self.last.width, self.last.height);
-            self.picture = Some(Picture::from_rgba(width, height, &bytes)?);
+            self.picture = Some(Picture::from_rgba(width, height, bytes)?);
         }
         Ok(())
     }

@@ -179,7 +179,7 @@ impl Film {
     fn picture(&self) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
         let s = self.renderer.settings();
-        Picture::from_rgba(s.picture.width, s.picture.height, &bytes)
+        Picture::from_rgba(s.picture.width, s.picture.height, bytes)
     }
 }
 

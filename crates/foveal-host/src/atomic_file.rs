@@ -42,10 +42,21 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
 /// # Errors
 /// Names the file and the system's reason; `path` is then as it was before.
 pub fn write(path: &Path, bytes: &[u8]) -> anyhow::Result<()> {
+    write_with(path, |file| file.write_all(bytes))
+}
+
+/// Writes to `path` what `content` writes, replacing a regular file that is there.
+///
+/// # Errors
+/// Names the file and the system's reason; `path` is then as it was before.
+pub fn write_with(
+    path: &Path,
+    content: impl FnOnce(&mut File) -> std::io::Result<()>,
+) -> anyhow::Result<()> {
     let destination = destination(path)?;
     let written = || -> std::io::Result<()> {
         let mut file = temporary(&destination, ".tmp")?;
-        file.write_all(bytes)?;
+        content(file.as_file_mut())?;
         file.as_file().sync_all()?;
         file.persist(&destination).map_err(|e| e.error)?;
         sync_folder(folder_of(&destination));

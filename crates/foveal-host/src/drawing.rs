@@ -62,7 +62,7 @@ impl Drawing {
     /// The last frame.
     pub fn picture(&self, stats: &FrameStats) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
-        Picture::from_rgba(stats.width, stats.height, &bytes)
+        Picture::from_rgba(stats.width, stats.height, bytes)
     }
 
     /// The last frame's radiance.

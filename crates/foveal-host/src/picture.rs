@@ -1,10 +1,10 @@
 //! PNG files in and out, 8 bits per channel.
 
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 
 use anyhow::{Context, bail};
-use image::codecs::png::PngEncoder;
-use image::{ExtendedColorType, ImageEncoder, ImageReader};
+use image::ImageReader;
 
 /// A picture: sRGB RGBA8 rows, top to bottom.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,18 +19,20 @@ pub struct Picture {
 
 impl Picture {
     /// From bytes as the renderer gives them.
-    pub fn from_rgba(width: u32, height: u32, bytes: &[u8]) -> anyhow::Result<Self> {
-        let (pixels, rest) = bytes.as_chunks::<4>();
-        if pixels.len() as u64 != u64::from(width) * u64::from(height) || !rest.is_empty() {
+    pub fn from_rgba(width: u32, height: u32, bytes: Vec<u8>) -> anyhow::Result<Self> {
+        if bytes.len() as u64 != 4 * u64::from(width) * u64::from(height) {
             bail!(
                 "a picture of {width}x{height} pixels came back with {} bytes",
                 bytes.len()
             );
         }
+        // The same memory, unless room is left over at its end.
+        let pixels = bytemuck::allocation::try_cast_vec(bytes)
+            .unwrap_or_else(|(_, bytes)| bytes.as_chunks::<4>().0.to_vec());
         Ok(Self {
             width,
             height,
-            pixels: pixels.to_vec(),
+            pixels,
         })
     }
 
@@ -50,7 +52,8 @@ impl Picture {
                 .with_guessed_format()?
                 .decode()?
                 .into_rgba8();
-            Self::from_rgba(decoded.width(), decoded.height(), decoded.as_raw())
+            let (width, height) = decoded.dimensions();
+            Self::from_rgba(width, height, decoded.into_raw())
         };
         read().with_context(|| format!("cannot read the picture '{}'", path.display()))
     }
@@ -65,26 +68,58 @@ impl Picture {
 
     /// The picture without its alpha as an RGB PNG.
     pub fn png(&self) -> anyhow::Result<Vec<u8>> {
-        Ok(encode(self.width, self.height, &self.rgb_bytes())?)
+        let mut png = Vec::new();
+        self.encode(&mut png)?;
+        Ok(png)
     }
 
     /// Writes the picture without its alpha as an RGB PNG, whole or not at all.
     pub fn write_rgb(&self, path: &Path) -> anyhow::Result<()> {
-        write_rgb(path, self.width, self.height, &self.rgb_bytes())
+        crate::atomic_file::write_with(path, |to| self.encode(to))
+    }
+
+    fn encode(&self, to: impl Write) -> io::Result<()> {
+        let row_of = |row: &mut Vec<u8>, y: usize| {
+            let width = self.width as usize;
+            let pixels = &self.pixels[y * width..(y + 1) * width];
+            row.extend(pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]));
+        };
+        encode(to, self.width, self.height, row_of)
     }
 }
 
 /// Writes RGB8 rows as a PNG, whole or not at all.
 pub fn write_rgb(path: &Path, width: u32, height: u32, rgb: &[u8]) -> anyhow::Result<()> {
-    let png = encode(width, height, rgb)
-        .with_context(|| format!("cannot encode '{}'", path.display()))?;
-    crate::atomic_file::write(path, &png)
+    let row_of = |row: &mut Vec<u8>, y: usize| {
+        let length = 3 * width as usize;
+        row.extend_from_slice(&rgb[y * length..(y + 1) * length]);
+    };
+    crate::atomic_file::write_with(path, |to| encode(to, width, height, row_of))
 }
 
-fn encode(width: u32, height: u32, rgb: &[u8]) -> image::ImageResult<Vec<u8>> {
-    let mut png = Vec::new();
-    PngEncoder::new(&mut png).write_image(rgb, width, height, ExtendedColorType::Rgb8)?;
-    Ok(png)
+/// Encodes row by row: nothing of the size of the picture is held besides it.
+fn encode(
+    to: impl Write,
+    width: u32,
+    height: u32,
+    row_of: impl Fn(&mut Vec<u8>, usize),
+) -> io::Result<()> {
+    const BUFFER: usize = 1 << 16;
+    let mut encoder = png::Encoder::new(BufWriter::with_capacity(BUFFER, to), width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    let mut writer = encoder.write_header()?;
+    let mut rows = writer.stream_writer_with_size(BUFFER)?;
+    let mut row = Vec::with_capacity(3 * width as usize);
+    for y in 0..height as usize {
+        row.clear();
+        row_of(&mut row, y);
+        rows.write_all(&row)?;
+    }
+    rows.finish()?;
+    Ok(writer.finish()?)
 }
 
 #[cfg(test)]

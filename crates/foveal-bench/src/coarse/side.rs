@@ -60,7 +60,7 @@ impl<'a> Side<'a> {
     pub(super) fn picture(&self) -> anyhow::Result<Picture> {
         let bytes = block_on(self.renderer.read_picture())?;
         let s = self.renderer.settings();
-        Picture::from_rgba(s.picture.width, s.picture.height, &bytes)
+        Picture::from_rgba(s.picture.width, s.picture.height, bytes)
     }
 }
 

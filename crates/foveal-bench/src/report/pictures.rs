@@ -98,7 +98,7 @@ fn one(
     }
     let bytes = block_on(renderer.read_picture())?;
     let (width, height) = settings.picture_size();
-    Ok((Picture::from_rgba(width, height, &bytes)?, settings))
+    Ok((Picture::from_rgba(width, height, bytes)?, settings))
 }
 
 /// Settings that differ from the defaults by these.

@@ -136,7 +136,7 @@ impl Side {
         }
         let bytes = block_on(self.renderer.read_picture())?;
         let (width, height) = self.settings.picture_size();
-        Picture::from_rgba(width, height, &bytes)
+        Picture::from_rgba(width, height, bytes)
     }
 }
 

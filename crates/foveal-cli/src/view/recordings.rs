@@ -80,7 +80,7 @@ impl Recording for Pictures {
     fn add(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
         let (width, height) = self.size;
         let name = format!("frame-{:04}.png", self.written);
-        Picture::from_rgba(width, height, rgba)?.write_rgb(&self.folder.join(name))?;
+        Picture::from_rgba(width, height, rgba.to_vec())?.write_rgb(&self.folder.join(name))?;
         self.written += 1;
         Ok(())
     }
@@ -133,7 +133,7 @@ impl Recording for Video {
 
     fn add(&mut self, rgba: &[u8]) -> anyhow::Result<()> {
         let (width, height) = self.size;
-        let picture = Picture::from_rgba(width, height, rgba)?;
+        let picture = Picture::from_rgba(width, height, rgba.to_vec())?;
         match &mut self.encoder {
             Some(encoder) => encoder.push(&picture),
             None => Ok(()),

@@ -51,10 +51,8 @@ fn pack_shared_exponent(color: vec3f) -> u32 {
     let largest = max(c.x, max(c.y, c.z));
     // Exponent field of the float: floor(log2) without a logarithm.
     let floor_log2 = i32(bitcast<u32>(largest) >> 23u) - 127;
-    var exponent = max(-16, floor_log2) + 16;
-    if u32(largest * exp2_integer(24 - exponent) + 0.5) == 512u {
-        exponent += 1;
-    }
+    let below = max(-16, floor_log2) + 16;
+    let exponent = below + select(0, 1, u32(largest * exp2_integer(24 - below) + 0.5) == 512u);
     let m = vec3u(c * exp2_integer(24 - exponent) + 0.5);
     return m.x | (m.y << 9u) | (m.z << 18u) | (u32(exponent) << 27u);
 }
@@ -123,10 +121,9 @@ fn pack_surface(s: Surface) -> vec4u {
         pack_shared_exponent(s.emissive),
         pack4x8unorm(vec4f(s.metallic, s.roughness, 0.0, 0.0)),
     );
-    if all(s.dielectric == PLAIN_DIELECTRIC) || s.metallic == 1.0 {
-        return words;
-    }
-    return with_dielectric(words, s.normal, dielectric_bits(s.dielectric));
+    // No branch: both may come from uniforms alone.
+    let plain = all(s.dielectric == PLAIN_DIELECTRIC) | (s.metallic == 1.0);
+    return select(with_dielectric(words, s.normal, dielectric_bits(s.dielectric)), words, plain);
 }
 
 fn unpack_surface(words: vec4u, position: vec3f) -> Surface {
