@@ -1,14 +1,15 @@
 //! Occludees that come, move and go, in a hierarchy that follows them.
 //!
-//! The structure is an [`OccludeeTree`] of the time of the last rebuild. A moved object changes its
-//! box in its leaf and marks the node; [`OccludeeSet::refit`] then fits the marked nodes and those
-//! above them, children before parents. New objects wait outside the tree, where they are tested
-//! one by one, until it is built again.
+//! The structure is an [`OccludeeTree`] of the time of the last rebuild. A moved object marks its
+//! node; [`OccludeeSet::refit`] then takes over the boxes of the marked nodes' objects, and fits
+//! these nodes and those above them, children before parents. New objects wait outside the tree,
+//! where they are tested one by one, until it is built again.
 
 use super::groups::{around, half_area};
 use super::tree::{OccludeeTree, grown};
 use crate::bounds::Aabb;
 use crate::error::CullError;
+use crate::projection::boxes::Boxes8;
 use crate::simd::{InstructionSet, Kernel, Lanes};
 use core::num::NonZeroU32;
 use glam::{DVec3, Vec3};
@@ -75,6 +76,8 @@ pub struct OccludeeSet {
     /// Bit per node: boxes in it have changed.
     marked: Vec<u64>,
     any_marked: bool,
+    /// Per node of the tree: the boxes of its objects, as they were set.
+    placed_bounds: Vec<[Aabb; 8]>,
     /// By slot.
     bounds: Vec<Aabb>,
     slots: Vec<Slot>,
@@ -118,6 +121,7 @@ impl OccludeeSet {
             parents: Vec::new(),
             marked: Vec::new(),
             any_marked: false,
+            placed_bounds: Vec::new(),
             bounds: Vec::new(),
             slots: Vec::new(),
             free: Vec::new(),
@@ -159,13 +163,8 @@ impl OccludeeSet {
             return Ok(());
         }
         if bounds.is_valid() {
-            let (center, half) = grown(&bounds);
-            let (node, lane) = (place / 8, place % 8);
-            self.tree
-                .node_mut(node)
-                .boxes
-                .set(lane as usize, center, half);
-            self.mark(node);
+            self.placed_bounds[place as usize / 8][place as usize % 8] = bounds;
+            self.mark(place / 8);
         } else {
             // The tree has volumes only.
             self.take_out(place);
@@ -298,6 +297,8 @@ impl OccludeeSet {
         self.parents.resize(nodes, NOWHERE);
         self.marked.clear();
         self.marked.resize(nodes.div_ceil(64), 0);
+        self.placed_bounds.clear();
+        self.placed_bounds.resize(nodes, [Aabb::EMPTY; 8]);
         self.any_marked = false;
         for slot in self.slots.iter_mut().filter(|s| s.place != NOWHERE) {
             slot.place = LOOSE;
@@ -347,6 +348,7 @@ impl OccludeeSet {
             };
             let (center, half) = grown(&bounds);
             node.boxes.set(lane, center, half);
+            self.placed_bounds[n as usize][lane] = bounds;
             self.slots[slot as usize].place = place;
             self.placed += 1;
         }
@@ -392,6 +394,7 @@ impl OccludeeSet {
 
     fn take_out(&mut self, place: u32) {
         self.tree.node_mut(place / 8).remove((place % 8) as usize);
+        self.placed_bounds[place as usize / 8][place as usize % 8] = Aabb::EMPTY;
         self.mark(place / 8);
         self.placed -= 1;
     }
@@ -400,6 +403,25 @@ impl OccludeeSet {
     fn mark(&mut self, node: u32) {
         self.marked[node as usize / 64] |= 1 << (node % 64);
         self.any_marked = true;
+    }
+
+    /// Takes over the boxes of a node's objects, all at once.
+    #[inline(always)]
+    fn take_boxes<L: Lanes>(&mut self, l: L, n: u32) {
+        let node = &self.tree.nodes()[n as usize];
+        if node.objects == 0 {
+            return;
+        }
+        let taken = Boxes8::of(l, &self.placed_bounds[n as usize]);
+        let objects = node.objects;
+        let node = self.tree.node_mut(n);
+        if node.lanes == objects {
+            node.boxes = taken;
+        } else {
+            for lane in (0..8).filter(|lane| objects >> lane & 1 != 0) {
+                node.boxes.copy(lane, &taken, lane);
+            }
+        }
     }
 
     /// Fits the group that a node is, and marks the node above it.
@@ -419,22 +441,23 @@ impl OccludeeSet {
     }
 }
 
-/// Fits the marked nodes. A kernel for the sake of wide registers: there is no arithmetic here that
-/// could give other bits.
+/// Fits the marked nodes. A kernel for the sake of wide registers.
 struct Refit<'a>(&'a mut OccludeeSet);
 
 impl Kernel for Refit<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<L: Lanes>(self, _: L) {
+    fn run<L: Lanes>(self, l: L) {
         let set = self.0;
         for word in (0..set.marked.len()).rev() {
             // Parents come before their children, so that bits that are set here are lower ones.
             while set.marked[word] != 0 {
                 let bit = 63 - set.marked[word].leading_zeros();
                 set.marked[word] &= !(1 << bit);
-                set.fit(word as u32 * 64 + bit);
+                let node = word as u32 * 64 + bit;
+                set.take_boxes(l, node);
+                set.fit(node);
             }
         }
     }

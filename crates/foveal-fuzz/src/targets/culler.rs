@@ -120,23 +120,30 @@ fn agree(choices: &mut Choices<'_>) {
     let Some(Answers {
         drawn: Ok(()),
         list,
+        tree,
+        set,
         ..
     }) = first
     else {
         return;
     };
     if modest && let Some(beside) = beside {
-        for n in [1, 4] {
-            let results: Vec<Visibility> = list
-                .iter()
-                // Small things are left out on purpose.
+        for (name, found) in [("list", list), ("tree", tree), ("set", set)] {
+            // Small things are left out on purpose.
+            let results: Vec<Visibility> = found
+                .into_iter()
                 .map(|v| match v {
                     Visibility::Small => Visibility::Visible,
-                    other => *other,
+                    other => other,
                 })
                 .collect();
-            let wrong = wrongly_culled(&scene, &beside, size, n, &results);
-            assert!(wrong.is_empty(), "{n}x: {wrong:?} are culled and visible");
+            for n in [1, 4] {
+                let wrong = wrongly_culled(&scene, &beside, size, n, &results);
+                assert!(
+                    wrong.is_empty(),
+                    "{name}, {n}x: {wrong:?} are culled and visible"
+                );
+            }
         }
     }
 }
