@@ -10,9 +10,10 @@
  * an origin. The front of a triangle is the side that (b - a) x (c - a) points to.
  *
  * Errors. Functions return a FovealCullStatus. Noticed are null and misaligned pointers, wrong lengths,
- * numbers that are not finite, ids of removed objects and of other sets, unknown enumerators, structs of
- * another version, and an object that another thread is changing. Not noticed, and undefined as in
- * free(), are destroyed objects and arrays that are shorter than said. A function that fails leaves its
+ * arrays for results that overlap the boxes or ids of the same call, numbers that are not finite, ids of
+ * removed objects and of other sets, unknown enumerators, structs of another version, and an object that
+ * another thread is changing. Not noticed, and undefined as in free(), are destroyed objects and arrays
+ * that are shorter than said. A function that fails leaves its
  * result as it was or null, and its object unchanged, unless it says otherwise.
  *
  * Threads. Functions that take const objects may be called from many threads at once. A function that

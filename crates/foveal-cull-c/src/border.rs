@@ -97,6 +97,26 @@ pub(crate) fn check_list<T>(pointer: *const T, length: usize, name: &str) -> Res
     fits::<T>(length, name)
 }
 
+/// Checks that a list that is read and one for results share no byte: there may be no references to
+/// both. Call it before there are any. Lists without elements share none.
+pub(crate) fn disjoint<A, B>(
+    (read, read_length, read_name): (*const A, usize, &str),
+    (written, written_length, written_name): (*const B, usize, &str),
+) -> Result<(), Fault> {
+    let end = |start: usize, size: usize, length: usize| {
+        start.saturating_add(size.saturating_mul(length))
+    };
+    let (a, b) = (read.addr(), written.addr());
+    let a_end = end(a, size_of::<A>(), read_length);
+    let b_end = end(b, size_of::<B>(), written_length);
+    if a.max(b) < a_end.min(b_end) {
+        return Err(Fault::argument(format!(
+            "'{written_name}' overlaps '{read_name}'"
+        )));
+    }
+    Ok(())
+}
+
 fn fits<T>(length: usize, name: &str) -> Result<(), Fault> {
     if length > isize::MAX as usize / size_of::<T>().max(1) {
         return Err(Fault::argument(format!("'{name}' has too many elements")));
@@ -280,6 +300,33 @@ mod tests {
 
     // SAFETY: numbers.
     unsafe impl Plain for Grown {}
+
+    #[test]
+    fn lists_that_share_a_byte_are_refused() {
+        let disjoint = |read: usize, reads: usize, written: usize, writes: usize| {
+            let read = (read as *const [u32; 2], reads, "read");
+            let written = (written as *const u8, writes, "written");
+            disjoint(read, written).map_err(|fault| (fault.status, fault.text.into_owned()))
+        };
+        let text = "'written' overlaps 'read'".to_owned();
+        let refused = Err((FovealCullStatus::BadArgument, text));
+        // 800 to 824 is read.
+        for (written, writes) in [
+            (790, 11),
+            (800, 1),
+            (800, 24),
+            (823, 1),
+            (823, 9),
+            (700, 300),
+        ] {
+            assert_eq!(disjoint(800, 3, written, writes), refused, "{written}");
+        }
+        for (written, writes) in [(790, 10), (824, 1), (810, 0), (0, 800), (824, usize::MAX)] {
+            assert_eq!(disjoint(800, 3, written, writes), Ok(()), "{written}");
+        }
+        assert_eq!(disjoint(800, 0, 790, 30), Ok(()), "nothing is read");
+        assert_eq!(disjoint(800, usize::MAX, usize::MAX - 1, 1), refused);
+    }
 
     #[test]
     fn a_struct_of_an_older_header_is_filled_and_nothing_beyond_it() {

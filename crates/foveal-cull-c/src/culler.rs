@@ -160,15 +160,16 @@ pub unsafe extern "C" fn foveal_culler_test_boxes(
     results: *mut u8,
 ) -> FovealCullStatus {
     guard(|| {
+        let boxes = boxes.cast::<Aabb>();
         // SAFETY: the caller's word.
-        let (culler, boxes, origin) = unsafe {
-            (
-                border::object(culler, "culler")?,
-                border::list(boxes.cast::<Aabb>(), count, "boxes")?,
-                place::origin(origin)?,
-            )
-        };
+        let culler = unsafe { border::object(culler, "culler") }?;
+        border::check_list(boxes, count, "boxes")?;
+        // SAFETY: the caller's word.
+        let origin = unsafe { place::origin(origin) }?;
         border::check_list(results, count, "results")?;
+        border::disjoint((boxes, count, "boxes"), (results, count, "results"))?;
+        // SAFETY: the caller's word.
+        let boxes = unsafe { border::list(boxes, count, "boxes") }?;
         let culler = border::read(&culler.0)?;
         // SAFETY: the caller's word; zero is `Visibility::Visible`.
         let results =

@@ -7,9 +7,9 @@
 //!
 //! # The border
 //! Everything that C can get wrong and that can be noticed is an error code: null and misaligned
-//! pointers, wrong lengths, numbers that are not finite, ids of removed objects and of other
-//! sets, unknown enumerators, structs of another version, an object that another thread is
-//! changing. No panic crosses the border. What cannot be noticed is the caller's promise: pointers
+//! pointers, wrong lengths, arrays for results that overlap the boxes or ids of the same call,
+//! numbers that are not finite, ids of removed objects and of other sets, unknown enumerators,
+//! structs of another version, an object that another thread is changing. No panic crosses the border. What cannot be noticed is the caller's promise: pointers
 //! that are neither null nor valid, objects that were destroyed, and arrays that are shorter than
 //! said.
 //!

@@ -111,11 +111,14 @@ pub unsafe extern "C" fn foveal_cull_occludees_insert(
         if count > MOST.saturating_sub(set.len()) {
             return Err(Fault::argument("a set has at most 2^28 occludees"));
         }
+        let boxes = boxes.cast::<Aabb>();
         border::check_list(out, count, "out")?;
+        border::check_list(boxes, count, "boxes")?;
+        border::disjoint((boxes, count, "boxes"), (out, count, "out"))?;
         // SAFETY: the caller's word; zero is the id that names none.
         let (boxes, ids) = unsafe {
             (
-                border::list(boxes.cast::<Aabb>(), count, "boxes")?,
+                border::list(boxes, count, "boxes")?,
                 border::zeroed_list(out, count, "out")?,
             )
         };
@@ -247,13 +250,12 @@ pub unsafe extern "C" fn foveal_cull_occludees_indices(
 ) -> FovealCullStatus {
     guard(|| {
         // SAFETY: the caller's word.
-        let (occludees, ids) = unsafe {
-            (
-                border::object(occludees, "occludees")?,
-                border::list(ids, count, "ids")?,
-            )
-        };
+        let occludees = unsafe { border::object(occludees, "occludees") }?;
+        border::check_list(ids, count, "ids")?;
         border::check_list(out, count, "out")?;
+        border::disjoint((ids, count, "ids"), (out, count, "out"))?;
+        // SAFETY: the caller's word.
+        let ids = unsafe { border::list(ids, count, "ids") }?;
         let set = border::read(&occludees.set)?;
         occludees.check(&set, ids)?;
         // SAFETY: the caller's word; zero is a number.

@@ -290,3 +290,48 @@ fn everything_is_visible_after_a_failed_frame_and_failed_tests_write_nothing() {
         foveal_culler_destroy(culler);
     }
 }
+
+#[test]
+fn results_that_overlap_what_is_read_are_refused_before_anything_is_written() {
+    let (set, culler) = (occludees([0.0; 3]), culler());
+    let mut memory = [0x0707_0707_0707_0707_u64; 32];
+    let base = (&raw mut memory).cast::<u8>();
+    // SAFETY: live handles; all lists are within the memory, which is used by this pointer alone.
+    unsafe {
+        let bytes = || base.cast::<[u8; 256]>().read();
+        // Two boxes, 64 to 112.
+        let list = base.add(64);
+        list.cast::<[Aabb; 2]>().write([cube(0.0), cube(1.0)]);
+        let before = bytes();
+        let insert_to = |at| foveal_cull_occludees_insert(set, list.cast(), 2, base.add(at).cast());
+        let test_to = |at| foveal_culler_test_boxes(culler, list.cast(), 2, null(), base.add(at));
+        for at in (40..=104).step_by(8) {
+            assert_eq!(insert_to(at), Status::BadArgument, "{at}");
+        }
+        assert_eq!(last_error(), "'out' overlaps 'boxes'");
+        for at in 63..=111 {
+            assert_eq!(test_to(at), Status::BadArgument, "{at}");
+        }
+        assert_eq!(last_error(), "'results' overlaps 'boxes'");
+        assert_eq!((bytes(), count(set)), (before, 0));
+        // Right before it and right behind it.
+        assert_eq!([62, 112].map(test_to), [Status::Ok; 2]);
+        assert_eq!([32, 112].map(insert_to), [Status::Ok; 2]);
+        assert_eq!(count(set), 4);
+        // Two ids, 64 to 96.
+        let ids = [cube(0.0), cube(1.0)].map(|bounds| insert(set, &[bounds])[0]);
+        list.cast::<[FovealCullOccludeeId; 2]>().write(ids);
+        let before = bytes();
+        let indices_to =
+            |at| foveal_cull_occludees_indices(set, list.cast(), 2, base.add(at).cast());
+        for at in (60..=92).step_by(4) {
+            assert_eq!(indices_to(at), Status::BadArgument, "{at}");
+        }
+        assert_eq!(last_error(), "'out' overlaps 'ids'");
+        assert_eq!(bytes(), before);
+        assert_eq!([56, 96].map(indices_to), [Status::Ok; 2]);
+        assert_eq!(base.add(96).cast::<[u32; 2]>().read(), [4, 5]);
+        foveal_cull_occludees_destroy(set);
+        foveal_culler_destroy(culler);
+    }
+}
