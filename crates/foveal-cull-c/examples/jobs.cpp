@@ -5,6 +5,7 @@
 #include <atomic>
 #include <condition_variable>
 #include <cstdio>
+#include <future>
 #include <mutex>
 #include <thread>
 
@@ -135,29 +136,36 @@ int main() try {
         places.push_back(cart(i, 0));
     }
     cull::Occludees carts;
-    std::vector<cull::OccludeeId> ids = carts.insert(places);
+    std::vector<cull::OccludeeId> ids = carts.insert_all(places);
     culler.rasterize(view, occluders, jobs);
     cull::Rebuild rebuild = carts.snapshot();
-    std::thread builder([&] { rebuild.build(); });
-    std::size_t passed[2] = {0, 0};
+    // Whatever is thrown below, the future waits for the builder before the rebuild is gone.
+    std::future<void> builder = std::async(std::launch::async, [&] { rebuild.build(); });
+    std::size_t passed[2] = {0, 0}, hidden = 0, more = 0;
     for (int frame = 0; frame < 8; ++frame) {
         if (frame == 4) {
-            builder.join();
+            builder.get();
             carts.adopt(std::move(rebuild));
         }
         for (std::size_t i = 0; i < ids.size(); ++i) {
             places[i] = cart(static_cast<int>(i), frame);
         }
-        carts.move(ids, places);
+        carts.move_all(ids, places);
         carts.refit();
         const auto results = carts_seen(culler, carts, ids);
         const auto one_by_one = culler.test(places);
         for (std::size_t i = 0; i < ids.size(); ++i) {
-            passed[frame / 4] += results[i] == cull::Visibility::visible;
-            if (results[i] == cull::Visibility::visible && one_by_one[i] != results[i]) {
-                throw std::logic_error("a set sees what a list hides");
+            // They differ only where a group is hidden as a whole.
+            if (results[i] != cull::Visibility::occluded && results[i] != one_by_one[i]) {
+                throw std::logic_error("a set finds other than a list");
             }
+            passed[frame / 4] += results[i] == cull::Visibility::visible;
+            hidden += results[i] != cull::Visibility::visible;
+            more += results[i] != cull::Visibility::visible && one_by_one[i] == cull::Visibility::visible;
         }
+    }
+    if (hidden < ids.size() || 100 * more > hidden) {
+        throw std::logic_error("a set hides too little, or much that a list sees");
     }
     const cull::Box last = carts.bounds(ids.back());
     const bool where = last.min[0] == places.back().min[0] && last.max[2] == places.back().max[2];
@@ -167,7 +175,8 @@ int main() try {
     if (!where || !known || carts.index(next) >= carts.result_count() || carts.count() != ids.size()) {
         throw std::logic_error("carts are not where they were put");
     }
-    std::printf("%zu carts, %zu and %zu times seen through the door\n", carts.count(), passed[0], passed[1]);
+    std::printf("%zu carts, %zu and %zu times seen through the door, %zu times not (%zu only by their group)\n",
+                carts.count(), passed[0], passed[1], hidden, more);
 
     // Errors say what is wrong.
     occluders.remove(door);
@@ -181,7 +190,7 @@ int main() try {
         }
     }
     try {
-        carts.move(ids, places);
+        carts.move_all(ids, places);
         return 1;
     } catch (const cull::Error &error) {
         std::printf("moving a cart that is gone: %s\n", error.what());

@@ -210,7 +210,8 @@ public:
     void move(OccluderId id, const Affine &world_from_mesh) {
         expect_ok(foveal_cull_occluders_move(set_.get(), &id, world_from_mesh.data(), 1));
     }
-    void move(const std::vector<OccluderId> &ids, const std::vector<Affine> &world_from_mesh) {
+    /// After an error none has moved.
+    void move_all(const std::vector<OccluderId> &ids, const std::vector<Affine> &world_from_mesh) {
         if (ids.size() != world_from_mesh.size()) {
             FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many transforms as ids are needed");
         }
@@ -287,7 +288,8 @@ public:
         expect_ok(foveal_cull_occludees_insert(set_.get(), bounds.min, 1, &id));
         return id;
     }
-    std::vector<OccludeeId> insert(const std::vector<Box> &boxes) {
+    /// The ids in the order of the boxes. After an error none was inserted.
+    std::vector<OccludeeId> insert_all(const std::vector<Box> &boxes) {
         std::vector<OccludeeId> ids(boxes.size());
         expect_ok(foveal_cull_occludees_insert(set_.get(), numbers(boxes), boxes.size(), ids.data()));
         return ids;
@@ -297,7 +299,7 @@ public:
         expect_ok(foveal_cull_occludees_move(set_.get(), &id, bounds.min, 1));
     }
     /// After an error none has moved.
-    void move(const std::vector<OccludeeId> &ids, const std::vector<Box> &boxes) {
+    void move_all(const std::vector<OccludeeId> &ids, const std::vector<Box> &boxes) {
         if (ids.size() != boxes.size()) {
             FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many boxes as ids are needed");
         }
@@ -305,7 +307,7 @@ public:
     }
     void remove(OccludeeId id) { expect_ok(foveal_cull_occludees_remove(set_.get(), &id, 1)); }
     /// After an error none was removed.
-    void remove(const std::vector<OccludeeId> &ids) {
+    void remove_all(const std::vector<OccludeeId> &ids) {
         expect_ok(foveal_cull_occludees_remove(set_.get(), ids.data(), ids.size()));
     }
     bool contains(OccludeeId id) const {
