@@ -145,6 +145,9 @@ int main() try {
     for (int frame = 0; frame < 8; ++frame) {
         if (frame == 4) {
             builder.get();
+            if (!rebuild.built()) {
+                throw std::logic_error("what was built is not");
+            }
             carts.adopt(std::move(rebuild));
         }
         for (std::size_t i = 0; i < ids.size(); ++i) {

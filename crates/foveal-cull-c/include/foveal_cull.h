@@ -51,7 +51,9 @@ typedef enum FovealCullStatus {
     FOVEAL_CULL_NULL_POINTER = 1,
     /* A struct's `size` is none that the library knows, or what is newer in it is not zero. */
     FOVEAL_CULL_BAD_STRUCT_SIZE = 2,
-    /* A count, a stride, an enumerator or a pointer's alignment is not allowed. */
+    /* A count, a stride, an enumerator or a pointer's alignment is not allowed, an array for results
+     * overlaps the boxes or ids of the call, an id to be removed is listed twice, or a rebuild is not built
+     * yet or was adopted. */
     FOVEAL_CULL_BAD_ARGUMENT = 3,
     /* A number is NaN or infinite that must be finite. */
     FOVEAL_CULL_NOT_FINITE = 4,
@@ -465,15 +467,23 @@ FovealCullStatus foveal_cull_occludees_rebuild(FovealCullOccludees *occludees);
  * even be destroyed. */
 FovealCullStatus foveal_cull_occludees_snapshot(const FovealCullOccludees *occludees, FovealCullRebuild **out);
 
-/* Builds the hierarchy of a snapshot, on any thread. Once it is built, nothing. */
+/* Builds the hierarchy of a snapshot, on any thread. What is built already stays. FOVEAL_CULL_BUSY while
+ * another thread builds it, FOVEAL_CULL_BAD_ARGUMENT once it was adopted. After FOVEAL_CULL_INTERNAL the
+ * snapshot is gone: this function, foveal_cull_rebuild_is_built and foveal_cull_occludees_adopt return that
+ * from then on. Take a new one. */
 FovealCullStatus foveal_cull_rebuild_build(FovealCullRebuild *rebuild);
 
+/* Writes 1 if the hierarchy is built, whether adopted or not, 0 if not yet. May be called while another thread
+ * builds it. */
+FovealCullStatus foveal_cull_rebuild_is_built(const FovealCullRebuild *rebuild, uint32_t *out);
+
 /* Gives a hierarchy to the set that the snapshot is of, fits it to what has moved since and leaves out what
- * was removed. FOVEAL_CULL_BUSY while it is being built, FOVEAL_CULL_BAD_ARGUMENT if it is not built yet or
- * was adopted already, FOVEAL_CULL_OTHER_SET for another set. Destroy the rebuild afterwards. */
+ * was removed. FOVEAL_CULL_BUSY while it is being built, FOVEAL_CULL_BAD_ARGUMENT if building has not begun or
+ * it was adopted already, FOVEAL_CULL_OTHER_SET for another set. Destroy the rebuild afterwards. */
 FovealCullStatus foveal_cull_occludees_adopt(FovealCullOccludees *occludees, FovealCullRebuild *rebuild);
 
-/* Drops a snapshot or a hierarchy. Null is nothing. */
+/* Drops a snapshot or a hierarchy, not before foveal_cull_rebuild_build has returned on the thread that calls
+ * it: that it is built is not enough. Null is nothing. */
 void foveal_cull_rebuild_destroy(FovealCullRebuild *rebuild);
 
 /* ---- Cullers ---- */

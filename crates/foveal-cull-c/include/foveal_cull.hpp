@@ -266,8 +266,14 @@ private:
 /// The hierarchy of a set of occludees, built again: snapshot it, build it on any thread, adopt it.
 class Rebuild {
 public:
-    /// Builds the hierarchy.
+    /// Builds the hierarchy. May only be destroyed or moved when this has returned.
     void build() { expect_ok(foveal_cull_rebuild_build(rebuild_.get())); }
+    /// Whether it can be adopted. May be asked while another thread builds it. Building that failed is an error.
+    bool built() const {
+        std::uint32_t built = 0;
+        expect_ok(foveal_cull_rebuild_is_built(rebuild_.get(), &built));
+        return built != 0;
+    }
 
 private:
     friend class Occludees;

@@ -14,30 +14,81 @@ pub struct FovealCullRebuild {
     /// The number of the set.
     set: u64,
     step: RwLock<Step>,
-    /// [`NEW`], [`BUILDING`] or [`BUILT`]. Who asks too early to adopt is told so without the lock,
-    /// which would keep the builder out.
+    /// [`NEW`], [`BUILDING`], [`BUILT`] (adopted too) or [`FAILED`]. Who asks too early is told so
+    /// without the lock, which would keep the builder out.
     progress: AtomicU8,
 }
 
 const NEW: u8 = 0;
 const BUILDING: u8 = 1;
 const BUILT: u8 = 2;
+const FAILED: u8 = 3;
 
 #[derive(Debug)]
 enum Step {
     Snapshot(OccludeeSnapshot),
     Built(OccludeeRebuild),
+    /// Building panicked, which took the snapshot along.
+    Failed,
     /// The set has the hierarchy now.
     Adopted,
 }
 
-/// Notes that building has ended, by a panic too.
-struct Ended<'a>(&'a AtomicU8);
+/// Notes how building has ended: it failed, unless something else is said before.
+struct Ended<'a> {
+    progress: &'a AtomicU8,
+    how: u8,
+}
 
 impl Drop for Ended<'_> {
     fn drop(&mut self) {
-        self.0.store(BUILT, Ordering::Release);
+        self.progress.store(self.how, Ordering::Release);
     }
+}
+
+impl FovealCullRebuild {
+    fn build(&self, build: impl FnOnce(OccludeeSnapshot) -> OccludeeRebuild) -> Result<(), Fault> {
+        // Dropped after the lock: what is said to be built can be adopted.
+        let mut ended = None;
+        let mut step = border::write(&self.step)?;
+        *step = match core::mem::replace(&mut *step, Step::Failed) {
+            Step::Snapshot(snapshot) => {
+                self.progress.store(BUILDING, Ordering::Relaxed);
+                let ended = ended.insert(Ended {
+                    progress: &self.progress,
+                    how: FAILED,
+                });
+                let built = build(snapshot);
+                ended.how = BUILT;
+                Step::Built(built)
+            }
+            built @ Step::Built(_) => {
+                // The builder may be about to say so.
+                self.progress.store(BUILT, Ordering::Release);
+                built
+            }
+            Step::Failed => return Err(failed()),
+            Step::Adopted => {
+                *step = Step::Adopted;
+                return Err(adopted());
+            }
+        };
+        Ok(())
+    }
+
+    /// Whether the hierarchy is built. That it could not be is an error.
+    fn is_built(&self) -> Result<bool, Fault> {
+        match self.progress.load(Ordering::Acquire) {
+            BUILT => Ok(true),
+            FAILED => Err(failed()),
+            _ => Ok(false),
+        }
+    }
+}
+
+fn failed() -> Fault {
+    let text = "'rebuild' could not be built: take a new snapshot";
+    Fault::new(FovealCullStatus::Internal, text)
 }
 
 fn adopted() -> Fault {
@@ -73,7 +124,7 @@ pub unsafe extern "C" fn foveal_cull_occludees_snapshot(
     })
 }
 
-/// Builds the hierarchy, on any thread.
+/// Builds the hierarchy, on any thread. What is built already stays.
 ///
 /// # Safety
 /// `rebuild` is null or lives.
@@ -84,17 +135,25 @@ pub unsafe extern "C" fn foveal_cull_rebuild_build(
     guard(|| {
         // SAFETY: the caller's word.
         let rebuild = unsafe { border::object(rebuild, "rebuild") }?;
-        let mut step = border::write(&rebuild.step)?;
-        *step = match core::mem::replace(&mut *step, Step::Adopted) {
-            Step::Snapshot(snapshot) => {
-                rebuild.progress.store(BUILDING, Ordering::Relaxed);
-                let _ended = Ended(&rebuild.progress);
-                Step::Built(snapshot.build())
-            }
-            built @ Step::Built(_) => built,
-            Step::Adopted => return Err(adopted()),
-        };
-        Ok(())
+        rebuild.build(OccludeeSnapshot::build)
+    })
+}
+
+/// Writes 1 if the hierarchy is built, and may be adopted or was; 0 if not yet.
+///
+/// # Safety
+/// `rebuild` is null or lives; `out` is null or can be written.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn foveal_cull_rebuild_is_built(
+    rebuild: *const FovealCullRebuild,
+    out: *mut u32,
+) -> FovealCullStatus {
+    guard(|| {
+        // SAFETY: the caller's word.
+        unsafe {
+            let built = border::object(rebuild, "rebuild")?.is_built()?;
+            border::put(out, built.into(), "out")
+        }
     })
 }
 
@@ -124,6 +183,7 @@ pub unsafe extern "C" fn foveal_cull_occludees_adopt(
         match rebuild.progress.load(Ordering::Acquire) {
             NEW => return Err(not_built()),
             BUILDING => return Err(Fault::busy()),
+            FAILED => return Err(failed()),
             _ => {}
         }
         let mut set = border::write(&occludees.set)?;
@@ -134,6 +194,10 @@ pub unsafe extern "C" fn foveal_cull_occludees_adopt(
                 *step = snapshot;
                 return Err(not_built());
             }
+            Step::Failed => {
+                *step = Step::Failed;
+                return Err(failed());
+            }
             Step::Adopted => return Err(adopted()),
         }
         Ok(())
@@ -143,7 +207,8 @@ pub unsafe extern "C" fn foveal_cull_occludees_adopt(
 /// Drops a snapshot or a hierarchy. Null is nothing.
 ///
 /// # Safety
-/// `rebuild` is null or comes from this library, and is used no more.
+/// `rebuild` is null or comes from this library, and is used no more: a call that builds it has
+/// returned.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn foveal_cull_rebuild_destroy(rebuild: *mut FovealCullRebuild) {
     // SAFETY: the caller's word.
@@ -154,9 +219,41 @@ pub unsafe extern "C" fn foveal_cull_rebuild_destroy(rebuild: *mut FovealCullReb
 mod tests {
     use super::*;
     use crate::occludees::*;
+    use crate::status::with_last;
     use core::ptr::{null, null_mut};
 
     use FovealCullStatus as Status;
+
+    #[test]
+    fn a_build_that_fails_is_no_hierarchy_that_was_adopted() {
+        let (mut set, mut rebuild, mut built) = (null_mut(), null_mut(), 9);
+        // SAFETY: live handles; places for results.
+        unsafe {
+            assert_eq!(foveal_cull_occludees_create(null(), &mut set), Status::Ok);
+            let snapshot = foveal_cull_occludees_snapshot;
+            assert_eq!(snapshot(set, &mut rebuild), Status::Ok);
+            let object = &*rebuild;
+            let failed = guard(|| object.build(|_| panic!("building fails in a test")));
+            assert_eq!(failed, Status::Internal);
+            for _ in 0..2 {
+                let calls = [
+                    foveal_cull_rebuild_is_built(rebuild, &mut built),
+                    foveal_cull_occludees_adopt(set, rebuild),
+                    foveal_cull_rebuild_build(rebuild),
+                ];
+                assert_eq!((calls, built), ([Status::Internal; 3], 9));
+                let text = with_last(str::to_owned);
+                assert_eq!(text, "'rebuild' could not be built: take a new snapshot");
+            }
+            foveal_cull_rebuild_destroy(rebuild);
+            // The set is as it was.
+            assert_eq!(snapshot(set, &mut rebuild), Status::Ok);
+            assert_eq!(foveal_cull_rebuild_build(rebuild), Status::Ok);
+            assert_eq!(foveal_cull_occludees_adopt(set, rebuild), Status::Ok);
+            foveal_cull_rebuild_destroy(rebuild);
+            foveal_cull_occludees_destroy(set);
+        }
+    }
 
     #[test]
     fn objects_that_another_call_uses_are_busy() {
@@ -184,8 +281,13 @@ mod tests {
                 let _builder = step.write();
                 let adopted = foveal_cull_occludees_adopt(set, rebuild);
                 assert_eq!(adopted, Status::BadArgument);
+                assert_eq!(is_built(rebuild), 0);
+                (*rebuild).progress.store(BUILDING, Ordering::Relaxed);
+                assert_eq!(is_built(rebuild), 0);
+                (*rebuild).progress.store(NEW, Ordering::Relaxed);
             }
             assert_eq!(foveal_cull_rebuild_build(rebuild), Status::Ok);
+            assert_eq!(is_built(rebuild), 1);
             let change = || {
                 [
                     insert(),
@@ -227,13 +329,26 @@ mod tests {
             }
             (*rebuild).progress.store(BUILDING, Ordering::Relaxed);
             assert_eq!(foveal_cull_occludees_adopt(set, rebuild), Status::Busy);
-            (*rebuild).progress.store(BUILT, Ordering::Relaxed);
+            // Whoever is told that it is built may adopt it, though the builder has not said so yet.
+            assert_eq!(foveal_cull_rebuild_build(rebuild), Status::Ok);
+            assert_eq!(is_built(rebuild), 1);
             // What was busy is as it was.
             assert_eq!((ids, size), ([id], 1));
             assert_eq!(foveal_cull_rebuild_build(rebuild), Status::Ok);
             assert_eq!(foveal_cull_occludees_adopt(set, rebuild), Status::Ok);
+            assert_eq!(is_built(rebuild), 1, "adopted too");
+            let nowhere = foveal_cull_rebuild_is_built(rebuild, null_mut());
+            assert_eq!(nowhere, Status::NullPointer);
             foveal_cull_rebuild_destroy(rebuild);
             foveal_cull_occludees_destroy(set);
         }
+    }
+
+    fn is_built(rebuild: *const FovealCullRebuild) -> u32 {
+        let mut built = 9;
+        // SAFETY: a live handle and a place for the result.
+        let status = unsafe { foveal_cull_rebuild_is_built(rebuild, &mut built) };
+        assert_eq!(status, Status::Ok);
+        built
     }
 }

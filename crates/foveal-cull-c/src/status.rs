@@ -16,7 +16,9 @@ pub enum FovealCullStatus {
     NullPointer = 1,
     /// A struct's `size` is none that this version knows, or what is newer in it is not zero.
     BadStructSize = 2,
-    /// A count, a stride, an enumerator or a pointer's alignment is not allowed.
+    /// A count, a stride, an enumerator or a pointer's alignment is not allowed, an array for results
+    /// overlaps the boxes or ids of the call, an id to be removed is listed twice, or a rebuild is not
+    /// built yet or was adopted.
     BadArgument = 3,
     /// A number is NaN or infinite that must be finite.
     NotFinite = 4,

@@ -73,7 +73,7 @@ int main(void) {
         place(i, 0, boxes[i]);
     }
     expect(FOVEAL_CULL_OK, foveal_cull_occludees_insert(carts, &boxes[0][0], CARTS, ids));
-    uint32_t wants = 0;
+    uint32_t wants = 0, built = 9;
     expect(FOVEAL_CULL_OK, foveal_cull_occludees_wants_rebuild(carts, &wants));
     check(wants == 1, "all are new");
 
@@ -85,6 +85,8 @@ int main(void) {
         if (frame == 2) {
             expect(FOVEAL_CULL_OK, foveal_cull_occludees_snapshot(carts, &rebuild));
             expect(FOVEAL_CULL_BAD_ARGUMENT, foveal_cull_occludees_adopt(carts, rebuild));
+            expect(FOVEAL_CULL_OK, foveal_cull_rebuild_is_built(rebuild, &built));
+            check(built == 0, "nobody has built it");
             check(pthread_create(&builder, NULL, build, rebuild) == 0, "a thread");
         }
         for (int i = 0; i < CARTS; ++i) {
@@ -102,6 +104,9 @@ int main(void) {
         check(contains[0] == 0 && contains[1] == 1, "an id names one occludee for ever");
         expect(FOVEAL_CULL_OK, foveal_cull_occludees_refit(carts));
         if (frame == 6) {
+            do {
+                expect(FOVEAL_CULL_OK, foveal_cull_rebuild_is_built(rebuild, &built));
+            } while (built == 0);
             check(pthread_join(builder, NULL) == 0, "the thread ends");
             expect(FOVEAL_CULL_OTHER_SET, foveal_cull_occludees_adopt(other, rebuild));
             expect(FOVEAL_CULL_OK, foveal_cull_occludees_adopt(carts, rebuild));

@@ -61,6 +61,7 @@ fn null_is_an_error_everywhere() {
             foveal_cull_occludees_snapshot(set, null_mut()),
             foveal_cull_occludees_snapshot(null(), &mut rebuild),
             foveal_cull_rebuild_build(null_mut()),
+            foveal_cull_rebuild_is_built(null(), &mut n),
             foveal_cull_occludees_adopt(set, null_mut()),
             foveal_culler_test_occludees(null(), set, &mut byte, 1),
             foveal_culler_test_occludees(culler, null(), &mut byte, 1),
