@@ -264,44 +264,121 @@ impl<T> Sent<T> {
     }
 }
 
+/// What a set and a list of the same boxes say of them.
+#[derive(Debug, Default)]
+struct Compared {
+    hidden: usize,
+    /// Hidden by their group, while the list sees them.
+    more: usize,
+    /// Hidden by their group, while the list has them outside or small.
+    grouped: usize,
+}
+
+impl Compared {
+    /// `boxes` are those of the set, in the order of their places.
+    fn compare(
+        &mut self,
+        culler: *const FovealCuller,
+        set: *mut FovealCullOccludees,
+        boxes: &[Aabb],
+    ) {
+        let (mut results, mut list) = (vec![9u8; boxes.len()], vec![9u8; boxes.len()]);
+        // SAFETY: live handles; lists as long as is said.
+        let status = unsafe {
+            let to = results.as_mut_ptr();
+            let tested = foveal_culler_test_occludees(culler, set, to, boxes.len());
+            let (from, to) = (boxes.as_ptr().cast(), list.as_mut_ptr());
+            [
+                tested,
+                foveal_culler_test_boxes(culler, from, boxes.len(), null(), to),
+            ]
+        };
+        assert_eq!(status, [Status::Ok; 2]);
+        let [visible, occluded] = [Visibility::Visible as u8, Visibility::Occluded as u8];
+        for ((of_set, of_list), bounds) in results.into_iter().zip(list).zip(boxes) {
+            assert!(
+                of_set == of_list || of_set == occluded,
+                "{of_set} {of_list} {bounds:?}"
+            );
+            self.hidden += usize::from(of_set != visible);
+            if of_set != of_list {
+                self.more += usize::from(of_list == visible);
+                self.grouped += usize::from(of_list != visible);
+            }
+        }
+    }
+}
+
 #[test]
 fn a_hierarchy_is_built_by_another_thread_while_frames_go_on() {
-    let (set, culler) = (occludees([0.0; 3]), culler());
+    let (set, walls, mesh, culler) = (occludees([0.0; 3]), set(), wall(), culler());
     let mut r = Random(77);
-    let boxes: Vec<Aabb> = (0..20_000).map(|_| r.bounds([0.0; 3])).collect();
-    let ids = insert(set, &boxes);
-    let mut rebuild = null_mut();
-    // SAFETY: live handles, which outlive the thread; lists as long as is said.
+    let mut boxes: Vec<Aabb> = (0..20_000).map(|_| r.bounds([0.0; 3])).collect();
+    let (old, new) = boxes.split_at(10_000);
+    let mut ids = insert(set, old);
+    let (mut rebuild, mut wants, mut built) = (null_mut(), 9, 9);
+    let (mut before, mut after) = (Compared::default(), Compared::default());
+    // SAFETY: live handles, which outlive the thread; lists as long as is said; places for results.
     unsafe {
+        // A wall from the left edge of the view to the right one, so that groups behind it are hidden
+        // which reach out of the view.
+        let wide = [
+            4.0f64, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0,
+        ];
+        let mut id = core::mem::zeroed();
+        let added = foveal_cull_occluders_add(walls, mesh, wide.as_ptr(), &mut id);
+        assert_eq!(added, Status::Ok);
+        let drawn = foveal_culler_rasterize(culler, &view(), walls, null(), null());
+        assert_eq!(drawn, Status::Ok);
+        // Half of them have a hierarchy, the others wait for theirs.
+        assert_eq!(foveal_cull_occludees_rebuild(set), Status::Ok);
+        ids.extend(insert(set, new));
+        let asked = foveal_cull_occludees_wants_rebuild(set, &mut wants);
+        assert_eq!((asked, wants), (Status::Ok, 1));
         let taken = foveal_cull_occludees_snapshot(set, &mut rebuild);
         assert_eq!(taken, Status::Ok);
         let sent = Sent(rebuild);
         let builder = std::thread::spawn(move || foveal_cull_rebuild_build(sent.get()));
-        let mut results = vec![9u8; boxes.len()];
-        loop {
+        let mut frame = |compared: &mut Compared| {
             let n = r.below(ids.len());
-            let moved = r.bounds([0.0; 3]);
-            let status =
-                foveal_cull_occludees_move(set, &ids[n], (&raw const moved).cast::<f32>(), 1);
+            boxes[n] = r.bounds([0.0; 3]);
+            let moved = (&raw const boxes[n]).cast::<f32>();
+            let status = foveal_cull_occludees_move(set, &ids[n], moved, 1);
             assert_eq!(status, Status::Ok);
-            let to = results.as_mut_ptr();
-            let status = foveal_culler_test_occludees(culler, set, to, boxes.len());
-            assert_eq!(status, Status::Ok);
+            assert_eq!(foveal_cull_occludees_refit(set), Status::Ok);
+            compared.compare(culler, set, &boxes);
+        };
+        loop {
+            frame(&mut before);
             // Not begun, in the making, done.
             let ended = builder.is_finished();
+            let asked = foveal_cull_rebuild_is_built(rebuild, &mut built);
+            assert_eq!(asked, Status::Ok);
             match foveal_cull_occludees_adopt(set, rebuild) {
                 Status::Ok => break,
-                Status::BadArgument | Status::Busy if !ended => {}
-                other => panic!("{other:?}"),
+                Status::BadArgument | Status::Busy if !ended && built == 0 => {}
+                other => panic!("{other:?}, built: {built}"),
             }
         }
         // Asking too early has not kept the builder out.
         assert_eq!(builder.join().unwrap(), Status::Ok);
-        let mut wants = 9;
         let asked = foveal_cull_occludees_wants_rebuild(set, &mut wants);
-        assert_eq!((asked, wants, count(set)), (Status::Ok, 0, boxes.len()));
+        assert_eq!((asked, wants, count(set)), (Status::Ok, 0, ids.len()));
+        for _ in 0..3 {
+            frame(&mut after);
+        }
         foveal_cull_rebuild_destroy(rebuild);
         foveal_cull_occludees_destroy(set);
+        foveal_cull_occluders_destroy(walls);
+        foveal_cull_mesh_destroy(mesh);
         foveal_culler_destroy(culler);
+    }
+    // Groups are hidden, which a list has not: the hierarchy was walked, before and after.
+    for compared in [before, after] {
+        assert!(
+            compared.hidden > 5000 && compared.grouped > 0,
+            "{compared:?}"
+        );
+        assert!(compared.more * 100 < compared.hidden, "{compared:?}");
     }
 }
