@@ -73,7 +73,8 @@ typedef enum FovealCullStatus {
     FOVEAL_CULL_OTHER_SET = 11,
     /* The object is in use by another call. */
     FOVEAL_CULL_BUSY = 12,
-    /* An error inside the library. Please report it. The object stays usable. */
+    /* An error inside the library. Please report it. The object stays usable, but for a rebuild that could
+     * not be built. */
     FOVEAL_CULL_INTERNAL = 13,
     /* Bytes are not a baked mesh of this version. */
     FOVEAL_CULL_BAD_MESH_BYTES = 14,

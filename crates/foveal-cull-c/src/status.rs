@@ -38,7 +38,8 @@ pub enum FovealCullStatus {
     OtherSet = 11,
     /// The object is in use by another call that changes it, or that this call would disturb.
     Busy = 12,
-    /// An error inside the library. Please report it. The object stays usable.
+    /// An error inside the library. Please report it. The object stays usable, but for a rebuild that
+    /// could not be built.
     Internal = 13,
     /// Bytes are not a baked mesh of this version.
     BadMeshBytes = 14,
