@@ -92,6 +92,7 @@ fn host(args: &Args) -> anyhow::Result<Host> {
         };
         let camera = Viewpoint::choose(&camera, &scene, name)?.at(&scene, 0.0);
         let clip = numbered(&options.clip, &scene);
+        foveal_host::memory::give_back();
         Ok(Loaded {
             scene,
             camera,

@@ -3,7 +3,7 @@
 //!
 //! The `foveal` program and its benches share it. Each module stands alone; [`drawing`] joins them
 //! to a scene that is drawn moment by moment.
-#![forbid(unsafe_code)]
+#![deny(unsafe_code)]
 #![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 
 pub mod atomic_file;
@@ -20,6 +20,7 @@ pub mod failure;
 pub mod gpu;
 pub mod import_args;
 pub mod linear_picture;
+pub mod memory;
 pub mod picture;
 pub mod progress;
 pub mod rate_image;

@@ -24,6 +24,7 @@ use foveal_host::clock::{now_ms, now_ns, timed};
 use foveal_host::drawing::Drawing;
 use foveal_host::environment::environment;
 use foveal_host::linear_picture::{self, PictureFormat};
+use foveal_host::memory;
 use foveal_host::progress::progress_bar;
 use foveal_host::rate_image::rate_image;
 use foveal_host::video::Video;
@@ -243,11 +244,13 @@ fn prepare(
             .for_each(|warning| console::warn(&warning.text));
     }
     let viewpoint = Viewpoint::choose(&args.camera, &scene, &args.scene)?;
+    memory::give_back();
     // Nothing here reads the texels again.
     timed(load_ms, "upload", || {
         block_on(renderer.set_scene_and_free_textures(&mut scene))
     })
     .with_context(|| format!("cannot draw the scene '{}'", scene.name))?;
+    memory::give_back();
     Ok((
         Drawing::new(renderer, scene, Rc::new(viewpoint)),
         gpu.adapter_stats(),
@@ -318,6 +321,10 @@ fn draw_all(
         let mut stages = Vec::new();
         let figures = timed(&mut stages, "first_frame", || draw(drawing, &job))
             .map_err(|error| anyhow!("frame {}: {error:#}", job.frame))?;
+        if frames.is_empty() {
+            // A driver that draws on the processor has compiled shaders.
+            memory::give_back();
+        }
         written.write(drawing, &figures, job.file.as_deref(), &mut stages)?;
         drop(claim);
         let notices = [

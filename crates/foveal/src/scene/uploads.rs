@@ -1,5 +1,5 @@
 //! Uploads in bounded pieces: what is written waits in buffers of its own until it is submitted, and
-//! they until someone looks. Without a bound there would be a second copy of all of it.
+//! they until they have been read and someone looks. Without a bound there would be a second copy of all of it.
 
 use crate::gpu::Gpu;
 
@@ -23,7 +23,14 @@ impl<'a> Uploads<'a> {
         self.waiting += bytes as u64;
         if self.waiting >= WAITING_BYTES {
             self.gpu.queue.submit([]);
-            let _ = self.gpu.device.poll(wgpu::PollType::Poll);
+            // A page must not wait; its browser frees what has been read.
+            let poll = if cfg!(target_arch = "wasm32") {
+                wgpu::PollType::Poll
+            } else {
+                wgpu::PollType::wait_indefinitely()
+            };
+            // What fails is found again by the next frame.
+            let _ = self.gpu.device.poll(poll);
             self.waiting = 0;
         }
     }
