@@ -9,6 +9,7 @@ mod faces;
 pub(crate) mod flat;
 mod groups;
 pub(crate) mod moving;
+pub(crate) mod occludee_id;
 mod plane_lanes;
 pub(crate) mod rebuild;
 mod rect;

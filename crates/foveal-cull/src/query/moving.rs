@@ -7,6 +7,7 @@
 
 use super::choice::tree_pays;
 use super::groups::{around, half_area};
+use super::occludee_id::OccludeeId;
 use super::rebuild::{OccludeeRebuild, OccludeeSnapshot};
 use super::tree::{OccludeeTree, grown};
 use crate::bounds::Aabb;
@@ -15,41 +16,6 @@ use crate::projection::boxes::Boxes8;
 use crate::simd::{InstructionSet, Kernel, Lanes};
 use core::num::NonZeroU32;
 use glam::{DVec3, Vec3};
-
-/// The id of one occludee of an [`OccludeeSet`].
-///
-/// Generational, as [`OccluderId`](crate::OccluderId): the id of a removed occludee never names
-/// another one. An id is valid only in the set that gave it out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct OccludeeId {
-    slot: u32,
-    generation: NonZeroU32,
-}
-
-impl OccludeeId {
-    /// The place of its result in the results of
-    /// [`Culler::query_set`](crate::Culler::query_set). It does not change.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self.slot as usize
-    }
-
-    /// The id as one number, never zero, for engines that keep ids of their own.
-    #[must_use]
-    pub fn to_bits(self) -> u64 {
-        u64::from(self.generation.get()) << 32 | u64::from(self.slot)
-    }
-
-    /// The id of [`to_bits`](Self::to_bits). Numbers that come from elsewhere name no occludee, or
-    /// another one.
-    #[must_use]
-    pub fn from_bits(bits: u64) -> Option<Self> {
-        Some(Self {
-            slot: bits as u32,
-            generation: NonZeroU32::new((bits >> 32) as u32)?,
-        })
-    }
-}
 
 /// Occludees that are inserted, moved and removed while running.
 ///

@@ -1,6 +1,6 @@
 //! Hierarchies that are built while their objects go on moving.
 
-use super::moving::OccludeeId;
+use super::occludee_id::OccludeeId;
 use super::tree::OccludeeTree;
 use crate::bounds::Aabb;
 use glam::DVec3;
