@@ -266,7 +266,17 @@ const COUNTS: [usize; 4] = [100, 1000, 10_000, 25_000];
 /// So many boxes as a set that has moved, from inside.
 #[divan::bench(args = COUNTS)]
 fn query_moved_set(bencher: Bencher<'_, '_>, count: usize) {
-    let (culler, mut moving) = (rasterized("inside"), Moving::new(count));
+    query_set(bencher, "inside", count);
+}
+
+/// The same from around, where almost a half of them are visible.
+#[divan::bench(args = COUNTS)]
+fn query_moved_set_around(bencher: Bencher<'_, '_>, count: usize) {
+    query_set(bencher, "around", count);
+}
+
+fn query_set(bencher: Bencher<'_, '_>, place: &str, count: usize) {
+    let (culler, mut moving) = (rasterized(place), Moving::new(count));
     moving.step(count / 2);
     let mut results = vec![Visibility::Visible; moving.set.result_count()];
     bencher
@@ -297,7 +307,17 @@ fn query_spread_set(bencher: Bencher<'_, '_>, reach_m: f32) {
 /// The same boxes as a list.
 #[divan::bench(args = COUNTS)]
 fn query_moved_list(bencher: Bencher<'_, '_>, count: usize) {
-    let (culler, mut moving) = (rasterized("inside"), Moving::new(count));
+    query_list(bencher, "inside", count);
+}
+
+/// The same as a list, from around.
+#[divan::bench(args = COUNTS)]
+fn query_moved_list_around(bencher: Bencher<'_, '_>, count: usize) {
+    query_list(bencher, "around", count);
+}
+
+fn query_list(bencher: Bencher<'_, '_>, place: &str, count: usize) {
+    let (culler, mut moving) = (rasterized(place), Moving::new(count));
     moving.step(count / 2);
     let mut results = vec![Visibility::Visible; count];
     bencher

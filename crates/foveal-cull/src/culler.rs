@@ -10,6 +10,7 @@ use crate::format::{EMPTY, SAMPLES, decode};
 use crate::limits::MAX_SIDE_PX;
 use crate::occluder::set::OccluderSet;
 use crate::options::{Budget, FrameOptions};
+use crate::query::choice::OpenObjects;
 use crate::query::classify::{Frame, Query};
 use crate::query::flat::Flat;
 use crate::query::moving::OccludeeSet;
@@ -368,6 +369,9 @@ impl Culler {
             return self.query_from(set.boxes(), set.origin(), results);
         };
         let query = Query::new(&self.buffer, &frame, set.origin());
+        if self.is_list_faster(&query, set, tree) {
+            return self.query_from(set.boxes(), set.origin(), results);
+        }
         self.instruction_set.run(Walk {
             query: &query,
             tree,
@@ -390,6 +394,28 @@ impl Culler {
             }
         }
         Ok(())
+    }
+
+    /// Whether a list of a set's boxes takes less time than its tree in this frame.
+    fn is_list_faster(&self, query: &Query<'_>, set: &OccludeeSet, tree: &OccludeeTree) -> bool {
+        // With a size threshold a list has no coarse test; without one neither has.
+        if query.small > 0.0 || query.coarse_test().is_none() {
+            return false;
+        }
+        // Where nothing is open a tree takes least.
+        set.prefers_list(0) || set.prefers_list(self.open_objects(query, tree))
+    }
+
+    #[cfg(test)]
+    pub(crate) fn open_objects_of(&self, tree: &OccludeeTree) -> usize {
+        let frame = self.view.unwrap();
+        self.open_objects(&Query::new(&self.buffer, &frame, tree.origin()), tree)
+    }
+
+    /// About how many objects of a tree a walk has to open.
+    fn open_objects(&self, query: &Query<'_>, tree: &OccludeeTree) -> usize {
+        let open = self.instruction_set.run(OpenObjects { query, tree });
+        open.unwrap_or(tree.len())
     }
 
     /// Adds results to the stats of the frame, with the triangles of each occludee if given.

@@ -119,6 +119,7 @@ fn nothing_that_the_reference_sees_is_culled_after_moves_and_rebuilds() {
         let mut set = OccludeeSet::new(DVec3::ZERO);
         let mut ids: Vec<OccludeeId> = scene.boxes.iter().map(|b| set.insert(*b)).collect();
         set.rebuild();
+        set.prefer_tree();
         let mut culler = Culler::new(64, 48).unwrap();
         answers(
             &mut culler,

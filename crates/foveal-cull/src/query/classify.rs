@@ -148,7 +148,7 @@ impl<'a> Query<'a> {
 
     /// The coarse test, for frames in which frustum and HiZ alone decide most boxes.
     #[inline(always)]
-    pub(super) fn coarse_test(&self) -> Option<CoarseTest<'a>> {
+    pub(crate) fn coarse_test(&self) -> Option<CoarseTest<'a>> {
         (self.occlusion && self.region.is_none())
             .then(|| CoarseTest::new(&self.screen))
             .flatten()

@@ -1,6 +1,7 @@
 //! Queries: which boxes can be seen.
 
 mod axis_planes;
+pub(crate) mod choice;
 pub(crate) mod classify;
 mod coarse;
 mod compaction;
@@ -8,7 +9,9 @@ mod faces;
 pub(crate) mod flat;
 mod groups;
 pub(crate) mod moving;
+pub(crate) mod occludee_id;
 mod plane_lanes;
+pub(crate) mod rebuild;
 mod rect;
 pub(crate) mod tree;
 pub(crate) mod walk;

@@ -5,7 +5,10 @@
 //! these nodes and those above them, children before parents. New objects wait outside the tree,
 //! where they are tested one by one, until it is built again.
 
+use super::choice::tree_pays;
 use super::groups::{around, half_area};
+use super::occludee_id::OccludeeId;
+use super::rebuild::{OccludeeRebuild, OccludeeSnapshot};
 use super::tree::{OccludeeTree, grown};
 use crate::bounds::Aabb;
 use crate::error::CullError;
@@ -13,41 +16,6 @@ use crate::projection::boxes::Boxes8;
 use crate::simd::{InstructionSet, Kernel, Lanes};
 use core::num::NonZeroU32;
 use glam::{DVec3, Vec3};
-
-/// The id of one occludee of an [`OccludeeSet`].
-///
-/// Generational, as [`OccluderId`](crate::OccluderId): the id of a removed occludee never names
-/// another one. An id is valid only in the set that gave it out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct OccludeeId {
-    slot: u32,
-    generation: NonZeroU32,
-}
-
-impl OccludeeId {
-    /// The place of its result in the results of
-    /// [`Culler::query_set`](crate::Culler::query_set). It does not change.
-    #[must_use]
-    pub fn index(self) -> usize {
-        self.slot as usize
-    }
-
-    /// The id as one number, never zero, for engines that keep ids of their own.
-    #[must_use]
-    pub fn to_bits(self) -> u64 {
-        u64::from(self.generation.get()) << 32 | u64::from(self.slot)
-    }
-
-    /// The id of [`to_bits`](Self::to_bits). Numbers that come from elsewhere name no occludee, or
-    /// another one.
-    #[must_use]
-    pub fn from_bits(bits: u64) -> Option<Self> {
-        Some(Self {
-            slot: bits as u32,
-            generation: NonZeroU32::new((bits >> 32) as u32)?,
-        })
-    }
-}
 
 /// Occludees that are inserted, moved and removed while running.
 ///
@@ -90,6 +58,7 @@ pub struct OccludeeSet {
     area: f64,
     area_built: f64,
     origin: DVec3,
+    prefers_tree: bool,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -104,7 +73,6 @@ const NOWHERE: u32 = u32::MAX;
 
 /// Up to so many objects a list takes no longer than a tree.
 const FEW: usize = 1000;
-
 /// So many objects may be outside the tree before it is built again, and this part of all.
 const LOOSE_AT_LEAST: usize = 64;
 const LOOSE_PART: usize = 8;
@@ -130,6 +98,7 @@ impl OccludeeSet {
             area: 0.0,
             area_built: 0.0,
             origin,
+            prefers_tree: false,
         }
     }
 
@@ -357,7 +326,18 @@ impl OccludeeSet {
     /// The tree. None while it does not fit, or where a list is as fast.
     pub(crate) fn tree(&self) -> Option<&OccludeeTree> {
         let worth_it = self.slots.len() > FEW && !self.has_spread();
-        (worth_it && !self.any_marked).then_some(&self.tree)
+        ((worth_it || self.prefers_tree) && !self.any_marked).then_some(&self.tree)
+    }
+
+    /// Whether a list takes less time than the tree, of whose objects so many have to be opened.
+    pub(crate) fn prefers_list(&self, open: usize) -> bool {
+        !self.prefers_tree && !tree_pays(open, self.bounds.len())
+    }
+
+    /// For tests: from here on queries take the hierarchy wherever it fits, also where a list is faster.
+    #[doc(hidden)]
+    pub fn prefer_tree(&mut self) {
+        self.prefers_tree = true;
     }
 
     /// Whether objects have moved so far from their groups that a tree takes longer than a list.
@@ -459,33 +439,6 @@ impl Kernel for Refit<'_> {
                 set.take_boxes(l, node);
                 set.fit(node);
             }
-        }
-    }
-}
-
-/// The objects of an [`OccludeeSet`] at one moment.
-#[derive(Clone, Debug)]
-pub struct OccludeeSnapshot {
-    boxes: Vec<Aabb>,
-    /// In the order of slots.
-    ids: Vec<OccludeeId>,
-    origin: DVec3,
-}
-
-/// A hierarchy over the objects of a snapshot.
-#[derive(Clone, Debug)]
-pub struct OccludeeRebuild {
-    tree: OccludeeTree,
-    ids: Vec<OccludeeId>,
-}
-
-impl OccludeeSnapshot {
-    /// Builds the hierarchy. O(n log n); on any thread.
-    #[must_use]
-    pub fn build(self) -> OccludeeRebuild {
-        OccludeeRebuild {
-            tree: OccludeeTree::build_from(&self.boxes, self.origin),
-            ids: self.ids,
         }
     }
 }

@@ -327,8 +327,17 @@ pub fn wrongly_culled(
     Exact::new(scene, eye, size, n).wrongly_culled(scene, results)
 }
 
-/// Results of a set: what the list shows it shows, but for groups that are hidden as a whole.
+/// Results of a set, by its hierarchy and as it chooses itself: what the list shows it shows, but for
+/// groups that are hidden as a whole. How many the hierarchy culls, and how many of them the list does
+/// not.
 pub fn assert_as_a_list(culler: &Culler, set: &OccludeeSet, ids: &[OccludeeId]) -> [usize; 2] {
+    let mut by_tree = set.clone();
+    by_tree.prefer_tree();
+    of_set_and_list(culler, set, ids);
+    of_set_and_list(culler, &by_tree, ids)
+}
+
+fn of_set_and_list(culler: &Culler, set: &OccludeeSet, ids: &[OccludeeId]) -> [usize; 2] {
     let boxes: Vec<Aabb> = ids.iter().map(|id| set.bounds(*id).unwrap()).collect();
     let mut list = vec![Visibility::Visible; ids.len()];
     culler.query(&boxes, DVec3::ZERO, &mut list).unwrap();

@@ -91,6 +91,8 @@ fn agree(choices: &mut Choices<'_>) {
 
     let tree = OccludeeTree::build(&scene.boxes, scene.origin);
     let mut objects = OccludeeSet::new(scene.origin);
+    // Few objects would be a list otherwise.
+    objects.prefer_tree();
     for bounds in &scene.boxes {
         objects.insert(*bounds);
     }

@@ -73,8 +73,11 @@ impl World {
         let Ok(culler) = Culler::new(64, 48) else {
             panic!("a culler of 64 x 48 pixels");
         };
+        let mut objects = OccludeeSet::new(DVec3::ZERO);
+        // Few objects would be a list otherwise.
+        objects.prefer_tree();
         Self {
-            objects: OccludeeSet::new(DVec3::ZERO),
+            objects,
             ids: Vec::new(),
             gone: Vec::new(),
             waiting: None,
