@@ -53,6 +53,21 @@ pub enum Shadows {
     Soft,
 }
 
+/// Sizes of shadow tiles with coarse shading whose rates follow the eye's resolution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum ShadowSizes {
+    /// By distance alone.
+    #[default]
+    View,
+    /// By distance, and as much coarser as the samples are wherever a tile's shadows may be seen.
+    Rate,
+}
+
 /// Light from everywhere besides the lights of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(

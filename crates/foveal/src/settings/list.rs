@@ -103,6 +103,10 @@ settings! {
         /// texels. Raise it where surfaces show stripes, lower it where shadows begin away from
         /// what casts them.
         shadow_bias => shadow_bias: f32 = 1.5, "Shadow bias", Kind::Number { least: 0.0, most: 8.0 };
+        /// Size of shadow tiles with coarse shading by the eye's resolution: view makes them as fine
+        /// as for full shading, rate as coarse as the samples that show them, which leaves more of a
+        /// small atlas for what is seen sharply. Other ways of shading always take view.
+        shadow_sizes => shadow_sizes: ShadowSizes = ShadowSizes::default(), "Shadow sizes", Kind::choice::<ShadowSizes>();
         /// Light from all around: gradient is the sky of the scene as a formula, sky the same
         /// filtered by roughness, image a picture of all directions, none is black. On the command
         /// line also the name of a .hdr or .exr file. With gradient rough metals mirror a hard

@@ -22,11 +22,13 @@ fn shadow_row(row: u32) -> vec4f {
 struct ShadowTile {
     corner: vec2f,
     side: f32,
+    // It is as coarse as the samples that show it: its filter is a texel wide, not three.
+    is_narrow: bool,
 }
 
 fn shadow_tile(word: u32) -> ShadowTile {
     let corner = vec2f(vec2u(word, word >> 10u) & vec2u(0x3ffu)) * 16.0;
-    return ShadowTile(corner, select(0.0, f32(1u << ((word >> 20u) & 31u)), word != 0u));
+    return ShadowTile(corner, select(0.0, f32(1u << ((word >> 20u) & 31u)), word != 0u), (word & 0x2000000u) != 0u);
 }
 
 // Part of the light that passes at a place in the tile, in texels, with a reversed depth.
@@ -50,16 +52,19 @@ fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     let d = textureGatherCompare(shadow_atlas, shadow_sampler, high, depth);
     // Of a quad: x lower left, y lower right, z upper right, w upper left.
     let g = 1.0 - f;
-    let upper = g.y * (g.x * a.w + a.z + b.w + f.x * b.z) + (g.x * a.x + a.y + b.x + f.x * b.y);
-    let lower = (g.x * c.w + c.z + d.w + f.x * d.z) + f.y * (g.x * c.x + c.y + d.x + f.x * d.y);
-    return (upper + lower) / 9.0;
+    // Weights of the four columns and rows: a texel wide, or three.
+    let x = select(vec4f(g.x, 1.0, 1.0, f.x), vec4f(0.0, g.x, f.x, 0.0), tile.is_narrow);
+    let y = select(vec4f(g.y, 1.0, 1.0, f.y), vec4f(0.0, g.y, f.y, 0.0), tile.is_narrow);
+    let upper = y.x * (x.x * a.w + x.y * a.z + x.z * b.w + x.w * b.z) + y.y * (x.x * a.x + x.y * a.y + x.z * b.x + x.w * b.y);
+    let lower = y.z * (x.x * c.w + x.y * c.z + x.z * d.w + x.w * d.z) + y.w * (x.x * c.x + x.y * c.y + x.z * d.x + x.w * d.y);
+    return (upper + lower) / select(9.0, 1.0, tile.is_narrow);
 }
 
 // Metres by which a place is moved along its normal before it is compared, so that a surface does
 // not shade itself: a texel's width, times what the filter and the slope ask for.
-fn shadow_offset(texel_m: f32, n_dot_l: f32) -> f32 {
+fn shadow_offset(tile: ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
     let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
-    return texel_m * shadow_row(0u).x * (0.4 + slope);
+    return texel_m * shadow_row(0u).x * (0.4 + slope) * select(1.0, 0.5, tile.is_narrow);
 }
 
 // The side of a cube that a direction from its centre points to.
@@ -100,7 +105,7 @@ fn point_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f,
         return 1.0;
     }
     let texel_m = 2.0 * in_cube_side(side, from_light).z / (tile.side - 2.0 * SHADOW_BORDER);
-    let at = in_cube_side(side, from_light + normal * shadow_offset(texel_m, n_dot_l));
+    let at = in_cube_side(side, from_light + normal * shadow_offset(tile, texel_m, n_dot_l));
     let near = shadow_row(first + 1u).z;
     if at.z <= near {
         return 1.0;
@@ -118,7 +123,7 @@ fn spot_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, 
     let tangent = shadow_row(first + 1u).w;
     let from_light = position - light.position;
     let texel_m = 2.0 * tangent * dot(light.direction, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
-    let moved = from_light + normal * shadow_offset(texel_m, n_dot_l);
+    let moved = from_light + normal * shadow_offset(tile, texel_m, n_dot_l);
     let across = shadow_row(first + 2u).xyz;
     let up = shadow_row(first + 3u).xyz;
     let at = vec3f(dot(across, moved), dot(up, moved), dot(light.direction, moved));
@@ -145,7 +150,7 @@ fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l
         if tile.side == 0.0 || max(away.x, away.y) > cascade.z - margin {
             continue;
         }
-        let moved = position + normal * shadow_offset(texel_m, n_dot_l);
+        let moved = position + normal * shadow_offset(tile, texel_m, n_dot_l);
         let at = (vec2f(dot(across, moved), dot(up, moved)) - cascade.xy) / texel_m;
         // End along the rays, and one by the length.
         let span = shadow_row(first + 1u).zw;

@@ -16,6 +16,7 @@ mod footprint;
 mod hidden;
 mod kept;
 mod mask;
+mod part;
 mod pass;
 mod plan;
 #[cfg(test)]

@@ -15,6 +15,8 @@ use crate::lights::LightUniform;
 
 /// Rows of a light: `SHADOW_ROWS` in the shader.
 const ROWS: usize = 4;
+/// Bit of a tile's word: its filter is a texel wide instead of three.
+const NARROW_BIT: u32 = 25;
 const DIRECTIONAL: u32 = 0;
 
 /// One row.
@@ -41,12 +43,13 @@ pub(super) fn rows(
     for want in &plan.wanted {
         let number = want.slot as usize / TILES_PER_LIGHT;
         let tile = want.slot as usize % TILES_PER_LIGHT;
-        let Some(kept) = kept.get(want.slot).filter(|kept| kept.is_drawn) else {
+        let Some(kept) = kept.get(want).filter(|kept| kept.is_drawn) else {
             // Nobody sees what it would shade.
             continue;
         };
         let first = first_row(number);
-        rows[first + tile / 4][tile % 4] = kept.tile.word();
+        rows[first + tile / 4][tile % 4] =
+            kept.tile.word() | u32::from(want.follows_rate) << NARROW_BIT;
         let Volume::Column {
             center,
             radius,

@@ -8,8 +8,8 @@ use super::twin::Lookup;
 use crate::shading::twin::{light_surface_with, position_at, to_eye, unpack_surface};
 use crate::testing::{Film, f32_of_half, picture, rendered, small, texels};
 use crate::{
-    Antialiasing, Geometry, LightAssignment, RateSource, Renderer, Settings, Shading, Shadows,
-    Stereo,
+    Antialiasing, Geometry, LightAssignment, RateSource, Renderer, Settings, Shading, ShadowSizes,
+    Shadows, Stereo,
 };
 
 const WIDTH: u32 = 97;
@@ -52,6 +52,8 @@ pub(super) fn lookup(renderer: &Renderer, shadows: Shadows) -> Lookup {
 
 /// What a pixel shows.
 pub(super) struct Seen {
+    /// Column and row.
+    at: [u32; 2],
     radiance: Vec3,
     pub(super) surface: crate::shading::twin::Surface,
 }
@@ -71,6 +73,7 @@ pub(super) fn seen(renderer: &Renderer, camera: &Camera) -> Vec<Seen> {
             let [r, g, b, _] = radiance[i].map(f32_of_half);
             let surface = unpack_surface(words[i], position_at(camera, size, at, depth[i]));
             Seen {
+                at: [pixel % width, pixel / width],
                 radiance: Vec3::new(r, g, b),
                 surface,
             }
@@ -78,44 +81,142 @@ pub(super) fn seen(renderer: &Renderer, camera: &Camera) -> Vec<Seen> {
         .collect()
 }
 
+/// How many of a frame's pixels the twin lights otherwise, and how many of those that are compared
+/// lie in shadow.
+fn compared_with_twin(
+    scene: &Scene,
+    settings: &Settings,
+    is_compared: impl Fn([u32; 2]) -> bool,
+) -> (Renderer, [usize; 3]) {
+    let camera = &scene.cameras[0];
+    let renderer = rendered(scene, camera, settings);
+    let lookup = lookup(&renderer, settings.lighting.shadows);
+    let lights = renderer.lights().1.to_vec();
+    let pixels = seen(&renderer, camera);
+    let (mut compared, mut off, mut dark) = (0, 0, 0);
+    for pixel in pixels.iter().filter(|pixel| is_compared(pixel.at)) {
+        let (radiance, surface) = (pixel.radiance, &pixel.surface);
+        let v = to_eye(camera, surface.position);
+        let lit = |passing: crate::shading::twin::Passing<'_>| {
+            let model = settings.lighting.model;
+            light_surface_with(scene, &lights, model, (surface, v), passing).radiance
+        };
+        let cpu = lit(&|(number, light), s, n_dot_l| {
+            lookup.light_passing(number, light, (s.position, s.normal, n_dot_l))
+        });
+        let bright = lit(&|_, _, _| 1.0);
+        compared += 1;
+        dark += usize::from(cpu.max_element() < 0.8 * bright.max_element());
+        let tolerance = 0.01 * cpu.max_element().max(0.02);
+        off += usize::from((radiance - cpu).abs().max_element() > tolerance);
+    }
+    (renderer, [compared, off, dark])
+}
+
 #[test]
 fn shading_with_shadows_equals_its_twin() {
-    let scene = room();
-    let camera = &scene.cameras[0];
     for shadows in [Shadows::Hard, Shadows::Soft] {
-        let settings = shadowed(shadows);
-        let renderer = rendered(&scene, camera, &settings);
-        let lookup = lookup(&renderer, shadows);
-        let lights = renderer.lights().1;
-        let pixels = seen(&renderer, camera);
-        assert!(pixels.len() > 3_000);
-        let mut off = 0;
-        let mut dark = 0;
-        for Seen {
-            radiance, surface, ..
-        } in &pixels
-        {
-            let v = to_eye(camera, surface.position);
-            let lit = |passing: crate::shading::twin::Passing<'_>| {
-                let model = settings.lighting.model;
-                light_surface_with(&scene, lights, model, (surface, v), passing).radiance
-            };
-            let cpu = lit(&|(number, light), s, n_dot_l| {
-                lookup.light_passing(number, light, (s.position, s.normal, n_dot_l))
-            });
-            let bright = lit(&|_, _, _| 1.0);
-            dark += u32::from(cpu.max_element() < 0.8 * bright.max_element());
-            let tolerance = 0.01 * cpu.max_element().max(0.02);
-            off += u32::from((radiance - cpu).abs().max_element() > tolerance);
-        }
+        let (_, [compared, off, dark]) = compared_with_twin(&room(), &shadowed(shadows), |_| true);
+        assert!(compared > 3_000);
         // Where a comparison is a matter of the last bit, device and twin may differ.
         assert!(
-            off as usize * 200 < pixels.len(),
-            "{shadows:?}: {off} of {} pixels differ",
-            pixels.len()
+            off * 200 < compared,
+            "{shadows:?}: {off} of {compared} differ"
         );
         assert!(dark > 300, "{shadows:?}: only {dark} pixels lie in shadow");
     }
+}
+
+/// Coarse shading whose sample of 2 x 2 pixels is the lower right one, left as it is.
+fn coarse_by_eye(shadows: Shadows, sizes: ShadowSizes) -> Settings {
+    shadowed(shadows).with(|s| {
+        s.lighting.shadow_sizes = sizes;
+        s.shading.mode = Shading::Coarse;
+        s.rate.force = true;
+        s.coarse.history = false;
+        s.coarse.composite = crate::Composite::Nearest;
+        s.coarse.coarsest_level = 1;
+        s.coarse.refine_edges = crate::RefineEdges::Off;
+        s.eye.quality_jod = 8.0;
+        s.eye.display = "120".parse().unwrap();
+        s.eye.gaze = [0.1, 0.1];
+    })
+}
+
+#[test]
+fn tiles_as_coarse_as_the_samples_equal_the_twin() {
+    let mut scene = room();
+    generate::add_point_lights(&mut scene, 12, 3);
+    for light in &mut scene.lights {
+        light.range_m = light.range_m.map(|range| 0.4 * range);
+    }
+    for shadows in [Shadows::Hard, Shadows::Soft] {
+        let settings = coarse_by_eye(shadows, ShadowSizes::Rate).with(|s| {
+            s.picture.width = 300;
+            s.picture.height = 200;
+        });
+        let (renderer, [compared, off, dark]) =
+            compared_with_twin(&scene, &settings, |[x, y]| x % 2 == 1 && y % 2 == 1);
+        let words = renderer.shadows().rows().iter().flatten();
+        let narrow = words.filter(|&word| word >> 24 == 0x82).count();
+        assert!(narrow > 5, "{narrow} tiles that are coarser");
+        assert!(compared > 5_000 && dark > 500, "{compared}, {dark}");
+        assert!(
+            off * 200 < compared,
+            "{shadows:?}: {off} of {compared} differ"
+        );
+    }
+}
+
+#[test]
+fn only_coarse_shading_by_the_eye_makes_tiles_coarser() {
+    let scene = room();
+    let camera = &scene.cameras[0];
+    let drawn = |change: &dyn Fn(&mut Settings)| {
+        let settings = coarse_by_eye(Shadows::Soft, ShadowSizes::Rate);
+        let mut renderer = rendered(&scene, camera, &settings.with(|s| change(s)));
+        (
+            renderer.redraw(camera).shadows.unwrap().texels,
+            picture(&renderer),
+        )
+    };
+    let by_view = |change: &dyn Fn(&mut Settings)| {
+        drawn(&|s| {
+            change(s);
+            s.lighting.shadow_sizes = ShadowSizes::View;
+        })
+    };
+    let coarser = drawn(&|_| ());
+    assert!(coarser.0 < by_view(&|_| ()).0);
+    let full = |s: &mut Settings| s.shading.mode = Shading::Full;
+    let variable = |s: &mut Settings| {
+        s.shading.mode = Shading::Variable;
+        s.coarse.source = RateSource::Content;
+    };
+    let radii = |s: &mut Settings| s.coarse.source = RateSource::Radii;
+    for change in [&full as &dyn Fn(&mut Settings), &variable, &radii] {
+        assert_eq!(drawn(change), by_view(change));
+    }
+}
+
+#[test]
+fn a_gaze_that_comes_back_finds_its_tiles() {
+    let mut scene = room();
+    generate::add_point_lights(&mut scene, 12, 3);
+    let camera = scene.cameras[0].clone();
+    let at = |gaze| coarse_by_eye(Shadows::Soft, ShadowSizes::Rate).with(|s| s.eye.gaze = gaze);
+    let mut film = Film::new(&scene, &at([0.1, 0.1]));
+    let mut look = |gaze| {
+        pollster::block_on(film.renderer.set_settings(&at(gaze))).unwrap();
+        let stats = film.draw(&camera).shadows.unwrap();
+        (stats.tiles_drawn, stats.texels, picture(&film.renderer))
+    };
+    let first = look([0.1, 0.1]);
+    let (drawn, texels, _) = look([0.9, 0.9]);
+    assert!(drawn > 0 && texels != first.1);
+    let back = look([0.1, 0.1]);
+    assert_eq!((back.0, back.1), (0, first.1));
+    assert_eq!(back.2, first.2);
 }
 
 #[test]

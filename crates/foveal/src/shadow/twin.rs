@@ -19,12 +19,14 @@ pub(crate) struct Lookup {
 pub(super) struct ShadowTile {
     corner: [u32; 2],
     side: u32,
+    is_narrow: bool,
 }
 
 fn tile_of(word: u32) -> Option<ShadowTile> {
     (word != 0).then(|| ShadowTile {
         corner: [(word & 0x3ff) * 16, (word >> 10 & 0x3ff) * 16],
         side: 1 << (word >> 20 & 31),
+        is_narrow: word >> 25 & 1 != 0,
     })
 }
 
@@ -50,10 +52,13 @@ impl Lookup {
             let inside = at.floor().clamp(Vec2::ZERO, Vec2::splat(side - 1.0));
             return self.passes(tile, inside.x as u32, inside.y as u32, depth);
         }
-        // The mean of three by three comparisons a texel apart, each blended between four texels.
+        // The mean of three by three comparisons a texel apart, each blended between four texels;
+        // one of them where the filter is narrow.
         let inside = at.clamp(Vec2::splat(2.0), Vec2::splat(side - 2.0));
         let mut sum = 0.0;
-        for (i, j) in (0..9).map(|k| (k % 3, k / 3)) {
+        let taps = if tile.is_narrow { 4..5 } else { 0..9 };
+        let count = taps.len() as f32;
+        for (i, j) in taps.map(|k| (k % 3, k / 3)) {
             let p = inside + Vec2::new(i as f32, j as f32) - 1.5;
             let low = p.floor();
             let f = p - low;
@@ -66,12 +71,13 @@ impl Lookup {
             let lower = at(0, 1) * (1.0 - f.x) + at(1, 1) * f.x;
             sum += upper * (1.0 - f.y) + lower * f.y;
         }
-        sum / 9.0
+        sum / count
     }
 
-    fn offset(&self, texel_m: f32, n_dot_l: f32) -> f32 {
+    fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
         let slope = (1.0 - n_dot_l * n_dot_l).max(0.0).sqrt();
-        texel_m * self.row(0)[0] * (0.4 + slope)
+        let filter = if tile.is_narrow { 0.5 } else { 1.0 };
+        texel_m * self.row(0)[0] * (0.4 + slope) * filter
     }
 
     /// `light_passing` in the shader.
@@ -115,7 +121,7 @@ impl Lookup {
         let tangent = if spot > 0.0 { spot } else { 1.0 };
         let inner = tile.side as f32 - 2.0 * BORDER;
         let texel_m = 2.0 * tangent * axes[2].dot(from_light) / inner;
-        let moved = from_light + normal * self.offset(texel_m, n_dot_l);
+        let moved = from_light + normal * self.offset(&tile, texel_m, n_dot_l);
         let at = Vec3::from(axes.map(|axis| axis.dot(moved)));
         if at.z <= near {
             return 1.0;
@@ -134,7 +140,7 @@ impl Lookup {
             return 1.0;
         };
         let [_, _, end, per_length] = self.row(first + 1);
-        let moved = position + normal * self.offset(texel_m, n_dot_l);
+        let moved = position + normal * self.offset(&tile, texel_m, n_dot_l);
         let at = (self.on_plane(first, moved) - center) / texel_m;
         let depth = (end - direction.dot(moved)) * per_length;
         let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
