@@ -47,6 +47,10 @@ pub(crate) fn missing(
             s.lighting.environment != EnvironmentSource::None,
             "Needs Environment: other than none",
         ),
+        "light-radius" | "sun-angle" => unless(
+            s.lighting.shadows == Shadows::Contact,
+            "Needs Shadows: contact",
+        ),
         "shadow-sizes" => unless(
             s.lighting.shadows != Shadows::Off,
             "Needs Shadows: other than off",

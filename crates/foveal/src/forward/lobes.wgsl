@@ -8,6 +8,7 @@
 #import shared/material.wgsl
 #import shared/surface.wgsl
 #import shadow/lookup.wgsl
+#import shadow/tile.wgsl
 
 // Which of the bound textures each of the material's places reads, from 1 on, four bits each.
 override LOBE_TEXTURES: u32 = 0u;

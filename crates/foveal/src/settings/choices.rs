@@ -51,6 +51,8 @@ pub enum Shadows {
     Hard,
     /// Nine comparisons, each blended between texels.
     Soft,
+    /// As many as it takes to fade with the distance from what casts the shadow.
+    Contact,
 }
 
 /// Sizes of shadow tiles with coarse shading whose rates follow the eye's resolution.

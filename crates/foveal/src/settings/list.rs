@@ -94,7 +94,8 @@ settings! {
         /// view, brute takes all (the reference). The picture is the same.
         lights => assignment: LightAssignment = LightAssignment::default(), "Lights", Kind::choice::<LightAssignment>();
         /// Shadows of all lights: off lets light pass through everything, hard compares once per
-        /// light and sample, soft nine times, which smooths edges over three texels.
+        /// light and sample, soft nine times, which smooths edges over three texels. contact fades
+        /// with the distance from what casts the shadow, as by lamps with a size.
         shadows => shadows: Shadows = Shadows::default(), "Shadows", Kind::choice::<Shadows>();
         /// Side of the shadow atlas in texels, rounded down to a power of two. It takes 4 bytes a
         /// texel: 4096 takes 64 MiB. Where it is full, all shadows become coarser alike.
@@ -107,6 +108,11 @@ settings! {
         /// as for full shading, rate as coarse as the samples that show them, which leaves more of a
         /// small atlas for what is seen sharply. Other ways of shading always take view.
         shadow_sizes => shadow_sizes: ShadowSizes = ShadowSizes::default(), "Shadow sizes", Kind::choice::<ShadowSizes>();
+        /// Radius of point and spot lamps in metres, by which contact shadows fade.
+        light_radius => light_radius_m: f32 = 0.05, "Lamp radius", Kind::Number { least: 0.0, most: 0.5 };
+        /// Angle in degrees that directional lights fill in the sky, by which contact shadows fade.
+        /// The sun fills 0.53.
+        sun_angle => sun_angle_deg: f32 = 0.53, "Sun angle", Kind::Number { least: 0.0, most: 10.0 };
         /// Light from all around: gradient is the sky of the scene as a formula, sky the same
         /// filtered by roughness, image a picture of all directions, none is black. On the command
         /// line also the name of a .hdr or .exr file. With gradient rough metals mirror a hard

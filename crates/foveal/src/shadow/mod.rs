@@ -11,6 +11,8 @@
 mod atlas;
 mod changed;
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod culling_tests;
 mod footprint;
 mod hidden;

@@ -10,7 +10,7 @@ use super::kept::{KeptTiles, Received};
 use super::pass::{CasterPass, TileDraw};
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
 use super::receivers::{NearCells, Reach, Receivers, SeenCells, SeenSince};
-use super::records::{Row, rows};
+use super::records::{LookupSettings, Row, rows};
 use super::volume::Volume;
 use crate::geometry::DrawList;
 use crate::gpu::{Gpu, Table};
@@ -37,7 +37,7 @@ struct Drawing {
     pass: CasterPass,
     kept: KeptTiles,
     atlas_level: u32,
-    texels_moved: f32,
+    lookup: LookupSettings,
     plan: Plan,
     hidden: HiddenCasters,
     /// Since when cells are seen, and the frame that looked at them last.
@@ -108,7 +108,7 @@ impl ShadowStage {
                     pass: CasterPass::new(gpu, frame_layout, material_layout),
                     kept: KeptTiles::new(atlas_level),
                     atlas_level,
-                    texels_moved: lighting.shadow_bias,
+                    lookup: LookupSettings::new(lighting),
                     plan: Plan::default(),
                     hidden: HiddenCasters::default(),
                     seen: SeenSince::default(),
@@ -168,7 +168,8 @@ impl ShadowStage {
             return Vec::new();
         }
         let kept = &drawing.kept;
-        changed_places(&scene.lights, boxes, &scene.bounds, |light| {
+        let lamps = drawing.lookup.lamps();
+        changed_places(&scene.lights, lamps, boxes, &scene.bounds, |light| {
             let first = (light * TILES_PER_LIGHT) as u32;
             kept.has_any(first..first + TILES_PER_LIGHT as u32)
         })
@@ -195,12 +196,7 @@ impl ShadowStage {
         drawing.counts = Counts::default();
         if drawing.settled.as_ref() != Some(&now) {
             drawing.find_tiles(scene, &now);
-            let rows = rows(
-                &scene.lights,
-                &drawing.plan,
-                &drawing.kept,
-                drawing.texels_moved,
-            );
+            let rows = rows(&scene.lights, &drawing.plan, &drawing.kept, &drawing.lookup);
             if rows != self.written {
                 self.rows.write(gpu, bytemuck::cast_slice(&rows));
                 self.written = rows;
@@ -313,7 +309,7 @@ impl Drawing {
             frame: self.frame,
             all: cells,
             new: &new,
-            bias: self.texels_moved,
+            reach: (self.lookup.texels_moved, self.lookup.reach()),
         };
         let receivers = match &now.receivers {
             Receivers::Cells(_) => {

@@ -115,7 +115,7 @@ fn compared_with_twin(
 
 #[test]
 fn shading_with_shadows_equals_its_twin() {
-    for shadows in [Shadows::Hard, Shadows::Soft] {
+    for shadows in [Shadows::Hard, Shadows::Soft, Shadows::Contact] {
         let (_, [compared, off, dark]) = compared_with_twin(&room(), &shadowed(shadows), |_| true);
         assert!(compared > 3_000);
         // Where a comparison is a matter of the last bit, device and twin may differ.

@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::records::Row;
+use super::records::{CONTACT_REACH, Row};
 use super::volume::BORDER;
 use crate::Shadows;
 use crate::lights::LightUniform;
@@ -30,6 +30,16 @@ fn tile_of(word: u32) -> Option<ShadowTile> {
     })
 }
 
+/// Places that `shadow/contact.wgsl` looks at, and compares.
+const SEARCHED: usize = 16;
+const COMPARED: usize = 24;
+
+/// Unit vectors, each turned by the golden angle from the one before.
+fn golden_spiral() -> impl Iterator<Item = Vec2> {
+    let by = Vec2::new(-0.737_368_9, 0.675_490_3);
+    std::iter::successors(Some(Vec2::X), move |d| Some(by.rotate(*d)))
+}
+
 impl Lookup {
     fn row(&self, row: usize) -> [f32; 4] {
         self.rows[row].map(f32::from_bits)
@@ -46,8 +56,11 @@ impl Lookup {
         f32::from(u8::from(depth >= nearest))
     }
 
-    fn passing(&self, tile: &ShadowTile, at: Vec2, depth: f32) -> f32 {
+    fn passing(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
         let side = tile.side as f32;
+        if self.shadows == Shadows::Contact {
+            return self.contact_passing(tile, at, depth, softness);
+        }
         if self.shadows == Shadows::Hard {
             let inside = at.floor().clamp(Vec2::ZERO, Vec2::splat(side - 1.0));
             return self.passes(tile, inside.x as u32, inside.y as u32, depth);
@@ -74,9 +87,66 @@ impl Lookup {
         sum / count
     }
 
+    /// `mean_softness` in `shadow/contact.wgsl`.
+    fn mean_softness(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
+        let (mut sum, mut found) = (0.0, 0.0);
+        for (i, direction) in golden_spiral().take(SEARCHED).enumerate() {
+            let radius = CONTACT_REACH * (i as f32 + 0.5) / SEARCHED as f32;
+            let last = Vec2::splat(tile.side as f32 - 1.0);
+            let texel = (at + radius * direction).floor().clamp(Vec2::ZERO, last);
+            let [left, top] = tile.corner;
+            let row = (top + texel.y as u32) * self.side;
+            let nearest = self.atlas[(row + left + texel.x as u32) as usize];
+            let fade = (nearest - depth) * softness;
+            if fade > radius {
+                (sum, found) = (sum + fade, found + 1.0);
+            }
+        }
+        sum / f32::max(found, 1.0)
+    }
+
+    /// `compared_at` in `shadow/contact.wgsl`.
+    fn compared_at(&self, tile: &ShadowTile, at: Vec2, depth: f32) -> f32 {
+        let side = tile.side as f32;
+        let inside = at.clamp(Vec2::ONE, Vec2::splat(side - 1.0)) - 0.5;
+        let first = inside.floor().min(Vec2::splat(side - 2.0));
+        let f = inside - first;
+        let at = |x: u32, y: u32| self.passes(tile, first.x as u32 + x, first.y as u32 + y, depth);
+        let upper = at(0, 0) * (1.0 - f.x) + at(1, 0) * f.x;
+        let lower = at(0, 1) * (1.0 - f.x) + at(1, 1) * f.x;
+        upper * (1.0 - f.y) + lower * f.y
+    }
+
+    /// `contact_passing` in `shadow/contact.wgsl`.
+    fn contact_passing(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
+        let fades = self.mean_softness(tile, at, depth, softness);
+        let reach = fades.clamp(1.0, CONTACT_REACH);
+        let slack = if fades > 1.0 {
+            0.5 * reach / softness
+        } else {
+            0.0
+        };
+        let compared = golden_spiral().take(COMPARED).enumerate();
+        let sum: f32 = compared
+            .map(|(i, direction)| {
+                let part = ((i as f32 + 0.5) / COMPARED as f32).sqrt();
+                self.compared_at(tile, at + reach * part * direction, depth + slack * part)
+            })
+            .sum();
+        sum / COMPARED as f32
+    }
+
+    fn pyramid_softness(&self, near: f32, tangent: f32, inner: f32) -> f32 {
+        self.row(0)[1] * (0.5 * inner) / (tangent * near)
+    }
+
     fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
         let slope = (1.0 - n_dot_l * n_dot_l).max(0.0).sqrt();
-        let filter = if tile.is_narrow { 0.5 } else { 1.0 };
+        let filter = if tile.is_narrow && self.shadows != Shadows::Contact {
+            0.5
+        } else {
+            1.0
+        };
         texel_m * self.row(0)[0] * (0.4 + slope) * filter
     }
 
@@ -127,7 +197,9 @@ impl Lookup {
             return 1.0;
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
-        self.passing(&tile, place + 0.5 * tile.side as f32, near / at.z)
+        let softness = self.pyramid_softness(near, tangent, inner);
+        let place = place + 0.5 * tile.side as f32;
+        self.passing(&tile, place, near / at.z, softness)
     }
 
     fn sun_passing(
@@ -144,7 +216,8 @@ impl Lookup {
         let at = (self.on_plane(first, moved) - center) / texel_m;
         let depth = (end - direction.dot(moved)) * per_length;
         let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
-        self.passing(&tile, place, depth)
+        let softness = self.row(0)[2] / (per_length * texel_m);
+        self.passing(&tile, place, depth, softness)
     }
 
     /// Across and up, seen along a directional light's rays.

@@ -9,6 +9,7 @@
 #import reduced/missing.wgsl
 #else
 #import shadow/lookup.wgsl
+#import shadow/tile.wgsl
 #endif
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.

@@ -13,7 +13,7 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 7] = [
+const MISSING_KEYS: [&str; 9] = [
     "view",
     "geometry",
     "material-dispatch",
@@ -21,6 +21,8 @@ const MISSING_KEYS: [&str; 7] = [
     "shadow-atlas",
     "shadow-bias",
     "shadow-sizes",
+    "light-radius",
+    "sun-angle",
 ];
 
 impl Setting {
