@@ -102,8 +102,8 @@ impl KeptTiles {
 
     /// Whether any of these slots has a tile.
     pub(super) fn has_any(&self, slots: std::ops::Range<u32>) -> bool {
-        let tiles = self.tiles.range((slots.start, 0)..(slots.end, 0));
-        tiles.count() > 0
+        let mut tiles = self.tiles.range((slots.start, 0)..(slots.end, 0));
+        tiles.next().is_some()
     }
 
     /// The tile has been drawn, without some casters.

@@ -85,9 +85,10 @@ impl ViewOfPlan {
             let part = part_of_picture(volume, &self.eyes[eye])?;
             Some(rates.level_within(eye, part))
         };
-        // What neither eye sees is as coarse as it gets.
-        let levels = [0, 1].map(|eye| of_eye(eye).unwrap_or(rates.coarsest()));
-        levels[0].min(levels[1]) as f32
+        let eyes = if self.eyes[0] == self.eyes[1] { 1 } else { 2 };
+        // What no eye sees is as coarse as it gets.
+        let finest = (0..eyes).filter_map(of_eye).min();
+        finest.unwrap_or(rates.coarsest()) as f32
     }
 
     fn pixel_at(&self, distance: f32) -> f32 {

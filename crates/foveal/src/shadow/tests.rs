@@ -200,6 +200,40 @@ fn only_coarse_shading_by_the_eye_makes_tiles_coarser() {
 }
 
 #[test]
+fn what_is_seen_at_full_rate_has_the_shadows_of_uniform_tiles() {
+    let mut scene = room();
+    generate::add_point_lights(&mut scene, 12, 3);
+    for light in &mut scene.lights {
+        light.range_m = light.range_m.map(|range| 0.4 * range);
+    }
+    let camera = &scene.cameras[0];
+    let sizes = |sizes| {
+        let settings = coarse_by_eye(Shadows::Soft, sizes).with(|s| {
+            s.picture.width = 300;
+            s.picture.height = 200;
+        });
+        (picture(&rendered(&scene, camera, &settings)), settings)
+    };
+    let ((view, settings), (rate, _)) = (sizes(ShadowSizes::View), sizes(ShadowSizes::Rate));
+    let eyes = crate::stereo::eyes(&settings, camera).unwrap();
+    let request = crate::rate::RequestUniform::new(&settings, &eyes, None);
+    let (mut fine, mut differ_there, mut differ_elsewhere) = (0, 0, 0);
+    for (i, (a, b)) in view.chunks_exact(4).zip(rate.chunks_exact(4)).enumerate() {
+        let (x, y) = (i as u32 % 300, i as u32 / 300);
+        let is_fine = request.level(&settings, x, y, None) == 0;
+        fine += u32::from(is_fine);
+        differ_there += u32::from(is_fine && a != b);
+        differ_elsewhere += u32::from(!is_fine && a != b);
+    }
+    // Tiles may lie elsewhere in the atlas.
+    assert!(
+        fine > 150 && differ_there * 200 <= fine,
+        "{differ_there} of {fine}"
+    );
+    assert!(differ_elsewhere > 20, "{differ_elsewhere}");
+}
+
+#[test]
 fn a_gaze_that_comes_back_finds_its_tiles() {
     let mut scene = room();
     generate::add_point_lights(&mut scene, 12, 3);
