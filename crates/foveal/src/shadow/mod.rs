@@ -25,6 +25,8 @@ mod plan;
 mod rays;
 mod receivers;
 mod records;
+#[cfg(test)]
+mod sizes_tests;
 mod stage;
 #[cfg(test)]
 mod tests;
