@@ -2,7 +2,7 @@
 
 use foveal::{
     Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView, EnvironmentSource,
-    EyeFrusta, Geometry, Output, RateCombine, RateSource, Settings, Shading, Stereo,
+    EyeFrusta, Geometry, Output, RateCombine, RateSource, Settings, Shading, Shadows, Stereo,
 };
 use toml::{Table, Value};
 
@@ -47,6 +47,19 @@ pub(crate) fn missing(
             s.lighting.environment != EnvironmentSource::None,
             "Needs Environment: other than none",
         ),
+        "light-radius" | "sun-angle" => unless(
+            s.lighting.shadows == Shadows::Contact,
+            "Needs Shadows: contact",
+        ),
+        "shadow-sizes" => unless(
+            s.lighting.shadows != Shadows::Off,
+            "Needs Shadows: other than off",
+        )
+        .or(unless(coarse, "Needs Shading: coarse"))
+        .or(unless(
+            uses(s, RateSource::Foveated),
+            "Needs Rate from: foveated",
+        )),
         "material-dispatch" => unless(
             s.geometry.path == Geometry::Visibility,
             "Needs Geometry, Path: visibility",

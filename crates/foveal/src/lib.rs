@@ -56,8 +56,8 @@ pub use settings::{
     EdgeTest, EnvironmentSource, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings,
     Kind, Lens, LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch,
     Output, PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges,
-    SamplePattern, Setting, Settings, Shading, ShadingSettings, Shadows, Stereo, StereoSettings,
-    ToneMap, VariableSettings,
+    SamplePattern, Setting, Settings, Shading, ShadingSettings, ShadowSizes, Shadows, Stereo,
+    StereoSettings, ToneMap, VariableSettings,
 };
 
 pub use stats::{

@@ -7,7 +7,7 @@ use foveal_scene::{Camera, Scene, Texture};
 
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingStage;
-use crate::environment::EnvironmentStage;
+use crate::environment::{EnvironmentStage, ToBind};
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer};
@@ -159,7 +159,7 @@ impl Renderer {
         gpu.check_limits()?;
         settings.validate(&gpu.device.limits())?;
         let trap = ErrorTrap::new(gpu, "preparing the renderer");
-        let frame_bindings = FrameBindings::new(gpu, None);
+        let frame_bindings = FrameBindings::new(gpu, ToBind::default());
         let material_layout = material_layout(gpu);
         let upscale = Upscale::new(gpu, settings);
         let present = PresentPass::new(gpu);

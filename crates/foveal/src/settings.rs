@@ -12,7 +12,7 @@ mod variable;
 
 pub use choices::{
     Antialiasing, Background, Culling, CullingEyes, DebugView, EdgeTest, EnvironmentSource,
-    LightAssignment, LightingModel, MaterialDispatch, SamplePattern, Shadows, ToneMap,
+    LightAssignment, LightingModel, MaterialDispatch, SamplePattern, ShadowSizes, Shadows, ToneMap,
 };
 
 pub use coarse::{

@@ -171,3 +171,24 @@ fn shadows_of_lights_are_nearly_as_traced() {
         assert!(off > 2.0 * error, "{name}: {off}");
     }
 }
+
+#[test]
+fn shadows_of_lamps_are_nearer_to_traced_ones_where_they_fade_by_contact() {
+    let mut scene = generate::by_name("cornell").expect("a generated scene");
+    scene.materials = scene.materials.iter().map(plain).collect();
+    let (radius, angle) = (0.15, 6.0_f32);
+    let settings = |shadows| {
+        Settings::default().with(|s| {
+            s.lighting.environment = EnvironmentSource::None;
+            s.lighting.shadows = shadows;
+            s.lighting.light_radius_m = radius;
+            s.lighting.sun_angle_deg = angle;
+        })
+    };
+    let mut reference = Reference::new(&scene);
+    reference.lamps = [radius, (0.5 * angle).to_radians().tan()];
+    let [soft, contact] = [Shadows::Soft, Shadows::Contact]
+        .map(|shadows| flip(&scene, settings(shadows), 0.0, &reference));
+    println!("lamps with a size: FLIP {contact:.4}; {soft:.4} with filters of one width");
+    assert!(contact < 0.9 * soft, "{contact}, {soft}");
+}

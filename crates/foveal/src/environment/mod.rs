@@ -8,6 +8,8 @@
 //! `shared/environment.wgsl` looks it up; its CPU twin is `twin.rs`.
 
 mod binding;
+#[cfg(test)]
+mod bounces_tests;
 mod cube;
 #[cfg(test)]
 mod frame_tests;
@@ -25,5 +27,5 @@ pub(crate) mod twin;
 pub(crate) use binding::EnvironmentBinding;
 pub use map::EnvironmentMap;
 pub(crate) use stage::{
-    ChosenEnvironment, EnvironmentStage, EnvironmentTerms, environment_constants,
+    ChosenEnvironment, EnvironmentStage, EnvironmentTerms, ToBind, environment_constants,
 };

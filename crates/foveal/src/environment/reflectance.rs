@@ -86,6 +86,64 @@ pub(super) fn table() -> &'static [[f32; 3]] {
     })
 }
 
+/// Samples per entry of [`albedos`], along each of two axes.
+const ALBEDO_SAMPLES: u32 = 32;
+
+/// Part of light from everywhere that GGX reflects in one bounce where nothing is absorbed, by visible
+/// normals (Heitz 2018, 'Sampling the GGX Distribution of Visible Normals').
+fn albedo(cosine: f32, roughness: f32) -> f32 {
+    let alpha = (roughness * roughness).max(0.002);
+    let a2 = alpha * alpha;
+    let cosine = cosine.max(1e-3);
+    let v = Vec3::new((1.0 - cosine * cosine).max(0.0).sqrt(), 0.0, cosine);
+    let stretched = (v * Vec3::new(alpha, alpha, 1.0)).normalize();
+    let across = Vec3::Y;
+    let up = stretched.cross(across);
+    let slanted = |cosine: f32| (cosine * cosine * (1.0 - a2) + a2).sqrt();
+    let mut sum = 0.0;
+    for i in 0..ALBEDO_SAMPLES * ALBEDO_SAMPLES {
+        let at = |i: u32| (i as f32 + 0.5) / ALBEDO_SAMPLES as f32;
+        let radius = at(i % ALBEDO_SAMPLES).sqrt();
+        let (sin, cos) = (TAU * at(i / ALBEDO_SAMPLES)).sin_cos();
+        let x = radius * cos;
+        let part = 0.5 * (1.0 + stretched.z);
+        let y = (1.0 - part) * (1.0 - x * x).sqrt() + part * radius * sin;
+        let z = (1.0 - x * x - y * y).max(0.0).sqrt();
+        let n = across * x + up * y + stretched * z;
+        let h = Vec3::new(alpha * n.x, alpha * n.y, n.z.max(1e-6)).normalize();
+        let l = 2.0 * v.dot(h) * h.z - v.z;
+        if l > 0.0 {
+            // Masking and shadowing together, over masking alone.
+            sum += l * (cosine + slanted(cosine)) / (l * slanted(cosine) + cosine * slanted(l));
+        }
+    }
+    sum / (ALBEDO_SAMPLES * ALBEDO_SAMPLES) as f32
+}
+
+/// Albedos of one bounce: cosines between normal and view across, roughness down, both from 0 in the
+/// first entry to 1 in the last.
+pub(super) fn albedos() -> &'static [f32] {
+    static TABLE: OnceLock<Vec<f32>> = OnceLock::new();
+    TABLE.get_or_init(|| {
+        let at = |i: usize| i as f32 / (SIDE - 1) as f32;
+        (0..SIDE * SIDE)
+            .map(|i| albedo(at(i % SIDE), at(i / SIDE)))
+            .collect()
+    })
+}
+
+/// The albedo between the entries, as shaders look it up.
+#[cfg(test)]
+pub(super) fn looked_up_albedo(cosine: f32, roughness: f32) -> f32 {
+    let last = (SIDE - 1) as f32;
+    let at = Vec2::new(cosine, roughness) * last;
+    let low = at.floor().min(Vec2::splat(last - 1.0));
+    let f = at - low;
+    let entry = |x: f32, y: f32| albedos()[y as usize * SIDE + x as usize];
+    let row = |y: f32| entry(low.x, y) * (1.0 - f.x) + entry(low.x + 1.0, y) * f.x;
+    row(low.y) * (1.0 - f.y) + row(low.y + 1.0) * f.y
+}
+
 /// The table's entry between the entries, as shaders look it up.
 #[cfg(test)]
 pub(super) fn looked_up(cosine: f32, roughness: f32) -> Vec3 {

@@ -13,6 +13,8 @@ pub(crate) struct EnvironmentStage {
     /// The last scene's sky, filtered.
     sky: Option<(Environment, EnvironmentMap)>,
     in_use: Option<EnvironmentMap>,
+    /// Albedos of one bounce are bound.
+    has_albedos: bool,
 }
 
 /// What a frame's uniform block has to say of the environment.
@@ -21,6 +23,15 @@ pub(crate) struct EnvironmentTerms<'a> {
     pub(crate) sky: &'a Environment,
     /// Where a map stands for the sky.
     pub(crate) map: Option<&'a EnvironmentMap>,
+}
+
+/// What is bound of an environment.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ToBind<'a> {
+    /// Without one, a black one.
+    pub(crate) map: Option<&'a EnvironmentMap>,
+    /// Whether albedos of one bounce are looked up.
+    pub(crate) albedos: bool,
 }
 
 /// A choice that is not in force yet.
@@ -32,9 +43,9 @@ pub(crate) struct ChosenEnvironment {
 }
 
 impl ChosenEnvironment {
-    /// The map to bind.
-    pub(crate) fn map(&self) -> Option<&EnvironmentMap> {
-        self.stage.map()
+    /// What to bind.
+    pub(crate) fn to_bind(&self) -> ToBind<'_> {
+        self.stage.to_bind()
     }
 }
 
@@ -65,12 +76,16 @@ impl EnvironmentStage {
             (Some(a), Some(b)) => a.is_same(b),
             _ => false,
         };
+        let wants_albedos = settings.lighting.multiple_scattering;
+        let lacks_albedos = wants_albedos && !self.has_albedos;
         ChosenEnvironment {
-            is_new: !is_same,
+            is_new: !is_same || lacks_albedos,
             stage: Self {
                 image,
                 sky: filtered,
                 in_use,
+                // What is bound stays.
+                has_albedos: wants_albedos || is_same && self.has_albedos,
             },
         }
     }
@@ -88,6 +103,14 @@ impl EnvironmentStage {
         }
     }
 
+    /// What is bound.
+    pub(crate) fn to_bind(&self) -> ToBind<'_> {
+        ToBind {
+            map: self.map(),
+            albedos: self.has_albedos,
+        }
+    }
+
     /// The map that was chosen.
     pub(crate) fn map(&self) -> Option<&EnvironmentMap> {
         self.in_use.as_ref()
@@ -95,7 +118,7 @@ impl EnvironmentStage {
 }
 
 /// Settings that change how shaders look the environment up.
-pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64); 2] {
+pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64); 3] {
     let environment = match settings.lighting.environment {
         EnvironmentSource::Gradient => 0,
         EnvironmentSource::Sky | EnvironmentSource::Image => 1,
@@ -109,5 +132,9 @@ pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64)
     [
         ("ENVIRONMENT", f64::from(environment)),
         ("BACKGROUND", f64::from(background)),
+        (
+            "MULTIPLE_SCATTERING",
+            f64::from(u8::from(settings.lighting.multiple_scattering)),
+        ),
     ]
 }

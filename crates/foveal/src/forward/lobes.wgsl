@@ -8,6 +8,7 @@
 #import shared/material.wgsl
 #import shared/surface.wgsl
 #import shadow/lookup.wgsl
+#import shadow/tile.wgsl
 
 // Which of the bound textures each of the material's places reads, from 1 on, four bits each.
 override LOBE_TEXTURES: u32 = 0u;
@@ -245,6 +246,9 @@ fn below_coat_reflected(s: LobedSurface, v: vec3f, l: vec3f, n_dot_l: f32) -> ve
     if (MATERIAL_CLASS & HAS_ANISOTROPY) != 0u {
         let h = normalize(v + l);
         r.specular = fresnel_of(s.base_mirror, saturate(dot(v, h))) * anisotropic_lobe(s, v, l, h, n_dot_l);
+        if MULTIPLE_SCATTERING {
+            r.specular *= s.base_mirror.gain;
+        }
     }
     let base = r.diffuse_weight * diffuse_color(s.base) * ((1.0 - s.transmission) / PI) + r.specular;
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
@@ -307,8 +311,12 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32) -> vec3f {
 }
 
 // Radiance that leaves a lobed surface towards the eye: as `light_surface` has it of others.
-fn lit_with_lobes(s: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
+fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
+    var s = lobed;
     let v = direction_to_eye(view_at(pixel), s.base.position);
+    if MULTIPLE_SCATTERING {
+        s.base_mirror.gain = further_bounces(s.base, v);
+    }
     let left = below_coat(s, v);
     var sum = s.base.emissive * left + lobes_ambient(s, v, left);
     let first = cluster_words_at(pixel, distance);

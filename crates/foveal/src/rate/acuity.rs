@@ -6,6 +6,8 @@
 //! [`EyeSettings::quality_jod`](crate::EyeSettings::quality_jod) names by the difference that is
 //! left.
 
+use glam::Vec3;
+
 use crate::Settings;
 use crate::stereo::Eye;
 
@@ -93,6 +95,18 @@ fn tangents([sx, sy, ox, oy]: [f32; 4], [x, y]: [f32; 2]) -> [f32; 2] {
     [(2.0 * x - 1.0) * sx + ox, (1.0 - 2.0 * y) * sy + oy]
 }
 
+/// Angle between two unit vectors in radians: twin of `angle_between` in `rate/fovea.wgsl`.
+pub(super) fn angle_between(a: Vec3, b: Vec3) -> f32 {
+    let half = (0.5 * a.distance(b)).min(0.75);
+    let s = half * half;
+    2.0 * half * (1.0 + s * (1.0 / 6.0 + s * (3.0 / 40.0 + s * (15.0 / 336.0))))
+}
+
+/// The level of the largest block that is no larger than `side` pixels.
+pub(super) fn level_of_side(side: f32) -> u32 {
+    side.log2().floor().max(0.0) as u32
+}
+
 /// The level that the left or only eye's picture requests at a position in pixels: twin of
 /// `foveated_level` in `rate/fovea.wgsl`.
 #[cfg(test)]
@@ -102,14 +116,10 @@ pub(super) fn level(request: &RequestUniform, s: &Settings, pixel: [f32; 2]) -> 
         pixel[0] / s.picture.width as f32,
         pixel[1] / s.picture.height as f32,
     ];
-    let to_pixel = direction(to_display, place);
-    let chord: f32 = (0..3)
-        .map(|i| (to_pixel[i] - request.gaze_direction[0][i]).powi(2))
-        .sum();
-    let half = (0.5 * chord.sqrt()).min(0.75);
-    let squared = half * half;
-    let series = 1.0 + squared * (1.0 / 6.0 + squared * (3.0 / 40.0 + squared * (15.0 / 336.0)));
-    let pixel_side = 2.0 * to_display[0] / s.picture.width as f32 * to_pixel[2];
-    let side = (request.block_at_gaze + request.block_growth * 2.0 * half * series) / pixel_side;
-    (side.log2().floor().max(0.0) as u32).min(request.coarsest)
+    let vector = |[x, y, z, _]: [f32; 4]| Vec3::new(x, y, z);
+    let to_pixel = vector(direction(to_display, place));
+    let eccentricity = angle_between(to_pixel, vector(request.gaze_direction[0]));
+    let pixel_side = 2.0 * to_display[0] / s.picture.width as f32 * to_pixel.z;
+    let side = (request.block_at_gaze + request.block_growth * eccentricity) / pixel_side;
+    level_of_side(side).min(request.coarsest)
 }

@@ -11,6 +11,7 @@
 //! pixels: finer is only the pixel itself.
 
 mod acuity;
+mod finest;
 mod image;
 mod map;
 mod pyramid;
@@ -20,6 +21,7 @@ mod targets;
 pub use image::RateImage;
 pub use pyramid::MinPyramid;
 
+pub(crate) use finest::FinestRate;
 pub(crate) use map::RateMapPass;
 pub(crate) use request::RequestUniform;
 pub(crate) use targets::RateTargets;

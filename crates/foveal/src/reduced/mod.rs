@@ -62,7 +62,8 @@ fn the_reduced_renderer_gives_the_full_ones_picture() {
     for name in ["cornell", "alpha", "materials-grid", "demo:1000"] {
         let scene = generate::by_name(name).expect("it is generated");
         let sky = small(161, 99).with(|s| s.lighting.environment = EnvironmentSource::Sky);
-        for settings in [small(161, 99), stereo.clone(), sky] {
+        let bounces = sky.clone().with(|s| s.lighting.multiple_scattering = true);
+        for settings in [small(161, 99), stereo.clone(), sky, bounces] {
             let camera = &scene.cameras[0];
             let full = picture(&rendered(&scene, camera, &settings));
             let ours = pollster::block_on(reduced(&scene, camera, &settings).read_picture());

@@ -36,7 +36,7 @@ impl Renderer {
         }
         let trap = ErrorTrap::new(&self.gpu, "uploading the environment");
         let bindings = &self.frame_bindings;
-        let bound = bindings.with_environment(&self.gpu, chosen.map());
+        let bound = bindings.with_environment(&self.gpu, chosen.to_bind());
         trap.finish().await?;
         Ok((chosen, Some(bound)))
     }

@@ -27,7 +27,7 @@ impl Renderer {
         }
         self.gpu.check_alive()?;
         let trap = ErrorTrap::new(&self.gpu, "going on after a failure");
-        let mut bindings = FrameBindings::new(&self.gpu, self.environment.map());
+        let mut bindings = FrameBindings::new(&self.gpu, self.environment.to_bind());
         bindings.write_instances(&self.gpu, self.scene.instance_uniforms());
         self.scene.write_posed(&self.gpu);
         let present = PresentPass::new(&self.gpu);

@@ -2,7 +2,6 @@
 
 use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
-use crate::FrameStats;
 use crate::antialias::Shadings;
 use crate::culling::{CullingCounts, has_cells, has_receivers};
 use crate::forward::TransmissionTargets;
@@ -10,10 +9,12 @@ use crate::frame::FrameUniform;
 use crate::geometry::{Draws, ResolveAt};
 use crate::gpu::CpuTimer;
 use crate::lights::{ClusterGrid, SceneLights};
+use crate::rate::FinestRate;
 use crate::recorder::Recorder;
 use crate::shading::{HistoryStage, Samples};
 use crate::shadow::Receivers;
 use crate::stereo::EyeLayout;
+use crate::{FrameStats, ShadowSizes};
 use foveal_scene::Camera;
 
 impl Renderer {
@@ -32,9 +33,11 @@ impl Renderer {
         cpu.stage("draw list");
         let clusters = self.upload(frame, seen);
         cpu.stage("upload");
-        self.find_shadows(seen);
+        let cameras = (frame.camera, frame.previous_camera.unwrap_or(frame.camera));
+        let plan = self.stages.plan(cameras);
+        self.find_shadows(seen, &plan);
         cpu.stage("shadows");
-        self.encode_frame(frame, seen, target, &clusters, cpu);
+        self.encode_frame((frame, &plan), seen, target, &clusters, cpu);
         self.submitted(culled, cpu)
     }
 
@@ -125,7 +128,7 @@ impl Renderer {
     }
 
     /// Finds the tiles of the shadow atlas that the frame needs and has not.
-    fn find_shadows(&mut self, seen: &Seen) {
+    fn find_shadows(&mut self, seen: &Seen, plan: &FramePlan) {
         let Stages {
             settings,
             shadows,
@@ -145,13 +148,20 @@ impl Renderer {
             None => Receivers::Instances(self.draw_list.drawn.clone()),
         };
         let scene = (&self.scene, receivers);
-        shadows.prepare(&self.gpu, settings, scene, &seen.eyes);
+        let follow_rates = settings.lighting.shadow_sizes == ShadowSizes::Rate
+            && plan.rates == SampleChoice::Coarse;
+        let rates = if follow_rates {
+            FinestRate::new(settings, &seen.eyes)
+        } else {
+            None
+        };
+        shadows.prepare(&self.gpu, settings, scene, &seen.eyes, rates);
     }
 
     /// Encodes and submits the frame's passes.
     fn encode_frame(
         &mut self,
-        frame: &Frame<'_>,
+        (frame, plan): (&Frame<'_>, &FramePlan),
         seen: &Seen,
         target: Option<Target<'_>>,
         clusters: &ClusterGrid,
@@ -159,7 +169,6 @@ impl Renderer {
     ) {
         let (gpu, stages) = (&self.gpu, &mut self.stages);
         let cameras = (frame.camera, frame.previous_camera.unwrap_or(frame.camera));
-        let plan = stages.plan(cameras);
         if let Some(history) = stages.coarse.as_mut().and_then(|c| c.history.as_mut()) {
             let keeps_light = plan.rates == SampleChoice::Coarse;
             history.begin(gpu, &stages.settings, keeps_light);
@@ -179,10 +188,10 @@ impl Renderer {
             .lights
             .assign(recorder, &draws.scene.light_buffer, clusters);
         stages.shadows.draw(recorder, draws.scene);
-        stages.fill_gbuffer(recorder, draws, &plan);
-        stages.find_rates(recorder, draws, (seen, cameras), &plan);
+        stages.fill_gbuffer(recorder, draws, plan);
+        stages.find_rates(recorder, draws, (seen, cameras), plan);
         if plan.is_lit {
-            stages.light(recorder, draws, &plan);
+            stages.light(recorder, draws, plan);
             stages.blend(recorder, draws);
             stages.tone_map(recorder);
         } else {

@@ -3,7 +3,7 @@
 
 use super::InstanceUniform;
 use crate::Error;
-use crate::environment::{EnvironmentBinding, EnvironmentMap};
+use crate::environment::{EnvironmentBinding, ToBind};
 use crate::frame::FrameUniform;
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, uniform};
 
@@ -27,7 +27,7 @@ pub(crate) struct BoundEnvironment {
 
 impl FrameBindings {
     /// Bindings without instances; without a map, the environment is black.
-    pub(crate) fn new(gpu: &Gpu, map: Option<&EnvironmentMap>) -> Self {
+    pub(crate) fn new(gpu: &Gpu, around: ToBind<'_>) -> Self {
         let table = Table::binding_type(gpu);
         let [cube, reflectances, sampler] = EnvironmentBinding::TYPES;
         let types = [uniform(), table, table, cube, reflectances, sampler];
@@ -47,7 +47,7 @@ impl FrameBindings {
         // A binding must hold one instance, even where there is none.
         instances.write(gpu, &[0; size_of::<InstanceUniform>()]);
         let drawn = Table::new(gpu, "drawn");
-        let environment = EnvironmentBinding::new(gpu, map);
+        let environment = EnvironmentBinding::new(gpu, around);
         let tables = (&instances, &drawn);
         let group = group(gpu, &layout, &frame, tables, &environment);
         Self {
@@ -75,12 +75,8 @@ impl FrameBindings {
     }
 
     /// Another environment with the group that binds it; without a map, one that is black.
-    pub(crate) fn with_environment(
-        &self,
-        gpu: &Gpu,
-        map: Option<&EnvironmentMap>,
-    ) -> BoundEnvironment {
-        let binding = EnvironmentBinding::new(gpu, map);
+    pub(crate) fn with_environment(&self, gpu: &Gpu, around: ToBind<'_>) -> BoundEnvironment {
+        let binding = EnvironmentBinding::new(gpu, around);
         let tables = (&self.instances, &self.drawn);
         let group = group(gpu, &self.layout, &self.frame, tables, &binding);
         BoundEnvironment { binding, group }

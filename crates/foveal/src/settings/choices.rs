@@ -51,6 +51,23 @@ pub enum Shadows {
     Hard,
     /// Nine comparisons, each blended between texels.
     Soft,
+    /// As many as it takes to fade with the distance from what casts the shadow.
+    Contact,
+}
+
+/// Sizes of shadow tiles with coarse shading whose rates follow the eye's resolution.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum ShadowSizes {
+    /// By distance alone.
+    #[default]
+    View,
+    /// By distance, and as much coarser as the samples are wherever a tile's shadows may be seen.
+    Rate,
 }
 
 /// Light from everywhere besides the lights of the scene.

@@ -90,11 +90,16 @@ settings! {
         /// Reflection model: ggx is glTF's metallic-roughness model, blinn-phong the one that
         /// the techniques' sources use.
         lighting => model: LightingModel = LightingModel::default(), "Model", Kind::choice::<LightingModel>();
+        /// Light that bounces more than once between the microfacets of rough surfaces: on gives it
+        /// back, which brightens rough metals and deepens their colour. Off: it is lost, as in glTF's
+        /// own model. For the model ggx, and the environment.
+        multiple_scattering => multiple_scattering: bool = false, "Multiple scattering", Kind::Switch;
         /// Lights that a sample evaluates: clustered takes those that reach its part of the
         /// view, brute takes all (the reference). The picture is the same.
         lights => assignment: LightAssignment = LightAssignment::default(), "Lights", Kind::choice::<LightAssignment>();
         /// Shadows of all lights: off lets light pass through everything, hard compares once per
-        /// light and sample, soft nine times, which smooths edges over three texels.
+        /// light and sample, soft nine times, which smooths edges over three texels. contact fades
+        /// with the distance from what casts the shadow, as by lamps with a size.
         shadows => shadows: Shadows = Shadows::default(), "Shadows", Kind::choice::<Shadows>();
         /// Side of the shadow atlas in texels, rounded down to a power of two. It takes 4 bytes a
         /// texel: 4096 takes 64 MiB. Where it is full, all shadows become coarser alike.
@@ -103,6 +108,15 @@ settings! {
         /// texels. Raise it where surfaces show stripes, lower it where shadows begin away from
         /// what casts them.
         shadow_bias => shadow_bias: f32 = 1.5, "Shadow bias", Kind::Number { least: 0.0, most: 8.0 };
+        /// Size of shadow tiles with coarse shading by the eye's resolution: view makes them as fine
+        /// as for full shading, rate as coarse as the samples that show them, which leaves more of a
+        /// small atlas for what is seen sharply. Other ways of shading always take view.
+        shadow_sizes => shadow_sizes: ShadowSizes = ShadowSizes::default(), "Shadow sizes", Kind::choice::<ShadowSizes>();
+        /// Radius of point and spot lamps in metres, by which contact shadows fade.
+        light_radius => light_radius_m: f32 = 0.05, "Lamp radius", Kind::Number { least: 0.0, most: 0.5 };
+        /// Angle in degrees that directional lights fill in the sky, by which contact shadows fade.
+        /// The sun fills 0.53.
+        sun_angle => sun_angle_deg: f32 = 0.53, "Sun angle", Kind::Number { least: 0.0, most: 10.0 };
         /// Light from all around: gradient is the sky of the scene as a formula, sky the same
         /// filtered by roughness, image a picture of all directions, none is black. On the command
         /// line also the name of a .hdr or .exr file. With gradient rough metals mirror a hard

@@ -13,9 +13,11 @@ const DIRECTIONAL: u32 = 0;
 pub(crate) type Place = [f32; 4];
 
 /// Spheres that hold all shadows of the boxes by lights whose shadows are in tiles; `scene` is the
-/// box around everything.
+/// box around everything. `lamps`: radius of point and spot lights in metres, and tangent of half the
+/// angle that directional ones fill.
 pub(super) fn changed_places(
     lights: &[LightUniform],
+    lamps: [f32; 2],
     boxes: &[Aabb],
     scene: &Aabb,
     mut has_shadows: impl FnMut(usize) -> bool,
@@ -26,7 +28,7 @@ pub(super) fn changed_places(
             continue;
         }
         for b in boxes.iter().filter(|b| reaches(light, b)) {
-            add_place(&mut places, shadow_of(light, b, scene), MOST);
+            add_place(&mut places, shadow_of(light, lamps, b, scene), MOST);
         }
     }
     places
@@ -50,7 +52,7 @@ fn reaches(light: &LightUniform, b: &Aabb) -> bool {
 }
 
 /// A sphere around a box and its shadow.
-fn shadow_of(light: &LightUniform, b: &Aabb, scene: &Aabb) -> Place {
+fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb) -> Place {
     let (center, radius) = (b.center(), b.half_extent().length());
     if light.kind == DIRECTIONAL {
         // The ray ends where the scene does.
@@ -58,12 +60,17 @@ fn shadow_of(light: &LightUniform, b: &Aabb, scene: &Aabb) -> Place {
         let beyond = scene.center() - center;
         let reach = along.dot(beyond) + along.abs().dot(scene.half_extent());
         let half = 0.5 * reach.max(0.0);
-        return (center + along * half).extend(half + radius).to_array();
+        let fades = sun * 2.0 * half;
+        return (center + along * half)
+            .extend(half + radius + fades)
+            .to_array();
     }
     let apex = Vec3::from(light.position);
     let to = center - apex;
     let distance = to.length();
-    if distance <= radius {
+    // Past an edge, the lamp's border is seen so far beside the shadow at the range.
+    let fades = lamp * (light.range / (distance - radius).max(1e-6) - 1.0).max(0.0);
+    if distance <= radius || fades >= light.range {
         return apex.extend(light.range).to_array();
     }
     // The shadow is a cone's part between the box and the range.
@@ -73,7 +80,9 @@ fn shadow_of(light: &LightUniform, b: &Aabb, scene: &Aabb) -> Place {
     let middle = 0.5 * (near + far);
     let rim = |r: f32| (r * cosine - middle).hypot(r * sine);
     let reach = rim(near).max(rim(far)).max(far - middle).max(middle - near);
-    (apex + to * (middle / distance)).extend(reach).to_array()
+    (apex + to * (middle / distance))
+        .extend(reach + fades)
+        .to_array()
 }
 
 fn holds([x, y, z, r]: Place, [a, b, c, s]: Place) -> bool {
@@ -137,7 +146,7 @@ mod tests {
         let b = Aabb::new(Vec3::new(0.2, 0.9, -0.4), Vec3::new(0.8, 1.6, 0.1));
         for kind in [0, 1] {
             let light = light(kind);
-            let place = shadow_of(&light, &b, &scene());
+            let place = shadow_of(&light, [0.0; 2], &b, &scene());
             for corner in b.corners() {
                 assert!(is_in(place, corner));
                 for step in 0..100 {
@@ -164,13 +173,13 @@ mod tests {
     #[test]
     fn what_the_light_does_not_reach_changes_nothing() {
         let far = Aabb::new(Vec3::splat(8.0), Vec3::splat(9.0));
-        assert!(changed_places(&[light(1)], &[far], &scene(), |_| true).is_empty());
+        assert!(changed_places(&[light(1)], [0.0; 2], &[far], &scene(), |_| true).is_empty());
         let near = Aabb::new(Vec3::splat(1.0), Vec3::splat(1.5));
         assert_eq!(
-            changed_places(&[light(1)], &[near], &scene(), |_| true).len(),
+            changed_places(&[light(1)], [0.0; 2], &[near], &scene(), |_| true).len(),
             1
         );
-        assert!(changed_places(&[light(1)], &[near], &scene(), |_| false).is_empty());
+        assert!(changed_places(&[light(1)], [0.0; 2], &[near], &scene(), |_| false).is_empty());
     }
 
     #[test]
@@ -179,7 +188,7 @@ mod tests {
             .map(|i| Vec3::new(i as f32 * 0.05 - 1.0, 1.0, (i % 7) as f32 * 0.2))
             .map(|at| Aabb::new(at, at + 0.1))
             .collect();
-        let places = changed_places(&[light(1), light(0)], &boxes, &scene(), |_| true);
+        let places = changed_places(&[light(1), light(0)], [0.0; 2], &boxes, &scene(), |_| true);
         assert!(places.len() <= MOST);
         for b in &boxes {
             assert!(

@@ -71,10 +71,12 @@ fn walked(scene: &Scene, step: usize) -> Camera {
 
 #[test]
 fn a_walk_shows_the_same_with_casters_left_out() {
-    for shadows in [Shadows::Hard, Shadows::Soft] {
-        let stats = assert_same(&market(), &shadowed(shadows), 6, |i, scene| {
-            walked(scene, i)
+    for shadows in [Shadows::Hard, Shadows::Soft, Shadows::Contact] {
+        let settings = shadowed(shadows).with(|s| {
+            s.lighting.light_radius_m = 0.4;
+            s.lighting.sun_angle_deg = 5.0;
         });
+        let stats = assert_same(&market(), &settings, 6, |i, scene| walked(scene, i));
         let sum = |of: fn(&ShadowStats) -> u64| stats.iter().map(of).sum::<u64>();
         let (casters, in_reach) = (sum(|s| s.casters), sum(|s| s.casters_in_reach));
         assert!(sum(|s| s.casters_hidden) > 0 && sum(|s| s.casters_unneeded) > 0);
@@ -233,7 +235,7 @@ fn things_that_move_for_long_show_the_same_with_casters_left_out() {
 }
 
 /// A mesh of triangles around a convex outline.
-fn flat(corners: [Vec3; 4]) -> Mesh {
+pub(super) fn flat(corners: [Vec3; 4]) -> Mesh {
     let [a, b, c, _] = corners;
     let normal = (b - a).cross(c - a).normalize().to_array();
     Mesh {
@@ -266,7 +268,7 @@ fn points(places: impl IntoIterator<Item = Vec3>, normal: Vec3) -> Mesh {
 }
 
 /// Adds an object that is made of these.
-fn add<const N: usize>(scene: &mut Scene, meshes: [Mesh; N]) {
+pub(super) fn add<const N: usize>(scene: &mut Scene, meshes: [Mesh; N]) {
     let first = scene.instances.len() as u32;
     let object = scene.objects.len() as u32;
     scene.objects.push(Object {
@@ -291,7 +293,7 @@ fn add<const N: usize>(scene: &mut Scene, meshes: [Mesh; N]) {
     }
 }
 
-fn bare() -> Scene {
+pub(super) fn bare() -> Scene {
     let material = Material {
         double_sided: true,
         metallic: 0.0,
@@ -303,7 +305,7 @@ fn bare() -> Scene {
     }
 }
 
-fn lamp(position: Vec3, range: f32) -> Light {
+pub(super) fn lamp(position: Vec3, range: f32) -> Light {
     Light {
         kind: LightKind::Point,
         color: Vec3::ONE,

@@ -60,13 +60,18 @@ impl Received {
     }
 }
 
-/// The tiles in the atlas, by slot.
+/// The tiles in the atlas.
 #[derive(Debug)]
 pub(super) struct KeptTiles {
     atlas_level: u32,
     atlas: Atlas,
-    tiles: BTreeMap<u32, Kept>,
+    /// By slot and level.
+    tiles: BTreeMap<(u32, u32), Kept>,
     frame: u64,
+}
+
+fn key(want: &Wanted) -> (u32, u32) {
+    (want.slot, want.level)
 }
 
 impl KeptTiles {
@@ -87,17 +92,23 @@ impl KeptTiles {
         };
     }
 
-    pub(super) fn get(&self, slot: u32) -> Option<&Kept> {
-        self.tiles.get(&slot)
+    pub(super) fn get(&self, want: &Wanted) -> Option<&Kept> {
+        self.tiles.get(&key(want))
     }
 
-    pub(super) fn get_mut(&mut self, slot: u32) -> Option<&mut Kept> {
-        self.tiles.get_mut(&slot)
+    pub(super) fn get_mut(&mut self, want: &Wanted) -> Option<&mut Kept> {
+        self.tiles.get_mut(&key(want))
+    }
+
+    /// Whether any of these slots has a tile.
+    pub(super) fn has_any(&self, slots: std::ops::Range<u32>) -> bool {
+        let mut tiles = self.tiles.range((slots.start, 0)..(slots.end, 0));
+        tiles.next().is_some()
     }
 
     /// The tile has been drawn, without some casters.
-    pub(super) fn drawn(&mut self, slot: u32, left_out: Vec<u32>) {
-        if let Some(kept) = self.tiles.get_mut(&slot) {
+    pub(super) fn drawn(&mut self, want: &Wanted, left_out: Vec<u32>) {
+        if let Some(kept) = self.tiles.get_mut(&key(want)) {
             kept.is_drawn = true;
             kept.left_out = left_out;
         }
@@ -125,12 +136,18 @@ impl KeptTiles {
     /// Gives each wanted tile a place. A tile stays where it is while its size is right; tiles that
     /// no frame has wanted for the longest time make room; where squares are scattered so that one
     /// does not fit, all are placed anew.
-    pub(super) fn place(&mut self, wanted: &[Wanted]) {
+    ///
+    /// `keeps_sizes`: a tile of another size stays too until its place is needed, for a frame that
+    /// wants that size again.
+    pub(super) fn place(&mut self, wanted: &[Wanted], keeps_sizes: bool) {
         self.frame += 1;
         let mut missing = Vec::new();
         for want in wanted {
-            match self.tiles.get_mut(&want.slot) {
-                Some(kept) if kept.tile.level == want.level => {
+            if !keeps_sizes {
+                self.give_other_sizes(want);
+            }
+            match self.tiles.get_mut(&key(want)) {
+                Some(kept) => {
                     kept.wanted_in = self.frame;
                     if kept.volume != want.volume {
                         kept.volume = want.volume;
@@ -139,12 +156,6 @@ impl KeptTiles {
                         kept.light_moves = kept.is_restless;
                     }
                 }
-                Some(kept) => {
-                    let tile = kept.tile;
-                    self.atlas.give(tile);
-                    self.tiles.remove(&want.slot);
-                    missing.push(*want);
-                }
                 None => missing.push(*want),
             }
         }
@@ -152,6 +163,17 @@ impl KeptTiles {
         for want in &missing {
             if !self.fit(want) {
                 return self.place_anew(wanted);
+            }
+        }
+    }
+
+    fn give_other_sizes(&mut self, want: &Wanted) {
+        let slot = (want.slot, 0)..(want.slot + 1, 0);
+        let others = self.tiles.range(slot).map(|(&key, _)| key);
+        let others: Vec<_> = others.filter(|&other| other != key(want)).collect();
+        for other in others {
+            if let Some(kept) = self.tiles.remove(&other) {
+                self.atlas.give(kept.tile);
             }
         }
     }
@@ -166,8 +188,8 @@ impl KeptTiles {
             let unwanted = self.tiles.iter().filter(|(_, k)| k.wanted_in < self.frame);
             let oldest = unwanted
                 .min_by_key(|(_, k)| k.wanted_in)
-                .map(|(&slot, _)| slot);
-            let Some(kept) = oldest.and_then(|slot| self.tiles.remove(&slot)) else {
+                .map(|(&key, _)| key);
+            let Some(kept) = oldest.and_then(|key| self.tiles.remove(&key)) else {
                 return false;
             };
             self.atlas.give(kept.tile);
@@ -186,7 +208,7 @@ impl KeptTiles {
             is_restless: false,
             light_moves: false,
         };
-        self.tiles.insert(want.slot, kept);
+        self.tiles.insert(key(want), kept);
     }
 
     /// From the largest to the smallest all fit.
@@ -220,101 +242,135 @@ mod tests {
             slot,
             level,
             volume,
+            follows_rate: false,
         }
     }
 
+    /// A slot's tile, of whatever size.
+    fn get(kept: &KeptTiles, slot: u32) -> Option<&Kept> {
+        let mut tiles = kept.tiles.range((slot, 0)..(slot + 1, 0));
+        tiles.next().map(|(_, kept)| kept)
+    }
+
     fn place_of(kept: &KeptTiles, slot: u32) -> Option<Tile> {
-        kept.get(slot).map(|k| k.tile)
+        get(kept, slot).map(|k| k.tile)
     }
 
     #[test]
     fn a_tile_keeps_its_place_and_what_it_holds() {
         let mut kept = KeptTiles::new(8);
-        kept.place(&[want(0, 6), want(7, 5)]);
+        kept.place(&[want(0, 6), want(7, 5)], false);
         let places = [0, 7].map(|slot| place_of(&kept, slot));
-        kept.drawn(0, Vec::new());
-        kept.drawn(7, Vec::new());
+        kept.drawn(&want(0, 6), Vec::new());
+        kept.drawn(&want(7, 5), Vec::new());
         // One frame does not want it, one wants others beside it.
-        kept.place(&[want(7, 5)]);
-        kept.place(&[want(0, 6), want(7, 5), want(9, 5)]);
+        kept.place(&[want(7, 5)], false);
+        kept.place(&[want(0, 6), want(7, 5), want(9, 5)], false);
         assert_eq!([0, 7].map(|slot| place_of(&kept, slot)), places);
-        assert!(kept.get(0).unwrap().is_drawn && !kept.get(9).unwrap().is_drawn);
-        kept.place(&[want(0, 5), want(7, 5)]);
-        assert!(!kept.get(0).unwrap().is_drawn, "its size has changed");
-        assert!(kept.get(7).unwrap().is_drawn);
+        assert!(get(&kept, 0).unwrap().is_drawn && !get(&kept, 9).unwrap().is_drawn);
+        kept.place(&[want(0, 5), want(7, 5)], false);
+        assert!(!get(&kept, 0).unwrap().is_drawn, "its size has changed");
+        assert!(get(&kept, 7).unwrap().is_drawn);
+    }
+
+    #[test]
+    fn a_tile_of_another_size_waits_for_a_frame_that_wants_it_again() {
+        let mut kept = KeptTiles::new(6);
+        kept.place(&[want(0, 5), want(7, 4)], true);
+        kept.drawn(&want(0, 5), Vec::new());
+        kept.place(&[want(0, 4), want(7, 4)], true);
+        assert!(!kept.get(&want(0, 4)).unwrap().is_drawn, "new");
+        kept.place(&[want(0, 5), want(7, 4)], true);
+        assert!(kept.get(&want(0, 5)).unwrap().is_drawn, "as before");
+        // Something moves meanwhile.
+        kept.place(&[want(0, 4), want(7, 4)], true);
+        let at = Vec3::new(1.5, 0.0, 0.0);
+        kept.disturb(&[Aabb::new(at, at + 0.1)]);
+        kept.place(&[want(0, 5), want(7, 4)], true);
+        assert!(!kept.get(&want(0, 5)).unwrap().is_drawn);
+        // Where room is needed it gives way.
+        let all = [want(0, 4), want(1, 5), want(2, 5), want(3, 5)];
+        kept.place(&all, true);
+        assert!(all.iter().all(|w| kept.get(w).is_some()));
+        assert!(kept.get(&want(0, 5)).is_none());
+        kept.place(&[want(0, 5)], false);
+        assert!(kept.get(&want(0, 4)).is_none(), "not kept");
     }
 
     #[test]
     fn the_tile_that_was_wanted_last_of_all_gives_way_first() {
         let mut kept = KeptTiles::new(6);
-        kept.place(&[want(0, 5), want(1, 5)]);
-        kept.place(&[want(1, 5), want(2, 5), want(3, 5)]);
-        kept.place(&[want(4, 5)]);
-        assert!(kept.get(0).is_none());
-        assert!([1, 2, 3, 4].iter().all(|&slot| kept.get(slot).is_some()));
+        kept.place(&[want(0, 5), want(1, 5)], false);
+        kept.place(&[want(1, 5), want(2, 5), want(3, 5)], false);
+        kept.place(&[want(4, 5)], false);
+        assert!(get(&kept, 0).is_none());
+        assert!([1, 2, 3, 4].iter().all(|&slot| get(&kept, slot).is_some()));
     }
 
     #[test]
     fn scattered_squares_are_put_together() {
         let mut kept = KeptTiles::new(6);
-        kept.place(&(0..16).map(|slot| want(slot, 4)).collect::<Vec<_>>());
+        kept.place(
+            &(0..16).map(|slot| want(slot, 4)).collect::<Vec<_>>(),
+            false,
+        );
         // Four small ones stay, one in each quarter: no large one fits beside them.
         let stay: Vec<_> = [0, 4, 8, 12].map(|slot| want(slot, 4)).to_vec();
         let mut more = stay.clone();
         more.extend([20, 21, 22].map(|slot| want(slot, 5)));
-        kept.place(&more);
-        assert!(more.iter().all(|w| kept.get(w.slot).is_some()));
+        kept.place(&more, false);
+        assert!(more.iter().all(|w| kept.get(w).is_some()));
     }
 
     #[test]
     fn what_moves_disturbs_the_tiles_that_see_it_alone() {
         let mut kept = KeptTiles::new(8);
         // Side 0 looks along x from 0, side 1 against it.
-        kept.place(&[want(0, 5), want(1, 5)]);
-        kept.drawn(0, Vec::new());
-        kept.drawn(1, Vec::new());
+        kept.place(&[want(0, 5), want(1, 5)], false);
+        kept.drawn(&want(0, 5), Vec::new());
+        kept.drawn(&want(1, 5), Vec::new());
         let at = Vec3::new(1.5, 0.0, 0.0);
         kept.disturb(&[Aabb::new(at, at + 0.1)]);
-        assert!(!kept.get(0).unwrap().is_drawn);
-        assert!(kept.get(1).unwrap().is_drawn);
+        assert!(!get(&kept, 0).unwrap().is_drawn);
+        assert!(get(&kept, 1).unwrap().is_drawn);
     }
 
     #[test]
     fn what_a_tile_was_drawn_for_outlives_moves_of_casters_and_not_of_the_light() {
         let mut kept = KeptTiles::new(8);
-        kept.place(&[want(0, 5)]);
-        kept.drawn(0, vec![3]);
+        kept.place(&[want(0, 5)], false);
+        kept.drawn(&want(0, 5), vec![3]);
         let received = Received::new(32.0, 1);
-        kept.get_mut(0).unwrap().received = Some(Box::new(received));
+        kept.get_mut(&want(0, 5)).unwrap().received = Some(Box::new(received));
         let at = Vec3::new(1.5, 0.0, 0.0);
         let b = [Aabb::new(at, at + 0.1)];
         for (frame, is_restless) in [(1, false), (2, true), (3, true), (4, false)] {
             if frame == 4 {
-                kept.place(&[want(0, 5)]);
+                kept.place(&[want(0, 5)], false);
             }
             kept.disturb(&b);
-            let tile = kept.get(0).unwrap();
+            let tile = get(&kept, 0).unwrap();
             assert!(!tile.is_drawn && tile.received.is_some());
             assert!(!tile.light_moves);
             assert_eq!(tile.is_restless, is_restless, "frame {frame}");
-            kept.place(&[want(0, 5)]);
-            kept.drawn(0, vec![3]);
+            kept.place(&[want(0, 5)], false);
+            kept.drawn(&want(0, 5), vec![3]);
         }
         let mut moved = want(0, 5);
         moved.volume = want(6, 5).volume;
-        kept.place(&[moved]);
-        let tile = kept.get(0).unwrap();
+        kept.place(&[moved], false);
+        let tile = get(&kept, 0).unwrap();
         assert!(!tile.is_drawn && tile.received.is_none() && tile.light_moves);
     }
 
     #[test]
     fn tiles_that_lack_casters_are_drawn_in_full_where_nobody_says_what_is_seen() {
         let mut kept = KeptTiles::new(8);
-        kept.place(&[want(0, 5), want(1, 5)]);
-        kept.drawn(0, vec![3]);
-        kept.drawn(1, Vec::new());
+        kept.place(&[want(0, 5), want(1, 5)], false);
+        kept.drawn(&want(0, 5), vec![3]);
+        kept.drawn(&want(1, 5), Vec::new());
         kept.draw_in_full();
-        assert!(!kept.get(0).unwrap().is_drawn && kept.get(0).unwrap().left_out.is_empty());
-        assert!(kept.get(1).unwrap().is_drawn);
+        assert!(!get(&kept, 0).unwrap().is_drawn && get(&kept, 0).unwrap().left_out.is_empty());
+        assert!(get(&kept, 1).unwrap().is_drawn);
     }
 }

@@ -2,35 +2,16 @@
 // `shadow/twin.rs`.
 
 #import shared/light.wgsl
+#import shadow/contact.wgsl
+#import shadow/tile.wgsl
 #expects shadow_rows, shadow_atlas, shadow_sampler
 
-// 0: lights shine through everything; 1: one comparison; 2: nine, blended between texels.
-override SHADOWS: u32 = 0u;
-
-const SHADOWS_SOFT: u32 = 2u;
-// Rows of a light's record. Rust: `shadow/records.rs`.
-const SHADOW_ROWS: u32 = 4u;
-// As `BORDER` in `shadow/volume.rs`.
-const SHADOW_BORDER: f32 = 4.0;
-
-fn shadow_row(row: u32) -> vec4f {
-    return bitcast<vec4f>(shadow_rows[row]);
-}
-
-// A tile in texels of the atlas: its upper left corner, and its side, which is 0 where there is
-// none.
-struct ShadowTile {
-    corner: vec2f,
-    side: f32,
-}
-
-fn shadow_tile(word: u32) -> ShadowTile {
-    let corner = vec2f(vec2u(word, word >> 10u) & vec2u(0x3ffu)) * 16.0;
-    return ShadowTile(corner, select(0.0, f32(1u << ((word >> 20u) & 31u)), word != 0u));
-}
-
 // Part of the light that passes at a place in the tile, in texels, with a reversed depth.
-fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
+// `softness`: texels by which an edge fades to each side, per depth between it and the place.
+fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32, softness: f32) -> f32 {
+    if SHADOWS == SHADOWS_CONTACT {
+        return contact_passing(tile, at, depth, softness);
+    }
     if SHADOWS != SHADOWS_SOFT {
         let inside = clamp(floor(at), vec2f(0.0), vec2f(tile.side - 1.0));
         let nearest = textureLoad(shadow_atlas, vec2u(tile.corner + inside), 0);
@@ -50,16 +31,19 @@ fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32) -> f32 {
     let d = textureGatherCompare(shadow_atlas, shadow_sampler, high, depth);
     // Of a quad: x lower left, y lower right, z upper right, w upper left.
     let g = 1.0 - f;
-    let upper = g.y * (g.x * a.w + a.z + b.w + f.x * b.z) + (g.x * a.x + a.y + b.x + f.x * b.y);
-    let lower = (g.x * c.w + c.z + d.w + f.x * d.z) + f.y * (g.x * c.x + c.y + d.x + f.x * d.y);
-    return (upper + lower) / 9.0;
+    // Weights of the four columns and rows: a texel wide, or three.
+    let x = select(vec4f(g.x, 1.0, 1.0, f.x), vec4f(0.0, g.x, f.x, 0.0), tile.is_narrow);
+    let y = select(vec4f(g.y, 1.0, 1.0, f.y), vec4f(0.0, g.y, f.y, 0.0), tile.is_narrow);
+    let upper = y.x * (x.x * a.w + x.y * a.z + x.z * b.w + x.w * b.z) + y.y * (x.x * a.x + x.y * a.y + x.z * b.x + x.w * b.y);
+    let lower = y.z * (x.x * c.w + x.y * c.z + x.z * d.w + x.w * d.z) + y.w * (x.x * c.x + x.y * c.y + x.z * d.x + x.w * d.y);
+    return (upper + lower) / select(9.0, 1.0, tile.is_narrow);
 }
 
 // Metres by which a place is moved along its normal before it is compared, so that a surface does
 // not shade itself: a texel's width, times what the filter and the slope ask for.
-fn shadow_offset(texel_m: f32, n_dot_l: f32) -> f32 {
+fn shadow_offset(tile: ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
     let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
-    return texel_m * shadow_row(0u).x * (0.4 + slope);
+    return texel_m * shadow_row(0u).x * (0.4 + slope) * select(1.0, 0.5, tile.is_narrow && SHADOWS != SHADOWS_CONTACT);
 }
 
 // The side of a cube that a direction from its centre points to.
@@ -90,6 +74,13 @@ fn pyramid_texel(at: vec3f, tangent: f32, side: f32) -> vec2f {
     return 0.5 * side + vec2f(at.x, -at.y) * (half_inner / (at.z * tangent));
 }
 
+// Texels by which an edge fades to each side, per depth (near / distance) between it and where its
+// shadow falls: the lamp, seen from there past the edge, covers its radius * (1 / z of the edge - 1 /
+// z of the place) at distance 1.
+fn pyramid_softness(near: f32, tangent: f32, side: f32) -> f32 {
+    return shadow_row(0u).y * (0.5 * side - SHADOW_BORDER) / (tangent * near);
+}
+
 // Part of a point light's rays that reach a surface.
 fn point_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
     let from_light = position - light.position;
@@ -100,12 +91,12 @@ fn point_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f,
         return 1.0;
     }
     let texel_m = 2.0 * in_cube_side(side, from_light).z / (tile.side - 2.0 * SHADOW_BORDER);
-    let at = in_cube_side(side, from_light + normal * shadow_offset(texel_m, n_dot_l));
+    let at = in_cube_side(side, from_light + normal * shadow_offset(tile, texel_m, n_dot_l));
     let near = shadow_row(first + 1u).z;
     if at.z <= near {
         return 1.0;
     }
-    return shadow_passing(tile, pyramid_texel(at, 1.0, tile.side), near / at.z);
+    return shadow_passing(tile, pyramid_texel(at, 1.0, tile.side), near / at.z, pyramid_softness(near, 1.0, tile.side));
 }
 
 // The same for a spot light whose cone fits into one tile.
@@ -118,14 +109,15 @@ fn spot_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, 
     let tangent = shadow_row(first + 1u).w;
     let from_light = position - light.position;
     let texel_m = 2.0 * tangent * dot(light.direction, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
-    let moved = from_light + normal * shadow_offset(texel_m, n_dot_l);
+    let moved = from_light + normal * shadow_offset(tile, texel_m, n_dot_l);
     let across = shadow_row(first + 2u).xyz;
     let up = shadow_row(first + 3u).xyz;
     let at = vec3f(dot(across, moved), dot(up, moved), dot(light.direction, moved));
     if at.z <= near {
         return 1.0;
     }
-    return shadow_passing(tile, pyramid_texel(at, tangent, tile.side), near / at.z);
+    let softness = pyramid_softness(near, tangent, tile.side);
+    return shadow_passing(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness);
 }
 
 // The same for a directional light: in the finest cascade that holds the place.
@@ -145,12 +137,14 @@ fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l
         if tile.side == 0.0 || max(away.x, away.y) > cascade.z - margin {
             continue;
         }
-        let moved = position + normal * shadow_offset(texel_m, n_dot_l);
+        let moved = position + normal * shadow_offset(tile, texel_m, n_dot_l);
         let at = (vec2f(dot(across, moved), dot(up, moved)) - cascade.xy) / texel_m;
         // End along the rays, and one by the length.
         let span = shadow_row(first + 1u).zw;
         let depth = (span.x - dot(light.direction, moved)) * span.y;
-        return shadow_passing(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth);
+        // Metres between two depths, times the tangent of half the angle that the light fills.
+        let softness = shadow_row(0u).z / (span.y * texel_m);
+        return shadow_passing(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness);
     }
     return 1.0;
 }

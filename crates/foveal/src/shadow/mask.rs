@@ -12,8 +12,6 @@ use super::volume::Volume;
 /// Most parts of a tile along each side, and texels that a part has at least.
 const PARTS: usize = 32;
 const TEXELS: f32 = 2.0;
-/// Texels that a filter reads beside the place that it is asked for.
-const FILTER: f32 = 3.0;
 /// As `shadow_offset` in `shadow/lookup.wgsl`: places are moved by up to so many texels, times the
 /// bias.
 const MOST_MOVED: f32 = 1.4;
@@ -59,8 +57,13 @@ impl Mask {
     }
 
     /// A receiver that meets the tile may be seen; whether the mask is larger for it. `bias`: texels
-    /// by which places are moved.
-    pub(super) fn receive(&mut self, volume: &Volume, b: &Aabb, bias: f32) -> bool {
+    /// by which places are moved; `filter`: texels that are read beside a place.
+    pub(super) fn receive(
+        &mut self,
+        volume: &Volume,
+        b: &Aabb,
+        (bias, filter): (f32, f32),
+    ) -> bool {
         // Where places are moved farthest.
         let (deepest, reach) = match *volume {
             Volume::Pyramid {
@@ -82,7 +85,7 @@ impl Mask {
         };
         let farthest = seen.farthest.min(reach + moved);
         let mut grows = false;
-        for row in self.rows(&seen.grown(FILTER)) {
+        for row in self.rows(&seen.grown(filter)) {
             for part in &mut self.farthest[row] {
                 grows |= *part < farthest;
                 *part = part.max(farthest);
@@ -144,8 +147,8 @@ mod tests {
         let at = |x: f32, z: f32| around(Vec3::new(1.0 + x, 2.0, 3.0 + z), 0.2);
         let mut mask = Mask::new(256.0);
         assert!(!mask.shows(&tile, &at(0.0, 2.0)), "nothing is seen");
-        assert!(mask.receive(&tile, &at(0.0, 4.0), 1.5));
-        assert!(!mask.receive(&tile, &at(0.0, 4.0), 1.5), "known");
+        assert!(mask.receive(&tile, &at(0.0, 4.0), (1.5, 3.0)));
+        assert!(!mask.receive(&tile, &at(0.0, 4.0), (1.5, 3.0)), "known");
         assert!(mask.shows(&tile, &at(0.0, 2.0)));
         assert!(mask.shows(&tile, &at(0.0, 4.0)), "itself");
         assert!(!mask.shows(&tile, &at(0.0, 6.0)), "behind");
@@ -160,7 +163,7 @@ mod tests {
     fn the_sun_has_masks_too() {
         let tile = column();
         let mut mask = Mask::new(512.0);
-        assert!(mask.receive(&tile, &around(Vec3::new(2.0, 0.0, 1.0), 0.5), 1.5));
+        assert!(mask.receive(&tile, &around(Vec3::new(2.0, 0.0, 1.0), 0.5), (1.5, 3.0)));
         assert!(mask.shows(&tile, &around(Vec3::new(2.0, 3.0, 1.0), 0.1)));
         assert!(!mask.shows(&tile, &around(Vec3::new(2.0, -3.0, 1.0), 0.1)));
         assert!(!mask.shows(&tile, &around(Vec3::new(-2.0, 3.0, 1.0), 0.1)));
@@ -175,7 +178,12 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             (state >> 8) as f32 / (1 << 24) as f32
         };
-        for tile in [side_of_a_cube(), column()] {
+        for (tile, filter) in [
+            (side_of_a_cube(), 3.0),
+            (column(), 3.0),
+            (side_of_a_cube(), 14.0),
+            (column(), 14.0),
+        ] {
             for side in [16.0, 64.0, 512.0] {
                 for _ in 0..200 {
                     let at =
@@ -187,7 +195,7 @@ mod tests {
                     }
                     let bias = 3.0;
                     let mut mask = Mask::new(side);
-                    mask.receive(&tile, &b, bias);
+                    mask.receive(&tile, &b, (bias, filter));
                     for _ in 0..50 {
                         let place = b.min + b.size() * Vec3::new(random(), random(), random());
                         // Without the border.
@@ -212,9 +220,10 @@ mod tests {
                         let inside = |ndc: f32| ((0.5 + 0.5 * ndc) * side).clamp(2.0, side - 2.0);
                         let texel = [inside(clip.x / clip.w), inside(clip.y / clip.w)];
                         for i in 0..16 {
+                            let step = (filter - 1.0) / 2.0;
                             let read = [
-                                texel[0] + (i % 4) as f32 - 2.0,
-                                texel[1] + (i / 4) as f32 - 2.0,
+                                texel[0] + ((i % 4) as f32 - 2.0) * step,
+                                texel[1] + ((i / 4) as f32 - 2.0) * step,
                             ];
                             let part = read.map(|t| mask.part(t));
                             let reached = mask.farthest[part[1] * mask.parts + part[0]];
@@ -277,7 +286,7 @@ mod tests {
                     let (low, high) = (0.3 * place(), 0.3 * place());
                     let caster = Aabb::new(cast - low, cast + high);
                     let mut mask = Mask::new(side);
-                    mask.receive(&tile, &receiver, bias);
+                    mask.receive(&tile, &receiver, (bias, 3.0));
                     assert!(
                         mask.shows(&tile, &caster),
                         "{tile:?} {side} {receiver:?} {seen} {cast}"
@@ -296,7 +305,7 @@ mod tests {
         let apex = Vec3::new(1.0, 2.0, 3.0);
         let mut mask = Mask::new(64.0);
         let near = around(apex + 0.0095 * Vec3::Z, 0.0004);
-        assert!(mask.receive(&tile, &near, 1.5));
+        assert!(mask.receive(&tile, &near, (1.5, 3.0)));
         assert!(mask.shows(&tile, &around(apex + 0.01 * Vec3::Z, 0.0001)));
     }
 }

@@ -11,17 +11,22 @@
 mod atlas;
 mod changed;
 #[cfg(test)]
+mod contact_tests;
+#[cfg(test)]
 mod culling_tests;
 mod footprint;
 mod hidden;
 mod kept;
 mod mask;
+mod part;
 mod pass;
 mod plan;
 #[cfg(test)]
 mod rays;
 mod receivers;
 mod records;
+#[cfg(test)]
+mod sizes_tests;
 mod stage;
 #[cfg(test)]
 mod tests;

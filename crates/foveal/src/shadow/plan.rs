@@ -1,12 +1,14 @@
-//! Which tiles a frame wants, and how large: a function of lights, view and settings alone, so that
-//! the picture does not depend on what was drawn before, nor on culling.
+//! Which tiles a frame wants, and how large: a function of lights, view, gaze and settings alone, so
+//! that the picture does not depend on what was drawn before, nor on culling.
 
 use foveal_scene::Aabb;
 use glam::{Mat4, Vec3, Vec4};
 
 use super::atlas::LEAST_LEVEL;
+use super::part::part_of_picture;
 use super::volume::{BORDER, Volume, axes_along, cube_axes, frustum_planes};
 use crate::lights::LightUniform;
+use crate::rate::FinestRate;
 use crate::stereo::Eye;
 
 /// Tiles that a light may have: the sides of a cube, or cascades.
@@ -38,6 +40,8 @@ pub(super) struct Wanted {
     pub(super) slot: u32,
     pub(super) level: u32,
     pub(super) volume: Volume,
+    /// It is coarser than the view alone asks for.
+    pub(super) follows_rate: bool,
 }
 
 /// What the wanted tiles follow from.
@@ -49,16 +53,42 @@ pub(super) struct ViewOfPlan {
     /// Metres per pixel at a distance of one metre, or at any where rays are parallel.
     pixel: f32,
     orthographic: bool,
+    eyes: [Eye; 2],
+    /// How finely parts of the picture are shaded, where tiles are to be as coarse.
+    rates: Option<FinestRate>,
 }
 
 impl ViewOfPlan {
-    pub(super) fn new(eyes: &[Eye; 2], height: u32) -> Self {
+    pub(super) fn new(eyes: &[Eye; 2], height: u32, rates: Option<FinestRate>) -> Self {
         Self {
             clip_from_world: [eyes[0].clip_from_world(), eyes[1].clip_from_world()],
             center: 0.5 * (eyes[0].position() + eyes[1].position()),
             pixel: 2.0 * eyes[0].view_from_ndc()[1].abs() / height as f32,
             orthographic: eyes[0].orthographic,
+            eyes: *eyes,
+            rates,
         }
+    }
+
+    /// Whether sizes follow shading rates.
+    pub(super) fn follows_rates(&self) -> bool {
+        self.rates.is_some()
+    }
+
+    /// Powers of two by which samples are farther apart than pixels wherever a tile's shadows are
+    /// seen.
+    fn coarser_by(&self, volume: &Volume) -> f32 {
+        let Some(rates) = &self.rates else {
+            return 0.0;
+        };
+        let of_eye = |eye: usize| {
+            let part = part_of_picture(volume, &self.eyes[eye])?;
+            Some(rates.level_within(eye, part))
+        };
+        let eyes = if self.eyes[0] == self.eyes[1] { 1 } else { 2 };
+        // What no eye sees is as coarse as it gets.
+        let finest = (0..eyes).filter_map(of_eye).min();
+        finest.unwrap_or(rates.coarsest()) as f32
     }
 
     fn pixel_at(&self, distance: f32) -> f32 {
@@ -86,6 +116,8 @@ struct Request {
     slot: u32,
     /// Power of two, not whole.
     level: f32,
+    /// The same by the view alone.
+    level_by_view: f32,
     largest: u32,
     volume: Volume,
 }
@@ -122,10 +154,11 @@ fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
     let room = unit_area(atlas_level);
     // No tile takes more than a sixteenth.
     let most = atlas_level - 2;
-    let level_of = |r: &Request, shrunk: f32| {
-        let level = (r.level - shrunk + 0.5).floor().max(LEAST_LEVEL as f32) as u32;
+    let whole = |r: &Request, level: f32, shrunk: f32| {
+        let level = (level - shrunk + 0.5).floor().max(LEAST_LEVEL as f32) as u32;
         level.min(r.largest.min(most).max(LEAST_LEVEL))
     };
+    let level_of = |r: &Request, shrunk: f32| whole(r, r.level, shrunk);
     let area = |requests: &[Request], shrunk: f32| -> u64 {
         requests
             .iter()
@@ -156,6 +189,7 @@ fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
                 slot: r.slot,
                 level: level_of(r, shrunk_by),
                 volume: r.volume,
+                follows_rate: level_of(r, shrunk_by) < whole(r, r.level_by_view, shrunk_by),
             })
             .collect(),
         lights_left_out: left_out.len() as u32,
@@ -192,9 +226,8 @@ fn sides(
     let wanted_texel = view.pixel_at(away) * PIXELS_PER_TEXEL;
     let spot = spot_tangent(light);
     let tangent = spot.unwrap_or(1.0);
-    let level = (2.0 * tangent * typical / wanted_texel + 2.0 * BORDER)
-        .max(1.0)
-        .log2();
+    // Texels without the border.
+    let inner = 2.0 * tangent * typical / wanted_texel;
     let pyramid = |axes| Volume::Pyramid {
         apex,
         axes,
@@ -211,9 +244,11 @@ fn sides(
     };
     for (tile, volume) in volumes {
         if in_view(&volume) {
+            let level = |inner: f32| (inner + 2.0 * BORDER).max(1.0).log2();
             requests.push(Request {
                 slot: slot + tile,
-                level,
+                level: level(inner / view.coarser_by(&volume).exp2()),
+                level_by_view: level(inner),
                 largest: if spot.is_some() {
                     LARGEST_SPOT
                 } else {
@@ -261,6 +296,7 @@ fn cascades(
         requests.push(Request {
             slot: slot + cascade as u32,
             level: LARGEST_CASCADE as f32,
+            level_by_view: LARGEST_CASCADE as f32,
             largest: LARGEST_CASCADE,
             volume: Volume::Column {
                 axes,
@@ -275,6 +311,7 @@ fn cascades(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ShadowSizes;
     use foveal_scene::Camera;
 
     fn lamp(x: f32, range: f32) -> LightUniform {
@@ -291,7 +328,7 @@ mod tests {
         let camera = Camera::look_at(Vec3::new(x, y, z), Vec3::ZERO, Vec3::Y, 1.0);
         let settings = crate::testing::small(1280, 720);
         let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
-        ViewOfPlan::new(&eyes, 720)
+        ViewOfPlan::new(&eyes, 720, None)
     }
 
     fn room() -> Aabb {
@@ -336,6 +373,65 @@ mod tests {
         let levels = || plan.wanted.iter().map(|w| w.level);
         assert_eq!(levels().min(), levels().max());
         assert!(plan.shrunk_by > 0.0);
+    }
+
+    /// Wants of 40 lights in a wall, seen with the gaze at a place of the picture.
+    fn wanted_at(gaze: [f32; 2], sizes: ShadowSizes) -> Vec<Wanted> {
+        let lights: Vec<_> = (0..40)
+            .map(|i| lamp((i % 20) as f32 - 9.5, 1.0 + (i / 20) as f32))
+            .collect();
+        let camera = Camera::look_at(Vec3::new(0.0, 0.0, 9.0), Vec3::ZERO, Vec3::Y, 1.0);
+        let settings = crate::testing::small(1280, 720).with(|s| {
+            s.eye.gaze = gaze;
+            s.eye.quality_jod = 9.0;
+        });
+        let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
+        let rates = FinestRate::new(&settings, &eyes).filter(|_| sizes == ShadowSizes::Rate);
+        let view = ViewOfPlan::new(&eyes, 720, rates);
+        Plan::new(&lights, &view, &room(), 12).wanted
+    }
+
+    #[test]
+    fn tiles_are_coarser_where_samples_are_and_as_fine_as_ever_at_the_gaze() {
+        let at = |gaze| wanted_at(gaze, ShadowSizes::Rate);
+        let by_view = wanted_at([0.5, 0.5], ShadowSizes::View);
+        assert!(by_view.iter().all(|w| !w.follows_rate));
+        let area = |wanted: &[Wanted]| wanted.iter().map(|w| unit_area(w.level)).sum::<u64>();
+        for gaze in [[0.5, 0.5], [0.1, 0.5]] {
+            let by_rate = at(gaze);
+            assert!(2 * area(&by_rate) < area(&by_view), "{gaze:?}");
+            for (rate, view) in by_rate.iter().zip(&by_view) {
+                assert_eq!(rate.slot, view.slot);
+                assert!(rate.level <= view.level);
+                assert_eq!(rate.follows_rate, rate.level < view.level);
+                // The light that the eye looks at.
+                let Volume::Pyramid { apex, .. } = rate.volume else {
+                    panic!("{:?}", rate.volume);
+                };
+                let ndc = apex.x / (9.0 * 0.5_f32.tan() * 1280.0 / 720.0);
+                if (0.5 + 0.5 * ndc - gaze[0]).abs() < 0.03 {
+                    assert_eq!(rate.level, view.level, "{apex}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn few_tiles_change_where_the_gaze_moves_a_little() {
+        let at = |x: f32| wanted_at([x, 0.5], ShadowSizes::Rate);
+        let mut changes = 0;
+        let steps = 100;
+        for step in 0..steps {
+            // About a fifth of a degree.
+            let (a, b) = (at(0.4 + step as f32 * 2e-3), at(0.402 + step as f32 * 2e-3));
+            assert_eq!(a, at(0.4 + step as f32 * 2e-3));
+            changes += a.iter().zip(&b).filter(|(a, b)| a.level != b.level).count();
+        }
+        let tiles = at(0.5).len();
+        assert!(
+            changes > 0 && changes * 50 < tiles * steps,
+            "{changes} of {tiles}"
+        );
     }
 
     #[test]

@@ -95,8 +95,8 @@ pub(super) struct SeenCells<'a> {
     pub(super) all: &'a [u32],
     /// Those of them that the frame before did not see: most tiles were looked at then.
     pub(super) new: &'a [u32],
-    /// Texels by which places are moved before they are looked up.
-    pub(super) bias: f32,
+    /// Texels by which places are moved before they are looked up, and that are read beside them.
+    pub(super) reach: (f32, f32),
 }
 
 impl<'a> SeenCells<'a> {
@@ -144,7 +144,7 @@ impl NearCells<'_> {
             since,
             frame,
             new,
-            bias,
+            reach,
             ..
         } = self.seen;
         let before = std::mem::replace(&mut received.last, frame);
@@ -156,7 +156,7 @@ impl NearCells<'_> {
         let mut grows = false;
         for &cell in cells.iter().filter(|&&cell| !since.was_seen(cell, before)) {
             let b = &boxes[cell as usize];
-            grows |= volume.meets(b, side) && received.mask.receive(volume, b, bias);
+            grows |= volume.meets(b, side) && received.mask.receive(volume, b, reach);
         }
         grows
     }

@@ -1,7 +1,7 @@
 //! What shaders know of tiles: `shadow_rows` in `shadow/lookup.wgsl`.
 //!
-//! Row 0: texels by which places are moved along their normals. Then four rows
-//! per light: the words of tiles 0 to 3; words 4 and 5, the near distance and the cone's tangent (0
+//! Row 0: texels by which places are moved along their normals; lamps' radius in metres; tangent of
+//! half the angle that directional lights fill. Then four rows per light: the words of tiles 0 to 3; words 4 and 5, the near distance and the cone's tangent (0
 //! for a cube); the axis across; the axis up. A directional light has in place of words 4 and 5 the
 //! number of its first cascade's row, and then the end of its rays and one by their length. After
 //! all lights a row per cascade: centre across and up, and half the width.
@@ -12,23 +12,74 @@ use super::kept::KeptTiles;
 use super::plan::{CASCADES, Plan, TILES_PER_LIGHT, near_of, spot_tangent};
 use super::volume::{Volume, axes_along};
 use crate::lights::LightUniform;
+use crate::{LightingSettings, Shadows};
 
 /// Rows of a light: `SHADOW_ROWS` in the shader.
 const ROWS: usize = 4;
+/// Bit of a tile's word: its filter is a texel wide instead of three.
+const NARROW_BIT: u32 = 25;
 const DIRECTIONAL: u32 = 0;
 
 /// One row.
 pub(super) type Row = [u32; 4];
+
+/// Settings that lookups follow.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct LookupSettings {
+    /// Texels by which places are moved along their normals.
+    pub(super) texels_moved: f32,
+    /// Of point and spot lights.
+    pub(super) light_radius_m: f32,
+    /// Of half the angle that directional lights fill.
+    pub(super) sun_tangent: f32,
+    pub(super) shadows: Shadows,
+}
+
+impl LookupSettings {
+    pub(super) fn new(lighting: &LightingSettings) -> Self {
+        Self {
+            texels_moved: lighting.shadow_bias,
+            light_radius_m: lighting.light_radius_m,
+            sun_tangent: (0.5 * lighting.sun_angle_deg).to_radians().tan(),
+            shadows: lighting.shadows,
+        }
+    }
+
+    /// Sizes of the lamps as far as shadows fade by them: radius in metres, and tangent.
+    pub(super) fn lamps(&self) -> [f32; 2] {
+        match self.shadows {
+            Shadows::Contact => [self.light_radius_m, self.sun_tangent],
+            Shadows::Off | Shadows::Hard | Shadows::Soft => [0.0; 2],
+        }
+    }
+
+    /// Texels that a lookup reads beside the place that it is asked for.
+    pub(super) fn reach(&self) -> f32 {
+        match self.shadows {
+            Shadows::Contact => CONTACT_REACH + 2.0,
+            Shadows::Off | Shadows::Hard | Shadows::Soft => SOFT_REACH,
+        }
+    }
+}
+
+/// Texels that filters of one width reach, with what is blended.
+const SOFT_REACH: f32 = 3.0;
+/// As in `shadow/contact.wgsl`.
+pub(super) const CONTACT_REACH: f32 = 12.0;
 
 /// The rows of a frame.
 pub(super) fn rows(
     lights: &[LightUniform],
     plan: &Plan,
     kept: &KeptTiles,
-    texels_moved: f32,
+    lookup: &LookupSettings,
 ) -> Vec<Row> {
     let mut rows = vec![[0; 4]; 1 + lights.len() * ROWS];
-    rows[0][0] = texels_moved.to_bits();
+    rows[0] = words(Vec3::new(
+        lookup.texels_moved,
+        lookup.light_radius_m,
+        lookup.sun_tangent,
+    ));
     let first_row = |light: usize| 1 + light * ROWS;
     for (number, light) in lights.iter().enumerate() {
         let first = first_row(number);
@@ -41,12 +92,13 @@ pub(super) fn rows(
     for want in &plan.wanted {
         let number = want.slot as usize / TILES_PER_LIGHT;
         let tile = want.slot as usize % TILES_PER_LIGHT;
-        let Some(kept) = kept.get(want.slot).filter(|kept| kept.is_drawn) else {
+        let Some(kept) = kept.get(want).filter(|kept| kept.is_drawn) else {
             // Nobody sees what it would shade.
             continue;
         };
         let first = first_row(number);
-        rows[first + tile / 4][tile % 4] = kept.tile.word();
+        rows[first + tile / 4][tile % 4] =
+            kept.tile.word() | u32::from(want.follows_rate) << NARROW_BIT;
         let Volume::Column {
             center,
             radius,

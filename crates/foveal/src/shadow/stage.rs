@@ -10,10 +10,11 @@ use super::kept::{KeptTiles, Received};
 use super::pass::{CasterPass, TileDraw};
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
 use super::receivers::{NearCells, Reach, Receivers, SeenCells, SeenSince};
-use super::records::{Row, rows};
+use super::records::{LookupSettings, Row, rows};
 use super::volume::Volume;
 use crate::geometry::DrawList;
 use crate::gpu::{Gpu, Table};
+use crate::rate::FinestRate;
 use crate::recorder::Recorder;
 use crate::scene::{DrawnInstance, SceneOnGpu};
 use crate::stereo::Eye;
@@ -36,7 +37,7 @@ struct Drawing {
     pass: CasterPass,
     kept: KeptTiles,
     atlas_level: u32,
-    texels_moved: f32,
+    lookup: LookupSettings,
     plan: Plan,
     hidden: HiddenCasters,
     /// Since when cells are seen, and the frame that looked at them last.
@@ -107,7 +108,7 @@ impl ShadowStage {
                     pass: CasterPass::new(gpu, frame_layout, material_layout),
                     kept: KeptTiles::new(atlas_level),
                     atlas_level,
-                    texels_moved: lighting.shadow_bias,
+                    lookup: LookupSettings::new(lighting),
                     plan: Plan::default(),
                     hidden: HiddenCasters::default(),
                     seen: SeenSince::default(),
@@ -167,38 +168,35 @@ impl ShadowStage {
             return Vec::new();
         }
         let kept = &drawing.kept;
-        changed_places(&scene.lights, boxes, &scene.bounds, |light| {
+        let lamps = drawing.lookup.lamps();
+        changed_places(&scene.lights, lamps, boxes, &scene.bounds, |light| {
             let first = (light * TILES_PER_LIGHT) as u32;
-            (first..first + TILES_PER_LIGHT as u32).any(|slot| kept.get(slot).is_some())
+            kept.has_any(first..first + TILES_PER_LIGHT as u32)
         })
     }
 
     /// Decides what the frame draws, and tells shaders where tiles lie. `receivers`: what
-    /// is seen.
+    /// is seen. `rates`: how finely it is shaded, where tiles are to be as coarse.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
         settings: &Settings,
         (scene, receivers): (&SceneOnGpu, Receivers),
         eyes: &[Eye; 2],
+        rates: Option<FinestRate>,
     ) {
         let Some(drawing) = &mut self.drawing else {
             return;
         };
         let now = Settled {
-            view: ViewOfPlan::new(eyes, settings.picture.height),
+            view: ViewOfPlan::new(eyes, settings.picture.height, rates),
             receivers,
         };
         drawing.draws.clear();
         drawing.counts = Counts::default();
         if drawing.settled.as_ref() != Some(&now) {
             drawing.find_tiles(scene, &now);
-            let rows = rows(
-                &scene.lights,
-                &drawing.plan,
-                &drawing.kept,
-                drawing.texels_moved,
-            );
+            let rows = rows(&scene.lights, &drawing.plan, &drawing.kept, &drawing.lookup);
             if rows != self.written {
                 self.rows.write(gpu, bytemuck::cast_slice(&rows));
                 self.written = rows;
@@ -293,7 +291,8 @@ impl Drawing {
     /// Finds the frame's tiles, and lists the draws of those that are seen and not there.
     fn find_tiles(&mut self, scene: &SceneOnGpu, now: &Settled) {
         self.plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
-        self.kept.place(&self.plan.wanted);
+        let keeps_sizes = now.view.follows_rates();
+        self.kept.place(&self.plan.wanted, keeps_sizes);
         self.frame += 1;
         let boxes = scene.culling.cells();
         let cells = match &now.receivers {
@@ -310,7 +309,7 @@ impl Drawing {
             frame: self.frame,
             all: cells,
             new: &new,
-            bias: self.texels_moved,
+            reach: (self.lookup.texels_moved, self.lookup.reach()),
         };
         let receivers = match &now.receivers {
             Receivers::Cells(_) => {
@@ -322,7 +321,7 @@ impl Drawing {
                 Seen::Instances(instances)
             }
         };
-        let missing = |want: &&Wanted| self.kept.get(want.slot).is_some_and(|k| !k.is_drawn);
+        let missing = |want: &&Wanted| self.kept.get(want).is_some_and(|k| !k.is_drawn);
         let missing: Vec<Wanted> = self.plan.wanted.iter().filter(missing).copied().collect();
         for of_light in missing.chunk_by(|a, b| light_of(a) == light_of(b)) {
             self.list_draws(scene, receivers, of_light);
@@ -336,7 +335,7 @@ impl Drawing {
         for of_light in (self.plan.wanted).chunk_by(|a, b| light_of(a) == light_of(b)) {
             let near = seen.near(Reach::of(of_light));
             for want in of_light {
-                let Some(kept) = self.kept.get_mut(want.slot) else {
+                let Some(kept) = self.kept.get_mut(want) else {
                     continue;
                 };
                 let Some(received) = kept.received.as_mut().filter(|_| kept.is_drawn) else {
@@ -369,7 +368,7 @@ impl Drawing {
         let near = receivers.near(scene, reach);
         let mut casters: Option<Vec<u32>> = None;
         for want in wanted {
-            let Some(kept) = self.kept.get_mut(want.slot) else {
+            let Some(kept) = self.kept.get_mut(want) else {
                 continue;
             };
             let (tile, volume) = (kept.tile, &want.volume);
@@ -420,16 +419,12 @@ impl Drawing {
                 casters: DrawList::of_casters(scene, casters.into_iter(), CasterPass::key),
                 is_new: true,
             });
-            self.kept.drawn(want.slot, left_out);
+            self.kept.drawn(want, left_out);
         }
     }
 
     fn stats(&self) -> ShadowStats {
-        let in_use = self
-            .plan
-            .wanted
-            .iter()
-            .filter_map(|w| self.kept.get(w.slot));
+        let in_use = self.plan.wanted.iter().filter_map(|w| self.kept.get(w));
         let in_use: Vec<Tile> = in_use.filter(|k| k.is_drawn).map(|k| k.tile).collect();
         let casters = self.draws.iter().map(|d| d.casters.drawn.len() as u64);
         ShadowStats {

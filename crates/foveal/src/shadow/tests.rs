@@ -52,6 +52,8 @@ pub(super) fn lookup(renderer: &Renderer, shadows: Shadows) -> Lookup {
 
 /// What a pixel shows.
 pub(super) struct Seen {
+    /// Column and row.
+    at: [u32; 2],
     radiance: Vec3,
     pub(super) surface: crate::shading::twin::Surface,
 }
@@ -71,6 +73,7 @@ pub(super) fn seen(renderer: &Renderer, camera: &Camera) -> Vec<Seen> {
             let [r, g, b, _] = radiance[i].map(f32_of_half);
             let surface = unpack_surface(words[i], position_at(camera, size, at, depth[i]));
             Seen {
+                at: [pixel % width, pixel / width],
                 radiance: Vec3::new(r, g, b),
                 surface,
             }
@@ -78,41 +81,47 @@ pub(super) fn seen(renderer: &Renderer, camera: &Camera) -> Vec<Seen> {
         .collect()
 }
 
+/// How many of a frame's pixels the twin lights otherwise, and how many of those that are compared
+/// lie in shadow.
+pub(super) fn compared_with_twin(
+    scene: &Scene,
+    settings: &Settings,
+    is_compared: impl Fn([u32; 2]) -> bool,
+) -> (Renderer, [usize; 3]) {
+    let camera = &scene.cameras[0];
+    let renderer = rendered(scene, camera, settings);
+    let lookup = lookup(&renderer, settings.lighting.shadows);
+    let lights = renderer.lights().1.to_vec();
+    let pixels = seen(&renderer, camera);
+    let (mut compared, mut off, mut dark) = (0, 0, 0);
+    for pixel in pixels.iter().filter(|pixel| is_compared(pixel.at)) {
+        let (radiance, surface) = (pixel.radiance, &pixel.surface);
+        let v = to_eye(camera, surface.position);
+        let lit = |passing: crate::shading::twin::Passing<'_>| {
+            let model = settings.lighting.model;
+            light_surface_with(scene, &lights, model, (surface, v), passing).radiance
+        };
+        let cpu = lit(&|(number, light), s, n_dot_l| {
+            lookup.light_passing(number, light, (s.position, s.normal, n_dot_l))
+        });
+        let bright = lit(&|_, _, _| 1.0);
+        compared += 1;
+        dark += usize::from(cpu.max_element() < 0.8 * bright.max_element());
+        let tolerance = 0.01 * cpu.max_element().max(0.02);
+        off += usize::from((radiance - cpu).abs().max_element() > tolerance);
+    }
+    (renderer, [compared, off, dark])
+}
+
 #[test]
 fn shading_with_shadows_equals_its_twin() {
-    let scene = room();
-    let camera = &scene.cameras[0];
-    for shadows in [Shadows::Hard, Shadows::Soft] {
-        let settings = shadowed(shadows);
-        let renderer = rendered(&scene, camera, &settings);
-        let lookup = lookup(&renderer, shadows);
-        let lights = renderer.lights().1;
-        let pixels = seen(&renderer, camera);
-        assert!(pixels.len() > 3_000);
-        let mut off = 0;
-        let mut dark = 0;
-        for Seen {
-            radiance, surface, ..
-        } in &pixels
-        {
-            let v = to_eye(camera, surface.position);
-            let lit = |passing: crate::shading::twin::Passing<'_>| {
-                let model = settings.lighting.model;
-                light_surface_with(&scene, lights, model, (surface, v), passing).radiance
-            };
-            let cpu = lit(&|(number, light), s, n_dot_l| {
-                lookup.light_passing(number, light, (s.position, s.normal, n_dot_l))
-            });
-            let bright = lit(&|_, _, _| 1.0);
-            dark += u32::from(cpu.max_element() < 0.8 * bright.max_element());
-            let tolerance = 0.01 * cpu.max_element().max(0.02);
-            off += u32::from((radiance - cpu).abs().max_element() > tolerance);
-        }
+    for shadows in [Shadows::Hard, Shadows::Soft, Shadows::Contact] {
+        let (_, [compared, off, dark]) = compared_with_twin(&room(), &shadowed(shadows), |_| true);
+        assert!(compared > 3_000);
         // Where a comparison is a matter of the last bit, device and twin may differ.
         assert!(
-            off as usize * 200 < pixels.len(),
-            "{shadows:?}: {off} of {} pixels differ",
-            pixels.len()
+            off * 200 < compared,
+            "{shadows:?}: {off} of {compared} differ"
         );
         assert!(dark > 300, "{shadows:?}: only {dark} pixels lie in shadow");
     }

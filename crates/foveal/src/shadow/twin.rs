@@ -2,7 +2,7 @@
 
 use glam::{Vec2, Vec3};
 
-use super::records::Row;
+use super::records::{CONTACT_REACH, Row};
 use super::volume::BORDER;
 use crate::Shadows;
 use crate::lights::LightUniform;
@@ -19,13 +19,25 @@ pub(crate) struct Lookup {
 pub(super) struct ShadowTile {
     corner: [u32; 2],
     side: u32,
+    is_narrow: bool,
 }
 
 fn tile_of(word: u32) -> Option<ShadowTile> {
     (word != 0).then(|| ShadowTile {
         corner: [(word & 0x3ff) * 16, (word >> 10 & 0x3ff) * 16],
         side: 1 << (word >> 20 & 31),
+        is_narrow: word >> 25 & 1 != 0,
     })
+}
+
+/// Places that `shadow/contact.wgsl` looks at, and compares.
+const SEARCHED: usize = 16;
+const COMPARED: usize = 24;
+
+/// Unit vectors, each turned by the golden angle from the one before.
+fn golden_spiral() -> impl Iterator<Item = Vec2> {
+    let by = Vec2::new(-0.737_368_9, 0.675_490_3);
+    std::iter::successors(Some(Vec2::X), move |d| Some(by.rotate(*d)))
 }
 
 impl Lookup {
@@ -44,16 +56,22 @@ impl Lookup {
         f32::from(u8::from(depth >= nearest))
     }
 
-    fn passing(&self, tile: &ShadowTile, at: Vec2, depth: f32) -> f32 {
+    fn passing(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
         let side = tile.side as f32;
+        if self.shadows == Shadows::Contact {
+            return self.contact_passing(tile, at, depth, softness);
+        }
         if self.shadows == Shadows::Hard {
             let inside = at.floor().clamp(Vec2::ZERO, Vec2::splat(side - 1.0));
             return self.passes(tile, inside.x as u32, inside.y as u32, depth);
         }
-        // The mean of three by three comparisons a texel apart, each blended between four texels.
+        // The mean of three by three comparisons a texel apart, each blended between four texels;
+        // one of them where the filter is narrow.
         let inside = at.clamp(Vec2::splat(2.0), Vec2::splat(side - 2.0));
         let mut sum = 0.0;
-        for (i, j) in (0..9).map(|k| (k % 3, k / 3)) {
+        let taps = if tile.is_narrow { 4..5 } else { 0..9 };
+        let count = taps.len() as f32;
+        for (i, j) in taps.map(|k| (k % 3, k / 3)) {
             let p = inside + Vec2::new(i as f32, j as f32) - 1.5;
             let low = p.floor();
             let f = p - low;
@@ -66,12 +84,70 @@ impl Lookup {
             let lower = at(0, 1) * (1.0 - f.x) + at(1, 1) * f.x;
             sum += upper * (1.0 - f.y) + lower * f.y;
         }
-        sum / 9.0
+        sum / count
     }
 
-    fn offset(&self, texel_m: f32, n_dot_l: f32) -> f32 {
+    /// `mean_softness` in `shadow/contact.wgsl`.
+    fn mean_softness(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
+        let (mut sum, mut found) = (0.0, 0.0);
+        for (i, direction) in golden_spiral().take(SEARCHED).enumerate() {
+            let radius = CONTACT_REACH * (i as f32 + 0.5) / SEARCHED as f32;
+            let last = Vec2::splat(tile.side as f32 - 1.0);
+            let texel = (at + radius * direction).floor().clamp(Vec2::ZERO, last);
+            let [left, top] = tile.corner;
+            let row = (top + texel.y as u32) * self.side;
+            let nearest = self.atlas[(row + left + texel.x as u32) as usize];
+            let fade = (nearest - depth) * softness;
+            if fade > radius {
+                (sum, found) = (sum + fade, found + 1.0);
+            }
+        }
+        sum / f32::max(found, 1.0)
+    }
+
+    /// `compared_at` in `shadow/contact.wgsl`.
+    fn compared_at(&self, tile: &ShadowTile, at: Vec2, depth: f32) -> f32 {
+        let side = tile.side as f32;
+        let inside = at.clamp(Vec2::ONE, Vec2::splat(side - 1.0)) - 0.5;
+        let first = inside.floor().min(Vec2::splat(side - 2.0));
+        let f = inside - first;
+        let at = |x: u32, y: u32| self.passes(tile, first.x as u32 + x, first.y as u32 + y, depth);
+        let upper = at(0, 0) * (1.0 - f.x) + at(1, 0) * f.x;
+        let lower = at(0, 1) * (1.0 - f.x) + at(1, 1) * f.x;
+        upper * (1.0 - f.y) + lower * f.y
+    }
+
+    /// `contact_passing` in `shadow/contact.wgsl`.
+    fn contact_passing(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
+        let fades = self.mean_softness(tile, at, depth, softness);
+        let reach = fades.clamp(1.0, CONTACT_REACH);
+        let slack = if fades > 1.0 {
+            0.5 * reach / softness
+        } else {
+            0.0
+        };
+        let compared = golden_spiral().take(COMPARED).enumerate();
+        let sum: f32 = compared
+            .map(|(i, direction)| {
+                let part = ((i as f32 + 0.5) / COMPARED as f32).sqrt();
+                self.compared_at(tile, at + reach * part * direction, depth + slack * part)
+            })
+            .sum();
+        sum / COMPARED as f32
+    }
+
+    fn pyramid_softness(&self, near: f32, tangent: f32, inner: f32) -> f32 {
+        self.row(0)[1] * (0.5 * inner) / (tangent * near)
+    }
+
+    fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
         let slope = (1.0 - n_dot_l * n_dot_l).max(0.0).sqrt();
-        texel_m * self.row(0)[0] * (0.4 + slope)
+        let filter = if tile.is_narrow && self.shadows != Shadows::Contact {
+            0.5
+        } else {
+            1.0
+        };
+        texel_m * self.row(0)[0] * (0.4 + slope) * filter
     }
 
     /// `light_passing` in the shader.
@@ -115,13 +191,15 @@ impl Lookup {
         let tangent = if spot > 0.0 { spot } else { 1.0 };
         let inner = tile.side as f32 - 2.0 * BORDER;
         let texel_m = 2.0 * tangent * axes[2].dot(from_light) / inner;
-        let moved = from_light + normal * self.offset(texel_m, n_dot_l);
+        let moved = from_light + normal * self.offset(&tile, texel_m, n_dot_l);
         let at = Vec3::from(axes.map(|axis| axis.dot(moved)));
         if at.z <= near {
             return 1.0;
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
-        self.passing(&tile, place + 0.5 * tile.side as f32, near / at.z)
+        let softness = self.pyramid_softness(near, tangent, inner);
+        let place = place + 0.5 * tile.side as f32;
+        self.passing(&tile, place, near / at.z, softness)
     }
 
     fn sun_passing(
@@ -134,11 +212,12 @@ impl Lookup {
             return 1.0;
         };
         let [_, _, end, per_length] = self.row(first + 1);
-        let moved = position + normal * self.offset(texel_m, n_dot_l);
+        let moved = position + normal * self.offset(&tile, texel_m, n_dot_l);
         let at = (self.on_plane(first, moved) - center) / texel_m;
         let depth = (end - direction.dot(moved)) * per_length;
         let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
-        self.passing(&tile, place, depth)
+        let softness = self.row(0)[2] / (per_length * texel_m);
+        self.passing(&tile, place, depth, softness)
     }
 
     /// Across and up, seen along a directional light's rays.

@@ -131,7 +131,7 @@ impl Volume {
     }
 
     /// Points whose convex hull holds all of it.
-    fn corners(&self) -> Vec<Vec3> {
+    pub(super) fn corners(&self) -> Vec<Vec3> {
         match *self {
             Self::Pyramid {
                 apex,

@@ -16,13 +16,17 @@ const BACKGROUND_BLURRED: u32 = 1u;
 // Roughness of the mirror in which a blurred background is seen.
 const BLURRED_ROUGHNESS: f32 = 0.5;
 
+// What microfacets lose by counting one bounce alone is given back.
+override MULTIPLE_SCATTERING: bool = false;
+
 const PI: f32 = 3.14159265;
 
 // Level 0: radiance; the others: what rougher and rougher mirrors reflect of it.
 @group(0) @binding(3) var environment_map: texture_cube<f32>;
 // What a mirror reflects of light that comes from everywhere alike: the reflectance at right angles
 // times the first, plus the second; what it leaves is 1 minus that reflectance, times the third. By
-// the cosine between normal and view, and the roughness.
+// the cosine between normal and view, and the roughness. In w what GGX reflects of it in one bounce
+// where nothing is absorbed, at entries from 0 to 1.
 @group(0) @binding(4) var environment_reflectances: texture_2d<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
 
@@ -113,10 +117,12 @@ struct Mirror {
     at_grazing: f32,
     // As `kept_from_scattering`.
     kept: vec3f,
+    // By how much further bounces brighten what it mirrors of lights: `further_bounces`.
+    gain: vec3f,
 }
 
 fn mirror_of(s: Surface) -> Mirror {
-    return Mirror(reflectance_at_normal(s), reflectance_at_grazing(s), kept_from_scattering(s));
+    return Mirror(reflectance_at_normal(s), reflectance_at_grazing(s), kept_from_scattering(s), vec3f(1.0));
 }
 
 fn luminance(color: vec3f) -> f32 {
@@ -149,6 +155,9 @@ fn diffuse_color(s: Surface) -> vec3f {
 // What a rough mirror reflects of light that comes from everywhere alike (environment BRDF after
 // Karis 2014, 'Physically Based Shading on Mobile').
 fn environment_reflectance(s: Surface, v: vec3f) -> vec3f {
+    if MULTIPLE_SCATTERING {
+        return reflected_once(s, reflectance_terms(s, v)) * further_bounces(s, v);
+    }
     let n_dot_v = saturate(dot(s.normal, v));
     let f0 = reflectance_at_normal(s);
     let r = s.roughness * vec4f(-1.0, -0.0275, -0.572, 0.022) + vec4f(1.0, 0.0425, 1.04, -0.04);
@@ -163,9 +172,50 @@ fn reflectance_terms(s: Surface, v: vec3f) -> vec3f {
     return textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0).xyz;
 }
 
+// What a rough mirror reflects of light that comes from everywhere alike, by the table's entry: in one
+// bounce.
+fn reflected_once(s: Surface, terms: vec3f) -> vec3f {
+    return reflectance_at_normal(s) * terms.x + terms.y * reflectance_at_grazing(s);
+}
+
+// By how much bounces after the first brighten what a rough mirror shows of a light: a white one
+// reflects all (Turquin 2019, 'Practical multiple scattering compensation for microfacet models').
+fn further_bounces(s: Surface, v: vec3f) -> vec3f {
+    // From the first entry's centre to the last one's.
+    let at = (vec2f(saturate(dot(s.normal, v)), s.roughness) * 31.0 + 0.5) / 32.0;
+    let albedo = textureSampleLevel(environment_reflectances, environment_sampler, at, 0.0).w;
+    return 1.0 + reflectance_at_normal(s) * (1.0 / max(albedo, 0.05) - 1.0);
+}
+
+// What bounces after the first reflect of light that comes from everywhere alike (Fdez-Aguera 2019, 'A
+// Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting').
+fn reflected_further(s: Surface, terms: vec3f) -> vec3f {
+    let lost = 1.0 - terms.x - terms.y;
+    let at_normal = reflectance_at_normal(s);
+    // Fresnel's reflectance over all directions.
+    let mean = at_normal + (reflectance_at_grazing(s) - at_normal) / 21.0;
+    return reflected_once(s, terms) * mean * lost / (1.0 - mean * lost);
+}
+
+// Mean radiance from the directions before a surface, by their cosines.
+fn environment_around(normal: vec3f) -> vec3f {
+    if ENVIRONMENT == ENVIRONMENT_MAP {
+        return irradiance(normal);
+    }
+    if ENVIRONMENT == ENVIRONMENT_GRADIENT {
+        return mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * normal.y), frame.horizon, 0.4);
+    }
+    return vec3f(0.0);
+}
+
 // The environment's light in a rough mirror.
 fn environment_specular(s: Surface, v: vec3f) -> vec3f {
     let mirror = mix(reflect(-v, s.normal), s.normal, s.roughness * s.roughness);
+    if MULTIPLE_SCATTERING {
+        let terms = reflectance_terms(s, v);
+        let once = reflected_once(s, terms) * environment(normalize(mirror), s.roughness);
+        return once + reflected_further(s, terms) * environment_around(s.normal);
+    }
     if ENVIRONMENT == ENVIRONMENT_MAP {
         let terms = reflectance_terms(s, v);
         let reflected = reflectance_at_normal(s) * terms.x + terms.y * reflectance_at_grazing(s);

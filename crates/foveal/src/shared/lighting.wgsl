@@ -9,6 +9,7 @@
 #import reduced/missing.wgsl
 #else
 #import shadow/lookup.wgsl
+#import shadow/tile.wgsl
 #endif
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.
@@ -74,7 +75,11 @@ fn reflect_ggx(s: Surface, mirror: Mirror, v: vec3f, l: vec3f, n_dot_l: f32) -> 
     let m5 = m2 * m2 * m;
     let fresnel = mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5;
     let left = 1.0 - fresnel - mirror.kept * (1.0 - m5);
-    return Reflection(left, fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s)));
+    let once = fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s));
+    if MULTIPLE_SCATTERING {
+        return Reflection(left, once * mirror.gain);
+    }
+    return Reflection(left, once);
 }
 
 // Lambert and normalized Blinn-Phong, the exponent taken from the roughness.
@@ -136,7 +141,10 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
     var sum = Lit(s.emissive + ambient(s, v), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
     let first = cluster_words_at(pixel, distance);
-    let mirror = mirror_of(s);
+    var mirror = mirror_of(s);
+    if MULTIPLE_SCATTERING {
+        mirror.gain = further_bounces(s, v);
+    }
     for (var word = 0u; word < light_words(); word++) {
         let valid = min(light_count() - word * 32u, 32u);
         var bits = select((1u << valid) - 1u, 0xffffffffu, valid == 32u);

@@ -18,6 +18,9 @@ const FAINTEST: f32 = 1.0 / 256.0;
 /// Samples of a pixel's environment light: by GGX, by the cosine, by the environment.
 const SAMPLES: [u32; 3] = [256, 64, 512];
 
+/// Samples of a lamp.
+const LAMP_SAMPLES: u32 = 64;
+
 /// What is traced.
 pub(crate) struct Reference<'a> {
     scene: &'a Scene,
@@ -25,6 +28,9 @@ pub(crate) struct Reference<'a> {
     pub(crate) around: Option<&'a Around>,
     /// Whether surfaces keep light of the environment away from others.
     pub(crate) occludes: bool,
+    /// Radius of point and spot lamps in metres, and tangent of half the angle that directional
+    /// lights fill.
+    pub(crate) lamps: [f32; 2],
 }
 
 /// A surface in view.
@@ -57,6 +63,7 @@ impl<'a> Reference<'a> {
             bvh: Bvh::new(scene),
             around: None,
             occludes: false,
+            lamps: [0.0; 2],
         }
     }
 
@@ -117,6 +124,26 @@ impl<'a> Reference<'a> {
         self.bvh.first_hit((from, along), end, casts).is_none()
     }
 
+    /// Part of a lamp, a disc that faces the surface, that nothing keeps from it.
+    fn passing(&self, s: &Surface, l: Vec3, end: f32, lamp: Option<(Vec3, f32)>) -> f32 {
+        let tangent = match lamp {
+            Some(_) => self.lamps[0] / end,
+            None => self.lamps[1],
+        };
+        if tangent == 0.0 {
+            return f32::from(u8::from(self.is_free(s, l, end, lamp)));
+        }
+        let (x, y) = l.any_orthonormal_pair();
+        let free = (0..LAMP_SAMPLES).filter(|&i| {
+            // Vogel 1979.
+            let radius = ((i as f32 + 0.5) / LAMP_SAMPLES as f32).sqrt() * tangent;
+            let (sine, cosine) = (2.399_963_2 * i as f32).sin_cos();
+            let along = (l + radius * (x * cosine + y * sine)).normalize();
+            s.normal.dot(along) > 0.0 && self.is_free(s, along, end, lamp)
+        });
+        free.count() as f32 / LAMP_SAMPLES as f32
+    }
+
     fn lit_by(&self, light: &Light, s: &Surface, v: Vec3) -> Vec3 {
         let radiant = light.color * light.intensity;
         let (l, irradiance, end, lamp) = match light.kind {
@@ -143,10 +170,11 @@ impl<'a> Reference<'a> {
             }
         };
         let n_dot_l = s.normal.dot(l);
-        if n_dot_l <= 0.0 || irradiance.max_element() <= 0.0 || !self.is_free(s, l, end, lamp) {
+        if n_dot_l <= 0.0 || irradiance.max_element() <= 0.0 {
             return Vec3::ZERO;
         }
-        s.reflected(v, l) * irradiance * n_dot_l
+        let passing = self.passing(s, l, end, lamp);
+        s.reflected(v, l) * irradiance * (n_dot_l * passing)
     }
 
     /// Samples of three kinds, weighted by the balance heuristic (Veach and Guibas 1995).

@@ -96,6 +96,20 @@ impl Settings {
             });
         }
         let lighting = &self.lighting;
+        if !(0.0..=100.0).contains(&lighting.light_radius_m) {
+            return Err(Error::Setting {
+                name: "light-radius",
+                value: lighting.light_radius_m.to_string(),
+                expected: "between 0 and 100",
+            });
+        }
+        if !(0.0..=90.0).contains(&lighting.sun_angle_deg) {
+            return Err(Error::Setting {
+                name: "sun-angle",
+                value: lighting.sun_angle_deg.to_string(),
+                expected: "between 0 and 90",
+            });
+        }
         if !(0.0..=1e4).contains(&lighting.environment_intensity) {
             return Err(Error::Setting {
                 name: "environment-intensity",

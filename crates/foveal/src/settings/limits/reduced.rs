@@ -13,13 +13,16 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 6] = [
+const MISSING_KEYS: [&str; 9] = [
     "view",
     "geometry",
     "material-dispatch",
     "shadows",
     "shadow-atlas",
     "shadow-bias",
+    "shadow-sizes",
+    "light-radius",
+    "sun-angle",
 ];
 
 impl Setting {
