@@ -5,6 +5,7 @@ use std::borrow::Cow;
 use crate::{Clock, Target};
 use foveal_scene::{Camera, Scene, Texture};
 
+use crate::ambient::AmbientStage;
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingStage;
 use crate::environment::EnvironmentStage;
@@ -129,6 +130,7 @@ struct Stages {
     targets: Targets,
     lights: LightAssigner,
     shadows: ShadowStage,
+    ambient: Option<AmbientStage>,
     geometry: GeometryPass,
     shading: ShadingPass,
     antialias: Option<AntialiasStage>,
@@ -215,8 +217,8 @@ impl Renderer {
 
     /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
     /// history, so that a host with an eye tracker calls this before each frame. A change of the
-    /// environment's intensity and rotation, with or without one of gaze, gives up the light history
-    /// alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
+    /// environment's intensity and rotation, and of the radius of ambient occlusion, with or without
+    /// one of gaze, gives up the light history alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
     /// A change of [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
     /// takes effect with the next [`Renderer::set_scene`]; so does leaving out casters where shadows
@@ -281,6 +283,7 @@ impl Renderer {
             s.lighting.environment_intensity = settings.lighting.environment_intensity;
             s.lighting.environment_rotation_deg = settings.lighting.environment_rotation_deg;
             s.lighting.environment_image = settings.lighting.environment_image.clone();
+            s.lighting.ambient_occlusion_radius_m = settings.lighting.ambient_occlusion_radius_m;
         });
         if lit == *settings {
             self.stages.settings = settings.clone();

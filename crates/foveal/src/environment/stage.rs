@@ -95,7 +95,7 @@ impl EnvironmentStage {
 }
 
 /// Settings that change how shaders look the environment up.
-pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64); 2] {
+pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64); 3] {
     let environment = match settings.lighting.environment {
         EnvironmentSource::Gradient => 0,
         EnvironmentSource::Sky | EnvironmentSource::Image => 1,
@@ -109,5 +109,9 @@ pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64)
     [
         ("ENVIRONMENT", f64::from(environment)),
         ("BACKGROUND", f64::from(background)),
+        (
+            "AMBIENT_OCCLUSION",
+            f64::from(u8::from(settings.occludes_ambient())),
+        ),
     ]
 }

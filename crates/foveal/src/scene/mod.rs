@@ -72,6 +72,8 @@ pub(crate) struct SceneOnGpu {
     pub(crate) environment: Environment,
     /// The box around all that casts or receives shadows.
     pub(crate) bounds: Aabb,
+    /// From corner to corner of that box as the scene was set, in metres; poses do not change it.
+    pub(crate) diagonal_m: f32,
     pub(crate) stats: SceneStats,
     pub(crate) culling: CullingScene,
     uniforms: Vec<InstanceUniform>,
@@ -123,8 +125,10 @@ impl SceneOnGpu {
         let material_families = materials.families().count() as u64;
         let texture_bytes = materials.texture_bytes();
         let geometry = SceneGeometry::new(gpu, scene, materials.families().ranks())?;
+        let bounds = shadowed_bounds(scene, &geometry.meshes);
         Ok(Self {
-            bounds: shadowed_bounds(scene, &geometry.meshes),
+            bounds,
+            diagonal_m: (bounds.max - bounds.min).length(),
             geometry,
             instances: drawn_instances(scene, &materials),
             materials,

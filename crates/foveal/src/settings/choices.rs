@@ -53,6 +53,21 @@ pub enum Shadows {
     Soft,
 }
 
+/// Occlusion of the environment's light, besides the file's own maps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum AmbientOcclusion {
+    /// None.
+    #[default]
+    Off,
+    /// By what the picture's depth shows around a place.
+    Screen,
+}
+
 /// Light from everywhere besides the lights of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(

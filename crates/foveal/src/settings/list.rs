@@ -119,6 +119,13 @@ settings! {
         /// What is seen behind all surfaces: environment, blurred (as in a rough mirror; a gradient
         /// stays as it is) or none (black). Light and reflections stay the same.
         background => background: Background = Background::default(), "Background", Kind::choice::<Background>();
+        /// Occlusion of the environment's light by what lies around: screen finds it in the
+        /// picture's depth, at the shading rate; off leaves the file's own maps alone. The light of
+        /// lights is never dimmed by it.
+        ambient_occlusion => ambient_occlusion: AmbientOcclusion = AmbientOcclusion::default(), "Ambient occlusion", Kind::choice::<AmbientOcclusion>();
+        /// Distance in metres up to which surfaces occlude the environment for each other. Larger
+        /// values darken wider and miss thin gaps. 0 takes a tenth of the scene's diagonal.
+        ambient_occlusion_radius => ambient_occlusion_radius_m: f32 = 0.0, "Occlusion to (m)", Kind::Number { least: 0.0, most: 10.0 };
         /// Largest anisotropy of texture filtering, 1 to 16. Higher values keep textures sharp
         /// at flat angles. Lavapipe always takes 1: its own anisotropic filter can take minutes
         /// for one triangle.

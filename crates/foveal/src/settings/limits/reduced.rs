@@ -2,7 +2,9 @@
 //! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
 use crate::Error;
-use crate::settings::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading, Shadows};
+use crate::settings::{
+    AmbientOcclusion, Antialiasing, DebugView, Geometry, Setting, Settings, Shading, Shadows,
+};
 
 /// Stages that are missing on such devices.
 const MISSING_STAGES: [&str; 4] = [
@@ -13,13 +15,15 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 6] = [
+const MISSING_KEYS: [&str; 8] = [
     "view",
     "geometry",
     "material-dispatch",
     "shadows",
     "shadow-atlas",
     "shadow-bias",
+    "ambient-occlusion",
+    "ambient-occlusion-radius",
 ];
 
 impl Setting {
@@ -38,6 +42,11 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("geometry", s.geometry.path == Geometry::Gbuffer, "gbuffer"),
         ("aa", s.antialiasing.mode == Antialiasing::None, "none"),
         ("shadows", s.lighting.shadows == Shadows::Off, "off"),
+        (
+            "ambient-occlusion",
+            s.lighting.ambient_occlusion == AmbientOcclusion::Off,
+            "off",
+        ),
         ("shading", s.shading.mode == Shading::Full, "full"),
     ];
     match requests.into_iter().find(|(_, is_met, _)| !is_met) {
