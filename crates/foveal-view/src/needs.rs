@@ -41,8 +41,11 @@ pub(crate) fn missing(
             "Needs Environment: image",
         ),
         "environment-rotation" => unless(
-            s.lighting.environment == EnvironmentSource::Image,
-            "Needs Environment: image; the others look the same from all sides",
+            matches!(
+                s.lighting.environment,
+                EnvironmentSource::Image | EnvironmentSource::Scene
+            ),
+            "Needs Environment: image or scene; the others look the same from all sides",
         ),
         "ambient-occlusion" => unless(
             s.lighting.environment != EnvironmentSource::None,

@@ -34,7 +34,7 @@ pub(crate) use textures::ArrayLimits;
 
 use std::borrow::Cow;
 
-use foveal_scene::{Aabb, AlphaMode, Environment, Scene, Texture};
+use foveal_scene::{Aabb, AlphaMode, Environment, ImageLight, Scene, Texture};
 use glam::Mat4;
 
 use crate::culling::CullingScene;
@@ -70,6 +70,8 @@ pub(crate) struct SceneOnGpu {
     pub(crate) lights: Vec<LightUniform>,
     pub(crate) light_buffer: wgpu::Buffer,
     pub(crate) environment: Environment,
+    /// Its own, where it has one.
+    pub(crate) image_light: Option<ImageLight>,
     /// The box around all that casts or receives shadows.
     pub(crate) bounds: Aabb,
     /// From corner to corner of that box as the scene was set, in metres; poses do not change it.
@@ -135,6 +137,7 @@ impl SceneOnGpu {
             lights,
             light_buffer,
             environment: scene.environment,
+            image_light: scene.image_light.clone(),
             culling: CullingScene::new(scene, settings),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,

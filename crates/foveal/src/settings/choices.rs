@@ -76,8 +76,11 @@ pub enum AmbientOcclusion {
     serde(rename_all = "kebab-case")
 )]
 pub enum EnvironmentSource {
-    /// The scene's sky as a formula: rough surfaces mirror it unfiltered.
+    /// The environment that the scene's file has ([`ImageLight`](foveal_scene::ImageLight)), else
+    /// [`EnvironmentSource::Gradient`].
     #[default]
+    Scene,
+    /// The scene's sky as a formula: rough surfaces mirror it unfiltered.
     Gradient,
     /// The scene's sky, filtered by roughness.
     Sky,

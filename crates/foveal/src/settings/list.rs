@@ -103,10 +103,10 @@ settings! {
         /// texels. Raise it where surfaces show stripes, lower it where shadows begin away from
         /// what casts them.
         shadow_bias => shadow_bias: f32 = 1.5, "Shadow bias", Kind::Number { least: 0.0, most: 8.0 };
-        /// Light from all around: gradient is the sky of the scene as a formula, sky the same
-        /// filtered by roughness, image a picture of all directions, none is black. On the command
-        /// line also the name of a .hdr or .exr file. With gradient rough metals mirror a hard
-        /// horizon.
+        /// Light from all around: scene is what the scene's file has, else gradient, which is a sky
+        /// as a formula; sky is the same filtered by roughness, image a picture of all directions,
+        /// none is black. On the command line also the name of a .hdr or .exr file. With gradient
+        /// rough metals mirror a hard horizon.
         environment => environment: EnvironmentSource = EnvironmentSource::default(), "Environment", Kind::choice::<EnvironmentSource>();
         /// Picture of the environment image: an equirectangular .hdr or .exr file that the program
         /// opens. Hosts of the library pass its radiance to the renderer themselves.
