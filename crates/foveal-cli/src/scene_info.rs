@@ -86,6 +86,8 @@ struct SceneInfo {
     points: u64,
     vertices: u64,
     lights: usize,
+    /// Texels a side of the file's own environment, a cube.
+    environment: Option<u32>,
     animated: bool,
     clips: Vec<ClipInfo>,
     /// Names of variants of materials.
@@ -143,6 +145,7 @@ impl SceneInfo {
             points: scene.point_count(),
             vertices: scene.meshes.iter().map(|m| m.vertices.len() as u64).sum(),
             lights: scene.lights.len(),
+            environment: scene.image_light.as_ref().map(|light| light.side),
             animated: scene.is_animated(),
             clips: scene
                 .clips()
@@ -214,6 +217,9 @@ impl SceneInfo {
             ),
         );
         line("lights", count(self.lights));
+        if let Some(side) = self.environment {
+            line("around", format!("6 x {side} x {side} texels"));
+        }
         line(
             "animated",
             if self.animated { "yes" } else { "no" }.to_owned(),

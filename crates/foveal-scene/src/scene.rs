@@ -5,8 +5,8 @@ use std::fmt;
 use glam::{Mat4, Vec3};
 
 use crate::{
-    Aabb, AlphaMode, Camera, Code, Environment, Light, LightKind, LoadTimings, Material, Mesh, Rig,
-    Texture,
+    Aabb, AlphaMode, Camera, Code, Environment, ImageLight, Light, LightKind, LoadTimings,
+    Material, Mesh, Rig, Texture,
 };
 
 /// One thing as the file's author sees it: a node with a mesh, or one element of its GPU
@@ -113,6 +113,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// Backdrop and ambient light.
     pub environment: Environment,
+    /// The file's own, more exact one, where it has one.
+    pub image_light: Option<ImageLight>,
     /// Names of the file's variants of materials;
     /// [`LoadOptions::variant`](crate::LoadOptions::variant) chooses one.
     pub variants: Vec<String>,
@@ -186,10 +188,10 @@ impl Scene {
             .sum()
     }
 
-    /// Adds a sun where the scene has no punctual light of its own, so that it is not seen in the
-    /// dark; true if it did. It stands high, to the left of and behind a viewer who looks down -z.
+    /// Adds a sun where the scene has neither a punctual light nor an environment of its own, so that
+    /// it is not seen in the dark; true if it did. It stands high, to the left of and behind a viewer who looks down -z.
     pub fn light_by_default(&mut self) -> bool {
-        let needed = self.lights.is_empty();
+        let needed = self.lights.is_empty() && self.image_light.is_none();
         if needed {
             self.lights.push(Light {
                 kind: LightKind::Directional,

@@ -19,6 +19,11 @@ pub(crate) fn to_linear16() -> &'static [u16; 256] {
     })
 }
 
+/// Light from 0 to 1 for an 8-bit code.
+pub(crate) fn to_linear(code: u8) -> f32 {
+    f32::from(to_linear16()[code as usize]) / 65535.0
+}
+
 /// The nearest 8-bit code for each 16-bit light.
 pub(crate) fn from_linear16() -> &'static [u8; 65536] {
     static TABLE: OnceLock<Box<[u8; 65536]>> = OnceLock::new();

@@ -11,6 +11,7 @@
     reason = "used by tests alone, which may stop at once"
 )]
 
+mod around;
 mod basis;
 mod compressed;
 mod file;
@@ -18,6 +19,7 @@ pub mod pointers;
 mod rich;
 mod strokes;
 
+pub use around::{seen_from_within, surrounded};
 pub use basis::{ETC1S, KTX2_SIZE, UASTC, UASTC_ZSTD, ktx2_file, ktx2_texel};
 pub use compressed::{
     bumpy_grid, draco_file, draco_stream, gradient, grid_file, meshopt_file, webp_file,

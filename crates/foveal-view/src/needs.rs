@@ -1,8 +1,9 @@
 //! What a switch or a setting needs from the others before it does anything.
 
 use foveal::{
-    Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView, EnvironmentSource,
-    EyeFrusta, Geometry, Output, RateCombine, RateSource, Settings, Shading, Shadows, Stereo,
+    AmbientOcclusion, Antialiasing, CoarseBackend, CoarseSample, Composite, Culling, DebugView,
+    EnvironmentSource, EyeFrusta, Geometry, Output, RateCombine, RateSource, Settings, Shading,
+    Shadows, Stereo,
 };
 use toml::{Table, Value};
 
@@ -40,9 +41,24 @@ pub(crate) fn missing(
             "Needs Environment: image",
         ),
         "environment-rotation" => unless(
-            s.lighting.environment == EnvironmentSource::Image,
-            "Needs Environment: image; the others look the same from all sides",
+            matches!(
+                s.lighting.environment,
+                EnvironmentSource::Image | EnvironmentSource::Scene
+            ),
+            "Needs Environment: image or scene; the others look the same from all sides",
         ),
+        "ambient-occlusion" => unless(
+            s.lighting.environment != EnvironmentSource::None,
+            "Needs Environment: other than none",
+        ),
+        "ambient-occlusion-radius" => unless(
+            s.lighting.environment != EnvironmentSource::None,
+            "Needs Environment: other than none",
+        )
+        .or(unless(
+            s.lighting.ambient_occlusion != AmbientOcclusion::Off,
+            "Needs Ambient occlusion: screen",
+        )),
         "environment-intensity" | "background" => unless(
             s.lighting.environment != EnvironmentSource::None,
             "Needs Environment: other than none",
@@ -253,6 +269,7 @@ mod tests {
                 s.shading.mode = Shading::Coarse;
                 s.coarse.source = RateSource::Image;
                 s.lighting.environment = EnvironmentSource::Image;
+                s.lighting.ambient_occlusion = AmbientOcclusion::Screen;
             }),
         ];
         for key in noted {

@@ -8,6 +8,7 @@
 
 pub mod gpu;
 
+mod ambient;
 mod antialias;
 mod clock;
 mod composite;
@@ -51,13 +52,13 @@ pub use renderer::{Frame, Renderer, RendererOptions};
 #[cfg(feature = "serde")]
 pub use settings::variant_names;
 pub use settings::{
-    Antialiasing, AntialiasingSettings, Background, COARSEST_LEVEL, CoarseBackend, CoarseSample,
-    CoarseSettings, Composite, Contrast, Culling, CullingEyes, CullingSettings, DebugView, Display,
-    EdgeTest, EnvironmentSource, EyeClipping, EyeFrusta, EyeSettings, Geometry, GeometrySettings,
-    Kind, Lens, LensProfile, LightAssignment, LightingModel, LightingSettings, MaterialDispatch,
-    Output, PictureSettings, RateCombine, RateSettings, RateSource, RateStage, RefineEdges,
-    SamplePattern, Setting, Settings, Shading, ShadingSettings, ShadowSizes, Shadows, Stereo,
-    StereoSettings, ToneMap, VariableSettings,
+    AmbientOcclusion, Antialiasing, AntialiasingSettings, Background, COARSEST_LEVEL,
+    CoarseBackend, CoarseSample, CoarseSettings, Composite, Contrast, Culling, CullingEyes,
+    CullingSettings, DebugView, Display, EdgeTest, EnvironmentSource, EyeClipping, EyeFrusta,
+    EyeSettings, Geometry, GeometrySettings, Kind, Lens, LensProfile, LightAssignment,
+    LightingModel, LightingSettings, MaterialDispatch, Output, PictureSettings, RateCombine,
+    RateSettings, RateSource, RateStage, RefineEdges, SamplePattern, Setting, Settings, Shading,
+    ShadingSettings, ShadowSizes, Shadows, Stereo, StereoSettings, ToneMap, VariableSettings,
 };
 
 pub use stats::{

@@ -5,9 +5,10 @@ use std::borrow::Cow;
 use crate::{Clock, Target};
 use foveal_scene::{Camera, Scene, Texture};
 
+use crate::ambient::AmbientStage;
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingStage;
-use crate::environment::{EnvironmentStage, ToBind};
+use crate::environment::{EnvironmentStage, ToBind, resolved};
 use crate::forward::ForwardPass;
 use crate::geometry::{DrawList, GeometryPass};
 use crate::gpu::{CpuTimer, ErrorTrap, Gpu, GpuTimer};
@@ -129,6 +130,7 @@ struct Stages {
     targets: Targets,
     lights: LightAssigner,
     shadows: ShadowStage,
+    ambient: Option<AmbientStage>,
     geometry: GeometryPass,
     shading: ShadingPass,
     antialias: Option<AntialiasStage>,
@@ -178,7 +180,7 @@ impl Renderer {
         let mut trials = Trials::default();
         let stages = Stages::new(
             gpu,
-            &settings.drawn(),
+            &resolved(settings.drawn(), false),
             &frame_bindings,
             &material_layout,
             None,
@@ -215,8 +217,8 @@ impl Renderer {
 
     /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
     /// history, so that a host with an eye tracker calls this before each frame. A change of the
-    /// environment's intensity and rotation, with or without one of gaze, gives up the light history
-    /// alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
+    /// environment's intensity and rotation, and of the radius of ambient occlusion, with or without
+    /// one of gaze, gives up the light history alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
     /// A change of [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
     /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
     /// takes effect with the next [`Renderer::set_scene`]; so does leaving out casters where shadows
@@ -244,7 +246,8 @@ impl Renderer {
             trap.finish().await?;
             Some(upscale)
         };
-        self.draw_with(&settings.drawn()).await?;
+        let has_own = self.scene.image_light.is_some();
+        self.draw_with(&resolved(settings.drawn(), has_own)).await?;
         if let Some(upscale) = upscale {
             self.upscale = upscale;
         }
@@ -281,6 +284,7 @@ impl Renderer {
             s.lighting.environment_intensity = settings.lighting.environment_intensity;
             s.lighting.environment_rotation_deg = settings.lighting.environment_rotation_deg;
             s.lighting.environment_image = settings.lighting.environment_image.clone();
+            s.lighting.ambient_occlusion_radius_m = settings.lighting.ambient_occlusion_radius_m;
         });
         if lit == *settings {
             self.stages.settings = settings.clone();
@@ -304,8 +308,8 @@ impl Renderer {
             return Ok(());
         }
         let stages = self.new_stages(settings, None).await?;
-        let sky = self.scene.environment;
-        let environment = self.upload_environment(settings, &sky, None).await?;
+        let around = (&self.scene.environment, self.scene.image_light.as_ref());
+        let environment = self.upload_environment(settings, around, None).await?;
         self.stages = stages;
         self.rate_image_is_new = false;
         self.take_environment(environment);
@@ -381,16 +385,28 @@ impl Renderer {
         uploaded.geometry.check(&self.gpu, geometry)?;
         let uniforms = uploaded.instance_uniforms();
         FrameBindings::check_instances(&self.gpu, uniforms.len())?;
+        // With an environment of its own, or without, it may be drawn by other shaders.
+        let settings = resolved(self.settings.drawn(), uploaded.image_light.is_some());
+        let stages = if settings == self.stages.settings {
+            None
+        } else {
+            Some(self.new_stages(&settings, None).await?)
+        };
         let trap = ErrorTrap::new(&self.gpu, "uploading the scene's instances");
         self.frame_bindings.write_instances(&self.gpu, uniforms);
         // The old scene's instances are gone from here on.
         let written = trap.finish().await;
         self.torn(written)?;
-        let settings = &self.stages.settings;
-        let sky = &uploaded.environment;
-        let environment = self.upload_environment(settings, sky, None).await;
+        let around = (&uploaded.environment, uploaded.image_light.as_ref());
+        let environment = self.upload_environment(&settings, around, None).await;
         let environment = self.torn(environment)?;
         self.scene = uploaded;
+        if let Some(stages) = stages {
+            // Its counts are read from targets that go.
+            self.in_flight = None;
+            self.stages = stages;
+            self.rate_image_is_new = false;
+        }
         self.stages.forget();
         self.take_environment(environment);
         Ok(())

@@ -11,8 +11,9 @@ mod stereo;
 mod variable;
 
 pub use choices::{
-    Antialiasing, Background, Culling, CullingEyes, DebugView, EdgeTest, EnvironmentSource,
-    LightAssignment, LightingModel, MaterialDispatch, SamplePattern, ShadowSizes, Shadows, ToneMap,
+    AmbientOcclusion, Antialiasing, Background, Culling, CullingEyes, DebugView, EdgeTest,
+    EnvironmentSource, LightAssignment, LightingModel, MaterialDispatch, SamplePattern,
+    ShadowSizes, Shadows, ToneMap,
 };
 
 pub use coarse::{

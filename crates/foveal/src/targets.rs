@@ -1,5 +1,6 @@
 //! What a frame is drawn into.
 
+use crate::ambient::AmbientTargets;
 use crate::antialias::SampleTargets;
 use crate::forward::TransmissionTargets;
 use crate::geometry::{GBuffer, VisibilityTargets};
@@ -32,6 +33,8 @@ pub(crate) struct Targets {
     pub(crate) coarse: Option<CoarseTargets>,
     /// With variable shading.
     pub(crate) variable: Option<VariableTargets>,
+    /// With ambient occlusion.
+    pub(crate) ambient: Option<AmbientTargets>,
 }
 
 impl Targets {
@@ -74,6 +77,7 @@ impl Targets {
                 .then(|| CoarseTargets::new(gpu, settings)),
             variable: (settings.shading.mode == Shading::Variable)
                 .then(|| VariableTargets::new(gpu, settings)),
+            ambient: AmbientTargets::new(gpu, settings),
         }
     }
 
@@ -106,6 +110,7 @@ impl Targets {
             + self.samples.as_ref().map_or(0, SampleTargets::bytes)
             + self.coarse.as_ref().map_or(0, CoarseTargets::bytes)
             + self.variable.as_ref().map_or(0, VariableTargets::bytes)
+            + self.ambient.as_ref().map_or(0, AmbientTargets::bytes)
     }
 }
 

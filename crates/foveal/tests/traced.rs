@@ -4,8 +4,8 @@
 mod trace;
 
 use foveal::{
-    Background, EnvironmentMap, EnvironmentSource, Frame, Gpu, Renderer, RendererOptions, Settings,
-    Shadows, ToneMap,
+    AmbientOcclusion, Background, EnvironmentMap, EnvironmentSource, Frame, Gpu, Renderer,
+    RendererOptions, Settings, Shadows, ToneMap,
 };
 use foveal_generate as generate;
 use foveal_scene::{AlphaMode, Material, Scene};
@@ -40,6 +40,17 @@ fn surroundings(most: f32) -> (u32, u32, Vec<[f32; 3]>) {
 /// Mean FLIP error between the renderer's picture, with the court no brighter than `most`, and the
 /// reference's.
 fn flip(scene: &Scene, settings: Settings, most: f32, reference: &Reference<'_>) -> f32 {
+    let traced = reference.picture(&scene.cameras[0], WIDTH, HEIGHT);
+    flip_to(scene, settings, most, (reference.occludes, &traced))
+}
+
+/// The same, with the reference's picture.
+fn flip_to(
+    scene: &Scene,
+    settings: Settings,
+    most: f32,
+    (occludes, traced): (bool, &[Vec3]),
+) -> f32 {
     let camera = &scene.cameras[0];
     let settings = settings.with(|s| {
         s.picture.width = WIDTH;
@@ -64,13 +75,13 @@ fn flip(scene: &Scene, settings: Settings, most: f32, reference: &Reference<'_>)
         renderer.read_radiance().await.expect("read back")
     });
     let drawn = drawn.rgb.into_iter().map(Vec3::from);
-    let traced = reference.picture(camera, WIDTH, HEIGHT);
     if let Some(folder) = std::env::var_os("FOVEAL_TRACED") {
         let lighting = &settings.lighting;
         let what = (
             lighting.environment,
             lighting.shadows,
-            reference.occludes,
+            occludes,
+            lighting.ambient_occlusion,
             most,
         );
         let name = format!("{}-{what:?}.png", scene.name);
@@ -81,7 +92,7 @@ fn flip(scene: &Scene, settings: Settings, most: f32, reference: &Reference<'_>)
             .expect("written");
     }
     let map = nv_flip::flip(
-        flip_image(traced.into_iter()),
+        flip_image(traced.iter().copied()),
         flip_image(drawn),
         nv_flip::DEFAULT_PIXELS_PER_DEGREE,
     );
@@ -191,4 +202,39 @@ fn shadows_of_lamps_are_nearer_to_traced_ones_where_they_fade_by_contact() {
         .map(|shadows| flip(&scene, settings(shadows), 0.0, &reference));
     println!("lamps with a size: FLIP {contact:.4}; {soft:.4} with filters of one width");
     assert!(contact < 0.9 * soft, "{contact}, {soft}");
+}
+
+#[test]
+fn ambient_occlusion_brings_the_environments_light_nearer_to_what_is_traced() {
+    let (width, height, rgb) = surroundings(3.0);
+    let around = Around::new(width, height, rgb);
+    // Rooms stay too bright: what is beside the picture, and behind what is seen, is not found.
+    for (name, most) in [("materials-grid", 0.92), ("demo:1000", 0.98)] {
+        let mut scene = generate::by_name(name).expect("a generated scene");
+        scene.materials = scene.materials.iter().map(plain).collect();
+        for material in &mut scene.materials {
+            material.emissive = Vec3::ZERO;
+        }
+        scene.lights.clear();
+        let mut reference = Reference::new(&scene);
+        reference.around = Some(&around);
+        reference.occludes = true;
+        let traced = reference.picture(&scene.cameras[0], WIDTH, HEIGHT);
+        let error = |occlusion, radius| {
+            let settings = Settings::default().with(|s| {
+                s.lighting.environment = EnvironmentSource::Image;
+                s.lighting.ambient_occlusion = occlusion;
+                s.lighting.ambient_occlusion_radius_m = radius;
+            });
+            flip_to(&scene, settings, 3.0, (true, &traced))
+        };
+        let open = error(AmbientOcclusion::Off, 0.0);
+        let found = error(AmbientOcclusion::Screen, 0.0);
+        println!("{name}: FLIP {found:.4}; {open:.4} without ambient occlusion");
+        for radius in [0.25, 1.0, 4.0] {
+            let found = error(AmbientOcclusion::Screen, radius);
+            println!("  radius {radius} m: {found:.4}");
+        }
+        assert!(found <= most * open, "{name}: {found}, {open}");
+    }
 }

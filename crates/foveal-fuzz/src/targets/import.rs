@@ -10,7 +10,7 @@ use foveal_scene::{
 };
 use foveal_seeds::{
     ETC1S, File, UASTC, UASTC_ZSTD, draco_file, draco_stream, extended, grid_file, ktx2_file,
-    meshopt_file, pointers, rich, strokes, webp_file,
+    meshopt_file, pointers, rich, strokes, surrounded, webp_file,
 };
 
 const WHOLE_FILE: u8 = 1;
@@ -113,6 +113,7 @@ pub(super) fn seeds() -> Vec<Vec<u8>> {
     let files = [
         rich(),
         extended(),
+        surrounded(4, &|[x, y, z]| [2.0 + x, 2.0 + y, 2.0 + z]),
         strokes(),
         pointers::pointers(),
         grid_file(),

@@ -75,6 +75,8 @@ pub(crate) struct Document {
     pub(crate) variants: Vec<String>,
     /// Root nodes of the scene to show.
     pub(crate) roots: Vec<u32>,
+    /// The environment of the scene to show.
+    pub(crate) image_light: super::image_lights::Chosen,
 }
 
 impl Document {
@@ -157,6 +159,7 @@ impl Document {
             lights: light_defs,
             variants,
             roots: parse_roots(root, &counts, warn)?,
+            image_light: super::image_lights::parse(root, &counts)?,
             buffers,
             views,
             nodes,

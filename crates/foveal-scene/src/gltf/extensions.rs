@@ -6,6 +6,7 @@ use crate::{Code, Warning};
 
 /// Honoured in full as far as a picture can tell.
 const HONOURED: &[&str] = &[
+    "EXT_lights_image_based",
     "EXT_mesh_gpu_instancing",
     "EXT_meshopt_compression",
     "EXT_texture_webp",

@@ -150,6 +150,43 @@ impl<'a> Obj<'a> {
         self.each(key, to_float)
     }
 
+    /// Rows of `N` numbers each.
+    pub(crate) fn float_rows<const N: usize>(self, key: &str) -> Parsed<Option<Vec<[f32; N]>>> {
+        self.rows(key, to_float)
+    }
+
+    /// Rows of `N` indices below `len` each.
+    pub(crate) fn index_rows<const N: usize>(
+        self,
+        key: &str,
+        len: usize,
+    ) -> Parsed<Option<Vec<[u32; N]>>> {
+        self.rows(key, |v| to_index(v, len))
+    }
+
+    fn rows<T: Copy + Default, const N: usize>(
+        self,
+        key: &str,
+        read: impl Fn(&Value) -> Parsed<T>,
+    ) -> Parsed<Option<Vec<[T; N]>>> {
+        if !self.has(key) {
+            return Ok(None);
+        }
+        let row = |value: &Value| {
+            let list = value.as_array().ok_or_else(|| wrong(value, "an array"))?;
+            if list.len() != N {
+                let text = format!("has {} numbers instead of {N}", list.len());
+                return Err(Flaw::new(Code::ValueType, text));
+            }
+            let mut numbers = [T::default(); N];
+            for (i, (number, value)) in numbers.iter_mut().zip(list).enumerate() {
+                *number = read(value).map_err(|e| e.under(format_args!("[{i}]")))?;
+            }
+            Ok(numbers)
+        };
+        self.each(key, row).map(Some)
+    }
+
     pub(crate) fn string(self, key: &str) -> Parsed<Option<&'a str>> {
         self.read(key, |v| v.as_str().ok_or_else(|| wrong(v, "a string")))
     }

@@ -15,6 +15,7 @@ mod document;
 mod draco;
 mod extensions;
 mod geometry;
+mod image_lights;
 mod images;
 mod json;
 mod lights;
@@ -205,6 +206,7 @@ fn build(
     scene.timings.geometry_ms = watch.lap_ms();
 
     scene.textures = textures::decode(&wanted, &scene.materials, reader, resolver, options, warn)?;
+    image_lights::decode(&mut scene, reader, resolver, options, warn)?;
     if options.check_unused {
         unused::check(reader, resolver, options, &hierarchy, &wanted, warn);
     }

@@ -6,6 +6,7 @@
 use std::collections::HashSet;
 
 use super::Resolver;
+use super::image_lights::ImageLightDef;
 use super::nodes::Hierarchy;
 use super::objects;
 use super::parts::Geometry;
@@ -36,7 +37,10 @@ pub(crate) fn check(
         }
         warn.extend(notes.into_iter().map(|note| note.and(CONSEQUENCE)));
     }
-    let used: HashSet<u32> = wanted.images().collect();
+    let around = document.image_light.iter().flatten();
+    let used: HashSet<u32> = (wanted.images())
+        .chain(around.flat_map(ImageLightDef::images))
+        .collect();
     for image in (0..document.images.len() as u32).filter(|image| !used.contains(image)) {
         if let Err(flaw) = check_image(image, reader, resolver, options) {
             let label = document.images[image as usize].label(image as usize);

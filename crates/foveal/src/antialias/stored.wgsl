@@ -67,7 +67,9 @@ fn blend_of(pixel: vec2u, members: u32) -> Blend {
         // As differences, so that plain ones stay so to the bit.
         sum.dielectric += (s.dielectric - PLAIN_DIELECTRIC) * part;
         if MIRROR {
-            sum.emissive += s.occlusion * environment_specular(s, direction_to_eye(view_at(at), s.position));
+            let v = direction_to_eye(view_at(at), s.position);
+            let seen = mirrored_seen(s, v, environment_seen(at, view_distance(sample_depth)));
+            sum.emissive += s.occlusion * environment_specular(s, v) * seen;
         }
         depth += sample_depth;
         position += at;

@@ -1,8 +1,8 @@
 //! Shaders against the twin, frames against frames.
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Scene};
-use glam::{Vec2, Vec3};
+use foveal_scene::{Camera, ImageLight, Scene};
+use glam::{Quat, Vec2, Vec3};
 
 use super::EnvironmentMap;
 use super::twin::Around;
@@ -297,4 +297,149 @@ fn two_eyes_see_one_environment() {
     // Without a distance between them, both are the same.
     let differing = halves.iter().filter(|(left, right)| left != right).count();
     assert!(differing < 4, "{differing} rows");
+}
+
+/// The map as a scene's file may have it, turned by so many radians about the vertical axis.
+fn as_light(map: &EnvironmentMap, turn: f32) -> ImageLight {
+    let texel = |&[r, g, b, _]: &[u16; 4]| [r, g, b].map(f32_of_half);
+    // The factors of the harmonics, and irradiance is over pi.
+    let [zeroth, first, mixed] = [0.282_095, 0.488_603, 1.092_548];
+    let factors = [
+        zeroth, first, first, first, mixed, mixed, 0.315_392, mixed, 0.546_274,
+    ];
+    let irradiance = std::array::from_fn(|k| {
+        let falls = map.irradiance()[k] * std::f32::consts::PI / factors[k];
+        falls.to_array()
+    });
+    ImageLight {
+        name: String::new(),
+        rotation: Quat::from_rotation_y(turn),
+        intensity: 1.0,
+        side: map.side(),
+        radiance: map.texels(0).iter().map(texel).collect(),
+        irradiance,
+    }
+}
+
+/// Largest and mean difference of pictures, relative to the larger of a pixel's light and 0.1.
+fn apart(a: &[Vec3], b: &[Vec3]) -> (f32, f32) {
+    let one =
+        |(a, b): (&Vec3, &Vec3)| (*a - *b).abs().max_element() / a.max(*b).max_element().max(0.1);
+    let all: Vec<f32> = a.iter().zip(b).map(one).collect();
+    let sum: f32 = all.iter().sum();
+    (
+        all.iter().copied().fold(0.0, f32::max),
+        sum / all.len() as f32,
+    )
+}
+
+#[test]
+fn a_scenes_own_environment_lights_it_as_the_same_picture_does() {
+    let (width, height, rgb) = generate::surroundings(512);
+    let rgb: Vec<_> = rgb.into_iter().map(|t| t.map(|v| v.min(20.0))).collect();
+    let map = EnvironmentMap::new(width, height, &rgb).unwrap();
+    let mut scene = generate::materials_grid();
+    scene.lights.clear();
+    let camera = &scene.cameras[0].clone();
+    let plain = small(97, 65);
+    for (degrees, most, mean) in [(0.0, 0.01, 0.001), (70.0, 1.0, 0.01)] {
+        let by_image =
+            lit_by_image(plain.clone()).with(|s| s.lighting.environment_rotation_deg = degrees);
+        let wanted = radiance(&rendered(&scene, camera, &by_image, &map));
+        scene.image_light = Some(as_light(&map, degrees.to_radians()));
+        let found = radiance(&crate::testing::rendered(&scene, camera, &plain));
+        let found = apart(&found, &wanted);
+        assert!(found.0 <= most && found.1 <= mean, "{degrees}: {found:?}");
+    }
+}
+
+#[test]
+fn a_setting_is_stronger_than_a_scenes_own_environment_and_the_next_scene_has_its_own() {
+    let mut scene = generate::materials_grid();
+    let camera = &scene.cameras[0].clone();
+    let plain = small(48, 32);
+    let drawn = |scene: &Scene, settings: &Settings| {
+        picture(&crate::testing::rendered(scene, camera, settings))
+    };
+    let gradient = plain
+        .clone()
+        .with(|s| s.lighting.environment = EnvironmentSource::Gradient);
+    let without = drawn(&scene, &plain);
+    assert_eq!(without, drawn(&scene, &gradient));
+    let bare = scene.clone();
+    scene.image_light = Some(as_light(&surroundings(), 0.0));
+    let with = drawn(&scene, &plain);
+    assert!(with != without);
+    assert_eq!(without, drawn(&scene, &gradient));
+    for mode in [Shading::Full, Shading::Coarse] {
+        let settings = plain.clone().with(|s| s.shading.mode = mode);
+        let mut film = Film::new(&bare, &settings);
+        let mut alone = Vec::new();
+        for scene in [&bare, &scene, &bare] {
+            pollster::block_on(film.renderer.set_scene(scene)).unwrap();
+            film.last = None;
+            film.draw(camera);
+            assert_eq!(picture(&film.renderer), drawn(scene, &settings), "{mode:?}");
+            assert_eq!(film.renderer.settings(), &settings);
+            alone.push(picture(&film.renderer));
+        }
+        assert!(alone[0] == alone[2] && alone[0] != alone[1]);
+        let other = settings.with(|s| s.lighting.environment = EnvironmentSource::Sky);
+        pollster::block_on(film.renderer.set_settings(&other)).unwrap();
+        pollster::block_on(film.renderer.set_scene(&scene)).unwrap();
+        film.draw(camera);
+        assert_eq!(picture(&film.renderer), drawn(&bare, &other), "{mode:?}");
+    }
+}
+
+#[test]
+fn a_file_with_an_environment_is_lit_as_by_an_equirectangular_picture_of_it() {
+    // Another colour on each side, a lamp, and more light than white.
+    let radiance = |[x, y, z]: [f32; 3]| {
+        let lamp = if 0.6 * x + 0.64 * y + 0.48 * z > 0.95 {
+            8.0
+        } else {
+            0.0
+        };
+        [0.6 + 0.5 * x + lamp, 0.6 + 0.5 * y + lamp, 0.6 + 0.5 * z]
+    };
+    let (width, height) = (1024, 512);
+    let direction = |i: u32| {
+        let turn = ((i % width) as f32 + 0.5) / width as f32 * std::f32::consts::TAU;
+        let down = ((i / width) as f32 + 0.5) / height as f32 * std::f32::consts::PI;
+        [
+            -down.sin() * turn.cos(),
+            down.cos(),
+            -down.sin() * turn.sin(),
+        ]
+    };
+    let rgb: Vec<_> = (0..width * height).map(direction).map(radiance).collect();
+    let map = EnvironmentMap::new(width, height, &rgb).unwrap();
+    let file = foveal_seeds::surrounded(256, &radiance);
+    let options = foveal_scene::LoadOptions::default();
+    let no_files = |_: &str| Err("no files".into());
+    let loaded = foveal_scene::load_bytes(&file.glb(), "a.glb", &options, &no_files).unwrap();
+    let mut scene = generate::materials_grid();
+    scene.lights.clear();
+    let camera = &scene.cameras[0].clone();
+    let plain = small(97, 65);
+    let wanted = radiance_of(&scene, camera, &lit_by_image(plain.clone()), &map);
+    scene.image_light = loaded.image_light;
+    let found = radiance_of(&scene, camera, &plain, &map);
+    let (most, mean) = apart(&found, &wanted);
+    assert!(mean <= 0.01, "{mean}, {most}");
+    // The test tells sides apart.
+    let light = scene.image_light.as_mut().unwrap();
+    light.rotation = Quat::from_rotation_x(std::f32::consts::FRAC_PI_2);
+    let turned = apart(&radiance_of(&scene, camera, &plain, &map), &wanted);
+    assert!(turned.1 > 10.0 * mean, "{turned:?}");
+}
+
+fn radiance_of(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    map: &EnvironmentMap,
+) -> Vec<Vec3> {
+    radiance(&rendered(scene, camera, settings, map))
 }

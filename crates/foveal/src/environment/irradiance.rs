@@ -3,7 +3,8 @@
 
 use std::f32::consts::PI;
 
-use glam::{DVec3, Vec3};
+use foveal_scene::ImageLight;
+use glam::{DVec3, Mat3, Vec3};
 
 use super::cube::{Cube, SIDES, direction_of, relative_solid_angle};
 
@@ -39,6 +40,37 @@ fn factors() -> [f32; 9] {
     [
         zeroth, first, first, first, mixed, mixed, along, mixed, across,
     ]
+}
+
+/// The irradiance that a scene's own environment names, turned as it is.
+pub(super) fn of_coefficients(light: &ImageLight) -> Irradiance {
+    let c = light.irradiance.map(Vec3::from);
+    // Each harmonic's factor, over pi.
+    let [zeroth, first, mixed, along, across] =
+        [0.282_095, 0.488_603, 1.092_548, 0.315_392, 0.546_274].map(|f| f * light.intensity / PI);
+    let linear = [c[3], c[1], c[2]].map(|c| c * first);
+    let turn = Mat3::from_quat(light.rotation);
+    let mut result = [Vec3::ZERO; 9];
+    result[0] = c[0] * zeroth;
+    for channel in 0..3 {
+        let l = turn * Vec3::from(linear.map(|c| c[channel]));
+        (result[1][channel], result[2][channel], result[3][channel]) = (l.y, l.z, l.x);
+        // As a quadratic form without trace, where 3zz - 1 is 2zz - xx - yy.
+        let [xy, yz, xz] = [c[4], c[5], c[7]].map(|c| 0.5 * mixed * c[channel]);
+        let (z, x) = (along * c[6][channel], across * c[8][channel]);
+        let form = Mat3::from_cols(
+            Vec3::new(x - z, xy, xz),
+            Vec3::new(xy, -x - z, yz),
+            Vec3::new(xz, yz, 2.0 * z),
+        );
+        let form = turn * form * turn.transpose();
+        result[4][channel] = 2.0 * form.x_axis.y;
+        result[5][channel] = 2.0 * form.y_axis.z;
+        result[6][channel] = 0.5 * form.z_axis.z;
+        result[7][channel] = 2.0 * form.x_axis.z;
+        result[8][channel] = 0.5 * (form.x_axis.x - form.y_axis.y);
+    }
+    result
 }
 
 /// The irradiance of a cube map.

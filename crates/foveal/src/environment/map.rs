@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use foveal_scene::Environment;
-use glam::{Vec2, Vec3, Vec3A};
+use foveal_scene::{Environment, ImageLight};
+use glam::{Quat, Vec2, Vec3, Vec3A};
 
 use super::cube::{Cube, direction_of};
-use super::irradiance::{Irradiance, irradiance_of};
+use super::irradiance::{Irradiance, irradiance_of, of_coefficients};
 use super::picture::Equirectangular;
 use super::prefilter::{Levels, halves, prefilter};
 use crate::Error;
@@ -63,6 +63,26 @@ impl EnvironmentMap {
     /// A scene's own sky.
     pub(crate) fn of_gradient(sky: &Environment) -> Self {
         Self::from_radiance(SIDES[0], 1, |d| gradient(sky, d).into())
+    }
+
+    /// A scene's own environment: level 0 of its cube, filtered, with its irradiance.
+    pub(crate) fn of_light(light: &ImageLight) -> Self {
+        let own = light.side as usize;
+        let bright = |t: &[f32; 3]| Vec3A::from(*t) * light.intensity;
+        let cube = Cube::from_texels(own, |face, x, y| {
+            bright(&light.radiance[(face * own + y) * own + x])
+        });
+        let side = own.next_power_of_two().clamp(SIDES[0], SIDES[1]);
+        let turned = light.rotation.inverse();
+        // Texel for texel where it is neither turned nor resized.
+        let is_as_it_is = side == own && light.rotation == Quat::IDENTITY;
+        let samples = if is_as_it_is { 1 } else { 2 };
+        let mut filtered =
+            Self::from_radiance(side, samples, |d| cube.sample((turned * d).normalize()));
+        if let Some(own) = Arc::get_mut(&mut filtered.0) {
+            own.irradiance = of_coefficients(light);
+        }
+        filtered
     }
 
     /// From the radiance in each direction, a mean of `samples` x `samples` places a texel.

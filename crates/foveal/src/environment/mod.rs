@@ -1,6 +1,7 @@
 //! Environment light: the radiance that comes from everywhere besides the lights.
 //!
-//! An equirectangular picture, or the scene's own sky, becomes a cube map ([`EnvironmentMap`]):
+//! An equirectangular picture, the cube of a scene file, or the scene's sky becomes a cube map
+//! ([`EnvironmentMap`]):
 //! level 0 is the picture, each further level is what a rougher mirror reflects of it
 //! (`prefilter.rs`), and nine coefficients give its irradiance (`irradiance.rs`). A table says which
 //! part of it a mirror reflects (`reflectance.rs`). All of that is computed on the CPU, once per
@@ -27,5 +28,5 @@ pub(crate) mod twin;
 pub(crate) use binding::EnvironmentBinding;
 pub use map::EnvironmentMap;
 pub(crate) use stage::{
-    ChosenEnvironment, EnvironmentStage, EnvironmentTerms, ToBind, environment_constants,
+    ChosenEnvironment, EnvironmentStage, EnvironmentTerms, ToBind, environment_constants, resolved,
 };

@@ -1,6 +1,6 @@
 //! Which environment lights the frames.
 
-use foveal_scene::Environment;
+use foveal_scene::{Environment, ImageLight};
 
 use super::EnvironmentMap;
 use crate::{Background, EnvironmentSource, Settings};
@@ -12,6 +12,8 @@ pub(crate) struct EnvironmentStage {
     image: Option<EnvironmentMap>,
     /// The last scene's sky, filtered.
     sky: Option<(Environment, EnvironmentMap)>,
+    /// The last scene's own environment, filtered.
+    own: Option<(ImageLight, EnvironmentMap)>,
     in_use: Option<EnvironmentMap>,
     /// Albedos of one bounce are bound.
     has_albedos: bool,
@@ -50,18 +52,26 @@ impl ChosenEnvironment {
 }
 
 impl EnvironmentStage {
-    /// Chooses the map that the settings ask for, and filters the sky where that is it; `image` is
-    /// the host's map in place of the last one. Nothing changes before [`EnvironmentStage::take`].
+    /// Chooses the map that the settings ask for, and filters the sky or the scene's own environment
+    /// where that is it; `image` is the host's map in place of the last one. Nothing changes before
+    /// [`EnvironmentStage::take`].
     pub(crate) fn choose(
         &self,
         settings: &Settings,
-        sky: &Environment,
+        (sky, own): (&Environment, Option<&ImageLight>),
         image: Option<EnvironmentMap>,
     ) -> ChosenEnvironment {
         let image = image.or_else(|| self.image.clone());
         let mut filtered = self.sky.clone();
+        let mut filtered_own = self.own.clone();
         let in_use = match (settings.lighting.environment, &image) {
             (EnvironmentSource::Gradient | EnvironmentSource::None, _) => None,
+            (EnvironmentSource::Scene, _) => own.map(|own| {
+                let known = filtered_own.take().filter(|(of, _)| is_same(of, own));
+                let (_, map) = filtered_own
+                    .insert(known.unwrap_or_else(|| (own.clone(), EnvironmentMap::of_light(own))));
+                map.clone()
+            }),
             (EnvironmentSource::Image, Some(image)) => Some(image.clone()),
             (EnvironmentSource::Image | EnvironmentSource::Sky, _) => {
                 let (_, map) = match filtered.take().filter(|(of, _)| of == sky) {
@@ -83,6 +93,7 @@ impl EnvironmentStage {
             stage: Self {
                 image,
                 sky: filtered,
+                own: filtered_own,
                 in_use,
                 // What is bound stays.
                 has_albedos: wants_albedos || is_same && self.has_albedos,
@@ -117,11 +128,27 @@ impl EnvironmentStage {
     }
 }
 
+/// Whether both are copies of one.
+fn is_same(a: &ImageLight, b: &ImageLight) -> bool {
+    let terms = |light: &ImageLight| (light.rotation, light.intensity, light.irradiance);
+    std::sync::Arc::ptr_eq(&a.radiance, &b.radiance) && terms(a) == terms(b)
+}
+
+/// The settings as a scene is drawn with them: where it has no environment of its own, the gradient
+/// stands for it.
+pub(crate) fn resolved(settings: Settings, has_own: bool) -> Settings {
+    settings.with(|s| {
+        if s.lighting.environment == EnvironmentSource::Scene && !has_own {
+            s.lighting.environment = EnvironmentSource::Gradient;
+        }
+    })
+}
+
 /// Settings that change how shaders look the environment up.
-pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64); 3] {
+pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64); 4] {
     let environment = match settings.lighting.environment {
         EnvironmentSource::Gradient => 0,
-        EnvironmentSource::Sky | EnvironmentSource::Image => 1,
+        EnvironmentSource::Scene | EnvironmentSource::Sky | EnvironmentSource::Image => 1,
         EnvironmentSource::None => 2,
     };
     let background = match settings.lighting.background {
@@ -135,6 +162,10 @@ pub(crate) fn environment_constants(settings: &Settings) -> [(&'static str, f64)
         (
             "MULTIPLE_SCATTERING",
             f64::from(u8::from(settings.lighting.multiple_scattering)),
+        ),
+        (
+            "AMBIENT_OCCLUSION",
+            f64::from(u8::from(settings.occludes_ambient())),
         ),
     ]
 }

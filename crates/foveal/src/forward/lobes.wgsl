@@ -285,7 +285,7 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
 }
 
 // The environment's light on a lobed surface.
-fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32) -> vec3f {
+fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32, seen: f32) -> vec3f {
     var mirror = s.base;
     if (MATERIAL_CLASS & HAS_ANISOTROPY) != 0u {
         // Bent as a mirror of grooves is (KHR_materials_anisotropy).
@@ -294,18 +294,19 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32) -> vec3f {
         let turned = mix(bent, s.base.normal, kept * kept * kept * kept);
         mirror.normal = normalize(select(s.base.normal, turned, s.anisotropy > 0.0));
     }
-    var below = (1.0 - s.transmission) * environment_diffuse(s.base, v) + environment_specular(mirror, v);
+    var below = (1.0 - s.transmission) * environment_diffuse(s.base, v) * seen
+        + environment_specular(mirror, v) * mirrored_seen(mirror, v, seen);
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         let cosine = saturate(dot(s.base.normal, v));
         let around = Surface(
             s.base.position, s.base.normal, vec3f(1.0), 0.0, 1.0, 1.0, vec3f(0.0), vec4f(0.0),
         );
-        let white = environment_diffuse(around, v);
+        let white = environment_diffuse(around, v) * seen;
         below = below * below_sheen(s, cosine) + s.sheen_color * sheen_part(cosine, s.sheen_roughness) * white;
     }
     var sum = left * below;
     if (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u {
-        sum += s.clearcoat * environment_specular(s.coat, v);
+        sum += s.clearcoat * environment_specular(s.coat, v) * mirrored_seen(s.coat, v, seen);
     }
     return sum * s.base.occlusion;
 }
@@ -318,7 +319,7 @@ fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
         s.base_mirror.gain = further_bounces(s.base, v);
     }
     let left = below_coat(s, v);
-    var sum = s.base.emissive * left + lobes_ambient(s, v, left);
+    var sum = s.base.emissive * left + lobes_ambient(s, v, left, environment_seen(pixel, distance));
     let first = cluster_words_at(pixel, distance);
     for (var word = 0u; word < light_words(); word++) {
         let valid = min(light_count() - word * 32u, 32u);

@@ -70,11 +70,11 @@ impl ForwardPass {
         gpu: &Gpu,
         settings: &Settings,
         submission: Submission,
-        frame_layout: &wgpu::BindGroupLayout,
+        frame_layouts: (&wgpu::BindGroupLayout, &wgpu::BindGroupLayout),
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         Self {
-            recipes: Recipes::new(gpu, settings, submission, (frame_layout, material_layout)),
+            recipes: Recipes::new(gpu, settings, submission, frame_layouts, material_layout),
             pipelines: BTreeMap::new(),
             behind: None,
             submission,
@@ -232,9 +232,11 @@ impl ForwardPass {
             stencil_ops: None,
         };
         let mask = self.submission.multiview_mask();
+        let open = recorder.frame.open_group(recorder.gpu);
         let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
         if let Content::Transmissive(behind) = content {
+            pass.set_bind_group(0, &open, &[]);
             pass.set_bind_group(3, behind, &[]);
         }
         scene.geometry.bind(&mut pass);

@@ -77,6 +77,8 @@ pub(super) struct Recipes {
     constants: Vec<(&'static str, f64)>,
     /// Layouts of bind groups 0, 1 and 2.
     pub(super) frame: wgpu::BindGroupLayout,
+    /// Of bind group 0 for what light passes: it has no place for another texture.
+    open_frame: wgpu::BindGroupLayout,
     material: wgpu::BindGroupLayout,
     pub(super) lights: wgpu::BindGroupLayout,
 }
@@ -86,7 +88,8 @@ impl Recipes {
         gpu: &Gpu,
         settings: &Settings,
         submission: Submission,
-        (frame, material): (&wgpu::BindGroupLayout, &wgpu::BindGroupLayout),
+        (frame, open_frame): (&wgpu::BindGroupLayout, &wgpu::BindGroupLayout),
+        material: &wgpu::BindGroupLayout,
     ) -> Self {
         let mut constants = lighting_constants(gpu, settings);
         constants.extend(submission.constants());
@@ -100,6 +103,7 @@ impl Recipes {
             is_sampled: sampled,
             constants,
             frame: frame.clone(),
+            open_frame: open_frame.clone(),
             material: material.clone(),
             lights: bind_group_layout(
                 &gpu.device,
@@ -139,7 +143,12 @@ impl Recipes {
         }
         let with_lobes = kind.has_lobes().then(|| lobes_layout(gpu));
         let material = with_lobes.as_ref().unwrap_or(&self.material);
-        let mut layouts = vec![&self.frame, material, &self.lights];
+        let frame = if transmissive {
+            &self.open_frame
+        } else {
+            &self.frame
+        };
+        let mut layouts = vec![frame, material, &self.lights];
         layouts.extend(behind.filter(|_| transmissive));
         let shader = shader::FORWARD_FORWARD.variant(kind.variant(gpu, submission));
         Pipelines::new(PipelineRecipe {

@@ -1,6 +1,6 @@
 //! Which environment is bound.
 
-use foveal_scene::Environment;
+use foveal_scene::{Environment, ImageLight};
 
 use super::Renderer;
 use crate::environment::{ChosenEnvironment, EnvironmentMap};
@@ -16,8 +16,9 @@ impl Renderer {
     /// [`Error::OutOfMemory`]; the renderer keeps its old map then.
     pub async fn set_environment(&mut self, map: EnvironmentMap) -> Result<(), Error> {
         self.mend().await?;
-        let (settings, sky) = (&self.stages.settings, &self.scene.environment);
-        let environment = self.upload_environment(settings, sky, Some(map)).await?;
+        let (settings, scene) = (&self.stages.settings, &self.scene);
+        let around = (&scene.environment, scene.image_light.as_ref());
+        let environment = self.upload_environment(settings, around, Some(map)).await?;
         self.take_environment(environment);
         Ok(())
     }
@@ -27,10 +28,10 @@ impl Renderer {
     pub(super) async fn upload_environment(
         &self,
         settings: &Settings,
-        sky: &Environment,
+        around: (&Environment, Option<&ImageLight>),
         image: Option<EnvironmentMap>,
     ) -> Result<(ChosenEnvironment, Option<BoundEnvironment>), Error> {
-        let chosen = self.environment.choose(settings, sky, image);
+        let chosen = self.environment.choose(settings, around, image);
         if !chosen.is_new {
             return Ok((chosen, None));
         }

@@ -1,6 +1,7 @@
 //! What is made again with the settings.
 
 use super::{Clock, CoarseStages, Frame, Seen, Stages};
+use crate::ambient::AmbientStage;
 use crate::antialias::AntialiasStage;
 use crate::culling::CullingStage;
 use crate::forward::ForwardPass;
@@ -81,6 +82,7 @@ impl Stages {
             targets: Targets::new(gpu, settings, submission),
             lights: LightAssigner::new(gpu, layout.eyes, frame),
             shadows,
+            ambient: AmbientStage::new(gpu, settings, frame_bindings.open_layout()),
             geometry: GeometryPass::new(gpu, settings, submission, frame, material_layout),
             antialias: AntialiasStage::new(gpu, settings, frame, &shading),
             coarse: (settings.shading.mode == Shading::Coarse)
@@ -88,7 +90,13 @@ impl Stages {
             variable: (settings.shading.mode == Shading::Variable)
                 .then(|| VariableStage::new(gpu, settings, frame, shading.input_layout())),
             shading,
-            forward: ForwardPass::new(gpu, settings, submission, frame, material_layout),
+            forward: ForwardPass::new(
+                gpu,
+                settings,
+                submission,
+                (frame, frame_bindings.open_layout()),
+                material_layout,
+            ),
             tone_map: ToneMapPass::new(gpu, settings, frame),
             view: ViewPass::new(gpu, settings.picture.view, frame),
             eyes_shown: EyesPass::new(gpu, settings, frame),

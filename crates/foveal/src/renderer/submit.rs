@@ -2,6 +2,7 @@
 
 use super::plan::{FramePlan, SampleChoice};
 use super::{Frame, Renderer, Seen, Stages, Target};
+use crate::ambient::{OcclusionUniform, Reach};
 use crate::antialias::Shadings;
 use crate::culling::{CullingCounts, has_cells, has_receivers};
 use crate::forward::TransmissionTargets;
@@ -14,7 +15,8 @@ use crate::recorder::Recorder;
 use crate::shading::{HistoryStage, Samples};
 use crate::shadow::Receivers;
 use crate::stereo::EyeLayout;
-use crate::{FrameStats, ShadowSizes};
+use crate::targets::Targets;
+use crate::{FrameStats, Geometry, ShadowSizes};
 use foveal_scene::Camera;
 
 impl Renderer {
@@ -124,6 +126,13 @@ impl Renderer {
         self.frame_bindings.write_frame(gpu, &uniform);
         self.frame_bindings.write_drawn(gpu, &self.draw_list.drawn);
         lights.assign_on_cpu(gpu, &uniform, &scene.lights);
+        if let Some(ambient) = &self.stages.ambient {
+            let settings = &self.stages.settings;
+            ambient.write(gpu, &OcclusionUniform::new(settings, scene.diagonal_m));
+        }
+        let found = self.stages.targets.ambient.as_ref();
+        self.frame_bindings
+            .bind_ambient(gpu, found.map(|found| &found.resolved));
         clusters
     }
 
@@ -188,8 +197,14 @@ impl Renderer {
             .lights
             .assign(recorder, &draws.scene.light_buffer, clusters);
         stages.shadows.draw(recorder, draws.scene);
+        if plan.edges {
+            stages.look_around_first(recorder, draws, plan);
+        }
         stages.fill_gbuffer(recorder, draws, plan);
         stages.find_rates(recorder, draws, (seen, cameras), plan);
+        if !plan.edges {
+            stages.look_around(recorder, plan);
+        }
         if plan.is_lit {
             stages.light(recorder, draws, plan);
             stages.blend(recorder, draws);
@@ -223,6 +238,49 @@ impl Stages {
             assigner: &self.lights,
             shadows: &self.shadows,
         }
+    }
+
+    /// Ambient occlusion before sub-samples are drawn, which are lit as soon as they are: at every
+    /// pixel, of geometry that is drawn once more for it.
+    fn look_around_first(
+        &mut self,
+        recorder: &mut Recorder<'_>,
+        draws: Draws<'_>,
+        plan: &FramePlan,
+    ) {
+        if self.ambient.is_none() || !plan.is_lit {
+            return;
+        }
+        let gbuffer = &self.targets.gbuffer;
+        match self.settings.geometry.path {
+            Geometry::Gbuffer => self.geometry.draw(recorder, draws, gbuffer),
+            Geometry::Visibility => self.geometry.draw_triangles(recorder, draws, gbuffer),
+        }
+        self.look_around(recorder, plan);
+    }
+
+    /// Ambient occlusion: at the blocks of the rate map where the frame has one, else at every pixel.
+    fn look_around(&mut self, recorder: &mut Recorder<'_>, plan: &FramePlan) {
+        let Targets {
+            gbuffer,
+            coarse,
+            ambient,
+            ..
+        } = &mut self.targets;
+        let (Some(stage), Some(to)) = (&self.ambient, ambient) else {
+            return;
+        };
+        if !plan.is_lit {
+            return;
+        }
+        let history = self.coarse.as_ref().and_then(|c| c.history.as_ref());
+        let reach = match coarse {
+            _ if plan.edges || plan.rates != SampleChoice::Coarse => Reach::Every,
+            _ if history.is_some_and(|history| !history.needs_rates()) => Reach::EveryAtRest,
+            Some(tiles) => Reach::Blocks(&tiles.rate.owner.whole),
+            None => Reach::Every,
+        };
+        stage.find(recorder, gbuffer, to, reach);
     }
 
     /// Geometry: what is seen at each pixel. Materials that are evaluated at a rate are left for

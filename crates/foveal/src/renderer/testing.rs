@@ -45,6 +45,11 @@ impl Renderer {
         coarse.expect("coarse shading").set_balance(balance);
     }
 
+    /// From corner to corner of the scene as it was set, in metres.
+    pub(crate) fn diagonal_m(&self) -> f32 {
+        self.scene.diagonal_m
+    }
+
     /// How many cells may receive shadows, and of how many culling has said whether they are seen.
     pub(crate) fn cells_placed_and_tested(&self) -> (usize, usize) {
         let tested = self.stages.culling.as_ref().map_or(0, |c| c.cells_tested());

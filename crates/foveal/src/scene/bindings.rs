@@ -1,21 +1,50 @@
 //! Bind group 0: the frame's uniform block, the instances, which of them are drawn, and the
-//! environment.
+//! environment with what is known of its occlusion.
 
 use super::InstanceUniform;
 use crate::Error;
+use crate::ambient::VISIBILITY_FORMAT;
 use crate::environment::{EnvironmentBinding, ToBind};
 use crate::frame::FrameUniform;
-use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, uniform};
+use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, sampled, target, uniform};
 
 /// Bind group 0 of every pass.
 #[derive(Debug)]
 pub(crate) struct FrameBindings {
     layout: wgpu::BindGroupLayout,
+    /// The same without what occludes the environment.
+    open_layout: wgpu::BindGroupLayout,
     group: wgpu::BindGroup,
     frame: wgpu::Buffer,
     instances: Table,
     drawn: Table,
     environment: EnvironmentBinding,
+    ambient: AmbientBinding,
+}
+
+/// What occludes the environment.
+#[derive(Debug)]
+struct AmbientBinding {
+    /// Stands for it where nothing does; the reduced renderer has no place for it.
+    none: Option<wgpu::TextureView>,
+    found: Option<wgpu::TextureView>,
+}
+
+impl AmbientBinding {
+    fn new(gpu: &Gpu) -> Self {
+        let usage = wgpu::TextureUsages::empty();
+        let label = "no ambient occlusion";
+        Self {
+            none: (!gpu.is_reduced()).then(|| target(gpu, label, (1, 1), VISIBILITY_FORMAT, usage)),
+            found: None,
+        }
+    }
+
+    fn resource(&self) -> Option<wgpu::BindingResource<'_>> {
+        let found = self.none.as_ref().and(self.found.as_ref());
+        let view = found.or(self.none.as_ref());
+        view.map(wgpu::BindingResource::TextureView)
+    }
 }
 
 /// An environment that is uploaded and not bound yet.
@@ -30,13 +59,14 @@ impl FrameBindings {
     pub(crate) fn new(gpu: &Gpu, around: ToBind<'_>) -> Self {
         let table = Table::binding_type(gpu);
         let [cube, reflectances, sampler] = EnvironmentBinding::TYPES;
-        let types = [uniform(), table, table, cube, reflectances, sampler];
-        let layout = bind_group_layout(
-            &gpu.device,
-            "frame",
-            wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE,
-            &types,
-        );
+        let mut types = vec![uniform(), table, table, cube, reflectances, sampler];
+        let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
+        let open_layout = bind_group_layout(&gpu.device, "open frame", stages, &types);
+        if !gpu.is_reduced() {
+            let float = wgpu::TextureSampleType::Float { filterable: false };
+            types.push(sampled(float));
+        }
+        let layout = bind_group_layout(&gpu.device, "frame", stages, &types);
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
             size: size_of::<FrameUniform>() as u64,
@@ -48,15 +78,19 @@ impl FrameBindings {
         instances.write(gpu, &[0; size_of::<InstanceUniform>()]);
         let drawn = Table::new(gpu, "drawn");
         let environment = EnvironmentBinding::new(gpu, around);
+        let ambient = AmbientBinding::new(gpu);
         let tables = (&instances, &drawn);
-        let group = group(gpu, &layout, &frame, tables, &environment);
+        let around = (&environment, ambient.resource());
+        let group = group(gpu, &layout, &frame, tables, around);
         Self {
             layout,
+            open_layout,
             group,
             frame,
             instances,
             drawn,
             environment,
+            ambient,
         }
     }
 
@@ -71,14 +105,37 @@ impl FrameBindings {
     /// The same group with another list of drawn instances.
     pub(crate) fn group_of(&self, gpu: &Gpu, drawn: &Table) -> wgpu::BindGroup {
         let tables = (&self.instances, drawn);
-        group(gpu, &self.layout, &self.frame, tables, &self.environment)
+        let around = (&self.environment, self.ambient.resource());
+        group(gpu, &self.layout, &self.frame, tables, around)
+    }
+
+    /// Of [`FrameBindings::open_group`].
+    pub(crate) fn open_layout(&self) -> &wgpu::BindGroupLayout {
+        &self.open_layout
+    }
+
+    /// The same group without what occludes the environment: for passes that find it, and for those
+    /// that have no place for another texture.
+    pub(crate) fn open_group(&self, gpu: &Gpu) -> wgpu::BindGroup {
+        let tables = (&self.instances, &self.drawn);
+        let around = (&self.environment, None);
+        group(gpu, &self.open_layout, &self.frame, tables, around)
+    }
+
+    /// Binds what occludes the environment; `None`: nothing does.
+    pub(crate) fn bind_ambient(&mut self, gpu: &Gpu, found: Option<&wgpu::TextureView>) {
+        if self.ambient.found.as_ref() != found {
+            self.ambient.found = found.cloned();
+            self.group = self.group_of(gpu, &self.drawn);
+        }
     }
 
     /// Another environment with the group that binds it; without a map, one that is black.
     pub(crate) fn with_environment(&self, gpu: &Gpu, around: ToBind<'_>) -> BoundEnvironment {
         let binding = EnvironmentBinding::new(gpu, around);
         let tables = (&self.instances, &self.drawn);
-        let group = group(gpu, &self.layout, &self.frame, tables, &binding);
+        let around = (&binding, self.ambient.resource());
+        let group = group(gpu, &self.layout, &self.frame, tables, around);
         BoundEnvironment { binding, group }
     }
 
@@ -123,20 +180,17 @@ fn group(
     layout: &wgpu::BindGroupLayout,
     frame: &wgpu::Buffer,
     (instances, drawn): (&Table, &Table),
-    environment: &EnvironmentBinding,
+    (environment, ambient): (&EnvironmentBinding, Option<wgpu::BindingResource<'_>>),
 ) -> wgpu::BindGroup {
     let [map, reflectances, sampler] = environment.resources();
-    bind_group(
-        &gpu.device,
-        "frame",
-        layout,
-        &[
-            frame.as_entire_binding(),
-            instances.resource(),
-            drawn.resource(),
-            map,
-            reflectances,
-            sampler,
-        ],
-    )
+    let mut resources = vec![
+        frame.as_entire_binding(),
+        instances.resource(),
+        drawn.resource(),
+        map,
+        reflectances,
+        sampler,
+    ];
+    resources.extend(ambient);
+    bind_group(&gpu.device, "frame", layout, &resources)
 }

@@ -34,7 +34,7 @@ pub(crate) use textures::ArrayLimits;
 
 use std::borrow::Cow;
 
-use foveal_scene::{Aabb, AlphaMode, Environment, Scene, Texture};
+use foveal_scene::{Aabb, AlphaMode, Environment, ImageLight, Scene, Texture};
 use glam::Mat4;
 
 use crate::culling::CullingScene;
@@ -70,8 +70,12 @@ pub(crate) struct SceneOnGpu {
     pub(crate) lights: Vec<LightUniform>,
     pub(crate) light_buffer: wgpu::Buffer,
     pub(crate) environment: Environment,
+    /// Its own, where it has one.
+    pub(crate) image_light: Option<ImageLight>,
     /// The box around all that casts or receives shadows.
     pub(crate) bounds: Aabb,
+    /// From corner to corner of that box as the scene was set, in metres; poses do not change it.
+    pub(crate) diagonal_m: f32,
     pub(crate) stats: SceneStats,
     pub(crate) culling: CullingScene,
     uniforms: Vec<InstanceUniform>,
@@ -123,14 +127,17 @@ impl SceneOnGpu {
         let material_families = materials.families().count() as u64;
         let texture_bytes = materials.texture_bytes();
         let geometry = SceneGeometry::new(gpu, scene, materials.families().ranks())?;
+        let bounds = shadowed_bounds(scene, &geometry.meshes);
         Ok(Self {
-            bounds: shadowed_bounds(scene, &geometry.meshes),
+            bounds,
+            diagonal_m: (bounds.max - bounds.min).length(),
             geometry,
             instances: drawn_instances(scene, &materials),
             materials,
             lights,
             light_buffer,
             environment: scene.environment,
+            image_light: scene.image_light.clone(),
             culling: CullingScene::new(scene, settings),
             stats: SceneStats {
                 meshes: scene.meshes.len() as u64,

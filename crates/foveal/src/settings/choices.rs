@@ -70,6 +70,21 @@ pub enum ShadowSizes {
     Rate,
 }
 
+/// Occlusion of the environment's light, besides the file's own maps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(Serialize, Deserialize),
+    serde(rename_all = "kebab-case")
+)]
+pub enum AmbientOcclusion {
+    /// None.
+    #[default]
+    Off,
+    /// By what the picture's depth shows around a place.
+    Screen,
+}
+
 /// Light from everywhere besides the lights of the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(
@@ -78,8 +93,11 @@ pub enum ShadowSizes {
     serde(rename_all = "kebab-case")
 )]
 pub enum EnvironmentSource {
-    /// The scene's sky as a formula: rough surfaces mirror it unfiltered.
+    /// The environment that the scene's file has ([`ImageLight`](foveal_scene::ImageLight)), else
+    /// [`EnvironmentSource::Gradient`].
     #[default]
+    Scene,
+    /// The scene's sky as a formula: rough surfaces mirror it unfiltered.
     Gradient,
     /// The scene's sky, filtered by roughness.
     Sky,

@@ -117,10 +117,10 @@ settings! {
         /// Angle in degrees that directional lights fill in the sky, by which contact shadows fade.
         /// The sun fills 0.53.
         sun_angle => sun_angle_deg: f32 = 0.53, "Sun angle", Kind::Number { least: 0.0, most: 10.0 };
-        /// Light from all around: gradient is the sky of the scene as a formula, sky the same
-        /// filtered by roughness, image a picture of all directions, none is black. On the command
-        /// line also the name of a .hdr or .exr file. With gradient rough metals mirror a hard
-        /// horizon.
+        /// Light from all around: scene is what the scene's file has, else gradient, which is a sky
+        /// as a formula; sky is the same filtered by roughness, image a picture of all directions,
+        /// none is black. On the command line also the name of a .hdr or .exr file. With gradient
+        /// rough metals mirror a hard horizon.
         environment => environment: EnvironmentSource = EnvironmentSource::default(), "Environment", Kind::choice::<EnvironmentSource>();
         /// Picture of the environment image: an equirectangular .hdr or .exr file that the program
         /// opens. Hosts of the library pass its radiance to the renderer themselves.
@@ -133,6 +133,13 @@ settings! {
         /// What is seen behind all surfaces: environment, blurred (as in a rough mirror; a gradient
         /// stays as it is) or none (black). Light and reflections stay the same.
         background => background: Background = Background::default(), "Background", Kind::choice::<Background>();
+        /// Occlusion of the environment's light by what lies around: screen finds it in the
+        /// picture's depth, at the shading rate; off leaves the file's own maps alone. The light of
+        /// lights is never dimmed by it.
+        ambient_occlusion => ambient_occlusion: AmbientOcclusion = AmbientOcclusion::default(), "Ambient occlusion", Kind::choice::<AmbientOcclusion>();
+        /// Distance in metres up to which surfaces occlude the environment for each other. Larger
+        /// values darken wider and miss thin gaps. 0 takes a tenth of the scene's diagonal.
+        ambient_occlusion_radius => ambient_occlusion_radius_m: f32 = 0.0, "Occlusion to (m)", Kind::Number { least: 0.0, most: 10.0 };
         /// Largest anisotropy of texture filtering, 1 to 16. Higher values keep textures sharp
         /// at flat angles. Lavapipe always takes 1: its own anisotropic filter can take minutes
         /// for one triangle.

@@ -18,6 +18,8 @@ const BLURRED_ROUGHNESS: f32 = 0.5;
 
 // What microfacets lose by counting one bounce alone is given back.
 override MULTIPLE_SCATTERING: bool = false;
+// What occludes the environment is found in the picture's depth (`ambient/`).
+override AMBIENT_OCCLUSION: bool = false;
 
 const PI: f32 = 3.14159265;
 
@@ -29,6 +31,18 @@ const PI: f32 = 3.14159265;
 // where nothing is absorbed, at entries from 0 to 1.
 @group(0) @binding(4) var environment_reflectances: texture_2d<f32>;
 @group(0) @binding(5) var environment_sampler: sampler;
+#ifndef REDUCED
+#ifndef TRANSMISSION
+// Part of the environment's light that reaches each pixel, and the distance of the surface there.
+// Surfaces that light passes read as many textures as there may be, without it.
+@group(0) @binding(6) var ambient_visibility: texture_2d<f32>;
+#endif
+#endif
+
+// Relative difference of distances up to which a pixel's visibility is taken as it is, and the one
+// beyond which no pixel around speaks for a surface: nothing occludes it then.
+const SAME_SURFACE: f32 = 0.005;
+const OTHER_SURFACE: f32 = 0.05;
 
 // Radiance of the scene's own sky in a direction.
 fn gradient(direction: vec3f) -> vec3f {
@@ -238,8 +252,49 @@ fn environment_diffuse(s: Surface, v: vec3f) -> vec3f {
     return vec3f(0.0);
 }
 
-// The environment's light.
-fn ambient(s: Surface, v: vec3f) -> vec3f {
-    let diffuse = environment_diffuse(s, v);
-    return (diffuse + select(environment_specular(s, v), vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
+// Part of the environment's light that reaches a surface at a position in pixels of the target and a
+// distance along the view axis. Sub-samples and what is drawn forward may lie on another surface
+// than the pixel's: they take the pixel around that is nearest to theirs.
+fn environment_seen(pixel: vec2f, distance: f32) -> f32 {
+#ifdef REDUCED
+    return 1.0;
+#else
+#ifdef TRANSMISSION
+    return 1.0;
+#else
+    if !AMBIENT_OCCLUSION {
+        return 1.0;
+    }
+    let picture = picture_of(vec2u(pixel));
+    let first = vec2i(picture.low);
+    let last = vec2i(picture.end) - 1;
+    let at = clamp(vec2i(pixel), first, last);
+    var found = textureLoad(ambient_visibility, at, 0).xy;
+    if abs(found.y - distance) > SAME_SURFACE * distance {
+        for (var i = 0; i < 9; i++) {
+            let beside = clamp(at + vec2i(i % 3, i / 3) - 1, first, last);
+            let other = textureLoad(ambient_visibility, beside, 0).xy;
+            found = select(found, other, abs(other.y - distance) < abs(found.y - distance));
+        }
+    }
+    return select(1.0, found.x, abs(found.y - distance) <= OTHER_SURFACE * distance);
+#endif
+#endif
+}
+
+// The same of light in a rough mirror, which comes from fewer directions (Lagarde and de Rousiers
+// 2014, 'Moving Frostbite to Physically Based Rendering', section 4.10.2).
+fn mirrored_seen(s: Surface, v: vec3f, seen: f32) -> f32 {
+    if !AMBIENT_OCCLUSION {
+        return 1.0;
+    }
+    let n_dot_v = saturate(dot(s.normal, v));
+    return saturate(pow(n_dot_v + seen, exp2(-16.0 * s.roughness * s.roughness - 1.0)) - 1.0 + seen);
+}
+
+// The environment's light, of which `seen` reaches the surface.
+fn ambient(s: Surface, v: vec3f, seen: f32) -> vec3f {
+    let diffuse = environment_diffuse(s, v) * seen;
+    let specular = environment_specular(s, v) * mirrored_seen(s, v, seen);
+    return (diffuse + select(specular, vec3f(0.0), s.occlusion < 0.0)) * abs(s.occlusion);
 }

@@ -139,7 +139,8 @@ fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
 // the bit.
 fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
-    var sum = Lit(s.emissive + ambient(s, v), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
+    let seen = environment_seen(pixel, distance);
+    var sum = Lit(s.emissive + ambient(s, v, seen), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
     let first = cluster_words_at(pixel, distance);
     var mirror = mirror_of(s);
     if MULTIPLE_SCATTERING {

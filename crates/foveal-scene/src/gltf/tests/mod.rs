@@ -6,6 +6,7 @@ mod codes;
 mod compressed;
 mod geometry;
 mod hostile;
+mod image_lights;
 mod lobes;
 mod materials;
 mod motion;

@@ -110,6 +110,13 @@ impl Settings {
                 expected: "between 0 and 90",
             });
         }
+        if !(0.0..=1e6).contains(&lighting.ambient_occlusion_radius_m) {
+            return Err(Error::Setting {
+                name: "ambient-occlusion-radius",
+                value: lighting.ambient_occlusion_radius_m.to_string(),
+                expected: "between 0 and 1000000",
+            });
+        }
         if !(0.0..=1e4).contains(&lighting.environment_intensity) {
             return Err(Error::Setting {
                 name: "environment-intensity",

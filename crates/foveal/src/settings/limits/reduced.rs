@@ -2,7 +2,9 @@
 //! ([`Gpu::reduced_limits`](crate::Gpu::reduced_limits)).
 
 use crate::Error;
-use crate::settings::{Antialiasing, DebugView, Geometry, Setting, Settings, Shading, Shadows};
+use crate::settings::{
+    AmbientOcclusion, Antialiasing, DebugView, Geometry, Setting, Settings, Shading, Shadows,
+};
 
 /// Stages that are missing on such devices.
 const MISSING_STAGES: [&str; 4] = [
@@ -13,7 +15,7 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 9] = [
+const MISSING_KEYS: [&str; 11] = [
     "view",
     "geometry",
     "material-dispatch",
@@ -23,6 +25,8 @@ const MISSING_KEYS: [&str; 9] = [
     "shadow-sizes",
     "light-radius",
     "sun-angle",
+    "ambient-occlusion",
+    "ambient-occlusion-radius",
 ];
 
 impl Setting {
@@ -41,6 +45,11 @@ pub(super) fn validate(s: &Settings) -> Result<(), Error> {
         ("geometry", s.geometry.path == Geometry::Gbuffer, "gbuffer"),
         ("aa", s.antialiasing.mode == Antialiasing::None, "none"),
         ("shadows", s.lighting.shadows == Shadows::Off, "off"),
+        (
+            "ambient-occlusion",
+            s.lighting.ambient_occlusion == AmbientOcclusion::Off,
+            "off",
+        ),
         ("shading", s.shading.mode == Shading::Full, "full"),
     ];
     match requests.into_iter().find(|(_, is_met, _)| !is_met) {

@@ -33,10 +33,17 @@ macro_rules! assert_same_layout {
 
 #[test]
 fn shared_structs_lie_the_same_in_rust_and_wgsl() {
+    use crate::ambient::OcclusionUniform;
     use crate::frame::{FrameUniform, ViewUniform};
     use crate::lights::LightUniform;
     use crate::rate::RequestUniform;
     use crate::scene::{InstanceUniform, MaterialUniform};
+    assert_same_layout!(
+        AMBIENT_EVERY,
+        "AmbientOcclusion",
+        OcclusionUniform,
+        [radius, most_pixels]
+    );
     assert_same_layout!(
         GEOMETRY_GBUFFER,
         "Frame",

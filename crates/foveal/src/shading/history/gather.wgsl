@@ -57,8 +57,9 @@ fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_i
     }
     let diffuse = found.diffuse / found.weight;
     let mirror = found.specular / found.weight;
+    let seen = environment_seen(pixel, view_distance(depth));
     let lights = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
-    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v) + lights, vec3f(65504.0)), 1.0));
+    textureStore(radiance, texel, vec4f(min(s.emissive + ambient(s, v, seen) + lights, vec3f(65504.0)), 1.0));
     // As light from one direction each, which gives the same on this surface.
     let direction = unit_or(found.direction, s.normal);
     let specular_direction = unit_or(found.specular_direction, s.normal);

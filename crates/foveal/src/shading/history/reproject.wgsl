@@ -158,8 +158,9 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
         let l = unpack_light(words);
         let diffuse = l.diffuse * max(dot(s.normal, l.direction), LEAST_COSINE);
         let mirror = l.specular * highlight(s.normal, v, l.specular_direction, squared_alpha(s) + l.spread);
+        let reaching = environment_seen(pixel, distance);
         let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
-        let sum = min(s.emissive + ambient(s, v) + lamps, vec3f(65504.0));
+        let sum = min(s.emissive + ambient(s, v, reaching) + lamps, vec3f(65504.0));
         if is_renewed {
             let source = select(EXPECTED_AROUND, EXPECTED_OWN, (old & SEEN_OWN) != 0u);
             list_sample(texel, 0u, vec2f(min(luminance(sum), 65504.0), source));

@@ -1,0 +1,83 @@
+//! Light from all around as a scene file brings it: a cube of pictures and its irradiance.
+
+use std::sync::Arc;
+
+use glam::{Quat, Vec3};
+
+/// An environment of a scene file (glTF's `EXT_lights_image_based`).
+#[derive(Clone, Debug, PartialEq)]
+pub struct ImageLight {
+    /// Its name in the file; may be empty.
+    pub name: String,
+    /// Turns the environment: a direction of the cube, to the world's.
+    pub rotation: Quat,
+    /// Factor of radiance and irradiance.
+    pub intensity: f32,
+    /// Texels a side of the cube, a power of two.
+    pub side: u32,
+    /// Radiance, linear RGB, without the intensity: sides +x, -x, +y, -y, +z, -z, each row by row
+    /// from the top. With s and t from -1 to 1, to the right and down, a texel shows the direction
+    /// (1, -t, -s), (-1, -t, s), (s, 1, t), (s, -1, -t), (s, -t, 1), (-s, -t, -1) of its side, as in
+    /// cube maps of graphics APIs. Copies share them.
+    pub radiance: Arc<[[f32; 3]]>,
+    /// Irradiance, without intensity and rotation, as coefficients of the real spherical harmonics
+    /// 0,0; 1,-1 (y); 1,0 (z); 1,1 (x); 2,-2 (xy); 2,-1 (yz); 2,0; 2,1 (xz); 2,2, all of positive sign
+    /// (Ramamoorthi and Hanrahan 2001, equation 3).
+    pub irradiance: [[f32; 3]; 9],
+}
+
+/// The harmonics of [`ImageLight::irradiance`] in a unit direction.
+#[must_use]
+pub fn harmonics(d: Vec3) -> [f32; 9] {
+    let Vec3 { x, y, z } = d;
+    [
+        0.282_095,
+        0.488_603 * y,
+        0.488_603 * z,
+        0.488_603 * x,
+        1.092_548 * x * y,
+        1.092_548 * y * z,
+        0.315_392 * (3.0 * z * z - 1.0),
+        1.092_548 * x * z,
+        0.546_274 * (x * x - y * y),
+    ]
+}
+
+/// Of each harmonic: what the cosine makes of radiance (the same, equation 8).
+pub(crate) const COSINE: [f32; 9] = {
+    use std::f32::consts::{FRAC_PI_4, PI};
+    let (a, b) = (2.0 * PI / 3.0, FRAC_PI_4);
+    [PI, a, a, a, b, b, b, b, b]
+};
+
+/// The direction of a texel's centre, not of unit length.
+pub(crate) fn direction_of(face: usize, s: f32, t: f32) -> Vec3 {
+    match face {
+        0 => Vec3::new(1.0, -t, -s),
+        1 => Vec3::new(-1.0, -t, s),
+        2 => Vec3::new(s, 1.0, t),
+        3 => Vec3::new(s, -1.0, -t),
+        4 => Vec3::new(s, -t, 1.0),
+        _ => Vec3::new(-s, -t, -1.0),
+    }
+}
+
+/// Irradiance of a cube of radiance.
+pub(crate) fn irradiance_of(side: usize, radiance: &[[f32; 3]]) -> [[f32; 3]; 9] {
+    let mut sums = [[0f64; 3]; 9];
+    let mut sphere = 0f64;
+    for (i, texel) in radiance.iter().enumerate() {
+        let (face, x, y) = (i / (side * side), i % side, i / side % side);
+        let place = |x: usize| (x as f32 + 0.5) * 2.0 / side as f32 - 1.0;
+        let d = direction_of(face, place(x), place(y));
+        let weight = d.length_squared().powf(-1.5);
+        sphere += f64::from(weight);
+        for (sum, harmonic) in sums.iter_mut().zip(harmonics(d.normalize())) {
+            for (sum, value) in sum.iter_mut().zip(texel) {
+                *sum += f64::from(value * harmonic * weight);
+            }
+        }
+    }
+    let scale = 4.0 * std::f64::consts::PI / sphere;
+    std::array::from_fn(|k| sums[k].map(|v| (v * scale) as f32 * COSINE[k]))
+}

@@ -1,0 +1,86 @@
+//! What ambient occlusion writes.
+
+use crate::gpu::{self, Gpu};
+use crate::stereo::EyeLayout;
+use crate::{Settings, Shading};
+
+/// Visibility at the places that were looked from.
+pub(super) const FOUND_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
+/// Visibility of each pixel, and the distance of its surface.
+pub(crate) const VISIBILITY_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
+
+/// The targets of one frame size.
+#[derive(Debug)]
+pub(crate) struct AmbientTargets {
+    pub(super) found: wgpu::TextureView,
+    pub(crate) resolved: wgpu::TextureView,
+    /// With coarse shading: the places to look from.
+    pub(super) listed: Option<Listed>,
+    /// What was resolved is that of a view that has not changed since, at every pixel.
+    pub(super) rests: bool,
+}
+
+/// Texels to look from, their number, and the dispatch over them.
+#[derive(Debug)]
+pub(super) struct Listed {
+    pub(super) texels: wgpu::Buffer,
+    pub(super) counts: wgpu::Buffer,
+    pub(super) dispatch: wgpu::Buffer,
+}
+
+impl AmbientTargets {
+    /// The targets for settings that were found valid, where they ask for some.
+    pub(crate) fn new(gpu: &Gpu, settings: &Settings) -> Option<Self> {
+        if !settings.occludes_ambient() {
+            return None;
+        }
+        let size = EyeLayout::of(settings).target_size();
+        let usage = wgpu::TextureUsages::STORAGE_BINDING;
+        let target = |label, format| gpu::target(gpu, label, size, format, usage);
+        let is_coarse = settings.shading.mode == Shading::Coarse;
+        Some(Self {
+            found: target("ambient samples", FOUND_FORMAT),
+            resolved: target("ambient visibility", VISIBILITY_FORMAT),
+            listed: is_coarse.then(|| Listed::new(gpu, size)),
+            rests: false,
+        })
+    }
+
+    /// Bytes of everything.
+    pub(crate) fn bytes(&self) -> u64 {
+        let size = self.found.texture().size();
+        let listed = self
+            .listed
+            .as_ref()
+            .map_or(0, |l| l.texels.size() + l.counts.size() + l.dispatch.size());
+        u64::from(size.width) * u64::from(size.height) * (4 + 8) + listed
+    }
+}
+
+impl Listed {
+    fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Self {
+        let buffer = |label, size, usage| {
+            gpu.device.create_buffer(&wgpu::BufferDescriptor {
+                label: Some(label),
+                size,
+                usage: usage | wgpu::BufferUsages::STORAGE,
+                mapped_at_creation: false,
+            })
+        };
+        let levels = u64::from(crate::shading::LEVELS);
+        let pixels = u64::from(width) * u64::from(height);
+        Self {
+            texels: buffer("ambient places", pixels * 4, wgpu::BufferUsages::empty()),
+            counts: buffer(
+                "ambient count",
+                levels * 4,
+                wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
+            ),
+            dispatch: buffer(
+                "ambient dispatch",
+                levels * 16,
+                wgpu::BufferUsages::INDIRECT,
+            ),
+        }
+    }
+}
