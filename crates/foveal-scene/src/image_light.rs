@@ -26,6 +26,29 @@ pub struct ImageLight {
     pub irradiance: [[f32; 3]; 9],
 }
 
+impl ImageLight {
+    /// Takes means of 2 x 2 texels until a side has at most so many: filtering takes time and memory.
+    pub fn halve_to(&mut self, most: u32) {
+        while self.side > most.max(1) {
+            let side = self.side as usize;
+            let sides = self.radiance.chunks(side * side);
+            self.radiance = sides.flat_map(|texels| halved(texels, side)).collect();
+            self.side /= 2;
+        }
+    }
+}
+
+/// Means of 2 x 2 texels of a square.
+pub(crate) fn halved(texels: &[[f32; 3]], side: usize) -> Vec<[f32; 3]> {
+    let half = side / 2;
+    let mean = |i: usize| {
+        let first = i / half * 2 * side + i % half * 2;
+        let four = [first, first + 1, first + side, first + side + 1];
+        std::array::from_fn(|c| four.iter().map(|&at| texels[at][c]).sum::<f32>() * 0.25)
+    };
+    (0..half * half).map(mean).collect()
+}
+
 /// The harmonics of [`ImageLight::irradiance`] in a unit direction.
 #[must_use]
 pub fn harmonics(d: Vec3) -> [f32; 9] {

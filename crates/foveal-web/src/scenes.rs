@@ -63,6 +63,10 @@ pub(crate) fn from_bytes(name: &str, bytes: &[u8]) -> Result<Scene, String> {
         ))
     };
     let mut scene = load_bytes(bytes, name, &options, &outside).map_err(|e| e.to_string())?;
+    // One thread filters it.
+    if let Some(light) = &mut scene.image_light {
+        light.halve_to(256);
+    }
     scene.light_by_default();
     Ok(scene)
 }

@@ -14,7 +14,7 @@ use super::json::Obj;
 use super::pictures::{self, Promise};
 use super::reader::Reader;
 use crate::error::{Flaw, Limit, Parsed, amount};
-use crate::image_light::{COSINE, ImageLight, irradiance_of};
+use crate::image_light::{COSINE, ImageLight, halved, irradiance_of};
 use crate::{Code, LoadOptions, Scene, Warning, srgb};
 
 const NAME: &str = "EXT_lights_image_based";
@@ -40,6 +40,11 @@ pub(crate) type Chosen = Option<Result<ImageLightDef, Flaw>>;
 
 /// Reads the light that the scene to show names.
 pub(crate) fn parse(root: Obj<'_>, counts: &Counts) -> Parsed<Chosen> {
+    // What is wrong within the extension leaves the rest of the file as good as it is.
+    Ok(find(root, counts).unwrap_or_else(|flaw| Some(Err(flaw))))
+}
+
+fn find(root: Obj<'_>, counts: &Counts) -> Parsed<Chosen> {
     let scene = root.index("scene", counts.scenes)?.unwrap_or(0);
     let Some(scene_json) = root.get("scenes").and_then(|all| all.get(scene as usize)) else {
         return Ok(None);
@@ -151,6 +156,8 @@ pub(crate) fn decode(
         }
     }
     let kept = u64::from(def.side.min(MOST_SIDE)).pow(2) * 12 * 6;
+    // The sides, all of them together, and a copy that is shared.
+    let kept = 3 * kept;
     let decoding = encoded
         .iter()
         .map(|(_, p)| p.decoding_bytes() + 5 * p.rgba_bytes());
@@ -223,15 +230,8 @@ fn radiance(picture: &pictures::Picture) -> Vec<[f32; 3]> {
         .collect();
     let mut side = picture.width as usize;
     while side > MOST_SIDE as usize {
-        let half = side / 2;
-        texels = (0..half * half)
-            .map(|i| {
-                let first = i / half * 2 * side + i % half * 2;
-                let four = [first, first + 1, first + side, first + side + 1];
-                std::array::from_fn(|c| four.iter().map(|&at| texels[at][c]).sum::<f32>() * 0.25)
-            })
-            .collect();
-        side = half;
+        texels = halved(&texels, side);
+        side /= 2;
     }
     texels
 }
@@ -248,6 +248,7 @@ fn finish(def: &ImageLightDef, mut sides: Vec<Vec<[f32; 3]>>) -> ImageLight {
         }
     }
     let radiance = sides.concat();
+    drop(sides);
     let irradiance = agreeing(def.irradiance, &irradiance_of(side, &radiance));
     ImageLight {
         name: def.name.clone(),

@@ -41,7 +41,8 @@ impl AmbientTargets {
         Some(Self {
             found: target("ambient samples", FOUND_FORMAT),
             resolved: target("ambient visibility", VISIBILITY_FORMAT),
-            listed: is_coarse.then(|| Listed::new(gpu, size)),
+            // Where a list of all pixels does not fit, every pixel is looked at.
+            listed: (is_coarse && Listed::fits(gpu, size)).then(|| Listed::new(gpu, size)),
             rests: false,
         })
     }
@@ -58,6 +59,11 @@ impl AmbientTargets {
 }
 
 impl Listed {
+    fn fits(gpu: &Gpu, (width, height): (u32, u32)) -> bool {
+        u64::from(width) * u64::from(height) * 4
+            <= gpu.device.limits().max_storage_buffer_binding_size
+    }
+
     fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Self {
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {

@@ -44,10 +44,13 @@ fn factors() -> [f32; 9] {
 
 /// The irradiance that a scene's own environment names, turned as it is.
 pub(super) fn of_coefficients(light: &ImageLight) -> Irradiance {
-    let c = light.irradiance.map(Vec3::from);
+    // So that nothing becomes infinite.
+    let held = |v: f32| if v.is_nan() { 0.0 } else { v.clamp(-1e9, 1e9) };
+    let intensity = held(light.intensity);
+    let c = light.irradiance.map(|rgb| Vec3::from(rgb.map(held)));
     // Each harmonic's factor, over pi.
     let [zeroth, first, mixed, along, across] =
-        [0.282_095, 0.488_603, 1.092_548, 0.315_392, 0.546_274].map(|f| f * light.intensity / PI);
+        [0.282_095, 0.488_603, 1.092_548, 0.315_392, 0.546_274].map(|f| f * intensity / PI);
     let linear = [c[3], c[1], c[2]].map(|c| c * first);
     let turn = Mat3::from_quat(light.rotation);
     let mut result = [Vec3::ZERO; 9];

@@ -68,7 +68,9 @@ impl EnvironmentMap {
     /// A scene's own environment: level 0 of its cube, filtered, with its irradiance.
     pub(crate) fn of_light(light: &ImageLight) -> Self {
         let own = light.side as usize;
-        let bright = |t: &[f32; 3]| Vec3A::from(*t) * light.intensity;
+        // A host may have set anything; NaN becomes 0.
+        let held = |v: f32| (v * light.intensity).max(0.0).min(1e9);
+        let bright = |t: &[f32; 3]| Vec3A::from(t.map(held));
         let cube = Cube::from_texels(own, |face, x, y| {
             bright(&light.radiance[(face * own + y) * own + x])
         });

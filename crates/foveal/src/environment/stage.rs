@@ -63,13 +63,14 @@ impl EnvironmentStage {
     ) -> ChosenEnvironment {
         let image = image.or_else(|| self.image.clone());
         let mut filtered = self.sky.clone();
-        let mut filtered_own = self.own.clone();
+        // Of another scene's nothing is kept.
+        let known = |of: &ImageLight| own.is_some_and(|own| is_same(of, own));
+        let mut filtered_own = self.own.clone().filter(|(of, _)| known(of));
         let in_use = match (settings.lighting.environment, &image) {
             (EnvironmentSource::Gradient | EnvironmentSource::None, _) => None,
             (EnvironmentSource::Scene, _) => own.map(|own| {
-                let known = filtered_own.take().filter(|(of, _)| is_same(of, own));
-                let (_, map) = filtered_own
-                    .insert(known.unwrap_or_else(|| (own.clone(), EnvironmentMap::of_light(own))));
+                let filter = || (own.clone(), EnvironmentMap::of_light(own));
+                let (_, map) = filtered_own.get_or_insert_with(filter);
                 map.clone()
             }),
             (EnvironmentSource::Image, Some(image)) => Some(image.clone()),

@@ -232,11 +232,12 @@ impl ForwardPass {
             stencil_ops: None,
         };
         let mask = self.submission.multiview_mask();
-        let open = recorder.frame.open_group(recorder.gpu);
+        let open = matches!(content, Content::Transmissive(_))
+            .then(|| recorder.frame.open_group(recorder.gpu));
         let mut pass = recorder.layered_pass("forward", &[color], Some(depth), mask);
         pass.set_bind_group(2, &lights, &[]);
         if let Content::Transmissive(behind) = content {
-            pass.set_bind_group(0, &open, &[]);
+            pass.set_bind_group(0, open.as_ref(), &[]);
             pass.set_bind_group(3, behind, &[]);
         }
         scene.geometry.bind(&mut pass);

@@ -48,6 +48,12 @@ impl FinestRate {
         })
     }
 
+    /// Whether both eyes ask for the same at each place of their pictures.
+    pub(crate) fn is_alike(&self) -> bool {
+        self.gaze_direction[0] == self.gaze_direction[1]
+            && self.display_from_ndc[0] == self.display_from_ndc[1]
+    }
+
     /// The coarsest level there is.
     pub(crate) fn coarsest(&self) -> u32 {
         self.coarsest

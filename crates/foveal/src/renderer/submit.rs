@@ -275,6 +275,10 @@ impl Stages {
         }
         let history = self.coarse.as_ref().and_then(|c| c.history.as_ref());
         let reach = match coarse {
+            // The last picture is shown again.
+            _ if !plan.edges && history.is_some_and(|history| history.is_again()) => {
+                Reach::EveryAtRest
+            }
             _ if plan.edges || plan.rates != SampleChoice::Coarse => Reach::Every,
             _ if history.is_some_and(|history| !history.needs_rates()) => Reach::EveryAtRest,
             Some(tiles) => Reach::Blocks(&tiles.rate.owner.whole),

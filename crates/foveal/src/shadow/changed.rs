@@ -8,6 +8,11 @@ use crate::lights::LightUniform;
 /// Most places that are told apart; nearer ones are put together.
 const MOST: usize = 12;
 const DIRECTIONAL: u32 = 0;
+/// A place that something farther makes fade far sees what is nearer fade this much farther than by
+/// itself: 1 over the shaders' `CONTACT_SLACK`.
+const AMONG_OTHERS: f32 = 2.0;
+/// Most by which a place in a cube's side is farther from the lamp than along the side's axis.
+const TO_CORNERS: f32 = 1.7321;
 
 /// A sphere: centre and radius in metres, world space.
 pub(crate) type Place = [f32; 4];
@@ -60,7 +65,7 @@ fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb
         let beyond = scene.center() - center;
         let reach = along.dot(beyond) + along.abs().dot(scene.half_extent());
         let half = 0.5 * reach.max(0.0);
-        let fades = sun * 2.0 * half;
+        let fades = AMONG_OTHERS * sun * 2.0 * half;
         return (center + along * half)
             .extend(half + radius + fades)
             .to_array();
@@ -69,7 +74,8 @@ fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb
     let to = center - apex;
     let distance = to.length();
     // Past an edge, the lamp's border is seen so far beside the shadow at the range.
-    let fades = lamp * (light.range / (distance - radius).max(1e-6) - 1.0).max(0.0);
+    let past_edges = (light.range / (distance - radius).max(1e-6) - 1.0).max(0.0);
+    let fades = AMONG_OTHERS * TO_CORNERS * lamp * past_edges;
     if distance <= radius || fades >= light.range {
         return apex.extend(light.range).to_array();
     }

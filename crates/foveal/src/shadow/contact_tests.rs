@@ -130,7 +130,15 @@ fn no_light_leaks_into_a_shadow_across_the_sides_of_the_cube() {
 
 #[test]
 fn a_floor_does_not_shade_itself() {
-    for (height, radius) in [(3.0, 0.05), (3.0, 0.5), (1.0, 0.1), (0.4, 0.05)] {
+    // The last two lamps reach to the floor and below it.
+    for (height, radius) in [
+        (3.0, 0.05),
+        (3.0, 0.5),
+        (1.0, 0.1),
+        (0.4, 0.05),
+        (0.4, 0.4),
+        (0.3, 0.5),
+    ] {
         let lit = Lit::new(&floor(height * Vec3::Y), radius);
         for i in -39..40 {
             for j in -39..40 {

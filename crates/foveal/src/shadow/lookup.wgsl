@@ -76,9 +76,11 @@ fn pyramid_texel(at: vec3f, tangent: f32, side: f32) -> vec2f {
 
 // Texels by which an edge fades to each side, per depth (near / distance) between it and where its
 // shadow falls: the lamp, seen from there past the edge, covers its radius * (1 / z of the edge - 1 /
-// z of the place) at distance 1.
-fn pyramid_softness(near: f32, tangent: f32, side: f32) -> f32 {
-    return shadow_row(0u).y * (0.5 * side - SHADOW_BORDER) / (tangent * near);
+// z of the place) at distance 1. A lamp counts as at most half as large as it stands high above the
+// surface: a part of a larger one would be behind the surface, which would keep its own light away.
+fn pyramid_softness(near: f32, tangent: f32, side: f32, height: f32) -> f32 {
+    let lamp = min(shadow_row(0u).y, 0.5 * height);
+    return lamp * (0.5 * side - SHADOW_BORDER) / (tangent * near);
 }
 
 // Part of a point light's rays that reach a surface.
@@ -96,7 +98,8 @@ fn point_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f,
     if at.z <= near {
         return 1.0;
     }
-    return shadow_passing(tile, pyramid_texel(at, 1.0, tile.side), near / at.z, pyramid_softness(near, 1.0, tile.side));
+    let softness = pyramid_softness(near, 1.0, tile.side, n_dot_l * length(from_light));
+    return shadow_passing(tile, pyramid_texel(at, 1.0, tile.side), near / at.z, softness);
 }
 
 // The same for a spot light whose cone fits into one tile.
@@ -116,7 +119,7 @@ fn spot_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, 
     if at.z <= near {
         return 1.0;
     }
-    let softness = pyramid_softness(near, tangent, tile.side);
+    let softness = pyramid_softness(near, tangent, tile.side, n_dot_l * length(from_light));
     return shadow_passing(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness);
 }
 
@@ -133,7 +136,8 @@ fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l
         let away = abs(vec2f(dot(across, position), dot(up, position)) - cascade.xy);
         let texel_m = 2.0 * cascade.z / max(tile.side, 1.0);
         // The last one holds the scene: there is none to go on to.
-        let margin = select(4.0 * texel_m, 0.0, i == 3u);
+        let reach = select(SHADOW_BORDER, CONTACT_REACH + 2.0, SHADOWS == SHADOWS_CONTACT);
+        let margin = select(reach * texel_m, 0.0, i == 3u);
         if tile.side == 0.0 || max(away.x, away.y) > cascade.z - margin {
             continue;
         }

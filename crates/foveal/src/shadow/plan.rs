@@ -70,11 +70,6 @@ impl ViewOfPlan {
         }
     }
 
-    /// Whether sizes follow shading rates.
-    pub(super) fn follows_rates(&self) -> bool {
-        self.rates.is_some()
-    }
-
     /// Powers of two by which samples are farther apart than pixels wherever a tile's shadows are
     /// seen.
     fn coarser_by(&self, volume: &Volume) -> f32 {
@@ -85,7 +80,8 @@ impl ViewOfPlan {
             let part = part_of_picture(volume, &self.eyes[eye])?;
             Some(rates.level_within(eye, part))
         };
-        let eyes = if self.eyes[0] == self.eyes[1] { 1 } else { 2 };
+        let alike = self.eyes[0] == self.eyes[1] && rates.is_alike();
+        let eyes = if alike { 1 } else { 2 };
         // What no eye sees is as coarse as it gets.
         let finest = (0..eyes).filter_map(of_eye).min();
         finest.unwrap_or(rates.coarsest()) as f32

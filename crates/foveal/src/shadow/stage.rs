@@ -18,7 +18,7 @@ use crate::rate::FinestRate;
 use crate::recorder::Recorder;
 use crate::scene::{DrawnInstance, SceneOnGpu};
 use crate::stereo::Eye;
-use crate::{Settings, ShadowStats, Shadows};
+use crate::{Settings, ShadowSizes, ShadowStats, Shadows};
 
 /// What lighting looks up, bound wherever lights are; the shadows themselves where they are on.
 #[derive(Debug)]
@@ -62,6 +62,8 @@ struct Counts {
 #[derive(Debug, PartialEq)]
 struct Settled {
     view: ViewOfPlan,
+    /// Whether tiles of another size stay until their place is needed: rates may come and go.
+    keeps_sizes: bool,
     receivers: Receivers,
 }
 
@@ -190,6 +192,7 @@ impl ShadowStage {
         };
         let now = Settled {
             view: ViewOfPlan::new(eyes, settings.picture.height, rates),
+            keeps_sizes: settings.lighting.shadow_sizes == ShadowSizes::Rate,
             receivers,
         };
         drawing.draws.clear();
@@ -291,8 +294,7 @@ impl Drawing {
     /// Finds the frame's tiles, and lists the draws of those that are seen and not there.
     fn find_tiles(&mut self, scene: &SceneOnGpu, now: &Settled) {
         self.plan = Plan::new(&scene.lights, &now.view, &scene.bounds, self.atlas_level);
-        let keeps_sizes = now.view.follows_rates();
-        self.kept.place(&self.plan.wanted, keeps_sizes);
+        self.kept.place(&self.plan.wanted, now.keeps_sizes);
         self.frame += 1;
         let boxes = scene.culling.cells();
         let cells = match &now.receivers {

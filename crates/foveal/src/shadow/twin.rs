@@ -136,8 +136,8 @@ impl Lookup {
         sum / COMPARED as f32
     }
 
-    fn pyramid_softness(&self, near: f32, tangent: f32, inner: f32) -> f32 {
-        self.row(0)[1] * (0.5 * inner) / (tangent * near)
+    fn pyramid_softness(&self, near: f32, tangent: f32, inner: f32, height: f32) -> f32 {
+        self.row(0)[1].min(0.5 * height) * (0.5 * inner) / (tangent * near)
     }
 
     fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
@@ -197,7 +197,8 @@ impl Lookup {
             return 1.0;
         }
         let place = Vec2::new(at.x, -at.y) * (0.5 * inner / (at.z * tangent));
-        let softness = self.pyramid_softness(near, tangent, inner);
+        let height = n_dot_l * from_light.length();
+        let softness = self.pyramid_softness(near, tangent, inner, height);
         let place = place + 0.5 * tile.side as f32;
         self.passing(&tile, place, near / at.z, softness)
     }
@@ -238,7 +239,11 @@ impl Lookup {
             let center = Vec2::new(u, v);
             let texel_m = 2.0 * radius / tile.side as f32;
             let away = (self.on_plane(first, position) - center).abs();
-            let margin = if cascade == 3 { 0.0 } else { 4.0 * texel_m };
+            let reach = match self.shadows {
+                Shadows::Contact => CONTACT_REACH + 2.0,
+                _ => BORDER,
+            };
+            let margin = if cascade == 3 { 0.0 } else { reach * texel_m };
             (away.max_element() <= radius - margin).then_some((tile, center, texel_m))
         })
     }

@@ -204,7 +204,7 @@ fn further_bounces(s: Surface, v: vec3f) -> vec3f {
 // What bounces after the first reflect of light that comes from everywhere alike (Fdez-Aguera 2019, 'A
 // Multiple-Scattering Microfacet Model for Real-Time Image-based Lighting').
 fn reflected_further(s: Surface, terms: vec3f) -> vec3f {
-    let lost = 1.0 - terms.x - terms.y;
+    let lost = max(1.0 - terms.x - terms.y, 0.0);
     let at_normal = reflectance_at_normal(s);
     // Fresnel's reflectance over all directions.
     let mean = at_normal + (reflectance_at_grazing(s) - at_normal) / 21.0;

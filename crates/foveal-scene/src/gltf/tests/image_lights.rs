@@ -228,3 +228,32 @@ fn an_environment_beyond_the_limit_is_refused_before_it_is_decoded() {
         "{error}"
     );
 }
+
+#[test]
+fn an_extension_that_is_no_object_leaves_the_rest_of_the_file() {
+    for at_root in [true, false] {
+        let mut file = surrounded(4, &colors);
+        let holder = if at_root {
+            &mut file.json
+        } else {
+            &mut file.json["scenes"][0]
+        };
+        holder["extensions"]["EXT_lights_image_based"] = json!(5);
+        let scene = file.load();
+        assert!(scene.image_light.is_none());
+        let text = warnings(&scene);
+        assert!(text.contains("EXT_lights_image_based"), "{text}");
+        assert!(text.contains("the environment is left out"), "{text}");
+    }
+}
+
+#[test]
+fn smaller_cubes_are_means() {
+    let mut light = read(&surrounded(16, &colors));
+    let sum = |light: &ImageLight| light.radiance.iter().map(|t| t[1]).sum::<f32>();
+    let before = sum(&light);
+    light.halve_to(5);
+    assert_eq!((light.side, light.radiance.len()), (4, 6 * 16));
+    let after = sum(&light) * 16.0;
+    assert!((after - before).abs() < 1e-3 * before, "{before} {after}");
+}
