@@ -271,6 +271,10 @@ mod tests {
                 s.lighting.environment = EnvironmentSource::Image;
                 s.lighting.ambient_occlusion = AmbientOcclusion::Screen;
             }),
+            Settings::default().with(|s| {
+                s.shading.mode = Shading::Coarse;
+                s.lighting.shadows = Shadows::Contact;
+            }),
         ];
         for key in noted {
             let met = all_on.iter().any(|s| none(key, s).is_none());
