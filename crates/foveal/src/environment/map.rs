@@ -69,7 +69,10 @@ impl EnvironmentMap {
     pub(crate) fn of_light(light: &ImageLight) -> Self {
         let own = light.side as usize;
         // A host may have set anything; NaN becomes 0.
-        let held = |v: f32| (v * light.intensity).max(0.0).min(1e9);
+        let held = |v: f32| match v * light.intensity {
+            v if v.is_nan() => 0.0,
+            v => v.clamp(0.0, 1e9),
+        };
         let bright = |t: &[f32; 3]| Vec3A::from(t.map(held));
         let cube = Cube::from_texels(own, |face, x, y| {
             bright(&light.radiance[(face * own + y) * own + x])
