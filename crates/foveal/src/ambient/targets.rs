@@ -2,7 +2,7 @@
 
 use crate::gpu::{self, Gpu};
 use crate::stereo::EyeLayout;
-use crate::{Settings, Shading};
+use crate::{COARSEST_LEVEL, Settings, Shading};
 
 /// Visibility at the places that were looked from.
 pub(super) const FOUND_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Float;
@@ -73,7 +73,7 @@ impl Listed {
                 mapped_at_creation: false,
             })
         };
-        let levels = u64::from(crate::shading::LEVELS);
+        let levels = COARSEST_LEVEL as u64 + 1;
         let pixels = u64::from(width) * u64::from(height);
         Self {
             texels: buffer("ambient places", pixels * 4, wgpu::BufferUsages::empty()),
