@@ -73,7 +73,7 @@ impl Listed {
                 mapped_at_creation: false,
             })
         };
-        let levels = COARSEST_LEVEL as u64 + 1;
+        let levels = u64::from(COARSEST_LEVEL) + 1;
         let pixels = u64::from(width) * u64::from(height);
         Self {
             texels: buffer("ambient places", pixels * 4, wgpu::BufferUsages::empty()),
