@@ -270,6 +270,8 @@ struct Compared {
     hidden: usize,
     /// Hidden by their group, while the list sees them.
     more: usize,
+    /// Hidden by their group, while the list has them outside or small.
+    grouped: usize,
 }
 
 impl Compared {
@@ -301,6 +303,7 @@ impl Compared {
             self.hidden += usize::from(of_set != visible);
             if of_set != of_list {
                 self.more += usize::from(of_list == visible);
+                self.grouped += usize::from(of_list != visible);
             }
         }
     }
@@ -310,7 +313,10 @@ impl Compared {
 fn a_hierarchy_is_built_by_another_thread_while_frames_go_on() {
     let (set, walls, mesh, culler) = (occludees([0.0; 3]), set(), wall(), culler());
     let mut r = Random(77);
-    let mut boxes: Vec<Aabb> = (0..20_000).map(|_| r.bounds([0.0; 3])).collect();
+    // Every other box is behind the eye, so that the set takes its hierarchy, not a list.
+    let mut boxes: Vec<Aabb> = (0..20_000)
+        .map(|k| r.bounds([0.0, 0.0, if k % 2 == 0 { 0.0 } else { -40.0 }]))
+        .collect();
     let (old, new) = boxes.split_at(10_000);
     let mut ids = insert(set, old);
     let (mut rebuild, mut wants, mut built) = (null_mut(), 9, 9);
@@ -370,9 +376,12 @@ fn a_hierarchy_is_built_by_another_thread_while_frames_go_on() {
         foveal_cull_mesh_destroy(mesh);
         foveal_culler_destroy(culler);
     }
-    // By the hierarchy or as a list, whichever the set chose.
+    // Groups are hidden, which a list has not: the hierarchy was walked, before and after.
     for compared in [before, after] {
-        assert!(compared.hidden > 5000, "{compared:?}");
+        assert!(
+            compared.hidden > 5000 && compared.grouped > 0,
+            "{compared:?}"
+        );
         assert!(compared.more * 100 < compared.hidden, "{compared:?}");
     }
 }
