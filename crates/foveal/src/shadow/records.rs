@@ -1,10 +1,11 @@
 //! What shaders know of tiles: `shadow_rows` in `shadow/lookup.wgsl`.
 //!
 //! Row 0: texels by which places are moved along their normals; lamps' radius in metres; tangent of
-//! half the angle that directional lights fill. Then four rows per light: the words of tiles 0 to 3; words 4 and 5, the near distance and the cone's tangent (0
-//! for a cube); the axis across; the axis up. A directional light has in place of words 4 and 5 the
-//! number of its first cascade's row, and then the end of its rays and one by their length. After
-//! all lights a row per cascade: centre across and up, and half the width.
+//! half the angle that directional lights fill. Then four rows per light: the words of tiles 0 to 3;
+//! words 4 and 5, the near distance and the cone's tangent (0 for a cube); the axis across; the axis
+//! up. A directional light has in place of words 4 and 5 the number of its first cascade's row, and
+//! then the end of its rays and one by their length. After all lights a row per cascade: centre across
+//! and up, and half the width.
 
 use glam::Vec3;
 
