@@ -46,11 +46,6 @@ fn distance_before(texel: vec2u, position: vec3f) -> f32 {
     return dot(row, vec4f(position, 1.0));
 }
 
-fn list_sample(texel: vec2u, level: u32, expected: vec2f) {
-    atomicAdd(&listed[SAMPLES].of_level[level], 1u);
-    samples_listed[atomicAdd(&listed[SAMPLES].count, 1u)] = vec2u(sample_entry(texel, level), pack2x16float(expected));
-}
-
 // What must agree for a memory to be that of a pixel's surface.
 struct Expected {
     normal: vec3f,
@@ -85,7 +80,7 @@ fn history_at(place: vec2i, texel: vec2u, expected: Expected) -> Memory {
     let old = textureLoad(seen_before, origin, 0).x;
     let words = textureLoad(light_before, origin, 0);
     let tile = tiles[tile_number(origin)];
-    let known = inside && history.reset == 0u
+    let known = inside
         && (old & SEEN_AT_ALL) != 0u
         && (old & SEEN_INSTANCE) == expected.instance
         && abs(distance_from_bits(old) - expected.distance) <= SAME_DISTANCE * expected.distance
@@ -95,16 +90,45 @@ fn history_at(place: vec2i, texel: vec2u, expected: Expected) -> Memory {
     return Memory(known, old, words, tile);
 }
 
-// Lists the sample of a pixel's block once, whoever asks for it.
-fn want_block(own: Tile) {
-    let texel = sample_texel(own.block, own.level, 0u);
-    let number = texel.y * u32(frame.target_size.x) + texel.x;
-    let bit = 1u << (number & 31u);
-    if (atomicOr(&wanted[number >> 5u], bit) & bit) == 0u {
-        list_sample(texel, own.level, vec2f(0.0, EXPECTED_NOTHING));
+// The first place of the frame before that tells a pixel's light: the one that motion names, then the
+// other three of the four around it.
+fn remember(before: vec2f, texel: vec2u, expected: Expected, places: u32) -> Memory {
+    let rounded = floor(before + history.rounding);
+    let first = floor(before - 0.5);
+    var memory = Memory(false, 0u, vec4u(0u), TileHistory(0.0, 0.0));
+    // A loop that ends early: where all branches are run, loops alone save work.
+    for (var i = 0u; i < places && !memory.is_known; i++) {
+        let other = first + abs(rounded - first - vec2f(vec2u(i, i >> 1u) & vec2u(1u)));
+        memory = history_at(vec2i(other), texel, expected);
     }
+    return memory;
 }
 
+// What a surface shows of the light that is kept, and of the environment.
+fn radiance_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32) -> vec3f {
+    let diffuse = light.diffuse * max(dot(s.normal, light.direction), LEAST_COSINE);
+    let mirror = light.specular * highlight(s.normal, v, light.specular_direction, squared_alpha(s) + light.spread);
+    let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
+    return min(s.emissive + ambient(s, v, reaching) + lamps, vec3f(65504.0));
+}
+
+// Whether this is the first pixel that asks for its block's sample.
+fn is_first_to_want(sample: vec2u) -> bool {
+    let number = sample.y * u32(frame.target_size.x) + sample.x;
+    let bit = 1u << (number & 31u);
+    return (atomicOr(&wanted[number >> 5u], bit) & bit) == 0u;
+}
+
+// Whether a pixel's share of its block's samples is due. What proved wrong is renewed sooner.
+fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
+    let block = exp2(-2.0 * f32(level));
+    let haste = clamp(error / history.tolerance, 1.0, MOST_A_BLOCK / history.renewal);
+    let share = clamp(block * history.renewal * haste, LEAST_RENEWAL, 1.0);
+    return f32(order_of(texel) + history.phase) < share * 4294967296.0;
+}
+
+// Each list and each texture is written at one place: devices that run all branches pay for each
+// place, whether or not anything is written there.
 @compute @workgroup_size(8, 8)
 fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let texel = id.xy;
@@ -125,59 +149,41 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
     let who = load_words(gbuffer_identity, texel).xy;
     let distance_then = select(distance_before(texel, position), distance, frame.orthographic != 0u);
-    let expect = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
-    let before = pixel - unpack2x16float(who.y);
-    let rounded = floor(before + history.rounding);
-    var memory = history_at(vec2i(rounded), texel, expect);
-    let is_lit_otherwise = has_changed(position);
-    if !memory.is_known && history.reset == 0u && !is_lit_otherwise {
-        // The other three of the four pixels around the place.
-        let first = floor(before - 0.5);
-        for (var i = 1u; i < 4u; i++) {
-            let other = first + abs(rounded - first - vec2f(vec2u(i, i >> 1u) & vec2u(1u)));
-            let found = history_at(vec2i(other), texel, expect);
-            if found.is_known && !memory.is_known {
-                memory = found;
-            }
-        }
-    }
-    let known = memory.is_known && !is_lit_otherwise;
-    let old = memory.seen;
-    let tile = memory.tile;
-    let now = (who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance);
+    let expected = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
+    let places = select(4u, 0u, history.reset != 0u || has_changed(position));
+    let memory = remember(pixel - unpack2x16float(who.y), texel, expected, places);
 
-    // What proved wrong is renewed sooner.
-    let block = exp2(-2.0 * f32(own.level));
-    let haste = clamp(tile.error / history.tolerance, 1.0, MOST_A_BLOCK / history.renewal);
-    let share = clamp(block * history.renewal * haste, LEAST_RENEWAL, 1.0);
-    let is_renewed = f32(order_of(texel) + history.phase) < share * 4294967296.0;
+    let sample = sample_texel(own.block, own.level, 0u);
+    let is_coarse = own.level > 0u;
+    let is_renewed = is_due(texel, own.level, memory.tile.error);
+    let is_reprojected = memory.is_known && !is_renewed;
+    // Shaded by itself; a block's sample is shaded for its block.
+    let is_shaded = !is_reprojected && !(is_coarse && (!memory.is_known || all(texel == sample)));
+    let is_bare = !is_reprojected && !is_shaded;
 
-    let is_block_sample = own.level > 0u && all(texel == sample_texel(own.block, own.level, 0u));
-    if known && !(is_renewed && is_block_sample) {
-        let words = memory.light;
-        let l = unpack_light(words);
-        let diffuse = l.diffuse * max(dot(s.normal, l.direction), LEAST_COSINE);
-        let mirror = l.specular * highlight(s.normal, v, l.specular_direction, squared_alpha(s) + l.spread);
-        let reaching = environment_seen(pixel, distance);
-        let lamps = diffuse_color(s) / PI * diffuse + environment_reflectance(s, v) * mirror;
-        let sum = min(s.emissive + ambient(s, v, reaching) + lamps, vec3f(65504.0));
-        if is_renewed {
-            let source = select(EXPECTED_AROUND, EXPECTED_OWN, (old & SEEN_OWN) != 0u);
-            list_sample(texel, 0u, vec2f(min(luminance(sum), 65504.0), source));
-            textureStore(seen, texel, vec4u(now | SEEN_OWN));
-        } else {
-            textureStore(light, texel, words);
-            textureStore(radiance, texel, vec4f(sum, 1.0));
-            textureStore(seen, texel, vec4u(now | (old & (SEEN_OWN | (SEEN_LEVEL << SEEN_LEVEL_SHIFT)))));
-        }
-        return;
+    let shown = radiance_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance));
+    textureStore(radiance, texel, vec4f(shown, 1.0));
+    textureStore(light, texel, memory.light);
+    let was_own = (memory.seen & SEEN_OWN) != 0u;
+    var notes = memory.seen & (SEEN_OWN | (SEEN_LEVEL << SEEN_LEVEL_SHIFT));
+    notes = select(notes, SEEN_OWN, is_shaded);
+    notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
+    textureStore(seen, texel, vec4u((who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes));
+
+    var is_listed = is_shaded;
+    if is_bare {
+        bare[atomicAdd(&listed[BARE].count, 1u)] = sample_entry(texel, 0u);
+        is_listed = is_first_to_want(sample);
     }
-    if own.level == 0u {
-        list_sample(texel, 0u, vec2f(0.0, EXPECTED_NOTHING));
-        textureStore(seen, texel, vec4u(now | SEEN_OWN));
-        return;
+    if is_listed {
+        let level = select(own.level, 0u, is_shaded);
+        let known_from = select(EXPECTED_AROUND, EXPECTED_OWN, was_own);
+        let told = vec2f(min(luminance(shown), 65504.0), known_from);
+        let nothing = vec2f(0.0, EXPECTED_NOTHING);
+        atomicAdd(&listed[SAMPLES].of_level[level], 1u);
+        samples_listed[atomicAdd(&listed[SAMPLES].count, 1u)] = vec2u(
+            sample_entry(select(sample, texel, is_shaded), level),
+            pack2x16float(select(nothing, told, is_shaded && memory.is_known)),
+        );
     }
-    want_block(own);
-    bare[atomicAdd(&listed[BARE].count, 1u)] = sample_entry(texel, 0u);
-    textureStore(seen, texel, vec4u(now | (min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT)));
 }
