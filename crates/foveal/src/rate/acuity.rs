@@ -21,7 +21,7 @@ const ACUITY: f32 = 1.0 / 48.0 * std::f32::consts::PI / 180.0;
 const SLOPE: f32 = 0.0275;
 
 /// Qualities in JOD, best first, and the factor on Guenter's angle that gives the blocks of each:
-/// means over the demo scene, Sponza and the castle at 60 degrees across
+/// means over the demo scene, Sponza and the castle with 1280 pixels over 60 degrees
 /// (docs/benchmarks/coarse.md). That of 10 is extrapolated, that of 8.91 from three pictures of
 /// five.
 const QUALITIES: [(f32, f32); 7] = [
@@ -38,6 +38,14 @@ const QUALITIES: [(f32, f32); 7] = [
 /// degrees across.
 const PARALLEL_ACROSS: f32 = std::f32::consts::FRAC_PI_3;
 
+/// Pixels per radian in the display's centre from which on blocks become finer than [`QUALITIES`]
+/// says: those of 1280 pixels over 60 degrees, by which the qualities were measured.
+const MEASURED_DENSITY: f32 = 1108.5;
+
+/// Blocks shrink with the density's ratio to that power. A denser display shows finer detail, which
+/// blocks of the same angle leave out: found by measurement (docs/decisions/0208-denser-displays.md).
+const DENSER: f32 = 0.75;
+
 /// Sides of blocks: at the gaze in radians, and growth per radian of eccentricity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Blocks {
@@ -46,8 +54,9 @@ pub(super) struct Blocks {
 }
 
 impl Blocks {
-    /// The largest blocks that keep a quality.
-    pub(super) fn of_quality(quality: f32) -> Self {
+    /// The largest blocks that keep a quality on a display with so many pixels per radian in its
+    /// centre.
+    pub(super) fn of_quality(quality: f32, density: f32) -> Self {
         let after = QUALITIES.partition_point(|&(q, _)| q > quality);
         let [(q0, f0), (q1, f1)] = match after {
             0 => [QUALITIES[0]; 2],
@@ -59,7 +68,8 @@ impl Blocks {
         } else {
             (quality - q0) / (q1 - q0)
         };
-        let factor = f0 * (f1 / f0).powf(along);
+        let finer = (MEASURED_DENSITY / density).min(1.0).powf(DENSER);
+        let factor = f0 * (f1 / f0).powf(along) * finer;
         Self {
             at_gaze: factor * ACUITY,
             growth: factor * SLOPE,

@@ -37,8 +37,9 @@ impl RequestUniform {
         let (width, height) = (s.picture.width as f32, s.picture.height as f32);
         let layout = EyeLayout::of(s);
         let right = [0, 1].map(|axis| s.eye.gaze[axis] + s.stereo.gaze_shift[axis]);
-        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod);
         let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
+        let density = width / (2.0 * displays[0][0]);
+        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density);
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
             let first = (eye * layout.stride) as f32;
             [first + x * width, y * height, 0.0, 0.0]
@@ -218,6 +219,26 @@ mod tests {
         assert!(level(10.0, "60", 1270) < level(9.0, "60", 1270));
         // The same picture farther away: more pixels to a degree.
         assert!(level(9.3, "10", 700) > level(9.3, "60", 700));
+    }
+
+    #[test]
+    fn denser_displays_get_finer_blocks() {
+        let growth = |width, display: &str| {
+            let s = Settings::default().with(|s| {
+                s.picture.width = width;
+                s.picture.height = width * 9 / 16;
+                s.eye.display = display.parse().expect("it can be read");
+            });
+            RequestUniform::new(&s, &eyes_of(&s), None).block_growth
+        };
+        let measured = growth(1280, "60");
+        assert!((measured / 0.0275 - 0.42).abs() < 1e-4);
+        // Fewer pixels to a degree than were measured: the same angles.
+        assert_eq!(growth(640, "60"), measured);
+        assert_eq!(growth(1920, "91.5"), measured);
+        let twice = growth(2560, "60") / measured;
+        assert!((twice - 0.5_f32.powf(0.75)).abs() < 1e-3, "{twice}");
+        assert!(growth(1920, "fhd-24") < 0.65 * measured);
     }
 
     #[test]
