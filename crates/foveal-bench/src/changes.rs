@@ -17,8 +17,11 @@ pub(super) fn changed(plain: &Settings, changes: &[(&str, &str)]) -> anyhow::Res
 
 fn value(text: &str) -> Value {
     let switch = text.parse::<bool>().map(Value::from);
+    let whole = || text.parse::<i64>().map(Value::from);
     let number = || text.parse::<f64>().map(Value::from);
-    switch.or_else(|_| number()).unwrap_or_else(|_| text.into())
+    (switch.ok().or_else(|| whole().ok()))
+        .or_else(|| number().ok())
+        .unwrap_or_else(|| text.into())
 }
 
 #[cfg(test)]
@@ -30,11 +33,15 @@ mod tests {
         let changes = [
             ("shading", "coarse"),
             ("quality", "9"),
+            ("shadow-bias", "0.5"),
+            ("shadow-atlas", "2048"),
             ("force-rate", "true"),
         ];
         let settings = changed(&Settings::default(), &changes).unwrap();
         assert_eq!(settings.shading.mode, foveal::Shading::Coarse);
         assert_eq!((settings.eye.quality_jod, settings.rate.force), (9.0, true));
+        assert_eq!(settings.lighting.shadow_bias, 0.5);
+        assert_eq!(settings.lighting.shadow_atlas, 2048);
         assert!(changed(&Settings::default(), &[("shade", "coarse")]).is_err());
     }
 }

@@ -43,6 +43,8 @@ struct Report {
     frames: u32,
     fps: f32,
     rounds: u32,
+    /// Settings that all ways share, `NAME=VALUE` each.
+    set: Vec<String>,
     gaze: [f32; 2],
     off_gaze: [f32; 2],
     rows: Vec<Row>,
@@ -113,6 +115,7 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         frames: args.frames(),
         fps: args.fps,
         rounds: args.rounds(),
+        set: args.shared.spelled(),
         gaze: Settings::default().eye.gaze,
         off_gaze: OFF_GAZE,
         rows,
@@ -133,16 +136,17 @@ fn measure(
     let metric = |[x, y]: [f32; 2]| Metric::new(&shown.display, width, height, Gaze { x, y });
     let center = Settings::default().eye.gaze;
     let (at_center, at_off) = (metric(center)?, metric(OFF_GAZE)?);
-    let full = shown.settings(&WAYS[0], center)?;
+    let plain = args.shared.plain((shown.width, shown.height))?;
+    let full = shown.settings(&plain, &WAYS[0], center)?;
     if args.rounds() > 0 {
-        let chosen = WAYS.iter().map(|way| shown.settings(way, center));
+        let chosen = WAYS.iter().map(|way| shown.settings(&plain, way, center));
         let chosen = chosen.collect::<anyhow::Result<Vec<Settings>>>()?;
         times.measure(studio, &full, &chosen, (args.rounds(), args.fps))?;
     }
     let mut rows = Vec::new();
     for way in WAYS {
-        let settings = shown.settings(way, center)?;
-        let off_settings = shown.settings(way, OFF_GAZE)?;
+        let settings = shown.settings(&plain, way, center)?;
+        let off_settings = shown.settings(&plain, way, OFF_GAZE)?;
         let reference = studio.still(&full, 0)?;
         let shot = studio.still(&settings, way.warmup)?;
         let picture = Seen::still(&at_center, &reference, &shot)?;

@@ -11,6 +11,7 @@ mod culling;
 mod eye;
 mod figures;
 mod report;
+mod shared;
 mod stereo;
 mod subject;
 mod svg;

@@ -16,6 +16,7 @@ use foveal_host::values;
 use foveal_measure::{Comparison, Finding, Spread};
 use serde::Serialize;
 
+use super::shared::SharedArgs;
 use super::subject::{Header, SubjectArgs};
 use super::table::{jod_text, text};
 use candidates::{ALL, Aim, Candidate, together};
@@ -30,6 +31,9 @@ const SCHEMA_VERSION: u32 = 2;
 pub struct Args {
     #[command(flatten)]
     subject: SubjectArgs,
+
+    #[command(flatten)]
+    shared: SharedArgs,
 
     /// Width and height in pixels
     #[arg(long, value_name = "WxH", value_parser = values::size, default_value = "1280x720")]
@@ -52,6 +56,8 @@ struct Report {
     width: u32,
     height: u32,
     rounds: u32,
+    /// Settings that all share, `NAME=VALUE` each.
+    set: Vec<String>,
     rows: Vec<Row>,
 }
 
@@ -81,7 +87,7 @@ struct Row {
     flip_mean: Option<f64>,
     /// At 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod: Option<f32>,
-    /// The flags that differ from the defaults.
+    /// The flags that differ from the plain settings.
     flags: String,
     /// The command that draws it.
     command: String,
@@ -92,10 +98,7 @@ struct Row {
 /// Runs the benchmark.
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
-    let plain = Settings::default().with(|s| {
-        s.picture.width = args.size.0;
-        s.picture.height = args.size.1;
-    });
+    let plain = args.shared.plain(args.size)?;
     let candidates: Vec<(&Candidate, Settings)> = ALL
         .iter()
         .map(|candidate| Ok((candidate, candidate.settings(&plain)?)))
@@ -106,7 +109,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         .iter()
         .zip(measured)
         .map(|((candidate, settings), measured)| {
-            row(args, candidate.name, candidate.aim, settings, measured)
+            let name = (candidate.name, candidate.aim);
+            row(args, name, (&plain, settings), measured)
         })
         .collect();
     let adopted: Vec<(&Candidate, f64)> = ALL
@@ -119,7 +123,8 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         let settings = together(&plain, &adopted)?;
         let mut measured = measure(&subject, &plain, &[&settings], args.rounds)?;
         if let Some(measured) = measured.pop() {
-            let row = row(args, "These together", Aim::Faster, &settings, measured);
+            let name = ("These together", Aim::Faster);
+            let row = row(args, name, (&plain, &settings), measured);
             rows.push(row);
         }
     }
@@ -128,18 +133,23 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
         width: args.size.0,
         height: args.size.1,
         rounds: args.rounds,
+        set: args.shared.spelled(),
         rows,
     };
     args.subject.give(&report, &summary(&report))
 }
 
-fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured: Measured) -> Row {
-    let size = Settings::default().with(|s| {
-        s.picture.width = settings.picture.width;
-        s.picture.height = settings.picture.height;
-    });
-    let of_size = flags(&size).len();
+fn row(
+    args: &Args,
+    (name, aim): (&'static str, Aim),
+    (plain, settings): (&Settings, &Settings),
+    measured: Measured,
+) -> Row {
+    let shared = flags(plain);
     let all = flags(settings);
+    // A flag's name and its value.
+    let own = (all.chunks(2)).filter(|flag| !shared.chunks(2).any(|other| other == *flag));
+    let own: Vec<String> = own.map(|flag| flag.join(" ")).collect();
     let command = |output: &str, flags: &[String]| {
         let words = args.subject.words(args.point_lights, output);
         format!("foveal render {words} {}", flags.join(" "))
@@ -147,7 +157,7 @@ fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured:
             .to_owned()
     };
     let made_by = [
-        command("plain.png", &flags(&size)),
+        command("plain.png", &shared),
         command("this.png", &all),
         format!("foveal compare plain.png this.png --display {BENCH_DISPLAY}"),
     ];
@@ -177,7 +187,7 @@ fn row(args: &Args, name: &'static str, aim: Aim, settings: &Settings, measured:
         chosen_high_ms: time(|c| &c.chosen, |s| s.high),
         flip_mean: measured.as_ref().ok().map(|found| found.nearness.flip),
         jod: (measured.as_ref().ok()).and_then(|found| found.nearness.jod),
-        flags: all[of_size.min(all.len())..].join(" "),
+        flags: own.join(" "),
         command: command("picture.png", &all),
         made_by,
     }

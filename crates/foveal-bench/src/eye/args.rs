@@ -3,6 +3,7 @@
 use foveal_host::values;
 
 use super::screen::{self, Fit, Screen};
+use crate::shared::SharedArgs;
 use crate::subject::SubjectArgs;
 
 /// Where the eye looks in the second picture of each way.
@@ -13,6 +14,9 @@ pub(super) const OFF_GAZE: [f32; 2] = [0.25, 0.6];
 pub struct Args {
     #[command(flatten)]
     pub(super) subject: SubjectArgs,
+
+    #[command(flatten)]
+    pub(super) shared: SharedArgs,
 
     /// Displays, by name [default: all]
     #[arg(long, value_name = "NAME,…", value_delimiter = ',', value_parser = screen::named)]

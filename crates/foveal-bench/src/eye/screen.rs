@@ -105,13 +105,15 @@ impl Screen {
 }
 
 impl Shown {
-    /// The settings of a way for an eye that looks at `gaze`.
-    pub(super) fn settings(&self, way: &Way, gaze: [f32; 2]) -> anyhow::Result<Settings> {
-        let plain = Settings::default().with(|s| {
-            s.picture.width = self.width;
-            s.picture.height = self.height;
-        });
-        let mut settings = changed(&plain, way.changes)?;
+    /// The settings of a way for an eye that looks at `gaze`; `plain` are those of this size that
+    /// all ways share.
+    pub(super) fn settings(
+        &self,
+        plain: &Settings,
+        way: &Way,
+        gaze: [f32; 2],
+    ) -> anyhow::Result<Settings> {
+        let mut settings = changed(plain, way.changes)?;
         // What a way does not follow stays as it is, so that equal settings are equal pictures.
         if way.follows != Follows::Nothing {
             settings.eye.gaze = gaze;
@@ -146,13 +148,20 @@ mod tests {
     #[test]
     fn every_way_is_possible_and_differs_from_the_first() {
         let shown = ALL[0].shown(Fit::Whole);
-        let full = shown.settings(&WAYS[0], [0.5, 0.5]).unwrap();
+        let plain = Settings::default().with(|s| {
+            s.picture.width = shown.width;
+            s.picture.height = shown.height;
+            s.lighting.shadows = foveal::Shadows::Soft;
+        });
+        let full = shown.settings(&plain, &WAYS[0], [0.5, 0.5]).unwrap();
+        assert_eq!(full, plain);
         for way in &WAYS[1..] {
-            let settings = shown.settings(way, [0.5, 0.5]).unwrap();
+            let settings = shown.settings(&plain, way, [0.5, 0.5]).unwrap();
+            assert_eq!(settings.lighting, plain.lighting);
             assert_ne!(settings, full, "{}", way.name);
             let checked = settings.validate(&wgpu::Limits::default());
             assert!(checked.is_ok(), "{}: {checked:?}", way.name);
-            let off = shown.settings(way, [0.25, 0.6]).unwrap();
+            let off = shown.settings(&plain, way, [0.25, 0.6]).unwrap();
             assert_eq!(off == settings, way.follows == Follows::Nothing);
         }
     }
