@@ -6,6 +6,7 @@ pub(crate) mod classify;
 mod coarse;
 mod compaction;
 mod faces;
+mod fitted;
 pub(crate) mod flat;
 mod groups;
 pub(crate) mod moving;
