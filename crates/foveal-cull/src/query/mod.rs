@@ -13,6 +13,7 @@ pub(crate) mod moving;
 pub(crate) mod occludee_id;
 mod plane_lanes;
 pub(crate) mod rebuild;
+pub(crate) mod receivers;
 mod rect;
 pub(crate) mod tree;
 pub(crate) mod walk;
