@@ -234,10 +234,11 @@ impl Moving {
         let stride = self.ids.len() / moved;
         for k in 0..moved {
             let i = k * stride;
-            let bounds = &mut self.boxes[i];
-            bounds.min[0] += by;
-            bounds.max[0] += by;
-            self.set.set_bounds(self.ids[i], *bounds).unwrap();
+            // A new box: one that was changed in part and is read as a whole would be waited for.
+            let Aabb { min, max } = self.boxes[i];
+            let moved = Aabb::new([min[0] + by, min[1], min[2]], [max[0] + by, max[1], max[2]]);
+            self.set.set_bounds(self.ids[i], moved).unwrap();
+            self.boxes[i] = moved;
         }
         self.set.refit();
     }

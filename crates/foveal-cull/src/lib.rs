@@ -151,6 +151,48 @@
 //! # Ok::<(), CullError>(())
 //! ```
 //!
+//! # Lights and shadows
+//! The same culler looks from a light: casters that others hide from it need not be drawn into its
+//! shadow map. A [`ReceiverMask`] leaves out those whose shadows fall on nothing that the camera
+//! sees. A light none of whose maps has a receiver is left out as a whole; so is one whose range, as a
+//! box, the camera's culler hides.
+//! ```
+//! use foveal_cull::*;
+//! use std::sync::Arc;
+//!
+//! // A wall between the eye and a lamp, two crates behind it, and one beside it that can be seen.
+//! let wall = Aabb::new([-2.0, 0.0, -5.2], [2.0, 4.0, -5.0]);
+//! let mut occluders = OccluderSet::new();
+//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), Affine::IDENTITY)?;
+//! let things = [
+//!     wall,
+//!     Aabb::new([-1.0, 0.0, -9.0], [0.0, 1.0, -8.0]),
+//!     Aabb::new([1.0, 3.0, -9.0], [2.0, 4.0, -8.0]),
+//!     Aabb::new([4.0, 0.0, -9.0], [5.0, 1.0, -8.0]),
+//! ];
+//! let (origin, mut seen) = ([0.0; 3], [Visibility::Visible; 4]);
+//! let view = View::perspective([0.0, 1.5, 0.0], [0.0, 1.5, -9.0], [0.0, 1.0, 0.0], 1.2, 1.78, 0.1);
+//! let (mut culler, options) = (Culler::new(640, 360)?, FrameOptions::default());
+//! culler.rasterize(&view, &occluders, &options, &SingleThread)?;
+//! culler.query(&things, origin, &mut seen)?;
+//! assert_eq!(seen.map(Visibility::is_visible), [true, false, false, true]);
+//!
+//! // One of the six sides of the lamp's cube, with a shadow map of 512 texels a side: to the right.
+//! let side = Projection::perspective(std::f64::consts::FRAC_PI_2, 1.0, 0.05, 10.0);
+//! let lamp = [-2.5, 1.0, -8.5];
+//! let side = View::mono(Eye::look_at(lamp, [9.0, 1.0, -8.5], [0.0, 1.0, 0.0], side));
+//! let mut mask = ReceiverMask::new(&side, 512)?;
+//! mask.receive(&things, origin, &seen)?;
+//! let mut map = Culler::new(512 / 4, 512 / 4)?;
+//! map.rasterize(&side, &occluders, &options, &SingleThread)?;
+//! let mut casters = [Visibility::Visible; 4];
+//! map.query(&things, origin, &mut casters)?;
+//! mask.cull(&things, origin, &mut casters)?;
+//! // The lower crate's shadow falls on the one that is seen, the upper one's on nothing.
+//! assert_eq!(casters.map(Visibility::is_visible), [true, true, false, true]);
+//! # Ok::<(), CullError>(())
+//! ```
+//!
 //! # Your own threads
 //! [`WorkerThreads`] are the crate's own, `Rayon` comes with the feature `rayon`, and any job
 //! system fits behind [`ThreadsFn`] or [`Threads`].
@@ -182,13 +224,51 @@
 //! # Ok::<(), CullError>(())
 //! ```
 //!
+//! # On the web
+//! The same code runs in a browser, on one thread ([compile it with SIMD](#instruction-sets)). A time limit
+//! goes by the page's clock. What is not drawn in time hides nothing, so results stay safe.
+//! ```
+//! use foveal_cull::*;
+//! use std::sync::Arc;
+//!
+//! // In a browser `performance.now()`, for instance by the crate `web-sys`.
+//! fn now_ms() -> f64 {
+//!     // ..
+//! #   0.0
+//! }
+//!
+//! let wall = Aabb::new([-2.0, -1.5, -5.2], [2.0, 1.5, -5.0]);
+//! let mut occluders = OccluderSet::new();
+//! occluders.add(Arc::new(OccluderMesh::from_box(wall)?), Affine::IDENTITY)?;
+//! // The matrix that the page draws with: WebGL's depth is from -1 to 1.
+//! let clip_from_world: [f32; 16] = [
+//!     1.0, 0.0, 0.0, 0.0, //
+//!     0.0, 1.5, 0.0, 0.0, //
+//!     0.0, 0.0, -1.0, -1.0, //
+//!     0.0, 0.0, -0.2, 0.0,
+//! ];
+//! let view = View::from_clip_from_world(clip_from_world, ClipDepth::MinusOneToOne)?;
+//! let mut culler = Culler::new(1280 / 4, 720 / 4)?;
+//!
+//! // In each frame: half a millisecond for the occluders.
+//! let clock = || (now_ms() * 1e6) as u64;
+//! let budget = Budget::new(&clock, clock() + 500_000);
+//! let options = FrameOptions::default().with_budget(Some(budget));
+//! culler.rasterize(&view, &occluders, &options, &SingleThread)?;
+//! let behind = [Aabb::new([-0.5, -0.5, -9.0], [0.5, 0.5, -8.0])];
+//! let mut results = [Visibility::Visible];
+//! culler.query(&behind, [0.0; 3], &mut results)?;
+//! assert_eq!(results, [Visibility::Occluded]);
+//! # Ok::<(), CullError>(())
+//! ```
+//!
 //! # Cost
-//! Baking is O(n log n) in triangles and belongs to load time, another shape takes a tenth of it; [`OccluderMesh::to_bytes`] keeps its
-//! result, which [`OccluderMesh::from_bytes`] checks and reads. A frame costs the clusters that may
-//! be visible and the blocks of 8x8 pixels that they touch, and each query some nanoseconds. On one
-//! core of an AMD EPYC (Zen 5, AVX-512) at 640x360 pixels: 0.22 ms for 48,700 occluder triangles of
-//! a castle seen from around it, and 5 ns for a random box. A tree of 26,894 objects takes 0.06 ms
-//! at 1280x720. `cargo bench -p foveal-cull` measures the kernels on your machine.
+//! Baking is O(n log n) in triangles and belongs to load time, another shape takes a tenth of it;
+//! [`OccluderMesh::to_bytes`] keeps its result, which [`OccluderMesh::from_bytes`] checks and reads. A
+//! frame costs the clusters that may be visible and the blocks of 8x8 pixels that they touch, and each
+//! query some nanoseconds. On one core of an AMD EPYC (Zen 5, AVX-512) at 640x360 pixels: 0.22 ms for
+//! 48,700 occluder triangles of a castle seen from around it, and 5 ns for a random box. A tree of 26,894
+//! objects takes 0.06 ms at 1280x720. `cargo bench -p foveal-cull` measures the kernels on your machine.
 //!
 //! # Instruction sets
 //! There are kernels for AVX-512, AVX2 and SSE2 on x86-64, for NEON on 64-bit ARM, and for
@@ -245,6 +325,7 @@ pub use options::{Budget, FrameOptions};
 pub use query::moving::OccludeeSet;
 pub use query::occludee_id::OccludeeId;
 pub use query::rebuild::{OccludeeRebuild, OccludeeSnapshot};
+pub use query::receivers::ReceiverMask;
 pub use query::tree::OccludeeTree;
 pub use simd::InstructionSet;
 pub use stats::CullStats;
@@ -281,6 +362,7 @@ const _: () = {
     send_and_sync::<OccluderSet>();
     send_and_sync::<Projection>();
     send_and_sync::<Quantity>();
+    send_and_sync::<ReceiverMask>();
     send_and_sync::<SingleThread>();
     send_and_sync::<ThreadsFn<fn(usize, &(dyn Fn(usize) + Sync))>>();
     send_and_sync::<View>();

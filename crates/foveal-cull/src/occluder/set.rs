@@ -1,6 +1,6 @@
 //! The occluders of a scene.
 
-use super::mesh::{OccluderMesh, hash_words};
+use super::mesh::OccluderMesh;
 use crate::error::{CullError, Quantity};
 use crate::transform::Affine;
 use core::num::NonZeroU32;
@@ -86,7 +86,7 @@ impl OccluderSet {
         mesh: Arc<OccluderMesh>,
         world_from_mesh: impl Into<Affine>,
     ) -> Result<OccluderId, CullError> {
-        let instance = Instance::new(mesh, world_from_mesh.into().to_glam())?;
+        let instance = Instance::new(mesh, &world_from_mesh.into().to_glam())?;
         self.len += 1;
         if let Some(slot) = self.free.pop() {
             let to = &mut self.instances[slot as usize];
@@ -115,9 +115,7 @@ impl OccluderSet {
         id: OccluderId,
         world_from_mesh: impl Into<Affine>,
     ) -> Result<(), CullError> {
-        let slot = self.slot(id)?;
-        let mesh = slot.mesh.clone().ok_or(CullError::UnknownOccluder)?;
-        slot.place(mesh, world_from_mesh.into().to_glam())
+        self.slot(id)?.place(&world_from_mesh.into().to_glam())
     }
 
     /// Gives an occluder whose mesh was baked
@@ -137,9 +135,8 @@ impl OccluderSet {
         let mesh = slot.mesh.as_mut().ok_or(CullError::UnknownOccluder)?;
         mesh.check_positions(positions)?;
         Arc::make_mut(mesh).set_positions(positions)?;
-        let mesh = Arc::clone(mesh);
         let place = slot.world_from_mesh;
-        slot.place(mesh, place)
+        slot.place(&place)
     }
 
     /// Switches an occluder off, or on again. A new one is on. O(1).
@@ -207,60 +204,70 @@ impl OccluderSet {
     }
 
     fn slot(&mut self, id: OccluderId) -> Result<&mut Instance, CullError> {
-        if !self.contains(id) {
-            return Err(CullError::UnknownOccluder);
-        }
-        self.instances
-            .get_mut(id.slot as usize)
+        let slot = self.instances.get_mut(id.slot as usize);
+        slot.filter(|i| i.generation == id.generation && i.mesh.is_some())
             .ok_or(CullError::UnknownOccluder)
     }
 }
 
 impl Instance {
-    /// The same occluder with another mesh or place.
-    fn place(
-        &mut self,
-        mesh: Arc<OccluderMesh>,
-        world_from_mesh: DAffine3,
-    ) -> Result<(), CullError> {
-        let (enabled, generation) = (self.enabled, self.generation);
-        *self = Self {
-            enabled,
-            generation,
-            ..Self::new(mesh, world_from_mesh)?
+    fn new(mesh: Arc<OccluderMesh>, world_from_mesh: &DAffine3) -> Result<Self, CullError> {
+        let mut instance = Self {
+            mesh: Some(mesh),
+            world_from_mesh: DAffine3::IDENTITY,
+            center: DVec3::ZERO,
+            radius: 0.0,
+            mirrored: false,
+            triangles: 0,
+            clusters: 0,
+            mesh_from_world: DAffine3::IDENTITY,
+            hash: 0,
+            enabled: true,
+            generation: NonZeroU32::MIN,
         };
-        Ok(())
+        instance.place(world_from_mesh)?;
+        Ok(instance)
     }
 
-    fn new(mesh: Arc<OccluderMesh>, world_from_mesh: DAffine3) -> Result<Self, CullError> {
+    /// Sets the place, and all that follows from it and from the mesh. After an error nothing has
+    /// changed. Many occluders move in every frame.
+    #[inline]
+    fn place(&mut self, world_from_mesh: &DAffine3) -> Result<(), CullError> {
+        let mesh = self.mesh.as_deref().ok_or(CullError::UnknownOccluder)?;
         if !world_from_mesh.is_finite() {
             return Err(CullError::NotFinite(Quantity::Transform));
         }
-        let m = world_from_mesh.matrix3;
-        let center = world_from_mesh.transform_point3(mesh.center);
+        let m = &world_from_mesh.matrix3;
         let half = mesh.half.as_dvec3();
         let extent = m.x_axis.abs() * half.x + m.y_axis.abs() * half.y + m.z_axis.abs() * half.z;
-        let hash = hash_words(
-            mesh.hash,
-            world_from_mesh
-                .to_cols_array()
-                .iter()
-                .flat_map(|v| [v.to_bits() as u32, (v.to_bits() >> 32) as u32]),
-        );
-        Ok(Self {
-            radius: extent.length(),
-            center,
-            mirrored: m.determinant() < 0.0,
-            mesh_from_world: world_from_mesh.inverse(),
-            hash,
-            triangles: mesh.triangle_count() as u32,
-            clusters: mesh.clusters.len() as u32,
-            mesh: Some(mesh),
-            world_from_mesh,
-            enabled: true,
-            generation: NonZeroU32::MIN,
-        })
+        self.center = world_from_mesh.transform_point3(mesh.center);
+        self.radius = extent.length();
+        self.mirrored = m.determinant() < 0.0;
+        self.mesh_from_world = world_from_mesh.inverse();
+        self.triangles = mesh.triangle_count() as u32;
+        self.clusters = mesh.clusters.len() as u32;
+        self.hash = hash_of_place(mesh.hash, world_from_mesh);
+        self.world_from_mesh = *world_from_mesh;
+        Ok(())
     }
+}
+
+/// Hash of a mesh at a place. Four chains of three words each: one chain of all words takes longer
+/// than the rest of a move.
+#[inline(always)]
+fn hash_of_place(mesh: u32, place: &DAffine3) -> u32 {
+    const FACTOR: u64 = 0x9e37_79b9_7f4a_7c15;
+    let words = place.to_cols_array().map(f64::to_bits);
+    let mut chains = [u64::from(mesh), 1, 2, 3];
+    for four in words.as_chunks::<4>().0 {
+        for (chain, word) in chains.iter_mut().zip(four) {
+            *chain = (*chain ^ word).wrapping_mul(FACTOR).rotate_left(29);
+        }
+    }
+    let joined = chains.iter().fold(0u64, |all, chain| {
+        (all ^ chain).wrapping_mul(FACTOR).rotate_left(29)
+    });
+    (joined ^ (joined >> 32)) as u32
 }
 
 #[cfg(test)]
@@ -293,6 +300,57 @@ mod tests {
         set.set_transform(second, moved).unwrap();
         assert!(set.contains(second));
         assert_eq!((set.len(), set.triangle_count()), (1, 12));
+    }
+
+    #[test]
+    fn a_transform_that_is_refused_changes_nothing() {
+        let mut set = OccluderSet::new();
+        let id = set
+            .add(mesh(), DAffine3::from_translation(DVec3::ONE))
+            .unwrap();
+        let before = format!("{:?}", set.instances[0]);
+        for bad in [f64::NAN, f64::INFINITY] {
+            let moved = DAffine3::from_translation(DVec3::new(0.0, bad, 0.0));
+            let error = Err(CullError::NotFinite(Quantity::Transform));
+            assert_eq!(set.set_transform(id, moved), error);
+        }
+        assert_eq!(format!("{:?}", set.instances[0]), before);
+    }
+
+    #[test]
+    fn an_occluder_that_has_moved_is_one_that_was_added_there() {
+        let place = DAffine3::from_scale_rotation_translation(
+            DVec3::new(2.0, -1.0, 0.5),
+            glam::DQuat::from_rotation_y(0.7),
+            DVec3::new(3.0, 4.0, 5.0),
+        );
+        let mut set = OccluderSet::new();
+        let moved = set.add(mesh(), DAffine3::IDENTITY).unwrap();
+        set.set_transform(moved, place).unwrap();
+        set.add(mesh(), place).unwrap();
+        let [a, b] = [0, 1].map(|i| format!("{:?}", set.instances[i]));
+        assert_eq!(a, b);
+    }
+
+    #[test]
+    fn hashes_of_places_differ() {
+        let mut all = std::collections::HashSet::new();
+        for i in 0..20_000u32 {
+            let at = [i % 32, i / 32 % 32, i / 1024].map(|v| f64::from(v) * 0.5);
+            let turn = DAffine3::from_rotation_y(f64::from(i % 7));
+            all.insert(hash_of_place(
+                9,
+                &(DAffine3::from_translation(at.into()) * turn),
+            ));
+            let scale = DVec3::new(at[0], at[1], at[2] + 1.0);
+            all.insert(hash_of_place(9, &DAffine3::from_scale(scale)));
+        }
+        // Of 40,000 random numbers of 32 bits, one in six sets has a pair that is equal.
+        assert!(all.len() > 39_990, "{}", all.len());
+        assert_ne!(
+            hash_of_place(1, &DAffine3::IDENTITY),
+            hash_of_place(2, &DAffine3::IDENTITY)
+        );
     }
 
     #[test]

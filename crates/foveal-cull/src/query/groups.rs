@@ -1,60 +1,44 @@
 //! Boxes around the children of a node.
 
-use glam::Vec3;
-
+use crate::bounds::Aabb;
 use crate::projection::boxes::Boxes8;
+use crate::simd::{F8, Lanes};
 
-/// Half the surface of a box; 0 for an empty group and one without end.
+/// The box around eight boxes, each a volume or [`Aabb::EMPTY`].
 #[inline(always)]
-pub(super) fn half_area(half: Vec3) -> f64 {
-    let half = half.as_dvec3();
-    let area = half.x * half.y + half.y * half.z + half.z * half.x;
-    if area.is_finite() { area } else { 0.0 }
+pub(super) fn around<L: Lanes>(l: L, boxes: &[Aabb; 8]) -> Aabb {
+    let first = row(l, &boxes[0]);
+    let (mut low, mut high) = (first, first);
+    for b in &boxes[1..] {
+        let row = row(l, b);
+        (low, high) = (row.min(low), row.max(high));
+    }
+    let (mut lows, mut highs) = ([0.0; 8], [0.0; 8]);
+    low.store(&mut lows);
+    high.store(&mut highs);
+    Aabb::new([lows[0], lows[1], lows[2]], [highs[3], highs[6], highs[7]])
 }
 
-/// Centre and half extent of the box around the children of a node, grown for rounding; NaN where
-/// there are none. Children are volumes; NaN in lanes without one is skipped.
+/// A box in a register: its first four numbers and its last four, which compilers load as they lie.
 #[inline(always)]
-pub(super) fn around(boxes: &Boxes8) -> (Vec3, Vec3) {
-    let (mut center, mut half) = (Vec3::NAN, Vec3::NAN);
-    for axis in 0..3 {
-        let (c, h) = (&boxes.center[axis], &boxes.half[axis]);
-        // Comparisons with NaN are false.
-        let mut low: [f32; 8] = core::array::from_fn(|i| {
-            let v = c[i] - h[i];
-            if v < f32::INFINITY { v } else { f32::INFINITY }
-        });
-        let mut high: [f32; 8] = core::array::from_fn(|i| {
-            let v = c[i] + h[i];
-            if v > f32::NEG_INFINITY {
-                v
-            } else {
-                f32::NEG_INFINITY
-            }
-        });
-        for step in [4, 2, 1] {
-            for i in 0..step {
-                let (a, b) = (low[i], low[i + step]);
-                low[i] = if b < a { b } else { a };
-                let (a, b) = (high[i], high[i + step]);
-                high[i] = if b > a { b } else { a };
-            }
-        }
-        let (low, high) = (low[0], high[0]);
-        // An empty group is from infinity to -infinity.
-        if low > high {
-            return (Vec3::NAN, Vec3::NAN);
-        }
-        let (c, h) = (
-            (low + high) * 0.5,
-            (high - low) * 0.5 * (1.0 + 1e-6) + (low.abs() + high.abs()) * 1e-7,
-        );
-        // Boxes that are too large for f32 make a group without end, not an empty one.
-        (center[axis], half[axis]) = if c.is_finite() && h.is_finite() {
-            (c, h)
-        } else {
-            (0.0, f32::INFINITY)
-        };
-    }
-    (center, half)
+fn row<L: Lanes>(l: L, Aabb { min, max }: &Aabb) -> F8<L> {
+    l.load(&[
+        min[0], min[1], min[2], max[0], min[2], max[0], max[1], max[2],
+    ])
+}
+
+/// The sum of half the surfaces of the boxes whose bit is set. A box counts nothing whose surface is
+/// not a number or too large for one.
+#[inline(always)]
+pub(super) fn half_areas<L: Lanes>(l: L, boxes: &Boxes8, lanes: u8) -> f64 {
+    let [x, y, z] = [0, 1, 2].map(|k| l.load(&boxes.half[k]));
+    let area = x * y + y * z + z * x;
+    let mut areas = [0.0; 8];
+    area.is_finite()
+        .select(area, l.splat(0.0))
+        .store(&mut areas);
+    (0..8)
+        .filter(|lane| lanes >> lane & 1 != 0)
+        .map(|lane| f64::from(areas[lane]))
+        .sum()
 }

@@ -1,21 +1,18 @@
 //! Occludees that come, move and go, in a hierarchy that follows them.
 //!
-//! The structure is an [`OccludeeTree`] of the time of the last rebuild. A moved object marks its
-//! node; [`OccludeeSet::refit`] then takes over the boxes of the marked nodes' objects, and fits
-//! these nodes and those above them, children before parents. New objects wait outside the tree,
-//! where they are tested one by one, until it is built again.
+//! The structure is an [`OccludeeTree`] of the time of the last rebuild, which [`OccludeeSet::refit`]
+//! fits to what has moved (`fitted.rs`). New objects wait outside the tree, where they are tested one
+//! by one, until it is built again.
 
 use super::choice::tree_pays;
-use super::groups::{around, half_area};
+use super::fitted::{FittedTree, NOWHERE};
 use super::occludee_id::OccludeeId;
 use super::rebuild::{OccludeeRebuild, OccludeeSnapshot};
-use super::tree::{OccludeeTree, grown};
+use super::tree::OccludeeTree;
 use crate::bounds::Aabb;
 use crate::error::CullError;
-use crate::projection::boxes::Boxes8;
-use crate::simd::{InstructionSet, Kernel, Lanes};
 use core::num::NonZeroU32;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Occludees that are inserted, moved and removed while running.
 ///
@@ -38,14 +35,7 @@ use glam::{DVec3, Vec3};
 /// ```
 #[derive(Clone, Debug)]
 pub struct OccludeeSet {
-    tree: OccludeeTree,
-    /// Per node of the tree: eight times its parent, plus the lane; [`NOWHERE`] for the root.
-    parents: Vec<u32>,
-    /// Bit per node: boxes in it have changed.
-    marked: Vec<u64>,
-    any_marked: bool,
-    /// Per node of the tree: the boxes of its objects, as they were set.
-    placed_bounds: Vec<[Aabb; 8]>,
+    tree: FittedTree,
     /// By slot.
     bounds: Vec<Aabb>,
     slots: Vec<Slot>,
@@ -54,9 +44,6 @@ pub struct OccludeeSet {
     loose: Vec<u32>,
     /// Objects in the tree.
     placed: usize,
-    /// Sum of half the surfaces of all groups, now and when the tree was built.
-    area: f64,
-    area_built: f64,
     origin: DVec3,
     prefers_tree: bool,
 }
@@ -69,7 +56,6 @@ struct Slot {
 }
 
 const LOOSE: u32 = 1 << 31;
-const NOWHERE: u32 = u32::MAX;
 
 /// Up to so many objects a list takes no longer than a tree.
 const FEW: usize = 1000;
@@ -85,18 +71,12 @@ impl OccludeeSet {
     pub fn new(origin: impl Into<[f64; 3]>) -> Self {
         let origin = DVec3::from(origin.into());
         Self {
-            tree: OccludeeTree::build_from(&[], origin),
-            parents: Vec::new(),
-            marked: Vec::new(),
-            any_marked: false,
-            placed_bounds: Vec::new(),
+            tree: FittedTree::default(),
             bounds: Vec::new(),
             slots: Vec::new(),
             free: Vec::new(),
             loose: Vec::new(),
             placed: 0,
-            area: 0.0,
-            area_built: 0.0,
             origin,
             prefers_tree: false,
         }
@@ -124,20 +104,18 @@ impl OccludeeSet {
     ///
     /// # Errors
     /// [`CullError::UnknownOccludee`].
-    #[inline]
+    // Always: a box that the caller has in registers would be written in parts and read as a whole,
+    // which a processor waits for.
+    #[inline(always)]
     pub fn set_bounds(&mut self, id: OccludeeId, bounds: Aabb) -> Result<(), CullError> {
         let place = self.place(id)?;
         self.bounds[id.slot as usize] = bounds;
-        if place & LOOSE != 0 {
-            return Ok(());
-        }
-        if bounds.is_valid() {
-            self.placed_bounds[place as usize / 8][place as usize % 8] = bounds;
-            self.mark(place / 8);
-        } else {
-            // The tree has volumes only.
-            self.take_out(place);
-            self.loosen(id.slot);
+        if place & LOOSE == 0 {
+            if bounds.is_valid() {
+                self.tree.set(place, bounds);
+            } else {
+                self.no_volume(place, id.slot);
+            }
         }
         Ok(())
     }
@@ -206,9 +184,7 @@ impl OccludeeSet {
     /// there are few objects, and where groups have spread until they are built again. Cost grows with
     /// the nodes of eight that have changed.
     pub fn refit(&mut self) {
-        if core::mem::take(&mut self.any_marked) {
-            InstructionSet::detect().run(Refit(self));
-        }
+        self.tree.refit();
     }
 
     /// Whether the hierarchy is so much worse than a new one that it is worth building it again: many
@@ -258,24 +234,25 @@ impl OccludeeSet {
         if ids.last().is_some_and(|id| id.index() >= self.slots.len()) {
             return;
         }
-        self.tree = tree;
-        self.tree
-            .rename(|n| ids.get(n as usize).map_or(0, |id| id.slot));
-        let nodes = self.tree.nodes().len();
-        self.parents.clear();
-        self.parents.resize(nodes, NOWHERE);
-        self.marked.clear();
-        self.marked.resize(nodes.div_ceil(64), 0);
-        self.placed_bounds.clear();
-        self.placed_bounds.resize(nodes, [Aabb::EMPTY; 8]);
-        self.any_marked = false;
         for slot in self.slots.iter_mut().filter(|s| s.place != NOWHERE) {
             slot.place = LOOSE;
         }
         self.placed = 0;
-        for n in 0..nodes as u32 {
-            self.place_children(n, &ids);
-        }
+        self.tree = FittedTree::new(tree, |number, place| {
+            // An object that has been removed or is no volume by now is left out.
+            let id = ids.get(number as usize)?;
+            let slot = self.slots.get_mut(id.index())?;
+            let bounds = self.bounds[id.index()];
+            let is_there = slot.generation == id.generation && slot.place == LOOSE;
+            if !is_there || !bounds.is_valid() {
+                return None;
+            }
+            slot.place = place;
+            self.placed += 1;
+            Some(bounds)
+        });
+        self.tree
+            .rename(|n| ids.get(n as usize).map_or(0, |id| id.slot));
         self.loose.clear();
         for (slot, number) in self.slots.iter_mut().zip(0..) {
             if slot.place == LOOSE {
@@ -283,50 +260,12 @@ impl OccludeeSet {
                 self.loose.push(number);
             }
         }
-        self.area = 0.0;
-        for n in (0..nodes as u32).rev() {
-            self.fit(n);
-        }
-        self.marked.fill(0);
-        self.area_built = self.area;
-    }
-
-    /// Finds the objects of a node's leaves by the ids of the snapshot, and notes where its groups
-    /// are.
-    fn place_children(&mut self, n: u32, ids: &[OccludeeId]) {
-        let node = self.tree.nodes()[n as usize];
-        for lane in node.children() {
-            let place = n * 8 + lane as u32;
-            let bounds = if node.is_object(lane) {
-                let slot = self.tree.order()[node.run(lane).start];
-                let id = ids.binary_search_by_key(&slot, |id| id.slot);
-                id.ok()
-                    .and_then(|k| self.place(ids[k]).ok())
-                    .map(|_| (slot, self.bounds[slot as usize]))
-                    .filter(|(_, bounds)| bounds.is_valid())
-            } else {
-                self.parents[node.child(lane) as usize] = place;
-                // Fitted afterwards, and its surface counted.
-                self.tree.node_mut(n).boxes.set(lane, Vec3::NAN, Vec3::NAN);
-                continue;
-            };
-            let node = self.tree.node_mut(n);
-            let Some((slot, bounds)) = bounds else {
-                node.remove(lane);
-                continue;
-            };
-            let (center, half) = grown(&bounds);
-            node.boxes.set(lane, center, half);
-            self.placed_bounds[n as usize][lane] = bounds;
-            self.slots[slot as usize].place = place;
-            self.placed += 1;
-        }
     }
 
     /// The tree. None while it does not fit, or where a list is as fast.
     pub(crate) fn tree(&self) -> Option<&OccludeeTree> {
         let worth_it = self.slots.len() > FEW && !self.has_spread();
-        ((worth_it || self.prefers_tree) && !self.any_marked).then_some(&self.tree)
+        self.tree.tree().filter(|_| worth_it || self.prefers_tree)
     }
 
     /// Whether a list takes less time than the tree, of whose objects so many have to be opened.
@@ -342,7 +281,7 @@ impl OccludeeSet {
 
     /// Whether objects have moved so far from their groups that a tree takes longer than a list.
     fn has_spread(&self) -> bool {
-        self.area > GROWTH * self.area_built
+        self.tree.has_grown(GROWTH)
     }
 
     /// Slots of objects outside the tree.
@@ -372,73 +311,15 @@ impl OccludeeSet {
         self.loose.push(slot);
     }
 
+    /// Takes an object out whose box is no volume: the tree has volumes only.
+    #[cold]
+    fn no_volume(&mut self, place: u32, slot: u32) {
+        self.take_out(place);
+        self.loosen(slot);
+    }
+
     fn take_out(&mut self, place: u32) {
-        self.tree.node_mut(place / 8).remove((place % 8) as usize);
-        self.placed_bounds[place as usize / 8][place as usize % 8] = Aabb::EMPTY;
-        self.mark(place / 8);
+        self.tree.take_out(place);
         self.placed -= 1;
-    }
-
-    #[inline]
-    fn mark(&mut self, node: u32) {
-        self.marked[node as usize / 64] |= 1 << (node % 64);
-        self.any_marked = true;
-    }
-
-    /// Takes over the boxes of a node's objects, all at once.
-    #[inline(always)]
-    fn take_boxes<L: Lanes>(&mut self, l: L, n: u32) {
-        let node = &self.tree.nodes()[n as usize];
-        if node.objects == 0 {
-            return;
-        }
-        let taken = Boxes8::of(l, &self.placed_bounds[n as usize]);
-        let objects = node.objects;
-        let node = self.tree.node_mut(n);
-        if node.lanes == objects {
-            node.boxes = taken;
-        } else {
-            for lane in (0..8).filter(|lane| objects >> lane & 1 != 0) {
-                node.boxes.copy(lane, &taken, lane);
-            }
-        }
-    }
-
-    /// Fits the group that a node is, and marks the node above it.
-    #[inline(always)]
-    fn fit(&mut self, node: u32) {
-        let parent = self.parents[node as usize];
-        if parent == NOWHERE {
-            return;
-        }
-        let (center, half) = around(&self.tree.nodes()[node as usize].boxes);
-        let lane = (parent % 8) as usize;
-        let above = self.tree.node_mut(parent / 8);
-        let before = Vec3::from_array(above.boxes.half.map(|half| half[lane]));
-        above.boxes.set(lane, center, half);
-        self.area += half_area(half) - half_area(before);
-        self.marked[parent as usize / 512] |= 1 << (parent / 8 % 64);
-    }
-}
-
-/// Fits the marked nodes. A kernel for the sake of wide registers.
-struct Refit<'a>(&'a mut OccludeeSet);
-
-impl Kernel for Refit<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes>(self, l: L) {
-        let set = self.0;
-        for word in (0..set.marked.len()).rev() {
-            // Parents come before their children, so that bits that are set here are lower ones.
-            while set.marked[word] != 0 {
-                let bit = 63 - set.marked[word].leading_zeros();
-                set.marked[word] &= !(1 << bit);
-                let node = word as u32 * 64 + bit;
-                set.take_boxes(l, node);
-                set.fit(node);
-            }
-        }
     }
 }

@@ -239,7 +239,7 @@ impl OccludeeTree {
     }
 }
 
-pub(super) fn grown(b: &Aabb) -> (Vec3, Vec3) {
+fn grown(b: &Aabb) -> (Vec3, Vec3) {
     if !b.is_valid() {
         return (Vec3::NAN, Vec3::NAN);
     }

@@ -1,0 +1,260 @@
+//! Shadow maps without the casters that are left out give the same shadows wherever they are seen.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod common;
+
+use common::{Object, Random, eye, occluders, scene};
+use foveal_cull::Visibility::{Occluded, Outside, Visible};
+use foveal_cull::reference::Reference;
+use foveal_cull::{
+    Aabb, CullError, Culler, Eye, FrameOptions, Projection, ReceiverMask, SingleThread, View,
+    Visibility,
+};
+use glam::{DVec3, Vec3};
+
+/// Side of the shadow maps, texels.
+const SIDE: u32 = 64;
+
+fn bounds_of(object: &Object) -> Aabb {
+    let place = |p: &Vec3| object.transform.transform_point3(p.as_dvec3());
+    let (low, high) = object
+        .positions
+        .iter()
+        .map(place)
+        .fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+    // Rounded outwards.
+    Aabb::new(low.as_vec3() - 1e-5, high.as_vec3() + 1e-5)
+}
+
+/// The depths of a shadow map of the casters that count: 0 where there is none, rising to the light.
+fn shadow_map<'a>(light: &Eye, casters: impl Iterator<Item = &'a Object>) -> Vec<f32> {
+    let mut map = Reference::new(light, SIDE, SIDE).unwrap();
+    for o in casters {
+        map.add(&o.positions, &o.indices, o.transform, true);
+    }
+    map.finish();
+    map.depth().to_vec()
+}
+
+/// The texel that a place falls on, and its depth there; None beside the map, before the near plane
+/// and beyond the far one.
+fn lookup(light: &Eye, place: DVec3) -> Option<([i64; 2], f64)> {
+    let a = light.world_from_eye;
+    let p = place - DVec3::from(a.translation);
+    let [right, up, back] = [a.x_axis, a.y_axis, a.z_axis].map(|axis| DVec3::from(axis).dot(p));
+    let along = -back;
+    let [left, far_right, bottom, top] = light.projection.extents();
+    let [near, far] = light.projection.near_far_m();
+    if !(near..=far).contains(&along) {
+        return None;
+    }
+    let (w, depth) = if light.projection.is_orthographic() {
+        (1.0, (far - along) / (far - near))
+    } else {
+        (along, near / along)
+    };
+    let side = f64::from(SIDE);
+    let x = (right / w - left) / (far_right - left) * side;
+    let y = (top - up / w) / (top - bottom) * side;
+    let on = |v: f64| (0.0..side).contains(&v);
+    (on(x) && on(y)).then_some(([x as i64, y as i64], depth))
+}
+
+/// Whether each texel within `reach` of a place is in its shadow.
+fn shadows(map: &[f32], (texel, depth): ([i64; 2], f64), reach: i64) -> Vec<bool> {
+    let (side, [x, y]) = (i64::from(SIDE), texel);
+    (y - reach..=y + reach)
+        .flat_map(|y| (x - reach..=x + reach).map(move |x| [x, y].map(|v| v.clamp(0, side - 1))))
+        .map(|[x, y]| f64::from(map[(y * side + x) as usize]) > depth)
+        .collect()
+}
+
+#[test]
+fn what_is_left_out_changes_no_lookup_for_a_place_that_is_seen() {
+    let (mut left_out, mut hidden, mut kept, mut looked, mut shaded) = (0, 0, 0, 0, 0);
+    for seed in 0..60 {
+        let mut r = Random::new(seed);
+        let scene = scene(&mut r, 14, 8, DVec3::ZERO);
+        let light = eye(&mut r, DVec3::ZERO, seed % 3 == 2);
+        let casters: Vec<Aabb> = scene.objects.iter().map(bounds_of).collect();
+        // Some occlude, all cast shadows.
+        let occluders = occluders(&scene, &[0, 1, 2, 3, 4, 5, 6]);
+        let mut results = vec![Visible; casters.len()];
+        let mut culler = Culler::new(SIDE / 4, SIDE / 4).unwrap();
+        let (view, options) = (View::mono(light), FrameOptions::default());
+        culler
+            .rasterize(&view, &occluders, &options, &SingleThread)
+            .unwrap();
+        culler.query(&casters, DVec3::ZERO, &mut results).unwrap();
+        let by_light = results.clone();
+
+        let (reach, moved) = (r.below(4), [0.0, 0.05][r.below(2)]);
+        let mut mask = ReceiverMask::new(&view, SIDE)
+            .unwrap()
+            .with_reach(reach as f64, moved);
+        let seen: Vec<Visibility> = (0..scene.boxes.len())
+            .map(|i| [Visible, Occluded][usize::from(i > 2)])
+            .collect();
+        mask.receive(&scene.boxes, DVec3::ZERO, &seen).unwrap();
+        mask.cull(&casters, DVec3::ZERO, &mut results).unwrap();
+
+        let all = shadow_map(&light, scene.objects.iter());
+        let visible = scene.objects.iter().zip(&results);
+        let fewer = shadow_map(
+            &light,
+            visible.filter(|(_, v)| v.is_visible()).map(|(o, _)| o),
+        );
+        for (bounds, _) in scene
+            .boxes
+            .iter()
+            .zip(&seen)
+            .filter(|(_, s)| s.is_visible())
+        {
+            let [low, high] = [bounds.min, bounds.max].map(|v| Vec3::from(v).as_dvec3());
+            for _ in 0..200 {
+                let part = DVec3::new(r.next(), r.next(), r.next());
+                let place = low + (high - low) * part + r.vec(moved);
+                let Some(at) = lookup(&light, place) else {
+                    continue;
+                };
+                assert!(!mask.is_empty(), "{seed}: {bounds:?}");
+                let both = [&all, &fewer].map(|map| shadows(map, at, reach as i64));
+                assert_eq!(both[0], both[1], "{seed}: {bounds:?} {place}");
+                looked += 1;
+                shaded += usize::from(both[0].iter().any(|s| *s));
+            }
+        }
+        for (after, before) in results.iter().zip(&by_light) {
+            hidden += usize::from(*before == Occluded);
+            left_out += usize::from(before.is_visible() && *after == Occluded);
+            kept += usize::from(after.is_visible());
+            assert!(before.is_visible() || before == after, "other results stay");
+        }
+    }
+    assert!(
+        left_out > 60 && hidden > 10 && kept > 100 && looked > 5_000 && shaded > 1_000,
+        "{left_out} {hidden} {kept} {looked} {shaded}"
+    );
+}
+
+fn side_of_a_lamp() -> View {
+    let side = Projection::perspective(core::f64::consts::FRAC_PI_2, 1.0, 0.1, 20.0);
+    View::mono(Eye::look_at(
+        [0.0; 3],
+        [0.0, 0.0, -1.0],
+        [0.0, 1.0, 0.0],
+        side,
+    ))
+}
+
+fn around(at: [f32; 3], half: f32) -> Aabb {
+    Aabb::new(at.map(|v| v - half), at.map(|v| v + half))
+}
+
+#[test]
+fn casters_behind_beside_and_outside_are_left_out() {
+    let mut mask = ReceiverMask::new(&side_of_a_lamp(), 256).unwrap();
+    let casters = [
+        around([0.0, 0.0, -5.0], 0.3),
+        around([0.5, 0.0, -10.0], 1.0),
+        around([0.0, 0.0, -13.0], 0.3),
+        around([4.0, 0.0, -5.0], 0.3),
+        around([0.0, 0.0, 5.0], 0.3),
+        around([0.0, 0.0, -30.0], 0.3),
+        around([9.0, 0.0, -2.0], 0.3),
+        around([0.0, 0.0, 0.0], 0.4),
+        Aabb::new([f32::NAN; 3], [1.0; 3]),
+    ];
+    let cull = |mask: &ReceiverMask| {
+        let mut results = [Visible; 9];
+        mask.cull(&casters, [0.0; 3], &mut results).unwrap();
+        results
+    };
+    assert!(mask.is_empty());
+    assert_eq!(
+        cull(&mask),
+        [
+            Occluded, Occluded, Occluded, Occluded, Outside, Outside, Outside, Occluded, Visible
+        ]
+    );
+    let receiver = [around([0.0, 0.0, -10.0], 1.0)];
+    mask.receive(&receiver, [0.0; 3], &[Occluded]).unwrap();
+    assert!(mask.is_empty(), "it is not seen");
+    mask.receive(&receiver, [0.0; 3], &[Visible]).unwrap();
+    let with_receiver = [
+        Visible, Visible, Occluded, Occluded, Outside, Outside, Outside, Visible, Visible,
+    ];
+    assert_eq!(cull(&mask), with_receiver);
+    // The same relative to another origin.
+    let mut far = ReceiverMask::new(&side_of_a_lamp(), 256).unwrap();
+    let moved = [around([-1e3, 0.0, -10.0], 1.0)];
+    far.receive(&moved, [1e3, 0.0, 0.0], &[Visible]).unwrap();
+    assert_eq!(cull(&far), with_receiver);
+    mask.clear();
+    assert!(mask.is_empty());
+}
+
+#[test]
+fn what_cannot_be_computed_with_is_everywhere() {
+    let caster = [around([0.0, 0.0, -5.0], 0.3)];
+    let cull = |mask: &ReceiverMask, origin: [f64; 3]| {
+        let mut results = [Visible];
+        mask.cull(&caster, origin, &mut results).unwrap();
+        results[0]
+    };
+    let empty = ReceiverMask::new(&side_of_a_lamp(), 256).unwrap();
+    for bad in [f64::NAN, f64::INFINITY, f64::MAX] {
+        assert_eq!(cull(&empty, [bad, 0.0, 0.0]), Visible, "{bad}");
+        let mut mask = empty.clone();
+        mask.receive(&caster, [0.0, bad, 0.0], &[Visible]).unwrap();
+        assert_eq!(cull(&mask, [0.0; 3]), Visible, "{bad}");
+    }
+    let mut mask = empty.clone();
+    mask.receive(&[Aabb::EMPTY], [0.0; 3], &[Visible]).unwrap();
+    assert_eq!(cull(&mask, [0.0; 3]), Visible);
+    // A reach that is no number is none.
+    let mut mask = empty.with_reach(f64::NAN, -1.0);
+    mask.receive(&caster, [0.0; 3], &[Visible]).unwrap();
+    assert_eq!(cull(&mask, [0.0; 3]), Visible);
+}
+
+#[test]
+fn bad_input_is_refused() {
+    for side in [0, 16_385, u32::MAX] {
+        let error = ReceiverMask::new(&side_of_a_lamp(), side).unwrap_err();
+        assert!(matches!(error, CullError::BadSize { .. }), "{side}");
+    }
+    let mut view = side_of_a_lamp();
+    view.eye.world_from_eye.translation[0] = f64::NAN;
+    assert!(ReceiverMask::new(&view, 64).is_err());
+    let mut mask = ReceiverMask::new(&side_of_a_lamp(), 1).unwrap();
+    let (boxes, origin) = ([around([0.0; 3], 1.0)], [0.0; 3]);
+    assert!(mask.receive(&boxes, origin, &[]).is_err());
+    assert!(mask.cull(&boxes, origin, &mut []).is_err());
+}
+
+/// A box around all that a lamp reaches: where it is hidden, nothing that the lamp lights is seen.
+#[test]
+fn a_lamp_whose_whole_reach_is_hidden_is_left_out_by_its_box() {
+    let wall = Aabb::new([-9.0, -9.0, -5.0], [9.0, 9.0, -4.9]);
+    let mut occluders = foveal_cull::OccluderSet::new();
+    let mesh = foveal_cull::OccluderMesh::from_box(wall).unwrap();
+    occluders
+        .add(mesh.into(), foveal_cull::Affine::IDENTITY)
+        .unwrap();
+    let mut culler = Culler::new(64, 64).unwrap();
+    let view = side_of_a_lamp();
+    culler
+        .rasterize(&view, &occluders, &FrameOptions::default(), &SingleThread)
+        .unwrap();
+    let lamps = [
+        around([0.0, 0.0, -9.0], 3.0),
+        around([0.0, 0.0, -9.0], 4.5),
+        around([0.0, 0.0, 9.0], 3.0),
+    ];
+    let mut results = [Visible; 3];
+    culler.query(&lamps, [0.0; 3], &mut results).unwrap();
+    assert_eq!(results, [Occluded, Visible, Outside]);
+}
