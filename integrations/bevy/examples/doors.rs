@@ -1,8 +1,8 @@
 //! A house whose doors open and close: occluders that move.
 //!
 //! `cargo run --example doors` opens a window: 1, 2, 3 and 4 switch the way of culling (the frustum
-//! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), space stops the walk.
-//! `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
+//! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), O shows the overlay,
+//! space stops the walk. `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
 //! `--side 12` (rooms along each side), `--furniture 30` (pieces a room) and `--lights 2` (with
 //! shadows) change the scene, `--msaa 4` its samples.
 

@@ -1,9 +1,9 @@
-//! Point lights with shadows in a house: casters that are hidden from a light are not drawn for
-//! it.
+//! Point lights with shadows in a house: casters that are hidden from a light, or whose shadow nobody
+//! sees, are not drawn for it.
 //!
 //! `cargo run --example lights` opens a window: 1, 2, 3 and 4 switch the way of culling (the frustum
-//! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), space stops the walk.
-//! `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
+//! alone, Bevy's GPU culling, this crate's for the camera, and for lights too), O shows the overlay,
+//! space stops the walk. `-- --frames 100` draws without a window instead and prints what each way costs. `--size 640x360`,
 //! `--side 12` (rooms along each side), `--furniture 30` (pieces a room) and `--lights 2` (with
 //! shadows) change the scene, `--msaa 4` its samples.
 

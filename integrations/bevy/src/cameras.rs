@@ -6,11 +6,12 @@ use crate::occluders::{Occluders, Range};
 use crate::ready::{ListedByView, Looks, Pipelines};
 use crate::stats::CpuOcclusionStats;
 use crate::tasks::ComputeTasks;
-use crate::view::{Fit, clip_from_world};
+use crate::view::{Fit, ObliquePlanes, clip_from_world};
 use bevy_camera::Camera;
 use bevy_camera::visibility::{RenderLayers, VisibleEntities, VisibleEntityRanges};
 use bevy_ecs::change_detection::{Res, ResMut};
 use bevy_ecs::entity::{Entity, EntityHashMap};
+use bevy_ecs::resource::Resource;
 use bevy_ecs::system::{Local, Query};
 use bevy_mesh::Mesh3d;
 use bevy_platform::time::Instant;
@@ -34,10 +35,29 @@ fn samples((): ()) -> u32 {
     4
 }
 
+/// The cullers of cameras, which keep their buffers until the next frame.
+#[derive(Resource, Default)]
+pub(crate) struct CameraCullers(EntityHashMap<ViewCuller>);
+
+impl CameraCullers {
+    /// The culler of a camera that was culled in this frame.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn current(&self, camera: Entity) -> Option<&ViewCuller> {
+        self.0.get(&camera).filter(|culler| culler.is_current())
+    }
+
+    /// All of these.
+    #[cfg(feature = "overlay")]
+    pub(crate) fn all(&self) -> impl Iterator<Item = (Entity, &ViewCuller)> {
+        let all = self.0.iter().map(|(camera, culler)| (*camera, culler));
+        all.filter(|(_, culler)| culler.is_current())
+    }
+}
+
 pub(crate) fn cull(
     mut occluders: ResMut<Occluders>,
     mut stats: ResMut<CpuOcclusionStats>,
-    mut cullers: Local<EntityHashMap<ViewCuller>>,
+    mut cullers: ResMut<CameraCullers>,
     mut listed: Local<ListedByView>,
     boxes: Boxes,
     looks: Looks,
@@ -54,7 +74,9 @@ pub(crate) fn cull(
     )>,
 ) {
     let begin = Instant::now();
+    let cullers = &mut cullers.0;
     cullers.retain(|camera, _| cameras.contains(*camera));
+    cullers.values_mut().for_each(ViewCuller::forget);
     listed.begin_frame();
     for (entity, camera, transform, culling, mut visible, layers, multisampling) in &mut cameras {
         let picture = camera.physical_viewport_size();
@@ -67,11 +89,18 @@ pub(crate) fn cull(
         let list = visible.get_mut(TypeId::of::<Mesh3d>());
         let listed = listed.of(entity);
         listed.note([&*list], &looks);
+        let matrix = clip_from_world(camera.clip_from_view(), transform.affine());
+        // What oblique planes cut does not occlude: it is drawn in part.
+        let (oblique, matrix) = match ObliquePlanes::take_from(matrix) {
+            Some((planes, matrix)) => (Some(planes), matrix),
+            None => (None, matrix),
+        };
         let layers = layers.unwrap_or_default();
         let on = occluders.enable(|occluder, entry| {
             layers.intersects(&entry.layers)
                 && (!entry.listed || listed.settled(occluder))
                 && !(entry.not_inverted && camera.invert_culling)
+                && oblique.is_none_or(|planes| planes.spare(&entry.bounds))
                 && match entry.range {
                     Range::None => true,
                     Range::Abrupt => ranges
@@ -87,14 +116,13 @@ pub(crate) fn cull(
         };
         // Faces are told by their winding in the world: a pose or a projection that mirrors needs
         // the opposite test.
-        let matrix = clip_from_world(camera.clip_from_view(), transform.affine());
         let mirrors = matrix.determinant() < 0.0;
         if mirrors != camera.invert_culling {
             outcome.refused = true;
         } else if pipelines.waiting {
             outcome.waiting = true;
         } else if on > 0 {
-            if let Some(culler) = of_size(&mut cullers, entity, fit.size) {
+            if let Some(culler) = of_size(cullers, entity, fit.size) {
                 let culled =
                     culler.cull(list, &boxes, listed, &occluders.set, &ComputeTasks, |_| {
                         fit.view(matrix)

@@ -86,6 +86,12 @@ impl Occluder {
 pub struct CpuOcclusionCulling {
     /// The size of the occlusion buffer.
     pub buffer_size: OcclusionBufferSize,
+    /// For lights: whether casters are drawn whose shadow falls on nothing that a camera sees, and
+    /// lights that light nothing that a camera sees; `false` by default. Set it where something reads
+    /// shadow maps elsewhere than at the meshes of the camera's `VisibleEntities`: meshes that are
+    /// drawn by a pipeline of your own, or materials that look up shadows beside themselves.
+    /// `VolumetricLight`s and soft shadows (`experimental_pbr_pcss`) are known, and draw all.
+    pub keep_unseen_shadows: bool,
 }
 
 /// The size of a view's occlusion buffer. Every pixel of it has 4x4 samples.

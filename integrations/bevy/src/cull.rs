@@ -72,7 +72,7 @@ type NotDrawnOnTop = ();
 
 impl Boxes<'_, '_> {
     /// The box in the world; `None` where nothing is known of where the entity is.
-    fn of(&self, entity: Entity) -> Option<Aabb> {
+    pub(crate) fn of(&self, entity: Entity) -> Option<Aabb> {
         let (bounds, transform, mesh, skinned, follows_joints, material) =
             self.entities.get(entity).ok()?;
         if let Some(skinned) = skinned {
@@ -96,13 +96,7 @@ impl Boxes<'_, '_> {
         if self.verdicts.in_front.contains(&entity) || self.in_front(material) {
             return None;
         }
-        let map = transform.affine();
-        let (axes, half) = (map.matrix3, bounds.half_extents);
-        let center = map.transform_point3a(bounds.center);
-        let half =
-            axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
-        let half = half + (center.abs() + half) * ROUNDING;
-        Some(Aabb::new(center - half, center + half))
+        Some(world_box(bounds, transform))
     }
 
     #[cfg(feature = "bevy_pbr")]
@@ -123,11 +117,23 @@ impl Boxes<'_, '_> {
     }
 }
 
+/// The box in the world of a box in an entity's space.
+pub(crate) fn world_box(bounds: &MeshBounds, transform: &GlobalTransform) -> Aabb {
+    let map = transform.affine();
+    let (axes, half) = (map.matrix3, bounds.half_extents);
+    let center = map.transform_point3a(bounds.center);
+    let half = axes.x_axis.abs() * half.x + axes.y_axis.abs() * half.y + axes.z_axis.abs() * half.z;
+    let half = half + (center.abs() + half) * ROUNDING;
+    Aabb::new(center - half, center + half)
+}
+
 /// What became of a view's list.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Outcome {
     pub(crate) listed: usize,
     pub(crate) hidden: usize,
+    /// Casters besides whose shadow nobody sees.
+    pub(crate) unseen: usize,
     pub(crate) refused: bool,
     pub(crate) waiting: bool,
     pub(crate) coarse: bool,
@@ -142,6 +148,7 @@ impl Outcome {
             stats.light_views += 1;
             stats.casters += self.listed;
             stats.casters_hidden += self.hidden;
+            stats.casters_unseen += self.unseen;
         } else {
             stats.cameras += 1;
             stats.meshes += self.listed;
@@ -157,6 +164,7 @@ pub(crate) struct ViewCuller {
     /// Where in the view's list each box belongs, ascending.
     places: Vec<u32>,
     results: Vec<Visibility>,
+    is_current: bool,
 }
 
 impl ViewCuller {
@@ -166,6 +174,7 @@ impl ViewCuller {
             boxes: Vec::new(),
             places: Vec::new(),
             results: Vec::new(),
+            is_current: false,
         })
     }
 
@@ -184,13 +193,18 @@ impl ViewCuller {
         threads: &dyn Threads,
         view: impl FnOnce(&[Aabb]) -> Result<View, CullError>,
     ) -> Outcome {
-        let mut outcome = Outcome {
-            listed: list.len(),
-            ..Outcome::default()
-        };
+        let mut outcome = Outcome::default();
+        self.take(list, boxes, listed);
+        outcome.refused = !self.test(occluders, threads, view);
+        self.remove(list, outcome)
+    }
+
+    /// Takes in the entities of a list that may leave it.
+    pub(crate) fn take(&mut self, list: &[Entity], boxes: &Boxes<'_, '_>, listed: &Listed) {
+        self.is_current = false;
         self.boxes.clear();
         self.places.clear();
-        for (place, &entity) in (0..).zip(list.iter()) {
+        for (place, &entity) in (0..).zip(list) {
             if listed.settled(entity)
                 && let Some(bounds) = boxes.of(entity)
             {
@@ -198,24 +212,98 @@ impl ViewCuller {
                 self.places.push(place);
             }
         }
+        self.results.clear();
+        self.results.resize(self.boxes.len(), Visibility::Visible);
+    }
+
+    /// Tests what was taken in; returns whether that was possible.
+    pub(crate) fn test(
+        &mut self,
+        occluders: &OccluderSet,
+        threads: &dyn Threads,
+        view: impl FnOnce(&[Aabb]) -> Result<View, CullError>,
+    ) -> bool {
         if self.boxes.is_empty() {
-            return outcome;
+            return true;
         }
         let tested = view(&self.boxes).and_then(|view| {
             let options = FrameOptions::default();
             self.culler.rasterize(&view, occluders, &options, threads)?;
-            self.results.clear();
-            self.results.resize(self.boxes.len(), Visibility::Visible);
             self.culler.query(&self.boxes, [0.0; 3], &mut self.results)
         });
         if let Err(error) = tested {
             static SAID: Once = Once::new();
             SAID.call_once(|| warn!("a view is not culled for occlusion: {error} ({error:?})"));
-            outcome.refused = true;
-            return outcome;
+            return false;
         }
-        outcome.hidden = remove_hidden(list, &self.places, &self.results);
-        outcome
+        self.is_current = true;
+        true
+    }
+
+    /// Besides what is hidden removes what a condition does not hold for: an entity at a place of the
+    /// list and its box. Returns how many these are.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn keep(
+        &mut self,
+        list: &[Entity],
+        condition: impl Fn(Entity, &Aabb) -> bool,
+    ) -> usize {
+        let mut left_out = 0;
+        for ((result, &place), bounds) in self.results.iter_mut().zip(&self.places).zip(&self.boxes)
+        {
+            if *result != Visibility::Occluded && !condition(list[place as usize], bounds) {
+                *result = Visibility::Occluded;
+                left_out += 1;
+            }
+        }
+        left_out
+    }
+
+    /// Removes what was found to be hidden.
+    pub(crate) fn remove(&mut self, list: &mut Vec<Entity>, outcome: Outcome) -> Outcome {
+        Outcome {
+            listed: list.len(),
+            hidden: remove_hidden(list, &self.places, &self.results) - outcome.unseen,
+            ..outcome
+        }
+    }
+
+    /// Looks for boxes in the buffer of this frame.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn look(&self, boxes: &[Aabb], results: &mut [Visibility]) {
+        if !self.is_current || self.culler.query(boxes, [0.0; 3], results).is_err() {
+            results.fill(Visibility::Visible);
+        }
+    }
+
+    /// The boxes of the last list that are hidden.
+    #[cfg(feature = "overlay")]
+    pub(crate) fn hidden(&self) -> impl Iterator<Item = &Aabb> {
+        let tested = self.boxes.iter().zip(&self.results);
+        tested
+            .filter(|(_, result)| **result == Visibility::Occluded)
+            .map(|(bounds, _)| bounds)
+    }
+
+    /// The depth in the buffer, row by row from the top left.
+    #[cfg(feature = "overlay")]
+    pub(crate) fn read_depth(&self, texels: &mut [f32]) {
+        if self.culler.read_depth(texels).is_err() {
+            texels.fill(0.0);
+        }
+    }
+
+    /// Whether the buffer is that of the last list taken in.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn is_current(&self) -> bool {
+        self.is_current
+    }
+
+    /// Nothing is in the buffer any more.
+    pub(crate) fn forget(&mut self) {
+        self.is_current = false;
+        self.boxes.clear();
+        self.results.clear();
     }
 }
 

@@ -79,14 +79,21 @@
 //! slits narrower than a pixel may lose what is behind them. So may they with a temporal jitter
 //! (`TemporalAntiAliasing`) or an upscaler, whose samples are not those of the viewport.
 //!
-//! A view whose near plane is oblique (a mirror's clip plane), or whose transform or projection
-//! mirrors without `Camera::invert_culling`, is not culled; [`CpuOcclusionStats::refused_views`]
-//! counts them.
+//! A view whose transform or projection mirrors without `Camera::invert_culling` is not culled;
+//! [`CpuOcclusionStats::refused_views`] counts them. Where the near plane is oblique (a mirror's clip
+//! plane), occluders that reach before it are left out.
+//!
+//! # Shadows that nobody sees
+//! Casters whose shadow can fall on nothing that a camera lists are left out of the shadow maps of
+//! lights with [`CpuOcclusionCulling`]. A point or spot light is not drawn where all that a camera
+//! lists within its range is in the shadow of occluders, or where there is nothing: its
+//! `ViewVisibility` is then hidden. [`CpuOcclusionCulling::keep_unseen_shadows`] turns both off.
 //!
 //! # Features
 //! - `bevy_pbr` (default): materials decide who may occlude, and `AutomaticOccluders`. Includes
 //!   `bevy_light`.
 //! - `bevy_light`: shadow casters of lights.
+//! - `overlay` (default): `CpuOcclusionOverlay`, which shows what the culler does.
 
 #[cfg(feature = "bevy_pbr")]
 mod automatic;
@@ -95,10 +102,18 @@ mod components;
 mod cull;
 #[cfg(feature = "bevy_light")]
 mod lights;
+#[cfg(feature = "bevy_light")]
+mod mask;
 mod materials;
 mod occluders;
+#[cfg(feature = "overlay")]
+mod overlay;
 mod plugin;
+#[cfg(feature = "bevy_light")]
+mod reach;
 mod ready;
+#[cfg(feature = "bevy_light")]
+mod receivers;
 mod stats;
 mod tasks;
 mod view;
@@ -110,5 +125,7 @@ pub use components::{
 };
 #[cfg(feature = "bevy_pbr")]
 pub use materials::OccluderMaterialPlugin;
+#[cfg(feature = "overlay")]
+pub use overlay::{CpuOcclusionGizmos, CpuOcclusionOverlay};
 pub use plugin::{CpuOcclusionPlugin, CpuOcclusionSystems};
 pub use stats::CpuOcclusionStats;

@@ -1,11 +1,16 @@
 //! Lights: shadow casters that are hidden from the light leave the lists of its shadow maps.
 //!
-//! What is hidden from the light behind other casters changes no texel of the shadow map.
+//! What is hidden from the light behind other casters changes no texel of the shadow map. What casts
+//! its shadow on nothing that a camera sees changes texels that nobody looks up. A point or spot
+//! light that lights nothing that is seen is not drawn at all.
 
 use crate::components::CpuOcclusionCulling;
 use crate::cull::{Boxes, Outcome, ViewCuller};
+use crate::mask::{Mask, Projector};
 use crate::occluders::{Occluders, Range};
+use crate::reach::{Reach, SeenByLight, is_soft};
 use crate::ready::{Listed, ListedByView, Looks, Pipelines};
+use crate::receivers::Receivers;
 use crate::stats::CpuOcclusionStats;
 use crate::tasks::for_each;
 use crate::view::{Fit, clip_from_world};
@@ -16,12 +21,12 @@ use bevy_camera::visibility::{
 };
 use bevy_ecs::change_detection::{Res, ResMut};
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::With;
+use bevy_ecs::query::{Has, With, Without};
 use bevy_ecs::system::{Local, Query};
 use bevy_light::cascade::Cascades;
 use bevy_light::{
     DirectionalLight, DirectionalLightShadowMap, NotShadowCaster, PointLight, PointLightShadowMap,
-    SpotLight, spot_light_clip_from_view, spot_light_world_from_view,
+    SpotLight, VolumetricLight, spot_light_clip_from_view, spot_light_world_from_view,
 };
 use bevy_math::{Affine3A, DMat4, DVec3, Mat4};
 use bevy_platform::collections::HashMap;
@@ -71,6 +76,8 @@ struct Face<'a> {
     casters_before_near: bool,
     list: &'a mut Vec<Entity>,
     outcome: Outcome,
+    /// Whether the light may light something that a camera sees here.
+    lights_seen: bool,
 }
 
 impl<'a> Face<'a> {
@@ -80,7 +87,132 @@ impl<'a> Face<'a> {
             casters_before_near: false,
             list: &mut casters.entities,
             outcome: Outcome::default(),
+            lights_seen: true,
         }
+    }
+}
+
+/// A light whose shadow maps are culled.
+struct Light<'a> {
+    entity: Entity,
+    culling: &'a CpuOcclusionCulling,
+    layers: Option<&'a RenderLayers>,
+    /// Texels of a shadow map along each side.
+    side: Option<usize>,
+    /// `None` where all shadows are drawn.
+    reach: Option<Reach>,
+}
+
+/// What is the same for all lights of a frame.
+struct Frame<'w, 's, 'a> {
+    occluders: &'a mut Occluders,
+    stats: &'a mut CpuOcclusionStats,
+    cullers: &'a mut Cullers,
+    listed: &'a mut ListedByView,
+    receivers: &'a Receivers,
+    boxes: &'a Boxes<'w, 's>,
+    looks: &'a Looks<'w, 's>,
+    waiting: bool,
+    not_casters: &'a Query<'w, 's, (), With<NotShadowCaster>>,
+}
+
+impl Frame<'_, '_, '_> {
+    /// Culls the shadow maps of a light. Returns whether it lights nothing that is seen, and may be
+    /// left out itself.
+    fn cull(&mut self, light: &Light<'_>, faces: &mut [Face<'_>]) -> bool {
+        let size = light.culling.buffer_size;
+        let Some(fit) = light.side.and_then(|side| Fit::of_shadow_map(size, side)) else {
+            return false;
+        };
+        let listed = self.listed.of(light.entity);
+        listed.note(faces.iter().map(|face| &*face.list), self.looks);
+        let layers = light.layers.unwrap_or_default();
+        let on = self.occluders.enable(|entity, entry| {
+            layers.intersects(&entry.layers)
+                && (!entry.listed || listed.settled(entity))
+                && entry.range == Range::None
+                && entry.shadows
+                && !self.not_casters.contains(entity)
+        });
+        for face in &mut *faces {
+            face.outcome.listed = face.list.len();
+            face.outcome.waiting = self.waiting;
+        }
+        let seen = light
+            .reach
+            .filter(|_| self.receivers.known && !self.receivers.anywhere)
+            .filter(|_| !light.culling.keep_unseen_shadows)
+            .map(|reach| reach.of(&self.receivers.seen));
+        if !self.waiting && (on > 0 || seen.is_some()) {
+            let occluders = &*self.occluders;
+            let occluders = (on > 0).then(|| (occluders, occluders.are_all_listed()));
+            let cullers = self.cullers.of(fit.size, faces.len());
+            refuse_from(cullers.len(), faces);
+            for_each(faces.iter_mut().zip(cullers), |(face, culler)| {
+                cull_face(
+                    face,
+                    culler,
+                    &fit,
+                    self.boxes,
+                    listed,
+                    occluders,
+                    seen.as_ref(),
+                );
+            });
+        }
+        let unseen = seen.is_some_and(|seen| !seen.anyway) && !faces.iter().any(|f| f.lights_seen);
+        for face in faces {
+            face.outcome.coarse = fit.coarse;
+            face.outcome.add_to(self.stats, true);
+        }
+        unseen
+    }
+}
+
+/// Culls one shadow map. `occluders`: those that are switched on, and whether a view draws them only
+/// if it lists them.
+fn cull_face(
+    face: &mut Face<'_>,
+    culler: &mut ViewCuller,
+    fit: &Fit,
+    boxes: &Boxes<'_, '_>,
+    listed: &Listed,
+    occluders: Option<(&Occluders, bool)>,
+    seen: Option<&SeenByLight>,
+) {
+    let matrix = face.clip_from_world;
+    culler.take(face.list, boxes, listed);
+    let mut outcome = Outcome::default();
+    if let Some((occluders, _)) = occluders {
+        outcome.refused = !culler.test(&occluders.set, &SingleThread, |casters| {
+            fit.view(if face.casters_before_near {
+                with_near_before(matrix, casters)
+            } else {
+                matrix
+            })
+        });
+    }
+    if let Some(seen) = seen.filter(|_| !outcome.refused) {
+        let mut mask = Mask::new(Projector::new(matrix));
+        let lit = seen.receive(&mut mask, |boxes, results| {
+            // What is drawn in place of other occluders may be left out.
+            if occluders.is_some_and(|(_, all_listed)| all_listed) {
+                culler.look(boxes, results);
+            }
+        });
+        // What is new must be drawn for a while, and the light with it.
+        face.lights_seen = lit || !face.list.iter().all(|&entity| listed.settled(entity));
+        outcome.unseen = culler.keep(face.list, |entity, bounds| {
+            mask.shows(bounds, occluders.is_some_and(|(o, _)| o.is_on(entity)))
+        });
+    }
+    face.outcome = culler.remove(face.list, outcome);
+}
+
+/// Faces for which there is no culler keep everything.
+fn refuse_from(first: usize, faces: &mut [Face<'_>]) {
+    for face in faces.iter_mut().skip(first) {
+        face.outcome.refused = true;
     }
 }
 
@@ -89,6 +221,7 @@ pub(crate) fn cull(
     mut stats: ResMut<CpuOcclusionStats>,
     mut cullers: Local<Cullers>,
     mut listed: Local<ListedByView>,
+    receivers: Res<Receivers>,
     boxes: Boxes,
     looks: Looks,
     pipelines: Res<Pipelines>,
@@ -101,69 +234,60 @@ pub(crate) fn cull(
         Entity,
         &PointLight,
         &GlobalTransform,
-        &ViewVisibility,
+        &mut ViewVisibility,
         &CpuOcclusionCulling,
         &mut CubemapVisibleEntities,
         Option<&RenderLayers>,
+        Has<VolumetricLight>,
     )>,
-    mut spot_lights: Query<(
-        Entity,
-        &SpotLight,
-        &GlobalTransform,
-        &ViewVisibility,
-        &CpuOcclusionCulling,
-        &mut VisibleMeshEntities,
-        Option<&RenderLayers>,
-    )>,
-    mut directional_lights: Query<(
-        Entity,
-        &DirectionalLight,
-        &Cascades,
-        &ViewVisibility,
-        &CpuOcclusionCulling,
-        &mut CascadesVisibleEntities,
-        Option<&RenderLayers>,
-    )>,
+    mut spot_lights: Query<
+        (
+            Entity,
+            &SpotLight,
+            &GlobalTransform,
+            &mut ViewVisibility,
+            &CpuOcclusionCulling,
+            &mut VisibleMeshEntities,
+            Option<&RenderLayers>,
+            Has<VolumetricLight>,
+        ),
+        Without<PointLight>,
+    >,
+    mut directional_lights: Query<
+        (
+            Entity,
+            &DirectionalLight,
+            &Cascades,
+            &ViewVisibility,
+            &CpuOcclusionCulling,
+            &mut CascadesVisibleEntities,
+            Option<&RenderLayers>,
+            Has<VolumetricLight>,
+        ),
+        (Without<PointLight>, Without<SpotLight>),
+    >,
 ) {
     let begin = Instant::now();
     cullers.begin_frame();
     listed.begin_frame();
-    let mut cull_faces = |light: Entity,
-                          culling: &CpuOcclusionCulling,
-                          side: Option<usize>,
-                          layers: Option<&RenderLayers>,
-                          faces: &mut [Face<'_>]| {
-        let Some(fit) = side.and_then(|side| Fit::of_shadow_map(culling.buffer_size, side)) else {
-            return;
-        };
-        let listed = listed.of(light);
-        listed.note(faces.iter().map(|face| &*face.list), &looks);
-        let layers = layers.unwrap_or_default();
-        let on = occluders.enable(|entity, entry| {
-            layers.intersects(&entry.layers)
-                && (!entry.listed || listed.settled(entity))
-                && entry.range == Range::None
-                && entry.shadows
-                && !not_casters.contains(entity)
-        });
-        for face in &mut *faces {
-            face.outcome.listed = face.list.len();
-            face.outcome.waiting = pipelines.waiting;
-        }
-        if on > 0 && !pipelines.waiting {
-            let cullers = cullers.of(fit.size, faces.len());
-            cull_light(faces, &fit, cullers, &boxes, listed, &occluders);
-        }
-        for face in faces {
-            face.outcome.coarse = fit.coarse;
-            face.outcome.add_to(&mut stats, true);
-        }
-    };
     let point_side = map_sizes.0.map(|map| map.size);
     let other_side = map_sizes.1.map(|map| map.size);
+    let mut frame = Frame {
+        occluders: &mut occluders,
+        stats: &mut stats,
+        cullers: &mut cullers,
+        listed: &mut listed,
+        receivers: &receivers,
+        boxes: &boxes,
+        looks: &looks,
+        waiting: pipelines.waiting,
+        not_casters: &not_casters,
+    };
 
     // Bevy fills the lists of lights with shadows that a camera sees; those of others are old.
-    for (entity, light, transform, visibility, culling, mut casters, layers) in &mut point_lights {
+    for (entity, light, transform, mut visibility, culling, mut casters, layers, volumetric) in
+        &mut point_lights
+    {
         if !(light.shadow_maps_enabled && visibility.get()) {
             continue;
         }
@@ -179,9 +303,22 @@ pub(crate) fn cull(
                 Face::new(clip_from_world(clip_from_view, pose), casters)
             })
             .collect();
-        cull_faces(entity, culling, point_side, layers, &mut faces);
+        let light = Light {
+            entity,
+            culling,
+            layers,
+            side: point_side,
+            reach: (!volumetric && !is_soft(light))
+                .then(|| Reach::of_point_light(light, transform, point_side)),
+        };
+        if frame.cull(&light, &mut faces) {
+            *visibility = ViewVisibility::HIDDEN;
+            frame.stats.lights_unseen += 1;
+        }
     }
-    for (entity, light, transform, visibility, culling, mut casters, layers) in &mut spot_lights {
+    for (entity, light, transform, mut visibility, culling, mut casters, layers, volumetric) in
+        &mut spot_lights
+    {
         if !(light.shadow_maps_enabled && visibility.get()) {
             continue;
         }
@@ -192,57 +329,51 @@ pub(crate) fn cull(
             clip_from_world(clip_from_view, pose),
             &mut casters,
         )];
-        cull_faces(entity, culling, other_side, layers, &mut face);
+        // A wider one lights more than its shadow map shows.
+        let all_in_map = light.outer_angle < FRAC_PI_2;
+        let light = Light {
+            entity,
+            culling,
+            layers,
+            side: other_side,
+            reach: (!volumetric && !is_soft(light) && all_in_map)
+                .then(|| Reach::of_spot_light(light, transform, other_side)),
+        };
+        if frame.cull(&light, &mut face) {
+            *visibility = ViewVisibility::HIDDEN;
+            frame.stats.lights_unseen += 1;
+        }
     }
-    for (entity, light, cascades, visibility, culling, mut casters, layers) in
+    for (entity, light, cascades, visibility, culling, mut casters, layers, volumetric) in
         &mut directional_lights
     {
         if !(light.shadow_maps_enabled && visibility.get()) {
             continue;
         }
         let mut faces: Vec<Face> = Vec::new();
+        let mut texel = 0.0_f32;
         for (camera, lists) in &mut casters.entities {
             let of_camera = cascades.cascades.get(camera).into_iter().flatten();
             for (cascade, casters) in of_camera.zip(lists) {
+                texel = texel.max(cascade.texel_size);
                 faces.push(Face {
                     casters_before_near: true,
                     ..Face::new(cascade.clip_from_world.as_dmat4(), casters)
                 });
             }
         }
-        cull_faces(entity, culling, other_side, layers, &mut faces);
+        let light = Light {
+            entity,
+            culling,
+            layers,
+            side: other_side,
+            reach: (!volumetric && !is_soft(light))
+                .then(|| Reach::of_directional_light(light, texel)),
+        };
+        // The sun itself is left alone: it lights what no cascade reaches.
+        frame.cull(&light, &mut faces);
     }
-    stats.light_time = begin.elapsed();
-}
-
-/// Culls the shadow maps of one light, at the same time.
-fn cull_light(
-    faces: &mut [Face<'_>],
-    fit: &Fit,
-    cullers: &mut [ViewCuller],
-    boxes: &Boxes<'_, '_>,
-    listed: &Listed,
-    occluders: &Occluders,
-) {
-    refuse_from(cullers.len(), faces);
-    for_each(faces.iter_mut().zip(cullers), |(face, culler)| {
-        let matrix = face.clip_from_world;
-        let set = &occluders.set;
-        face.outcome = culler.cull(face.list, boxes, listed, set, &SingleThread, |casters| {
-            fit.view(if face.casters_before_near {
-                with_near_before(matrix, casters)
-            } else {
-                matrix
-            })
-        });
-    });
-}
-
-/// Faces for which there is no culler keep everything.
-fn refuse_from(first: usize, faces: &mut [Face<'_>]) {
-    for face in faces.iter_mut().skip(first) {
-        face.outcome.refused = true;
-    }
+    stats.light_time += begin.elapsed();
 }
 
 /// The angle that Bevy draws a spot light's shadow map with.

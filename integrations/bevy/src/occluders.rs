@@ -5,10 +5,12 @@
 //! something has changed.
 
 use crate::components::{Occluder, OccluderShape};
+use crate::cull::world_box;
 use crate::materials::{MaterialVerdicts, Verdict};
 use crate::ready::SETTLED;
 use crate::stats::CpuOcclusionStats;
 use bevy_asset::{AssetEvent, AssetId, Assets};
+use bevy_camera::primitives::Aabb as MeshBounds;
 use bevy_camera::visibility::{InheritedVisibility, NoCpuCulling, RenderLayers, VisibilityRange};
 use bevy_ecs::change_detection::{DetectChanges, Ref, Res, ResMut};
 use bevy_ecs::entity::{Entity, EntityHashMap};
@@ -16,7 +18,7 @@ use bevy_ecs::message::MessageReader;
 use bevy_ecs::query::Has;
 use bevy_ecs::resource::Resource;
 use bevy_ecs::system::Query;
-use bevy_math::{Affine3A, Vec3};
+use bevy_math::{Affine3A, Vec3, Vec3A};
 use bevy_mesh::morph::MeshMorphWeights;
 use bevy_mesh::skinning::SkinnedMesh;
 use bevy_mesh::{Indices, Mesh, Mesh3d, PrimitiveTopology, VertexAttributeValues};
@@ -44,6 +46,8 @@ pub(crate) struct Entry {
     /// `None` where there is nothing to place: the mesh is not loaded, or cannot be baked.
     id: Option<OccluderId>,
     shape: Shape,
+    /// The box in the world of what is drawn of it.
+    pub(crate) bounds: Aabb,
     /// Whether it is switched on in the set.
     enabled: bool,
     /// Whether it is drawn, for what does not depend on the view.
@@ -104,6 +108,32 @@ impl Occluders {
         on
     }
 
+    /// The occluders that are drawn, and their boxes in their own space.
+    #[cfg(feature = "overlay")]
+    pub(crate) fn shapes(&self) -> impl Iterator<Item = (Entity, Aabb)> {
+        self.entries.iter().filter_map(|(&entity, entry)| {
+            let id = entry.id.filter(|_| entry.drawn)?;
+            Some((entity, self.set.mesh(id).ok()?.bounds()))
+        })
+    }
+
+    /// Whether an entity is an occluder that is switched on.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn is_on(&self, entity: Entity) -> bool {
+        let entry = self.entries.get(&entity);
+        entry.is_some_and(|entry| entry.id.is_some() && entry.enabled)
+    }
+
+    /// Whether all occluders that are switched on stand in a view's list.
+    #[cfg(feature = "bevy_light")]
+    pub(crate) fn are_all_listed(&self) -> bool {
+        let mut on = self
+            .entries
+            .values()
+            .filter(|e| e.id.is_some() && e.enabled);
+        on.all(|entry| entry.listed)
+    }
+
     /// Forgets what was made of meshes that have changed or are gone.
     fn forget_meshes(&mut self, changed: &HashSet<AssetId<Mesh>>, meshes: &Assets<Mesh>) {
         if !changed.is_empty() {
@@ -140,12 +170,11 @@ pub(crate) fn update(
         &Occluder,
         Ref<GlobalTransform>,
         Option<&Mesh3d>,
+        Option<&MeshBounds>,
         Option<&InheritedVisibility>,
         Option<&RenderLayers>,
         Option<&VisibilityRange>,
-        Has<SkinnedMesh>,
-        Has<MeshMorphWeights>,
-        Has<NoCpuCulling>,
+        (Has<SkinnedMesh>, Has<MeshMorphWeights>, Has<NoCpuCulling>),
     )>,
 ) {
     let begin = Instant::now();
@@ -166,9 +195,10 @@ pub(crate) fn update(
     let frame = occluders.frame;
     let mut drawn_ones = 0;
     let mut reshaped = false;
-    for (entity, occluder, transform, mesh, visibility, layers, range, skinned, morphing, gpu) in
+    for (entity, occluder, transform, mesh, drawn_bounds, visibility, layers, range, moves) in
         &entities
     {
+        let (skinned, morphing, gpu) = moves;
         let judgment = verdicts.of(entity);
         // Without a material Bevy draws no mesh, and of an unknown one nothing is known.
         let unknown = cfg!(feature = "bevy_pbr") && mesh.is_some() && judgment.is_none();
@@ -198,6 +228,7 @@ pub(crate) fn update(
         let entry = occluders.entries.entry(entity).or_insert_with(|| Entry {
             id: None,
             shape: Shape::Nothing,
+            bounds: Aabb::EMPTY,
             enabled: true,
             drawn,
             layers: RenderLayers::default(),
@@ -243,9 +274,10 @@ pub(crate) fn update(
 
         let changed_mesh = matches!(shape, Shape::Mesh(mesh, _) if changed.contains(&mesh));
         let place = affine(&transform.affine());
+        let moved = transform.is_changed();
+        let was_placed = entry.id.is_some();
         if let Some(id) = entry.id {
             let anew = entry.shape != shape || changed_mesh;
-            let moved = transform.is_changed();
             if anew || (moved && occluders.set.set_transform(id, place).is_err()) {
                 let _ = occluders.set.remove(id);
                 entry.id = None;
@@ -281,6 +313,17 @@ pub(crate) fn update(
             entry.id = baked.and_then(|mesh| occluders.set.add(mesh, place).ok());
             entry.enabled = true;
         }
+        if !own_mesh {
+            // What is drawn around a box or a proxy; `EMPTY` where that is not known.
+            entry.bounds = match (mesh, drawn_bounds) {
+                (Some(_), Some(bounds)) => world_box(bounds, &transform),
+                _ => Aabb::EMPTY,
+            };
+        } else if let Some(id) = entry.id.filter(|_| moved || !was_placed || changed_mesh)
+            && let Ok(mesh) = occluders.set.mesh(id)
+        {
+            entry.bounds = placed(mesh.bounds(), &transform);
+        }
     }
     occluders.sweep(reshaped);
     *stats = CpuOcclusionStats {
@@ -288,6 +331,16 @@ pub(crate) fn update(
         update_time: begin.elapsed(),
         ..CpuOcclusionStats::default()
     };
+}
+
+/// The box in the world of an occluder's box.
+fn placed(bounds: Aabb, transform: &GlobalTransform) -> Aabb {
+    let (min, max) = (Vec3A::from(bounds.min), Vec3A::from(bounds.max));
+    let bounds = MeshBounds {
+        center: (min + max) * 0.5,
+        half_extents: (max - min) * 0.5,
+    };
+    world_box(&bounds, transform)
 }
 
 fn affine(map: &Affine3A) -> foveal_cull::Affine {

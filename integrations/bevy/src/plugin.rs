@@ -42,6 +42,7 @@ impl Plugin for CpuOcclusionPlugin {
         app.init_resource::<occluders::Occluders>()
             .init_resource::<materials::MaterialVerdicts>()
             .init_resource::<ready::Pipelines>()
+            .init_resource::<cameras::CameraCullers>()
             .init_resource::<CpuOcclusionStats>()
             .configure_sets(
                 PostUpdate,
@@ -88,7 +89,13 @@ impl Plugin for CpuOcclusionPlugin {
                     .before(Lights::CheckLightVisibility),
             )
             .configure_sets(PostUpdate, CullLights.after(Lights::CheckLightVisibility))
-            .add_systems(PostUpdate, crate::lights::cull.in_set(CullLights));
+            .init_resource::<crate::receivers::Receivers>()
+            .add_systems(
+                PostUpdate,
+                (crate::receivers::gather, crate::lights::cull)
+                    .chain()
+                    .in_set(CullLights),
+            );
         }
         #[cfg(feature = "bevy_pbr")]
         app.add_systems(
@@ -108,5 +115,7 @@ impl Plugin for CpuOcclusionPlugin {
     #[cfg(feature = "bevy_pbr")]
     fn finish(&self, app: &mut App) {
         ready::watch_pipelines(app);
+        #[cfg(feature = "overlay")]
+        crate::overlay::add(app);
     }
 }

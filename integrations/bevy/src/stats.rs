@@ -26,6 +26,10 @@ pub struct CpuOcclusionStats {
     pub casters: usize,
     /// Of these, hidden from the light.
     pub casters_hidden: usize,
+    /// Of these, neither hidden nor with a shadow that a camera sees.
+    pub casters_unseen: usize,
+    /// Point and spot lights that are not drawn, because nothing that they light is seen.
+    pub lights_unseen: usize,
     /// Views that cannot be culled for, and kept everything.
     pub refused_views: usize,
     /// Views that kept everything because Bevy is compiling pipelines: not all is drawn that will be.
@@ -53,6 +57,9 @@ impl CpuOcclusionPlugin {
     /// Of these, hidden from the light.
     pub const CASTERS_HIDDEN: DiagnosticPath =
         DiagnosticPath::const_new("cpu_occlusion/casters_hidden");
+    /// Of these, neither hidden nor with a shadow that a camera sees.
+    pub const CASTERS_UNSEEN: DiagnosticPath =
+        DiagnosticPath::const_new("cpu_occlusion/casters_unseen");
     /// Time of all of it together.
     pub const TIME: DiagnosticPath = DiagnosticPath::const_new("cpu_occlusion/time");
 }
@@ -63,6 +70,7 @@ pub(crate) fn register(app: &mut App) {
         CpuOcclusionPlugin::MESHES_HIDDEN,
         CpuOcclusionPlugin::CASTERS,
         CpuOcclusionPlugin::CASTERS_HIDDEN,
+        CpuOcclusionPlugin::CASTERS_UNSEEN,
     ] {
         app.register_diagnostic(Diagnostic::new(path));
     }
@@ -80,6 +88,10 @@ pub(crate) fn measure(stats: Res<CpuOcclusionStats>, mut diagnostics: Diagnostic
     add(
         CpuOcclusionPlugin::CASTERS_HIDDEN,
         stats.casters_hidden as f64,
+    );
+    add(
+        CpuOcclusionPlugin::CASTERS_UNSEEN,
+        stats.casters_unseen as f64,
     );
     let time = stats.update_time + stats.camera_time + stats.light_time;
     add(CpuOcclusionPlugin::TIME, time.as_secs_f64() * 1e3);

@@ -1,8 +1,8 @@
 //! From Bevy's matrices to the culler's views and buffer sizes.
 
 use crate::components::OcclusionBufferSize;
-use bevy_math::{Affine3A, DMat4, DVec4, Mat4, UVec2};
-use foveal_cull::{ClipDepth, CullError, MAX_SIDE_PX, View};
+use bevy_math::{Affine3A, DMat4, DVec3, DVec4, Mat4, UVec2};
+use foveal_cull::{Aabb, ClipDepth, CullError, MAX_SIDE_PX, View};
 
 /// The size of a buffer, and how much of the buffer the picture takes per axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,10 +75,73 @@ pub(crate) fn clip_from_world(clip_from_view: Mat4, world_from_view: Affine3A) -
     clip_from_view.as_dmat4() * Mat4::from(world_from_view).as_dmat4().inverse()
 }
 
+/// Largest sine between the view direction and the normal of a near plane that is not oblique, as
+/// foveal-cull has it.
+const OBLIQUE: f64 = 1e-4;
+
+/// The near plane of a mirror's or a portal's view and the far plane that belongs to it, which both
+/// cut through what the view shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct ObliquePlanes {
+    near: DVec4,
+    /// `None` where it cuts nothing that is in the picture, as with Bevy's `near_clip_plane`.
+    far: Option<DVec4>,
+}
+
+impl ObliquePlanes {
+    /// Takes them out of a perspective matrix of reversed depth. The matrix that is left shows more:
+    /// it has a near plane before them, and no far plane. `None` where they are not oblique.
+    pub(crate) fn take_from(clip_from_world: DMat4) -> Option<(Self, DMat4)> {
+        let [x, y, z, w] = [0, 1, 2, 3].map(|row| clip_from_world.row(row));
+        let forward = w.truncate();
+        let (near, far) = (w - z, z);
+        let across = near.truncate().reject_from(forward);
+        if forward == DVec3::ZERO
+            || !across.is_finite()
+            || across.length() <= OBLIQUE * near.truncate().length()
+        {
+            return None;
+        }
+        // Half the distance at which the nearest corner of the picture begins.
+        let world_from_clip = clip_from_world.inverse();
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        let nearest = corners
+            .map(|(x, y)| 1.0 / (world_from_clip * DVec4::new(x, y, 1.0, 1.0)).w)
+            .into_iter()
+            .filter(|distance| *distance > 0.0 && distance.is_finite())
+            .fold(f64::INFINITY, f64::min);
+        let least = 1e-3 * forward.length();
+        let nearest = if nearest.is_finite() { nearest } else { 0.0 };
+        let plain_near = DVec4::W * (0.5 * nearest).max(least);
+        let plain = DMat4::from_cols(x, y, plain_near, w).transpose();
+        // Depth along the picture's corners may not fall below the far plane's.
+        let world_from_plain = plain.inverse();
+        let cuts = corners.iter().any(|&(x, y)| {
+            let direction = (world_from_plain * DVec4::new(x, y, 0.0, 1.0)).truncate();
+            far.truncate().dot(direction) < -1e-5
+        });
+        let far = cuts.then_some(far);
+        Some((Self { near, far }, plain))
+    }
+
+    /// Whether they leave a box as it is.
+    pub(crate) fn spare(&self, bounds: &Aabb) -> bool {
+        let corner = |corner: [f32; 3]| DVec3::from(corner.map(f64::from));
+        let (min, max) = (corner(bounds.min), corner(bounds.max));
+        let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
+        [Some(self.near), self.far].iter().flatten().all(|plane| {
+            let normal = plane.truncate();
+            let (middle, reach) = (normal.dot(center) + plane.w, normal.abs().dot(half));
+            // More than the rounding of matrices in `f32`.
+            middle - reach >= 1e-5 * (normal.abs().dot(center.abs()) + plane.w.abs())
+        })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use bevy_math::{DVec3, Vec3};
+    use bevy_math::{Vec3, Vec4};
 
     #[test]
     fn a_picture_of_odd_size_keeps_its_pixel_centres() {
@@ -120,5 +183,39 @@ mod tests {
         assert!(coarse(4) && !coarse(2));
         assert_eq!(size(Fixed(UVec2::new(0, 9999)), 640, 360, 1), (1, 4096));
         assert_eq!(Fit::new(Exact, UVec2::new(0, 5), 1), None);
+    }
+
+    #[test]
+    fn oblique_planes_are_taken_out_and_spare_what_lies_beyond_both() {
+        use bevy_camera::{CameraProjection, PerspectiveProjection};
+        let view = |near_clip_plane| {
+            let projection = PerspectiveProjection {
+                near_clip_plane,
+                ..Default::default()
+            };
+            projection.get_clip_from_view().as_dmat4()
+        };
+        let plain = view(Vec4::new(0.0, 0.0, -1.0, -0.1));
+        assert_eq!(ObliquePlanes::take_from(plain), None);
+
+        // Beyond 3 m straight ahead, turned to the right.
+        let normal = Vec3::new(0.4, 0.0, -1.0).normalize();
+        let oblique = view(normal.extend(3.0 * normal.z));
+        let fit = Fit::new(OcclusionBufferSize::Exact, UVec2::new(64, 64), 1).unwrap();
+        assert!(fit.view(oblique).is_err());
+        let (planes, left) = ObliquePlanes::take_from(oblique).unwrap();
+        let [left_view, plain_view] = [left, plain].map(|m| fit.view(m).unwrap().eye.projection);
+        let [a, b] = [left_view, plain_view].map(|p| p.extents());
+        assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6));
+        assert!(left_view.near_far_m()[0] < 3.0);
+        let around = |x: f32, z: f32, half: f32| {
+            let at = Vec3::new(x, 0.0, z);
+            Aabb::new(at - half, at + half)
+        };
+        assert!(planes.spare(&around(0.0, -4.0, 0.1)));
+        assert!(!planes.spare(&around(0.0, -2.0, 0.1)), "before it");
+        assert!(!planes.spare(&around(0.0, -3.0, 0.5)), "on it");
+        assert!(planes.spare(&around(2.0, -3.0, 0.1)), "it is turned");
+        assert!(!planes.spare(&around(-2.0, -3.0, 0.1)));
     }
 }

@@ -9,7 +9,9 @@ use bevy::camera::visibility::{
 };
 use bevy::light::NotShadowCaster;
 use bevy::prelude::*;
-use bevy_foveal_cull::{CpuOcclusionCulling, CpuOcclusionStats, NoOcclusionCulling, Occluder};
+use bevy_foveal_cull::{
+    CpuOcclusionCulling, CpuOcclusionStats, NoOcclusionCulling, Occluder, OcclusionBufferSize,
+};
 use world::TestWorld;
 
 /// Faces of a point light's cube map that list the entity.
@@ -27,6 +29,14 @@ fn faces(t: &TestWorld, light: Entity, entity: Entity) -> Vec<usize> {
 const FORWARD: usize = 4;
 const BACKWARD: usize = 5;
 
+const NOWHERE: [usize; 0] = [];
+
+/// Without regard to what the camera sees.
+const CULL: CpuOcclusionCulling = CpuOcclusionCulling {
+    buffer_size: OcclusionBufferSize::Exact,
+    keep_unseen_shadows: true,
+};
+
 fn point_light() -> PointLight {
     PointLight {
         shadow_maps_enabled: true,
@@ -42,14 +52,10 @@ fn casters_behind_casters_leave_the_faces_of_a_point_light() {
     let hidden = t.ball(-9.0);
     let before = t.ball(-3.0);
     let other_side = t.ball(9.0);
-    let light = t
-        .app
-        .world_mut()
-        .spawn((point_light(), CpuOcclusionCulling::default()))
-        .id();
+    let light = t.app.world_mut().spawn((point_light(), CULL)).id();
     t.update();
     assert!(faces(&t, light, wall).contains(&FORWARD));
-    assert_eq!(faces(&t, light, hidden), []);
+    assert_eq!(faces(&t, light, hidden), NOWHERE);
     assert_eq!(faces(&t, light, before), [FORWARD]);
     assert_eq!(faces(&t, light, other_side), [BACKWARD]);
     let stats = *t.app.world().resource::<CpuOcclusionStats>();
@@ -81,7 +87,7 @@ fn casters_behind_casters_leave_the_faces_of_a_point_light() {
     assert_eq!(faces(&t, light, hidden), [FORWARD], "on another layer");
     t.app.world_mut().entity_mut(wall).remove::<RenderLayers>();
     t.update();
-    assert_eq!(faces(&t, light, hidden), []);
+    assert_eq!(faces(&t, light, hidden), NOWHERE);
 
     // The light moves to the other side of the wall.
     t.app
@@ -90,7 +96,7 @@ fn casters_behind_casters_leave_the_faces_of_a_point_light() {
         .insert(Transform::from_xyz(0.0, 0.0, -15.0));
     t.update();
     assert_eq!(faces(&t, light, hidden), [BACKWARD]);
-    assert_eq!(faces(&t, light, before), []);
+    assert_eq!(faces(&t, light, before), NOWHERE);
 
     t.app
         .world_mut()
@@ -105,11 +111,7 @@ fn casters_are_relied_on_after_some_frames() {
     let mut t = TestWorld::new();
     let wall = t.wall(Occluder::default());
     t.update();
-    let light = t
-        .app
-        .world_mut()
-        .spawn((point_light(), CpuOcclusionCulling::default()))
-        .id();
+    let light = t.app.world_mut().spawn((point_light(), CULL)).id();
     let hidden = t.ball(-9.0);
     let seen_until_settled = |t: &mut TestWorld, entity| {
         for frame in 1..world::FRAMES {
@@ -117,7 +119,7 @@ fn casters_are_relied_on_after_some_frames() {
             assert_eq!(faces(t, light, entity), [FORWARD], "frame {frame}");
         }
         t.app.update();
-        assert_eq!(faces(t, light, entity), []);
+        assert_eq!(faces(t, light, entity), NOWHERE);
     };
     seen_until_settled(&mut t, hidden);
     let newer = t.ball(-8.0);
@@ -131,11 +133,7 @@ fn marked_casters_stay() {
     let mut t = TestWorld::new();
     t.wall(Occluder::default());
     let kept = t.spawn_ball(Vec3::new(0.0, 0.0, -9.0), NoOcclusionCulling);
-    let light = t
-        .app
-        .world_mut()
-        .spawn((point_light(), CpuOcclusionCulling::default()))
-        .id();
+    let light = t.app.world_mut().spawn((point_light(), CULL)).id();
     t.update();
     assert_eq!(faces(&t, light, kept), [FORWARD]);
 }
@@ -151,11 +149,7 @@ fn casters_behind_casters_leave_a_spot_light() {
         range: 30.0,
         ..default()
     };
-    let light = t
-        .app
-        .world_mut()
-        .spawn((light, CpuOcclusionCulling::default()))
-        .id();
+    let light = t.app.world_mut().spawn((light, CULL)).id();
     let listed = |t: &TestWorld| {
         let list = t.app.world().get::<VisibleMeshEntities>(light).unwrap();
         list.entities.clone()
@@ -186,7 +180,7 @@ fn casters_behind_casters_leave_the_cascades_of_the_sun() {
                 shadow_maps_enabled: true,
                 ..default()
             },
-            CpuOcclusionCulling::default(),
+            CULL,
         ))
         .id();
     let cascades_with = |t: &TestWorld, entity: Entity| {
@@ -216,9 +210,7 @@ fn casters_behind_casters_leave_the_cascades_of_the_sun() {
 fn lights_without_shadows_are_left_alone() {
     let mut t = TestWorld::new();
     t.wall(Occluder::default());
-    t.app
-        .world_mut()
-        .spawn((PointLight::default(), CpuOcclusionCulling::default()));
+    t.app.world_mut().spawn((PointLight::default(), CULL));
     t.update();
     assert_eq!(t.app.world().resource::<CpuOcclusionStats>().light_views, 0);
 }

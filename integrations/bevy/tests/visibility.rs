@@ -376,7 +376,7 @@ fn boxes_and_proxies_stand_for_meshes() {
 }
 
 #[test]
-fn orthographic_cameras_cull_and_oblique_ones_keep_everything() {
+fn orthographic_cameras_cull() {
     let mut t = TestWorld::new();
     t.wall(Occluder::default());
     let ball = t.ball(-9.0);
@@ -386,15 +386,42 @@ fn orthographic_cameras_cull_and_oblique_ones_keep_everything() {
     }));
     t.update();
     assert!(!t.sees(ball));
+}
 
-    t.look_through(Projection::Perspective(PerspectiveProjection {
-        near_clip_plane: Vec4::new(0.5, 0.0, -1.0, -0.2),
-        ..default()
-    }));
+#[test]
+fn oblique_near_planes_leave_occluders_that_lie_wholly_beyond_them() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    let behind = |z: f32| {
+        // Turned to the right, and so far from the camera.
+        let normal = Vec3::new(0.2, 0.0, -1.0).normalize();
+        Projection::Perspective(PerspectiveProjection {
+            near_clip_plane: normal.extend(z * normal.z),
+            ..default()
+        })
+    };
+    t.look_through(behind(2.0));
+    t.update();
+    assert!(!t.sees(ball));
+    assert_eq!(t.stats().refused_views, 0);
+    t.look_through(behind(5.0));
+    t.update();
+    assert!(t.sees(ball), "the plane cuts the wall");
+    t.look_through(behind(7.0));
+    t.update();
+    assert!(t.sees(ball), "the wall is not drawn");
+
+    // A box in the wall is hidden from view where the wall is cut.
+    t.look_through(behind(5.0));
+    let occluder = Occluder::from_box(Vec3::new(-4.0, -4.0, -3.0), Vec3::new(4.0, 4.0, -2.0));
+    *t.get_mut::<Occluder>(wall) = occluder;
+    t.get_mut::<Transform>(ball).translation.z = -20.0;
     t.update();
     assert!(t.sees(ball));
-    let stats = t.app.world().resource::<CpuOcclusionStats>();
-    assert_eq!((stats.refused_views, stats.meshes_hidden), (1, 0));
+    t.look_through(behind(2.0));
+    t.update();
+    assert!(!t.sees(ball));
 }
 
 #[test]
@@ -442,10 +469,13 @@ fn every_buffer_size_finds_what_is_wholly_hidden() {
         OcclusionBufferSize::Fixed(UVec2::new(64, 40)),
     ] {
         for msaa in [Msaa::Off, Msaa::Sample2, Msaa::Sample4, Msaa::Sample8] {
-            t.app
-                .world_mut()
-                .entity_mut(t.camera)
-                .insert((CpuOcclusionCulling { buffer_size }, msaa));
+            t.app.world_mut().entity_mut(t.camera).insert((
+                CpuOcclusionCulling {
+                    buffer_size,
+                    ..default()
+                },
+                msaa,
+            ));
             t.update();
             assert!(!t.sees(ball), "{buffer_size:?} {msaa:?}");
         }

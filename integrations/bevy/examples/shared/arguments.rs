@@ -19,6 +19,23 @@ impl Arguments {
         Some(self.0.get(at + 1).map_or("", String::as_str))
     }
 
+    /// The first word that is no flag and belongs to none.
+    pub fn file(&self) -> Option<&str> {
+        let mut words = self.0.iter();
+        while let Some(word) = words.next() {
+            if !word.starts_with("--") {
+                return Some(word);
+            }
+            words.next();
+        }
+        None
+    }
+
+    /// What follows a flag, if that is there.
+    pub fn text(&self, name: &str) -> Option<&str> {
+        self.value(name)
+    }
+
     /// A number, or what stands for it.
     pub fn number<T: FromStr>(&self, name: &str, default: T) -> T {
         self.value(name)

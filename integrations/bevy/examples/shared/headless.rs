@@ -1,7 +1,7 @@
 //! Bevy that draws into a texture, frame by frame, when it is told to.
 
 use bevy::app::TerminalCtrlCHandlerPlugin;
-use bevy::asset::RenderAssetUsages;
+use bevy::asset::{AssetPlugin, RenderAssetUsages, UnapprovedPathMode};
 use bevy::camera::RenderTarget;
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::log::LogPlugin;
@@ -57,6 +57,10 @@ impl Headless {
             DefaultPlugins
                 .set(window)
                 .set(render)
+                .set(AssetPlugin {
+                    unapproved_path_mode: UnapprovedPathMode::Allow,
+                    ..default()
+                })
                 .disable::<WinitPlugin>()
                 .disable::<LogPlugin>()
                 .disable::<TerminalCtrlCHandlerPlugin>()

@@ -3,6 +3,7 @@
 //! Its parts reach into each other. Where two meshes only touch, the rounding of `f32` on the GPU may
 //! open a crack of a pixel, and what is seen through it depends on what was culled.
 
+use super::place::Place;
 use bevy::prelude::*;
 use bevy_foveal_cull::Occluder;
 
@@ -194,6 +195,20 @@ impl House {
                 Transform::from_translation(self.center_of(x, z) + Vec3::new(0.3, 2.6, 0.2)),
             ));
         }
+    }
+}
+
+impl Place for House {
+    fn spawn(&mut self, world: &mut World) {
+        House::spawn(self, world);
+    }
+
+    fn walker(&self, metres: f32) -> Transform {
+        House::walker(self, metres / ROOM)
+    }
+
+    fn length(&self) -> f32 {
+        ROOM * (self.side * self.side - 1) as f32
     }
 }
 

@@ -7,5 +7,8 @@ pub mod example;
 pub mod figures;
 pub mod headless;
 pub mod house;
+pub mod level;
 pub mod modes;
+pub mod paths;
+pub mod place;
 pub mod window;

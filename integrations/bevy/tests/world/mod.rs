@@ -7,6 +7,7 @@ use bevy::asset::AssetPlugin;
 use bevy::camera::visibility::VisibleEntities;
 use bevy::camera::{CameraPlugin, RenderTargetInfo};
 use bevy::ecs::component::Mutable;
+use bevy::gizmos::GizmoPlugin;
 use bevy::light::LightPlugin;
 use bevy::mesh::MeshPlugin;
 use bevy::prelude::*;
@@ -39,6 +40,7 @@ impl TestWorld {
             AssetPlugin::default(),
             MeshPlugin,
             CameraPlugin,
+            GizmoPlugin,
             LightPlugin,
             CpuOcclusionPlugin,
         ))

@@ -1,0 +1,196 @@
+//! Casters whose shadow nobody sees, and lights that light nothing that is seen, without a renderer.
+
+#![allow(clippy::unwrap_used, reason = "a failed unwrap is a failed test")]
+
+mod world;
+
+use bevy::camera::visibility::{
+    CascadesVisibleEntities, CubemapVisibleEntities, NoFrustumCulling, ViewVisibility,
+    VisibleMeshEntities,
+};
+use bevy::light::{NotShadowReceiver, TransmittedShadowReceiver, VolumetricLight};
+use bevy::prelude::*;
+use bevy_foveal_cull::{CpuOcclusionCulling, NoOcclusionCulling, Occluder};
+use world::TestWorld;
+
+fn point_light(range: f32) -> PointLight {
+    PointLight {
+        shadow_maps_enabled: true,
+        range,
+        ..default()
+    }
+}
+
+impl TestWorld {
+    fn light(&mut self, light: impl Bundle, at: Transform) -> Entity {
+        let culling = CpuOcclusionCulling::default();
+        self.app.world_mut().spawn((light, at, culling)).id()
+    }
+
+    /// Whether a face of a point light's cube map lists the entity.
+    fn casts(&self, light: Entity, entity: Entity) -> bool {
+        let lists = self.app.world().get::<CubemapVisibleEntities>(light);
+        lists.unwrap().iter().any(|l| l.entities.contains(&entity))
+    }
+
+    fn is_drawn(&self, light: Entity) -> bool {
+        let visibility = self.app.world().get::<ViewVisibility>(light);
+        visibility.unwrap().get()
+    }
+}
+
+/// Before the wall, where the camera sees it.
+const SEEN: Vec3 = Vec3::new(0.0, 0.0, -4.0);
+
+#[test]
+fn casters_whose_shadow_falls_on_nothing_that_is_seen_are_left_out() {
+    let mut t = TestWorld::new();
+    let seen = t.spawn_ball(SEEN, ());
+    let before = t.spawn_ball(SEEN + Vec3::Y * 3.0, ());
+    let beyond = t.spawn_ball(SEEN - Vec3::Y * 6.0, ());
+    let beside = t.spawn_ball(SEEN + Vec3::new(20.0, 4.0, 0.0), ());
+    let light = t.light(point_light(40.0), Transform::from_xyz(0.0, 5.0, -4.0));
+    t.update();
+    assert!(!t.sees(before) && !t.sees(beyond) && !t.sees(beside));
+    assert!(t.casts(light, seen), "on itself");
+    assert!(t.casts(light, before));
+    assert!(!t.casts(light, beyond));
+    assert!(!t.casts(light, beside));
+    assert!(t.is_drawn(light));
+    let stats = t.stats();
+    assert_eq!((stats.casters_hidden, stats.lights_unseen), (0, 0));
+    assert!(stats.casters_unseen >= 2, "{stats:?}");
+
+    t.get_mut::<CpuOcclusionCulling>(light).keep_unseen_shadows = true;
+    t.update();
+    assert!(t.casts(light, beyond) && t.casts(light, beside));
+    t.get_mut::<CpuOcclusionCulling>(light).keep_unseen_shadows = false;
+
+    // A second camera without culling sees the ball beyond.
+    let mut place = Transform::from_xyz(0.0, -10.0, 3.0);
+    place.look_at(SEEN - Vec3::Y * 6.0, Vec3::Y);
+    let camera = t.add_camera(place);
+    let world = t.app.world_mut();
+    world.entity_mut(camera).remove::<CpuOcclusionCulling>();
+    t.update();
+    assert!(t.casts(light, beyond));
+}
+
+#[test]
+fn lights_that_light_nothing_that_is_seen_are_not_drawn() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let hidden = t.ball(-12.0);
+    let light = t.light(point_light(3.0), Transform::from_xyz(0.0, 0.0, -11.0));
+    t.update();
+    assert!(!t.sees(hidden));
+    assert!(!t.casts(light, hidden) && !t.is_drawn(light));
+    assert_eq!(t.stats().lights_unseen, 1);
+
+    // What is new is drawn for some frames, and the light with it.
+    let newer = t.ball(-11.0);
+    for frame in 1..world::FRAMES {
+        t.app.update();
+        assert!(t.casts(light, newer) && t.is_drawn(light), "frame {frame}");
+    }
+    t.app.update();
+    assert!(!t.casts(light, newer) && !t.is_drawn(light));
+
+    *t.get_mut::<Transform>(wall) = Transform::from_xyz(0.0, 20.0, -5.0);
+    t.app.update();
+    assert!(
+        t.casts(light, hidden) && t.is_drawn(light),
+        "the wall is gone"
+    );
+    *t.get_mut::<Transform>(wall) = Transform::from_xyz(0.0, 0.0, -5.0);
+    t.app.update();
+    assert!(!t.is_drawn(light), "it is back");
+}
+
+#[test]
+fn lights_whose_light_ends_at_occluders_are_not_drawn_and_those_beyond_are() {
+    let mut t = TestWorld::new();
+    let wall = t.wall(Occluder::default());
+    let seen = t.spawn_ball(Vec3::new(0.0, 0.0, -2.0), ());
+    let light = t.light(point_light(30.0), Transform::from_xyz(0.0, 0.0, -8.0));
+    t.update();
+    // The wall's far side is a part of what the camera sees.
+    assert!(t.is_drawn(light) && t.casts(light, wall));
+    assert!(!t.casts(light, seen), "it is in the wall's shadow");
+
+    // A thick wall: its cells before the camera are far from its other side.
+    t.app.world_mut().despawn(wall);
+    let thick = t.wall(Occluder::default());
+    *t.get_mut::<Transform>(thick) =
+        Transform::from_xyz(0.0, 0.0, -25.0).with_scale(Vec3::new(20.0, 20.0, 100.0));
+    *t.get_mut::<Transform>(light) = Transform::from_xyz(0.0, 0.0, -40.0);
+    t.update();
+    assert!(!t.is_drawn(light));
+    // Without shadows it would be lit.
+    t.app.world_mut().entity_mut(seen).insert(NotShadowReceiver);
+    t.get_mut::<PointLight>(light).range = 60.0;
+    t.update();
+    assert!(t.is_drawn(light));
+    assert!(!t.casts(light, seen));
+}
+
+#[test]
+fn what_may_be_anywhere_keeps_all_shadows() {
+    let kept = |what: &dyn Fn(&mut TestWorld, Entity, Entity)| {
+        let mut t = TestWorld::new();
+        let seen = t.spawn_ball(SEEN, ());
+        let beyond = t.spawn_ball(SEEN - Vec3::Y * 6.0, ());
+        let light = t.light(point_light(40.0), Transform::from_xyz(0.0, 5.0, -4.0));
+        what(&mut t, seen, light);
+        t.update();
+        t.casts(light, beyond)
+    };
+    assert!(!kept(&|_, _, _| ()));
+    let with = |bundle: fn(&mut EntityWorldMut)| {
+        kept(&move |t, seen, _| bundle(&mut t.app.world_mut().entity_mut(seen)))
+    };
+    assert!(with(|e| {
+        e.insert(NoFrustumCulling);
+    }));
+    assert!(with(|e| {
+        e.insert(NoOcclusionCulling);
+    }));
+    assert!(with(|e| {
+        e.insert(TransmittedShadowReceiver);
+    }));
+    assert!(kept(&|t, _, light| {
+        t.app.world_mut().entity_mut(light).insert(VolumetricLight);
+    }));
+}
+
+#[test]
+fn spot_lights_and_the_sun_leave_casters_out_too() {
+    let mut t = TestWorld::new();
+    let seen = t.spawn_ball(SEEN, ());
+    let before = t.spawn_ball(SEEN + Vec3::Y * 3.0, ());
+    let beyond = t.spawn_ball(SEEN - Vec3::Y * 6.0, ());
+    let down = Transform::from_xyz(0.0, 6.0, -4.0).looking_at(SEEN, Vec3::Z);
+    let spot = SpotLight {
+        shadow_maps_enabled: true,
+        range: 30.0,
+        ..default()
+    };
+    let spot = t.light(spot, down);
+    let sun = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    let sun = t.light(sun, down);
+    t.update();
+    let list = t.app.world().get::<VisibleMeshEntities>(spot).unwrap();
+    assert_eq!(list.entities, world::sorted([seen, before]));
+    let casters = t.app.world().get::<CascadesVisibleEntities>(sun).unwrap();
+    let lists = &casters.entities[&t.camera];
+    let listed = |entity| lists.iter().any(|list| list.entities.contains(&entity));
+    assert!(listed(seen) && listed(before) && !listed(beyond));
+
+    // A spot light on what is seen of nothing.
+    *t.get_mut::<Transform>(spot) = down.looking_at(Vec3::new(30.0, 6.0, -4.0), Vec3::Z);
+    t.update();
+    assert!(!t.is_drawn(spot));
+}
