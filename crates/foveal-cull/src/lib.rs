@@ -154,8 +154,8 @@
 //! # Lights and shadows
 //! The same culler looks from a light: casters that others hide from it need not be drawn into its
 //! shadow map. A [`ReceiverMask`] leaves out those whose shadows fall on nothing that the camera
-//! sees. A light none of whose maps has a receiver is left out as a whole; so is one whose range, as a
-//! box, the camera's culler hides.
+//! sees. A map without a receiver need not be drawn. A light is left out as a whole where the camera's
+//! culler hides its range: query a box around it.
 //! ```
 //! use foveal_cull::*;
 //! use std::sync::Arc;
@@ -177,12 +177,13 @@
 //! culler.query(&things, origin, &mut seen)?;
 //! assert_eq!(seen.map(Visibility::is_visible), [true, false, false, true]);
 //!
-//! // One of the six sides of the lamp's cube, with a shadow map of 512 texels a side: to the right.
+//! // The right one of the lamp's six shadow maps, 512 texels a side.
 //! let side = Projection::perspective(std::f64::consts::FRAC_PI_2, 1.0, 0.05, 10.0);
 //! let lamp = [-2.5, 1.0, -8.5];
 //! let side = View::mono(Eye::look_at(lamp, [9.0, 1.0, -8.5], [0.0, 1.0, 0.0], side));
 //! let mut mask = ReceiverMask::new(&side, 512)?;
 //! mask.receive(&things, origin, &seen)?;
+//! // A quarter of the map's side: the culler's 4x4 samples in a pixel are then the map's texels.
 //! let mut map = Culler::new(512 / 4, 512 / 4)?;
 //! map.rasterize(&side, &occluders, &options, &SingleThread)?;
 //! let mut casters = [Visibility::Visible; 4];

@@ -258,3 +258,54 @@ fn a_lamp_whose_whole_reach_is_hidden_is_left_out_by_its_box() {
     culler.query(&lamps, [0.0; 3], &mut results).unwrap();
     assert_eq!(results, [Occluded, Visible, Outside]);
 }
+
+#[test]
+fn a_receiver_on_the_far_plane_and_a_caster_on_the_near_one_count() {
+    // A sun straight above. 0.1 as `f32` lies below 0.1: the ground is a little beyond the far plane.
+    let down = |near: f64, far: f64| {
+        let square = Projection::orthographic(8.0, 1.0, near, far);
+        View::mono(Eye::look_at(
+            [0.0, 10.1, 0.0],
+            [0.0; 3],
+            [0.0, 0.0, -1.0],
+            square,
+        ))
+    };
+    let ground = [Aabb::new([-2.0, -0.3, -2.0], [2.0, -0.1, 2.0])];
+    let roof = [Aabb::new([-1.0, 5.0, -1.0], [1.0, 5.1, 1.0])];
+    let mut mask = ReceiverMask::new(&down(0.0, 10.2), SIDE).unwrap();
+    mask.receive(&ground, DVec3::ZERO, &[Visible]).unwrap();
+    assert!(!mask.is_empty());
+    let mut results = [Visible];
+    mask.cull(&roof, DVec3::ZERO, &mut results).unwrap();
+    assert_eq!(results, [Visible]);
+
+    // 5.3 as `f32` lies above 5.3: the roof is a little before the near plane.
+    let flat = [Aabb::new([-1.0, 5.3, -1.0], [1.0, 5.3, 1.0])];
+    let mut mask = ReceiverMask::new(&down(4.8, 12.0), SIDE).unwrap();
+    mask.receive(&ground, DVec3::ZERO, &[Visible]).unwrap();
+    mask.cull(&flat, DVec3::ZERO, &mut results).unwrap();
+    assert_eq!(results, [Visible]);
+}
+
+#[test]
+fn boxes_without_end_cast_and_receive_everywhere() {
+    let projection = Projection::perspective(std::f64::consts::FRAC_PI_2, 1.0, 0.1, 1e3);
+    let light = View::mono(Eye::look_at(
+        [0.0; 3],
+        [0.0, 0.0, -1.0],
+        [0.0, 1.0, 0.0],
+        projection,
+    ));
+    let near = [Aabb::new([3.9, -0.1, -5.1], [4.1, 0.1, -4.9])];
+    for end in [1e7, 1e20, 1e38] {
+        let long = [Aabb::new([-1.0, -1.0, -end], [1.0, 1.0, end])];
+        for (receiver, caster) in [(&near, &long), (&long, &near)] {
+            let mut mask = ReceiverMask::new(&light, 512).unwrap();
+            mask.receive(receiver, DVec3::ZERO, &[Visible]).unwrap();
+            let mut results = [Visible];
+            mask.cull(caster, DVec3::ZERO, &mut results).unwrap();
+            assert_eq!(results, [Visible], "{end}");
+        }
+    }
+}

@@ -16,16 +16,28 @@ const CELLS: u32 = 64;
 const TEXELS: u32 = 2;
 /// Texels by which a caster's rectangle is grown: what covers a texel in part may fill it.
 const ROUNDING_TEXELS: f64 = 1.0;
+/// Part of a distance within which near and far plane count as touched: boxes are rounded to `f32`.
+const ROUNDING: f64 = 1e-6;
+/// Part of a caster's distance by which a receiver may lie before it and still be behind it: shadow
+/// maps round depth.
+const DEPTH_STEP: f64 = 1e-4;
+/// A corner that many times as far away as the near plane is too far to find where an edge crosses
+/// that plane; and the least such distance, metres.
+const TOO_FAR: f64 = 1e9;
+const TOO_FAR_M: f64 = 1e6;
 
 /// The places of one shadow map where a shadow can be seen, and how far from the light they are.
 ///
 /// First the camera's [`Culler`](crate::Culler) says which boxes are visible: the receivers.
 /// [`receive`](Self::receive) enters them. [`cull`](Self::cull) then leaves out casters whose shadows
-/// fall on none of them. A light none of whose shadow maps has a receiver lights nothing that is
-/// seen.
+/// fall on none of them.
 ///
-/// Leaving casters out changes no lookup in the shadow map for a place in a receiver's box, as long
-/// as lookups read no farther than the [reach](Self::with_reach). About 0.1 microseconds a box.
+/// Leaving casters out changes no lookup in the shadow map for a place in a receiver's box that the
+/// light's view shows, as long as lookups read no farther than the [reach](Self::with_reach), compare
+/// planar depth texel by texel, and stay within one map. Places before the near plane, beyond the far
+/// plane and beside the map have no shadow here. Give a bias towards the light, and depth steps above a
+/// ten thousandth of the distance, as metres of reach; filters across the seams of a cube need a wider
+/// view. About 0.1 microseconds a box.
 ///
 /// ```
 /// use foveal_cull::*;
@@ -100,8 +112,8 @@ impl ReceiverMask {
 
     /// The same mask for lookups that read up to so many texels beside a place, for instance half
     /// the width of a filter and a texel more, after moving the place by up to so many metres, for
-    /// instance along its normal. 2 texels and 0 metres by default. Set it before
-    /// [`receive`](Self::receive). What is not a number above zero is 0.
+    /// instance along its normal. 2 texels and 0 metres by default. NaN and negative numbers count as
+    /// 0. Set it before [`receive`](Self::receive): receivers that were entered keep the old reach.
     #[must_use]
     pub fn with_reach(self, texels: f64, metres: f64) -> Self {
         Self {
@@ -116,7 +128,8 @@ impl ReceiverMask {
         self.farthest.fill(f64::NEG_INFINITY);
     }
 
-    /// Whether no receiver meets the shadow map: it need not be drawn.
+    /// Whether no receiver meets the shadow map, which then need not be drawn. The light may still
+    /// light what lies before its near plane, beyond its far plane, or beside its maps.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.farthest.iter().all(|far| *far == f64::NEG_INFINITY)
@@ -154,7 +167,8 @@ impl ReceiverMask {
     /// become [`Outside`](Visibility::Outside), and those whose shadows fall on no receiver
     /// [`Occluded`](Visibility::Occluded). Other results stay, so that those of
     /// [`Culler::query`](crate::Culler::query) with the light's view go in: casters that others hide
-    /// from the light. Boxes that are not volumes stay visible.
+    /// from the light. That culler must have a quarter of the map's side, so that its samples are the
+    /// map's texels. Boxes that are not volumes stay visible.
     ///
     /// What lies before the light's near plane casts no shadow here: let the near plane lie before
     /// all casters, also where the shadow map is drawn with depth clamp.
@@ -185,7 +199,7 @@ impl ReceiverMask {
     /// Whether any receiver lies behind a caster.
     fn shades(&self, cast: &Footprint) -> bool {
         // Minus infinity, of what is everywhere, stays what it is.
-        let nearest = cast.nearest - (1e-6 * cast.nearest).abs().min(1e9);
+        let nearest = cast.nearest - (DEPTH_STEP * cast.nearest).abs().min(1e9);
         let [columns, mut rows] = self.cells_of(cast, ROUNDING_TEXELS);
         rows.any(|row| {
             let first = row * self.cells;
@@ -214,6 +228,10 @@ impl ReceiverMask {
         }
         let low = DVec3::from(bounds.min.map(f64::from)) + from - grow_m;
         let high = DVec3::from(bounds.max.map(f64::from)) + from + grow_m;
+        let far_off = (TOO_FAR * self.camera.near.abs()).max(TOO_FAR_M);
+        if !(low.abs().max(high.abs()).max_element() < far_off) {
+            return Some(Footprint::EVERYWHERE);
+        }
         let corners: [DVec4; 8] = core::array::from_fn(|i| {
             let pick = |k: usize| if i >> k & 1 != 0 { high[k] } else { low[k] };
             self.corner(DVec3::new(pick(0), pick(1), pick(2)))
@@ -222,7 +240,7 @@ impl ReceiverMask {
             return Some(Footprint::EVERYWHERE);
         }
         let mut all = Footprint::NOWHERE;
-        let near = self.camera.near;
+        let [near, far] = self.depth_range(from.length());
         for (i, a) in corners.iter().enumerate() {
             if a.z >= near {
                 all.add(*a);
@@ -241,9 +259,23 @@ impl ReceiverMask {
             || bottom < -edge
             || left > self.side + edge
             || top > self.side + edge
-            || all.nearest > self.far_m;
+            || all.nearest > far;
         // Nothing beyond the near plane: no corner was added.
         (all.nearest <= all.farthest && !beside).then_some(all)
+    }
+
+    /// Near and far plane, moved apart by what boxes may be rounded by whose origin is so far away.
+    fn depth_range(&self, origin_m: f64) -> [f64; 2] {
+        let slack = |plane: f64| ROUNDING * (plane.abs() + origin_m);
+        let (near, far) = (self.camera.near, self.far_m);
+        // Before the eye nothing has a place in a perspective.
+        let parallel = self.camera.rows[3].truncate() == DVec3::ZERO;
+        let least = if parallel {
+            f64::NEG_INFINITY
+        } else {
+            0.5 * near
+        };
+        [(near - slack(near)).max(least), far + slack(far)]
     }
 
     /// A corner relative to the light: X and Y times W in texels, the distance along the axis, W.
