@@ -6,6 +6,11 @@ use foveal::Settings;
 
 use crate::changes::changed;
 
+/// What a bench chooses itself: the picture, and what its ways are compared by.
+const CHOSEN: [&str; 8] = [
+    "width", "height", "view", "output", "stereo", "shading", "display", "gaze",
+];
+
 /// Settings that all ways share.
 #[derive(Clone, Debug, Default, clap::Args)]
 pub(super) struct SharedArgs {
@@ -26,15 +31,15 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 impl SharedArgs {
     /// The plain settings of a picture of this size. Fails where a setting is unknown, has no such
-    /// value, or is the size's own.
+    /// value, or is the bench's to choose.
     pub(super) fn plain(&self, (width, height): (u32, u32)) -> anyhow::Result<Settings> {
         let mut settings = Settings::default().with(|s| {
             s.picture.width = width;
             s.picture.height = height;
         });
         for (name, value) in &self.set {
-            if matches!(name.as_str(), "width" | "height") {
-                bail!("--set {name}={value}: --size says how large pictures are");
+            if CHOSEN.contains(&name.as_str()) {
+                bail!("--set {name}={value}: this bench chooses `{name}` itself");
             }
             settings = changed(&settings, &[(name, value)])
                 .with_context(|| format!("--set {name}={value}"))?;
@@ -72,7 +77,13 @@ mod tests {
     #[test]
     fn what_cannot_be_set_is_named() {
         assert!(pair("shadows").is_err() && pair("=soft").is_err() && pair("shadows=").is_err());
-        for text in ["shadow=soft", "shadows=softly", "width=100"] {
+        for text in [
+            "shadow=soft",
+            "shadows=softly",
+            "width=100",
+            "shading=coarse",
+            "environment=room.hdr",
+        ] {
             let error = shared(&[text]).plain((320, 180)).unwrap_err();
             assert!(format!("{error:#}").contains(text), "{error:#}");
         }

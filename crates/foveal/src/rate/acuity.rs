@@ -39,8 +39,8 @@ const QUALITIES: [(f32, f32); 7] = [
 const PARALLEL_ACROSS: f32 = std::f32::consts::FRAC_PI_3;
 
 /// Pixels per radian in the display's centre from which on blocks become finer than [`QUALITIES`]
-/// says: those of 1280 pixels over 60 degrees, by which the qualities were measured.
-const MEASURED_DENSITY: f32 = 1108.5;
+/// says: those of 1280 pixels over 60 degrees, 1108.51, by which the qualities were measured.
+const MEASURED_DENSITY: f32 = 1108.52;
 
 /// Blocks shrink with the density's ratio to that power. A denser display shows finer detail, which
 /// blocks of the same angle leave out: found by measurement (docs/decisions/0208-denser-displays.md).

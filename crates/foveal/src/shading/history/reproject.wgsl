@@ -127,8 +127,8 @@ fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
     return f32(order_of(texel) + history.phase) < share * 4294967296.0;
 }
 
-// Each list and each texture is written at one place: devices that run all branches pay for each
-// place, whether or not anything is written there.
+// But for the backdrop each list and each texture is written at one place: devices that run all
+// branches pay for each place, whether or not anything is written there.
 @compute @workgroup_size(8, 8)
 fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let texel = id.xy;
