@@ -229,7 +229,7 @@ impl ReceiverMask {
         let low = DVec3::from(bounds.min.map(f64::from)) + from - grow_m;
         let high = DVec3::from(bounds.max.map(f64::from)) + from + grow_m;
         let far_off = (TOO_FAR * self.camera.near.abs()).max(TOO_FAR_M);
-        if !(low.abs().max(high.abs()).max_element() < far_off) {
+        if low.abs().max(high.abs()).max_element() >= far_off {
             return Some(Footprint::EVERYWHERE);
         }
         let corners: [DVec4; 8] = core::array::from_fn(|i| {
