@@ -89,7 +89,7 @@ pub struct CpuOcclusionCulling {
     /// For lights: whether casters are drawn whose shadow falls on nothing that a camera sees, and
     /// lights that light nothing that a camera sees; `false` by default. Set it where something reads
     /// shadow maps elsewhere than at the meshes of the camera's `VisibleEntities`: meshes that are
-    /// drawn by a pipeline of your own, or materials that look up shadows beside themselves.
+    /// drawn by a pipeline of your own, meshlets, or materials that look up shadows beside themselves.
     /// `VolumetricLight`s and soft shadows (`experimental_pbr_pcss`) are known, and draw all.
     pub keep_unseen_shadows: bool,
 }

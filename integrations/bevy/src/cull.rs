@@ -57,9 +57,9 @@ pub(crate) struct Boxes<'w, 's> {
 }
 
 #[cfg(feature = "bevy_pbr")]
-type Material = Option<&'static bevy_pbr::MeshMaterial3d<bevy_pbr::StandardMaterial>>;
+pub(crate) type Material = Option<&'static bevy_pbr::MeshMaterial3d<bevy_pbr::StandardMaterial>>;
 #[cfg(not(feature = "bevy_pbr"))]
-type Material = ();
+pub(crate) type Material = ();
 
 /// Decals are drawn whatever their depth, and lines of wireframes in front of faces.
 #[cfg(feature = "bevy_pbr")]
@@ -97,6 +97,24 @@ impl Boxes<'_, '_> {
             return None;
         }
         Some(world_box(bounds, transform))
+    }
+
+    /// Whether a material may show light that falls on its back, for which Bevy looks up no shadow.
+    /// So may all that is not known.
+    #[cfg(feature = "bevy_pbr")]
+    pub(crate) fn may_transmit(
+        &self,
+        material: Option<&bevy_pbr::MeshMaterial3d<bevy_pbr::StandardMaterial>>,
+    ) -> bool {
+        let known = material
+            .zip(self.materials.as_ref())
+            .and_then(|(material, materials)| materials.get(&material.0));
+        known.is_none_or(|material| material.diffuse_transmission != 0.0)
+    }
+
+    #[cfg(all(feature = "bevy_light", not(feature = "bevy_pbr")))]
+    pub(crate) fn may_transmit(&self, (): ()) -> bool {
+        true
     }
 
     #[cfg(feature = "bevy_pbr")]

@@ -87,7 +87,10 @@
 //! Casters whose shadow can fall on nothing that a camera lists are left out of the shadow maps of
 //! lights with [`CpuOcclusionCulling`]. A point or spot light is not drawn where all that a camera
 //! lists within its range is in the shadow of occluders, or where there is nothing: its
-//! `ViewVisibility` is then hidden. [`CpuOcclusionCulling::keep_unseen_shadows`] turns both off.
+//! `ViewVisibility` is then hidden. Lights stay whose entity has a mesh too, or near which something
+//! is seen that is lit without shadows; all stay where clusters of lights are filled by the CPU, and
+//! where more are visible than Bevy draws shadow maps for.
+//! [`CpuOcclusionCulling::keep_unseen_shadows`] turns both off.
 //!
 //! # Features
 //! - `bevy_pbr` (default): materials decide who may occlude, and `AutomaticOccluders`. Includes
@@ -100,6 +103,8 @@ mod automatic;
 mod cameras;
 mod components;
 mod cull;
+#[cfg(feature = "bevy_light")]
+mod left_out;
 #[cfg(feature = "bevy_light")]
 mod lights;
 #[cfg(feature = "bevy_light")]

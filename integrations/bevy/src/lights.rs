@@ -2,10 +2,11 @@
 //!
 //! What is hidden from the light behind other casters changes no texel of the shadow map. What casts
 //! its shadow on nothing that a camera sees changes texels that nobody looks up. A point or spot
-//! light that lights nothing that is seen is not drawn at all.
+//! light that lights nothing that is seen is not drawn at all, if nothing else is on its entity.
 
 use crate::components::CpuOcclusionCulling;
 use crate::cull::{Boxes, Outcome, ViewCuller};
+use crate::left_out::LightsAlone;
 use crate::mask::{Mask, Projector};
 use crate::occluders::{Occluders, Range};
 use crate::reach::{Reach, SeenByLight, is_soft};
@@ -160,7 +161,9 @@ impl Frame<'_, '_, '_> {
                 );
             });
         }
-        let unseen = seen.is_some_and(|seen| !seen.anyway) && !faces.iter().any(|f| f.lights_seen);
+        let unseen = seen.is_some_and(|seen| !seen.anyway)
+            && !self.receivers.lit_anywhere
+            && !faces.iter().any(|face| face.lights_seen);
         for face in faces {
             face.outcome.coarse = fit.coarse;
             face.outcome.add_to(self.stats, true);
@@ -226,6 +229,7 @@ pub(crate) fn cull(
     looks: Looks,
     pipelines: Res<Pipelines>,
     not_casters: Query<(), With<NotShadowCaster>>,
+    alone: LightsAlone,
     map_sizes: (
         Option<Res<PointLightShadowMap>>,
         Option<Res<DirectionalLightShadowMap>>,
@@ -311,7 +315,8 @@ pub(crate) fn cull(
             reach: (!volumetric && !is_soft(light))
                 .then(|| Reach::of_point_light(light, transform, point_side)),
         };
-        if frame.cull(&light, &mut faces) {
+        let unseen = frame.cull(&light, &mut faces);
+        if unseen && receivers.left_out.point_lights && alone.contains(entity) {
             *visibility = ViewVisibility::HIDDEN;
             frame.stats.lights_unseen += 1;
         }
@@ -339,7 +344,8 @@ pub(crate) fn cull(
             reach: (!volumetric && !is_soft(light) && all_in_map)
                 .then(|| Reach::of_spot_light(light, transform, other_side)),
         };
-        if frame.cull(&light, &mut face) {
+        let unseen = frame.cull(&light, &mut face);
+        if unseen && receivers.left_out.spot_lights && alone.contains(entity) {
             *visibility = ViewVisibility::HIDDEN;
             frame.stats.lights_unseen += 1;
         }

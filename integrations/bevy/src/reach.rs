@@ -104,8 +104,8 @@ impl Reach {
                 reach = range;
                 seen.anyway |= nearest < 2.0 * near;
             }
+            seen.anyway |= receiver.lit_anyway;
             if !receiver.shadowed {
-                seen.anyway = true;
                 continue;
             }
             let beside = 1.01 * (self.beside[0] + self.beside[1] * distance) + 1e-4;

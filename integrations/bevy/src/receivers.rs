@@ -2,14 +2,15 @@
 
 use crate::cameras::CameraCullers;
 use crate::components::{CpuOcclusionCulling, NoOcclusionCulling};
-use crate::cull::{Boxes, world_box};
+use crate::cull::{Boxes, Material, world_box};
+use crate::left_out::{LeftOut, Lights};
 use crate::stats::CpuOcclusionStats;
 use bevy_camera::Camera;
 use bevy_camera::primitives::Aabb as MeshBounds;
 use bevy_camera::visibility::{NoCpuCulling, NoFrustumCulling, ViewVisibility, VisibleEntities};
 use bevy_ecs::change_detection::{Res, ResMut};
 use bevy_ecs::entity::Entity;
-use bevy_ecs::query::{Has, Or, With, Without};
+use bevy_ecs::query::{Has, Or, With};
 use bevy_ecs::resource::Resource;
 use bevy_ecs::system::{Local, Query};
 use bevy_light::{
@@ -28,13 +29,17 @@ use foveal_cull::{Aabb, Visibility};
 const CELL_M: f32 = 2.0;
 /// Most cells along each axis of a box.
 const MOST_CELLS: f32 = 8.0;
+/// Most cells of a camera: beyond them boxes stay whole.
+const MOST_IN_VIEW: usize = 10_000;
 
 /// A box of which a camera may see something.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Receiver {
     pub(crate) bounds: Aabb,
-    /// Whether shadows fall on it; without them it is lit all the same.
+    /// Whether shadows fall on it.
     pub(crate) shadowed: bool,
+    /// Whether it may be lit, in part at least, where it is in shadow.
+    pub(crate) lit_anyway: bool,
 }
 
 /// What the cameras of this frame see.
@@ -43,6 +48,10 @@ pub(crate) struct Receivers {
     pub(crate) seen: Vec<Receiver>,
     /// Whether something is seen of which it is not known where it is.
     pub(crate) anywhere: bool,
+    /// Whether something is lit without shadows of which it is not known where it is.
+    pub(crate) lit_anywhere: bool,
+    /// Which lights may be left out.
+    pub(crate) left_out: LeftOut,
     /// Whether they were looked for.
     pub(crate) known: bool,
 }
@@ -59,6 +68,7 @@ pub(crate) fn gather(
     mut stats: ResMut<CpuOcclusionStats>,
     cullers: Res<CameraCullers>,
     boxes: Boxes,
+    all_lights: Lights,
     lights: Query<(&CpuOcclusionCulling, &ViewVisibility), Light>,
     cameras: Query<(Entity, &Camera, &VisibleEntities)>,
     meshes: Query<(
@@ -67,6 +77,7 @@ pub(crate) fn gather(
         Has<NotShadowReceiver>,
         Has<TransmittedShadowReceiver>,
         IsDecal,
+        Material,
         (
             Has<NoFrustumCulling>,
             Has<NoOcclusionCulling>,
@@ -74,13 +85,14 @@ pub(crate) fn gather(
             Has<MeshMorphWeights>,
         ),
     )>,
-    unlisted: Query<(), (With<Mesh3d>, With<NoCpuCulling>, Without<NotShadowReceiver>)>,
+    unlisted: Query<Has<NotShadowReceiver>, (With<Mesh3d>, With<NoCpuCulling>)>,
     mut cells: Local<Vec<Receiver>>,
     mut cell_boxes: Local<Vec<Aabb>>,
     mut results: Local<Vec<Visibility>>,
 ) {
     receivers.seen.clear();
-    receivers.anywhere = !unlisted.is_empty();
+    receivers.anywhere = unlisted.iter().any(|not_shadowed| !not_shadowed);
+    receivers.lit_anywhere = !unlisted.is_empty();
     receivers.known = lights
         .iter()
         .any(|(culling, visibility)| visibility.get() && !culling.keep_unseen_shadows);
@@ -88,6 +100,7 @@ pub(crate) fn gather(
         return;
     }
     let begin = Instant::now();
+    receivers.left_out = all_lights.may_be_left_out();
     for (camera, settings, visible) in &cameras {
         if !settings.is_active {
             continue;
@@ -95,32 +108,42 @@ pub(crate) fn gather(
         let culler = cullers.current(camera);
         cells.clear();
         for &entity in visible.get(TypeId::of::<Mesh3d>()) {
-            let Ok((bounds, transform, not_shadowed, transmits, decal, moves)) = meshes.get(entity)
+            let Ok((bounds, transform, not_shadowed, transmits, decal, material, moves)) =
+                meshes.get(entity)
             else {
                 receivers.anywhere = true;
+                receivers.lit_anywhere = true;
                 continue;
             };
-            // A decal is lit where the surface below it is.
+            let lit_anyway = not_shadowed || boxes.may_transmit(material);
+            // A decal is lit beside itself, by a material of which nothing is known.
             if cfg!(feature = "bevy_pbr") && decal {
+                receivers.anywhere |= !not_shadowed;
+                receivers.lit_anywhere = true;
                 continue;
             }
-            let known = boxes.of(entity).or_else(|| {
-                // Bias and wireframes move nothing in the world.
-                let unknown = moves.0 || moves.1 || moves.2 || moves.3;
-                let bounds = bounds.filter(|_| !unknown)?;
-                Some(world_box(bounds, transform))
-            });
-            let known = known.filter(|_| !transmits || not_shadowed);
-            match known.filter(|bounds| bounds.is_valid()) {
-                Some(bounds) => cut(
-                    Receiver {
-                        bounds,
-                        shadowed: !not_shadowed,
-                    },
-                    culler.is_some(),
-                    &mut cells,
-                ),
-                None => receivers.anywhere = true,
+            let receiver = |bounds| Receiver {
+                bounds,
+                shadowed: !not_shadowed,
+                lit_anyway,
+            };
+            let known = |bounds: &Aabb| bounds.is_valid() && (!transmits || not_shadowed);
+            if let Some(bounds) = boxes.of(entity).filter(known) {
+                cut(receiver(bounds), culler.is_some(), &mut cells);
+                continue;
+            }
+            // What may be drawn in front of occluders is seen. Bias and wireframes move nothing in
+            // the world.
+            let unknown = moves.0 || moves.1 || moves.2 || moves.3;
+            let bounds = bounds
+                .filter(|_| !unknown)
+                .map(|bounds| world_box(bounds, transform));
+            match bounds.filter(known) {
+                Some(bounds) => receivers.seen.push(receiver(bounds)),
+                None => {
+                    receivers.anywhere |= !not_shadowed;
+                    receivers.lit_anywhere |= lit_anyway;
+                }
             }
         }
         let Some(culler) = culler else {
@@ -147,7 +170,8 @@ fn cut(receiver: Receiver, into_cells: bool, cells: &mut Vec<Receiver>) {
         let side = max[axis] - min[axis];
         (side / CELL_M).ceil().clamp(1.0, MOST_CELLS)
     });
-    if !into_cells || counts == [1.0; 3] {
+    let count = counts.iter().product::<f32>() as usize;
+    if !into_cells || count == 1 || cells.len() + count > MOST_IN_VIEW {
         cells.push(receiver);
         return;
     }
@@ -183,6 +207,7 @@ mod tests {
         let receiver = |min, max| Receiver {
             bounds: Aabb::new(min, max),
             shadowed: true,
+            lit_anyway: false,
         };
         let mut cells = Vec::new();
         let floor = receiver(Vec3::new(-3.0, 0.0, 10.0), Vec3::new(3.5, 0.2, 13.0));
@@ -208,5 +233,15 @@ mod tests {
         cells.clear();
         cut(receiver(Vec3::ZERO, Vec3::splat(1e4)), true, &mut cells);
         assert_eq!(cells.len(), 512);
+        // Not without end.
+        for _ in 0..1_000 {
+            cut(receiver(Vec3::ZERO, Vec3::splat(1e4)), true, &mut cells);
+        }
+        let whole = cells
+            .iter()
+            .filter(|c| c.bounds.max == [1e4; 3] && c.bounds.min == [0.0; 3]);
+        let cut_in_cells = MOST_IN_VIEW / 512;
+        assert_eq!(whole.count(), 1_001 - cut_in_cells);
+        assert_eq!(cells.len(), 1_001 - cut_in_cells + 512 * cut_in_cells);
     }
 }

@@ -246,6 +246,61 @@ fn pictures_are_the_same_from_the_first_frame_on_whatever_changes() {
     assert!(hidden.iter().all(|&sum| sum > 0), "{hidden:?}");
 }
 
+/// A sheet before a thick wall, and a light behind the wall.
+fn sheet(world: &mut World, diffuse_transmission: f32) {
+    let mut meshes = world.resource_mut::<Assets<Mesh>>();
+    let wall = meshes.add(Cuboid::new(30.0, 30.0, 6.0));
+    let sheet = meshes.add(Cuboid::new(1.0, 1.0, 0.02));
+    let mut materials = world.resource_mut::<Assets<StandardMaterial>>();
+    let plain = materials.add(Color::srgb(0.7, 0.6, 0.4));
+    let leaf = materials.add(StandardMaterial {
+        diffuse_transmission,
+        ..Color::srgb(0.2, 0.8, 0.2).into()
+    });
+    let at = Transform::from_xyz;
+    world.spawn((
+        Mesh3d(wall),
+        MeshMaterial3d(plain),
+        at(0.0, 0.0, -8.0),
+        Occluder::default(),
+    ));
+    world.spawn((Mesh3d(sheet), MeshMaterial3d(leaf), at(0.0, 0.0, -3.0)));
+    world.spawn((
+        PointLight {
+            shadow_maps_enabled: true,
+            intensity: 3e7,
+            range: 60.0,
+            ..default()
+        },
+        at(0.0, 0.0, -16.0),
+    ));
+}
+
+#[test]
+fn lights_behind_walls_are_left_out_unless_they_shine_through_what_is_seen() {
+    let size = UVec2::new(120, 80);
+    let mut brightest = [0; 2];
+    for (case, transmission) in [0.0, 0.9].into_iter().enumerate() {
+        let [mut plain, mut culled] = [Mode::Frustum, Mode::All].map(|mode| {
+            Headless::new(size, Msaa::Off, |world| {
+                sheet(world, transmission);
+                mode.set(world);
+            })
+        });
+        for frame in 0..8 {
+            plain.frame();
+            culled.frame();
+            let (a, b) = (plain.picture(), culled.picture());
+            assert_eq!(pixels_that_differ(&a, &b), 0, "{transmission}: {frame}");
+            let green = a.as_chunks::<4>().0.iter().map(|pixel| pixel[1]);
+            brightest[case] = brightest[case].max(green.max().unwrap());
+        }
+        let stats = culled.world().resource::<CpuOcclusionStats>();
+        assert_eq!(stats.lights_unseen, 1 - case, "{stats:?}");
+    }
+    assert!(brightest[1] > brightest[0] + 20, "{brightest:?}");
+}
+
 #[test]
 fn nothing_is_hidden_while_pipelines_are_compiled() {
     let mut app = Headless::with_pipelines(false, UVec2::new(64, 40), Msaa::Off, |world| {

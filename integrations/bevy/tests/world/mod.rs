@@ -9,6 +9,7 @@ use bevy::camera::{CameraPlugin, RenderTargetInfo};
 use bevy::ecs::component::Mutable;
 use bevy::gizmos::GizmoPlugin;
 use bevy::light::LightPlugin;
+use bevy::light::cluster::{GlobalClusterGpuSettings, GlobalClusterSettings};
 use bevy::mesh::MeshPlugin;
 use bevy::prelude::*;
 use bevy_foveal_cull::{CpuOcclusionCulling, CpuOcclusionPlugin, CpuOcclusionStats, Occluder};
@@ -45,7 +46,8 @@ impl TestWorld {
             CpuOcclusionPlugin,
         ))
         .init_asset::<Image>()
-        .init_asset::<StandardMaterial>();
+        .init_asset::<StandardMaterial>()
+        .insert_resource(clusters());
         add(&mut app);
         app.finish();
         app.cleanup();
@@ -167,6 +169,20 @@ impl TestWorld {
 
     pub fn sees(&self, entity: Entity) -> bool {
         self.visible().contains(&entity)
+    }
+}
+
+/// As Bevy's renderer has them where the device fills clusters.
+fn clusters() -> GlobalClusterSettings {
+    GlobalClusterSettings {
+        supports_storage_buffers: true,
+        clustered_decals_are_usable: false,
+        gpu_clustering: Some(GlobalClusterGpuSettings {
+            initial_z_slice_list_capacity: 1024,
+            initial_index_list_capacity: 1024,
+        }),
+        max_uniform_buffer_clusterable_objects: 204,
+        view_cluster_bindings_max_indices: 16384,
     }
 }
 
