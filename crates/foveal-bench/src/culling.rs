@@ -7,6 +7,7 @@
 mod boxes;
 mod cameras;
 mod inside;
+mod learned;
 mod plot;
 mod rows;
 mod scaling;
@@ -18,6 +19,7 @@ use serde::Serialize;
 
 use cameras::Cameras;
 use foveal_host::culling::CullingArgs;
+use foveal_host::culling::Occludees;
 use foveal_host::culling::Occluders;
 use foveal_host::culling::Workers;
 use foveal_host::progress::progress_bar;
@@ -63,13 +65,18 @@ pub struct Args {
     #[arg(long)]
     check: bool,
 
+    /// Also move each camera from side to side for 240 frames, and measure what learning from frame to
+    /// frame gains: which occluders help to hide the scene's own objects
+    #[arg(long)]
+    learn: bool,
+
     /// Write the rows as JSON (see docs/cull-schema.md); `-` prints them instead of the table
     #[arg(long, value_name = "FILE.json|-")]
     json: Option<PathBuf>,
 
     /// Write cost against occluder triangles, boxes, resolution and threads as CSV, with a plot
     /// beside it (.svg). Generated scenes replace SCENE
-    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenes", "cameras", "json", "check"])]
+    #[arg(long, value_name = "FILE.csv", conflicts_with_all = ["scenes", "cameras", "json", "check", "learn"])]
     scaling: Option<PathBuf>,
 
     /// Show no progress
@@ -133,6 +140,7 @@ fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
         let scene = scene_source::load(name)?;
         let occluders = Occluders::of_scene(&scene, &args.culling.occluders)?;
         let boxes = boxes::random(scene.bounds(), args.boxes);
+        let objects = Occludees::of_scene(&scene);
         let cameras = Cameras::new(&scene, &occluders, args.cameras.as_ref())?;
         let mut cases = Vec::new();
         for &(width, height) in &args.sizes {
@@ -150,6 +158,8 @@ fn measure(args: &Args) -> anyhow::Result<Vec<Row>> {
                 occluders: &occluders,
                 boxes: &boxes,
                 culling: &args.culling,
+                objects: &objects.boxes,
+                learn: args.learn,
             };
             let measured = case
                 .measure(&workers, args.repetitions, args.check)
@@ -229,6 +239,28 @@ mod tests {
         let refused = Cameras::new(&scene, &Occluders::default(), choice);
         let refused = refused.err().unwrap().to_string();
         assert!(refused.contains("no floor"), "{refused}");
+    }
+
+    #[test]
+    fn learning_is_measured_where_it_is_asked_for() {
+        let words = [
+            "demo:1000",
+            "--sizes",
+            "96x54",
+            "--boxes",
+            "10",
+            "--threads",
+            "1",
+        ];
+        let plain = measure(&args(&words)).unwrap();
+        assert!(plain[0].learned.learned_ms.is_none());
+        let rows = measure(&args(&[&words[..], &["--learn"]].concat())).unwrap();
+        let learned = rows[0].learned;
+        assert!(learned.learned_ms.unwrap() > 0.0 && learned.moving_ms.unwrap() > 0.0);
+        let [all, useful] = [learned.moving_visible, learned.learned_visible].map(Option::unwrap);
+        assert!(all > 0.0 && useful >= all * 0.9, "{all} {useful}");
+        assert!(rows::table(&rows).contains("objects are visible"));
+        assert!(!rows::table(&plain).contains("objects are visible"));
     }
 
     #[test]

@@ -5,6 +5,7 @@ use crate::camera::Camera;
 use crate::depth::band::Band;
 use crate::depth::buffer::OcclusionBuffer;
 use crate::depth::hiz_build::BuildHiz;
+use crate::depth::record::{Record, Touched};
 use crate::error::CullError;
 use crate::format::{EMPTY, SAMPLES, decode};
 use crate::limits::MAX_SIDE_PX;
@@ -16,7 +17,7 @@ use crate::query::flat::Flat;
 use crate::query::moving::OccludeeSet;
 use crate::query::tree::OccludeeTree;
 use crate::query::walk::Walk;
-use crate::raster::candidates::FrameScratch;
+use crate::raster::candidates::{Candidate, FrameScratch};
 use crate::raster::draw::Draw;
 use crate::raster::facing::ValidityRadius;
 use crate::raster::scratch::Scratch;
@@ -51,6 +52,25 @@ pub struct Culler {
     seen: Vec<(u32, u32)>,
     view: Option<Frame>,
     stats: CullStats,
+    /// What clusters changed, by band, where that is recorded.
+    touched: Vec<Vec<Touched>>,
+    /// Nanoseconds of the last drawing by the clock of its budget; 0 without one.
+    drawing_ns: u64,
+    /// Bands of the frame, if it was recorded.
+    bands_recorded: Option<usize>,
+}
+
+/// What was drawn in a frame, as far as it is recorded.
+pub(crate) struct Drawn<'a> {
+    pub(crate) candidates: &'a [Candidate],
+    /// Numbers of the candidates that were drawn, by band.
+    pub(crate) drawn: &'a [Vec<u32>],
+    /// What they changed, by band.
+    pub(crate) touched: &'a [Vec<Touched>],
+    pub(crate) blocks_x: u32,
+    /// Time of drawing by the clock of the budget, nanoseconds; 0 without one. And all work.
+    pub(crate) ns: u64,
+    pub(crate) work: u64,
 }
 
 impl Culler {
@@ -79,6 +99,9 @@ impl Culler {
             seen: Vec::new(),
             view: None,
             stats: CullStats::default(),
+            touched: Vec::new(),
+            drawing_ns: 0,
+            bands_recorded: None,
         })
     }
 
@@ -142,6 +165,7 @@ impl Culler {
     /// Forgets the frame: everything is visible until the next one.
     pub fn clear(&mut self) {
         self.view = None;
+        self.bands_recorded = None;
         self.stats = CullStats::default();
         self.buffer.clear();
     }
@@ -167,8 +191,17 @@ impl Culler {
             size_threshold: options.occluder_size_threshold,
             pixels_per_quad: options.occluder_pixels_per_quad,
             shift,
+            usefulness: options.usefulness,
         };
         self.stats = self.frame.select(&choice, self.instruction_set, threads);
+        let begun = options.budget.map(|b| (b.clock)());
+        if let (Some(usefulness), Some(budget), Some(now)) =
+            (options.usefulness, options.budget, begun)
+            && let Some(work) = usefulness.work_within(budget.deadline_ns.saturating_sub(now))
+        {
+            let left_out = self.frame.keep_best(occluders, usefulness, work);
+            self.stats.clusters_over_budget = left_out;
+        }
         let radius = (camera.radius > 0.0).then(|| ValidityRadius {
             shift,
             shifts: camera.shift.map(|s| s as f32),
@@ -178,7 +211,12 @@ impl Culler {
                 (camera.radius / camera.near) as f32
             },
         });
-        self.draw(occluders, options.budget, radius, threads);
+        let records = options.usefulness.is_some();
+        self.draw(occluders, options.budget, radius, records, threads);
+        let ended = options.budget.map(|b| (b.clock)());
+        self.drawing_ns = ended
+            .zip(begun)
+            .map_or(0, |(end, begin)| end.saturating_sub(begin));
         self.instruction_set.run(BuildHiz(&mut self.buffer));
     }
 
@@ -187,6 +225,7 @@ impl Culler {
         set: &OccluderSet,
         budget: Option<Budget<'_>>,
         radius: Option<ValidityRadius>,
+        records: bool,
         threads: &dyn Threads,
     ) {
         let rows = self.buffer.blocks_y;
@@ -200,19 +239,27 @@ impl Culler {
             .resize_with(self.scratch.len().max(bands), Scratch::default);
         self.drawn
             .resize_with(self.drawn.len().max(bands), Vec::new);
+        self.touched.iter_mut().for_each(Vec::clear);
+        self.touched
+            .resize_with(self.touched.len().max(bands), Vec::new);
         type Job<'a> = Option<(Band<'a>, &'a mut Scratch, &'a mut Vec<u32>)>;
         let mut jobs: [Mutex<Job<'_>>; MAX_BANDS] = [const { Mutex::new(None) }; MAX_BANDS];
         let mut rest = self.buffer.band();
         let mut first = 0;
-        for (((job, scratch), drawn), end) in jobs
+        for ((((job, scratch), drawn), touched), end) in jobs
             .iter_mut()
             .zip(&mut self.scratch)
             .zip(&mut self.drawn)
+            .zip(&mut self.touched)
             .zip(&ends[..bands])
         {
             (scratch.polygons, scratch.clusters) = (0, 0);
             drawn.clear();
-            let (band, after) = rest.split(end - first);
+            let (mut band, after) = rest.split(end - first);
+            band.record = records.then_some(Record {
+                touched,
+                candidate: 0,
+            });
             (rest, first) = (after, *end);
             *job = Mutex::new(Some((band, scratch, drawn)));
         }
@@ -239,7 +286,8 @@ impl Culler {
         } else {
             threads.run(bands, &task)
         }
-        self.stats.clusters_over_budget = skipped.into_inner();
+        self.stats.clusters_over_budget += skipped.into_inner();
+        self.bands_recorded = records.then_some(bands);
         self.count_drawn(set, bands);
     }
 
@@ -438,6 +486,24 @@ impl Culler {
                 s.occludee_triangles_visible += t;
             }
         }
+    }
+
+    /// The frame, prepared for boxes relative to an origin; none before the first one.
+    pub(crate) fn prepared(&self, origin: DVec3) -> Option<Query<'_>> {
+        let frame = self.view.as_ref()?;
+        Some(Query::new(&self.buffer, frame, origin))
+    }
+
+    /// The record of the frame; none if none was made.
+    pub(crate) fn recorded(&self) -> Option<Drawn<'_>> {
+        self.bands_recorded.map(|bands| Drawn {
+            candidates: &self.frame.candidates,
+            drawn: &self.drawn[..bands],
+            touched: &self.touched[..bands],
+            blocks_x: self.buffer.blocks_x,
+            ns: self.drawing_ns,
+            work: self.buffer.work.iter().map(|w| u64::from(*w)).sum(),
+        })
     }
 
     /// The stats of the frame so far.

@@ -263,6 +263,10 @@
 //! # Ok::<(), CullError>(())
 //! ```
 //!
+//! # Occluders that hide nothing
+//! [`OccluderUsefulness`] learns from frame to frame which occluders help to hide what is asked for,
+//! and leaves the others out. With a [`Budget`] it draws those that hide most for their time.
+//!
 //! # Cost
 //! Baking is O(n log n) in triangles and belongs to load time, another shape takes a tenth of it;
 //! [`OccluderMesh::to_bytes`] keeps its result, which [`OccluderMesh::from_bytes`] checks and reads. A
@@ -301,6 +305,7 @@ mod culler;
 mod depth;
 mod error;
 mod format;
+mod learning;
 mod limits;
 mod occluder;
 mod options;
@@ -321,7 +326,7 @@ pub use clip_space::ClipDepth;
 pub use culler::Culler;
 pub use error::{CullError, MeshBytesError, Quantity, ViewError};
 pub use limits::MAX_SIDE_PX;
-pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet};
+pub use occluder::{BakeOptions, OccluderId, OccluderMesh, OccluderSet, OccluderUsefulness};
 pub use options::{Budget, FrameOptions};
 pub use query::moving::OccludeeSet;
 pub use query::occludee_id::OccludeeId;
@@ -361,6 +366,7 @@ const _: () = {
     send_and_sync::<OccluderId>();
     send_and_sync::<OccluderMesh>();
     send_and_sync::<OccluderSet>();
+    send_and_sync::<OccluderUsefulness>();
     send_and_sync::<Projection>();
     send_and_sync::<Quantity>();
     send_and_sync::<ReceiverMask>();

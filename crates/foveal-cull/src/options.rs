@@ -1,5 +1,7 @@
 //! Options of a frame.
 
+use crate::occluder::OccluderUsefulness;
+
 /// A time limit for rasterizing, by the caller's clock. This crate reads none.
 ///
 /// Occluders are drawn nearest first, so the most useful ones are there when the time is spent.
@@ -59,6 +61,9 @@ pub struct FrameOptions<'a> {
     pub occlusion: bool,
     /// Time limit for rasterizing; none by default.
     pub budget: Option<Budget<'a>>,
+    /// What occluders were worth in the frames before; none by default. Those that hid nothing are
+    /// left out, and with a [`budget`](Self::budget) those are drawn that hide most for their time.
+    pub usefulness: Option<&'a OccluderUsefulness>,
 }
 
 impl Default for FrameOptions<'_> {
@@ -69,6 +74,7 @@ impl Default for FrameOptions<'_> {
             occludee_size_threshold: 0.0,
             occlusion: true,
             budget: None,
+            usefulness: None,
         }
     }
 }
@@ -106,6 +112,13 @@ impl<'a> FrameOptions<'a> {
     #[must_use]
     pub fn with_budget(mut self, budget: Option<Budget<'a>>) -> Self {
         self.budget = budget;
+        self
+    }
+
+    /// Sets [`usefulness`](Self::usefulness).
+    #[must_use]
+    pub fn with_usefulness(mut self, usefulness: Option<&'a OccluderUsefulness>) -> Self {
+        self.usefulness = usefulness;
         self
     }
 }

@@ -25,6 +25,9 @@ pub struct CullStats {
     pub clusters_rasterized: u64,
     /// Clusters left out because the time budget was spent.
     pub clusters_over_budget: u64,
+    /// Clusters left out because they hid nothing in the frames before
+    /// ([`OccluderUsefulness`](crate::OccluderUsefulness)).
+    pub clusters_not_useful: u64,
     /// Occludees counted since the frame began.
     pub occludees: u64,
     /// Of these, visible.

@@ -10,7 +10,8 @@ mod common;
 
 use common::{Random, eye, occluders, scene};
 use foveal_cull::{
-    Culler, FrameOptions, OccludeeTree, SingleThread, Threads, View, Visibility, WorkerThreads,
+    Culler, FrameOptions, OccludeeTree, OccluderUsefulness, SingleThread, Threads, View,
+    Visibility, WorkerThreads,
 };
 use glam::DVec3;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -45,6 +46,7 @@ fn main() {
     let mut tree = OccludeeTree::build(&scene.boxes, DVec3::ZERO);
     let mut culler = Culler::new(160, 90).unwrap();
     let mut results = vec![Visibility::Visible; scene.boxes.len()];
+    let mut usefulness = OccluderUsefulness::new();
     let pool = WorkerThreads::new(2);
     for threads in [&SingleThread as &dyn Threads, &pool] {
         let mut frame = || {
@@ -68,5 +70,20 @@ fn main() {
         let before = ALLOCATIONS.load(Ordering::Relaxed);
         (0..10).for_each(|_| frame());
         assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before);
+        let mut frame = || {
+            let options = FrameOptions::default().with_usefulness(Some(&usefulness));
+            culler.rasterize(&view, &set, &options, threads).unwrap();
+            culler
+                .query(&scene.boxes, DVec3::ZERO, &mut results)
+                .unwrap();
+            usefulness
+                .observe(&culler, &scene.boxes, DVec3::ZERO, &results)
+                .unwrap();
+            usefulness.learn(&culler, &set);
+        };
+        (0..100).for_each(|_| frame());
+        let before = ALLOCATIONS.load(Ordering::Relaxed);
+        (0..100).for_each(|_| frame());
+        assert_eq!(ALLOCATIONS.load(Ordering::Relaxed), before, "learning");
     }
 }

@@ -1,5 +1,6 @@
 //! One view of one scene, measured with each number of threads.
 
+use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -14,6 +15,8 @@ use foveal_host::culling::Occluders;
 use foveal_host::culling::Workers;
 use foveal_measure::median;
 
+use super::learned::LearnedColumns;
+
 const WARM_UP: u32 = 3;
 
 /// What is measured.
@@ -24,6 +27,10 @@ pub(super) struct Case<'a> {
     pub(super) occluders: &'a Occluders,
     pub(super) boxes: &'a [Aabb],
     pub(super) culling: &'a CullingArgs,
+    /// The scene's own, world space.
+    pub(super) objects: &'a [Aabb],
+    /// Whether it is measured what learning gains.
+    pub(super) learn: bool,
 }
 
 /// A row of the report.
@@ -46,6 +53,8 @@ pub(super) struct Row {
     pub(super) visible: u64,
     #[serde(flatten)]
     pub(super) check: CheckColumns,
+    #[serde(flatten)]
+    pub(super) learned: LearnedColumns,
 }
 
 /// `null` unless compared.
@@ -117,30 +126,34 @@ impl Case<'_> {
         let visible = results.iter().filter(|r| r.is_visible()).count() as u64;
         let boxes = self.boxes.len() as u64;
         let rows = workers.iter().zip(&mut times);
-        Ok(rows
-            .map(|(&(threads, _), [raster_ms, query_ms])| {
-                let least = |ms: &[f64]| ms.iter().copied().fold(f64::INFINITY, f64::min);
-                let (raster_min_ms, query_min_ms) = (least(raster_ms), least(query_ms));
-                let query_ms = median(query_ms);
-                Row {
-                    scene: self.scene.to_owned(),
-                    camera: self.eye.name.clone(),
-                    width: self.size.0,
-                    height: self.size.1,
-                    threads,
-                    occluder_triangles: self.occluders.set.triangle_count() as u64,
-                    raster_ms: median(raster_ms),
-                    raster_min_ms,
-                    query_boxes: boxes,
-                    query_ms,
-                    query_min_ms,
-                    query_ns_per_box: query_ms * 1e6 / (boxes.max(1) as f64),
-                    culled: boxes - visible,
-                    visible,
-                    check,
-                }
+        rows.map(|((threads, workers), [raster_ms, query_ms])| {
+            let learned = match self.learn {
+                true => LearnedColumns::measure(self, workers)?,
+                false => LearnedColumns::default(),
+            };
+            let least = |ms: &[f64]| ms.iter().copied().fold(f64::INFINITY, f64::min);
+            let (raster_min_ms, query_min_ms) = (least(raster_ms), least(query_ms));
+            let query_ms = median(query_ms);
+            Ok(Row {
+                scene: self.scene.to_owned(),
+                camera: self.eye.name.clone(),
+                width: self.size.0,
+                height: self.size.1,
+                threads: *threads,
+                occluder_triangles: self.occluders.set.triangle_count() as u64,
+                raster_ms: median(raster_ms),
+                raster_min_ms,
+                query_boxes: boxes,
+                query_ms,
+                query_min_ms,
+                query_ns_per_box: query_ms * 1e6 / (boxes.max(1) as f64),
+                culled: boxes - visible,
+                visible,
+                check,
+                learned,
             })
-            .collect())
+        })
+        .collect()
     }
 }
 
@@ -192,6 +205,44 @@ pub(super) fn table(rows: &[Row]) -> String {
             count(r.check.hidden),
             count(r.check.missed),
         );
+    }
+    text + &learned_table(rows)
+}
+
+/// What learning gains, in sum over each scene's cameras; empty unless it was measured.
+fn learned_table(rows: &[Row]) -> String {
+    let mut text = String::new();
+    for same in rows.chunk_by(|a, b| a.scene == b.scene) {
+        for threads in same.iter().map(|r| r.threads).collect::<BTreeSet<_>>() {
+            let learned = |r: &Row| {
+                let l = r.learned;
+                Some([
+                    l.moving_ms?,
+                    l.learned_ms?,
+                    l.moving_visible?,
+                    l.learned_visible?,
+                ])
+            };
+            let rows = same.iter().filter(|r| r.threads == threads);
+            let all: Vec<[f64; 4]> = rows.filter_map(learned).collect();
+            if all.is_empty() {
+                continue;
+            }
+            let mean = |k: usize| all.iter().map(|l| l[k]).sum::<f64>() / all.len() as f64;
+            let mut ratios: Vec<f64> = all.iter().map(|l| l[1] / l[0]).collect();
+            let _ = writeln!(
+                text,
+                "{}, {threads} threads, {} moving cameras: useful occluders take {:.2} of the time of all \
+                 (median; {:.3} and {:.3} ms in the mean), {:.1} objects are visible instead of {:.1}",
+                same[0].scene,
+                all.len(),
+                median(&mut ratios),
+                mean(1),
+                mean(0),
+                mean(3),
+                mean(2),
+            );
+        }
     }
     text
 }

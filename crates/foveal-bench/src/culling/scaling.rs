@@ -134,6 +134,8 @@ impl Town {
                 validity_radius: 0.0,
                 budget_ms: None,
             },
+            objects: &[],
+            learn: false,
         };
         let workers = [(point.threads, Workers::new(point.threads))];
         let mut rows = case.measure(&workers, repetitions, false)?;

@@ -1,6 +1,7 @@
 //! The part of the occlusion buffer that one thread draws into.
 
 use super::block::{BlockState, DepthBlock};
+use super::record::Record;
 use super::slots::Slots;
 use crate::simd::Lanes;
 
@@ -18,6 +19,8 @@ pub(crate) struct Band<'a> {
     pub(crate) margin: &'a mut [u64],
     pub(crate) margin_depths: &'a mut [[i16; 2]],
     pub(crate) work: &'a mut [u32],
+    /// Set where it is recorded what clusters change.
+    pub(crate) record: Option<Record<'a>>,
 }
 
 /// One block of a band.
@@ -116,6 +119,7 @@ impl<'a> Band<'a> {
                 margin: e0,
                 margin_depths: r0,
                 work: w0,
+                record: None,
             },
             Band {
                 blocks_x: self.blocks_x,
@@ -129,6 +133,7 @@ impl<'a> Band<'a> {
                 margin: e1,
                 margin_depths: r1,
                 work: w1,
+                record: None,
             },
         )
     }

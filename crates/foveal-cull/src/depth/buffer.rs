@@ -103,6 +103,7 @@ impl OcclusionBuffer {
             margin: &mut self.margin,
             margin_depths: &mut self.margin_depths,
             work: &mut self.work,
+            record: None,
         }
     }
 

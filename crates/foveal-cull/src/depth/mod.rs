@@ -11,4 +11,5 @@ pub(crate) mod buffer;
 pub(crate) mod hiz;
 pub(crate) mod hiz_build;
 pub(crate) mod hiz_layout;
+pub(crate) mod record;
 pub(crate) mod slots;

@@ -211,6 +211,11 @@ impl OccluderSet {
 }
 
 impl Instance {
+    /// The generation of the slot.
+    pub(crate) fn generation(&self) -> NonZeroU32 {
+        self.generation
+    }
+
     fn new(mesh: Arc<OccluderMesh>, world_from_mesh: &DAffine3) -> Result<Self, CullError> {
         let mut instance = Self {
             mesh: Some(mesh),

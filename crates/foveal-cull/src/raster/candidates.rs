@@ -22,11 +22,17 @@ pub(crate) struct FrameScratch {
     pub(crate) candidates: Vec<Candidate>,
     /// Drawing order: the bits of the nearest distance, then the index of the candidate.
     pub(super) order: Vec<u64>,
+    /// Where the best candidates are chosen.
+    pub(super) worths: Vec<Worth>,
     /// Clip rows per instance.
     pub(crate) rows: Vec<[[f64; 4]; 4]>,
     /// Candidates found by each part of the selection.
     pub(crate) parts: Vec<Part>,
 }
+
+/// What a candidate hides for its work if that is known, its work, and its place in the order.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Worth(pub(super) Option<f32>, pub(super) f32, pub(super) u64);
 
 /// Candidates among some of the clusters.
 #[derive(Clone, Debug, Default)]

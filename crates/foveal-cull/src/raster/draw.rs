@@ -73,6 +73,9 @@ impl Kernel for Draw<'_, '_> {
             if let Some(drawn) = drawn.as_deref_mut() {
                 drawn.push(o as u32);
             }
+            if let Some(record) = &mut band.record {
+                record.candidate = o as u32;
+            }
             let cluster = &mesh.clusters[c.cluster as usize];
             let rows = blocks[1] - band.first_row..blocks[3] + 1 - band.first_row;
             let work = WORK_OF_CLUSTER + u32::from(cluster.quad_count);

@@ -107,5 +107,10 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
             }
         }
         band.work[(by - band.first_row) as usize] += work;
+        if work > WORK_OF_ROW
+            && let Some(record) = &mut band.record
+        {
+            record.add(by, [first, last], work);
+        }
     }
 }

@@ -5,9 +5,10 @@
 //! the result does not depend on the order in which occluders were added. Several threads share the
 //! work in more parts than there are threads, and take the next part when they are done.
 
-use super::candidates::{Candidate, FrameScratch, Part};
+use super::candidates::{Candidate, FrameScratch, Part, Worth};
 use crate::camera::Camera;
 use crate::format::{BLOCK_SAMPLES, SAMPLES, encode};
+use crate::occluder::OccluderUsefulness;
 use crate::occluder::mesh::Cluster;
 use crate::occluder::set::{Instance, OccluderSet};
 use crate::projection::near::{Clipped, clip_box};
@@ -47,6 +48,8 @@ pub(crate) struct Choice<'a> {
     pub(crate) pixels_per_quad: f32,
     /// Shift of a point at depth 1 within the view region, samples.
     pub(crate) shift: f32,
+    /// Leaves out what hid nothing in the frames before.
+    pub(crate) usefulness: Option<&'a OccluderUsefulness>,
 }
 
 impl FrameScratch {
@@ -116,8 +119,56 @@ impl FrameScratch {
             stats.occluder_models += part.stats.occluder_models;
             stats.occluder_triangles += part.stats.occluder_triangles;
             stats.clusters += part.stats.clusters;
+            stats.clusters_not_useful += part.stats.clusters_not_useful;
         }
         stats
+    }
+
+    /// Keeps those clusters that hide most for their work, as far as so much work goes; returns how
+    /// many are left out.
+    pub(crate) fn keep_best(
+        &mut self,
+        set: &OccluderSet,
+        usefulness: &OccluderUsefulness,
+        most_work: f64,
+    ) -> u64 {
+        let all = self.order.len();
+        self.worths.clear();
+        self.worths.extend(self.order.iter().map(|&o| {
+            let c = &self.candidates[o as u32 as usize];
+            let (slot, cluster) = (c.instance as usize, c.cluster as usize);
+            let [x0, y0, x1, y1] = c.blocks.map(u32::from);
+            let blocks = (x1 + 1 - x0) * (y1 + 1 - y0);
+            let (worth, work) = usefulness.worth(slot, &set.instances[slot], cluster, blocks);
+            Worth(worth, work, o)
+        }));
+        // The best first, and the nearest of equally good ones. What is not known comes last, but
+        // gets a part of the work before.
+        self.worths.sort_unstable_by(|a, b| {
+            let known = |w: &Worth| w.0.unwrap_or(-1.0);
+            known(b).total_cmp(&known(a)).then(a.2.cmp(&b.2))
+        });
+        let known = self.worths.partition_point(|w| w.0.is_some());
+        let (known, unknown) = self.worths.split_at(known);
+        self.order.clear();
+        let mut sum = 0.0;
+        let mut take = |some: &[Worth], most: f64| {
+            let mut taken = 0;
+            for w in some {
+                if sum + f64::from(w.1) > most {
+                    break;
+                }
+                sum += f64::from(w.1);
+                self.order.push(w.2);
+                taken += 1;
+            }
+            taken
+        };
+        let tried = take(unknown, most_work * PART_OF_UNKNOWN);
+        take(known, most_work);
+        take(&unknown[tried..], most_work);
+        self.sort();
+        (all - self.order.len()) as u64
     }
 
     /// Joins the lists of the first `parts` parts.
@@ -129,6 +180,11 @@ impl FrameScratch {
             self.candidates.extend_from_slice(&part.candidates);
             self.order.extend(part.order.iter().map(|o| o + offset));
         }
+        self.sort();
+    }
+
+    /// Sorts the clusters into the order of drawing.
+    fn sort(&mut self) {
         self.order.sort_unstable();
         // Equal distances are ordered by content, not by the order in which occluders were added.
         let candidates = &self.candidates;
@@ -175,6 +231,7 @@ impl Kernel for Select<'_> {
             size_threshold,
             pixels_per_quad,
             shift,
+            usefulness,
             ..
         } = choice;
         let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
@@ -279,11 +336,16 @@ impl Kernel for Select<'_> {
                     // Perspective: the nearest distance. In orthographic views W is 1, so that
                     // depth decides.
                     let near = (1.0 / place.depth).max(0.0);
+                    let slot = first_instance + index;
+                    if usefulness.is_some_and(|u| !u.wants(slot, instance, first + i)) {
+                        stats.clusters_not_useful += 1;
+                        continue;
+                    }
                     let number = part.candidates.len() as u64;
                     part.order.push((u64::from(near.to_bits()) << 32) | number);
                     part.candidates.push(Candidate {
                         hash: cluster.hash ^ instance.hash,
-                        instance: (first_instance + index) as u32,
+                        instance: slot as u32,
                         cluster: (first + i) as u32,
                         ..c
                     });
@@ -302,6 +364,9 @@ struct Place {
     /// Its box crosses the near plane, and this is the place of the part beyond.
     crossing: bool,
 }
+
+/// Part of a frame's work that clusters of unknown worth get first.
+const PART_OF_UNKNOWN: f64 = 0.25;
 
 /// Least growth of the rectangles of clipped boxes, samples, against rounding.
 const GROWN: f32 = 1.0;

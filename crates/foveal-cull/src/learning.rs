@@ -1,0 +1,206 @@
+//! What occluders were worth in a frame: hidden boxes, laid over the record of the rasterizer.
+
+use crate::bounds::Aabb;
+use crate::culler::{Culler, Drawn};
+use crate::error::CullError;
+use crate::format::BLOCK;
+use crate::occluder::OccluderUsefulness;
+use crate::occluder::set::OccluderSet;
+use crate::occluder::usefulness::{Done, Observed};
+use crate::projection::boxes::Boxes8;
+use crate::projection::project::project;
+use crate::projection::screen::Screen;
+use crate::query::classify::Query;
+use crate::query::moving::OccludeeSet;
+use crate::simd::{Kernel, Lanes};
+use crate::visibility::Visibility;
+use glam::DVec3;
+
+/// Hidden boxes that one call looks at, at most. The next frame goes on with the others.
+const SAMPLES: usize = 256;
+
+/// Work of a cluster besides that of its blocks.
+const WORK_OF_CLUSTER: u32 = 16;
+
+impl OccluderUsefulness {
+    /// Observes results of the culler's frame: as many calls as there were queries, before
+    /// [`learn`](Self::learn). Boxes are in metres relative to `origin` (world).
+    ///
+    /// Up to 256 hidden boxes are looked at, others in the next frame.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] if there are not as many results as boxes.
+    pub fn observe(
+        &mut self,
+        culler: &Culler,
+        boxes: &[Aabb],
+        origin: impl Into<[f64; 3]>,
+        results: &[Visibility],
+    ) -> Result<(), CullError> {
+        if results.len() != boxes.len() {
+            return Err(CullError::LengthMismatch {
+                expected: boxes.len(),
+                found: results.len(),
+            });
+        }
+        if let Some(query) = culler.prepared(DVec3::from(origin.into())) {
+            culler.instruction_set().run(LayOver {
+                query: &query,
+                boxes,
+                results,
+                observed: &mut self.observed,
+            });
+        }
+        Ok(())
+    }
+
+    /// Observes the results of [`Culler::query_set`], as [`observe`](Self::observe) does.
+    ///
+    /// # Errors
+    /// [`CullError::LengthMismatch`] if `results` has not [`OccludeeSet::result_count`] elements.
+    pub fn observe_set(
+        &mut self,
+        culler: &Culler,
+        set: &OccludeeSet,
+        results: &[Visibility],
+    ) -> Result<(), CullError> {
+        self.observe(culler, set.boxes(), set.origin(), results)
+    }
+
+    /// Learns what the occluders of the culler's frame were worth, from what was observed since the
+    /// last call. Learns nothing if nothing was observed, or if the frame was rasterized without
+    /// [`FrameOptions::usefulness`](crate::FrameOptions::usefulness).
+    ///
+    /// `occluders` is the set that was rasterized.
+    pub fn learn(&mut self, culler: &Culler, occluders: &OccluderSet) {
+        if !core::mem::take(&mut self.observed.any) {
+            return;
+        }
+        let Some(drawn) = culler.recorded() else {
+            self.observed.over.fill(0);
+            return;
+        };
+        self.next();
+        self.timed(drawn.ns, drawn.work);
+        let mut all = core::mem::take(&mut self.done);
+        self.find_done(&drawn, occluders, &mut all);
+        for (candidate, done) in drawn.candidates.iter().zip(&all) {
+            let (slot, cluster) = candidate.place();
+            let known = occluders.instances.get(slot as usize);
+            if let Some(done) = *done
+                && let Some(instance) = known.filter(|i| cluster < i.clusters)
+            {
+                let first = self.room(slot as usize, instance);
+                self.enter(first + cluster as usize, done);
+            }
+        }
+        self.done = all;
+        self.observed.over.fill(0);
+    }
+
+    /// What each candidate did; none for those that were not drawn.
+    fn find_done(
+        &mut self,
+        drawn: &Drawn<'_>,
+        occluders: &OccluderSet,
+        done: &mut Vec<Option<Done>>,
+    ) {
+        done.clear();
+        done.resize(drawn.candidates.len(), None);
+        for &candidate in drawn.drawn.iter().flatten() {
+            let (slot, cluster) = drawn.candidates[candidate as usize].place();
+            let mesh = occluders.instances.get(slot as usize);
+            let cluster = mesh
+                .and_then(|i| i.mesh.as_deref())
+                .and_then(|mesh| mesh.clusters.get(cluster as usize));
+            done[candidate as usize] = Some(Done {
+                hidden: 0,
+                work: WORK_OF_CLUSTER + cluster.map_or(0, |c| u32::from(c.quad_count)),
+            });
+        }
+        // From differences to boxes over each block, then to sums from the left.
+        let width = drawn.blocks_x as usize + 1;
+        for row in self.observed.over.chunks_mut(width) {
+            let (mut boxes, mut sum) = (0, 0);
+            for at in row {
+                boxes += *at;
+                *at = sum;
+                sum += boxes;
+            }
+        }
+        for touched in drawn.touched.iter().flatten() {
+            if let Some(done) = &mut done[touched.candidate as usize] {
+                let row = usize::from(touched.row) * width;
+                let sum = |block: u16| self.observed.over.get(row + usize::from(block));
+                let ends = sum(touched.first).zip(sum(touched.last + 1));
+                done.hidden += ends.map_or(0, |(first, end)| (end - first) as u32);
+                done.work += u32::from(touched.work);
+            }
+        }
+    }
+}
+
+/// The kernel that lays hidden boxes over the blocks of the buffer.
+struct LayOver<'a> {
+    query: &'a Query<'a>,
+    boxes: &'a [Aabb],
+    results: &'a [Visibility],
+    observed: &'a mut Observed,
+}
+
+impl Kernel for LayOver<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes>(self, l: L) {
+        let Self {
+            query,
+            boxes,
+            results,
+            observed,
+        } = self;
+        let width = query.buffer.blocks_x as usize + 1;
+        if !observed.any {
+            observed.all = true;
+        }
+        observed.any = true;
+        observed
+            .over
+            .resize(width * query.buffer.blocks_y as usize, 0);
+        if boxes.is_empty() {
+            return;
+        }
+        let screen = Screen {
+            hiz: None,
+            ..query.screen
+        };
+        let start = observed.turn % boxes.len();
+        let mut hidden = (start..boxes.len())
+            .chain(0..start)
+            .filter(|&i| results[i] == Visibility::Occluded)
+            .take(SAMPLES);
+        let mut seen = 0;
+        loop {
+            let mut eight = [Aabb::EMPTY; 8];
+            let mut count = 0;
+            for (to, i) in eight.iter_mut().zip(&mut hidden) {
+                *to = boxes[i];
+                observed.turn = i + 1;
+                count += 1;
+                seen += 1;
+            }
+            let p = project(l, &screen, &Boxes8::of(l, &eight));
+            for i in (0..count).filter(|i| (p.outside | p.crossing) >> i & 1 == 0) {
+                let [x0, y0, x1, y1] = p.pixels.map(|v| v[i] as usize / BLOCK as usize);
+                for row in observed.over.chunks_mut(width).take(y1 + 1).skip(y0) {
+                    row[x0] += 1;
+                    row[x1 + 1] -= 1;
+                }
+            }
+            if count < 8 {
+                observed.all &= seen < SAMPLES;
+                return;
+            }
+        }
+    }
+}
