@@ -8,12 +8,14 @@ use common::{Language, compiler, crate_dir, done, library_dir, program, scratch}
 use std::path::Path;
 use std::process::Command;
 
-const EXAMPLES: [(&str, Language); 5] = [
+const EXAMPLES: [(&str, Language); 7] = [
     ("examples/street.c", Language::C),
     ("examples/jobs.cpp", Language::Cpp),
     ("tests/moc_shim.cpp", Language::Cpp),
     ("tests/macros.cpp", Language::Cpp),
     ("tests/occludees.c", Language::C),
+    ("examples/shadows.c", Language::C),
+    ("tests/receivers.cpp", Language::Cpp),
 ];
 
 fn run(program: &Path) -> String {
@@ -35,6 +37,11 @@ fn examples_run_with_the_static_library() {
         outputs[1]
     );
     assert!(outputs[4].contains("carts hidden"), "{}", outputs[4]);
+    assert!(
+        outputs[5].contains("of 6 shadow maps are drawn"),
+        "{}",
+        outputs[5]
+    );
 }
 
 #[test]

@@ -3,6 +3,7 @@
 mod c_arguments;
 mod c_calls;
 mod c_occludees;
+mod c_receivers;
 #[cfg(feature = "renderer")]
 mod cameras;
 mod culler;
