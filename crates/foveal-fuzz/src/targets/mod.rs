@@ -13,6 +13,7 @@ mod environment;
 mod import;
 mod list;
 mod mesh_bytes;
+mod receivers;
 #[cfg(feature = "renderer")]
 mod records;
 #[cfg(feature = "renderer")]
