@@ -520,6 +520,59 @@ private:
     detail::Handle<FovealCuller, foveal_culler_destroy> culler_;
 };
 
+/// The places of one shadow map where a shadow can be seen. `receive` what the camera sees, then `cull` casters.
+class ReceiverMask {
+public:
+    /// An empty mask for a square shadow map of so many texels per side, as a light sees it.
+    ReceiverMask(const View &light, std::uint32_t shadow_map_px) {
+        FovealCullReceiverMask *mask = nullptr;
+        expect_ok(foveal_cull_receiver_mask_create(light.get(), shadow_map_px, &mask));
+        mask_.reset(mask);
+    }
+    /// Empties it and takes another shadow map. The reach stays.
+    void reset(const View &light, std::uint32_t shadow_map_px) {
+        expect_ok(foveal_cull_receiver_mask_reset(mask_.get(), light.get(), shadow_map_px));
+    }
+    /// How far beside a place lookups read, for receivers that are entered from now on.
+    void set_reach(double texels, double metres) {
+        expect_ok(foveal_cull_receiver_mask_set_reach(mask_.get(), texels, metres));
+    }
+    void clear() { expect_ok(foveal_cull_receiver_mask_clear(mask_.get())); }
+    /// Whether no receiver meets the shadow map, which then need not be drawn.
+    bool empty() const {
+        std::uint32_t empty = 0;
+        expect_ok(foveal_cull_receiver_mask_is_empty(mask_.get(), &empty));
+        return empty != 0;
+    }
+    /// Enters the boxes that `results` call visible.
+    void receive(const Box *boxes, std::size_t count, const Visibility *results, const Point &origin = {}) {
+        expect_ok(foveal_cull_receiver_mask_receive(mask_.get(), count == 0 ? nullptr : boxes->min, count,
+                                                    origin.data(), reinterpret_cast<const std::uint8_t *>(results)));
+    }
+    void receive(const std::vector<Box> &boxes, const std::vector<Visibility> &results, const Point &origin = {}) {
+        same_length(boxes.size(), results.size());
+        receive(boxes.data(), boxes.size(), results.data(), origin);
+    }
+    /// Leaves out casters whose shadows fall on no receiver: changes results that are visible.
+    void cull(const Box *boxes, std::size_t count, Visibility *results, const Point &origin = {}) const {
+        expect_ok(foveal_cull_receiver_mask_cull(mask_.get(), count == 0 ? nullptr : boxes->min, count,
+                                                 origin.data(), reinterpret_cast<std::uint8_t *>(results)));
+    }
+    void cull(const std::vector<Box> &boxes, std::vector<Visibility> &results, const Point &origin = {}) const {
+        same_length(boxes.size(), results.size());
+        cull(boxes.data(), boxes.size(), results.data(), origin);
+    }
+    const FovealCullReceiverMask *get() const noexcept { return mask_.get(); }
+
+private:
+    static void same_length(std::size_t boxes, std::size_t results) {
+        if (boxes != results) {
+            FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many results as boxes are needed");
+        }
+    }
+    detail::Handle<FovealCullReceiverMask, foveal_cull_receiver_mask_destroy> mask_;
+};
+
 } // namespace cull
 } // namespace foveal
 

@@ -2,6 +2,7 @@
 #![allow(unsafe_code, reason = "pointers from C; see the SAFETY lines")]
 
 use crate::status::{Fault, FovealCullStatus};
+use foveal_cull::Visibility;
 use std::sync::{RwLock, RwLockReadGuard, RwLockWriteGuard, TryLockError};
 
 /// Types for which any bits that C can write are a value.
@@ -86,6 +87,45 @@ pub(crate) unsafe fn zeroed_list<'a, T>(
         pointer.write_bytes(0, length);
         core::slice::from_raw_parts_mut(pointer, length)
     })
+}
+
+/// Results of an earlier call, which C may have changed: other numbers than those of results are
+/// refused.
+///
+/// # Safety
+/// The pointer is null, or names `length` bytes that nothing changes during `'a`.
+pub(crate) unsafe fn results<'a>(
+    pointer: *const u8,
+    length: usize,
+    name: &str,
+) -> Result<&'a [Visibility], Fault> {
+    // SAFETY: the caller's word.
+    let bytes = unsafe { list(pointer, length, name) }?;
+    if let Some(at) = bytes.iter().position(|b| *b > Visibility::Occluded as u8) {
+        let text = format!("'{name}'[{at}] is {}: no FovealCullVisibility", bytes[at]);
+        return Err(Fault::argument(text));
+    }
+    // SAFETY: the same bytes, each of which is a `Visibility`.
+    Ok(unsafe { core::slice::from_raw_parts(bytes.as_ptr().cast(), length) })
+}
+
+/// Results that are read and written. Other numbers than those of results are refused.
+///
+/// # Safety
+/// The pointer is null, or names `length` bytes that nothing else uses during `'a`.
+pub(crate) unsafe fn results_mut<'a>(
+    pointer: *mut u8,
+    length: usize,
+    name: &str,
+) -> Result<&'a mut [Visibility], Fault> {
+    // SAFETY: the caller's word. What is returned is used no more.
+    unsafe { results(pointer, length, name) }?;
+    if length == 0 {
+        return Ok(&mut []);
+    }
+    // SAFETY: not null, at most isize::MAX bytes, each a `Visibility`, by the check above; the
+    // caller says that nothing else uses them.
+    Ok(unsafe { core::slice::from_raw_parts_mut(pointer.cast(), length) })
 }
 
 /// Checks a list for results without writing to it: a call that fails leaves it as it was.

@@ -9,9 +9,9 @@
 //! Everything that C can get wrong and that can be noticed is an error code: null and misaligned
 //! pointers, wrong lengths, arrays for results that overlap the boxes or ids of the same call,
 //! numbers that are not finite, ids of removed objects and of other sets, unknown enumerators,
-//! structs of another version, an object that another thread is changing. No panic crosses the border. What cannot be noticed is the caller's promise: pointers
-//! that are neither null nor valid, objects that were destroyed, and arrays that are shorter than
-//! said.
+//! structs of another version, an object that another thread is changing. No panic crosses the
+//! border. What cannot be noticed is the caller's promise: pointers that are neither null nor valid,
+//! objects that were destroyed, and arrays that are shorter than said.
 //!
 //! Unsafe code is in the modules below, and each block says why it is sound. They only translate:
 //! no algorithm is here.
@@ -28,6 +28,7 @@ mod occludees;
 mod occluders;
 mod place;
 mod rebuild;
+mod receivers;
 mod status;
 mod tree;
 mod version;
@@ -41,6 +42,7 @@ pub use mesh::*;
 pub use occludees::*;
 pub use occluders::*;
 pub use rebuild::*;
+pub use receivers::*;
 pub use status::FovealCullStatus;
 pub use tree::*;
 pub use version::*;

@@ -22,7 +22,8 @@ pub enum FovealCullStatus {
     BadArgument = 3,
     /// A number is NaN or infinite that must be finite.
     NotFinite = 4,
-    /// A buffer side of 0 pixels, or of more than 4,096.
+    /// A buffer side of 0 pixels or of more than 4,096, or a shadow map's of 0 texels or of more than
+    /// 16,384.
     BadSize = 5,
     /// A view cannot be culled for.
     BadView = 6,
@@ -74,7 +75,9 @@ impl FovealCullStatus {
             Self::BadStructSize => c"a struct's size is none that this version knows",
             Self::BadArgument => c"an argument is not allowed",
             Self::NotFinite => c"a number must be finite",
-            Self::BadSize => c"a buffer's side must be 1 to 4096 pixels",
+            Self::BadSize => {
+                c"a buffer's side must be 1 to 4096 pixels, a shadow map's 1 to 16384 texels"
+            }
             Self::BadView => c"the view cannot be culled for",
             Self::BadIndices => c"the indices are not triangles over the positions",
             Self::TooLarge => c"the mesh has too many triangles",
@@ -120,7 +123,7 @@ impl From<CullError> for Fault {
     fn from(error: CullError) -> Self {
         use FovealCullStatus as Status;
         let status = match error {
-            CullError::BadSize { .. } => Status::BadSize,
+            CullError::BadSize { .. } | CullError::BadShadowMap { .. } => Status::BadSize,
             CullError::NotFinite(_) => Status::NotFinite,
             CullError::BadView(_) => Status::BadView,
             CullError::NotTriangles { .. } | CullError::IndexOutOfRange { .. } => {

@@ -8,12 +8,14 @@ use common::{Language, compiler, crate_dir, done, library_dir, program, scratch}
 use std::path::Path;
 use std::process::Command;
 
-const EXAMPLES: [(&str, Language); 5] = [
+const EXAMPLES: [(&str, Language); 7] = [
     ("examples/street.c", Language::C),
     ("examples/jobs.cpp", Language::Cpp),
     ("tests/moc_shim.cpp", Language::Cpp),
     ("tests/macros.cpp", Language::Cpp),
     ("tests/occludees.c", Language::C),
+    ("examples/shadows.c", Language::C),
+    ("tests/receivers.cpp", Language::Cpp),
 ];
 
 fn run(program: &Path) -> String {
@@ -35,6 +37,11 @@ fn examples_run_with_the_static_library() {
         outputs[1]
     );
     assert!(outputs[4].contains("carts hidden"), "{}", outputs[4]);
+    assert!(
+        outputs[5].contains("of 6 shadow maps are drawn"),
+        "{}",
+        outputs[5]
+    );
 }
 
 #[test]
@@ -91,61 +98,5 @@ fn examples_are_clean_under_sanitizers() {
             &folder,
             &flags,
         ));
-    }
-}
-
-#[test]
-fn what_is_installed_is_found_by_pkg_config_and_by_cmake() {
-    let folder = scratch("installed");
-    let prefix = folder.join("prefix");
-    let mut install = Command::new(crate_dir().join("install.sh"));
-    let said = done(install.arg(&prefix).arg("--from").arg(library_dir()));
-    let said = String::from_utf8(said.stdout).unwrap();
-    assert!(said.contains(env!("CARGO_PKG_VERSION")), "{said}");
-    let source = crate_dir().join(EXAMPLES[0].0);
-    let has = |name: &str| {
-        let found = Command::new(name).arg("--version").output();
-        let found = found.is_ok_and(|o| o.status.success());
-        if !found {
-            println!("skipped: there is no {name}");
-        }
-        found
-    };
-    if has("pkg-config") {
-        let mut flags = Command::new("pkg-config");
-        flags.env("PKG_CONFIG_PATH", prefix.join("lib/pkgconfig"));
-        let flags = done(flags.args(["--cflags", "--libs", "--static", "foveal_cull"]));
-        let flags = String::from_utf8(flags.stdout).unwrap();
-        let program = folder.join("street");
-        // The headers of the installation, not of the repository.
-        let mut command = Command::new("cc");
-        command.arg(&source).arg("-o").arg(&program);
-        done(command.args(flags.split_whitespace()));
-        done(Command::new(&program).env("LD_LIBRARY_PATH", prefix.join("lib")));
-    }
-    if has("cmake") {
-        let project = folder.join("project");
-        std::fs::create_dir_all(&project).unwrap();
-        let jobs = crate_dir().join(EXAMPLES[1].0);
-        let text = format!(
-            "cmake_minimum_required(VERSION 3.16)\nproject(user C CXX)\n\
-             find_package(foveal_cull {} CONFIG REQUIRED)\nfind_package(Threads REQUIRED)\n\
-             add_executable(street {})\ntarget_link_libraries(street foveal::cull)\n\
-             add_executable(jobs {})\ntarget_compile_features(jobs PRIVATE cxx_std_17)\n\
-             target_link_libraries(jobs foveal::cull_static Threads::Threads)\n",
-            env!("CARGO_PKG_VERSION"),
-            source.display(),
-            jobs.display()
-        );
-        std::fs::write(project.join("CMakeLists.txt"), text).unwrap();
-        let build = folder.join("build");
-        let mut configure = Command::new("cmake");
-        configure.arg("-S").arg(&project).arg("-B").arg(&build);
-        let mut at = std::ffi::OsString::from("-DCMAKE_PREFIX_PATH=");
-        at.push(&prefix);
-        done(configure.arg(at));
-        done(Command::new("cmake").arg("--build").arg(&build));
-        done(&mut Command::new(build.join("street")));
-        done(&mut Command::new(build.join("jobs")));
     }
 }

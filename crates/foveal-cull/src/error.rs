@@ -17,6 +17,13 @@ pub enum CullError {
         /// Requested height, pixels.
         height_px: u32,
     },
+    /// A shadow map of 0 texels per side, or of more than four times
+    /// [`MAX_SIDE_PX`](crate::MAX_SIDE_PX).
+    #[non_exhaustive]
+    BadShadowMap {
+        /// Requested side, texels.
+        side_px: u32,
+    },
     /// A number is NaN or infinite where it must be finite.
     NotFinite(Quantity),
     /// A view cannot be culled for.
@@ -147,6 +154,11 @@ impl fmt::Display for CullError {
                 f,
                 "occlusion buffer of {width_px} x {height_px} pixels: each side must be 1 to {} pixels",
                 crate::limits::MAX_SIDE_PX
+            ),
+            Self::BadShadowMap { side_px } => write!(
+                f,
+                "shadow map of {side_px} texels per side: must be 1 to {}",
+                4 * crate::limits::MAX_SIDE_PX
             ),
             Self::NotFinite(quantity) => write!(f, "{quantity} must be finite"),
             Self::BadView(_) => f.write_str("the view cannot be culled for"),

@@ -197,6 +197,44 @@ fn casters_behind_beside_and_outside_are_left_out() {
 }
 
 #[test]
+fn a_mask_that_takes_another_map_is_a_new_one_with_the_same_reach() {
+    let sun = Projection::orthographic(8.0, 1.0, 0.0, 20.0);
+    let down = Eye::look_at([0.0, 10.0, 0.0], [0.0; 3], [0.0, 0.0, -1.0], sun);
+    let sun = View::mono(down);
+    let mut r = Random::new(3);
+    let boxes: Vec<Aabb> = (0..400)
+        .map(|_| around(r.vec(9.0).as_vec3().to_array(), 0.2))
+        .collect();
+    let seen: Vec<Visibility> = (0..boxes.len())
+        .map(|i| [Visible, Occluded][usize::from(i % 20 > 0)])
+        .collect();
+    let results = |mask: &mut ReceiverMask| {
+        mask.receive(&boxes, [0.0; 3], &seen).unwrap();
+        let mut results = vec![Visible; boxes.len()];
+        mask.cull(&boxes, [0.0; 3], &mut results).unwrap();
+        results
+    };
+    let mut reused = ReceiverMask::new(&side_of_a_lamp(), 256)
+        .unwrap()
+        .with_reach(9.0, 0.1);
+    results(&mut reused);
+    for (view, side) in [(sun, 2048), (side_of_a_lamp(), 3), (sun, 64)] {
+        reused.reset(&view, side).unwrap();
+        assert!(reused.is_empty());
+        let mut new = ReceiverMask::new(&view, side).unwrap().with_reach(9.0, 0.1);
+        let of_new = results(&mut new);
+        assert!(of_new.contains(&Visible) && of_new.contains(&Outside));
+        assert_eq!(results(&mut reused), of_new);
+        // One that cannot be is refused, and changes nothing.
+        assert!(reused.reset(&view, 0).is_err());
+        let mut bad = view;
+        bad.eye.world_from_eye.translation[1] = f64::NAN;
+        assert!(reused.reset(&bad, 64).is_err());
+        assert_eq!(results(&mut reused), of_new);
+    }
+}
+
+#[test]
 fn what_cannot_be_computed_with_is_everywhere() {
     let caster = [around([0.0, 0.0, -5.0], 0.3)];
     let cull = |mask: &ReceiverMask, origin: [f64; 3]| {
@@ -224,7 +262,7 @@ fn what_cannot_be_computed_with_is_everywhere() {
 fn bad_input_is_refused() {
     for side in [0, 16_385, u32::MAX] {
         let error = ReceiverMask::new(&side_of_a_lamp(), side).unwrap_err();
-        assert!(matches!(error, CullError::BadSize { .. }), "{side}");
+        assert!(matches!(error, CullError::BadShadowMap { .. }), "{side}");
     }
     let mut view = side_of_a_lamp();
     view.eye.world_from_eye.translation[0] = f64::NAN;

@@ -87,27 +87,40 @@ impl ReceiverMask {
     /// of the view count nothing.
     ///
     /// # Errors
-    /// [`CullError::BadView`] or [`CullError::NotFinite`] for a bad view, [`CullError::BadSize`]
-    /// for a side of 0 texels or of more than four times [`MAX_SIDE_PX`].
+    /// [`CullError::BadView`] or [`CullError::NotFinite`] for a bad view,
+    /// [`CullError::BadShadowMap`] for a side of 0 texels or of more than four times
+    /// [`MAX_SIDE_PX`].
     pub fn new(light: &View, shadow_map_px: u32) -> Result<Self, CullError> {
-        if !(1..=4 * MAX_SIDE_PX).contains(&shadow_map_px) {
-            return Err(CullError::BadSize {
-                width_px: shadow_map_px,
-                height_px: shadow_map_px,
-            });
-        }
-        let side = f64::from(shadow_map_px);
-        let camera = Camera::new(&View::mono(light.eye), side, side)?;
+        let camera = camera_of(light, shadow_map_px)?;
+        Ok(Self::of(camera, light, shadow_map_px, Vec::new()))
+    }
+
+    /// Empties the mask and takes another shadow map for it: what [`new`](Self::new) makes, with the
+    /// reach and the memory of this one. After an error the mask is as it was.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn reset(&mut self, light: &View, shadow_map_px: u32) -> Result<(), CullError> {
+        let camera = camera_of(light, shadow_map_px)?;
+        let memory = core::mem::take(&mut self.farthest);
+        let (texels, metres) = (self.reach_texels, self.reach_m);
+        *self = Self::of(camera, light, shadow_map_px, memory).with_reach(texels, metres);
+        Ok(())
+    }
+
+    fn of(camera: Camera, light: &View, shadow_map_px: u32, mut memory: Vec<f64>) -> Self {
         let cells = (shadow_map_px / TEXELS).clamp(1, CELLS) as usize;
-        Ok(Self {
+        memory.clear();
+        memory.resize(cells * cells, f64::NEG_INFINITY);
+        Self {
             camera,
             far_m: light.eye.projection.near_far_m()[1],
-            side,
+            side: f64::from(shadow_map_px),
             cells,
             reach_texels: 2.0,
             reach_m: 0.0,
-            farthest: vec![f64::NEG_INFINITY; cells * cells],
-        })
+            farthest: memory,
+        }
     }
 
     /// The same mask for lookups that read up to so many texels beside a place, for instance half
@@ -115,12 +128,15 @@ impl ReceiverMask {
     /// instance along its normal. 2 texels and 0 metres by default. NaN and negative numbers count as
     /// 0. Set it before [`receive`](Self::receive): receivers that were entered keep the old reach.
     #[must_use]
-    pub fn with_reach(self, texels: f64, metres: f64) -> Self {
-        Self {
-            reach_texels: texels.max(0.0),
-            reach_m: metres.max(0.0),
-            ..self
-        }
+    pub fn with_reach(mut self, texels: f64, metres: f64) -> Self {
+        self.set_reach(texels, metres);
+        self
+    }
+
+    /// Sets what [`with_reach`](Self::with_reach) says, for receivers that are entered from now on.
+    pub fn set_reach(&mut self, texels: f64, metres: f64) {
+        self.reach_texels = texels.max(0.0);
+        self.reach_m = metres.max(0.0);
     }
 
     /// Empties the mask.
@@ -317,6 +333,17 @@ impl Footprint {
         self.nearest = self.nearest.min(corner.z);
         self.farthest = self.farthest.max(corner.z);
     }
+}
+
+/// The light, with the shadow map's texels for samples.
+fn camera_of(light: &View, shadow_map_px: u32) -> Result<Camera, CullError> {
+    if !(1..=4 * MAX_SIDE_PX).contains(&shadow_map_px) {
+        return Err(CullError::BadShadowMap {
+            side_px: shadow_map_px,
+        });
+    }
+    let side = f64::from(shadow_map_px);
+    Camera::new(&View::mono(light.eye), side, side)
 }
 
 fn same_length(boxes: &[Aabb], results: &[Visibility]) -> Result<(), CullError> {

@@ -13,6 +13,7 @@ use FovealCullStatus as Status;
 
 use super::c_arguments::{Arguments, Calls, boxes};
 use super::c_occludees::Occludees;
+use super::c_receivers::Receivers;
 use crate::random::{Choices, random_bytes};
 
 /// Makes 60 to 150 calls.
@@ -21,7 +22,7 @@ pub fn c_calls(input: &[u8]) {
     let r = &mut choices;
     let mut world = World::default();
     for _ in 0..60 + r.below(90) {
-        match r.below(19) {
+        match r.below(23) {
             0..2 => world.create(r),
             2..4 => world.bake(r),
             13 => world.bake_heights(r),
@@ -30,6 +31,8 @@ pub fn c_calls(input: &[u8]) {
             11 => world.reload(r),
             14..18 => world.occludees.change(r),
             18 => world.occludees.create(r),
+            19 => world.receivers.create(r),
+            20..23 => world.receivers.change(r),
             _ => world.destroy_some(r),
         }
     }
@@ -51,6 +54,7 @@ struct World {
     trees: Vec<(*mut FovealCullTree, usize)>,
     cullers: Vec<(*mut FovealCuller, usize)>,
     occludees: Occludees,
+    receivers: Receivers,
     calls: Calls,
 }
 
@@ -458,7 +462,7 @@ mod tests {
     /// A model that refuses everything, or nothing, would prove nothing.
     #[test]
     fn calls_of_random_bytes_are_both_refused_and_done() {
-        let mut calls = [0; 4];
+        let mut calls = [0; 6];
         for seed in seeds() {
             let mut r = Choices::new(&seed);
             let mut world = World::default();
@@ -467,12 +471,19 @@ mod tests {
                 world.bake(&mut r);
                 world.change_occluders(&mut r);
                 world.occludees.create(&mut r);
+                world.receivers.create(&mut r);
                 for _ in 0..8 {
                     world.occludees.change(&mut r);
+                    world.receivers.change(&mut r);
                 }
                 world.frame(&mut r);
             }
-            let all = [world.calls.0, world.occludees.calls.0].concat();
+            let all = [
+                world.calls.0,
+                world.occludees.calls.0,
+                world.receivers.calls.0,
+            ]
+            .concat();
             calls.iter_mut().zip(all).for_each(|(sum, n)| *sum += n);
         }
         assert!(calls.iter().all(|n| *n > 50), "{calls:?}");

@@ -5,11 +5,11 @@ use std::sync::{Arc, OnceLock};
 
 use foveal_cull::{
     BakeOptions, CullError, Culler, Eye, FrameOptions, InstructionSet, OccludeeSet, OccludeeTree,
-    OccluderMesh, OccluderSet, ReceiverMask, SingleThread, Threads, View, Visibility,
-    WorkerThreads,
+    OccluderMesh, OccluderSet, SingleThread, Threads, View, Visibility, WorkerThreads,
 };
 use glam::{DAffine3, DVec3, Vec3};
 
+use super::receivers::shadows_stay;
 use super::scenes::promise::{
     culls_nothing_that_either_eye_sees, culls_nothing_visible, culls_nothing_visible_around, size,
 };
@@ -120,7 +120,7 @@ fn agree(choices: &mut Choices<'_>) {
             }
         }
     }
-    receivers_count(&view, &scene, choices);
+    shadows_stay(&view, &scene, choices);
     let Some(Answers {
         drawn: Ok(()),
         list,
@@ -149,37 +149,6 @@ fn agree(choices: &mut Choices<'_>) {
                 );
             }
         }
-    }
-}
-
-/// What receives a shadow and lies in the map may cast one on itself, and no other result changes.
-fn receivers_count(view: &View, scene: &Scene, choices: &mut Choices<'_>) {
-    let side = choices.pick(&[1, 2, 100, 16_384]);
-    let Ok(mask) = ReceiverMask::new(view, side) else {
-        return;
-    };
-    let texels = choices.pick(&[0.0, 2.0, 1e9, f64::NAN]);
-    let mut mask = mask.with_reach(texels, choices.pick(&[0.0, 0.1, -1.0, f64::INFINITY]));
-    let classes = [
-        Visibility::Visible,
-        Visibility::Outside,
-        Visibility::Small,
-        Visibility::Occluded,
-    ];
-    let before: Vec<Visibility> = (0..scene.boxes.len())
-        .map(|_| choices.pick(&classes))
-        .collect();
-    let mut after = before.clone();
-    let received = mask.receive(&scene.boxes, scene.origin, &before);
-    let culled = mask.cull(&scene.boxes, scene.origin, &mut after);
-    assert!(received.is_ok() && culled.is_ok());
-    for ((bounds, before), after) in scene.boxes.iter().zip(before).zip(after) {
-        let stays = if before.is_visible() {
-            after != Visibility::Occluded && (bounds.is_valid() || after.is_visible())
-        } else {
-            before == after
-        };
-        assert!(stays, "{bounds:?} was {before:?} and is {after:?}");
     }
 }
 

@@ -3,6 +3,7 @@
 mod c_arguments;
 mod c_calls;
 mod c_occludees;
+mod c_receivers;
 #[cfg(feature = "renderer")]
 mod cameras;
 mod culler;
@@ -12,6 +13,7 @@ mod environment;
 mod import;
 mod list;
 mod mesh_bytes;
+mod receivers;
 #[cfg(feature = "renderer")]
 mod records;
 #[cfg(feature = "renderer")]
