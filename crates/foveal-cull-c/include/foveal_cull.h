@@ -116,6 +116,8 @@ typedef struct FovealCullOccludees FovealCullOccludees;
 typedef struct FovealCullRebuild FovealCullRebuild;
 /* The places of one shadow map where a shadow can be seen, and how far from the light they are. */
 typedef struct FovealCullReceiverMask FovealCullReceiverMask;
+/* What each cluster of the occluders was worth in the frames before. */
+typedef struct FovealCullUsefulness FovealCullUsefulness;
 /* A culler with its occlusion buffer: one per view that is tested at the same time. */
 typedef struct FovealCuller FovealCuller;
 /* Threads of the library. */
@@ -216,6 +218,9 @@ typedef struct FovealCullFrameOptions {
     void *clock_user;
     /* Clock reading at or after which no further cluster is begun. */
     uint64_t deadline_ns;
+    /* What occluders were worth in the frames before: those that hid nothing are left out, and with a time limit
+     * those are drawn that hide most for their time. Null to draw all, nearest first. */
+    const FovealCullUsefulness *usefulness;
 } FovealCullFrameOptions;
 
 /* A task of a batch: call it with the batch's context and a number. It does not fail. */
@@ -264,6 +269,8 @@ typedef struct FovealCullStats {
     uint64_t clusters_rasterized;
     /* Clusters left out because the time was spent. */
     uint64_t clusters_over_budget;
+    /* Clusters left out because they hid nothing in the frames before. */
+    uint64_t clusters_not_useful;
 } FovealCullStats;
 
 /* ---- Version and errors ---- */
@@ -535,6 +542,40 @@ FovealCullStatus foveal_culler_read_depth(const FovealCuller *culler, float *pix
 
 /* Writes the stats of the last frame. Set `size` before. */
 FovealCullStatus foveal_culler_stats(const FovealCuller *culler, FovealCullStats *out);
+
+/* ---- Occluders that hide nothing ----
+ *
+ * Floors and outer walls often hide nothing that is asked for. In each frame: rasterize with `usefulness` in the
+ * options, test, observe the results, learn. Clusters (up to 64 quads of an occluder) that helped to hide no box
+ * for 6 to 24 frames are left out, and looked at again after 12 to 28 frames. Results stay safe, since what is
+ * not drawn hides nothing, but they depend on the frames before. One object for each culler. */
+
+/* Makes an object that knows nothing: all occluders are drawn. */
+FovealCullStatus foveal_cull_usefulness_create(FovealCullUsefulness **out);
+
+/* Drops it. Null is nothing. */
+void foveal_cull_usefulness_destroy(FovealCullUsefulness *usefulness);
+
+/* Forgets all that was learned, for instance when the camera is cut to another place. */
+FovealCullStatus foveal_cull_usefulness_forget(FovealCullUsefulness *usefulness);
+
+/* Observes the results that foveal_culler_test_boxes or foveal_culler_test_tree gave for boxes: as many calls as
+ * there were tests. Up to 256 hidden boxes are looked at, others in the next frame. */
+FovealCullStatus foveal_cull_usefulness_observe(FovealCullUsefulness *usefulness, const FovealCuller *culler,
+                                                const float *boxes, size_t count, const double *origin,
+                                                const uint8_t *results);
+
+/* Observes the results of foveal_culler_test_occludees. */
+FovealCullStatus foveal_cull_usefulness_observe_occludees(FovealCullUsefulness *usefulness,
+                                                          const FovealCuller *culler,
+                                                          const FovealCullOccludees *occludees,
+                                                          const uint8_t *results, size_t count);
+
+/* Learns what the occluders of the culler's frame were worth, from what was observed since the last call.
+ * `occluders` is the set that was rasterized. Learns nothing if nothing was observed, or without `usefulness` in
+ * the options of the frame. */
+FovealCullStatus foveal_cull_usefulness_learn(FovealCullUsefulness *usefulness, const FovealCuller *culler,
+                                              const FovealCullOccluders *occluders);
 
 /* ---- Shadows ----
  *

@@ -516,8 +516,51 @@ public:
         return stats;
     }
 
+    const FovealCuller *get() const noexcept { return culler_.get(); }
+
 private:
     detail::Handle<FovealCuller, foveal_culler_destroy> culler_;
+};
+
+/// What occluders were worth in the frames before, for `Options::usefulness`. In each frame `observe`, then `learn`.
+class Usefulness {
+public:
+    /// Nothing is known: all occluders are drawn.
+    Usefulness() {
+        FovealCullUsefulness *usefulness = nullptr;
+        expect_ok(foveal_cull_usefulness_create(&usefulness));
+        usefulness_.reset(usefulness);
+    }
+    /// Forgets all that was learned, for instance when the camera is cut to another place.
+    void forget() { expect_ok(foveal_cull_usefulness_forget(usefulness_.get())); }
+    /// Observes results of the culler's frame.
+    void observe(const Culler &culler, const Box *boxes, std::size_t count, const Visibility *results,
+                 const Point &origin = {}) {
+        expect_ok(foveal_cull_usefulness_observe(usefulness_.get(), culler.get(), count == 0 ? nullptr : boxes->min,
+                                                 count, origin.data(),
+                                                 reinterpret_cast<const std::uint8_t *>(results)));
+    }
+    void observe(const Culler &culler, const std::vector<Box> &boxes, const std::vector<Visibility> &results,
+                 const Point &origin = {}) {
+        if (boxes.size() != results.size()) {
+            FOVEAL_CULL_FAIL(FOVEAL_CULL_WRONG_LENGTH, "as many results as boxes are needed");
+        }
+        observe(culler, boxes.data(), boxes.size(), results.data(), origin);
+    }
+    /// Observes the results of a set of occludees.
+    void observe(const Culler &culler, const Occludees &occludees, const std::vector<Visibility> &results) {
+        expect_ok(foveal_cull_usefulness_observe_occludees(
+            usefulness_.get(), culler.get(), occludees.get(), reinterpret_cast<const std::uint8_t *>(results.data()),
+            results.size()));
+    }
+    /// Learns from what was observed since the last call. `occluders` is the set that was rasterized.
+    void learn(const Culler &culler, const Occluders &occluders) {
+        expect_ok(foveal_cull_usefulness_learn(usefulness_.get(), culler.get(), occluders.get()));
+    }
+    const FovealCullUsefulness *get() const noexcept { return usefulness_.get(); }
+
+private:
+    detail::Handle<FovealCullUsefulness, foveal_cull_usefulness_destroy> usefulness_;
 };
 
 /// The places of one shadow map where a shadow can be seen. `receive` what the camera sees, then `cull` casters.

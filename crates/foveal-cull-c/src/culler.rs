@@ -15,7 +15,7 @@ use std::sync::RwLock;
 
 /// A culler with its occlusion buffer.
 #[derive(Debug)]
-pub struct FovealCuller(RwLock<Culler>);
+pub struct FovealCuller(pub(crate) RwLock<Culler>);
 
 /// The result for one box, one byte each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -123,7 +123,13 @@ pub unsafe extern "C" fn foveal_culler_rasterize(
             let budget = clock
                 .is_some()
                 .then(|| Budget::new(&now, options.deadline_ns));
-            let plain = options.plain().with_budget(budget);
+            // SAFETY: the caller's word.
+            let usefulness = unsafe { options.usefulness() }?;
+            let usefulness = usefulness.map(|u| border::read(&u.0)).transpose()?;
+            let plain = options
+                .plain()
+                .with_budget(budget)
+                .with_usefulness(usefulness.as_deref());
             culler.rasterize(&view, &set, &plain, CallerJobs::threads(&jobs))?;
             Ok(())
         };

@@ -3,6 +3,7 @@
 
 use crate::border::{self, Plain};
 use crate::status::{Fault, FovealCullStatus, guard};
+use crate::usefulness::FovealCullUsefulness;
 use core::ffi::c_void;
 use core::mem::offset_of;
 use foveal_cull::{CullStats, FrameOptions};
@@ -29,6 +30,8 @@ pub struct FovealCullFrameOptions {
     pub clock_user: *mut c_void,
     /// Clock reading at or after which no further cluster is begun.
     pub deadline_ns: u64,
+    /// What occluders were worth in the frames before; null to draw all.
+    pub usefulness: *const FovealCullUsefulness,
 }
 
 // SAFETY: numbers and pointers; C writes a function or null to `clock`.
@@ -58,6 +61,8 @@ pub struct FovealCullStats {
     pub clusters_rasterized: u64,
     /// Clusters left out because the time was spent.
     pub clusters_over_budget: u64,
+    /// Clusters left out because they hid nothing in the frames before.
+    pub clusters_not_useful: u64,
 }
 
 // SAFETY: numbers.
@@ -81,6 +86,7 @@ impl FovealCullFrameOptions {
             clock: None,
             clock_user: core::ptr::null_mut(),
             deadline_ns: 0,
+            usefulness: core::ptr::null(),
         }
     }
 
@@ -111,7 +117,19 @@ impl FovealCullFrameOptions {
         Ok(options)
     }
 
-    /// The options without the time limit.
+    /// What is known about the occluders.
+    ///
+    /// # Safety
+    /// `usefulness` is null or lives.
+    pub(crate) unsafe fn usefulness<'a>(&self) -> Result<Option<&'a FovealCullUsefulness>, Fault> {
+        if self.usefulness.is_null() {
+            return Ok(None);
+        }
+        // SAFETY: the caller's word.
+        unsafe { border::object(self.usefulness, "usefulness") }.map(Some)
+    }
+
+    /// The options without the time limit and what is known.
     pub(crate) fn plain(&self) -> FrameOptions<'static> {
         FrameOptions::default()
             .with_occlusion(self.occlusion == 1)
@@ -149,6 +167,7 @@ impl FovealCullStats {
             clusters: s.clusters,
             clusters_rasterized: s.clusters_rasterized,
             clusters_over_budget: s.clusters_over_budget,
+            clusters_not_useful: s.clusters_not_useful,
         }
     }
 

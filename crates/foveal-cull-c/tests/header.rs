@@ -196,11 +196,12 @@ fn layouts_enumerators_and_version_of_the_header_are_those_of_the_library() {
         reserved);
     layout!(FovealCullView: size, eye_count, eyes, validity_radius_m);
     layout!(FovealCullFrameOptions: size, occlusion, occluder_size_threshold,
-        occluder_pixels_per_quad, occludee_size_threshold, reserved, clock, clock_user, deadline_ns);
+        occluder_pixels_per_quad, occludee_size_threshold, reserved, clock, clock_user, deadline_ns,
+        usefulness);
     layout!(FovealCullJobs: size, count, user, run, wake);
     layout!(FovealCullStats: size, reserved, occluder_models, occluder_models_rasterized,
         occluder_triangles, occluder_triangles_rasterized, polygons_rasterized, clusters,
-        clusters_rasterized, clusters_over_budget);
+        clusters_rasterized, clusters_over_budget, clusters_not_useful);
     let enumerators = enumerators();
     assert_eq!(enumerators.len(), 16 + 4 + 3);
     let code = code(&header());
