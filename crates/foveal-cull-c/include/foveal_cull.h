@@ -162,8 +162,11 @@ typedef struct FovealCullMeshSource {
     /* 1: occluders of the mesh can be given other positions (foveal_cull_occluders_deform). Then only
      * vertices with the same index are one. 0: they cannot. */
     uint32_t deformable;
-    /* 0. */
-    uint32_t reserved;
+    /* 1: bake a few boxes inside a closed mesh in its place where they are the better occluder: for
+     * what is drawn with back-face culling and without holes. Boxes hide nothing where a near plane
+     * may cut the mesh's bounds. 0, and for meshes that are two-sided, deformable or open: the mesh
+     * itself. */
+    uint32_t inner_shape;
 } FovealCullMeshSource;
 
 /* One eye: a rigid pose and a frustum. */
@@ -327,7 +330,7 @@ FovealCullStatus foveal_cull_mesh_from_bytes(const uint8_t *bytes, size_t size, 
 void foveal_cull_mesh_destroy(FovealCullMesh *mesh);
 
 /* The number of triangles, without degenerate ones (in a deformable mesh only those with the same index
- * twice are); 0 for null. */
+ * twice are); of an inner shape those of its boxes; 0 for null. */
 size_t foveal_cull_mesh_triangle_count(const FovealCullMesh *mesh);
 
 /* ---- Occluders ---- */

@@ -144,7 +144,8 @@ public:
     /// Bakes triangles: three floats per position, `stride` bytes apart.
     template <class Index>
     Mesh(const float *positions, std::size_t position_count, std::size_t stride, const Index *indices,
-         std::size_t index_count, bool two_sided = false, bool adjacency = true, bool deformable = false) {
+         std::size_t index_count, bool two_sided = false, bool adjacency = true,
+         bool deformable = false, bool inner_shape = false) {
         static_assert(sizeof(Index) == 2 || sizeof(Index) == 4, "indices have 16 or 32 bits");
         FovealCullMeshSource source{};
         expect_ok(foveal_cull_mesh_source_init(&source));
@@ -157,6 +158,7 @@ public:
         source.two_sided = two_sided ? 1 : 0;
         source.adjacency = adjacency ? 1 : 0;
         source.deformable = deformable ? 1 : 0;
+        source.inner_shape = inner_shape ? 1 : 0;
         FovealCullMesh *mesh = nullptr;
         expect_ok(foveal_cull_mesh_bake(&source, &mesh));
         mesh_.reset(mesh);

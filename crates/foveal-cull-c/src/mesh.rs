@@ -36,8 +36,9 @@ pub struct FovealCullMeshSource {
     /// 1: occluders of the mesh can be given other positions. Then only vertices with the same index
     /// are one. 0: they cannot.
     pub deformable: u32,
-    /// 0.
-    pub reserved: u32,
+    /// 1: bake boxes inside a closed mesh in its place where they are the better occluder. 0: the
+    /// mesh itself.
+    pub inner_shape: u32,
 }
 
 // SAFETY: numbers and pointers.
@@ -59,7 +60,7 @@ impl FovealCullMeshSource {
         two_sided: 0,
         adjacency: 1,
         deformable: 0,
-        reserved: 0,
+        inner_shape: 0,
     };
 }
 
@@ -110,9 +111,6 @@ pub(crate) unsafe fn vertices<'a>(
 /// # Safety
 /// Arrays and counts of the source belong together.
 unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
-    if source.reserved != 0 {
-        return Err(Fault::argument("'reserved' is not 0"));
-    }
     let index_bytes = match source.index_bytes {
         2 => 2,
         4 => 4,
@@ -122,6 +120,7 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
         (source.two_sided, "two_sided"),
         (source.adjacency, "adjacency"),
         (source.deformable, "deformable"),
+        (source.inner_shape, "inner_shape"),
     ] {
         if value > 1 {
             return Err(Fault::argument(format!("'{name}' is neither 0 nor 1")));
@@ -160,7 +159,8 @@ unsafe fn bake(source: &FovealCullMeshSource) -> Result<OccluderMesh, Fault> {
     let options = BakeOptions::default()
         .with_two_sided(source.two_sided == 1)
         .with_adjacency(source.adjacency == 1)
-        .with_deformable(source.deformable == 1);
+        .with_deformable(source.deformable == 1)
+        .with_inner_shape(source.inner_shape == 1);
     Ok(OccluderMesh::bake(&positions, &indices, options)?)
 }
 
@@ -318,7 +318,8 @@ pub unsafe extern "C" fn foveal_cull_mesh_destroy(mesh: *mut FovealCullMesh) {
     unsafe { border::take(mesh) };
 }
 
-/// The number of triangles, without degenerate ones; 0 for null.
+/// The number of triangles, without degenerate ones; of an inner shape those of its boxes; 0 for
+/// null.
 ///
 /// # Safety
 /// `mesh` is null or lives.

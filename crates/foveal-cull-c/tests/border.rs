@@ -372,7 +372,7 @@ fn meshes_with_wrong_sizes_or_numbers_are_refused() {
         ),
         (
             FovealCullMeshSource {
-                reserved: 1,
+                inner_shape: 2,
                 ..good
             },
             Status::BadArgument,

@@ -191,7 +191,7 @@ fn layouts_enumerators_and_version_of_the_header_are_those_of_the_library() {
     layout!(FovealCullOccluderId: set, occluder);
     layout!(FovealCullOccludeeId: set, occludee);
     layout!(FovealCullMeshSource: size, index_bytes, positions, position_count, position_stride,
-        indices, index_count, two_sided, adjacency, deformable, reserved);
+        indices, index_count, two_sided, adjacency, deformable, inner_shape);
     layout!(FovealCullEye: world_from_eye, left, right, bottom, top, near_m, far_m, orthographic,
         reserved);
     layout!(FovealCullView: size, eye_count, eyes, validity_radius_m);

@@ -147,6 +147,101 @@ fn frames(bencher: Bencher<'_, '_>, view: &View) {
         .bench_local(|| culler.rasterize(view, &set, &options, &SingleThread));
 }
 
+/// A closed ball of 82,944 triangles with a radius of 1 m, whose points `shape` moves.
+fn closed_ball(shape: impl Fn(Vec3) -> Vec3) -> (Vec<Vec3>, Vec<u32>) {
+    let (rows, around) = (144, 288);
+    let point = |i: u32, j: u32| {
+        let turn = i as f32 / around as f32 * core::f32::consts::TAU;
+        let down = j as f32 / rows as f32 * core::f32::consts::PI;
+        let side = if j.is_multiple_of(rows) {
+            0.0
+        } else {
+            down.sin()
+        };
+        shape(Vec3::new(turn.cos() * side, down.cos(), -turn.sin() * side))
+    };
+    let at = |i: u32, j: u32| {
+        j * around
+            + if j.is_multiple_of(rows) {
+                0
+            } else {
+                i % around
+            }
+    };
+    let positions = (0..=rows).flat_map(|j| (0..around).map(move |i| point(i, j)));
+    let quads = (0..rows).flat_map(|j| (0..around).map(move |i| (i, j)));
+    let indices = quads.flat_map(|(i, j)| {
+        let [a, b, c, d] = [at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)];
+        [a, b, c, a, c, d]
+    });
+    (positions.collect(), indices.collect())
+}
+
+/// Bumps of several sizes.
+fn stone(p: Vec3) -> Vec3 {
+    let wave = |x: f32, y: f32, z: f32, k: f32| (p.dot(Vec3::new(x, y, z)) * k).sin();
+    let bumps = 0.12 * wave(0.8, 0.3, 0.5, 5.0) + 0.08 * wave(-0.3, 0.9, 0.3, 9.0);
+    let fine = 0.04 * wave(0.5, -0.5, 0.7, 17.0) + 0.02 * wave(0.1, 0.5, -0.8, 40.0);
+    p * (1.0 + bumps + fine) * Vec3::new(1.3, 0.8, 1.0)
+}
+
+const SOLIDS: [&str; 4] = ["balls", "balls, inner", "stones", "stones, inner"];
+
+/// 60 balls or stones of 82,944 triangles, 4 to 60 m in front of the eye: themselves, or the boxes
+/// inside. Prints how many of 20,000 small boxes among and behind them are hidden.
+#[divan::bench(args = SOLIDS, max_time = 3)]
+fn rasterize_solids(bencher: Bencher<'_, '_>, solids: &str) {
+    let (positions, indices) = if solids.starts_with("balls") {
+        closed_ball(|p| p)
+    } else {
+        closed_ball(stone)
+    };
+    let options = BakeOptions::default().with_inner_shape(solids.ends_with("inner"));
+    let mesh = Arc::new(OccluderMesh::bake(&positions, &indices, options).unwrap());
+    let mut set = OccluderSet::new();
+    let mut r = Random(3);
+    let place = |r: &mut Random| {
+        let away = r.between(4.0, 60.0);
+        let side = r.between(-0.9, 0.9) * away;
+        DVec3::new(side, r.between(-0.4, 0.4) * away, -away)
+    };
+    for _ in 0..60 {
+        let turn = DQuat::from_euler(
+            glam::EulerRot::XYZ,
+            r.between(0.0, 6.0),
+            r.between(0.0, 6.0),
+            r.between(0.0, 6.0),
+        );
+        let scale = DVec3::splat(r.between(0.7, 3.0));
+        let at = place(&mut r);
+        let place = DAffine3::from_scale_rotation_translation(scale, turn, at);
+        set.add(Arc::clone(&mesh), place).unwrap();
+    }
+    let small = |_| {
+        let center = place(&mut r).as_vec3();
+        Aabb::new(center - 0.1, center + 0.1)
+    };
+    let boxes: Vec<Aabb> = (0..20_000).map(small).collect();
+    let projection = Projection::perspective(1.05, 16.0 / 9.0, 0.05, f64::INFINITY);
+    let view = View::mono(Eye::look_at(
+        DVec3::ZERO,
+        DVec3::NEG_Z,
+        DVec3::Y,
+        projection,
+    ));
+    let (mut culler, options) = (Culler::new(640, 360).unwrap(), FrameOptions::default());
+    culler
+        .rasterize(&view, &set, &options, &SingleThread)
+        .unwrap();
+    let mut results = vec![Visibility::Visible; boxes.len()];
+    culler.query(&boxes, DVec3::ZERO, &mut results).unwrap();
+    let hidden = results.iter().filter(|r| **r == Visibility::Occluded);
+    eprintln!("{solids}: {} hidden", hidden.count());
+    bencher
+        .counter(ItemsCount::new(set.triangle_count()))
+        .bench_local(|| culler.rasterize(&view, &set, &options, &SingleThread));
+}
+
 /// Random boxes one after the other.
 #[divan::bench(args = PLACES)]
 fn query_boxes(bencher: Bencher<'_, '_>, place: &str) {

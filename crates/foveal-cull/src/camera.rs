@@ -29,6 +29,9 @@ pub(crate) struct Camera {
     /// Tangent of half the vertical field of view, or half the height of an orthographic view.
     pub(crate) tan_half_fov_y: f64,
     pub(crate) near: f64,
+    /// Distance from `eye` within which the near rectangles of all eyes of the view region lie,
+    /// metres.
+    pub(crate) near_reach: f64,
 }
 
 impl Camera {
@@ -113,6 +116,15 @@ impl Camera {
             clamp_depth,
             tan_half_fov_y: (t - b) * 0.5,
             near,
+            near_reach: {
+                let (x, y) = (l.abs().max(r.abs()), b.abs().max(t.abs()));
+                let corner = if projection.is_orthographic() {
+                    DVec3::new(x, y, near)
+                } else {
+                    DVec3::new(x, y, 1.0) * near
+                };
+                corner.length() + radius
+            },
         })
     }
 

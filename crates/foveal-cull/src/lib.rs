@@ -63,6 +63,10 @@
 //! # Ok::<(), CullError>(())
 //! ```
 //!
+//! Meshes need no authored occluders. With [`BakeOptions::inner_shape`] boxes inside a dense closed
+//! mesh take its place where they hide nearly as much for less: `OccluderMesh::bake(&positions,
+//! &indices, BakeOptions::default().with_inner_shape(true))`.
+//!
 //! # A moving world
 //! Occluders move by their transforms. Occludees that come, move and go are an [`OccludeeSet`]: a
 //! hierarchy that follows them, and that is built again now and then, on another thread if one

@@ -8,11 +8,12 @@
 use super::borders::{Around, Borders};
 use super::chunks::{self, Chunking};
 use super::in_parts::in_order;
+use super::inner::inner_boxes;
 use super::mesh::OccluderMesh;
 use super::neighbors::Neighbors;
 use super::one_ring::OneRings;
 use super::vertices::{Points, Vertices};
-use super::weld::{Welded, weld};
+use super::weld::{By, Welded, weld};
 use super::{cluster, quads};
 use crate::bounds::Aabb;
 use crate::error::{CullError, Quantity};
@@ -38,6 +39,15 @@ pub struct BakeOptions {
     /// [`set_positions`](OccluderMesh::set_positions); `false` by default. Then equal positions are
     /// not joined, since they may part: triangles are neighbours only where they share indices.
     pub deformable: bool,
+    /// Whether to bake a few boxes inside the mesh in its place, where they are the better
+    /// occluder; `false` by default. For what a renderer draws with back-face culling and without
+    /// holes: a rock, a statue, a car. Boxes are taken if the mesh is closed (every edge is there
+    /// as often in one direction as in the other, and triangles face outwards), if it has 96
+    /// triangles or more for each of up to eight boxes, and if the boxes fill half of its outline
+    /// or more in the mean over all directions. Otherwise, and for meshes that are two-sided or
+    /// deformable, the mesh itself is baked. [`OccluderMesh::is_inner_shape`] says which. Where a
+    /// near plane may cut the mesh's bounds, boxes hide nothing.
+    pub inner_shape: bool,
 }
 
 impl Default for BakeOptions {
@@ -46,6 +56,7 @@ impl Default for BakeOptions {
             two_sided: false,
             adjacency: true,
             deformable: false,
+            inner_shape: false,
         }
     }
 }
@@ -71,6 +82,13 @@ impl BakeOptions {
         self.deformable = deformable;
         self
     }
+
+    /// Sets [`inner_shape`](Self::inner_shape).
+    #[must_use]
+    pub fn with_inner_shape(mut self, inner_shape: bool) -> Self {
+        self.inner_shape = inner_shape;
+        self
+    }
 }
 
 /// Most triangles of a mesh: offsets of clusters, vertices and adjacency are 32 bits.
@@ -85,7 +103,9 @@ impl OccluderMesh {
     /// surface-area heuristic over position and normal. Equal input gives an equal mesh.
     ///
     /// O(n log n): about 0.5 microseconds per triangle on one core, 0.8 with adjacency. Bake when a
-    /// level loads, not per frame, or once for all by [`to_bytes`](Self::to_bytes).
+    /// level loads, not per frame, or once for all by [`to_bytes`](Self::to_bytes). An
+    /// [inner shape](BakeOptions::inner_shape) of a closed mesh takes 25 milliseconds and 0.35
+    /// microseconds per triangle.
     ///
     /// # Errors
     /// [`CullError::NotTriangles`], [`CullError::IndexOutOfRange`], [`CullError::NotFinite`] for a
@@ -128,61 +148,59 @@ impl OccluderMesh {
         }
         .bake(options, threads)
     }
-
-    /// Bakes a box whose faces look outwards, for instance an artist's occlusion volume. `bounds`
-    /// are in mesh space (metres), with `min <= max`.
-    ///
-    /// # Errors
-    /// [`CullError::NotFinite`] for NaN or infinity.
-    pub fn from_box(bounds: Aabb) -> Result<Self, CullError> {
-        let (a, b) = (Vec3::from(bounds.min), Vec3::from(bounds.max));
-        let p: [Vec3; 8] = core::array::from_fn(|i| {
-            Vec3::new(
-                if i & 1 == 0 { a.x } else { b.x },
-                if i & 2 == 0 { a.y } else { b.y },
-                if i & 4 == 0 { a.z } else { b.z },
-            )
-        });
-        const QUADS: [[u32; 4]; 6] = [
-            [0, 4, 6, 2],
-            [1, 3, 7, 5],
-            [0, 1, 5, 4],
-            [2, 6, 7, 3],
-            [0, 2, 3, 1],
-            [4, 5, 7, 6],
-        ];
-        let indices: Vec<u32> = QUADS
-            .iter()
-            .flat_map(|q| [q[0], q[1], q[2], q[0], q[2], q[3]])
-            .collect();
-        Self::bake(&p.map(|p| p.to_array()), &indices, BakeOptions::default())
-    }
 }
 
 /// What is baked.
 #[derive(Clone, Copy)]
-struct Input<'a> {
+pub(super) struct Input<'a> {
     /// Number of positions.
-    positions: usize,
-    position: &'a (dyn Fn(u32) -> Vec3 + Sync),
-    indices: &'a [u32],
-    chunking: Chunking,
+    pub(super) positions: usize,
+    pub(super) position: &'a (dyn Fn(u32) -> Vec3 + Sync),
+    pub(super) indices: &'a [u32],
+    pub(super) chunking: Chunking,
 }
 
 impl Input<'_> {
     fn bake(self, options: BakeOptions, threads: &dyn Threads) -> Result<OccluderMesh, CullError> {
+        let center = self.center()?;
+        if options.inner_shape
+            && !(options.two_sided || options.deformable)
+            && let Some(shape) = self.inner_shape(options)
+        {
+            return Ok(shape);
+        }
+        Ok(self.bake_around(center, options, threads))
+    }
+
+    /// Boxes inside the mesh, if they are the better occluder.
+    fn inner_shape(&self, options: BakeOptions) -> Option<OccluderMesh> {
+        let triangles = (0..self.indices.len() / 3).map(|t| self.triangle(t));
+        let welded = weld(By::Position, self.positions, self.position, triangles);
+        let boxes = inner_boxes(&welded)?;
+        let solid = Aabb::of_points(welded.points);
+        Some(OccluderMesh::of_boxes(&boxes, Some(solid), options))
+    }
+
+    /// Bakes a checked input. Bounds are relative to `center`.
+    pub(super) fn bake_around(
+        self,
+        center: DVec3,
+        options: BakeOptions,
+        threads: &dyn Threads,
+    ) -> OccluderMesh {
         let mut mesh = OccluderMesh {
             vertices: Vertices::default(),
             quads: Vec::new(),
             clusters: Vec::new(),
             one_rings: OneRings::default(),
             bounds8: Vec::new(),
-            center: self.center()?,
+            center,
             half: Vec3::ZERO,
             two_sided: options.two_sided,
             hash: 0,
             triangles: 0,
             positions: options.deformable.then_some(self.positions),
+            solid: None,
         };
         if options.adjacency && !options.two_sided {
             self.with_adjacency(&mut mesh, threads);
@@ -193,7 +211,7 @@ impl Input<'_> {
             mesh.reshape();
         }
         mesh.finish();
-        Ok(mesh)
+        mesh
     }
 
     /// The centre of all positions in use; an error for input that is no triangle mesh.

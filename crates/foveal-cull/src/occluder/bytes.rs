@@ -4,12 +4,13 @@
 //! |---|---|---|
 //! | 0 | 8 | `fovealOM` |
 //! | 8 | 4 | version of the format |
-//! | 12 | 4 | bit 0: two-sided; bit 1: with adjacency |
+//! | 12 | 4 | bit 0: two-sided; bit 1: with adjacency; bit 2: an inner shape |
 //! | 16 | 8 | number of all bytes |
 //! | 24 | 8 | checksum of all bytes but these eight |
 //! | 32 | 24 | centre |
 //! | 56 | 28 | seven numbers of elements, in the order of the lists below |
-//! | 84 | | clusters of 36 bytes, with adjacency 6 more each |
+//! | 84 | 24 | lower and upper corner of the mesh that an inner shape is inside; else zeros |
+//! | 108 | | clusters of 36 bytes, with adjacency 6 more each |
 //! | | | vertices of 12, groups of eight quads of 32 |
 //! | | | vertices of one-rings of 12, groups of eight triangles of 24, edges of 6 |
 //! | | | where each triangle of a one-ring is among the clusters', 3; 5 with over 65,536 clusters |
@@ -24,16 +25,18 @@ use super::mesh::{Cluster, OccluderMesh, bounds_of, relative};
 use super::one_ring::{Edge, OneRing, OneRings};
 use super::surface::{Home, Surface};
 use super::vertices::Vertices;
+use crate::bounds::Aabb;
 use crate::error::{CullError, MeshBytesError};
 use glam::{DVec3, Vec3};
 
 const MAGIC: [u8; 8] = *b"fovealOM";
 /// Rises with every change of the format, or of what the fields mean.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 const TWO_SIDED: u32 = 1;
 const ADJACENCY: u32 = 2;
+const INNER: u32 = 4;
 const CHECKSUM: usize = 24;
-pub(crate) const HEADER: usize = 84;
+pub(crate) const HEADER: usize = 108;
 const LISTS: usize = 7;
 /// Bytes of an element of each list.
 const CLUSTER: u64 = 36;
@@ -68,12 +71,19 @@ impl OccluderMesh {
         let mut bytes = Vec::with_capacity(length as usize);
         bytes.extend(MAGIC);
         bytes.extend(VERSION.to_le_bytes());
-        let flags = u32::from(self.two_sided) * TWO_SIDED + u32::from(with_adjacency) * ADJACENCY;
+        let flags = [
+            (self.two_sided, TWO_SIDED),
+            (with_adjacency, ADJACENCY),
+            (self.solid.is_some(), INNER),
+        ];
+        let flags: u32 = flags.iter().map(|(on, flag)| u32::from(*on) * flag).sum();
         bytes.extend(flags.to_le_bytes());
         bytes.extend(length.to_le_bytes());
         bytes.extend([0; 8]);
         bytes.extend(self.center.to_array().iter().flat_map(|v| v.to_le_bytes()));
         bytes.extend(counts.iter().flat_map(|n| n.to_le_bytes()));
+        let solid = self.solid.map_or([[0.0; 3]; 2], |s| [s.min, s.max]);
+        bytes.extend(solid.as_flattened().iter().flat_map(|v| v.to_le_bytes()));
         for c in &self.clusters {
             let [x, y, z] = c.cone_axis.to_array();
             let numbers = [x, y, z, c.cone_sin, c.cone_cos, c.fill, c.creased];
@@ -131,10 +141,11 @@ impl OccluderMesh {
 
     /// The mesh of [`to_bytes`](Self::to_bytes). It gives the same results bit by bit.
     ///
-    /// Nothing is trusted: any single word that is wrong is noticed by the checksum, and all numbers
-    /// are checked even where the checksum is right. What is accepted is a mesh whose surface never
-    /// hides what it does not cover. Takes 7 to 9 ms for a million triangles, with adjacency a
-    /// tenth as long as baking.
+    /// Nothing is trusted: any single word that is wrong is noticed by the checksum, and all
+    /// numbers are checked even where the checksum is right. What is accepted is a mesh whose
+    /// surface never hides what it does not cover. That an inner shape is inside its mesh cannot be
+    /// checked without the mesh. Takes 7 to 9 ms for a million triangles, with adjacency a tenth as
+    /// long as baking.
     ///
     /// # Errors
     /// [`CullError::BadMeshBytes`], with the reason.
@@ -296,7 +307,7 @@ fn read(bytes: &[u8]) -> Result<OccluderMesh, MeshBytesError> {
     if from.array().map(u64::from_le_bytes) != Ok(checksum(bytes)) {
         return Err(MeshBytesError::Corrupt);
     }
-    if flags & !(TWO_SIDED | ADJACENCY) != 0 {
+    if flags & !(TWO_SIDED | ADJACENCY | INNER) != 0 {
         return Err(MeshBytesError::Invalid("a flag is not known"));
     }
     let (two_sided, with_adjacency) = (flags & TWO_SIDED != 0, flags & ADJACENCY != 0);
@@ -305,6 +316,7 @@ fn read(bytes: &[u8]) -> Result<OccluderMesh, MeshBytesError> {
     for count in &mut counts {
         *count = from.u32()?;
     }
+    let solid = solid(&mut from, flags & INNER != 0)?;
     // From here on no list is longer than the bytes that are there.
     if length(counts, with_adjacency) != expected {
         return Err(MeshBytesError::Invalid("the lists do not fill the bytes"));
@@ -339,6 +351,7 @@ fn read(bytes: &[u8]) -> Result<OccluderMesh, MeshBytesError> {
         hash: 0,
         triangles,
         positions: None,
+        solid,
     };
     let wide = has_wide_homes(counts);
     let homes = from.list(homes, |from| home(from, wide))?;
@@ -348,7 +361,22 @@ fn read(bytes: &[u8]) -> Result<OccluderMesh, MeshBytesError> {
     }
     check::check(&mesh, &homes).map_err(MeshBytesError::Invalid)?;
     mesh.derive()?;
+    check::check_solid(&mesh).map_err(MeshBytesError::Invalid)?;
     Ok(mesh)
+}
+
+/// The bounds of the mesh that an inner shape is inside, which other meshes have not.
+fn solid(from: &mut Reader<'_>, is_inner: bool) -> Result<Option<Aabb>, MeshBytesError> {
+    let mut corner = || Ok([from.f32()?, from.f32()?, from.f32()?]);
+    let corners = [corner()?, corner()?];
+    let none = corners.as_flattened().iter().all(|v| v.to_bits() == 0);
+    match is_inner {
+        true => Ok(Some(Aabb::new(corners[0], corners[1]))),
+        false if none => Ok(None),
+        false => Err(MeshBytesError::Invalid(
+            "bounds of an inner shape where there is none",
+        )),
+    }
 }
 
 /// The number of all triangles; an error for more than baking takes.

@@ -55,6 +55,25 @@ pub(super) fn check(mesh: &OccluderMesh, homes: &[Home]) -> Checked {
     Ok(())
 }
 
+/// Checks the bounds of the mesh that an inner shape is inside: finite, and around the shape. A
+/// mesh whose near planes are looked for elsewhere would hide what an eye within it sees.
+pub(super) fn check_solid(mesh: &OccluderMesh) -> Checked {
+    let Some(solid) = mesh.solid else {
+        return Ok(());
+    };
+    expect(!mesh.two_sided, "an inner shape has no other side")?;
+    let v = &mesh.vertices;
+    let within = |list: &[f32], axis: usize| {
+        let mut list = list.iter();
+        list.all(|p| (solid.min[axis]..=solid.max[axis]).contains(p))
+    };
+    let around = within(&v.x, 0) && within(&v.y, 1) && within(&v.z, 2);
+    expect(
+        solid.is_valid() && around,
+        "an inner shape is outside of its mesh",
+    )
+}
+
 /// Checks the numbers of a cluster's vertices and quads.
 pub(super) fn check_counts(c: &Cluster) -> Checked {
     let vertices = usize::from(c.vertex_count);

@@ -32,6 +32,9 @@ pub struct OccluderMesh {
     pub(super) triangles: u32,
     /// Number of positions of a mesh that deforms.
     pub(super) positions: Option<usize>,
+    /// Of an inner shape: bounds of the mesh that it is inside, mesh space. Where a near plane cuts
+    /// these, what is drawn may be open, so the shape must not hide anything.
+    pub(crate) solid: Option<Aabb>,
 }
 
 /// A cluster: up to 64 quads over up to 256 vertices.
@@ -80,9 +83,12 @@ impl Cluster {
 }
 
 impl OccluderMesh {
-    /// Bounds in mesh space, metres.
+    /// Bounds in mesh space, metres: of the mesh that was baked, for inner shapes too.
     #[must_use]
     pub fn bounds(&self) -> Aabb {
+        if let Some(solid) = self.solid {
+            return solid;
+        }
         let c = self.center;
         Aabb::new(
             (c - self.half.as_dvec3()).as_vec3(),
@@ -90,7 +96,14 @@ impl OccluderMesh {
         )
     }
 
-    /// Number of triangles, without degenerate ones. In a
+    /// Whether boxes inside the mesh were baked in its place
+    /// ([`BakeOptions::inner_shape`](crate::BakeOptions::inner_shape)).
+    #[must_use]
+    pub fn is_inner_shape(&self) -> bool {
+        self.solid.is_some()
+    }
+
+    /// Number of triangles, without degenerate ones; of an inner shape those of its boxes. In a
     /// [`deformable`](crate::BakeOptions::deformable) mesh only those with the same index twice are.
     #[must_use]
     pub fn triangle_count(&self) -> usize {

@@ -1,12 +1,14 @@
 //! Occluders: baked meshes, and the set of placed ones.
 //!
-//! `chunks`, `borders`, `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the steps of `bake`; `mesh`,
-//! `vertices` and `one_ring` hold its result; `bytes` writes and reads it, and `check` says whether
-//! what was read is a mesh, by `surface`; `deform` gives a mesh other positions, `heights` makes one
-//! of a terrain's heights; `set` places meshes in the world.
+//! `chunks`, `borders`, `weld`, `half_edges`, `quads`, `sah`, `cluster` and `neighbors` are the
+//! steps of `bake`; `mesh`, `vertices` and `one_ring` hold its result; `bytes` writes and reads it,
+//! and `check` says whether what was read is a mesh, by `surface`; `deform` gives a mesh other
+//! positions, `heights` makes one of a terrain's heights, `inner` boxes inside a closed mesh, which
+//! `boxes` bakes; `set` places meshes in the world.
 
 mod bake;
 mod borders;
+mod boxes;
 mod bytes;
 mod check;
 mod chunks;
@@ -15,6 +17,7 @@ mod deform;
 mod half_edges;
 mod heights;
 mod in_parts;
+mod inner;
 pub(crate) mod mesh;
 mod neighbors;
 pub(crate) mod one_ring;

@@ -6,6 +6,7 @@
 //! work in more parts than there are threads, and take the next part when they are done.
 
 use super::candidates::{Candidate, FrameScratch, Part, Worth};
+use super::near_cut::near_may_cut;
 use crate::camera::Camera;
 use crate::format::{BLOCK_SAMPLES, SAMPLES, encode};
 use crate::occluder::OccluderUsefulness;
@@ -277,6 +278,11 @@ impl Kernel for Select<'_> {
             let Some(mesh) = instance.mesh.as_deref() else {
                 continue;
             };
+            if let Some(solid) = mesh.solid
+                && near_may_cut(camera, instance, solid)
+            {
+                continue;
+            }
             let begins = index >= begun;
             let rows = camera.object_rows(&instance.world_from_mesh, mesh.center);
             if begins {

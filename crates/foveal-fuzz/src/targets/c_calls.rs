@@ -115,7 +115,7 @@ impl World {
             two_sided: r.below(2) as u32,
             adjacency: r.below(2) as u32,
             deformable: r.below(2) as u32,
-            reserved: 0,
+            inner_shape: r.below(2) as u32,
         };
         // Larger sizes than the struct has bytes are the caller's broken word.
         if source.size as usize > size_of::<FovealCullMeshSource>() {

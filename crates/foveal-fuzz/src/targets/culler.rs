@@ -190,7 +190,8 @@ fn occluders(scene: &mut Scene, choices: &mut Choices<'_>) -> OccluderSet {
     scene.objects.retain(|object| {
         let options = BakeOptions::default()
             .with_two_sided(object.two_sided)
-            .with_adjacency(!choices.one_in(3));
+            .with_adjacency(!choices.one_in(3))
+            .with_inner_shape(choices.one_in(2));
         let finite = object.positions.iter().all(|p| Vec3::is_finite(*p));
         let deforms = choices.one_in(4);
         match bake(object, options.with_deformable(deforms), choices) {

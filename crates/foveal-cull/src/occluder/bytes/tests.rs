@@ -119,7 +119,7 @@ fn any_wrong_byte_is_noticed() {
         let reason = reason(&wrong);
         let expected = match i {
             0..8 => reason == MeshBytesError::NotAMesh,
-            8..12 => matches!(reason, MeshBytesError::OtherVersion { known: 2, .. }),
+            8..12 => matches!(reason, MeshBytesError::OtherVersion { known: 3, .. }),
             16..24 => matches!(reason, MeshBytesError::WrongLength { .. }),
             _ => reason == MeshBytesError::Corrupt,
         };
@@ -293,24 +293,73 @@ fn threads_bake_the_same_mesh() {
     }
 }
 
-/// Bytes that a reader of this version has to know: a box with adjacency.
+const BOX: Aabb = Aabb {
+    min: [0.0, -1.0, 0.5],
+    max: [1.0, 2.0, 3.0],
+};
+
+/// A box inside a larger mesh.
+fn inner_box() -> OccluderMesh {
+    let solid = Aabb::new([-0.5, -1.5, 0.25], [1.5, 2.5, 3.5]);
+    OccluderMesh::of_boxes(&[BOX], Some(solid), BakeOptions::default())
+}
+
+/// Bytes that a reader of this version has to know: a box with adjacency, and one inside a mesh.
 #[test]
 fn the_bytes_of_a_box_are_those_of_this_version() {
-    let mesh = OccluderMesh::from_box(Aabb::new([0.0, -1.0, 0.5], [1.0, 2.0, 3.0])).unwrap();
-    let bytes = mesh.to_bytes();
-    let rows = bytes.chunks(32).map(|row| {
-        let row = row.iter().map(|byte| format!("{byte:02x}"));
-        row.collect::<String>() + "\n"
-    });
-    let known = include_str!("box.hex");
-    assert_eq!(rows.collect::<String>(), known);
-    let digits: Vec<u8> = known.bytes().filter(u8::is_ascii_hexdigit).collect();
-    let value = |digit: u8| char::from(digit).to_digit(16).unwrap() as u8;
-    let pairs = digits.chunks(2).map(|d| value(d[0]) << 4 | value(d[1]));
-    let again = OccluderMesh::from_bytes(&pairs.collect::<Vec<_>>()).unwrap();
-    assert_eq!(format!("{again:?}"), format!("{mesh:?}"));
-    assert_eq!(again.triangle_count(), 12);
-    assert_eq!(again.bounds(), mesh.bounds());
+    for (mesh, known) in [
+        (
+            OccluderMesh::from_box(BOX).unwrap(),
+            include_str!("box.hex"),
+        ),
+        (inner_box(), include_str!("inner.hex")),
+    ] {
+        let bytes = mesh.to_bytes();
+        let rows = bytes.chunks(32).map(|row| {
+            let row = row.iter().map(|byte| format!("{byte:02x}"));
+            row.collect::<String>() + "\n"
+        });
+        assert_eq!(rows.collect::<String>(), known);
+        let digits: Vec<u8> = known.bytes().filter(u8::is_ascii_hexdigit).collect();
+        let value = |digit: u8| char::from(digit).to_digit(16).unwrap() as u8;
+        let pairs = digits.chunks(2).map(|d| value(d[0]) << 4 | value(d[1]));
+        let again = OccluderMesh::from_bytes(&pairs.collect::<Vec<_>>()).unwrap();
+        assert_eq!(format!("{again:?}"), format!("{mesh:?}"));
+        assert_eq!(again.triangle_count(), 12);
+        assert_eq!(again.bounds(), mesh.bounds());
+        assert_eq!(again.is_inner_shape(), mesh.is_inner_shape());
+    }
+}
+
+#[test]
+fn an_inner_shape_outside_of_its_mesh_is_refused() {
+    let bytes = inner_box().to_bytes();
+    let with = |at: usize, number: f32| {
+        let mut wrong = bytes.clone();
+        wrong[at..at + 4].copy_from_slice(&number.to_le_bytes());
+        seal(&mut wrong);
+        refusal(&wrong)
+    };
+    let outside = "an inner shape is outside of its mesh";
+    for axis in 0..3 {
+        let (low, high) = (84 + 4 * axis, 96 + 4 * axis);
+        assert_eq!(with(low, BOX.min[axis].next_up()), outside);
+        assert_eq!(with(high, BOX.max[axis].next_down()), outside);
+        assert_eq!(with(low, f32::NEG_INFINITY), outside);
+        assert_eq!(with(high, f32::NAN), outside);
+    }
+    let flags = |flags: u32, bytes: &[u8]| {
+        let mut wrong = bytes.to_vec();
+        wrong[12..16].copy_from_slice(&flags.to_le_bytes());
+        seal(&mut wrong);
+        refusal(&wrong)
+    };
+    assert_eq!(flags(14, &bytes), "a flag is not known");
+    let none = "bounds of an inner shape where there is none";
+    assert_eq!(flags(2, &bytes), none);
+    let options = BakeOptions::default().with_adjacency(false);
+    let two_sided = OccluderMesh::of_boxes(&[BOX], inner_box().solid, options).to_bytes();
+    assert_eq!(flags(5, &two_sided), "an inner shape has no other side");
 }
 
 /// The reason why sealed bytes are refused.
