@@ -77,8 +77,8 @@ impl LearnedColumns {
         Ok(Self {
             moving_visible: Some(mean(&plain)),
             learned_visible: Some(mean(&learned)),
-            moving_ms: Some(median(&mut plain.ms)),
-            learned_ms: Some(median(&mut learned.ms)),
+            moving_ms: Some(median(&plain.ms)),
+            learned_ms: Some(median(&learned.ms)),
         })
     }
 }

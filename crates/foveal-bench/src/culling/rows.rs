@@ -229,14 +229,14 @@ fn learned_table(rows: &[Row]) -> String {
                 continue;
             }
             let mean = |k: usize| all.iter().map(|l| l[k]).sum::<f64>() / all.len() as f64;
-            let mut ratios: Vec<f64> = all.iter().map(|l| l[1] / l[0]).collect();
+            let ratios: Vec<f64> = all.iter().map(|l| l[1] / l[0]).collect();
             let _ = writeln!(
                 text,
                 "{}, {threads} threads, {} moving cameras: useful occluders take {:.2} of the time of all \
                  (median; {:.3} and {:.3} ms in the mean), {:.1} objects are visible instead of {:.1}",
                 same[0].scene,
                 all.len(),
-                median(&mut ratios),
+                median(&ratios),
                 mean(1),
                 mean(0),
                 mean(3),
