@@ -185,10 +185,18 @@ fn stone(p: Vec3) -> Vec3 {
     p * (1.0 + bumps + fine) * Vec3::new(1.3, 0.8, 1.0)
 }
 
-const SOLIDS: [&str; 4] = ["balls", "balls, inner", "stones", "stones, inner"];
+const SOLIDS: [&str; 6] = [
+    "balls",
+    "balls, every cluster",
+    "balls, inner",
+    "stones",
+    "stones, every cluster",
+    "stones, inner",
+];
 
-/// 60 balls or stones of 82,944 triangles, 4 to 60 m in front of the eye: themselves, or the boxes
-/// inside. Prints how many of 20,000 small boxes among and behind them are hidden.
+/// 60 balls or stones of 82,944 triangles, 4 to 60 m in front of the eye: themselves, with fine
+/// detail left out or not, or the boxes inside. Prints how many of 20,000 small boxes among and
+/// behind them are hidden.
 #[divan::bench(args = SOLIDS, max_time = 3)]
 fn rasterize_solids(bencher: Bencher<'_, '_>, solids: &str) {
     let (positions, indices) = if solids.starts_with("balls") {
@@ -229,7 +237,11 @@ fn rasterize_solids(bencher: Bencher<'_, '_>, solids: &str) {
         DVec3::Y,
         projection,
     ));
-    let (mut culler, options) = (Culler::new(640, 360).unwrap(), FrameOptions::default());
+    let mut culler = Culler::new(640, 360).unwrap();
+    let mut options = FrameOptions::default();
+    if solids.ends_with("every cluster") {
+        options.occluder_pixels_per_quad = 0.0;
+    }
     culler
         .rasterize(&view, &set, &options, &SingleThread)
         .unwrap();
