@@ -1,4 +1,4 @@
-// A plain static server for dist/: `node web/serve.mjs [PORT]`.
+// A plain static server for dist/ or another folder: `node web/serve.mjs [PORT] [FOLDER]`.
 
 import { createServer } from 'node:http';
 import { readFile } from 'node:fs/promises';
@@ -59,6 +59,6 @@ export function serve(port, folder = DIST) {
 
 if (import.meta.url === pathToFileURL(process.argv[1]).href) {
   const port = Number(process.argv[2] ?? 8000);
-  const server = await serve(port);
+  const server = await serve(port, resolve(process.argv[3] ?? DIST));
   console.log(`http://localhost:${server.address().port}/`);
 }

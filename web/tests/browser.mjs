@@ -21,9 +21,9 @@ function executablePath() {
   return found;
 }
 
-/** A browser with `graphics` (of `GRAPHICS`) and a server for the page; `close` ends both. */
-export async function open(graphics = 'webgpu') {
-  const server = await serve(0);
+/** A browser with `graphics` (of `GRAPHICS`) and a server for the page, or for another in `folder`; `close` ends both. */
+export async function open(graphics = 'webgpu', folder = undefined) {
+  const server = await serve(0, folder);
   const browser = await chromium.launch({ executablePath: executablePath(), args: [...QUIET, ...GRAPHICS[graphics]] });
   const address = `http://localhost:${server.address().port}/`;
   return {

@@ -19,12 +19,5 @@ fn main() {
         doors: true,
         lights: 0,
     };
-    let modes = [
-        Mode::Frustum,
-        Mode::Prepass,
-        Mode::Gpu,
-        Mode::Camera,
-        Mode::CameraPrepass,
-    ];
-    example::run("doors", house, &modes);
+    example::run("doors", house, &Mode::OF_CAMERAS);
 }

@@ -13,12 +13,5 @@ use shared::example;
 use shared::modes::Mode;
 
 fn main() {
-    let modes = [
-        Mode::Frustum,
-        Mode::Prepass,
-        Mode::Gpu,
-        Mode::Camera,
-        Mode::CameraPrepass,
-    ];
-    example::run_level("level", &modes);
+    example::run_level("level", &Mode::OF_CAMERAS);
 }

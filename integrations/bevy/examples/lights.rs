@@ -20,12 +20,5 @@ fn main() {
         doors: false,
         lights: 2,
     };
-    let modes = [
-        Mode::Frustum,
-        Mode::Prepass,
-        Mode::Gpu,
-        Mode::Camera,
-        Mode::All,
-    ];
-    example::run("lights", house, &modes);
+    example::run("lights", house, &Mode::OF_LIGHTS);
 }

@@ -19,12 +19,5 @@ fn main() {
         doors: false,
         lights: 0,
     };
-    let modes = [
-        Mode::Frustum,
-        Mode::Prepass,
-        Mode::Gpu,
-        Mode::Camera,
-        Mode::CameraPrepass,
-    ];
-    example::run("rooms", house, &modes);
+    example::run("rooms", house, &Mode::OF_CAMERAS);
 }

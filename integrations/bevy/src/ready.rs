@@ -132,11 +132,28 @@ impl ListedByView {
 #[cfg(feature = "bevy_pbr")]
 pub(crate) fn watch_pipelines(app: &mut bevy_app::App) {
     use bevy_ecs::change_detection::{Res, ResMut};
-    use bevy_render::render_resource::PipelineCache;
+    use bevy_render::render_resource::{PipelineCache, PipelineDescriptor};
+    use bevy_render::renderer::RenderDevice;
     use bevy_render::{ExtractSchedule, MainWorld, RenderApp};
 
-    fn extract(mut main: ResMut<MainWorld>, cache: Option<Res<PipelineCache>>) {
-        let waiting = cache.is_some_and(|cache| cache.waiting_pipelines().next().is_some());
+    /// Whether anything waits for a pipeline. Without compute shaders (WebGL 2) those that Bevy asks for
+    /// all the same wait for ever, and draw nothing.
+    fn is_waiting(cache: &PipelineCache, device: Option<&RenderDevice>) -> bool {
+        let computes = device.is_none_or(|d| d.limits().max_compute_workgroups_per_dimension > 0);
+        let draws = |id| {
+            let pipeline = cache.pipelines().nth(id).map(|p| &p.descriptor);
+            let is_compute = |p| matches!(p, &PipelineDescriptor::ComputePipelineDescriptor(_));
+            !pipeline.is_some_and(is_compute)
+        };
+        cache.waiting_pipelines().any(|id| computes || draws(id))
+    }
+
+    fn extract(
+        mut main: ResMut<MainWorld>,
+        cache: Option<Res<PipelineCache>>,
+        device: Option<Res<RenderDevice>>,
+    ) {
+        let waiting = cache.is_some_and(|cache| is_waiting(&cache, device.as_deref()));
         main.insert_resource(Pipelines { waiting });
     }
     if let Some(render) = app.get_sub_app_mut(RenderApp) {

@@ -10,11 +10,12 @@ mod shared;
 
 use bevy::prelude::*;
 use bevy_foveal_cull::CpuOcclusionStats;
-use shared::headless::{Headless, pixels_that_differ};
+use shared::headless::Headless;
 use shared::level::Level;
 use shared::modes::Mode;
 use shared::paths::longest_walk;
 use shared::place::Place;
+use shared::twice::pixels_that_differ;
 use std::fmt::Write as _;
 use std::path::PathBuf;
 use std::process::Command;

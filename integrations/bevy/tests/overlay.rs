@@ -9,9 +9,10 @@ mod shared;
 
 use bevy::prelude::*;
 use bevy_foveal_cull::CpuOcclusionOverlay;
-use shared::headless::{Headless, pixels_that_differ};
+use shared::headless::Headless;
 use shared::house::House;
 use shared::modes::Mode;
+use shared::twice::pixels_that_differ;
 
 #[test]
 fn the_overlay_shows_boxes_and_depth_while_its_resource_exists() {

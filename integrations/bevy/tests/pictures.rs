@@ -13,9 +13,10 @@ use bevy::pbr::decal::{ForwardDecal, ForwardDecalMaterial, ForwardDecalMaterialE
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};
 use bevy_foveal_cull::{AutomaticOccluders, CpuOcclusionStats, Occluder};
-use shared::headless::{Headless, pixels_that_differ};
+use shared::headless::Headless;
 use shared::house::{Door, House};
 use shared::modes::Mode;
+use shared::twice::pixels_that_differ;
 
 /// A house drawn twice, and what was hidden on the way.
 fn walk(house: House, size: UVec2, msaa: Msaa, frames: usize) -> CpuOcclusionStats {

@@ -1,9 +1,10 @@
 //! What ways of culling cost and gain: the same frames drawn by each in turn.
 
-use super::headless::{Headless, pixels_that_differ};
+use super::headless::Headless;
 use super::house::Door;
 use super::modes::Mode;
 use super::place::Place;
+use super::twice::pixels_that_differ;
 use bevy::asset::RenderAssetUsages;
 use bevy::prelude::*;
 use bevy::render::render_resource::{Extent3d, TextureDimension, TextureFormat};

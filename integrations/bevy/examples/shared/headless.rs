@@ -173,11 +173,3 @@ impl Headless {
             .collect()
     }
 }
-
-/// Pixels that differ between two pictures.
-pub fn pixels_that_differ(a: &[u8], b: &[u8]) -> usize {
-    let pixels = |picture: &[u8]| picture.as_chunks::<4>().0.to_vec();
-    let (a, b) = (pixels(a), pixels(b));
-    assert_eq!(a.len(), b.len());
-    a.iter().zip(&b).filter(|(a, b)| a != b).count()
-}

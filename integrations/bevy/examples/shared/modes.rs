@@ -23,6 +23,24 @@ pub enum Mode {
 }
 
 impl Mode {
+    /// What the tables of cameras compare.
+    pub const OF_CAMERAS: [Self; 5] = [
+        Self::Frustum,
+        Self::Prepass,
+        Self::Gpu,
+        Self::Camera,
+        Self::CameraPrepass,
+    ];
+
+    /// The same with lights.
+    pub const OF_LIGHTS: [Self; 5] = [
+        Self::Frustum,
+        Self::Prepass,
+        Self::Gpu,
+        Self::Camera,
+        Self::All,
+    ];
+
     /// For tables.
     pub fn name(self) -> &'static str {
         match self {
