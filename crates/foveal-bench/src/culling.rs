@@ -6,6 +6,7 @@
 
 mod boxes;
 mod cameras;
+mod case;
 mod inside;
 mod learned;
 mod plot;
@@ -18,13 +19,14 @@ use anyhow::Context;
 use serde::Serialize;
 
 use cameras::Cameras;
+use case::Case;
 use foveal_host::culling::CullingArgs;
 use foveal_host::culling::Occludees;
 use foveal_host::culling::Occluders;
 use foveal_host::culling::Workers;
 use foveal_host::progress::progress_bar;
 use foveal_host::{atomic_file, console, scene_source, values};
-use rows::{Case, Row};
+use rows::Row;
 
 /// Arguments of `foveal bench culling`.
 #[derive(Debug, Clone, clap::Args)]

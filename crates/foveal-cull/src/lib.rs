@@ -29,6 +29,8 @@
 //! matrix makes a view by [`View::from_clip_from_world`], for any depth range and either handedness.
 //!
 //! # A static level
+#![doc = include_str!("../pictures/static_level.svg")]
+//!
 //! ```
 //! use foveal_cull::*;
 //! use std::sync::Arc;
@@ -160,6 +162,9 @@
 //! shadow map. A [`ReceiverMask`] leaves out those whose shadows fall on nothing that the camera
 //! sees. A map without a receiver need not be drawn. A light is left out as a whole where the camera's
 //! culler hides its range: query a box around it.
+//!
+#![doc = include_str!("../pictures/receivers.svg")]
+//!
 //! ```
 //! use foveal_cull::*;
 //! use std::sync::Arc;

@@ -6,7 +6,7 @@ use foveal_cull::{Culler, Eye, FrameOptions, OccluderUsefulness, Visibility};
 use glam::{DAffine3, DVec3};
 use serde::Serialize;
 
-use super::rows::Case;
+use super::case::Case;
 use foveal_host::culling::{Clock, Workers};
 use foveal_measure::median;
 

@@ -4,34 +4,18 @@ use std::collections::BTreeSet;
 use std::fmt::Write;
 use std::time::Instant;
 
-use foveal_cull::{Aabb, Culler, Visibility};
+use foveal_cull::{Culler, Visibility};
 use serde::Serialize;
 
 use foveal_host::culling::Check;
 use foveal_host::culling::Clock;
-use foveal_host::culling::CullingArgs;
-use foveal_host::culling::NamedEye;
-use foveal_host::culling::Occluders;
 use foveal_host::culling::Workers;
 use foveal_measure::median;
 
+use super::case::Case;
 use super::learned::LearnedColumns;
 
 const WARM_UP: u32 = 3;
-
-/// What is measured.
-pub(super) struct Case<'a> {
-    pub(super) scene: &'a str,
-    pub(super) eye: &'a NamedEye,
-    pub(super) size: (u32, u32),
-    pub(super) occluders: &'a Occluders,
-    pub(super) boxes: &'a [Aabb],
-    pub(super) culling: &'a CullingArgs,
-    /// The scene's own, world space.
-    pub(super) objects: &'a [Aabb],
-    /// Whether it is measured what learning gains.
-    pub(super) learn: bool,
-}
 
 /// A row of the report.
 #[derive(Debug, Clone, Serialize)]

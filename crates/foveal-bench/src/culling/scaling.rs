@@ -15,8 +15,9 @@ use serde::Serialize;
 
 use super::boxes;
 use super::cameras::Cameras;
+use super::case::Case;
 use super::plot::{self, Panel};
-use super::rows::{Case, Row};
+use super::rows::Row;
 use foveal_host::culling::CullingArgs;
 use foveal_host::culling::Workers;
 use foveal_host::culling::{Choice, Occluders};

@@ -409,9 +409,13 @@ fn crossing(screen: &Screen<'_>, cluster: &Cluster) -> Option<Place> {
         });
     }
     let far_depth = screen.far_depth;
+    // Up to the end of the last blocks: polygons are drawn there too, by whichever thread has them.
+    let block = BLOCK_SAMPLES as f32;
     let screen = Screen {
         dilate: rounding.max(GROWN),
         far_depth: f32::MIN,
+        width: (screen.width / block).ceil() * block,
+        height: (screen.height / block).ceil() * block,
         ..*screen
     };
     if screen.is_beside(cluster.center, cluster.half) {
@@ -489,4 +493,54 @@ fn outside(camera: &Camera, planes: &[DVec4; 6], instance: &Instance, small: f64
     }
     let w = camera.rows[3].truncate().dot(c) + camera.rows[3].w;
     w > 1.0 && r * r < w * small
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::Aabb;
+    use crate::occluder::OccluderMesh;
+
+    /// The thread that has the lower rows did not draw what reaches them only beside the picture, in
+    /// the pixels that fill the last column of blocks. One thread for all rows did, so that groups of
+    /// boxes there were hidden or not by the number of threads.
+    #[test]
+    fn the_place_of_a_cluster_reaches_to_the_end_of_the_last_blocks() {
+        let bounds = Aabb::new([0.8, -1.0, 0.5], [1.0, 1.0, 1.2]);
+        let mesh = OccluderMesh::from_box(bounds).unwrap();
+        let c = mesh.center.as_vec3();
+        // Perspective, and sheared: what is lower lies farther to the right.
+        let rows = [
+            [100.0, 60.0, 82.0, 0.0],
+            [0.0, 100.0, 94.0, 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+            [0.0, 0.0, 1.0, 0.0],
+        ]
+        .map(|r: [f32; 4]| {
+            [
+                r[0],
+                r[1],
+                r[2],
+                r[3] + r[0] * c.x + r[1] * c.y + r[2] * c.z,
+            ]
+        });
+        let place = |width: f32, height: f32| {
+            let screen = Screen {
+                rows,
+                width,
+                height,
+                far_depth: 0.0,
+                dilate: 0.0,
+                grow: 0.0,
+                hiz: None,
+            };
+            crossing(&screen, &mesh.clusters[0]).unwrap().rect
+        };
+        let block = BLOCK_SAMPLES as f32;
+        let whole = place(6.0 * block, 6.0 * block);
+        assert_eq!(place(164.0, 188.0), whole);
+        assert!(whole[3] > 5.0 * block, "{whole:?}");
+        // Wider by a block, it is another one.
+        assert_ne!(place(7.0 * block, 6.0 * block), whole);
+    }
 }
