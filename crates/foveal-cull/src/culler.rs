@@ -67,7 +67,8 @@ pub(crate) struct Drawn<'a> {
     pub(crate) drawn: &'a [Vec<u32>],
     /// What they changed, by band.
     pub(crate) touched: &'a [Vec<Touched>],
-    pub(crate) blocks_x: u32,
+    /// Blocks of the buffer across and down.
+    pub(crate) blocks: [u32; 2],
     /// Time of drawing by the clock of the budget, nanoseconds; 0 without one. And all work.
     pub(crate) ns: u64,
     pub(crate) work: u64,
@@ -500,7 +501,7 @@ impl Culler {
             candidates: &self.frame.candidates,
             drawn: &self.drawn[..bands],
             touched: &self.touched[..bands],
-            blocks_x: self.buffer.blocks_x,
+            blocks: [self.buffer.blocks_x, self.buffer.blocks_y],
             ns: self.drawing_ns,
             work: self.buffer.work.iter().map(|w| u64::from(*w)).sum(),
         })

@@ -69,14 +69,16 @@ impl OccluderUsefulness {
 
     /// Learns what the occluders of the culler's frame were worth, from what was observed since the
     /// last call. Learns nothing if nothing was observed, or if the frame was rasterized without
-    /// [`FrameOptions::usefulness`](crate::FrameOptions::usefulness).
+    /// [`FrameOptions::usefulness`](crate::FrameOptions::usefulness), or if the culler has a buffer of
+    /// another size than the one whose results were observed.
     ///
     /// `occluders` is the set that was rasterized.
     pub fn learn(&mut self, culler: &Culler, occluders: &OccluderSet) {
         if !core::mem::take(&mut self.observed.any) {
             return;
         }
-        let Some(drawn) = culler.recorded() else {
+        let blocks = self.observed.blocks;
+        let Some(drawn) = culler.recorded().filter(|d| d.blocks == blocks) else {
             self.observed.over.fill(0);
             return;
         };
@@ -119,13 +121,13 @@ impl OccluderUsefulness {
             });
         }
         // From differences to boxes over each block, then to sums from the left.
-        let width = drawn.blocks_x as usize + 1;
+        let width = drawn.blocks[0] as usize + 1;
         for row in self.observed.over.chunks_mut(width) {
-            let (mut boxes, mut sum) = (0, 0);
+            let (mut boxes, mut sum) = (0i32, 0i32);
             for at in row {
-                boxes += *at;
+                boxes = boxes.saturating_add(*at);
                 *at = sum;
-                sum += boxes;
+                sum = sum.saturating_add(boxes);
             }
         }
         for touched in drawn.touched.iter().flatten() {
@@ -133,8 +135,9 @@ impl OccluderUsefulness {
                 let row = usize::from(touched.row) * width;
                 let sum = |block: u16| self.observed.over.get(row + usize::from(block));
                 let ends = sum(touched.first).zip(sum(touched.last + 1));
-                done.hidden += ends.map_or(0, |(first, end)| (end - first) as u32);
-                done.work += u32::from(touched.work);
+                let hidden = ends.map_or(0, |(first, end)| end.saturating_sub(*first).max(0));
+                done.hidden = done.hidden.saturating_add(hidden as u32);
+                done.work = done.work.saturating_add(touched.work.into());
             }
         }
     }
@@ -164,9 +167,12 @@ impl Kernel for LayOver<'_> {
             observed.all = true;
         }
         observed.any = true;
-        observed
-            .over
-            .resize(width * query.buffer.blocks_y as usize, 0);
+        let blocks = [query.buffer.blocks_x, query.buffer.blocks_y];
+        if observed.blocks != blocks {
+            observed.blocks = blocks;
+            observed.over.clear();
+        }
+        observed.over.resize(width * blocks[1] as usize, 0);
         if boxes.is_empty() {
             return;
         }

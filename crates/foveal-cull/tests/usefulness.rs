@@ -250,6 +250,34 @@ fn a_frame_of_which_nothing_is_known_teaches_nothing() {
 }
 
 #[test]
+fn results_of_a_culler_of_another_size_teach_nothing_and_do_no_harm() {
+    let set = walls(&[[-2.5, 0.0, -5.0], [2.5, 0.0, -5.0]]);
+    let boxes = [behind(-2.5)];
+    let mut one = Learner::new(320, 180);
+    let mut other = Culler::new(150, 400).unwrap();
+    for frame in 0..60 {
+        let options = FrameOptions::default().with_usefulness(Some(&one.usefulness));
+        other
+            .rasterize(&view(), &set, &options, &SingleThread)
+            .unwrap();
+        one.culler
+            .rasterize(&view(), &set, &options, &SingleThread)
+            .unwrap();
+        let hidden = [Visibility::Occluded];
+        let [observed, learned] = if frame % 2 == 0 {
+            [&one.culler, &other]
+        } else {
+            [&other, &one.culler]
+        };
+        one.usefulness
+            .observe(observed, &boxes, [0.0; 3], &hidden)
+            .unwrap();
+        one.usefulness.learn(learned, &set);
+        assert_eq!(one.culler.stats().clusters_not_useful, 0);
+    }
+}
+
+#[test]
 fn a_set_of_occludees_teaches_as_a_list_does() {
     let set = walls(&[[-2.5, 0.0, -5.0], [2.5, 0.0, -5.0]]);
     let mut objects = OccludeeSet::new([0.0; 3]);

@@ -82,6 +82,8 @@ pub struct OccluderUsefulness {
 pub(crate) struct Observed {
     /// Boxes over each block, as differences along rows that are one longer than the buffer's.
     pub(crate) over: Vec<i32>,
+    /// Blocks of the buffer across and down.
+    pub(crate) blocks: [u32; 2],
     /// Where the next frame begins to look.
     pub(crate) turn: usize,
     /// Whether results were observed at all.
