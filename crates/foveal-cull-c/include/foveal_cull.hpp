@@ -524,7 +524,8 @@ private:
     detail::Handle<FovealCuller, foveal_culler_destroy> culler_;
 };
 
-/// What occluders were worth in the frames before, for `Options::usefulness`. In each frame `observe`, then `learn`.
+/// What occluders were worth in the frames before, for `Options::usefulness`: one for each culler. In each
+/// frame `observe`, then `learn`.
 class Usefulness {
 public:
     /// Nothing is known: all occluders are drawn.

@@ -69,9 +69,8 @@ pub(crate) struct Drawn<'a> {
     pub(crate) touched: &'a [Vec<Touched>],
     /// Blocks of the buffer across and down.
     pub(crate) blocks: [u32; 2],
-    /// Time of drawing by the clock of the budget, nanoseconds; 0 without one. And all work.
+    /// Time of drawing by the clock of the budget, nanoseconds; 0 without one.
     pub(crate) ns: u64,
-    pub(crate) work: u64,
 }
 
 impl Culler {
@@ -128,7 +127,8 @@ impl Culler {
     /// stats.
     ///
     /// The result depends on the scene and the view only: neither on the order of occluders, nor on
-    /// the number of threads, nor on the instruction set. Cost grows with the clusters that may be
+    /// the number of threads, nor on the instruction set. (A [budget](FrameOptions::budget) adds the
+    /// clock, and [usefulness](FrameOptions::usefulness) the frames before.) Cost grows with the clusters that may be
     /// visible and the blocks that they touch; see [`FrameOptions`] for limits. For worker threads
     /// that sleep from frame to frame, call [`Threads::wake`] 20 to 60 microseconds before.
     ///
@@ -503,7 +503,6 @@ impl Culler {
             touched: &self.touched[..bands],
             blocks: [self.buffer.blocks_x, self.buffer.blocks_y],
             ns: self.drawing_ns,
-            work: self.buffer.work.iter().map(|w| u64::from(*w)).sum(),
         })
     }
 

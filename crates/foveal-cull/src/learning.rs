@@ -3,21 +3,26 @@
 use crate::bounds::Aabb;
 use crate::culler::{Culler, Drawn};
 use crate::error::CullError;
-use crate::format::BLOCK;
+use crate::format::{BLOCK, SAMPLES};
 use crate::occluder::OccluderUsefulness;
 use crate::occluder::set::OccluderSet;
 use crate::occluder::usefulness::{Done, Observed};
 use crate::projection::boxes::Boxes8;
+use crate::projection::near::{Clipped, clip_box};
 use crate::projection::project::project;
 use crate::projection::screen::Screen;
 use crate::query::classify::Query;
 use crate::query::moving::OccludeeSet;
+use crate::query::rect::PixelRect;
 use crate::simd::{Kernel, Lanes};
 use crate::visibility::Visibility;
 use glam::DVec3;
 
 /// Hidden boxes that one call looks at, at most. The next frame goes on with the others.
-const SAMPLES: usize = 256;
+const MOST_BOXES: usize = 256;
+
+/// Calls within a frame that have a turn of their own.
+const MOST_CALLS: usize = 1024;
 
 /// Work of a cluster besides that of its blocks.
 const WORK_OF_CLUSTER: u32 = 16;
@@ -74,6 +79,7 @@ impl OccluderUsefulness {
     ///
     /// `occluders` is the set that was rasterized.
     pub fn learn(&mut self, culler: &Culler, occluders: &OccluderSet) {
+        self.observed.calls = 0;
         if !core::mem::take(&mut self.observed.any) {
             return;
         }
@@ -83,9 +89,12 @@ impl OccluderUsefulness {
             return;
         };
         self.next();
-        self.timed(drawn.ns, drawn.work);
         let mut all = core::mem::take(&mut self.done);
         self.find_done(&drawn, occluders, &mut all);
+        let work = all.iter().flatten().map(|done| u64::from(done.work)).sum();
+        if drawn.ns > 0 {
+            self.timed(drawn.ns, work);
+        }
         for (candidate, done) in drawn.candidates.iter().zip(&all) {
             let (slot, cluster) = candidate.place();
             let known = occluders.instances.get(slot as usize);
@@ -180,33 +189,55 @@ impl Kernel for LayOver<'_> {
             hiz: None,
             ..query.screen
         };
-        let start = observed.turn % boxes.len();
+        let call = observed.calls;
+        observed.calls += 1;
+        if observed.turns.len() <= call {
+            observed.turns.resize(call.min(MOST_CALLS) + 1, 0);
+        }
+        let call = call.min(MOST_CALLS);
+        let start = observed.turns[call] % boxes.len();
         let mut hidden = (start..boxes.len())
             .chain(0..start)
             .filter(|&i| results[i] == Visibility::Occluded)
-            .take(SAMPLES);
+            .take(MOST_BOXES);
         let mut seen = 0;
         loop {
             let mut eight = [Aabb::EMPTY; 8];
             let mut count = 0;
             for (to, i) in eight.iter_mut().zip(&mut hidden) {
                 *to = boxes[i];
-                observed.turn = i + 1;
+                observed.turns[call] = i + 1;
                 count += 1;
                 seen += 1;
             }
             let p = project(l, &screen, &Boxes8::of(l, &eight));
-            for i in (0..count).filter(|i| (p.outside | p.crossing) >> i & 1 == 0) {
-                let [x0, y0, x1, y1] = p.pixels.map(|v| v[i] as usize / BLOCK as usize);
+            for i in (0..count).filter(|i| p.outside >> i & 1 == 0) {
+                let place = if p.crossing >> i & 1 == 0 {
+                    Some(p.pixels.map(|v| v[i] as u32 / BLOCK))
+                } else {
+                    crossing(&screen, eight[i])
+                };
+                let Some([x0, y0, x1, y1]) = place.map(|b| b.map(|b| b as usize)) else {
+                    continue;
+                };
                 for row in observed.over.chunks_mut(width).take(y1 + 1).skip(y0) {
-                    row[x0] += 1;
-                    row[x1 + 1] -= 1;
+                    row[x0] = row[x0].saturating_add(1);
+                    row[x1 + 1] = row[x1 + 1].saturating_sub(1);
                 }
             }
             if count < 8 {
-                observed.all &= seen < SAMPLES;
+                observed.all &= seen < MOST_BOXES;
                 return;
             }
         }
     }
+}
+
+/// Blocks of a hidden box that crosses the near plane.
+fn crossing(screen: &Screen<'_>, bounds: Aabb) -> Option<[u32; 4]> {
+    let Clipped::Rect(rect, _) = clip_box(screen, bounds.center(), bounds.half_extent()) else {
+        return None;
+    };
+    let [width, height] = [screen.width, screen.height].map(|v| v as u32 / SAMPLES);
+    Some(PixelRect::from_samples(rect, width, height).blocks())
 }

@@ -4,7 +4,8 @@ use crate::occluder::OccluderUsefulness;
 
 /// A time limit for rasterizing, by the caller's clock. This crate reads none.
 ///
-/// Occluders are drawn nearest first, so the most useful ones are there when the time is spent.
+/// Occluders are drawn nearest first, so most useful ones are there when the time is spent; with
+/// [`FrameOptions::usefulness`] those are chosen that hide most for their time.
 /// Results stay safe; more boxes are visible.
 #[derive(Clone, Copy)]
 #[non_exhaustive]

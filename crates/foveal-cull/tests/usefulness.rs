@@ -210,6 +210,25 @@ fn within_a_budget_those_are_drawn_that_hide_most() {
     assert!(results[10..].iter().all(hidden), "{results:?}");
 }
 
+/// A frame that was held up for a quarter of an hour had ended all drawing for ever.
+#[test]
+fn a_frame_that_is_held_up_is_forgotten() {
+    let set = walls(&[[-2.5, 0.0, -5.0], [2.5, 0.0, -5.0]]);
+    let boxes = [behind(-2.5)];
+    let (time, jump) = (AtomicU64::new(0), AtomicU64::new(0));
+    let clock = || time.fetch_add(1000 + jump.swap(0, Ordering::Relaxed), Ordering::Relaxed);
+    let mut learner = Learner::new(320, 180);
+    let mut results = Vec::new();
+    for frame in 0..60 {
+        if frame % 20 == 0 {
+            jump.store(1_000_000_000_000, Ordering::Relaxed);
+        }
+        let budget = Budget::new(&clock, time.load(Ordering::Relaxed) + 50_000);
+        results.push(learner.frame(&view(), &set, &boxes, Some(budget), &SingleThread)[0]);
+    }
+    assert_eq!(results[59], Visibility::Occluded, "{results:?}");
+}
+
 #[test]
 fn a_frame_of_which_nothing_is_known_teaches_nothing() {
     let set = walls(&[[-2.5, 0.0, -5.0], [2.5, 0.0, -5.0]]);

@@ -8,7 +8,7 @@
 use super::borders::{Around, Borders};
 use super::chunks::{self, Chunking};
 use super::in_parts::in_order;
-use super::inner::inner_boxes;
+use super::inner::{inner_boxes, may_have_boxes};
 use super::mesh::OccluderMesh;
 use super::neighbors::Neighbors;
 use super::one_ring::OneRings;
@@ -174,6 +174,9 @@ impl Input<'_> {
 
     /// Boxes inside the mesh, if they are the better occluder.
     fn inner_shape(&self, options: BakeOptions) -> Option<OccluderMesh> {
+        if !may_have_boxes(self.indices.len() / 3) {
+            return None;
+        }
         let triangles = (0..self.indices.len() / 3).map(|t| self.triangle(t));
         let welded = weld(By::Position, self.positions, self.position, triangles);
         let boxes = inner_boxes(&welded)?;

@@ -12,6 +12,8 @@ use core::num::NonZeroU32;
 /// in which all hidden boxes were looked at counts as [`STEP`].
 const PATIENCE: u8 = 24;
 const STEP: u8 = 4;
+/// Frames for which it is looked at again where not all hidden boxes are looked at.
+const AGAIN: u8 = 8;
 /// It is drawn again after so many frames, and as many more as its number says, so that not all
 /// come back in the same frame.
 const PAUSE: u32 = 12;
@@ -22,6 +24,8 @@ const ABSENCE: u32 = 1000;
 const FOLLOW: f32 = 0.125;
 /// Part of the time that is left which is planned for.
 const PLANNED: f64 = 0.9;
+/// How many times the usual time a frame counts at most.
+const MOST_HELD_UP: f64 = 4.0;
 /// Work that is expected of a block of a cluster that was never drawn.
 const BLOCK_WORK: f32 = 2.0;
 
@@ -35,8 +39,10 @@ const BLOCK_WORK: f32 = 2.0;
 /// instead of the nearest ones.
 ///
 /// Results stay safe: what is left out hides nothing. They depend on the frames before, so call
-/// [`forget`](Self::forget) where the camera is cut to another place. `learn` takes about as long as a
-/// tenth of rasterizing, and some 10 bytes a cluster.
+/// [`forget`](Self::forget) where the camera is cut to another place. Where more than 256 boxes are
+/// hidden, what hides few of them may be left out too. One object serves one culler. `learn` takes
+/// about as long as a tenth of rasterizing; a cluster takes 16 bytes, and a frame's record 12 for
+/// each row of blocks of a polygon.
 ///
 /// ```
 /// use foveal_cull::*;
@@ -84,8 +90,10 @@ pub(crate) struct Observed {
     pub(crate) over: Vec<i32>,
     /// Blocks of the buffer across and down.
     pub(crate) blocks: [u32; 2],
-    /// Where the next frame begins to look.
-    pub(crate) turn: usize,
+    /// Where the next frame begins to look, by the call within a frame.
+    pub(crate) turns: Vec<usize>,
+    /// Calls since the last frame was learned.
+    pub(crate) calls: usize,
     /// Whether results were observed at all.
     pub(crate) any: bool,
     /// Whether all hidden boxes were looked at.
@@ -99,6 +107,8 @@ struct Slot {
     generation: Option<NonZeroU32>,
     first: u32,
     count: u32,
+    /// Entries that there is room for.
+    room: u32,
 }
 
 /// What is known about one cluster.
@@ -164,16 +174,25 @@ impl OccluderUsefulness {
         (self.unit_ns > 0.0).then(|| PLANNED * ns as f64 / self.unit_ns)
     }
 
-    /// Learns how long a unit of work takes.
+    /// Learns how long a unit of work takes. Frames that were held up count a little more only.
     pub(crate) fn timed(&mut self, ns: u64, work: u64) {
-        if work > 0 && ns > 0 {
+        if work == 0 {
+            // Nothing is drawn any more: perhaps it takes less than is thought.
+            self.unit_ns *= 1.0 - f64::from(FOLLOW);
+        } else if ns > 0 {
             let unit = ns as f64 / work as f64;
             self.unit_ns = if self.unit_ns > 0.0 {
+                let unit = unit.min(MOST_HELD_UP * self.unit_ns);
                 self.unit_ns + (unit - self.unit_ns) * f64::from(FOLLOW)
             } else {
                 unit
             };
         }
+    }
+
+    /// Which one of so many comes first in this frame.
+    pub(crate) fn turn(&self, count: usize) -> usize {
+        (self.frame as usize).wrapping_mul(7) % count.max(1)
     }
 
     /// Makes room for the clusters of an occluder; returns the place of the first.
@@ -184,10 +203,11 @@ impl OccluderUsefulness {
         let to = &mut self.slots[slot];
         let count = instance.clusters;
         if to.generation != Some(instance.generation()) || to.count != count {
-            if to.count < count {
+            if to.room < count {
                 to.first = self.entries.len() as u32;
                 let end = self.entries.len() + count as usize;
                 self.entries.resize(end, Entry::default());
+                to.room = count;
             }
             to.generation = Some(instance.generation());
             to.count = count;
@@ -210,6 +230,12 @@ impl OccluderUsefulness {
                 work,
                 ..Entry::default()
             };
+        }
+        // One that is looked at again: for a frame if that tells all, else for some.
+        if frame.wrapping_sub(e.drawn) >= PAUSE {
+            e.idle = e
+                .idle
+                .min(PATIENCE - if self.observed.all { STEP } else { AGAIN });
         }
         e.hidden += (hidden - e.hidden) * FOLLOW;
         e.work += (work - e.work) * FOLLOW;
@@ -238,5 +264,6 @@ impl Slot {
         generation: None,
         first: 0,
         count: 0,
+        room: 0,
     };
 }

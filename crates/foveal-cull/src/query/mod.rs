@@ -14,6 +14,6 @@ pub(crate) mod occludee_id;
 mod plane_lanes;
 pub(crate) mod rebuild;
 pub(crate) mod receivers;
-mod rect;
+pub(crate) mod rect;
 pub(crate) mod tree;
 pub(crate) mod walk;

@@ -55,7 +55,7 @@ impl Kernel for Draw<'_, '_> {
                 && n % 16 == 0
                 && (b.clock)() >= b.deadline_ns
             {
-                return (frame.candidates.len() - n) as u64;
+                return (frame.order.len() - n) as u64;
             }
             let [x0, y0, x1, y1] = c.blocks;
             let blocks = [x0, y0.max(row0), x1, y1.min(row1)].map(u32::from);

@@ -150,24 +150,25 @@ impl FrameScratch {
             known(b).total_cmp(&known(a)).then(a.2.cmp(&b.2))
         });
         let known = self.worths.partition_point(|w| w.0.is_some());
-        let (known, unknown) = self.worths.split_at(known);
+        let (known, unknown) = self.worths.split_at_mut(known);
+        // In every frame another one comes first: what others hide is never drawn nor known.
+        unknown.rotate_left(usefulness.turn(unknown.len()));
         self.order.clear();
         let mut sum = 0.0;
-        let mut take = |some: &[Worth], most: f64| {
-            let mut taken = 0;
-            for w in some {
-                if sum + f64::from(w.1) > most {
-                    break;
+        // Takes what fits, and the first in any case if asked for.
+        let mut take = |some: &mut [Worth], most: f64, mut any: bool| {
+            for w in some.iter_mut().filter(|w| w.2 != TAKEN) {
+                if any || sum + f64::from(w.1) <= most {
+                    any = false;
+                    sum += f64::from(w.1);
+                    self.order.push(w.2);
+                    w.2 = TAKEN;
                 }
-                sum += f64::from(w.1);
-                self.order.push(w.2);
-                taken += 1;
             }
-            taken
         };
-        let tried = take(unknown, most_work * PART_OF_UNKNOWN);
-        take(known, most_work);
-        take(&unknown[tried..], most_work);
+        take(unknown, most_work * PART_OF_UNKNOWN, true);
+        take(known, most_work, true);
+        take(unknown, most_work, false);
         self.sort();
         (all - self.order.len()) as u64
     }
@@ -370,6 +371,9 @@ struct Place {
     /// Its box crosses the near plane, and this is the place of the part beyond.
     crossing: bool,
 }
+
+/// Stands for the place of a candidate that was chosen.
+const TAKEN: u64 = u64::MAX;
 
 /// Part of a frame's work that clusters of unknown worth get first.
 const PART_OF_UNKNOWN: f64 = 0.25;

@@ -25,4 +25,4 @@ mod shape;
 mod tests;
 mod touched;
 
-pub(super) use shape::inner_boxes;
+pub(super) use shape::{inner_boxes, may_have_boxes};

@@ -20,6 +20,11 @@ const MOST_TRIANGLES: usize = 1 << 23;
 const LEAST_KEPT: f64 = 0.5;
 const LEAST_ADDED: f64 = 0.01;
 
+/// Whether a mesh of so many triangles may have boxes at all, before it is welded.
+pub(in super::super) fn may_have_boxes(triangles: usize) -> bool {
+    (TRIANGLES_PER_BOX..=MOST_TRIANGLES).contains(&triangles)
+}
+
 /// Boxes inside a mesh, mesh space; none where the mesh itself is the better occluder: if it is not
 /// closed, if it has fewer than 96 triangles per box, or if boxes fill less than half of its
 /// outline in the mean over all directions.
