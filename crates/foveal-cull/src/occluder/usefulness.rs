@@ -13,7 +13,7 @@ use core::num::NonZeroU32;
 const PATIENCE: u8 = 24;
 const STEP: u8 = 4;
 /// Frames for which it is looked at again where not all hidden boxes are looked at.
-const AGAIN: u8 = 8;
+const AGAIN: u8 = 2;
 /// It is drawn again after so many frames, and as many more as its number says, so that not all
 /// come back in the same frame.
 const PAUSE: u32 = 12;
