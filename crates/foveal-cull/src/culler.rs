@@ -128,9 +128,10 @@ impl Culler {
     ///
     /// The result depends on the scene and the view only: neither on the order of occluders, nor on
     /// the number of threads, nor on the instruction set. (A [budget](FrameOptions::budget) adds the
-    /// clock, and [usefulness](FrameOptions::usefulness) the frames before.) Cost grows with the clusters that may be
-    /// visible and the blocks that they touch; see [`FrameOptions`] for limits. For worker threads
-    /// that sleep from frame to frame, call [`Threads::wake`] 20 to 60 microseconds before.
+    /// clock, and [usefulness](FrameOptions::usefulness) the frames before.) Cost grows with the
+    /// clusters that may be visible and the blocks that they touch; see [`FrameOptions`] for limits.
+    /// For worker threads that sleep from frame to frame, call [`Threads::wake`] 20 to 60
+    /// microseconds before.
     ///
     /// If a task or the clock panics on the way, the panic passes on, and everything is visible
     /// until the next successful one.

@@ -14,6 +14,7 @@ use crate::projection::screen::Screen;
 use crate::query::classify::Query;
 use crate::query::moving::OccludeeSet;
 use crate::query::rect::PixelRect;
+use crate::raster::draw::work_of;
 use crate::simd::{Kernel, Lanes};
 use crate::visibility::Visibility;
 use glam::DVec3;
@@ -23,9 +24,6 @@ const MOST_BOXES: usize = 256;
 
 /// Calls within a frame that have a turn of their own.
 const MOST_CALLS: usize = 1024;
-
-/// Work of a cluster besides that of its blocks.
-const WORK_OF_CLUSTER: u32 = 16;
 
 impl OccluderUsefulness {
     /// Observes results of the culler's frame: as many calls as there were queries, before
@@ -126,7 +124,7 @@ impl OccluderUsefulness {
                 .and_then(|mesh| mesh.clusters.get(cluster as usize));
             done[candidate as usize] = Some(Done {
                 hidden: 0,
-                work: WORK_OF_CLUSTER + cluster.map_or(0, |c| u32::from(c.quad_count)),
+                work: cluster.map_or(0, work_of),
             });
         }
         // From differences to boxes over each block, then to sums from the left.

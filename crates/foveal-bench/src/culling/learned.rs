@@ -52,7 +52,10 @@ impl LearnedColumns {
         let mut usefulness = OccluderUsefulness::new();
         for frame in 0..WARM_UP + FRAMES {
             let view = case.culling.view(&moved(&case.eye.eye, frame))?;
-            for (learns, side) in [(false, &mut plain), (true, &mut learned)] {
+            // The side that comes first finds the caches as the other one left them.
+            let mut sides = [(false, &mut plain), (true, &mut learned)];
+            sides.rotate_left(frame as usize % 2);
+            for (learns, side) in sides {
                 let clock = Clock::start();
                 let clock = || clock.now_ns();
                 let known = learns.then_some(&usefulness);

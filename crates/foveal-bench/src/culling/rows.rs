@@ -1,6 +1,6 @@
 //! One view of one scene, measured with each number of threads.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::time::Instant;
 
@@ -193,40 +193,36 @@ pub(super) fn table(rows: &[Row]) -> String {
     text + &learned_table(rows)
 }
 
-/// What learning gains, in sum over each scene's cameras; empty unless it was measured.
+/// What learning gains at all cameras of a scene, by size and number of threads; empty unless it was
+/// measured.
 fn learned_table(rows: &[Row]) -> String {
-    let mut text = String::new();
-    for same in rows.chunk_by(|a, b| a.scene == b.scene) {
-        for threads in same.iter().map(|r| r.threads).collect::<BTreeSet<_>>() {
-            let learned = |r: &Row| {
-                let l = r.learned;
-                Some([
-                    l.moving_ms?,
-                    l.learned_ms?,
-                    l.moving_visible?,
-                    l.learned_visible?,
-                ])
-            };
-            let rows = same.iter().filter(|r| r.threads == threads);
-            let all: Vec<[f64; 4]> = rows.filter_map(learned).collect();
-            if all.is_empty() {
-                continue;
-            }
-            let mean = |k: usize| all.iter().map(|l| l[k]).sum::<f64>() / all.len() as f64;
-            let ratios: Vec<f64> = all.iter().map(|l| l[1] / l[0]).collect();
-            let _ = writeln!(
-                text,
-                "{}, {threads} threads, {} moving cameras: useful occluders take {:.2} of the time of all \
-                 (median; {:.3} and {:.3} ms in the mean), {:.1} objects are visible instead of {:.1}",
-                same[0].scene,
-                all.len(),
-                median(&ratios),
-                mean(1),
-                mean(0),
-                mean(3),
-                mean(2),
-            );
+    let mut by_kind: BTreeMap<_, Vec<[f64; 4]>> = BTreeMap::new();
+    for row in rows {
+        let l = row.learned;
+        if let (Some(all_ms), Some(learned_ms), Some(all), Some(learned)) = (
+            l.moving_ms,
+            l.learned_ms,
+            l.moving_visible,
+            l.learned_visible,
+        ) {
+            let kind = (&row.scene, row.width, row.height, row.threads);
+            let figures = [all_ms, learned_ms, all, learned];
+            by_kind.entry(kind).or_default().push(figures);
         }
+    }
+    let mut text = String::new();
+    for ((scene, width, height, threads), cameras) in by_kind {
+        let [all_ms, learned_ms, all, learned] =
+            [0, 1, 2, 3].map(|k| cameras.iter().map(|c| c[k]).sum::<f64>() / cameras.len() as f64);
+        let ratios: Vec<f64> = cameras.iter().map(|c| c[1] / c[0]).collect();
+        let _ = writeln!(
+            text,
+            "{scene}, {width}x{height}, {threads} threads, {} moving cameras: useful occluders take {:.2} \
+             of the time of all (median), {learned_ms:.3} ms instead of {all_ms:.3} (mean); \
+             {learned:.1} objects are visible instead of {all:.1}",
+            cameras.len(),
+            median(&ratios),
+        );
     }
     text
 }

@@ -30,9 +30,15 @@ pub(crate) struct FrameScratch {
     pub(crate) parts: Vec<Part>,
 }
 
-/// What a candidate hides for its work if that is known, its work, and its place in the order.
+/// What a candidate is worth.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Worth(pub(super) Option<f32>, pub(super) f32, pub(super) u64);
+pub(super) struct Worth {
+    /// What it hides for its work, if that is known.
+    pub(super) hides: Option<f32>,
+    pub(super) work: f32,
+    /// Its entry in the order of drawing.
+    pub(super) order: u64,
+}
 
 /// Candidates among some of the clusters.
 #[derive(Clone, Debug, Default)]

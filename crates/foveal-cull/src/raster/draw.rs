@@ -8,6 +8,7 @@ use super::cluster::draw_cluster;
 use super::facing::{Facing, ValidityRadius};
 use super::scratch::Scratch;
 use crate::depth::band::Band;
+use crate::occluder::mesh::Cluster;
 use crate::occluder::set::OccluderSet;
 use crate::options::Budget;
 use crate::simd::{Kernel, Lanes};
@@ -18,6 +19,11 @@ const MOST_FETCHED: u32 = 64;
 /// Work of setting up a cluster, besides one unit for each quad, in the unit of
 /// [`WORK_OF_FULL`](super::block::WORK_OF_FULL).
 const WORK_OF_CLUSTER: u32 = 16;
+
+/// Work of a cluster besides that of its blocks.
+pub(crate) fn work_of(cluster: &Cluster) -> u32 {
+    WORK_OF_CLUSTER + u32::from(cluster.quad_count)
+}
 
 /// The kernel that draws the candidates into one band.
 pub(crate) struct Draw<'a, 'b> {
@@ -78,8 +84,7 @@ impl Kernel for Draw<'_, '_> {
             }
             let cluster = &mesh.clusters[c.cluster as usize];
             let rows = blocks[1] - band.first_row..blocks[3] + 1 - band.first_row;
-            let work = WORK_OF_CLUSTER + u32::from(cluster.quad_count);
-            band.share(rows, work);
+            band.share(rows, work_of(cluster));
             let facing = Facing {
                 mirrored: instance.mirrored,
                 two_sided: mesh.two_sided,

@@ -140,16 +140,20 @@ impl FrameScratch {
             let (slot, cluster) = (c.instance as usize, c.cluster as usize);
             let [x0, y0, x1, y1] = c.blocks.map(u32::from);
             let blocks = (x1 + 1 - x0) * (y1 + 1 - y0);
-            let (worth, work) = usefulness.worth(slot, &set.instances[slot], cluster, blocks);
-            Worth(worth, work, o)
+            let (hides, work) = usefulness.worth(slot, &set.instances[slot], cluster, blocks);
+            Worth {
+                hides,
+                work,
+                order: o,
+            }
         }));
         // The best first, and the nearest of equally good ones. What is not known comes last, but
         // gets a part of the work before.
         self.worths.sort_unstable_by(|a, b| {
-            let known = |w: &Worth| w.0.unwrap_or(-1.0);
-            known(b).total_cmp(&known(a)).then(a.2.cmp(&b.2))
+            let known = |w: &Worth| w.hides.unwrap_or(-1.0);
+            known(b).total_cmp(&known(a)).then(a.order.cmp(&b.order))
         });
-        let known = self.worths.partition_point(|w| w.0.is_some());
+        let known = self.worths.partition_point(|w| w.hides.is_some());
         let (known, unknown) = self.worths.split_at_mut(known);
         // In every frame another one comes first: what others hide is never drawn nor known.
         unknown.rotate_left(usefulness.turn(unknown.len()));
@@ -157,12 +161,12 @@ impl FrameScratch {
         let mut sum = 0.0;
         // Takes what fits, and the first in any case if asked for.
         let mut take = |some: &mut [Worth], most: f64, mut any: bool| {
-            for w in some.iter_mut().filter(|w| w.2 != TAKEN) {
-                if any || sum + f64::from(w.1) <= most {
+            for w in some.iter_mut().filter(|w| w.order != TAKEN) {
+                if any || sum + f64::from(w.work) <= most {
                     any = false;
-                    sum += f64::from(w.1);
-                    self.order.push(w.2);
-                    w.2 = TAKEN;
+                    sum += f64::from(w.work);
+                    self.order.push(w.order);
+                    w.order = TAKEN;
                 }
             }
         };

@@ -43,6 +43,7 @@ mod uri;
 #[cfg(test)]
 mod tests;
 
+#[cfg(not(target_arch = "wasm32"))]
 pub(crate) use budget::Budget;
 pub(crate) use cameras::rigid;
 pub(crate) use lights::place as place_light;

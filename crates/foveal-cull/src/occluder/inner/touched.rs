@@ -3,9 +3,9 @@
 use super::grid::{CELLS, Grid, Lattice};
 use glam::{DVec2, DVec3};
 
-/// Columns of cells that may be looked at, so that triangles that all go through the whole mesh
-/// take no longer than others do.
-const MOST_COLUMNS: u64 = 1 << 26;
+/// Columns of cells that may be looked at and cells that may be marked, one with the other, so that
+/// triangles that all go through the whole mesh take no more than some seconds.
+const MOST_STEPS: u64 = 1 << 28;
 
 /// A triangle whose doubled area is this small beside its longest edge squared has no plane that
 /// can be relied on: rounding of 2^-52 is up to 1e-6 cells otherwise, far below the margin.
@@ -18,18 +18,19 @@ pub(super) fn touched<'a>(
     triangles: impl Iterator<Item = [DVec3; 3]> + 'a,
 ) -> Option<Grid> {
     let mut grid = Grid::empty();
-    let mut columns = 0;
+    let mut steps = 0;
     for corners in triangles {
         let corners = corners.map(|p| lattice.cells_of(p));
-        columns += touch(&mut grid, lattice.margin, corners);
-        if columns > MOST_COLUMNS {
+        steps += touch(&mut grid, lattice.margin, corners);
+        if steps > MOST_STEPS {
             return None;
         }
     }
     Some(grid)
 }
 
-/// Adds the cells of one triangle, in cells; returns how many columns were looked at.
+/// Adds the cells of one triangle, in cells; returns how many columns were looked at and cells
+/// marked, in sum.
 fn touch(grid: &mut Grid, margin: DVec3, p: [DVec3; 3]) -> u64 {
     let cell = |v: f64| (v.max(0.0) as usize).min(CELLS - 1);
     let lo = p[0].min(p[1]).min(p[2]) - margin;
@@ -55,8 +56,10 @@ fn touch(grid: &mut Grid, margin: DVec3, p: [DVec3; 3]) -> u64 {
     // How far the plane moves within a cell, and the margin.
     let reach = slope.abs().dot(half) + margin[w];
     let edges = [0, 1, 2].map(|k| Edge::new(flat(p[k]), flat(p[(k + 1) % 3]), normal[w], half));
+    let mut steps = 0;
     for j in first[v]..=last[v] {
         for i in first[u]..=last[u] {
+            steps += 1;
             let mut ends = [first[w], last[w]];
             if !sliver {
                 let center = DVec2::new(i as f64 + 0.5, j as f64 + 0.5);
@@ -69,12 +72,13 @@ fn touch(grid: &mut Grid, margin: DVec3, p: [DVec3; 3]) -> u64 {
             let mut place = [0; 3];
             (place[u], place[v]) = (i, j);
             for k in ends[0]..=ends[1] {
+                steps += 1;
                 place[w] = k;
                 grid.set(place);
             }
         }
     }
-    ((last[u] - first[u] + 1) * (last[v] - first[v] + 1)) as u64
+    steps
 }
 
 /// An edge of a triangle seen along an axis.
