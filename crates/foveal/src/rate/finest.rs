@@ -36,9 +36,12 @@ impl FinestRate {
             RateCombine::Finer => false,
         };
         let request = is_bound.then(|| RequestUniform::new(s, eyes, None))?;
+        // Before the geometry nobody knows where bumps ask for more: as if they were everywhere.
+        let density = s.picture.width as f32 / (2.0 * request.display_from_ndc[0][0]);
+        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, false);
         Some(Self {
-            block_at_gaze: request.block_at_gaze,
-            block_growth: request.block_growth,
+            block_at_gaze: blocks.at_gaze,
+            block_growth: blocks.growth,
             display_from_ndc: request.display_from_ndc,
             gaze_direction: request
                 .gaze_direction
@@ -122,6 +125,7 @@ mod tests {
     use foveal_scene::Camera;
 
     use super::*;
+    use crate::RefineEdges;
 
     fn seen(gaze: [f32; 2], display: &str) -> (Settings, [Eye; 2]) {
         let s = Settings::default().with(|s| {
@@ -129,6 +133,8 @@ mod tests {
             s.picture.height = 180;
             s.eye.display = display.parse().expect("it can be read");
             s.eye.gaze = gaze;
+            // With it the eye's own request is coarser than this bound.
+            s.coarse.refine_edges = RefineEdges::Off;
         });
         let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
         let eyes = crate::stereo::eyes(&s, &camera).unwrap();

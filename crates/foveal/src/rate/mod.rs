@@ -11,6 +11,8 @@
 //! pixels: finer is only the pixel itself.
 
 mod acuity;
+#[cfg(test)]
+mod bumps;
 mod finest;
 mod image;
 mod map;

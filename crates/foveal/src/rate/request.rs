@@ -6,7 +6,7 @@ use bytemuck::{Pod, Zeroable};
 use super::RateImage;
 use super::acuity;
 use crate::stereo::{Eye, EyeLayout, LensFit};
-use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings};
+use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings, Shading};
 
 /// Mirrors `Request` in `rate/request.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -31,6 +31,10 @@ pub(crate) struct RequestUniform {
 /// light one does: what a pixel shows beyond an edge is its own surface all the same.
 const GRADED_BY: u8 = 2;
 
+/// Levels by which [`RefineEdges::Graded`] refines bumpy surfaces that mirror, where samples hold
+/// light (`rate/crease_of_surface.wgsl`).
+pub(super) const BUMPY_BY: u8 = 2;
+
 impl RequestUniform {
     /// The uniform for these settings and eyes; `lenses` are both eyes' where the output has them.
     pub(crate) fn new(s: &Settings, eyes: &[Eye; 2], lenses: Option<&[LensFit; 2]>) -> Self {
@@ -39,7 +43,7 @@ impl RequestUniform {
         let right = [0, 1].map(|axis| s.eye.gaze[axis] + s.stereo.gaze_shift[axis]);
         let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
         let density = width / (2.0 * displays[0][0]);
-        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density);
+        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, refines_bumps(s));
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
             let first = (eye * layout.stride) as f32;
             [first + x * width, y * height, 0.0, 0.0]
@@ -117,8 +121,15 @@ impl RequestUniform {
     }
 }
 
+/// Whether bumpy surfaces that mirror request finer levels than others do.
+pub(super) fn refines_bumps(s: &Settings) -> bool {
+    s.shading.mode == Shading::Coarse
+        && s.coarse.composite == Composite::Light
+        && s.coarse.refine_edges == RefineEdges::Graded
+}
+
 /// Overrides of the request pass's shader.
-pub(super) fn request_constants(s: &Settings) -> [(&'static str, f64); 3] {
+pub(super) fn request_constants(s: &Settings) -> [(&'static str, f64); 4] {
     let number = |source| match source {
         RateSource::Foveated => 0.0,
         RateSource::Constant => 1.0,
@@ -136,6 +147,10 @@ pub(super) fn request_constants(s: &Settings) -> [(&'static str, f64); 3] {
         ("SOURCE", number(s.coarse.source)),
         ("OTHER", number(s.coarse.other_source)),
         ("COMBINE", combine),
+        (
+            "BUMPY_BY",
+            f64::from(if refines_bumps(s) { BUMPY_BY } else { 0 }),
+        ),
     ]
 }
 

@@ -1,5 +1,8 @@
 // The finest level that one of 2 x 2 pixels requests, and whether they lie at a geometric edge:
 // level 1 of the min-pyramid. Rust: `rate/request.rs`.
+//
+// Where samples hold light, bumpy surfaces that mirror request finer levels: their highlights come
+// from many directions, which a sample does not keep apart.
 
 #variant
 #variant BY_DEPTH
@@ -19,6 +22,8 @@ override SOURCE: u32 = 0u;
 override OTHER: u32 = 1u;
 // 0 the first source alone, 1 the coarser of both, 2 the finer.
 override COMBINE: u32 = 0u;
+// By so many levels bumpy surfaces are refined.
+override BUMPY_BY: u32 = 0u;
 
 @group(1) @binding(1) var rate_image: texture_2d<u32>;
 @group(1) @binding(2) var gbuffer_surface: texture_2d_array<u32>;
@@ -107,8 +112,17 @@ fn requested_level(in: LevelVertex) -> @location(0) u32 {
     for (var i = 0u; i < 4u; i++) {
         level = min(level, pixel_level(min(block * 2u + vec2u(i & 1u, i >> 1u), last)));
     }
-    if level == 0u || level > request.edges_up_to || !holds_edge(block) {
+    if level == 0u || level > request.edges_up_to {
         return level;
     }
-    return select(level, level - min(level, request.refine_by), level <= request.refine_up_to) | CELL_EDGE;
+    if holds_edge(block) {
+        return select(level, level - min(level, request.refine_by), level <= request.refine_up_to) | CELL_EDGE;
+    }
+#ifdef BY_DEPTH
+    return level;
+#else
+    let first = block * 2u;
+    let is_bumped = BUMPY_BY > 0u && instance_at(vec2i(first)) != 0u && is_bumpy(vec2i(first), vec2i(last));
+    return select(level, level - min(level, BUMPY_BY), is_bumped);
+#endif
 }
