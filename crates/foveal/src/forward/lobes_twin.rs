@@ -125,7 +125,7 @@ impl Lobed<'_> {
         let s = &self.base;
         let n_dot_l = s.normal.dot(l);
         let m5 = (1.0 - v.dot((v + l).normalize()).clamp(0.0, 1.0)).powi(5);
-        let left = 1.0 - fresnel(s, v, l) - s.kept_from_scattering() * (1.0 - m5);
+        let left = s.left_for_scattering(m5);
         let lobe = if self.material.anisotropy.is_some() {
             self.anisotropic_lobe(v, l)
         } else {
