@@ -45,6 +45,9 @@ fn passed_light(s: LobedSurface, pixel: vec2f, i: Instance) -> vec3f {
     let n_dot_v = saturate(dot(n, v));
     // As of what is scattered, what the dielectric reflects of even light is left out.
     var dielectric = s.base;
+    if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
+        dielectric = under_film(s.film, s.base, v);
+    }
     dielectric.metallic = 0.0;
     let f = environment_reflectance(dielectric, v);
     let left = 1.0 - saturate(max(f.x, max(f.y, f.z)));
