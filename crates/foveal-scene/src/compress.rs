@@ -70,13 +70,16 @@ pub(crate) fn channels(materials: &[Material], textures: usize) -> Vec<Channels>
             (material.specular_texture, Channels::ALPHA),
             (material.specular_color_texture, Channels::RGB),
         ];
-        // Coat, its roughness and normal, sheen, its roughness, anisotropy, transmission, thickness.
+        // Coat, its roughness and normal, sheen, its roughness, anisotropy, transmission, thickness,
+        // iridescence, its film's thickness.
         let of_lobes = [
             Channels::RED,
             Channels::RGB,
             Channels::NORMAL,
             Channels::RGB,
             Channels::ALPHA,
+            Channels::RGB,
+            Channels::RED,
             Channels::RGB,
             Channels::RED,
             Channels::RGB,

@@ -48,7 +48,7 @@ pub use foveal_bounds::Aabb;
 pub use image_light::{ImageLight, harmonics};
 pub use light::{Environment, Light, LightKind};
 pub use load::{ENDINGS, LoadOptions, MissingNormals, load, load_bytes};
-pub use lobes::{Anisotropy, Clearcoat, Sheen, Transmission};
+pub use lobes::{Anisotropy, Clearcoat, Iridescence, Sheen, Transmission};
 pub use material::{AlphaMode, AnimatedParts, Material, ProceduralLayers};
 pub use mesh::{Mesh, Vertex};
 pub use pose::{Clip, Rig};

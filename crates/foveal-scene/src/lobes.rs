@@ -46,6 +46,24 @@ pub struct Anisotropy {
     pub texture: Option<TextureRef>,
 }
 
+/// KHR_materials_iridescence: a thin film, as of soap or oil, in which light interferes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Iridescence {
+    /// How much of it there is, 0 … 1.
+    pub factor: f32,
+    /// Red times `factor`, linear.
+    pub texture: Option<TextureRef>,
+    /// The film's index of refraction, at least 1.
+    pub ior: f32,
+    /// Nanometres of the film where the thickness' texture is black; may be more than
+    /// `thickness_max_nm`.
+    pub thickness_min_nm: f32,
+    /// Nanometres of the film where the texture is white, or without one everywhere.
+    pub thickness_max_nm: f32,
+    /// Green: from `thickness_min_nm` to `thickness_max_nm`, linear.
+    pub thickness_texture: Option<TextureRef>,
+}
+
 /// KHR_materials_transmission with KHR_materials_volume: light that passes instead of being
 /// scattered.
 #[derive(Clone, Copy, Debug, PartialEq)]

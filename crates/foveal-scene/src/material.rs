@@ -2,7 +2,7 @@
 
 use glam::{Vec3, Vec4};
 
-use crate::{Anisotropy, Clearcoat, Sheen, TextureRef, Transmission};
+use crate::{Anisotropy, Clearcoat, Iridescence, Sheen, TextureRef, Transmission};
 
 /// What alpha means.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +67,8 @@ pub struct Material {
     pub sheen: Option<Sheen>,
     /// Highlights that are longer in one direction.
     pub anisotropy: Option<Anisotropy>,
+    /// A thin film on it.
+    pub iridescence: Option<Iridescence>,
     /// Light that passes.
     pub transmission: Option<Transmission>,
     /// Noise that is computed at each point instead of looked up in textures.
@@ -101,7 +103,7 @@ pub struct ProceduralLayers {
 }
 
 /// Places for textures in all lobes.
-const TEXTURES: usize = 8;
+const TEXTURES: usize = 10;
 
 /// The index of refraction of a material that names none.
 const DEFAULT_IOR: f32 = 1.5;
@@ -110,20 +112,22 @@ impl Material {
     /// Most different textures that lobes read; renderers leave out what comes after.
     pub const MAX_LOBE_TEXTURES: usize = 5;
 
-    /// Whether the material has a clear coat, sheen, anisotropy or transmission.
+    /// Whether the material has a clear coat, sheen, anisotropy, iridescence or transmission.
     #[must_use]
     pub fn has_lobes(&self) -> bool {
         self.clearcoat.is_some()
             || self.sheen.is_some()
             || self.anisotropy.is_some()
             || self.transmission.is_some()
+            || self.iridescence.is_some()
     }
 
     /// The textures of its lobes: clear coat, its roughness, its normals; sheen's colour, its
-    /// roughness; anisotropy; transmission, thickness.
+    /// roughness; anisotropy; transmission, thickness; iridescence, its film's thickness.
     #[must_use]
     pub fn lobe_textures(&self) -> [Option<TextureRef>; TEXTURES] {
         let (coat, sheen) = (self.clearcoat.as_ref(), self.sheen.as_ref());
+        let film = self.iridescence.as_ref();
         [
             coat.and_then(|c| c.texture),
             coat.and_then(|c| c.roughness_texture),
@@ -133,6 +137,8 @@ impl Material {
             self.anisotropy.as_ref().and_then(|a| a.texture),
             self.transmission.as_ref().and_then(|t| t.texture),
             self.transmission.as_ref().and_then(|t| t.thickness_texture),
+            film.and_then(|f| f.texture),
+            film.and_then(|f| f.thickness_texture),
         ]
     }
 
@@ -190,6 +196,7 @@ impl Default for Material {
             clearcoat: None,
             sheen: None,
             anisotropy: None,
+            iridescence: None,
             transmission: None,
             procedural: None,
             animated: AnimatedParts::default(),

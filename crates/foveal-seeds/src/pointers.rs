@@ -97,6 +97,12 @@ pub const MOVES: &[Moved] = moves![
     "/materials/3/extensions/KHR_materials_sheen/sheenRoughnessFactor" SCALAR [0.25] => [0.75],
     "/materials/3/extensions/KHR_materials_anisotropy/anisotropyStrength" SCALAR [0.0] => [0.75],
     "/materials/3/extensions/KHR_materials_anisotropy/anisotropyRotation" SCALAR [0.0] => [1.0],
+    "/materials/3/extensions/KHR_materials_iridescence/iridescenceFactor" SCALAR [0.0] => [0.5],
+    "/materials/3/extensions/KHR_materials_iridescence/iridescenceIor" SCALAR [1.25] => [2.0],
+    "/materials/3/extensions/KHR_materials_iridescence/iridescenceThicknessMinimum" SCALAR
+        [100.0] => [300.0],
+    "/materials/3/extensions/KHR_materials_iridescence/iridescenceThicknessMaximum" SCALAR
+        [400.0] => [200.0],
     "/materials/4/extensions/KHR_materials_transmission/transmissionFactor" SCALAR [0.0] => [0.75],
     "/materials/4/extensions/KHR_materials_transmission/transmissionTexture/extensions/KHR_texture_transform/scale"
         VEC2 [1.0, 1.0] => [0.5, 2.0],
@@ -192,6 +198,7 @@ pub fn movable() -> File {
             },
             "KHR_materials_sheen": { "sheenColorFactor": [0.5, 0.5, 0.5] },
             "KHR_materials_anisotropy": { "anisotropyStrength": 0.5 },
+            "KHR_materials_iridescence": { "iridescenceFactor": 0.5 },
         })),
         matte(json!({
             "KHR_materials_transmission": {

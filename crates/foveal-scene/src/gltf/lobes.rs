@@ -1,5 +1,5 @@
 //! Lobes of materials: KHR_materials_clearcoat, KHR_materials_sheen, KHR_materials_anisotropy,
-//! KHR_materials_transmission with KHR_materials_volume.
+//! KHR_materials_iridescence, KHR_materials_transmission with KHR_materials_volume.
 
 use glam::Vec3;
 
@@ -8,7 +8,7 @@ use super::json::Obj;
 use super::slots::texture;
 use crate::error::{Flaw, Parsed};
 use crate::pose::Factor;
-use crate::{Anisotropy, Clearcoat, Material, Sheen, Transmission};
+use crate::{Anisotropy, Clearcoat, Iridescence, Material, Sheen, Transmission};
 
 /// Lobes that stay although they show nothing at rest: animations change how much of them there is.
 #[derive(Clone, Copy, Debug, Default)]
@@ -16,6 +16,7 @@ pub(crate) struct KeptLobes {
     clearcoat: bool,
     sheen: bool,
     anisotropy: bool,
+    iridescence: bool,
     transmission: bool,
 }
 
@@ -26,6 +27,7 @@ impl KeptLobes {
             Factor::Clearcoat => self.clearcoat = true,
             Factor::SheenColor => self.sheen = true,
             Factor::Anisotropy => self.anisotropy = true,
+            Factor::Iridescence => self.iridescence = true,
             Factor::Transmission => self.transmission = true,
             _ => {}
         }
@@ -40,6 +42,8 @@ pub(super) fn drop_unseen(material: &mut Material, kept: KeptLobes) {
     material.sheen = sheen.filter(|sheen| sheen.color != Vec3::ZERO || kept.sheen);
     let anisotropy = material.anisotropy;
     material.anisotropy = anisotropy.filter(|found| found.strength > 0.0 || kept.anisotropy);
+    let film = material.iridescence;
+    material.iridescence = film.filter(|film| film.factor > 0.0 || kept.iridescence);
     let transmission = material.transmission;
     material.transmission = transmission.filter(|found| found.factor > 0.0 || kept.transmission);
 }
@@ -58,6 +62,10 @@ pub(crate) fn read(material: &mut Material, o: Obj<'_>, counts: &Counts) -> Pars
     if let Some(e) = o.extension("KHR_materials_anisotropy")? {
         let found = anisotropy(e, counts).map_err(within("KHR_materials_anisotropy"))?;
         material.anisotropy = Some(found);
+    }
+    if let Some(e) = o.extension("KHR_materials_iridescence")? {
+        let film = iridescence(e, counts).map_err(within("KHR_materials_iridescence"))?;
+        material.iridescence = Some(film);
     }
     if let Some(e) = o.extension("KHR_materials_transmission")? {
         let found = transmission(e, counts).map_err(within("KHR_materials_transmission"))?;
@@ -105,6 +113,19 @@ fn anisotropy(o: Obj<'_>, counts: &Counts) -> Parsed<Anisotropy> {
         strength: part(o, "anisotropyStrength")?,
         rotation_rad: o.float("anisotropyRotation")?.unwrap_or(0.0),
         texture: texture(o, "anisotropyTexture", counts)?,
+    })
+}
+
+fn iridescence(o: Obj<'_>, counts: &Counts) -> Parsed<Iridescence> {
+    let thickness =
+        |key: &str, default: f32| -> Parsed<f32> { Ok(o.float(key)?.unwrap_or(default).max(0.0)) };
+    Ok(Iridescence {
+        factor: part(o, "iridescenceFactor")?,
+        texture: texture(o, "iridescenceTexture", counts)?,
+        ior: o.float("iridescenceIor")?.unwrap_or(1.3).max(1.0),
+        thickness_min_nm: thickness("iridescenceThicknessMinimum", 100.0)?,
+        thickness_max_nm: thickness("iridescenceThicknessMaximum", 400.0)?,
+        thickness_texture: texture(o, "iridescenceThicknessTexture", counts)?,
     })
 }
 

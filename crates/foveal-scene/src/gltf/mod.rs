@@ -277,7 +277,7 @@ fn warn_of_lobes(materials: &[Material], warn: &mut Vec<Warning>) {
         let textures: std::collections::BTreeSet<u32> = slots.map(|slot| slot.texture).collect();
         if textures.len() > Material::MAX_LOBE_TEXTURES {
             let text = format!(
-                "materials[{i}]: its clear coat, sheen, anisotropy and transmission read {} textures; the first {} are read",
+                "materials[{i}]: its clear coat, sheen, anisotropy, iridescence and transmission read {} textures; the first {} are read",
                 textures.len(),
                 Material::MAX_LOBE_TEXTURES
             );

@@ -33,7 +33,7 @@ impl Pointed {
 }
 
 /// Factors of materials by their pointers from the material on.
-const FACTORS: [(&str, Factor); 22] = [
+const FACTORS: [(&str, Factor); 26] = [
     ("pbrMetallicRoughness/baseColorFactor", Factor::BaseColor),
     ("pbrMetallicRoughness/metallicFactor", Factor::Metallic),
     ("pbrMetallicRoughness/roughnessFactor", Factor::Roughness),
@@ -83,6 +83,22 @@ const FACTORS: [(&str, Factor); 22] = [
         Factor::AnisotropyRotation,
     ),
     (
+        "extensions/KHR_materials_iridescence/iridescenceFactor",
+        Factor::Iridescence,
+    ),
+    (
+        "extensions/KHR_materials_iridescence/iridescenceIor",
+        Factor::IridescenceIor,
+    ),
+    (
+        "extensions/KHR_materials_iridescence/iridescenceThicknessMinimum",
+        Factor::IridescenceThicknessMin,
+    ),
+    (
+        "extensions/KHR_materials_iridescence/iridescenceThicknessMaximum",
+        Factor::IridescenceThicknessMax,
+    ),
+    (
         "extensions/KHR_materials_transmission/transmissionFactor",
         Factor::Transmission,
     ),
@@ -101,7 +117,7 @@ const FACTORS: [(&str, Factor); 22] = [
 ];
 
 /// Textures of materials by their pointers from the material on.
-const TEXTURES: [(&str, TextureSlot); 15] = [
+const TEXTURES: [(&str, TextureSlot); 17] = [
     (
         "pbrMetallicRoughness/baseColorTexture",
         TextureSlot::BaseColor,
@@ -144,6 +160,14 @@ const TEXTURES: [(&str, TextureSlot); 15] = [
     (
         "extensions/KHR_materials_anisotropy/anisotropyTexture",
         TextureSlot::Anisotropy,
+    ),
+    (
+        "extensions/KHR_materials_iridescence/iridescenceTexture",
+        TextureSlot::Iridescence,
+    ),
+    (
+        "extensions/KHR_materials_iridescence/iridescenceThicknessTexture",
+        TextureSlot::IridescenceThickness,
     ),
     (
         "extensions/KHR_materials_transmission/transmissionTexture",

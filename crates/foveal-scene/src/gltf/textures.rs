@@ -122,7 +122,13 @@ impl Wanted {
             of_lobe(&mut transmission.texture, Role::Data);
             of_lobe(&mut transmission.thickness_texture, Role::Data);
         }
+        let mut iridescence = plain.iridescence;
+        if let Some(film) = &mut iridescence {
+            of_lobe(&mut film.texture, Role::Data);
+            of_lobe(&mut film.thickness_texture, Role::Data);
+        }
         Material {
+            iridescence,
             transmission,
             clearcoat,
             sheen,

@@ -47,6 +47,10 @@ pub(crate) enum Factor {
     SheenRoughness,
     Anisotropy,
     AnisotropyRotation,
+    Iridescence,
+    IridescenceIor,
+    IridescenceThicknessMin,
+    IridescenceThicknessMax,
     Transmission,
     Thickness,
     AttenuationDistance,
@@ -69,6 +73,8 @@ pub(crate) enum TextureSlot {
     SheenColor,
     SheenRoughness,
     Anisotropy,
+    Iridescence,
+    IridescenceThickness,
     Transmission,
     Thickness,
 }
@@ -130,6 +136,8 @@ impl TextureSlot {
             Self::SheenColor => &mut material.sheen.as_mut()?.color_texture,
             Self::SheenRoughness => &mut material.sheen.as_mut()?.roughness_texture,
             Self::Anisotropy => &mut material.anisotropy.as_mut()?.texture,
+            Self::Iridescence => &mut material.iridescence.as_mut()?.texture,
+            Self::IridescenceThickness => &mut material.iridescence.as_mut()?.thickness_texture,
             Self::Transmission => &mut material.transmission.as_mut()?.texture,
             Self::Thickness => &mut material.transmission.as_mut()?.thickness_texture,
         };
@@ -174,6 +182,7 @@ impl MaterialState {
         let color = Vec4::from(value).truncate();
         let (coat, sheen) = (m.clearcoat.as_mut(), m.sheen.as_mut());
         let (anisotropy, transmission) = (m.anisotropy.as_mut(), m.transmission.as_mut());
+        let film = m.iridescence.as_mut();
         match factor {
             Factor::BaseColor => m.base_color = Vec4::from(value).clamp(Vec4::ZERO, Vec4::ONE),
             Factor::Metallic => m.metallic = part,
@@ -199,6 +208,14 @@ impl MaterialState {
             Factor::SheenRoughness => sheen.into_iter().for_each(|s| s.roughness = part),
             Factor::Anisotropy => anisotropy.into_iter().for_each(|a| a.strength = part),
             Factor::AnisotropyRotation => anisotropy.into_iter().for_each(|a| a.rotation_rad = x),
+            Factor::Iridescence => film.into_iter().for_each(|f| f.factor = part),
+            Factor::IridescenceIor => film.into_iter().for_each(|f| f.ior = x.max(1.0)),
+            Factor::IridescenceThicknessMin => film
+                .into_iter()
+                .for_each(|f| f.thickness_min_nm = x.max(0.0)),
+            Factor::IridescenceThicknessMax => film
+                .into_iter()
+                .for_each(|f| f.thickness_max_nm = x.max(0.0)),
             Factor::Transmission => transmission.into_iter().for_each(|t| t.factor = part),
             Factor::Thickness => transmission
                 .into_iter()

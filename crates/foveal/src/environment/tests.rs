@@ -286,14 +286,11 @@ fn a_white_furnace_shows_what_the_reflection_model_says() {
 
 /// Part of light from everywhere that the lights' own model scatters.
 fn scattered_part(s: &Surface, v: Vec3) -> Vec3 {
-    let (f0, f90) = (s.reflectance_at_normal(), s.reflectance_at_grazing());
     let above = directions(8000).filter(|l| l.z > 0.0);
-    let sum: Vec3 = above
+    let sum: f32 = above
         .map(|l| {
             let v_dot_h = v.dot((v + l).normalize());
-            let m5 = (1.0 - v_dot_h).powi(5);
-            let fresnel = f0 + (f90 - f0) * m5;
-            (1.0 - fresnel - s.kept_from_scattering() * (1.0 - m5)) * l.z
+            s.left_for_scattering((1.0 - v_dot_h).powi(5)) * l.z
         })
         .sum();
     // Of the sphere's solid angle, 4 pi, over pi.

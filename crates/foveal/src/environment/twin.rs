@@ -15,9 +15,9 @@ use crate::testing::f32_of_half;
 pub(super) fn reflectances(s: &Surface, v: Vec3) -> [Vec3; 2] {
     let terms = looked_up(s.normal.dot(v).clamp(0.0, 1.0), s.roughness);
     let (f0, f90) = (s.reflectance_at_normal(), s.reflectance_at_grazing());
-    let left = (1.0 - f0) * terms.z + (1.0 - f90) * (1.0 - terms.z);
-    let left = left - s.kept_from_scattering() * terms.z;
-    [f0 * terms.x + terms.y * f90, left]
+    let [at_normal, at_grazing] = s.kept_from_scattering();
+    let left = (1.0 - at_normal) * terms.z + (1.0 - at_grazing) * (1.0 - terms.z);
+    [f0 * terms.x + terms.y * f90, Vec3::splat(left)]
 }
 
 /// A map as shaders see it.

@@ -1,6 +1,7 @@
-// Lobes beside metallic-roughness: clear coat, sheen, anisotropy and transmission, at a point of a
-// surface and in its light. Rust: `scene/lobes.rs`; CPU twin: `forward/lobes_twin.rs`.
+// Lobes beside metallic-roughness: clear coat, sheen, anisotropy, iridescence and transmission, at a point
+// of a surface and in its light. Rust: `scene/lobes.rs`; CPU twin: `forward/lobes_twin.rs`.
 
+#import forward/film.wgsl
 #import shared/environment.wgsl
 #import shared/frame.wgsl
 #import shared/light_list.wgsl
@@ -10,7 +11,7 @@
 #import shadow/lookup.wgsl
 #import shadow/tile.wgsl
 
-// Which of the bound textures each of the material's places reads, from 1 on, four bits each.
+// Which of the bound textures each of the material's places reads, from 1 on, three bits each.
 override LOBE_TEXTURES: u32 = 0u;
 
 // Further bits of `MATERIAL_CLASS`.
@@ -20,6 +21,7 @@ const HAS_ANISOTROPY: u32 = 16384u;
 const HAS_TRANSMISSION: u32 = 32768u;
 // The coat's normal map has x and y alone (BC5).
 const COAT_NORMAL_OF_TWO: u32 = 131072u;
+const HAS_IRIDESCENCE: u32 = 262144u;
 
 const CLEARCOAT: u32 = 0u;
 const CLEARCOAT_ROUGHNESS: u32 = 1u;
@@ -29,6 +31,8 @@ const SHEEN_ROUGHNESS: u32 = 4u;
 const ANISOTROPY: u32 = 5u;
 const TRANSMISSION: u32 = 6u;
 const THICKNESS: u32 = 7u;
+const IRIDESCENCE: u32 = 8u;
+const FILM_THICKNESS: u32 = 9u;
 
 // Below, the distribution of fibres is too narrow for halves.
 const LEAST_SHEEN_ROUGHNESS: f32 = 0.1;
@@ -48,7 +52,11 @@ struct Lobes {
     // Per metre.
     absorption: vec3f,
     ior: f32,
-    uv: array<UvMap, 8>,
+    iridescence: f32,
+    film_ior: f32,
+    // Nanometres where the texture is black and where it is white.
+    film_thickness: vec2f,
+    uv: array<UvMap, 10>,
 }
 
 @group(1) @binding(15) var<uniform> lobes: Lobes;
@@ -80,10 +88,11 @@ struct LobedSurface {
     // Part of what would be scattered that passes instead, and through how much.
     transmission: f32,
     thickness: f32,
+    film: Film,
 }
 
 fn bound_texture(place: u32) -> u32 {
-    return (LOBE_TEXTURES >> (4u * place)) & 15u;
+    return (LOBE_TEXTURES >> (3u * place)) & 7u;
 }
 
 // White where the place has no texture.
@@ -113,7 +122,7 @@ fn lobes_at(s: Surface, normal: vec3f, tangent_at_rest: vec4f, uv: vec4f, facing
     let has_tangent = dot(tangent.xyz, tangent.xyz) > 0.0;
     let geometric = normalize(normal) * facing;
     let mirror = mirror_of(s);
-    var found = LobedSurface(s, mirror, 0.0, s, mirror, vec3f(0.0), 1.0, vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0);
+    var found = LobedSurface(s, mirror, 0.0, s, mirror, vec3f(0.0), 1.0, vec3f(0.0), vec3f(0.0), 0.0, 0.0, 0.0, Film(0.0, 1.0, 0.0));
     if (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u {
         found.clearcoat = lobes.clearcoat * sample_lobe(CLEARCOAT, uv).r;
         var n = geometric;
@@ -155,6 +164,11 @@ fn lobes_at(s: Surface, normal: vec3f, tangent_at_rest: vec4f, uv: vec4f, facing
     if (MATERIAL_CLASS & HAS_TRANSMISSION) != 0u {
         found.transmission = lobes.transmission * sample_lobe(TRANSMISSION, uv).r;
         found.thickness = lobes.thickness * sample_lobe(THICKNESS, uv).g;
+    }
+    if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
+        let thickness = mix(lobes.film_thickness.x, lobes.film_thickness.y, sample_lobe(FILM_THICKNESS, uv).g);
+        let strength = lobes.iridescence * sample_lobe(IRIDESCENCE, uv).r;
+        found.film = film_of(strength, lobes.film_ior, thickness);
     }
     return found;
 }
@@ -243,9 +257,20 @@ fn below_coat_reflected(s: LobedSurface, v: vec3f, l: vec3f, n_dot_l: f32) -> ve
     } else {
         r = reflect_ggx(s.base, s.base_mirror, v, l, n_dot_l);
     }
-    if (MATERIAL_CLASS & HAS_ANISOTROPY) != 0u {
+    if (MATERIAL_CLASS & (HAS_ANISOTROPY | HAS_IRIDESCENCE)) != 0u {
         let h = normalize(v + l);
-        r.specular = fresnel_of(s.base_mirror, saturate(dot(v, h))) * anisotropic_lobe(s, v, l, h, n_dot_l);
+        let v_dot_h = saturate(dot(v, h));
+        var fresnel = fresnel_of(s.base_mirror, v_dot_h);
+        if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
+            let mirrored = film_mirrored(s.film, s.base, fresnel, v_dot_h);
+            fresnel = mirrored.fresnel;
+            r.diffuse_weight = select(mirrored.left, 1.0, BLINN_PHONG);
+        }
+        if (MATERIAL_CLASS & HAS_ANISOTROPY) != 0u {
+            r.specular = fresnel * anisotropic_lobe(s, v, l, h, n_dot_l);
+        } else {
+            r.specular = fresnel * ggx_lobe(s.base.normal, v, l, h, n_dot_l, squared_alpha(s.base));
+        }
         if MULTIPLE_SCATTERING {
             r.specular *= s.base_mirror.gain;
         }
@@ -286,7 +311,12 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
 
 // The environment's light on a lobed surface.
 fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32, seen: f32) -> vec3f {
+    var scattering = s.base;
     var mirror = s.base;
+    if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
+        mirror = under_film(s.film, s.base, v);
+        scattering.dielectric = mirror.dielectric;
+    }
     if (MATERIAL_CLASS & HAS_ANISOTROPY) != 0u {
         // Bent as a mirror of grooves is (KHR_materials_anisotropy).
         let bent = cross(cross(s.across, v), s.across);
@@ -294,7 +324,7 @@ fn lobes_ambient(s: LobedSurface, v: vec3f, left: f32, seen: f32) -> vec3f {
         let turned = mix(bent, s.base.normal, kept * kept * kept * kept);
         mirror.normal = normalize(select(s.base.normal, turned, s.anisotropy > 0.0));
     }
-    var below = (1.0 - s.transmission) * environment_diffuse(s.base, v) * seen
+    var below = (1.0 - s.transmission) * environment_diffuse(scattering, v) * seen
         + environment_specular(mirror, v) * mirrored_seen(mirror, v, seen);
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {
         let cosine = saturate(dot(s.base.normal, v));
@@ -317,6 +347,9 @@ fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
     let v = direction_to_eye(view_at(pixel), s.base.position);
     if MULTIPLE_SCATTERING {
         s.base_mirror.gain = further_bounces(s.base, v);
+        if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
+            s.base_mirror.gain = further_bounces(under_film(s.film, s.base, v), v);
+        }
     }
     let left = below_coat(s, v);
     var sum = s.base.emissive * left + lobes_ambient(s, v, left, environment_seen(pixel, distance));

@@ -66,7 +66,7 @@ fn lobes_equal_their_twin() {
     let words: Vec<[u32; 4]> = texels(&renderer.targets().gbuffer.surface_view);
     let depth: Vec<f32> = texels(&renderer.targets().gbuffer.depth_view);
     let size = Vec2::new(width as f32, height as f32);
-    let (mut compared, mut off) = ([0; 3], Vec::new());
+    let (mut compared, mut off) = ([0; 4], Vec::new());
     for (i, (device, material)) in radiance(&renderer)
         .into_iter()
         .zip(materials(&scene, &renderer))
@@ -89,8 +89,9 @@ fn lobes_equal_their_twin() {
             along,
         };
         let twin = lobed.lit(&scene, renderer.lights().1, v);
-        let kind =
-            usize::from(material.sheen.is_some()) + 2 * usize::from(material.anisotropy.is_some());
+        let kind = usize::from(material.sheen.is_some())
+            + 2 * usize::from(material.anisotropy.is_some())
+            + 3 * usize::from(material.iridescence.is_some());
         compared[kind] += 1;
         // The G-buffer's colours are of 8 bits, and tangents are a vertex's.
         let tolerance = if kind == 2 { 0.1 } else { 0.04 };
@@ -297,6 +298,7 @@ fn a_lit_coat_is_brighter_and_the_blinn_phong_model_has_it_too() {
     let mut without = with.clone();
     for material in &mut without.materials {
         (material.clearcoat, material.sheen, material.anisotropy) = (None, None, None);
+        material.iridescence = None;
     }
     for model in [LightingModel::Ggx, LightingModel::BlinnPhong] {
         let settings = small(131, 97).with(|s| s.lighting.model = model);

@@ -5,6 +5,7 @@ use std::f32::consts::PI;
 use foveal_scene::{Material, Scene};
 use glam::{Vec2, Vec3};
 
+use super::film_twin::Film;
 use crate::lights::LightUniform;
 use crate::shading::dielectric::PLAIN_DIELECTRIC;
 use crate::shading::twin::{
@@ -85,6 +86,10 @@ impl Lobed<'_> {
         }
     }
 
+    fn film(&self) -> Option<Film> {
+        self.material.iridescence.as_ref().map(Film::new)
+    }
+
     fn clearcoat(&self) -> f32 {
         self.material.clearcoat.map_or(0.0, |c| c.factor)
     }
@@ -125,14 +130,19 @@ impl Lobed<'_> {
         let s = &self.base;
         let n_dot_l = s.normal.dot(l);
         let m5 = (1.0 - v.dot((v + l).normalize()).clamp(0.0, 1.0)).powi(5);
-        let left = 1.0 - fresnel(s, v, l) - s.kept_from_scattering() * (1.0 - m5);
+        let mut left = s.left_for_scattering(m5);
+        let mut mirrored = fresnel(s, v, l);
+        if let Some(film) = self.film() {
+            let cosine = v.dot((v + l).normalize()).clamp(0.0, 1.0);
+            (mirrored, left) = film.mirrored(s, mirrored, cosine);
+        }
         let lobe = if self.material.anisotropy.is_some() {
             self.anisotropic_lobe(v, l)
         } else {
             ggx_lobe(s.normal, v, l, n_dot_l, squared_alpha(s))
         };
         let scattered = left * (1.0 - s.metallic) * s.base_color / PI;
-        let mut below = scattered + fresnel(s, v, l) * lobe;
+        let mut below = scattered + mirrored * lobe;
         if let Some(sheen) = self.material.sheen {
             let n_dot_v = s.normal.dot(v).clamp(0.0, 1.0);
             let left = self
@@ -162,7 +172,8 @@ impl Lobed<'_> {
             normal = bent.lerp(s.normal, kept.powi(4)).normalize();
         }
         let around = gradient_around(scene, s.normal);
-        let mut below = s.base_color * (1.0 - s.metallic) * around + mirrored(s, normal);
+        let filmed = self.film().map_or(*s, |film| film.under(s, v));
+        let mut below = s.base_color * (1.0 - s.metallic) * around + mirrored(&filmed, normal);
         if let Some(sheen) = self.material.sheen {
             let cosine = s.normal.dot(v).clamp(0.0, 1.0);
             let part = sheen_part(table, cosine, sheen.roughness);

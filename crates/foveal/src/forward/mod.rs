@@ -2,6 +2,10 @@
 //! pixel where the G-buffer shows them, then what is blended, back to front.
 
 #[cfg(test)]
+mod film_tests;
+#[cfg(test)]
+mod film_twin;
+#[cfg(test)]
 mod lobes_tests;
 #[cfg(test)]
 mod lobes_twin;

@@ -43,8 +43,13 @@ fn passed_light(s: LobedSurface, pixel: vec2f, i: Instance) -> vec3f {
     let left_at = seen_at(s.base.position + refracted * thickness, pixel);
     let at = select(pixel, left_at, thickness > 0.0);
     let n_dot_v = saturate(dot(n, v));
-    // As of what is scattered, what is reflected of even light is left out.
-    let f = environment_reflectance(s.base, v);
+    // As of what is scattered, what the dielectric reflects of even light is left out.
+    var dielectric = s.base;
+    if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
+        dielectric = under_film(s.film, s.base, v);
+    }
+    dielectric.metallic = 0.0;
+    let f = environment_reflectance(dielectric, v);
     let left = 1.0 - saturate(max(f.x, max(f.y, f.z)));
     var part = s.transmission * left * (1.0 - s.base.metallic) * below_coat(s, v);
     if (MATERIAL_CLASS & HAS_SHEEN) != 0u {

@@ -7,7 +7,7 @@ use glam::{Vec2, Vec3};
 use super::material_uniform::{is_of_two, uv_rows};
 
 /// Places for textures in all lobes.
-const PLACES: usize = 8;
+const PLACES: usize = 10;
 
 /// Textures that are bound at once.
 pub(super) const BOUND: usize = Material::MAX_LOBE_TEXTURES;
@@ -27,6 +27,9 @@ pub(crate) struct LobesUniform {
     pub(crate) thickness: f32,
     pub(crate) absorption: [f32; 3],
     pub(crate) ior: f32,
+    pub(crate) iridescence: f32,
+    pub(crate) film_ior: f32,
+    pub(crate) film_thickness: [f32; 2],
     pub(crate) uv: [[[f32; 4]; 2]; PLACES],
 }
 
@@ -36,6 +39,7 @@ impl LobesUniform {
         let coat = material.clearcoat.as_ref();
         let anisotropy = material.anisotropy.as_ref();
         let transmission = material.transmission.as_ref();
+        let film = material.iridescence.as_ref();
         Self {
             sheen_color: sheen.map_or([0.0; 3], |s| s.color.to_array()),
             sheen_roughness: sheen.map_or(0.0, |s| s.roughness),
@@ -56,6 +60,12 @@ impl LobesUniform {
                 absorption.clamp(Vec3::ZERO, Vec3::splat(1e9)).to_array()
             }),
             ior: material.ior.max(1.0),
+            iridescence: film.map_or(0.0, |f| f.factor),
+            // Numbers that have a cosine, whatever a file says.
+            film_ior: film.map_or(1.0, |f| f.ior.clamp(1.0, 1e3)),
+            film_thickness: film.map_or([0.0; 2], |f| {
+                [f.thickness_min_nm, f.thickness_max_nm].map(|t| t.clamp(0.0, 1e5))
+            }),
             uv: material
                 .lobe_textures()
                 .map(|slot| slot.map_or([[0.0; 4]; 2], uv_rows)),
@@ -98,6 +108,7 @@ impl LobeClass {
             (material.sheen.is_some(), 8192),
             (material.anisotropy.is_some(), 16384),
             (material.transmission.is_some(), HAS_TRANSMISSION),
+            (material.iridescence.is_some(), 262_144),
         ];
         let mut bound: Vec<u32> = Vec::new();
         let mut place = |slot: Option<TextureRef>| {
@@ -114,7 +125,7 @@ impl LobeClass {
             at as u32 + 1
         };
         let places = material.lobe_textures().map(&mut place);
-        let textures = (0..).zip(places).map(|(i, at)| at << (4 * i)).sum();
+        let textures = (0..).zip(places).map(|(i, at)| at << (3 * i)).sum();
         let flags = flags
             .iter()
             .map(|&(is, bit)| if is { bit } else { 0 })
@@ -157,7 +168,7 @@ mod tests {
             ..Material::default()
         };
         let (class, bound) = LobeClass::of(&material, &[]);
-        assert_eq!((class.flags, class.textures), (4096 | 8192, 0x1211));
+        assert_eq!((class.flags, class.textures), (4096 | 8192, 0o1211));
         assert_eq!(bound, [7, 2]);
     }
 }

@@ -1,12 +1,15 @@
 //! The CPU twin of how surfaces keep and reflect what KHR_materials_ior and KHR_materials_specular
 //! say: `shared/surface.wgsl` and `shared/environment.wgsl`.
 
+use std::f32::consts::PI;
+
 use foveal_generate as generate;
 use foveal_scene::{ColorSpace, Sampler, Scene, Texture, TextureRef};
 use glam::{Mat3, Vec2, Vec3, Vec4};
 
 use super::twin::{
-    Surface, assert_equals_twin, unit_from_octahedral, unit_from_square, unpack_surface,
+    Surface, assert_equals_twin, ggx_lobe, reflect, squared_alpha, unit_from_octahedral,
+    unit_from_square, unpack_surface,
 };
 use crate::forward::twin::{front, quads};
 use crate::testing::{picture, rendered, small, texels};
@@ -25,9 +28,16 @@ impl Surface {
         1.0 - (1.0 - self.metallic) * (1.0 - self.dielectric.w)
     }
 
-    pub(crate) fn kept_from_scattering(&self) -> Vec3 {
-        let d = self.dielectric.truncate();
-        (1.0 - self.metallic) * (d.max_element() - d)
+    /// At right angles and at grazing ones.
+    pub(crate) fn kept_from_scattering(&self) -> [f32; 2] {
+        let d = self.dielectric;
+        [d.truncate().max_element(), d.w]
+    }
+
+    /// What is left to be scattered at a fifth power of one minus the cosine.
+    pub(crate) fn left_for_scattering(&self, m5: f32) -> f32 {
+        let [at_normal, at_grazing] = self.kept_from_scattering();
+        1.0 - (at_normal + (at_grazing - at_normal) * m5)
     }
 }
 
@@ -136,6 +146,59 @@ fn shading_equals_its_twin_for_dielectrics_of_all_kinds() {
         let settings = small(97, 65).with(|s| s.lighting.model = model);
         assert_equals_twin(&scene, &scene.cameras[0], &settings);
     }
+}
+
+#[test]
+fn between_metal_and_dielectric_surfaces_reflect_the_mix_of_both() {
+    let reflected = |s: &Surface, v: Vec3, l: Vec3| {
+        let n_dot_l = s.normal.dot(l);
+        let [left, specular] = reflect(LightingModel::Ggx, s, v, l, n_dot_l);
+        left * (1.0 - s.metallic) * s.base_color / PI + specular
+    };
+    let toward = |x: f32, z: f32| Vec3::new(x, 0.3, z).normalize();
+    let mut dimmer = 0.0f32;
+    for dielectric in [PLAIN_DIELECTRIC, Vec4::new(0.3, 0.1, 0.05, 0.6)] {
+        for metallic in [0.0, 0.25, 0.5, 0.8, 1.0] {
+            let s = Surface {
+                position: Vec3::ZERO,
+                normal: Vec3::Z,
+                base_color: Vec3::new(0.9, 0.5, 0.2),
+                metallic,
+                roughness: 0.5,
+                occlusion: 1.0,
+                emissive: Vec3::ZERO,
+                dielectric,
+            };
+            for (v, l) in [
+                (toward(0.1, 1.0), toward(-0.4, 1.0)),
+                (toward(-1.0, 0.2), toward(1.0, 0.3)),
+            ] {
+                let m5 = (1.0 - v.dot((v + l).normalize())).powi(5);
+                let lobe = ggx_lobe(s.normal, v, l, s.normal.dot(l), squared_alpha(&s));
+                let fresnel = |f0: Vec3, f90: f32| f0 + (f90 - f0) * m5;
+                // glTF 2.0, appendix B: each by itself, then mixed.
+                let f = fresnel(dielectric.truncate(), dielectric.w);
+                let scattered = (1.0 - f.max_element()) * s.base_color / PI;
+                let metal = fresnel(s.base_color, 1.0) * lobe;
+                let mixed = (scattered + f * lobe).lerp(metal, metallic);
+                let found = reflected(&s, v, l);
+                assert!(found.abs_diff_eq(mixed, 1e-5), "{found} not {mixed}");
+                // Where the Fresnel term of the mixed reflectance dims what is scattered.
+                let f = fresnel(s.reflectance_at_normal(), s.reflectance_at_grazing());
+                let d = dielectric.truncate();
+                let kept = (1.0 - metallic) * (d.max_element() - d) * (1.0 - m5);
+                let left = (1.0 - f - kept) * (1.0 - metallic);
+                let before = left * s.base_color / PI + f * lobe;
+                let pure = metallic == 0.0 || metallic == 1.0;
+                assert!(
+                    !pure || found.abs_diff_eq(before, 1e-5),
+                    "{found} not {before}"
+                );
+                dimmer = dimmer.max((found - before).max_element());
+            }
+        }
+    }
+    assert!(dimmer > 0.02, "{dimmer}");
 }
 
 #[test]

@@ -132,7 +132,13 @@ pub(crate) fn environment(scene: &Scene, direction: Vec3) -> Vec3 {
 }
 
 /// What is left for diffuse reflection, and the specular part.
-fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) -> [Vec3; 2] {
+pub(super) fn reflect(
+    model: LightingModel,
+    s: &Surface,
+    v: Vec3,
+    l: Vec3,
+    n_dot_l: f32,
+) -> [Vec3; 2] {
     use std::f32::consts::PI;
     let h = (v + l).normalize();
     let n_dot_h = s.normal.dot(h);
@@ -142,9 +148,9 @@ fn reflect(model: LightingModel, s: &Surface, v: Vec3, l: Vec3, n_dot_l: f32) ->
             let v_dot_h = v.dot(h).clamp(0.0, 1.0);
             let m5 = (1.0 - v_dot_h).powi(5);
             let fresnel = f0 + (s.reflectance_at_grazing() - f0) * m5;
-            let left = 1.0 - fresnel - s.kept_from_scattering() * (1.0 - m5);
+            let left = s.left_for_scattering(m5);
             let lobe = ggx_lobe(s.normal, v, l, n_dot_l, squared_alpha(s));
-            [left, fresnel * lobe]
+            [Vec3::splat(left), fresnel * lobe]
         }
         LightingModel::BlinnPhong => {
             let alpha = (s.roughness * s.roughness).max(0.03);

@@ -163,29 +163,24 @@ fn with_shadows_clustered_and_brute_lighting_give_the_same_bytes() {
 fn coarse_and_variable_shading_at_every_pixel_give_the_bytes_of_full_shading() {
     let scene = room();
     let camera = &scene.cameras[0];
-    let full = picture(&rendered(&scene, camera, &shadowed(Shadows::Soft)));
-    for shading in [Shading::Coarse, Shading::Variable] {
+    for shadows in [Shadows::Soft, Shadows::Contact] {
         for geometry in [Geometry::Gbuffer, Geometry::Visibility] {
-            let settings = shadowed(Shadows::Soft).with(|s| {
-                s.shading.mode = shading;
-                s.geometry.path = geometry;
-                s.coarse.source = match shading {
-                    Shading::Variable => RateSource::Content,
-                    _ => RateSource::Constant,
-                };
-                s.coarse.constant_level = 0;
-                s.rate.force = true;
-                s.variable.threshold = 0.0;
-            });
-            let reference = match geometry {
-                Geometry::Gbuffer => full.clone(),
-                Geometry::Visibility => {
-                    let full = shadowed(Shadows::Soft).with(|s| s.geometry.path = geometry);
-                    picture(&rendered(&scene, camera, &full))
-                }
-            };
-            let drawn = picture(&rendered(&scene, camera, &settings));
-            assert_eq!(drawn, reference, "{shading:?}, {geometry:?}");
+            let full = shadowed(shadows).with(|s| s.geometry.path = geometry);
+            let reference = picture(&rendered(&scene, camera, &full));
+            for shading in [Shading::Coarse, Shading::Variable] {
+                let settings = full.clone().with(|s| {
+                    s.shading.mode = shading;
+                    s.coarse.source = match shading {
+                        Shading::Variable => RateSource::Content,
+                        _ => RateSource::Constant,
+                    };
+                    s.coarse.constant_level = 0;
+                    s.rate.force = true;
+                    s.variable.threshold = 0.0;
+                });
+                let drawn = picture(&rendered(&scene, camera, &settings));
+                assert_eq!(drawn, reference, "{shadows:?}, {shading:?}, {geometry:?}");
+            }
         }
     }
 }
@@ -360,8 +355,8 @@ fn a_full_atlas_makes_shadows_coarser_and_leaves_no_light_out_before_it_must() {
 fn both_eyes_see_the_same_shadows_from_one_atlas() {
     let scene = room();
     let camera = &scene.cameras[0];
-    let of = |mode| {
-        let settings = shadowed(Shadows::Soft).with(|s| {
+    let of = |mode, shadows| {
+        let settings = shadowed(shadows).with(|s| {
             s.stereo.mode = mode;
             s.stereo.output = crate::Output::SideBySide;
         });
@@ -369,11 +364,13 @@ fn both_eyes_see_the_same_shadows_from_one_atlas() {
         let stats = film.draw(camera).shadows.unwrap();
         (stats.tiles, picture(&film.renderer))
     };
-    let (tiles, two) = of(Stereo::TwoPass);
-    assert!(tiles > 0);
-    let (_, instanced) = of(Stereo::Instanced);
-    let differ = two.iter().zip(&instanced).filter(|(a, b)| a != b).count();
-    assert!(differ * 500 < two.len(), "{differ} of {}", two.len());
+    for shadows in [Shadows::Soft, Shadows::Contact] {
+        let (tiles, two) = of(Stereo::TwoPass, shadows);
+        assert!(tiles > 0);
+        let (_, instanced) = of(Stereo::Instanced, shadows);
+        let differ = two.iter().zip(&instanced).filter(|(a, b)| a != b).count();
+        assert!(differ * 500 < two.len(), "{differ} of {}", two.len());
+    }
 }
 
 #[test]

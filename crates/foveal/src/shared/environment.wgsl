@@ -118,11 +118,13 @@ fn reflectance_at_grazing(s: Surface) -> f32 {
     return 1.0 - (1.0 - s.metallic) * (1.0 - s.dielectric.w);
 }
 
-// By how much less is left to be scattered than the reflection of each channel leaves: nothing is
-// scattered in the reflection's complementary colour (KHR_materials_specular).
-fn kept_from_scattering(s: Surface) -> vec3f {
-    let d = s.dielectric.xyz;
-    return (1.0 - s.metallic) * (max(d.x, max(d.y, d.z)) - d);
+// What keeps light from being scattered, at right angles and at grazing ones. What is scattered is the
+// dielectric's part of the mix of metal and dielectric, so that it is the dielectric's reflectance
+// (glTF 2.0 appendix B), in the strongest channel: nothing is scattered in the reflection's
+// complementary colour (KHR_materials_specular).
+fn kept_from_scattering(s: Surface) -> vec2f {
+    let d = s.dielectric;
+    return vec2f(max(d.x, max(d.y, d.z)), d.w);
 }
 
 // What a surface mirrors by Fresnel's law, found once for all lights.
@@ -130,7 +132,7 @@ struct Mirror {
     at_normal: vec3f,
     at_grazing: f32,
     // As `kept_from_scattering`.
-    kept: vec3f,
+    kept: vec2f,
     // By how much further bounces brighten what it mirrors of lights: `further_bounces`.
     gain: vec3f,
 }
@@ -242,8 +244,8 @@ fn environment_specular(s: Surface, v: vec3f) -> vec3f {
 fn environment_diffuse(s: Surface, v: vec3f) -> vec3f {
     if ENVIRONMENT == ENVIRONMENT_MAP {
         let part = reflectance_terms(s, v).z;
-        let left = (1.0 - reflectance_at_normal(s)) * part + (1.0 - reflectance_at_grazing(s)) * (1.0 - part);
-        return diffuse_color(s) * (left - kept_from_scattering(s) * part) * irradiance(s.normal);
+        let left = 1.0 - kept_from_scattering(s);
+        return diffuse_color(s) * (left.x * part + left.y * (1.0 - part)) * irradiance(s.normal);
     }
     if ENVIRONMENT == ENVIRONMENT_GRADIENT {
         let around = mix(mix(frame.nadir, frame.zenith, 0.5 + 0.5 * s.normal.y), frame.horizon, 0.4);

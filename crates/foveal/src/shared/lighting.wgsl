@@ -56,7 +56,7 @@ fn incident(light: Light, position: vec3f) -> IncidentLight {
 // What a surface makes of light from one direction: the part that is left for diffuse reflection,
 // and the specular part.
 struct Reflection {
-    diffuse_weight: vec3f,
+    diffuse_weight: f32,
     specular: vec3f,
 }
 
@@ -74,7 +74,7 @@ fn reflect_ggx(s: Surface, mirror: Mirror, v: vec3f, l: vec3f, n_dot_l: f32) -> 
     let m2 = m * m;
     let m5 = m2 * m2 * m;
     let fresnel = mirror.at_normal + (mirror.at_grazing - mirror.at_normal) * m5;
-    let left = 1.0 - fresnel - mirror.kept * (1.0 - m5);
+    let left = 1.0 - (mirror.kept.x + (mirror.kept.y - mirror.kept.x) * m5);
     let once = fresnel * ggx_lobe(s.normal, v, l, h, n_dot_l, squared_alpha(s));
     if MULTIPLE_SCATTERING {
         return Reflection(left, once * mirror.gain);
@@ -88,7 +88,7 @@ fn reflect_blinn_phong(s: Surface, mirror: Mirror, v: vec3f, l: vec3f) -> Reflec
     let alpha = max(s.roughness * s.roughness, 0.03);
     let exponent = 2.0 / (alpha * alpha) - 2.0;
     let highlight = (exponent + 8.0) / (8.0 * PI) * pow(max(dot(s.normal, h), 1e-6), exponent);
-    return Reflection(vec3f(1.0), mirror.at_normal * highlight);
+    return Reflection(1.0, mirror.at_normal * highlight);
 }
 
 // A light's part in the radiance of a surface, and in the light that falls on it.

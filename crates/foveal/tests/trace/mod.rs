@@ -247,9 +247,9 @@ impl Surface {
         let fresnel = dielectric.lerp(metal, self.metallic);
         let masked = |a: f32, b: f32| a * (b * b * (1.0 - self.a2) + self.a2).sqrt();
         let visibility = 0.5 / (masked(n_dot_l, n_dot_v) + masked(n_dot_v, n_dot_l));
-        // Nothing is scattered in the colour that is complementary to the dielectric's.
-        let kept = (1.0 - self.metallic) * (dielectric.max_element() - dielectric);
-        let left = 1.0 - fresnel - kept;
+        // The dielectric's own part; nothing is scattered in the complementary colour of what it
+        // mirrors.
+        let left = 1.0 - dielectric.max_element();
         let diffuse = left * (1.0 - self.metallic) * self.base_color / PI;
         diffuse + fresnel * self.distribution(h) * visibility
     }

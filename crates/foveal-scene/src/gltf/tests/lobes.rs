@@ -1,4 +1,4 @@
-//! Clear coat, sheen and anisotropy.
+//! Clear coat, sheen, anisotropy, iridescence, transmission.
 
 use glam::Vec3;
 use image::{Rgba, RgbaImage};
@@ -103,6 +103,58 @@ fn transmission_is_read_with_its_volume() {
     let volume = json!({ "KHR_materials_volume": { "thicknessFactor": 2 } });
     let alone = with(File::with_triangle(), &volume);
     assert!(alone.materials[0].transmission.is_none());
+}
+
+#[test]
+fn iridescence_is_read_within_what_there_is() {
+    let mut file = File::with_triangle();
+    let picture = file.texture(&RgbaImage::from_pixel(1, 1, Rgba([255; 4])));
+    let slot = json!({ "index": picture });
+    let scene = with(
+        file,
+        &json!({ "KHR_materials_iridescence": {
+            "iridescenceFactor": 0.5,
+            "iridescenceTexture": slot,
+            "iridescenceIor": 1.8,
+            "iridescenceThicknessMinimum": 700,
+            "iridescenceThicknessMaximum": 200,
+            "iridescenceThicknessTexture": slot,
+        } }),
+    );
+    assert!(scene.warnings.is_empty(), "{}", warnings(&scene));
+    let film = scene.materials[0].iridescence.unwrap();
+    assert_eq!((film.factor, film.ior), (0.5, 1.8));
+    // The extension allows the lesser one to be the maximum.
+    let thickness = (film.thickness_min_nm, film.thickness_max_nm);
+    assert_eq!(thickness, (700.0, 200.0));
+    assert_eq!(space(&scene, film.texture), ColorSpace::Linear);
+    assert_eq!(space(&scene, film.thickness_texture), ColorSpace::Linear);
+    let read = |iridescence| {
+        let extensions = json!({ "KHR_materials_iridescence": iridescence });
+        let film = with(File::with_triangle(), &extensions).materials[0].iridescence;
+        film.map(|f| (f.factor, f.ior, f.thickness_min_nm, f.thickness_max_nm))
+    };
+    let plain = read(json!({ "iridescenceFactor": 1 }));
+    assert_eq!(plain, Some((1.0, 1.3, 100.0, 400.0)));
+    let wrong = json!({
+        "iridescenceFactor": 7,
+        "iridescenceIor": 0.5,
+        "iridescenceThicknessMinimum": -5,
+        "iridescenceThicknessMaximum": -1,
+    });
+    assert_eq!(read(wrong), Some((1.0, 1.0, 0.0, 0.0)));
+    assert_eq!(read(json!({ "iridescenceIor": 2 })), None);
+}
+
+#[test]
+fn an_iridescence_that_is_no_number_is_named_with_its_place() {
+    let mut file = File::with_triangle();
+    file.material(json!({ "extensions": {
+        "KHR_materials_iridescence": { "iridescenceThicknessMaximum": "thin" },
+    } }));
+    let text = file.refusal();
+    let place = "extensions.KHR_materials_iridescence.iridescenceThicknessMaximum";
+    assert!(text.contains(place), "{text}");
 }
 
 #[test]

@@ -25,6 +25,7 @@ fn seen(material: &Material) -> Material {
     m.clearcoat = m.clearcoat.filter(|coat| coat.factor > 0.0);
     m.sheen = m.sheen.filter(|sheen| sheen.color != glam::Vec3::ZERO);
     m.anisotropy = m.anisotropy.filter(|a| a.strength > 0.0);
+    m.iridescence = m.iridescence.filter(|f| f.factor > 0.0);
     m.transmission = m.transmission.filter(|t| t.factor > 0.0);
     m
 }
@@ -145,6 +146,7 @@ fn what_poses_may_reach_is_prepared_in_every_pose() {
     let (pose, still) = both(MOVES, 0.0);
     assert!(still.materials[3].clearcoat.is_none() && pose.materials[3].clearcoat.is_some());
     assert!(pose.materials[3].sheen.is_some() && pose.materials[3].anisotropy.is_some());
+    assert!(pose.materials[3].iridescence.is_some() && still.materials[3].iridescence.is_none());
     assert!(pose.materials[4].transmission.is_some());
     assert!(!still.materials[1].has_own_specular() && pose.materials[1].has_own_specular());
     assert!(pose.materials[0].animated.uv_transforms);

@@ -203,6 +203,9 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             thickness,
             absorption,
             ior,
+            iridescence,
+            film_ior,
+            film_thickness,
             uv
         ]
     );
