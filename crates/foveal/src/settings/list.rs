@@ -218,8 +218,9 @@ settings! {
         /// Limit of one level between neighbouring blocks. Off: blocks of any sizes may touch.
         rate_balance => balance: bool = true, "Balance", Kind::Switch;
         /// Finer shading at geometric edges: graded shades all edges one level finer (two where
-        /// samples hold colours), inner shades edges near the gaze pixel by pixel, everywhere
-        /// shades all edges pixel by pixel, off leaves them as requested.
+        /// samples hold colours; where they hold light bumpy surfaces that mirror, too, by two),
+        /// inner shades edges near the gaze pixel by pixel, everywhere shades all edges pixel by
+        /// pixel, off leaves them as requested.
         refine_edges => refine_edges: RefineEdges = RefineEdges::default(), "Refine edges", Kind::choice::<RefineEdges>();
         /// Pixel of a block that its sample shades: center takes the one at the centre, typical
         /// the most typical of five.
