@@ -59,7 +59,7 @@ fn film_reflectance(film: Film, base_f0: vec3f, cosine: f32) -> vec3f {
     let lower_root = (base_ior - film.ior) / (base_ior + film.ior);
     let lower_f0 = lower_root * lower_root;
     let lower = lower_f0 + (1.0 - lower_f0) * fifth_power(1.0 - within);
-    // Half a turn from below the upper side, and another where the surface is thinner than the film.
+    // Half a turn from below the upper side, and another where the surface has the lower index.
     let phase = PI + select(vec3f(0.0), vec3f(PI), base_ior < vec3f(film.ior));
     let difference = 2.0 * film.ior * film.thickness * within;
     // Light that goes to and fro: all of it, then how the first and the second return interfere.

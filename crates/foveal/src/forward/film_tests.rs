@@ -107,7 +107,7 @@ fn slot(texture: u32) -> Option<TextureRef> {
     })
 }
 
-/// Halves of a square of half metal that is drawn forward, with a film.
+/// Half-precision texels of a square of half metal that is drawn forward, with a film.
 fn drawn(iridescence: Option<Iridescence>) -> Vec<[u16; 4]> {
     let material = Material {
         base_color: Vec4::new(0.6, 0.4, 0.2, 1.0),

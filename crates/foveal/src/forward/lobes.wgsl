@@ -346,9 +346,10 @@ fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
     var s = lobed;
     let v = direction_to_eye(view_at(pixel), s.base.position);
     if MULTIPLE_SCATTERING {
-        s.base_mirror.gain = further_bounces(s.base, v);
         if (MATERIAL_CLASS & HAS_IRIDESCENCE) != 0u {
             s.base_mirror.gain = further_bounces(under_film(s.film, s.base, v), v);
+        } else {
+            s.base_mirror.gain = further_bounces(s.base, v);
         }
     }
     let left = below_coat(s, v);

@@ -4,7 +4,7 @@
 use std::f32::consts::PI;
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Clearcoat, Material, Scene};
+use foveal_scene::{Camera, Clearcoat, Iridescence, Material, Scene};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::lobes_twin::{Lobed, sheen_lobe, sheen_part, sheen_parts};
@@ -42,6 +42,18 @@ fn scene() -> Scene {
         if let Some(coat) = &mut material.clearcoat {
             coat.roughness = coat.roughness.max(0.2);
         }
+    }
+    // One film in part over what is half metal: the mix of both.
+    let mut films = scene
+        .materials
+        .iter_mut()
+        .filter(|m| m.iridescence.is_some());
+    if let Some(half) = films.next() {
+        half.metallic = 0.5;
+        half.iridescence = half.iridescence.map(|film| Iridescence {
+            factor: 0.6,
+            ..film
+        });
     }
     scene
 }

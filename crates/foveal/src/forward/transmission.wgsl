@@ -2,6 +2,7 @@
 // shows behind it, at the level of its roughness, where the refracted ray leaves the volume.
 
 #import forward/behind.wgsl
+#import forward/film.wgsl
 #import forward/lobes.wgsl
 #import shared/environment.wgsl
 #import shared/frame.wgsl

@@ -25,7 +25,7 @@ const SLOPE: f32 = 0.0275;
 /// (docs/benchmarks/coarse.md). That of 10 is extrapolated. Larger blocks than the last light no
 /// fewer pixels: more are left that no sample speaks for.
 const QUALITIES: [(f32, f32); 7] = [
-    (10.0, 0.05),
+    (10.0, 0.07),
     (9.8, 0.2),
     (9.59, 0.45),
     (9.5, 0.68),
@@ -34,8 +34,8 @@ const QUALITIES: [(f32, f32); 7] = [
     (9.11, 2.2),
 ];
 
-/// The same where bumpy surfaces request no finer levels than others: measured likewise, that of
-/// 8.91 by three pictures.
+/// The same where bumpy surfaces request no finer levels than others: measured likewise, those of
+/// 9.85 and 8.91 by three pictures of five.
 const EVEN_QUALITIES: [(f32, f32); 7] = [
     (10.0, 0.05),
     (9.85, 0.15),
@@ -50,13 +50,18 @@ const EVEN_QUALITIES: [(f32, f32); 7] = [
 /// degrees across.
 const PARALLEL_ACROSS: f32 = std::f32::consts::FRAC_PI_3;
 
-/// Pixels per radian in the display's centre from which on blocks become finer than [`QUALITIES`]
-/// says: those of 1280 pixels over 60 degrees, 1108.51, by which the qualities were measured.
+/// Pixels per radian in the display's centre from which on blocks become finer than the tables
+/// say: those of 1280 pixels over 60 degrees, 1108.51, by which the qualities were measured.
 const MEASURED_DENSITY: f32 = 1108.52;
 
 /// Blocks shrink with the density's ratio to that power. A denser display shows finer detail, which
 /// blocks of the same angle leave out: found by measurement (docs/decisions/0208-denser-displays.md).
 const DENSER: f32 = 0.75;
+
+/// Factor on blocks where light is kept from frame to frame and bumpy surfaces are refined. A block's
+/// share of the samples of a frame does not depend on its size, so that large ones renew the light
+/// around moving shadows too slowly: found by measurement (docs/decisions/0210-bumps.md).
+const KEPT: f32 = 0.77;
 
 /// Sides of blocks: at the gaze in radians, and growth per radian of eccentricity.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -90,6 +95,14 @@ impl Blocks {
         Self {
             at_gaze: factor * ACUITY,
             growth: factor * SLOPE,
+        }
+    }
+
+    /// Those of light that is kept from frame to frame.
+    pub(super) fn of_kept_light(self) -> Self {
+        Self {
+            at_gaze: KEPT * self.at_gaze,
+            growth: KEPT * self.growth,
         }
     }
 }

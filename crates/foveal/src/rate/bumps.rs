@@ -24,7 +24,7 @@ fn beyond_allowed([first, right, down]: [[u32; 4]; 3]) -> f32 {
 fn bumpy_surfaces_request_finer_levels_as_their_twin_says() {
     const LEVEL: u8 = 3;
     let scene = generate::by_name("demo").expect("it is there");
-    let size = (320u32, 180u32);
+    let size = (321u32, 181u32);
     let settings = small(size.0, size.1).with(|s| {
         s.shading.mode = Shading::Coarse;
         s.coarse.source = RateSource::Constant;
@@ -42,8 +42,10 @@ fn bumpy_surfaces_request_finer_levels_as_their_twin_says() {
     let (cells, surfaces) = quads(&settings);
     let (mut bumpy, mut even, mut differ) = (0, 0, 0);
     for (i, &cell) in (0u32..).zip(&cells) {
-        let (x, y) = (i % (size.0 / 2) * 2, i / (size.0 / 2) * 2);
-        let at = |x: u32, y: u32| surfaces[(y * size.0 + x) as usize];
+        let across = size.0.div_ceil(2);
+        let (x, y) = (i % across * 2, i / across * 2);
+        let at =
+            |x: u32, y: u32| surfaces[(y.min(size.1 - 1) * size.0 + x.min(size.0 - 1)) as usize];
         // Edges are refined by another rule, and the backdrop has no surface.
         if cell & 128 != 0 || at(x, y) == [0; 4] {
             continue;
@@ -59,13 +61,13 @@ fn bumpy_surfaces_request_finer_levels_as_their_twin_says() {
         // Cosines near 1 are rounded.
         differ += u32::from(beyond.abs() > 1e-5 && cell != expected);
     }
-    assert!(bumpy > 1000 && even > 1000, "{bumpy} bumpy, {even} even");
+    assert!(bumpy > 300 && even > 1000, "{bumpy} bumpy, {even} even");
     assert_eq!(differ, 0);
 
-    // Samples of colours and switched-off refinement know no bumps.
+    // Samples of colours and other ways of refining know no bumps.
     for change in [
         |s: &mut crate::Settings| s.coarse.composite = Composite::Smooth,
-        |s: &mut crate::Settings| s.coarse.refine_edges = RefineEdges::Off,
+        |s: &mut crate::Settings| s.coarse.refine_edges = RefineEdges::Everywhere,
     ] {
         let (cells, _) = quads(&settings.clone().with(change));
         assert!(cells.iter().all(|c| c & 128 != 0 || *c == LEVEL));

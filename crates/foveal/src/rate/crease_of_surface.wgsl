@@ -18,8 +18,9 @@ fn turns(first: vec2i, last: vec2i) -> bool {
     return min(dot(normal, right), dot(normal, down)) < 0.7;
 }
 
-// Part of a highlight's width by which the normal may turn from a pixel to the next, as one minus
-// the cosine over the squared alpha, and what is added to the latter. Both found by measurement.
+// Part of a highlight's width, the squared alpha, by which the normal may turn to the pixel on the
+// right and to that below, as the sum of one minus each cosine, and what is added to the width.
+// Both found by measurement.
 const BUMP: f32 = 0.1;
 const LEAST_WIDTH: f32 = 0.01;
 

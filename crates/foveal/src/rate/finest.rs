@@ -10,7 +10,7 @@ use crate::{RateCombine, RateSource, Settings};
 /// Part of a block's side by which device and this bound may differ.
 const ROUNDING: f32 = 0.995;
 
-/// What the eyes' requests follow from; edges aside.
+/// What the eyes' requests follow from; edges and bumps aside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct FinestRate {
     /// Side of a block at the gaze in radians, and its growth per radian of eccentricity.
@@ -36,12 +36,13 @@ impl FinestRate {
             RateCombine::Finer => false,
         };
         let request = is_bound.then(|| RequestUniform::new(s, eyes, None))?;
-        // Before the geometry nobody knows where bumps ask for more: as if they were everywhere.
+        // Before the geometry nobody knows where bumps are: no coarser than the request of a frame that
+        // does not refine them. That is finer than this frame's away from bumps, and coarser on them.
         let density = s.picture.width as f32 / (2.0 * request.display_from_ndc[0][0]);
         let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, false);
         Some(Self {
-            block_at_gaze: blocks.at_gaze,
-            block_growth: blocks.growth,
+            block_at_gaze: blocks.at_gaze.min(request.block_at_gaze),
+            block_growth: blocks.growth.min(request.block_growth),
             display_from_ndc: request.display_from_ndc,
             gaze_direction: request
                 .gaze_direction
@@ -62,8 +63,8 @@ impl FinestRate {
         self.coarsest
     }
 
-    /// A level that no pixel of this rectangle of an eye's picture is below, given by its least and
-    /// greatest normalized device coordinates.
+    /// A level that no pixel of this rectangle of an eye's picture is below, edges and bumps aside,
+    /// given by its least and greatest normalized device coordinates.
     pub(crate) fn level_within(&self, eye: usize, [low, high]: [Vec2; 2]) -> u32 {
         let [sx, sy, ox, oy] = self.display_from_ndc[eye];
         let (scale, offset) = (Vec2::new(sx, sy), Vec2::new(ox, oy));
@@ -125,7 +126,7 @@ mod tests {
     use foveal_scene::Camera;
 
     use super::*;
-    use crate::RefineEdges;
+    use crate::{RefineEdges, Shading};
 
     fn seen(gaze: [f32; 2], display: &str) -> (Settings, [Eye; 2]) {
         let s = Settings::default().with(|s| {
@@ -133,7 +134,8 @@ mod tests {
             s.picture.height = 180;
             s.eye.display = display.parse().expect("it can be read");
             s.eye.gaze = gaze;
-            // With it the eye's own request is coarser than this bound.
+            s.shading.mode = Shading::Coarse;
+            // Else the request is coarser than the bound where there are no bumps.
             s.coarse.refine_edges = RefineEdges::Off;
         });
         let camera = Camera::look_at(Vec3::ZERO, Vec3::NEG_Z, Vec3::Y, 1.0);
@@ -164,6 +166,28 @@ mod tests {
                         "{display}, {gaze:?}: {level}, {least}"
                     );
                 }
+            }
+        }
+    }
+
+    #[test]
+    fn no_pixel_requests_a_finer_level_where_bumps_are_refined() {
+        for quality in [8.0, 9.0, 9.5, 9.6, 9.85, 9.9, 9.95, 10.0] {
+            let (s, eyes) = seen([0.5, 0.5], "60");
+            let s = s.with(|s| {
+                s.eye.quality_jod = quality;
+                s.coarse.refine_edges = RefineEdges::Graded;
+            });
+            let request = RequestUniform::new(&s, &eyes, None);
+            let finest = FinestRate::new(&s, &eyes).expect("the eye asks");
+            for (x, y) in [(160, 90), (200, 60), (3, 100), (319, 179)] {
+                let at = Vec2::new(x as f32 + 0.5, y as f32 + 0.5) / Vec2::new(160.0, 90.0);
+                let ndc = (at - 1.0) * Vec2::new(1.0, -1.0);
+                let level = u32::from(request.level(&s, x, y, None));
+                assert!(
+                    finest.level_within(0, [ndc, ndc]) <= level,
+                    "{quality}: {x}, {y}"
+                );
             }
         }
     }

@@ -6,7 +6,9 @@ use bytemuck::{Pod, Zeroable};
 use super::RateImage;
 use super::acuity;
 use crate::stereo::{Eye, EyeLayout, LensFit};
-use crate::{Composite, RateCombine, RateSource, RefineEdges, Settings, Shading};
+use crate::{
+    CoarseBackend, CoarseSample, Composite, RateCombine, RateSource, RefineEdges, Settings, Shading,
+};
 
 /// Mirrors `Request` in `rate/request.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -31,8 +33,7 @@ pub(crate) struct RequestUniform {
 /// light one does: what a pixel shows beyond an edge is its own surface all the same.
 const GRADED_BY: u8 = 2;
 
-/// Levels by which [`RefineEdges::Graded`] refines bumpy surfaces that mirror, where samples hold
-/// light (`rate/crease_of_surface.wgsl`).
+/// Levels by which [`RefineEdges::Graded`] refines bumpy surfaces, where samples hold light (`rate/crease_of_surface.wgsl`).
 pub(super) const BUMPY_BY: u8 = 2;
 
 impl RequestUniform {
@@ -43,7 +44,11 @@ impl RequestUniform {
         let right = [0, 1].map(|axis| s.eye.gaze[axis] + s.stereo.gaze_shift[axis]);
         let displays = [0, 1].map(|eye| acuity::display_from_ndc(s, &eyes[eye]));
         let density = width / (2.0 * displays[0][0]);
-        let blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, refines_bumps(s));
+        let refines = refines_bumps(s);
+        let mut blocks = acuity::Blocks::of_quality(s.eye.quality_jod, density, refines);
+        if refines && keeps_light(s) {
+            blocks = blocks.of_kept_light();
+        }
         let gaze = |eye: u32, [x, y]: [f32; 2]| {
             let first = (eye * layout.stride) as f32;
             [first + x * width, y * height, 0.0, 0.0]
@@ -121,11 +126,18 @@ impl RequestUniform {
     }
 }
 
-/// Whether bumpy surfaces that mirror request finer levels than others do.
+/// Whether bumpy surfaces request finer levels than others do.
 pub(super) fn refines_bumps(s: &Settings) -> bool {
     s.shading.mode == Shading::Coarse
         && s.coarse.composite == Composite::Light
         && s.coarse.refine_edges == RefineEdges::Graded
+}
+
+/// Whether light is kept from frame to frame, as far as settings tell.
+fn keeps_light(s: &Settings) -> bool {
+    s.coarse.history
+        && s.coarse.sample == CoarseSample::Center
+        && s.coarse.backend != CoarseBackend::Stencil
 }
 
 /// Overrides of the request pass's shader.
@@ -234,6 +246,39 @@ mod tests {
         assert!(level(10.0, "60", 1270) < level(9.0, "60", 1270));
         // The same picture far away: more pixels to a degree.
         assert!(level(8.0, "1", 640) > level(8.0, "60", 640));
+    }
+
+    #[test]
+    fn blocks_are_larger_where_bumps_are_refined_at_every_quality() {
+        let growth = |quality, edges, history| {
+            let s = Settings::default().with(|s| {
+                s.shading.mode = Shading::Coarse;
+                s.coarse.history = history;
+                s.picture.width = 1280;
+                s.picture.height = 720;
+                s.eye.display = "60".parse().expect("it can be read");
+                s.eye.quality_jod = quality;
+                s.coarse.refine_edges = edges;
+            });
+            RequestUniform::new(&s, &eyes_of(&s), None).block_growth / 0.0275
+        };
+        let mut smaller = f32::MAX;
+        for step in 0..=150 {
+            let quality = 8.5 + 0.01 * step as f32;
+            let refined = growth(quality, RefineEdges::Graded, false);
+            assert!(refined <= smaller, "{quality}");
+            assert!(
+                refined >= growth(quality, RefineEdges::Off, false),
+                "{quality}"
+            );
+            assert!(
+                refined > growth(quality, RefineEdges::Graded, true),
+                "{quality}"
+            );
+            smaller = refined;
+        }
+        let default = growth(9.5, RefineEdges::Graded, false);
+        assert!((default - 0.68).abs() < 1e-3, "{default}");
     }
 
     #[test]

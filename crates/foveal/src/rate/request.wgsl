@@ -1,8 +1,8 @@
 // The finest level that one of 2 x 2 pixels requests, and whether they lie at a geometric edge:
 // level 1 of the min-pyramid. Rust: `rate/request.rs`.
 //
-// Where samples hold light, bumpy surfaces that mirror request finer levels: their highlights come
-// from many directions, which a sample does not keep apart.
+// Where samples hold light, bumpy surfaces request finer levels, the smoother they are the smaller
+// the bumps: their highlights come from many directions, which a sample does not keep apart.
 
 #variant
 #variant BY_DEPTH
@@ -121,8 +121,8 @@ fn requested_level(in: LevelVertex) -> @location(0) u32 {
 #ifdef BY_DEPTH
     return level;
 #else
-    let first = block * 2u;
-    let is_bumped = BUMPY_BY > 0u && instance_at(vec2i(first)) != 0u && is_bumpy(vec2i(first), vec2i(last));
+    let first = vec2i(min(block * 2u, last));
+    let is_bumped = BUMPY_BY > 0u && instance_at(first) != 0u && is_bumpy(first, vec2i(last));
     return select(level, level - min(level, BUMPY_BY), is_bumped);
 #endif
 }

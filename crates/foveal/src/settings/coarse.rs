@@ -92,7 +92,7 @@ pub enum RateCombine {
 )]
 pub enum RefineEdges {
     /// All edges: one level finer than requested with [`Composite::Light`], two with the other
-    /// composites. With [`Composite::Light`] bumpy surfaces that mirror are two levels finer.
+    /// composites. With [`Composite::Light`] bumpy surfaces are two levels finer too.
     #[default]
     Graded,
     /// Edges near the gaze, pixel by pixel: where the requested level is at most half the coarsest

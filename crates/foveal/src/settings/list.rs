@@ -175,7 +175,7 @@ settings! {
         display => display: Display = Display::Camera, "Display", Kind::Text;
         /// Quality in JOD at which coarse shading aims: 10 is no visible difference from full
         /// shading, 9 one that 75 % of observers would see. Lower it for speed. Pictures meet
-        /// the default, 9.5; in motion, with history, videos of it are measured at 9.2 to 9.3.
+        /// the default, 9.5; in motion, with history, videos of it are measured at 9.2 to 9.4.
         quality => quality_jod: f32 = 9.5, "Quality", Kind::Number { least: 5.0, most: 10.0 };
         /// Point that the eye looks at, as fractions of the picture from its top left corner.
         /// The default is the centre.
@@ -218,9 +218,9 @@ settings! {
         /// Limit of one level between neighbouring blocks. Off: blocks of any sizes may touch.
         rate_balance => balance: bool = true, "Balance", Kind::Switch;
         /// Finer shading at geometric edges: graded shades all edges one level finer (two where
-        /// samples hold colours; where they hold light bumpy surfaces that mirror, too, by two),
-        /// inner shades edges near the gaze pixel by pixel, everywhere shades all edges pixel by
-        /// pixel, off leaves them as requested.
+        /// samples hold colours), inner shades edges near the gaze pixel by pixel, everywhere
+        /// shades all edges pixel by pixel, off leaves them as requested. Where samples hold light,
+        /// graded shades bumpy surfaces two levels finer as well.
         refine_edges => refine_edges: RefineEdges = RefineEdges::default(), "Refine edges", Kind::choice::<RefineEdges>();
         /// Pixel of a block that its sample shades: center takes the one at the centre, typical
         /// the most typical of five.
