@@ -35,7 +35,7 @@ fn look_up_facet(pixel: vec2u, index: u32) -> Facet {
         return Facet(0u, 0u, vec3f(0.0), vec3f(0.0));
     }
     let position = view_position(sample_position(pixel, index), view_distance(depth_at(pixel, index)));
-    let i = instances[id.x - 1u];
+    let i = instance_at(id.x - 1u);
     let place = places[id.x - 1u];
     let first = place.first_index + id.y * 3u;
     let a = instance_position(i, corner_position(place.base_vertex + indices[first]));

@@ -58,13 +58,20 @@ override OPAQUE: bool = false;
 override ADDED: bool = false;
 #endif
 
-#ifdef REDUCED
+#ifdef TABLES
 @group(2) @binding(0) var light_table: texture_2d<u32>;
-@group(2) @binding(1) var cluster_table: texture_2d<u32>;
 #else
 @group(2) @binding(0) var<storage, read> lights: Lights;
+#endif
+#ifdef REDUCED
+@group(2) @binding(1) var cluster_table: texture_2d<u32>;
+#else
 @group(2) @binding(1) var<storage, read> cluster_lights: array<u32>;
+#ifdef TABLES
+@group(2) @binding(2) var shadow_table: texture_2d<u32>;
+#else
 @group(2) @binding(2) var<storage, read> shadow_rows: array<vec4u>;
+#endif
 @group(2) @binding(3) var shadow_atlas: texture_depth_2d;
 @group(2) @binding(4) var shadow_sampler: sampler_comparison;
 #endif

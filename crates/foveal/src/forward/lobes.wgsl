@@ -354,17 +354,14 @@ fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
     }
     let left = below_coat(s, v);
     var sum = s.base.emissive * left + lobes_ambient(s, v, left, environment_seen(pixel, distance));
-    let first = cluster_words_at(pixel, distance);
-    for (var word = 0u; word < light_words(); word++) {
-        let valid = min(light_count() - word * 32u, 32u);
-        var bits = select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
-        if !BRUTE {
-            bits = cluster_word(first + word);
+    var walk = first_light(pixel, distance);
+    loop {
+        if walk.bits != 0u {
+            sum += lobes_lit_by(s, v, left, light_number(walk));
         }
-        while bits != 0u {
-            let bit = firstTrailingBit(bits);
-            bits &= bits - 1u;
-            sum += lobes_lit_by(s, v, left, word * 32u + bit);
+        walk = next_light(walk);
+        continuing {
+            break if walk.bits == 0u;
         }
     }
     return sum;

@@ -22,6 +22,10 @@ pub struct Gpu {
     stray: Arc<Mutex<Option<String>>>,
 }
 
+/// Sampled textures of a stage where tables are among them: more than the web's default. A host's
+/// device that offers fewer has its tables in buffers.
+const TEXTURES_WITH_TABLES: u32 = 20;
+
 /// Limits of an adapter, as far as the renderer uses them. The full renderer's shaders cannot be
 /// written in OpenGL's language, whatever the driver offers: there, the reduced renderer draws.
 fn usable_limits(adapter: &wgpu::Adapter) -> wgpu::Limits {
@@ -189,7 +193,8 @@ impl Gpu {
             | wgpu::Features::TEXTURE_COMPRESSION_BC
     }
 
-    /// The limits that the renderer asks for: the web's defaults, and the adapter's own sizes.
+    /// The limits that the renderer asks for: the web's defaults, the adapter's own sizes, and where it
+    /// has them a few more textures.
     #[must_use]
     pub fn wanted_limits(adapter: &wgpu::Limits) -> wgpu::Limits {
         let least = if is_reduced(adapter) {
@@ -199,6 +204,9 @@ impl Gpu {
         };
         wgpu::Limits {
             max_texture_dimension_2d: adapter.max_texture_dimension_2d,
+            max_sampled_textures_per_shader_stage: (adapter.max_sampled_textures_per_shader_stage)
+                .min(TEXTURES_WITH_TABLES)
+                .max(least.max_sampled_textures_per_shader_stage),
             max_multiview_view_count: adapter.max_multiview_view_count.min(2),
             max_buffer_size: adapter.max_buffer_size,
             max_storage_buffer_binding_size: adapter.max_storage_buffer_binding_size,
@@ -226,6 +234,12 @@ impl Gpu {
     pub(crate) fn is_lavapipe(&self) -> bool {
         let AdapterStats { name, driver, .. } = self.adapter_stats();
         driver.starts_with("llvmpipe") || name.starts_with("llvmpipe")
+    }
+
+    /// Whether tables are textures (`gpu/table.rs`).
+    pub(crate) fn has_texture_tables(&self) -> bool {
+        let most = self.device.limits().max_sampled_textures_per_shader_stage;
+        self.is_reduced() || most >= TEXTURES_WITH_TABLES && self.is_lavapipe()
     }
 
     /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.

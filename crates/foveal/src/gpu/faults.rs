@@ -249,6 +249,20 @@ impl Queue {
         }
     }
 
+    pub(crate) fn write_texture(
+        &self,
+        texture: wgpu::TexelCopyTextureInfo<'_>,
+        bytes: &[u8],
+        layout: wgpu::TexelCopyBufferLayout,
+        size: wgpu::Extent3d,
+    ) {
+        if self.device.fails() {
+            self.refuse();
+        } else {
+            self.queue.write_texture(texture, bytes, layout, size);
+        }
+    }
+
     /// Reports an error.
     fn refuse(&self) {
         let nothing = wgpu::BufferDescriptor {

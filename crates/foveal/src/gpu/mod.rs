@@ -10,6 +10,8 @@ mod mips;
 mod profiled;
 mod readback;
 mod table;
+#[cfg(test)]
+mod table_tests;
 mod target;
 mod timing;
 mod trap;

@@ -1,10 +1,11 @@
-//! What shaders look up: a storage buffer, or a texture of the same words where the device has no
-//! storage buffers.
+//! What shaders look up: a storage buffer, or a texture of the same words. A texture where the device
+//! has no storage buffers, and on lavapipe, which loads a buffer word by word, for each of eight
+//! lanes behind a branch, and a texel's four words at once.
 
 use super::{Gpu, sampled, storage_read};
 use crate::Error;
 
-/// Texels in a row of a table that is a texture: `TABLE_WIDTH` in `reduced/table.wgsl`.
+/// Texels in a row of a table that is a texture: `TABLE_WIDTH` in `gpu/table.wgsl`.
 const WIDTH: u32 = 1024;
 /// Four words.
 const TEXEL_BYTES: usize = 16;
@@ -34,7 +35,7 @@ impl Table {
 
     /// What a layout says of it.
     pub(crate) fn binding_type(gpu: &Gpu) -> wgpu::BindingType {
-        if gpu.is_reduced() {
+        if gpu.has_texture_tables() {
             sampled(wgpu::TextureSampleType::Uint)
         } else {
             storage_read()
@@ -44,7 +45,7 @@ impl Table {
     /// Bytes that a table may hold on this device.
     fn limit(gpu: &Gpu) -> u64 {
         let limits = gpu.device.limits();
-        if gpu.is_reduced() {
+        if gpu.has_texture_tables() {
             u64::from(limits.max_texture_dimension_2d) * ROW_BYTES as u64
         } else {
             limits.max_storage_buffer_binding_size
@@ -95,7 +96,7 @@ impl Table {
 
 impl Held {
     fn with_room(gpu: &Gpu, label: &str, bytes: usize) -> Self {
-        if !gpu.is_reduced() {
+        if !gpu.has_texture_tables() {
             return Self::Buffer(gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
                 // An empty buffer cannot be bound.

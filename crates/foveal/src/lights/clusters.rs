@@ -2,7 +2,7 @@
 
 use super::ClusterGrid;
 
-use super::{LightTables, LightUniform};
+use super::{LightUniform, cluster_bits};
 use crate::frame::FrameUniform;
 use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, sampled, storage_read, storage_write};
 
@@ -25,14 +25,14 @@ enum Means {
     /// A pass on the device.
     Pass(wgpu::ComputePipeline, wgpu::BindGroupLayout),
     /// The CPU.
-    Tables(LightTables),
+    Cpu(Table),
 }
 
 /// A scene's lights, and which of them reach which cluster.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SceneLights<'a> {
-    /// Without tables, the lights.
-    pub(crate) buffer: &'a wgpu::Buffer,
+    /// The lights.
+    pub(crate) table: &'a Table,
     pub(crate) assigner: &'a LightAssigner,
     pub(crate) shadows: &'a ShadowStage,
 }
@@ -43,21 +43,24 @@ impl<'a> SceneLights<'a> {
     pub(crate) fn resources(self) -> Vec<wgpu::BindingResource<'a>> {
         match &self.assigner.means {
             Means::Pass(..) => {
-                let lights = self.buffer.as_entire_binding();
+                let lights = self.table.resource();
                 let [rows, atlas, sampler] = self.shadows.resources();
                 let bits = self.assigner.bits.as_entire_binding();
                 vec![lights, bits, rows, atlas, sampler]
             }
-            Means::Tables(tables) => vec![tables.lights.resource(), tables.clusters.resource()],
+            Means::Cpu(clusters) => vec![self.table.resource(), clusters.resource()],
         }
     }
 
     /// What a layout says of [`SceneLights::resources`].
     pub(crate) fn binding_types(gpu: &Gpu) -> Vec<wgpu::BindingType> {
-        let mut types = vec![Table::binding_type(gpu); 2];
-        if !gpu.is_reduced() {
+        let mut types = vec![Table::binding_type(gpu)];
+        if gpu.is_reduced() {
+            types.push(Table::binding_type(gpu));
+        } else {
             types.extend([
                 storage_read(),
+                Table::binding_type(gpu),
                 sampled(wgpu::TextureSampleType::Depth),
                 wgpu::BindingType::Sampler(wgpu::SamplerBindingType::Comparison),
             ]);
@@ -71,7 +74,7 @@ impl LightAssigner {
     pub(crate) fn new(gpu: &Gpu, eyes: u32, frame_layout: &wgpu::BindGroupLayout) -> Self {
         if gpu.is_reduced() {
             return Self {
-                means: Means::Tables(LightTables::new(gpu)),
+                means: Means::Cpu(Table::new(gpu, "cluster lights")),
                 eyes,
                 bits: bits_buffer(gpu, 1),
             };
@@ -80,7 +83,7 @@ impl LightAssigner {
             &gpu.device,
             "light assignment",
             wgpu::ShaderStages::COMPUTE,
-            &[storage_read(), storage_write()],
+            &[Table::binding_type(gpu), storage_write()],
         );
         let module = shader::module(gpu, "clusters", shader::LIGHTS_CLUSTERS);
         let pipeline = shader::compute(
@@ -105,8 +108,9 @@ impl LightAssigner {
         frame: &FrameUniform,
         lights: &[LightUniform],
     ) {
-        if let Means::Tables(tables) = &mut self.means {
-            tables.write(gpu, frame, self.eyes as usize, lights);
+        if let Means::Cpu(clusters) = &mut self.means {
+            let bits = cluster_bits(frame, self.eyes as usize, lights);
+            clusters.write(gpu, bytemuck::cast_slice(&bits));
         }
     }
 
@@ -127,12 +131,7 @@ impl LightAssigner {
     }
 
     /// Encodes the pass, where there is one. `lights` holds `grid.light_count` lights.
-    pub(crate) fn assign(
-        &self,
-        recorder: &mut Recorder<'_>,
-        lights: &wgpu::Buffer,
-        grid: &ClusterGrid,
-    ) {
+    pub(crate) fn assign(&self, recorder: &mut Recorder<'_>, lights: &Table, grid: &ClusterGrid) {
         let Means::Pass(pipeline, layout) = &self.means else {
             return;
         };
@@ -146,7 +145,7 @@ impl LightAssigner {
             &recorder.gpu.device,
             "light assignment",
             layout,
-            &[lights.as_entire_binding(), self.bits.as_entire_binding()],
+            &[lights.resource(), self.bits.as_entire_binding()],
         );
         let mut pass = recorder.compute_pass("light assignment");
         pass.set_pipeline(pipeline);

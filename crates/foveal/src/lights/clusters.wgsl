@@ -3,8 +3,13 @@
 
 #import shared/frame.wgsl
 #import shared/light.wgsl
+#import shared/light_table.wgsl
 
+#ifdef TABLES
+@group(1) @binding(0) var light_table: texture_2d<u32>;
+#else
 @group(1) @binding(0) var<storage, read> lights: Lights;
+#endif
 @group(1) @binding(1) var<storage, read_write> cluster_bits: array<atomic<u32>>;
 
 // How many views share the grid.
@@ -56,7 +61,7 @@ fn center_in(view: u32, position: vec3f) -> vec3f {
 @compute @workgroup_size(64)
 fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = group.x;
-    let light = lights.items[index];
+    let light = light_at(index);
     let everywhere = light.kind == LIGHT_DIRECTIONAL;
     // A little more than the range: rounding may err, but never to the small side.
     let radius = light.range * 1.0001 + 1e-4;
@@ -92,7 +97,7 @@ fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) 
         }
         if touches {
             let flat = cluster.x + frame.cluster_counts.x * (cluster.y + frame.cluster_counts.y * cluster.z);
-            atomicOr(&cluster_bits[flat * lights.words + index / 32u], 1u << (index % 32u));
+            atomicOr(&cluster_bits[flat * light_words() + index / 32u], 1u << (index % 32u));
         }
     }
 }

@@ -6,14 +6,12 @@
 
 mod clusters;
 mod grid;
-mod tables;
+mod on_cpu;
 #[cfg(test)]
 mod twin;
 mod upload;
 
 pub(crate) use clusters::{LightAssigner, SceneLights};
 pub(crate) use grid::ClusterGrid;
-pub(crate) use tables::LightTables;
-#[cfg(test)]
-pub(crate) use tables::cluster_bits;
+pub(crate) use on_cpu::cluster_bits;
 pub(crate) use upload::{LightUniform, LightsHeader, MAX_LIGHTS};

@@ -2,8 +2,8 @@
 //! one.
 //!
 //! Such a device (WebGL 2) gets tables in textures for storage buffers (`gpu/table.rs`), lights
-//! assigned on the CPU (`lights/tables.rs`) and a G-buffer that holds depth as an integer; all else
-//! is the same code. In shaders, `#ifdef REDUCED` has what reads tables.
+//! assigned on the CPU (`lights/on_cpu.rs`) and a G-buffer that holds depth as an integer; all else
+//! is the same code. In shaders, `#ifdef REDUCED` has what differs.
 
 use std::sync::OnceLock;
 
@@ -200,7 +200,7 @@ fn the_reduced_shaders_can_be_said_in_the_language_of_webgl_2() {
         (shader::OUTPUT_EYES, ["full_screen", "show_eyes"]),
     ];
     for (shader, entry_points) in all {
-        let module = naga::front::wgsl::parse_str(&shader.source()).expect("it parses");
+        let module = naga::front::wgsl::parse_str(&shader.source(true)).expect("it parses");
         let mut validator = naga::valid::Validator::new(
             naga::valid::ValidationFlags::all(),
             naga::valid::Capabilities::SHADER_FLOAT16_IN_FLOAT32,

@@ -256,7 +256,8 @@ fn an_environment_that_fails_anywhere_leaves_the_old_one_in_place() {
     });
     block_on(draw(&mut renderer)).expect("drawn");
     let new = picture(&renderer);
-    assert!(old != new && calls >= 3, "{calls}");
+    // Lights and materials.
+    assert!(old != new && calls >= 2, "{calls}");
     for (place, fault) in strikes(calls, calls) {
         let what = format!("call {place} of {calls}");
         block_on(renderer.set_environment(map())).expect("nothing fails");
@@ -321,7 +322,8 @@ fn a_pose_that_fails_anywhere_is_an_error_and_objects_and_lights_have_it() {
     });
     block_on(draw(&mut renderer)).expect("drawn");
     let (old, new) = (expected(&gpu, &settings), picture(&renderer));
-    assert!(old != new && calls >= 3, "{calls}");
+    // Lights and materials.
+    assert!(old != new && calls >= 2, "{calls}");
     for (place, fault) in strikes(calls, calls) {
         let what = format!("call {place} of {calls}");
         let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");

@@ -195,7 +195,7 @@ impl Renderer {
         };
         stages
             .lights
-            .assign(recorder, &draws.scene.light_buffer, clusters);
+            .assign(recorder, &draws.scene.light_table, clusters);
         stages.shadows.draw(recorder, draws.scene);
         if plan.edges {
             stages.look_around_first(recorder, draws, plan);
@@ -234,7 +234,7 @@ impl Renderer {
 impl Stages {
     fn scene_lights<'a>(&'a self, draws: Draws<'a>) -> SceneLights<'a> {
         SceneLights {
-            buffer: &draws.scene.light_buffer,
+            table: &draws.scene.light_table,
             assigner: &self.lights,
             shadows: &self.shadows,
         }

@@ -155,7 +155,7 @@ impl Renderer {
             let (shading, targets) = (&stages.shading, &stages.targets);
             let list = crate::shading::SampleList::from_texels(recorder.gpu, texels);
             let lights = SceneLights {
-                buffer: &scene.light_buffer,
+                table: &scene.light_table,
                 assigner: &stages.lights,
                 shadows: &stages.shadows,
             };

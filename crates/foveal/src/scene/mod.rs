@@ -38,7 +38,7 @@ use foveal_scene::{Aabb, AlphaMode, Environment, ImageLight, Scene, Texture};
 use glam::Mat4;
 
 use crate::culling::CullingScene;
-use crate::gpu::Gpu;
+use crate::gpu::{Gpu, Table};
 use crate::lights::{LightUniform, LightsHeader, MAX_LIGHTS};
 use crate::{Error, SceneStats, Settings};
 
@@ -68,7 +68,7 @@ pub(crate) struct SceneOnGpu {
     pub(crate) materials: SceneMaterials,
     pub(crate) instances: Vec<DrawnInstance>,
     pub(crate) lights: Vec<LightUniform>,
-    pub(crate) light_buffer: wgpu::Buffer,
+    pub(crate) light_table: Table,
     pub(crate) environment: Environment,
     /// Its own, where it has one.
     pub(crate) image_light: Option<ImageLight>,
@@ -114,14 +114,8 @@ impl SceneOnGpu {
             });
         }
         let lights: Vec<_> = scene.lights.iter().map(LightUniform::new).collect();
-        let light_buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("lights"),
-            size: (size_of::<LightsHeader>() + lights.len().max(1) * size_of::<LightUniform>())
-                as u64,
-            usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        });
-        write_lights(gpu, &light_buffer, &lights);
+        let mut light_table = Table::new(gpu, "lights");
+        write_lights(gpu, &mut light_table, &lights);
         let materials =
             SceneMaterials::new(gpu, scene, textures, settings, material_layout, limits)?;
         let material_families = materials.families().count() as u64;
@@ -135,7 +129,7 @@ impl SceneOnGpu {
             instances: drawn_instances(scene, &materials),
             materials,
             lights,
-            light_buffer,
+            light_table,
             environment: scene.environment,
             image_light: scene.image_light.clone(),
             culling: CullingScene::new(scene, settings),
@@ -202,7 +196,7 @@ impl SceneOnGpu {
         self.instances = instances;
         let lights = scene.lights.iter().map(LightUniform::new).collect();
         let lights_before = std::mem::replace(&mut self.lights, lights);
-        write_lights(gpu, &self.light_buffer, &self.lights);
+        write_lights(gpu, &mut self.light_table, &self.lights);
         self.geometry.update_pose(gpu, scene);
         self.culling.update_pose(scene);
         PoseChange {
@@ -221,8 +215,8 @@ impl SceneOnGpu {
     }
 
     /// Uploads lights and materials once more: where a call failed, theirs may have been refused.
-    pub(crate) fn write_posed(&self, gpu: &Gpu) {
-        write_lights(gpu, &self.light_buffer, &self.lights);
+    pub(crate) fn write_posed(&mut self, gpu: &Gpu) {
+        write_lights(gpu, &mut self.light_table, &self.lights);
         self.materials.write_all(gpu);
     }
 
@@ -232,15 +226,14 @@ impl SceneOnGpu {
     }
 }
 
-fn write_lights(gpu: &Gpu, buffer: &wgpu::Buffer, lights: &[LightUniform]) {
+fn write_lights(gpu: &Gpu, table: &mut Table, lights: &[LightUniform]) {
     let header = LightsHeader::new(lights.len());
-    gpu.queue
-        .write_buffer(buffer, 0, bytemuck::bytes_of(&header));
-    gpu.queue.write_buffer(
-        buffer,
-        size_of::<LightsHeader>() as u64,
-        bytemuck::cast_slice(lights),
-    );
+    let mut bytes = bytemuck::bytes_of(&header).to_vec();
+    // A binding must hold one light, even where there is none.
+    let none = [LightUniform::default()];
+    let lights = if lights.is_empty() { &none } else { lights };
+    bytes.extend_from_slice(bytemuck::cast_slice(lights));
+    table.write(gpu, &bytes);
 }
 
 /// The box around all that is visible, but points and lines that are not lit: no shadow comes from them or falls on

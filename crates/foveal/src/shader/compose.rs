@@ -6,7 +6,7 @@
 //! | `#export shared/vertex.wgsl` | the same; files that import this one may use the other's names too |
 //! | `#expects band, queue` | names that the importing shader defines |
 //! | `#variant REDUCED LAYERED` | the shader can be made with these names defined; without such a line it has one variant, with none |
-//! | `#ifdef NAME`, `#ifndef NAME`, `#else`, `#endif` | lines for some variants |
+//! | `#ifdef NAME`, `#ifndef NAME`, `#else`, `#endif` | lines for some variants; `TABLES` is defined where tables are textures |
 //!
 //! `enable` directives go to the beginning of the module. Tests hold each file to what it imports
 //! and expects.
@@ -46,8 +46,8 @@ impl Shader {
         self.file.ends_with(name) || self.variant.contains(&name)
     }
 
-    /// The module's source.
-    pub(crate) fn source(self) -> String {
+    /// The module's source for a device whose tables are textures or buffers (`gpu/table.rs`).
+    pub(crate) fn source(self, texture_tables: bool) -> String {
         assert!(
             variants(self.file).any(|v| v == self.variant),
             "{} has no variant {:?}",
@@ -55,7 +55,7 @@ impl Shader {
             self.variant
         );
         let mut module = Module::default();
-        module.take_in(self.file, self.variant);
+        module.take_in(self.file, &defined(self.variant, texture_tables));
         format!("{}{}", module.enables, module.text)
     }
 }
@@ -64,6 +64,22 @@ impl Shader {
 fn text(file: &str) -> &'static str {
     let found = FILES.binary_search_by_key(&file, |&(name, _)| name);
     found.map_or("", |at| FILES[at].1)
+}
+
+/// The names that a variant defines, with what follows from the device: `TABLES` where tables are
+/// textures, which they always are for the reduced renderer.
+fn defined(variant: &[&'static str], texture_tables: bool) -> Vec<&'static str> {
+    let mut names = variant.to_vec();
+    if texture_tables || variant.contains(&"REDUCED") {
+        names.push("TABLES");
+    }
+    names
+}
+
+/// All that a file is composed with: each variant, with buffers and with textures.
+#[cfg(test)]
+fn definitions(file: &str) -> impl Iterator<Item = Vec<&'static str>> {
+    variants(file).flat_map(|v| [false, true].map(|texture_tables| defined(&v, texture_tables)))
 }
 
 /// The names that each variant of a file defines.

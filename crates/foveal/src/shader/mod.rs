@@ -12,7 +12,7 @@ pub(crate) fn module(gpu: &Gpu, label: &str, shader: Shader) -> wgpu::ShaderModu
     gpu.device
         .create_shader_module(wgpu::ShaderModuleDescriptor {
             label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(shader.source().into()),
+            source: wgpu::ShaderSource::Wgsl(shader.source(gpu.has_texture_tables()).into()),
         })
 }
 

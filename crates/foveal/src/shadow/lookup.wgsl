@@ -4,7 +4,7 @@
 #import shared/light.wgsl
 #import shadow/contact.wgsl
 #import shadow/tile.wgsl
-#expects shadow_rows, shadow_atlas, shadow_sampler
+#expects shadow_atlas, shadow_sampler
 
 // Part of the light that passes at a place in the tile, in texels, with a reversed depth.
 // `softness`: texels by which an edge fades to each side, per depth between it and the place.
@@ -57,15 +57,18 @@ fn cube_side(d: vec3f) -> u32 {
     return select(4u, 5u, d.z < 0.0);
 }
 
-// A position from the centre, across, up and along a side.
-fn in_cube_side(side: u32, d: vec3f) -> vec3f {
-    let along = select(d, -d, (side & 1u) != 0u);
-    if side < 2u {
-        return vec3f(d.yz, along.x);
-    } else if side < 4u {
-        return vec3f(d.zx, along.y);
-    }
-    return vec3f(d.xy, along.z);
+// Unit vectors across, up and along a side.
+fn side_axes(side: u32) -> mat3x3f {
+    let x = vec3f(1.0, 0.0, 0.0);
+    let y = vec3f(0.0, 1.0, 0.0);
+    let z = vec3f(0.0, 0.0, 1.0);
+    let axis = side / 2u;
+    let along = select(select(z, y, axis == 1u), x, axis == 0u);
+    return mat3x3f(
+        select(select(x, z, axis == 1u), y, axis == 0u),
+        select(select(y, x, axis == 1u), z, axis == 0u),
+        select(along, -along, (side & 1u) != 0u),
+    );
 }
 
 // A position in a pyramid, across, up and along, in texels of its tile.
@@ -83,52 +86,51 @@ fn pyramid_softness(near: f32, tangent: f32, side: f32, height: f32) -> f32 {
     return lamp * (0.5 * side - SHADOW_BORDER) / (tangent * near);
 }
 
-// Part of a point light's rays that reach a surface.
-fn point_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
-    let from_light = position - light.position;
-    let side = cube_side(from_light);
-    let words = shadow_rows[first + side / 4u];
-    let tile = shadow_tile(words[side % 4u]);
-    if tile.side == 0.0 {
-        return 1.0;
-    }
-    let texel_m = 2.0 * in_cube_side(side, from_light).z / (tile.side - 2.0 * SHADOW_BORDER);
-    let at = in_cube_side(side, from_light + normal * shadow_offset(tile, texel_m, n_dot_l));
-    let near = shadow_row(first + 1u).z;
-    if at.z <= near {
-        return 1.0;
-    }
-    let softness = pyramid_softness(near, 1.0, tile.side, n_dot_l * length(from_light));
-    return shadow_passing(tile, pyramid_texel(at, 1.0, tile.side), near / at.z, softness);
+// Where a light's rays to a surface are looked up: as `shadow_passing` takes them. Without a tile
+// they pass.
+struct ShadowPlace {
+    tile: ShadowTile,
+    at: vec2f,
+    depth: f32,
+    softness: f32,
 }
 
-// The same for a spot light whose cone fits into one tile.
-fn spot_light_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
-    let tile = shadow_tile(shadow_rows[first].x);
-    if tile.side == 0.0 {
-        return 1.0;
-    }
-    let near = shadow_row(first + 1u).z;
-    let tangent = shadow_row(first + 1u).w;
+const UNSHADOWED: ShadowPlace = ShadowPlace(ShadowTile(vec2f(0.0), 0.0, false), vec2f(0.0), 0.0, 0.0);
+
+// Of a light that shines from a point: in a side of a cube around it, or, where its cone fits into
+// one tile, in that.
+fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> ShadowPlace {
     let from_light = position - light.position;
-    let texel_m = 2.0 * tangent * dot(light.direction, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
+    let lens = shadow_row(first + 1u).zw;
+    // A tangent of 0 stands for a cube.
+    let is_cube = lens.y == 0.0;
+    let side = select(0u, cube_side(from_light), is_cube);
+    let tile = shadow_tile(shadow_words(first + side / 4u)[side % 4u]);
+    if tile.side == 0.0 {
+        return UNSHADOWED;
+    }
+    let of_cube = side_axes(side);
+    let across = select(shadow_row(first + 2u).xyz, of_cube[0], is_cube);
+    let up = select(shadow_row(first + 3u).xyz, of_cube[1], is_cube);
+    let along = select(light.direction, of_cube[2], is_cube);
+    let near = lens.x;
+    let tangent = select(lens.y, 1.0, is_cube);
+    let texel_m = 2.0 * tangent * dot(along, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
     let moved = from_light + normal * shadow_offset(tile, texel_m, n_dot_l);
-    let across = shadow_row(first + 2u).xyz;
-    let up = shadow_row(first + 3u).xyz;
-    let at = vec3f(dot(across, moved), dot(up, moved), dot(light.direction, moved));
+    let at = vec3f(dot(across, moved), dot(up, moved), dot(along, moved));
     if at.z <= near {
-        return 1.0;
+        return UNSHADOWED;
     }
     let softness = pyramid_softness(near, tangent, tile.side, n_dot_l * length(from_light));
-    return shadow_passing(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness);
+    return ShadowPlace(tile, pyramid_texel(at, tangent, tile.side), near / at.z, softness);
 }
 
-// The same for a directional light: in the finest cascade that holds the place.
-fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+// Of a directional light: in the finest cascade that holds the place.
+fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> ShadowPlace {
     let across = shadow_row(first + 2u).xyz;
     let up = shadow_row(first + 3u).xyz;
-    let words = shadow_rows[first];
-    let cascades = shadow_rows[first + 1u].x;
+    let words = shadow_words(first);
+    let cascades = shadow_words(first + 1u).x;
     for (var i = 0u; i < 4u; i++) {
         let tile = shadow_tile(words[i]);
         // Centre across and up, half the width.
@@ -148,20 +150,23 @@ fn sun_passing(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l
         let depth = (span.x - dot(light.direction, moved)) * span.y;
         // Metres between two depths, times the tangent of half the angle that the light fills.
         let softness = shadow_row(0u).z / (span.y * texel_m);
-        return shadow_passing(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness);
+        return ShadowPlace(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness);
     }
-    return 1.0;
+    return UNSHADOWED;
 }
 
-// Part of a light's rays that reach a surface, 0 to 1.
+// Part of a light's rays that reach a surface, 0 to 1. All kinds of lights are looked up at one
+// place: a device that runs all branches would look all of them up.
 fn light_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
     let first = 1u + index * SHADOW_ROWS;
+    var place: ShadowPlace;
     if light.kind == LIGHT_DIRECTIONAL {
-        return sun_passing(first, light, position, normal, n_dot_l);
+        place = place_from_sun(first, light, position, normal, n_dot_l);
+    } else {
+        place = place_from_point(first, light, position, normal, n_dot_l);
     }
-    // A tangent of 0 stands for a cube.
-    if shadow_row(first + 1u).w > 0.0 {
-        return spot_light_passing(first, light, position, normal, n_dot_l);
+    if place.tile.side == 0.0 {
+        return 1.0;
     }
-    return point_light_passing(first, light, position, normal, n_dot_l);
+    return shadow_passing(place.tile, place.at, place.depth, place.softness);
 }

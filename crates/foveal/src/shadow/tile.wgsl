@@ -1,6 +1,11 @@
 // What shaders know of the tiles of the shadow atlas. Rust: `shadow/records.rs`.
 
+#ifdef TABLES
+#import gpu/table.wgsl
+#expects shadow_table
+#else
 #expects shadow_rows
+#endif
 
 // 0: lights shine through everything; 1: one comparison; 2: nine, blended between texels; 3: as many
 // as soften by the distance to what casts the shadow.
@@ -13,8 +18,18 @@ const SHADOW_ROWS: u32 = 4u;
 // As `BORDER` in `shadow/volume.rs`.
 const SHADOW_BORDER: f32 = 4.0;
 
+#ifdef TABLES
+fn shadow_words(row: u32) -> vec4u {
+    return textureLoad(shadow_table, table_texel(row), 0);
+}
+#else
+fn shadow_words(row: u32) -> vec4u {
+    return shadow_rows[row];
+}
+#endif
+
 fn shadow_row(row: u32) -> vec4f {
-    return bitcast<vec4f>(shadow_rows[row]);
+    return bitcast<vec4f>(shadow_words(row));
 }
 
 // A tile in texels of the atlas: its upper left corner, and its side, which is 0 where there is

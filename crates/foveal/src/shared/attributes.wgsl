@@ -102,7 +102,7 @@ struct Attributes {
 // The attributes of a triangle (counted within its mesh) of an instance at a point in normalized
 // device coordinates.
 fn attributes_at(clip_from_world: mat4x4f, instance: u32, triangle: u32, ndc: vec2f, step: vec2f) -> Attributes {
-    let i = instances[instance];
+    let i = instance_at(instance);
     let place = places[instance];
     let first = place.first_index + triangle * 3u;
     let a = corner_at(place.base_vertex + indices[first]);

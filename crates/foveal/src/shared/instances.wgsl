@@ -1,7 +1,7 @@
 // The scene's instances, and which of them are drawn. Rust: `scene/instances.rs`.
 
-#ifdef REDUCED
-#import reduced/table.wgsl
+#ifdef TABLES
+#import gpu/table.wgsl
 #endif
 
 struct Instance {
@@ -14,7 +14,7 @@ struct Instance {
     previous_z: vec4f,
 }
 
-#ifdef REDUCED
+#ifdef TABLES
 @group(0) @binding(1) var instance_table: texture_2d<u32>;
 @group(0) @binding(2) var drawn_table: texture_2d<u32>;
 

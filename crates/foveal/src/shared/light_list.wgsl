@@ -1,64 +1,19 @@
-// The scene's lights and the clusters' bits: in storage buffers, or in tables where there are none.
+// The scene's lights and the clusters' bits.
 
-#import shared/light.wgsl
+#export shared/light_table.wgsl
 #ifdef REDUCED
-#import reduced/table.wgsl
-#expects light_table, cluster_table
+#import gpu/table.wgsl
+#expects cluster_table
 #else
-#expects lights, cluster_lights
+#expects cluster_lights
 #endif
 
 #ifdef REDUCED
-fn light_row(row: u32) -> vec4u {
-    return textureLoad(light_table, table_texel(row), 0);
-}
-
-fn light_count() -> u32 {
-    return light_row(0u).x;
-}
-
-fn light_words() -> u32 {
-    return light_row(0u).y;
-}
-
-fn light_at(index: u32) -> Light {
-    let first = index * 4u + 1u;
-    let position = bitcast<vec4f>(light_row(first));
-    let radiant = light_row(first + 1u);
-    let direction = bitcast<vec4f>(light_row(first + 2u));
-    let cone = bitcast<vec4f>(light_row(first + 3u));
-    return Light(
-        position.xyz,
-        position.w,
-        bitcast<vec3f>(radiant.xyz),
-        radiant.w,
-        direction.xyz,
-        direction.w,
-        cone.x,
-        cone.y,
-        cone.z,
-        cone.w,
-    );
-}
-
 fn cluster_word(index: u32) -> u32 {
     let words = textureLoad(cluster_table, table_texel(index / 4u), 0);
     return words[index % 4u];
 }
 #else
-fn light_count() -> u32 {
-    return lights.count;
-}
-
-// 32-light words per cluster.
-fn light_words() -> u32 {
-    return lights.words;
-}
-
-fn light_at(index: u32) -> Light {
-    return lights.items[index];
-}
-
 fn cluster_word(index: u32) -> u32 {
     return cluster_lights[index];
 }

@@ -126,36 +126,78 @@ fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit 
 
 // Index of the first light word of the cluster at a position in pixels of the target and a distance
 // along the view axis.
-fn cluster_words_at(pixel: vec2f, distance: f32) -> u32 {
+fn cluster_words_at(pixel: vec2f, distance: f32, words: u32) -> u32 {
     let view = view_at(pixel);
     let moved = in_eye(pixel) + vec2f(frame.views[view].cluster_shift_x, frame.views[view].cluster_shift_y);
     let tile = min(vec2u(moved / frame.cluster_tile), frame.cluster_counts.xy - 1u);
     let cluster = tile.x + frame.cluster_counts.x * (tile.y + frame.cluster_counts.y * cluster_slice(distance));
-    return cluster * light_words();
+    return cluster * words;
+}
+
+// A place in a list of lights: the word that is walked, and its lights that are left. No bits: the end.
+struct LightWalk {
+    // Of the list: where it begins, how many.
+    first: u32,
+    words: u32,
+    word: u32,
+    bits: u32,
+}
+
+// The lights of one word, `first` being the cluster's first.
+fn light_bits(first: u32, word: u32) -> u32 {
+    if BRUTE {
+        let valid = min(light_count() - word * 32u, 32u);
+        return select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
+    }
+    return cluster_word(first + word);
+}
+
+// The same place, or the next one that has lights.
+fn with_lights(walk: LightWalk) -> LightWalk {
+    var w = walk;
+    while w.bits == 0u && w.word + 1u < w.words {
+        w.word++;
+        w.bits = light_bits(w.first, w.word);
+    }
+    return w;
+}
+
+// At the first light of the cluster at a position in pixels of the target and a distance along the
+// view axis.
+fn first_light(pixel: vec2f, distance: f32) -> LightWalk {
+    let words = light_words();
+    let first = cluster_words_at(pixel, distance, words);
+    return with_lights(LightWalk(first, words, 0u, select(0u, light_bits(first, 0u), words > 0u)));
+}
+
+fn next_light(walk: LightWalk) -> LightWalk {
+    return with_lights(LightWalk(walk.first, walk.words, walk.word, walk.bits & (walk.bits - 1u)));
+}
+
+fn light_number(walk: LightWalk) -> u32 {
+    return walk.word * 32u + firstTrailingBit(walk.bits);
 }
 
 // Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights
 // are summed in ascending order whichever way they are found, so that clustered and brute agree to
-// the bit.
+// the bit. The loop over them is a single one that asks at its end: a device that runs all branches
+// runs the body of a loop once for its last question, too.
 fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
     let seen = environment_seen(pixel, distance);
     var sum = Lit(s.emissive + ambient(s, v, seen), vec3f(0.0), vec3f(0.0), vec3f(0.0), vec3f(0.0));
-    let first = cluster_words_at(pixel, distance);
     var mirror = mirror_of(s);
     if MULTIPLE_SCATTERING {
         mirror.gain = further_bounces(s, v);
     }
-    for (var word = 0u; word < light_words(); word++) {
-        let valid = min(light_count() - word * 32u, 32u);
-        var bits = select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
-        if !BRUTE {
-            bits = cluster_word(first + word);
+    var walk = first_light(pixel, distance);
+    loop {
+        if walk.bits != 0u {
+            sum = add_light(sum, s, mirror, v, light_number(walk));
         }
-        while bits != 0u {
-            let bit = firstTrailingBit(bits);
-            bits &= bits - 1u;
-            sum = add_light(sum, s, mirror, v, word * 32u + bit);
+        walk = next_light(walk);
+        continuing {
+            break if walk.bits == 0u;
         }
     }
     return sum;

@@ -180,7 +180,7 @@ fn unit_or(v: vec3f, otherwise: vec3f) -> vec3f {
 // Run once for each layer of the target; a layer is an eye's.
 @vertex
 fn vertex_layered(in: VertexIn, @builtin(view_index) view: u32) -> VertexOut {
-    return vertex_of(in, Drawn(drawn[in.drawn_index], view));
+    return vertex_of(in, Drawn(drawn_at(in.drawn_index), view));
 }
 #endif
 

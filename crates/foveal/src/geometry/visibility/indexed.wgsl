@@ -30,7 +30,7 @@ fn visible_indexed(in: VisibleVertex, @builtin(primitive_index) triangle: u32) -
 // Run once for each layer of the target; a layer is an eye's.
 @vertex
 fn vertex_indexed_layered(in: VisibleIn, @builtin(view_index) view: u32) -> VisibleVertex {
-    let d = Drawn(drawn[in.drawn_index], view);
+    let d = Drawn(drawn_at(in.drawn_index), view);
     return visible_vertex(d, in.position, in.previous_position, in.uv, in.color.a);
 }
 #endif

@@ -36,6 +36,6 @@ fn vertex_pulled_layered(
     @builtin(vertex_index) at: u32,
     @builtin(view_index) view: u32,
 ) -> VisibleVertex {
-    return pulled_vertex(Drawn(drawn[drawn_index], view), at);
+    return pulled_vertex(Drawn(drawn_at(drawn_index), view), at);
 }
 #endif

@@ -29,7 +29,7 @@ struct VisibleOut {
 }
 
 fn visible_vertex(d: Drawn, position: vec3f, previous_position: vec3f, uv: vec4f, alpha: f32) -> VisibleVertex {
-    let i = instances[d.instance];
+    let i = instance_at(d.instance);
     let clip = frame.views[d.view].clip_from_world * vec4f(instance_position(i, position), 1.0);
     let previous = previous_instance_position(i, previous_position);
     let before = (frame.views[d.view].previous_clip_from_world * vec4f(previous, 1.0)).xyw;

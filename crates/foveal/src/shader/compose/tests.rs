@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Line, Module, ROOTS, exports, lines, variants};
+use super::{Line, Module, ROOTS, definitions, exports, lines};
 
 /// The words of WGSL code, without comments, members after a point and attributes' names.
 fn words(code: &str) -> Vec<&str> {
@@ -108,7 +108,7 @@ fn files_import_what_they_use() {
     // Whether an import is of use in any variant.
     let mut used: BTreeMap<(&str, &str), bool> = BTreeMap::new();
     for root in ROOTS {
-        for variant in variants(root) {
+        for variant in definitions(root) {
             let mut module = Module::default();
             module.take_in(root, &variant);
             let code: BTreeMap<_, _> = module
@@ -192,7 +192,7 @@ fn no_file_imports_itself_by_way_of_others() {
         })
     }
     for root in ROOTS {
-        for variant in variants(root) {
+        for variant in definitions(root) {
             let mut module = Module::default();
             module.take_in(root, &variant);
             for &file in &module.files {

@@ -1,6 +1,6 @@
 //! Branches that no shader may have.
 
-use super::{every_variant, parse};
+use super::{every_source, parse};
 
 /// What a value is made from.
 #[derive(Clone, Copy, PartialEq)]
@@ -151,8 +151,8 @@ fn branches_on_uniforms(module: &naga::Module) -> Vec<String> {
 /// 22.3.6).
 #[test]
 fn no_branch_is_decided_by_uniforms_alone() {
-    for shader in every_variant() {
-        let found = branches_on_uniforms(&parse(shader));
+    for (shader, source) in every_source() {
+        let found = branches_on_uniforms(&parse(shader, &source));
         assert!(
             found.is_empty(),
             "{shader:?}: in {found:?}; use select, an override or a storage buffer"

@@ -24,7 +24,7 @@ fn layout_of(module: &naga::Module, name: &str) -> (Vec<(String, u32)>, u32) {
 
 macro_rules! assert_same_layout {
     ($shader:expr, $wgsl:literal, $rust:ty, [$($field:ident),+ $(,)?]) => {
-        let (members, size) = layout_of(&parse($shader), $wgsl);
+        let (members, size) = layout_of(&parse($shader, &$shader.source(false)), $wgsl);
         let ours = vec![$((stringify!($field).to_owned(), std::mem::offset_of!($rust, $field) as u32)),+];
         assert_eq!(members, ours, "members of {}", $wgsl);
         assert_eq!(size as usize, size_of::<$rust>(), "size of {}", $wgsl);

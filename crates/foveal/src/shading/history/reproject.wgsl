@@ -96,10 +96,18 @@ fn remember(before: vec2f, texel: vec2u, expected: Expected, places: u32) -> Mem
     let rounded = floor(before + history.rounding);
     let first = floor(before - 0.5);
     var memory = Memory(false, 0u, vec4u(0u), TileHistory(0.0, 0.0));
-    // A loop that ends early: where all branches are run, loops alone save work.
-    for (var i = 0u; i < places && !memory.is_known; i++) {
+    // A loop that ends early, and asks at its end: where all branches are run, loops alone save work,
+    // and the body of one that asks first runs once more.
+    var i = 0u;
+    loop {
         let other = first + abs(rounded - first - vec2f(vec2u(i, i >> 1u) & vec2u(1u)));
-        memory = history_at(vec2i(other), texel, expected);
+        if i < places {
+            memory = history_at(vec2i(other), texel, expected);
+        }
+        i++;
+        continuing {
+            break if i >= places || memory.is_known;
+        }
     }
     return memory;
 }

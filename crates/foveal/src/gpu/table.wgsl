@@ -1,4 +1,4 @@
-// Tables of words in textures, for devices without storage buffers. Rust: `gpu/table.rs`.
+// Tables of words in textures: `gpu/table.rs` says where they are.
 
 const TABLE_WIDTH: u32 = 1024u;
 

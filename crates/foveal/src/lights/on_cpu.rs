@@ -1,43 +1,10 @@
 //! Light assignment on the CPU, for devices that have no compute shaders: what `clusters.wgsl`
-//! finds, into tables.
+//! finds.
 
 use glam::{Mat4, Vec2, Vec3, Vec4};
 
-use super::{LightUniform, LightsHeader};
+use super::LightUniform;
 use crate::frame::{FrameUniform, ViewUniform};
-use crate::gpu::{Gpu, Table};
-
-/// The lights and the clusters' bits where shaders look them up (`shared/light_list.wgsl`).
-#[derive(Debug)]
-pub(crate) struct LightTables {
-    pub(crate) lights: Table,
-    pub(crate) clusters: Table,
-}
-
-impl LightTables {
-    pub(crate) fn new(gpu: &Gpu) -> Self {
-        Self {
-            lights: Table::new(gpu, "lights"),
-            clusters: Table::new(gpu, "cluster lights"),
-        }
-    }
-
-    /// Finds and uploads what a frame of one or two `eyes` needs.
-    pub(crate) fn write(
-        &mut self,
-        gpu: &Gpu,
-        frame: &FrameUniform,
-        eyes: usize,
-        lights: &[LightUniform],
-    ) {
-        let header = LightsHeader::new(lights.len());
-        let mut bytes = bytemuck::bytes_of(&header).to_vec();
-        bytes.extend_from_slice(bytemuck::cast_slice(lights));
-        self.lights.write(gpu, &bytes);
-        let bits = cluster_bits(frame, eyes, lights);
-        self.clusters.write(gpu, bytemuck::cast_slice(&bits));
-    }
-}
 
 /// One bit per cluster and light, `light_words` words per cluster: as `assign` in `clusters.wgsl`.
 pub(crate) fn cluster_bits(frame: &FrameUniform, eyes: usize, lights: &[LightUniform]) -> Vec<u32> {

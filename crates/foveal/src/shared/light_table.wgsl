@@ -1,0 +1,56 @@
+// The scene's lights. Rust: `lights/upload.rs`.
+
+#import shared/light.wgsl
+#ifdef TABLES
+#import gpu/table.wgsl
+#expects light_table
+#else
+#expects lights
+#endif
+
+#ifdef TABLES
+fn light_row(row: u32) -> vec4u {
+    return textureLoad(light_table, table_texel(row), 0);
+}
+
+fn light_count() -> u32 {
+    return light_row(0u).x;
+}
+
+fn light_words() -> u32 {
+    return light_row(0u).y;
+}
+
+fn light_at(index: u32) -> Light {
+    let first = index * 4u + 1u;
+    let position = bitcast<vec4f>(light_row(first));
+    let radiant = light_row(first + 1u);
+    let direction = bitcast<vec4f>(light_row(first + 2u));
+    let cone = bitcast<vec4f>(light_row(first + 3u));
+    return Light(
+        position.xyz,
+        position.w,
+        bitcast<vec3f>(radiant.xyz),
+        radiant.w,
+        direction.xyz,
+        direction.w,
+        cone.x,
+        cone.y,
+        cone.z,
+        cone.w,
+    );
+}
+#else
+fn light_count() -> u32 {
+    return lights.count;
+}
+
+// 32-light words per cluster.
+fn light_words() -> u32 {
+    return lights.words;
+}
+
+fn light_at(index: u32) -> Light {
+    return lights.items[index];
+}
+#endif
