@@ -27,12 +27,15 @@ fn gpu_with_buffers() -> Gpu {
     })
 }
 
+/// A scene, and how it is drawn.
+type Way = (&'static str, fn(&mut Settings));
+
 #[test]
 fn pictures_do_not_depend_on_where_tables_lie() {
     let buffers = gpu_with_buffers();
     assert!(!is_reduced(&buffers.device.limits()) && !buffers.has_texture_tables());
     assert_eq!(gpu().has_texture_tables(), gpu().is_lavapipe());
-    let ways: [(&str, fn(&mut Settings)); 6] = [
+    let ways: [Way; 6] = [
         ("alpha", |_| {}),
         ("demo:1000", |s| s.lighting.shadows = Shadows::Soft),
         ("demo:1000", |s| s.shading.mode = Shading::Coarse),
