@@ -4,7 +4,7 @@ use foveal_generate as generate;
 
 use super::{Gpu, is_reduced};
 use crate::testing::{gpu, picture, rendered_on, small};
-use crate::{Antialiasing, Geometry, Settings, Shading, Shadows, Stereo};
+use crate::{Antialiasing, Geometry, LightAssignment, Settings, Shading, Shadows, Stereo};
 
 /// A device that differs from the tests' own in the number of textures that a stage may read: tables
 /// lie in buffers.
@@ -35,7 +35,7 @@ fn pictures_do_not_depend_on_where_tables_lie() {
     let buffers = gpu_with_buffers();
     assert!(!is_reduced(&buffers.device.limits()) && !buffers.has_texture_tables());
     assert_eq!(gpu().has_texture_tables(), gpu().is_lavapipe());
-    let ways: [Way; 6] = [
+    let ways: [Way; 8] = [
         ("alpha", |_| {}),
         ("demo:1000", |s| s.lighting.shadows = Shadows::Soft),
         ("demo:1000", |s| s.shading.mode = Shading::Coarse),
@@ -44,6 +44,11 @@ fn pictures_do_not_depend_on_where_tables_lie() {
             s.shading.mode = Shading::Variable;
         }),
         ("demo:1000", |s| s.antialiasing.mode = Antialiasing::Msaa),
+        ("lobes", |_| {}),
+        ("cornell", |s| {
+            s.lighting.shadows = Shadows::Contact;
+            s.lighting.assignment = LightAssignment::Brute;
+        }),
         ("demo:1000", |s| s.stereo.mode = Stereo::Instanced),
     ];
     for (name, change) in ways {

@@ -9,7 +9,7 @@ pub(crate) const MAX_LIGHTS: usize = 16_384;
 /// Irradiance at which a light without a range of its own ends.
 const FAINTEST: f32 = 1.0 / 256.0;
 
-/// Mirrors `Light` in `shared/lighting.wgsl`, where the fields are explained.
+/// Mirrors `Light` in `shared/light.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct LightUniform {
@@ -25,7 +25,7 @@ pub(crate) struct LightUniform {
     pub(crate) reserved: f32,
 }
 
-/// What precedes the lights in their buffer: mirrors the head of `Lights` in `shared/light.wgsl`.
+/// What precedes the lights in their table: mirrors the head of `Lights` in `shared/light.wgsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct LightsHeader {

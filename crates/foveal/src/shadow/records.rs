@@ -1,4 +1,4 @@
-//! What shaders know of tiles: `shadow_rows` in `shadow/lookup.wgsl`.
+//! What shaders know of tiles: `shadow_words` in `shadow/tile.wgsl`.
 //!
 //! Row 0: texels by which places are moved along their normals; lamps' radius in metres; tangent of
 //! half the angle that directional lights fill. Then four rows per light: the words of tiles 0 to 3;
