@@ -261,9 +261,10 @@ impl Renderer {
         if *settings == *old {
             return Ok(());
         }
-        self.scene
-            .geometry
-            .check(&self.gpu, settings.geometry.path)?;
+        let trap = ErrorTrap::new(&self.gpu, "copying geometry for shaders");
+        let readable = (self.scene.geometry).readable(&self.gpu, settings.geometry.path);
+        trap.finish().await?;
+        self.scene.geometry.take_readable(readable?);
         let stroked = old.clone().with(|s| {
             s.geometry.point_size_px = settings.geometry.point_size_px;
             s.geometry.line_width_px = settings.geometry.line_width_px;
@@ -379,10 +380,14 @@ impl Renderer {
             &self.material_layout,
             limits,
         );
+        let geometry = self.stages.settings.geometry.path;
+        let uploaded = uploaded.and_then(|mut scene| {
+            let readable = scene.geometry.readable(&self.gpu, geometry)?;
+            scene.geometry.take_readable(readable);
+            Ok(scene)
+        });
         trap.finish().await?;
         let uploaded = uploaded?;
-        let geometry = self.stages.settings.geometry.path;
-        uploaded.geometry.check(&self.gpu, geometry)?;
         let uniforms = uploaded.instance_uniforms();
         FrameBindings::check_instances(&self.gpu, uniforms.len())?;
         // With an environment of its own, or without, it may be drawn by other shaders.

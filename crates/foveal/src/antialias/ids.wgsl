@@ -5,6 +5,7 @@
 #import shared/attributes.wgsl
 #import shared/frame.wgsl
 #import shared/instances.wgsl
+#import shared/places.wgsl
 #import shared/vertex.wgsl
 
 @group(1) @binding(0) var<uniform> band: Band;
@@ -36,18 +37,18 @@ fn look_up_facet(pixel: vec2u, index: u32) -> Facet {
     }
     let position = view_position(sample_position(pixel, index), view_distance(depth_at(pixel, index)));
     let i = instance_at(id.x - 1u);
-    let place = places[id.x - 1u];
+    let place = place_of(id.x - 1u);
     let first = place.first_index + id.y * 3u;
-    let a = instance_position(i, corner_position(place.base_vertex + indices[first]));
-    let b = instance_position(i, corner_position(place.base_vertex + indices[first + 1u]));
-    let c = instance_position(i, corner_position(place.base_vertex + indices[first + 2u]));
+    let a = instance_position(i, corner_position(place.base_vertex + index_at(first)));
+    let b = instance_position(i, corner_position(place.base_vertex + index_at(first + 1u)));
+    let c = instance_position(i, corner_position(place.base_vertex + index_at(first + 2u)));
     let face = cross(b - a, c - a);
     let toward = dot(face, direction_to_eye(view_of(pixel), a)) >= 0.0;
     return Facet(id.x, id.y, position, select(-face, face, toward));
 }
 
 fn corner_position(vertex: u32) -> vec3f {
-    return bitcast<vec3f>(vertices[vertex * 4u].xyz);
+    return bitcast<vec3f>(vertex_row(vertex * 4u).xyz);
 }
 
 // Mean position of some sub-samples in pixels of the frame, and their mean depth: that at the

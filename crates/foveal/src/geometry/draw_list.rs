@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use foveal_scene::AlphaMode;
+use foveal_scene::{Aabb, AlphaMode};
 use glam::Vec3;
 
 use super::{Faces, PipelineKey, Shape};
@@ -25,7 +25,7 @@ pub(crate) struct Batch {
 pub(crate) struct DrawList {
     /// Instance numbers in draw order.
     pub(crate) drawn: Vec<u32>,
-    /// Opaque and masked surfaces, fewest state changes first.
+    /// Opaque and masked surfaces: front to back by [`Nearness`], then with the fewest state changes.
     pub(crate) solid: Vec<Batch>,
     /// Those of `solid` that have lobes, which are shaded in a pass over what the G-buffer shows.
     pub(crate) lobed: Vec<Batch>,
@@ -56,6 +56,21 @@ fn key_of_strokes(instance: &DrawnInstance, lit: bool) -> PipelineKey {
     }
 }
 
+/// How far from the eye an instance's box ends, in steps of a factor of 2. What is drawn from small
+/// to large hides what is behind before that is shaded: what ends near is near, whereas what begins
+/// near may be the ground. By an instance alone, so that what else is drawn does not change the
+/// order of two.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Nearness(u32);
+
+impl Nearness {
+    fn of(bounds: &Aabb, eye: Vec3) -> Self {
+        let farthest = (eye - bounds.min).abs().max((eye - bounds.max).abs());
+        // The exponent of a square, which is not negative: two of its steps are a factor of 2.
+        Self(farthest.length_squared().to_bits() >> 24)
+    }
+}
+
 /// A scene and what a frame draws of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Draws<'a> {
@@ -80,7 +95,7 @@ impl DrawList {
         self.transmissive.clear();
         self.blended.clear();
         self.triangles = 0;
-        let mut solid: Vec<(PipelineKey, u32, u32, u32)> =
+        let mut solid: Vec<(Nearness, PipelineKey, u32, u32, u32)> =
             Vec::with_capacity(scene.instances.len());
         let mut strokes: Vec<(PipelineKey, u32, u32, u32)> = Vec::new();
         let mut blended: Vec<(f32, u32, Shape)> = Vec::new();
@@ -114,7 +129,8 @@ impl DrawList {
                         lobes: LobeClass::default(),
                         shape: Shape::Triangles,
                     };
-                    solid.push((key, instance.material, instance.mesh, index));
+                    let nearness = Nearness::of(&instance.bounds, eye);
+                    solid.push((nearness, key, instance.material, instance.mesh, index));
                 }
                 AlphaMode::Blend => blended.push((distance(), index, Shape::Triangles)),
             }
@@ -134,12 +150,13 @@ impl DrawList {
             ..
         } = self;
         let lobes = |material| scene.materials.lobes(material);
-        for &one in &solid {
-            if !lobes(one.1).is_some_and(LobeClass::transmits) {
-                Self::push(list, drawn, scene, merge, triangles, batch(one));
+        for &(_, key, material, mesh, index) in &solid {
+            if !lobes(material).is_some_and(LobeClass::transmits) {
+                let one = batch((key, material, mesh, index));
+                Self::push(list, drawn, scene, merge, triangles, one);
             }
         }
-        for (mut key, material, mesh, index) in solid {
+        for (_, mut key, material, mesh, index) in solid {
             let Some(lobes) = lobes(material) else {
                 continue;
             };
@@ -342,5 +359,45 @@ impl DrawList {
         draws
             .map(|b| (families.of(b.material), b.key.class))
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_ends_near_is_nearer_than_the_ground_below_the_eye() {
+        let eye = Vec3::new(1.0, 2.0, 3.0);
+        let around = |half: Vec3, away: Vec3| Aabb {
+            min: eye + away - half,
+            max: eye + away + half,
+        };
+        let nearness = |half, away| Nearness::of(&around(half, away), eye);
+        let small = nearness(Vec3::splat(0.5), Vec3::X * 2.0);
+        let ground = nearness(Vec3::new(50.0, 0.1, 50.0), -2.0 * Vec3::Y);
+        assert!(small < ground);
+        // Within a factor of 2 state changes decide.
+        let farther = |by: f32| nearness(Vec3::ZERO, Vec3::Z * by);
+        assert_eq!(farther(2.9), farther(5.5));
+        assert!(farther(2.7) < farther(2.9) && farther(5.5) < farther(5.8));
+    }
+
+    #[test]
+    fn two_draws_keep_their_order_whatever_else_is_drawn() {
+        let scene = foveal_generate::by_name("demo:1000").unwrap();
+        let renderer =
+            crate::testing::rendered(&scene, &scene.cameras[0], &crate::testing::small(16, 16));
+        let scene_on_gpu = renderer.scene();
+        let order = |is_visible: &dyn Fn(u32) -> bool| {
+            let mut list = DrawList::default();
+            list.build(scene_on_gpu, scene.cameras[0].eye(), true, is_visible);
+            list.drawn
+        };
+        let all = order(&|_| true);
+        let some = order(&|object| object % 3 == 0);
+        let expected: Vec<u32> = all.iter().copied().filter(|i| some.contains(i)).collect();
+        assert!(some.len() < all.len() && !some.is_empty());
+        assert_eq!(some, expected);
     }
 }

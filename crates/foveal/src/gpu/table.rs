@@ -12,13 +12,13 @@ const TEXEL_BYTES: usize = 16;
 const ROW_BYTES: usize = WIDTH as usize * TEXEL_BYTES;
 
 /// Words that the device reads and the CPU writes.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Table {
     label: &'static str,
     held: Held,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 enum Held {
     Buffer(wgpu::Buffer),
     Texture(wgpu::TextureView),
@@ -33,6 +33,34 @@ impl Table {
         }
     }
 
+    /// The words of `buffer`, whose size is a multiple of 16: itself where tables are buffers, else
+    /// a copy, which [`Table::copy`] writes.
+    pub(crate) fn of_buffer(gpu: &Gpu, label: &'static str, buffer: &wgpu::Buffer) -> Self {
+        let held = if gpu.has_texture_tables() {
+            Held::with_room(gpu, label, buffer.size() as usize)
+        } else {
+            Held::Buffer(buffer.clone())
+        };
+        Self { label, held }
+    }
+
+    /// Copies what the buffer of [`Table::of_buffer`] holds now, where the table is a copy.
+    pub(crate) fn copy(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer) {
+        let Held::Texture(view) = &self.held else {
+            return;
+        };
+        for part in Part::of(buffer.size() as usize) {
+            encoder.copy_buffer_to_texture(
+                wgpu::TexelCopyBufferInfo {
+                    buffer,
+                    layout: part.layout(part.first_row as u64 * ROW_BYTES as u64),
+                },
+                part.place(view.texture()),
+                part.size(),
+            );
+        }
+    }
+
     /// What a layout says of it.
     pub(crate) fn binding_type(gpu: &Gpu) -> wgpu::BindingType {
         if gpu.has_texture_tables() {
@@ -43,7 +71,7 @@ impl Table {
     }
 
     /// Bytes that a table may hold on this device.
-    fn limit(gpu: &Gpu) -> u64 {
+    pub(crate) fn limit(gpu: &Gpu) -> u64 {
         let limits = gpu.device.limits();
         if gpu.has_texture_tables() {
             u64::from(limits.max_texture_dimension_2d) * ROW_BYTES as u64
@@ -133,43 +161,80 @@ impl Held {
 
 /// Writes whole rows, then the rest of the last one.
 fn write_rows(gpu: &Gpu, texture: &wgpu::Texture, bytes: &[u8]) {
-    let rows = bytes.len() / ROW_BYTES;
-    let (whole, rest) = bytes.split_at(rows * ROW_BYTES);
-    let mut padded = rest.to_vec();
-    padded.resize(rest.len().next_multiple_of(TEXEL_BYTES), 0);
-    let parts = [
-        (0, rows, WIDTH, whole),
-        (
-            rows,
-            usize::from(!rest.is_empty()),
-            (padded.len() / TEXEL_BYTES) as u32,
-            &padded,
-        ),
-    ];
-    for (first, rows, width, bytes) in parts {
-        if rows == 0 {
-            continue;
-        }
+    for part in Part::of(bytes.len()) {
+        let bytes = &bytes[part.first_row as usize * ROW_BYTES..];
+        let all = part.bytes();
+        // The last texel may be written in part.
+        let padded = (bytes.len() < all).then(|| {
+            let mut padded = bytes.to_vec();
+            padded.resize(all, 0);
+            padded
+        });
         gpu.queue.write_texture(
-            wgpu::TexelCopyTextureInfo {
-                origin: wgpu::Origin3d {
-                    x: 0,
-                    y: first as u32,
-                    z: 0,
-                },
-                ..texture.as_image_copy()
-            },
-            bytes,
-            wgpu::TexelCopyBufferLayout {
-                offset: 0,
-                bytes_per_row: Some(width * TEXEL_BYTES as u32),
-                rows_per_image: None,
-            },
-            wgpu::Extent3d {
-                width,
-                height: rows as u32,
-                depth_or_array_layers: 1,
-            },
+            part.place(texture),
+            padded.as_deref().unwrap_or(&bytes[..all.min(bytes.len())]),
+            part.layout(0),
+            part.size(),
         );
+    }
+}
+
+/// Texels of a table that are written at once: whole rows, or the beginning of one.
+struct Part {
+    first_row: u32,
+    rows: u32,
+    width: u32,
+}
+
+impl Part {
+    /// The parts of a table's first bytes.
+    fn of(bytes: usize) -> impl Iterator<Item = Self> {
+        let texels = bytes.div_ceil(TEXEL_BYTES) as u32;
+        let (rows, rest) = (texels / WIDTH, texels % WIDTH);
+        let whole = Self {
+            first_row: 0,
+            rows,
+            width: WIDTH,
+        };
+        let beginning = Self {
+            first_row: rows,
+            rows: 1,
+            width: rest,
+        };
+        [whole, beginning]
+            .into_iter()
+            .filter(|part| part.rows * part.width > 0)
+    }
+
+    fn bytes(&self) -> usize {
+        (self.rows * self.width) as usize * TEXEL_BYTES
+    }
+
+    fn place<'a>(&self, texture: &'a wgpu::Texture) -> wgpu::TexelCopyTextureInfo<'a> {
+        wgpu::TexelCopyTextureInfo {
+            origin: wgpu::Origin3d {
+                x: 0,
+                y: self.first_row,
+                z: 0,
+            },
+            ..texture.as_image_copy()
+        }
+    }
+
+    fn layout(&self, offset: u64) -> wgpu::TexelCopyBufferLayout {
+        wgpu::TexelCopyBufferLayout {
+            offset,
+            // One row needs none, and a copy from a buffer wants multiples of 256 bytes.
+            bytes_per_row: (self.rows > 1).then_some(self.width * TEXEL_BYTES as u32),
+            rows_per_image: None,
+        }
+    }
+
+    fn size(&self) -> wgpu::Extent3d {
+        wgpu::Extent3d {
+            width: self.width,
+            height: self.rows,
+            depth_or_array_layers: 1,
+        }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::PICTURE_FORMAT;
 use crate::geometry::GBuffer;
-use crate::gpu::{Gpu, bind_group, bind_group_layout, sampled_layers, storage_read};
+use crate::gpu::{Gpu, Table, bind_group, bind_group_layout, sampled_layers};
 use crate::recorder::{Recorder, overwritten};
 use crate::{DebugView, shader};
 
@@ -40,7 +40,7 @@ impl ViewPass {
                 sampled_layers(wgpu::TextureSampleType::Uint),
                 sampled_layers(wgpu::TextureSampleType::Uint),
                 sampled_layers(wgpu::TextureSampleType::Depth),
-                storage_read(),
+                Table::binding_type(gpu),
             ],
         );
         let module = shader::module(gpu, "view", shader::OUTPUT_VIEW);
@@ -62,7 +62,7 @@ impl ViewPass {
         &self,
         recorder: &mut Recorder<'_>,
         gbuffer: &GBuffer,
-        places: &wgpu::Buffer,
+        places: &Table,
         picture: &wgpu::TextureView,
     ) {
         let group = bind_group(
@@ -73,7 +73,7 @@ impl ViewPass {
                 wgpu::BindingResource::TextureView(&gbuffer.surface_layers),
                 wgpu::BindingResource::TextureView(&gbuffer.identity_layers),
                 wgpu::BindingResource::TextureView(&gbuffer.depth_layers),
-                places.as_entire_binding(),
+                places.resource(),
             ],
         );
         let mut pass = recorder.render_pass("view", &[overwritten(picture)], None);

@@ -3,6 +3,7 @@
 #import shared/frame.wgsl
 #import shared/full_screen.wgsl
 #import shared/layers.wgsl
+#import shared/places.wgsl
 #import shared/surface.wgsl
 
 // Which: 1 depth, 2 normals, 3 base colour, 4 instances, 5 motion, 6 materials.
@@ -12,8 +13,12 @@ override VIEW: u32 = 1u;
 @group(1) @binding(1) var gbuffer_identity: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 
-// Of each instance; the third number is its material.
-@group(1) @binding(3) var<storage, read> places: array<vec4u>;
+// Of each instance.
+#ifdef TABLES
+@group(1) @binding(3) var place_table: texture_2d<u32>;
+#else
+@group(1) @binding(3) var<storage, read> places: array<Place>;
+#endif
 
 // Integer hash (Wang 2007), so that every device gives an instance the same colour.
 fn hash(value: u32) -> u32 {
@@ -51,7 +56,7 @@ fn view(@builtin(position) position: vec4f) -> @location(0) vec4f {
         case 4u, 6u: {
             var number = identity.x;
             if VIEW == 6u {
-                number = places[identity.x - 1u].z + 1u;
+                number = place_of(identity.x - 1u).material + 1u;
             }
             let h = hash(number);
             return vec4f(0.25 + 0.75 * unpack4x8unorm(h).rgb, 1.0);

@@ -5,7 +5,7 @@ use foveal_scene::{Mesh, Scene, Vertex};
 
 use super::strokes;
 use super::uploads::Uploads;
-use crate::gpu::{Gpu, bind_group, storage_read};
+use crate::gpu::{Gpu, Table, bind_group};
 use crate::{Error, Geometry};
 
 const STRIDE: u64 = size_of::<Vertex>() as u64;
@@ -94,7 +94,7 @@ pub(crate) fn geometry_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let entries = std::array::from_fn::<_, 4, _>(|i| wgpu::BindGroupLayoutEntry {
         binding: i as u32,
         visibility: stages[i],
-        ty: storage_read(),
+        ty: Table::binding_type(gpu),
         count: None,
     });
     gpu.device
@@ -113,11 +113,18 @@ pub(crate) struct SceneGeometry {
     indices: wgpu::Buffer,
     pub(super) meshes: Vec<MeshRange>,
     deforms: bool,
-    places: wgpu::Buffer,
-    /// The layout is [`geometry_layout`]; `None` where shaders cannot read so much.
-    group: Option<wgpu::BindGroup>,
-    /// Of the larger of the two buffers.
-    largest_bytes: u64,
+    places: Table,
+    /// `None` until passes read it.
+    readable: Option<Readable>,
+}
+
+/// Vertices and indices as shaders read them.
+#[derive(Debug)]
+pub(crate) struct Readable {
+    vertices: Table,
+    previous_vertices: Table,
+    /// The layout is [`geometry_layout`].
+    group: wgpu::BindGroup,
 }
 
 impl SceneGeometry {
@@ -217,14 +224,7 @@ impl SceneGeometry {
         } else {
             vertices.clone()
         };
-        let largest_bytes = vertices.size().max(indices.size());
-        let bindable = largest_bytes <= gpu.device.limits().max_storage_buffer_binding_size;
         let places = upload_places(gpu, scene, &meshes, bins);
-        let group = bindable.then(|| {
-            let buffers = [&vertices, &previous_vertices, &indices, &places];
-            let resources = buffers.map(wgpu::Buffer::as_entire_binding);
-            bind_group(&gpu.device, "geometry", &geometry_layout(gpu), &resources)
-        });
         Ok(Self {
             vertices,
             previous_vertices,
@@ -232,35 +232,73 @@ impl SceneGeometry {
             meshes,
             deforms,
             places,
-            group,
-            largest_bytes,
+            readable: None,
         })
     }
 
-    /// Checks that passes of this kind can read the geometry.
+    /// What shaders read of the geometry, where passes of this kind do and it is not there yet.
     ///
     /// # Errors
-    /// [`Error::Limit`] where shaders must read it and it is too large for them.
-    pub(crate) fn check(&self, gpu: &Gpu, geometry: Geometry) -> Result<(), Error> {
-        if geometry == Geometry::Gbuffer || self.group.is_some() {
-            return Ok(());
+    /// [`Error::Limit`] where it is too large for them.
+    pub(crate) fn readable(
+        &self,
+        gpu: &Gpu,
+        geometry: Geometry,
+    ) -> Result<Option<Readable>, Error> {
+        if geometry == Geometry::Gbuffer || self.readable.is_some() {
+            return Ok(None);
         }
-        Err(Error::Limit {
-            what: "the scene's largest geometry buffer in bytes".to_owned(),
-            value: self.largest_bytes,
-            limit: gpu.device.limits().max_storage_buffer_binding_size,
-            hint: ": shaders cannot read it, so take the geometry gbuffer".to_owned(),
-        })
+        let largest_bytes = self.vertices.size().max(self.indices.size());
+        let limit = Table::limit(gpu);
+        if largest_bytes > limit {
+            return Err(Error::Limit {
+                what: "the scene's largest geometry buffer in bytes".to_owned(),
+                value: largest_bytes,
+                limit,
+                hint: ": shaders cannot read it, so take the geometry gbuffer".to_owned(),
+            });
+        }
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        let mut table = |label, buffer| {
+            let table = Table::of_buffer(gpu, label, buffer);
+            table.copy(&mut encoder, buffer);
+            table
+        };
+        let vertices = table("vertices that shaders read", &self.vertices);
+        let indices = table("indices that shaders read", &self.indices);
+        let previous_vertices = if self.deforms {
+            table(
+                "previous vertices that shaders read",
+                &self.previous_vertices,
+            )
+        } else {
+            vertices.clone()
+        };
+        gpu.queue.submit([encoder.finish()]);
+        let tables = [&vertices, &previous_vertices, &indices, &self.places];
+        let resources = tables.map(Table::resource);
+        let group = bind_group(&gpu.device, "geometry", &geometry_layout(gpu), &resources);
+        Ok(Some(Readable {
+            vertices,
+            previous_vertices,
+            group,
+        }))
     }
 
-    /// Bind group 2 of `shared/attributes.wgsl`; `None` for a scene that failed
-    /// [`SceneGeometry::check`].
+    /// Keeps what [`SceneGeometry::readable`] found.
+    pub(crate) fn take_readable(&mut self, readable: Option<Readable>) {
+        if readable.is_some() {
+            self.readable = readable;
+        }
+    }
+
+    /// Bind group 2 of `shared/attributes.wgsl`; `None` until passes read it.
     pub(crate) fn group(&self) -> Option<&wgpu::BindGroup> {
-        self.group.as_ref()
+        self.readable.as_ref().map(|readable| &readable.group)
     }
 
     /// A [`PlaceUniform`] per instance.
-    pub(crate) fn places(&self) -> &wgpu::Buffer {
+    pub(crate) fn places(&self) -> &Table {
         &self.places
     }
 
@@ -288,6 +326,15 @@ impl SceneGeometry {
             if mesh.deforms {
                 write_vertices(&mut uploads, &self.vertices, mesh, *range);
             }
+        }
+        if let Some(readable) = &self.readable {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let now = (&readable.vertices, &self.vertices);
+            let previous = (&readable.previous_vertices, &self.previous_vertices);
+            for (table, buffer) in [now, previous] {
+                table.copy(&mut encoder, buffer);
+            }
+            gpu.queue.submit([encoder.finish()]);
         }
     }
 
@@ -331,7 +378,7 @@ fn in_pieces<T>(items: impl Iterator<Item = T>, at_a_time: usize, mut take: impl
     }
 }
 
-fn upload_places(gpu: &Gpu, scene: &Scene, meshes: &[MeshRange], bins: &[u32]) -> wgpu::Buffer {
+fn upload_places(gpu: &Gpu, scene: &Scene, meshes: &[MeshRange], bins: &[u32]) -> Table {
     let place = |instance: &foveal_scene::Instance| {
         let mesh = meshes[instance.mesh as usize];
         PlaceUniform {
@@ -342,18 +389,16 @@ fn upload_places(gpu: &Gpu, scene: &Scene, meshes: &[MeshRange], bins: &[u32]) -
         }
     };
     let places: Vec<_> = scene.instances.iter().map(place).collect();
-    let bytes: &[u8] = bytemuck::cast_slice(&places);
-    let usage = wgpu::BufferUsages::STORAGE;
-    let buffer = buffer(gpu, "places of instances", bytes.len() as u64, usage);
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    buffer
+    let mut table = Table::new(gpu, "places of instances");
+    table.write(gpu, bytemuck::cast_slice(&places));
+    table
 }
 
 fn buffer(gpu: &Gpu, label: &str, bytes: u64, usage: wgpu::BufferUsages) -> wgpu::Buffer {
     gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(label),
-        // An empty buffer cannot be bound.
-        size: bytes.max(STRIDE),
+        // An empty buffer cannot be bound, and a table is read by fours of words.
+        size: bytes.max(STRIDE).next_multiple_of(STRIDE),
         usage: usage | wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::COPY_SRC,
         mapped_at_creation: false,
     })

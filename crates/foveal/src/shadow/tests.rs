@@ -303,10 +303,10 @@ fn light_that_is_kept_is_told_where_shadows_have_moved() {
         let bounds = block.bounds;
         pollster::block_on(film.renderer.update_pose(&scene)).unwrap();
         film.draw(&camera);
-        let told = film.renderer.history().told;
-        let places = &told.changed[..told.changed_count as usize];
+        let history = film.renderer.history();
+        let places = &history.changed_places;
         assert_eq!(
-            (told.reset, places.is_empty()),
+            (history.told.reset, places.is_empty()),
             (0, shadows == Shadows::Off)
         );
         let holds = |&[x, y, z, r]: &[f32; 4]| {

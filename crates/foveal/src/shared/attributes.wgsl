@@ -7,26 +7,56 @@
 // Hunt 2013, 'The visibility buffer', and Schied and Dachsbacher 2015, 'Deferred attribute
 // interpolation for memory-efficient deferred shading'.
 
+#ifdef TABLES
+#import gpu/table.wgsl
+#endif
 #import shared/instances.wgsl
+#import shared/places.wgsl
 #import shared/vertex.wgsl
 
-struct Place {
-    // Of the instance's mesh in `indices`.
-    first_index: u32,
-    // What its indices count from.
-    base_vertex: u32,
-    material: u32,
-    // Where the pixels that show it are sorted to.
-    bin: u32,
+// A vertex in four words each of four: position, normal, tangent, both UV sets, colour.
+#ifdef TABLES
+@group(2) @binding(0) var vertices: texture_2d<u32>;
+// The same in the pose of the frame before.
+@group(2) @binding(1) var previous_vertices: texture_2d<u32>;
+@group(2) @binding(2) var indices: texture_2d<u32>;
+// Of each instance.
+@group(2) @binding(3) var place_table: texture_2d<u32>;
+
+// Four of a vertex's sixteen words.
+fn vertex_row(row: u32) -> vec4u {
+    return textureLoad(vertices, table_texel(row), 0);
 }
 
-// A vertex in four words each of four: position, normal, tangent, both UV sets, colour.
+fn previous_vertex_row(row: u32) -> vec4u {
+    return textureLoad(previous_vertices, table_texel(row), 0);
+}
+
+fn index_at(i: u32) -> u32 {
+    let words = textureLoad(indices, table_texel(i / 4u), 0);
+    return words[i % 4u];
+}
+#else
 @group(2) @binding(0) var<storage, read> vertices: array<vec4u>;
 // The same in the pose of the frame before.
 @group(2) @binding(1) var<storage, read> previous_vertices: array<vec4u>;
 @group(2) @binding(2) var<storage, read> indices: array<u32>;
 // Of each instance.
 @group(2) @binding(3) var<storage, read> places: array<Place>;
+
+// Four of a vertex's sixteen words.
+fn vertex_row(row: u32) -> vec4u {
+    return vertices[row];
+}
+
+fn previous_vertex_row(row: u32) -> vec4u {
+    return previous_vertices[row];
+}
+
+fn index_at(i: u32) -> u32 {
+    return indices[i];
+}
+#endif
 
 struct Corner {
     position: vec3f,
@@ -37,10 +67,10 @@ struct Corner {
 }
 
 fn corner_at(vertex: u32) -> Corner {
-    let a = vertices[vertex * 4u];
-    let b = vertices[vertex * 4u + 1u];
-    let c = vertices[vertex * 4u + 2u];
-    let d = vertices[vertex * 4u + 3u];
+    let a = vertex_row(vertex * 4u);
+    let b = vertex_row(vertex * 4u + 1u);
+    let c = vertex_row(vertex * 4u + 2u);
+    let d = vertex_row(vertex * 4u + 3u);
     return Corner(
         bitcast<vec3f>(a.xyz),
         bitcast<vec3f>(vec3u(a.w, b.xy)),
@@ -103,11 +133,11 @@ struct Attributes {
 // device coordinates.
 fn attributes_at(clip_from_world: mat4x4f, instance: u32, triangle: u32, ndc: vec2f, step: vec2f) -> Attributes {
     let i = instance_at(instance);
-    let place = places[instance];
+    let place = place_of(instance);
     let first = place.first_index + triangle * 3u;
-    let a = corner_at(place.base_vertex + indices[first]);
-    let b = corner_at(place.base_vertex + indices[first + 1u]);
-    let c = corner_at(place.base_vertex + indices[first + 2u]);
+    let a = corner_at(place.base_vertex + index_at(first));
+    let b = corner_at(place.base_vertex + index_at(first + 1u));
+    let c = corner_at(place.base_vertex + index_at(first + 2u));
     let wa = world_vertex(i, a.position, a.normal, a.tangent);
     let wb = world_vertex(i, b.position, b.normal, b.tangent);
     let wc = world_vertex(i, c.position, c.normal, c.tangent);

@@ -3,7 +3,7 @@
 use super::{Rates, ResolveAt, VisibilityTargets, with_mask};
 use crate::geometry::{GBuffer, SURFACE_FORMAT};
 use crate::gpu::{
-    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
+    Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_write,
     written_layers,
 };
 
@@ -73,7 +73,7 @@ impl BinPass {
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let mut types = vec![
             words,
-            storage_read(),
+            Table::binding_type(gpu),
             storage_write(),
             storage_write(),
             written_layers(SURFACE_FORMAT),
@@ -131,7 +131,7 @@ impl BinPass {
                 at,
                 &[
                     wgpu::BindingResource::TextureView(&target.identity_layers),
-                    scene.geometry.places().as_entire_binding(),
+                    scene.geometry.places().resource(),
                     bins.0.as_entire_binding(),
                     visibility.pixels.as_entire_binding(),
                     wgpu::BindingResource::TextureView(&target.surface_layers),

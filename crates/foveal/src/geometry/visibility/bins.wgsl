@@ -7,16 +7,10 @@
 #import geometry/visibility/family.wgsl
 #import shared/layers.wgsl
 #import geometry/visibility/listed.wgsl
+#import shared/places.wgsl
 
 // Workgroups that a dispatch may have in one dimension.
 const MAX_ROW: u32 = 65535u;
-
-struct Place {
-    first_index: u32,
-    base_vertex: u32,
-    material: u32,
-    bin: u32,
-}
 
 struct Bin {
     count: atomic<u32>,
@@ -27,7 +21,11 @@ struct Bin {
 }
 
 @group(1) @binding(0) var identity: texture_2d_array<u32>;
+#ifdef TABLES
+@group(1) @binding(1) var place_table: texture_2d<u32>;
+#else
 @group(1) @binding(1) var<storage, read> places: array<Place>;
+#endif
 // One for each material.
 @group(1) @binding(2) var<storage, read_write> bins: array<Bin>;
 // x | y << 16.
@@ -72,7 +70,7 @@ fn keys_of(quad: vec2u) -> Quad {
             instance = seen;
             key = 0u;
             if seen != 0u {
-                key = places[seen - 1u].bin + 1u;
+                key = place_of(seen - 1u).bin + 1u;
             }
         }
         found.keys[i] = select(0u, key, is_listed(texel, rate));

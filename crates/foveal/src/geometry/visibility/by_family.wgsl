@@ -1,7 +1,7 @@
 // The materials of a family: textures are layers of its arrays. Rust: `scene/families.rs`.
 
-#import shared/attributes.wgsl
 #import shared/material.wgsl
+#import shared/places.wgsl
 #import shared/sample_gradients.wgsl
 
 // All of the scene.
@@ -30,7 +30,7 @@ fn dispatch_number() -> u32 {
 }
 
 fn take_material_of(instance: u32) {
-    material = materials[places[instance].material];
+    material = materials[place_of(instance).material];
 }
 
 fn sample_material(image: texture_2d_array<f32>, how: sampler, slot: u32, uv: vec4f) -> vec4f {

@@ -6,6 +6,7 @@
 #import geometry/visibility/visible.wgsl
 #import shared/attributes.wgsl
 #import shared/instances.wgsl
+#import shared/places.wgsl
 #import shared/vertex.wgsl
 
 @vertex
@@ -14,10 +15,10 @@ fn vertex_pulled(@builtin(instance_index) drawn_index: u32, @builtin(vertex_inde
 }
 
 fn pulled_vertex(d: Drawn, at: u32) -> VisibleVertex {
-    let place = places[d.instance];
-    let vertex = place.base_vertex + indices[at];
+    let place = place_of(d.instance);
+    let vertex = place.base_vertex + index_at(at);
     let corner = corner_at(vertex);
-    let previous = bitcast<vec3f>(previous_vertices[vertex * 4u].xyz);
+    let previous = bitcast<vec3f>(previous_vertex_row(vertex * 4u).xyz);
     var out = visible_vertex(d, corner.position, previous, corner.uv, corner.color.a);
     out.triangle = (at - place.first_index) / 3u;
     return out;

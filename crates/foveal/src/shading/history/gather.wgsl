@@ -15,7 +15,7 @@
 // Pixels' light, where it was reprojected or sampled.
 @group(1) @binding(3) var light: texture_2d<u32>;
 @group(1) @binding(4) var radiance: texture_storage_2d<rgba16float, write>;
-@group(1) @binding(5) var<storage, read_write> listed: array<Listed, 3>;
+@group(1) @binding(5) var<storage, read_write> listed: array<Listed, LISTS>;
 // Of the pixels that have no history.
 @group(1) @binding(9) var<storage, read> dispatch: Dispatch;
 @group(1) @binding(6) var<storage, read> bare: array<u32>;

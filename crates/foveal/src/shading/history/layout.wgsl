@@ -3,26 +3,6 @@
 
 #import shared/frame.wgsl
 
-struct History {
-    // Added to a place before it is rounded to whole pixels; -0.5 to 0.5, another one each frame.
-    rounding: vec2f,
-    // Added to the pixels' order of renewal; another one each frame.
-    phase: u32,
-    // 1: nothing is kept.
-    reset: u32,
-    // Samples a frame for each block, by which a block's light is renewed while nothing changes.
-    renewal: f32,
-    // Relative error of what is kept from which on it is renewed more often.
-    tolerance: f32,
-    // Relative change of a pixel's light from which on what is kept around it counts no more.
-    change: f32,
-    // Places in `changed`.
-    changed_count: u32,
-    // Where changed lights reach, now or in the frame before: centre and radius, world space.
-    // Nothing is kept there.
-    changed: array<vec4f, 16>,
-}
-
 // What a pixel keeps besides its light: the instance that is seen (12 bits of its number + 1), the
 // level of the block that its light was sampled for (3 bits), two notes, and the distance's upper
 // 15 bits as a rounded float, which is 0.4 % apart.
@@ -46,7 +26,7 @@ fn distance_from_bits(bits: u32) -> f32 {
     return bitcast<f32>((bits & SEEN_DISTANCE) >> 1u);
 }
 
-// A tile of 8 x 8 pixels.
+// A tile of 8 x 8 pixels, in x and y of its texel.
 struct TileHistory {
     // Relative error of what its samples were expected to be, the largest of late.
     error: f32,
@@ -94,10 +74,17 @@ struct Dispatch {
     reserved: array<vec4u, 15>,
 }
 
-// The lists: samples; pixels that have no history; of these the ones that no sample speaks for.
+// The lists: samples; pixels that have no history; of these the ones that no sample speaks for;
+// pixels that ask for a sample.
 const SAMPLES: u32 = 0u;
 const BARE: u32 = 1u;
 const UNLIT: u32 = 2u;
+const CHOSEN: u32 = 3u;
+const LISTS: u32 = 4u;
+
+// A choice: below this the level of the block whose sample a pixel waits for; else it is shaded by
+// itself, and the rest says what the luminance that is expected there is known from.
+const CHOSEN_ITSELF: u32 = 9u;
 
 // A pixel's place in it: any share of the least numbers lies evenly in the picture (the additive
 // recurrence by the plastic number: Roberts 2018, 'The Unreasonable Effectiveness of Quasirandom

@@ -3,24 +3,25 @@
 use bytemuck::{Pod, Zeroable};
 
 use super::lit::{Lit, ROUND};
-use super::targets::{HistoryTargets, List, SEEN_FORMAT};
+use super::targets::{HistoryTargets, List, SEEN_FORMAT, TILE_FORMAT};
 use crate::composite::LIGHT_FORMAT;
 use crate::environment::environment_constants;
 use crate::gpu::{
-    Gpu, bind_group, bind_group_layout, sampled, sampled_layers, storage_read, storage_write,
-    written,
+    Gpu, Table, bind_group, bind_group_layout, sampled, sampled_layers, storage_read,
+    storage_write, uniform, written,
 };
 
 use crate::rate::RateTargets;
 use crate::recorder::Recorder;
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
+use crate::shadow::Place;
 use crate::targets::Targets;
 use crate::{Settings, shader};
 
 /// Pixels a side that one workgroup looks at.
 const TILE: u32 = 8;
 
-/// Mirrors `History` in `layout.wgsl`, where the fields are explained.
+/// Mirrors `Told` in `told.wgsl`, where the fields are explained.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub(crate) struct HistoryParameters {
@@ -30,8 +31,7 @@ pub(crate) struct HistoryParameters {
     pub(crate) renewal: f32,
     pub(crate) tolerance: f32,
     pub(crate) change: f32,
-    pub(crate) changed_count: u32,
-    pub(crate) changed: [[f32; 4]; 16],
+    pub(crate) reserved: f32,
 }
 
 /// A pipeline and the layout of its own bind group.
@@ -47,13 +47,16 @@ pub(super) struct HistoryPasses {
     keep: Pass,
     spread: Pass,
     reproject: Pass,
+    list: Pass,
     size: Pass,
     shade: Pass,
     gather: Pass,
     scatter: Pass,
     rest: Pass,
-    /// What the passes are told: read from storage, as branches hang on it (ARCHITECTURE.md).
+    /// What the passes are told.
     parameters: wgpu::Buffer,
+    /// Where changed lights reach, up to one of a negative radius.
+    changed: Table,
 }
 
 impl HistoryPasses {
@@ -67,6 +70,7 @@ impl HistoryPasses {
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let (read, write) = (storage_read(), storage_write());
+        let number = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let light = written(LIGHT_FORMAT);
         let radiance = written(RADIANCE_FORMAT);
         let pass = |label, shader, entry, more: Option<&_>, types: &[_], constants: &[_]| {
@@ -86,7 +90,8 @@ impl HistoryPasses {
                 layout,
             }
         };
-        let tiles = [read, write, write, write];
+        let told = uniform();
+        let tiles = [told, write, write, written(TILE_FORMAT)];
         let environment = environment_constants(settings);
         Self {
             keep: pass(
@@ -115,19 +120,26 @@ impl HistoryPasses {
                     words,
                     depth,
                     words,
-                    read,
+                    told,
                     uint,
                     uint,
-                    read,
+                    number,
                     light,
                     written(SEEN_FORMAT),
                     radiance,
                     write,
                     write,
-                    write,
-                    write,
+                    Table::binding_type(gpu),
                 ],
                 &environment,
+            ),
+            list: pass(
+                "lists of samples",
+                shader::SHADING_HISTORY_LIST,
+                "list_samples",
+                None,
+                &[read, read, number, write, write, write, write],
+                &[],
             ),
             size: pass(
                 "list dispatches",
@@ -168,22 +180,26 @@ impl HistoryPasses {
                 shader::SHADING_HISTORY_REST,
                 "list_turn",
                 None,
-                &[read, depth, write, write],
+                &[told, depth, write, write],
                 &[("ROUND", f64::from(ROUND))],
             ),
             parameters: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("history"),
                 size: size_of::<HistoryParameters>() as u64,
-                usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+                usage: wgpu::BufferUsages::UNIFORM | wgpu::BufferUsages::COPY_DST,
                 mapped_at_creation: false,
             }),
+            changed: Table::new(gpu, "changed lights"),
         }
     }
 
     /// Tells the passes of the frame at hand.
-    pub(super) fn write(&self, gpu: &Gpu, parameters: &HistoryParameters) {
+    pub(super) fn write(&mut self, gpu: &Gpu, parameters: &HistoryParameters, changed: &[Place]) {
         gpu.queue
             .write_buffer(&self.parameters, 0, bytemuck::bytes_of(parameters));
+        let end = [0.0, 0.0, 0.0, -1.0];
+        let changed: Vec<Place> = changed.iter().copied().chain([end]).collect();
+        self.changed.write(gpu, bytemuck::cast_slice(&changed));
     }
 }
 
@@ -296,7 +312,7 @@ impl HistoryPasses {
                 self.parameters.as_entire_binding(),
                 h.measured.as_entire_binding(),
                 h.kept.as_entire_binding(),
-                h.tiles.as_entire_binding(),
+                view(&h.tiles),
             ],
         );
         let reproject = frame.group(
@@ -310,9 +326,21 @@ impl HistoryPasses {
                 self.parameters.as_entire_binding(),
                 frame.light(frame.before),
                 view(&h.seen[frame.before]),
-                h.tiles.as_entire_binding(),
+                view(&h.tiles),
                 frame.light(frame.now),
                 view(&h.seen[frame.now]),
+                view(&h.radiance),
+                h.listed.as_entire_binding(),
+                h.chosen.as_entire_binding(),
+                self.changed.resource(),
+            ],
+        );
+        let list = frame.group(
+            &self.list,
+            "lists of samples",
+            &[
+                h.dispatch(List::Chosen),
+                h.chosen.as_entire_binding(),
                 view(&h.radiance),
                 h.listed.as_entire_binding(),
                 h.samples.as_entire_binding(),
@@ -331,6 +359,10 @@ impl HistoryPasses {
         pass.set_pipeline(&self.reproject.pipeline);
         pass.set_bind_group(1, &reproject, &[]);
         pass.dispatch_workgroups(across, down, 1);
+        self.size_lists(&mut pass, frame);
+        pass.set_pipeline(&self.list.pipeline);
+        pass.set_bind_group(1, &list, &[]);
+        pass.dispatch_workgroups_indirect(&h.dispatches, List::Chosen.offset());
     }
 
     /// Shades the listed samples, and measures how much their light changed.

@@ -1,9 +1,13 @@
 // Reprojects each pixel's light from the frame before, puts the pixel's surface into it, and
-// lists what is reshaded. CPU twin: `shading/history/twin.rs`.
+// chooses what is reshaded. CPU twin: `shading/history/twin.rs`.
 
 #import composite/tiling.wgsl
+#ifdef TABLES
+#import gpu/table.wgsl
+#endif
 #import shading/coarse/light.wgsl
 #import shading/history/layout.wgsl
+#import shading/history/told.wgsl
 #import shared/blocks.wgsl
 #import shared/frame.wgsl
 #import shared/layers.wgsl
@@ -13,20 +17,25 @@
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
-@group(1) @binding(4) var<storage, read> history: History;
+@group(1) @binding(4) var<uniform> told: Told;
+// Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing is
+// kept there. A negative radius ends them.
+#ifdef TABLES
+@group(1) @binding(13) var changed_table: texture_2d<u32>;
+#else
+@group(1) @binding(13) var<storage, read> changed: array<vec4f>;
+#endif
 // Of the frame before: pixels' light, and what else they keep.
 @group(1) @binding(5) var light_before: texture_2d<u32>;
 @group(1) @binding(6) var seen_before: texture_2d<u32>;
-@group(1) @binding(7) var<storage, read> tiles: array<TileHistory>;
+// A texel for each tile: `TileHistory`.
+@group(1) @binding(7) var tiles: texture_2d<f32>;
 @group(1) @binding(8) var light: texture_storage_2d<rgba32uint, write>;
 @group(1) @binding(9) var seen: texture_storage_2d<r32uint, write>;
 @group(1) @binding(10) var radiance: texture_storage_2d<rgba16float, write>;
-@group(1) @binding(11) var<storage, read_write> listed: array<Listed, 3>;
-@group(1) @binding(12) var<storage, read_write> samples_listed: array<vec2u>;
-// Pixels that have no history, as entries of the block that they take their light from.
-@group(1) @binding(13) var<storage, read_write> bare: array<u32>;
-// A bit for each pixel that is a block's sample.
-@group(1) @binding(14) var<storage, read_write> wanted: array<atomic<u32>>;
+@group(1) @binding(11) var<storage, read_write> listed: array<Listed, LISTS>;
+// Pixels that ask for a sample, as entries with a choice in place of a level.
+@group(1) @binding(12) var<storage, read_write> chosen: array<u32>;
 
 // Least cosine between normals that count as the same surface.
 const SAME_NORMAL: f32 = 0.95;
@@ -55,13 +64,26 @@ struct Expected {
     level: u32,
 }
 
+fn changed_light(i: u32) -> vec4f {
+#ifdef TABLES
+    return bitcast<vec4f>(textureLoad(changed_table, table_texel(i), 0));
+#else
+    return changed[i];
+#endif
+}
+
 // Whether a light that lights a place has changed.
 fn has_changed(position: vec3f) -> bool {
     var found = false;
-    for (var i = 0u; i < history.changed_count; i++) {
-        let lamp = history.changed[i];
+    var i = 0u;
+    loop {
+        let lamp = changed_light(i);
         let away = position - lamp.xyz;
-        found = found || dot(away, away) < lamp.w * lamp.w;
+        found = found || lamp.w > 0.0 && dot(away, away) < lamp.w * lamp.w;
+        i++;
+        continuing {
+            break if lamp.w < 0.0;
+        }
     }
     return found;
 }
@@ -73,19 +95,19 @@ struct Memory {
     tile: TileHistory,
 }
 
-fn history_at(place: vec2i, texel: vec2u, expected: Expected) -> Memory {
-    let picture = picture_of(texel);
+fn history_at(place: vec2i, texel: vec2u, picture: Picture, expected: Expected) -> Memory {
     let inside = all(place >= vec2i(picture.low)) && all(place < vec2i(picture.end));
     let origin = select(texel, vec2u(place), inside);
     let old = textureLoad(seen_before, origin, 0).x;
     let words = textureLoad(light_before, origin, 0);
-    let tile = tiles[tile_number(origin)];
+    let measured = textureLoad(tiles, origin / 8u, 0).xy;
+    let tile = TileHistory(measured.x, measured.y);
     let known = inside
         && (old & SEEN_AT_ALL) != 0u
         && (old & SEEN_INSTANCE) == expected.instance
         && abs(distance_from_bits(old) - expected.distance) <= SAME_DISTANCE * expected.distance
         && ((old >> SEEN_LEVEL_SHIFT) & SEEN_LEVEL) <= expected.level
-        && tile.change < history.change
+        && tile.change < told.change
         && dot(unpack_light(words).normal, expected.normal) > SAME_NORMAL;
     return Memory(known, old, words, tile);
 }
@@ -93,7 +115,8 @@ fn history_at(place: vec2i, texel: vec2u, expected: Expected) -> Memory {
 // The first place of the frame before that tells a pixel's light: the one that motion names, then the
 // other three of the four around it.
 fn remember(before: vec2f, texel: vec2u, expected: Expected, places: u32) -> Memory {
-    let rounded = floor(before + history.rounding);
+    let picture = picture_of(texel);
+    let rounded = floor(before + told.rounding);
     let first = floor(before - 0.5);
     var memory = Memory(false, 0u, vec4u(0u), TileHistory(0.0, 0.0));
     // A loop that ends early, and asks at its end: where all branches are run, loops alone save work,
@@ -102,7 +125,7 @@ fn remember(before: vec2f, texel: vec2u, expected: Expected, places: u32) -> Mem
     loop {
         let other = first + abs(rounded - first - vec2f(vec2u(i, i >> 1u) & vec2u(1u)));
         if i < places {
-            memory = history_at(vec2i(other), texel, expected);
+            memory = history_at(vec2i(other), texel, picture, expected);
         }
         i++;
         continuing {
@@ -120,23 +143,17 @@ fn radiance_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32) -> vec3f
     return min(s.emissive + ambient(s, v, reaching) + lamps, vec3f(65504.0));
 }
 
-// Whether this is the first pixel that asks for its block's sample.
-fn is_first_to_want(sample: vec2u) -> bool {
-    let number = sample.y * u32(frame.target_size.x) + sample.x;
-    let bit = 1u << (number & 31u);
-    return (atomicOr(&wanted[number >> 5u], bit) & bit) == 0u;
-}
-
 // Whether a pixel's share of its block's samples is due. What proved wrong is renewed sooner.
 fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
     let block = exp2(-2.0 * f32(level));
-    let haste = clamp(error / history.tolerance, 1.0, MOST_A_BLOCK / history.renewal);
-    let share = clamp(block * history.renewal * haste, LEAST_RENEWAL, 1.0);
-    return f32(order_of(texel) + history.phase) < share * 4294967296.0;
+    let haste = clamp(error / told.tolerance, 1.0, MOST_A_BLOCK / told.renewal);
+    let share = clamp(block * told.renewal * haste, LEAST_RENEWAL, 1.0);
+    return f32(order_of(texel) + told.phase) < share * 4294967296.0;
 }
 
-// But for the backdrop each list and each texture is written at one place: devices that run all
-// branches pay for each place, whether or not anything is written there.
+// But for the backdrop the list and each texture is written at one place: devices that run all
+// branches pay for each place, whether or not anything is written there. What few pixels need
+// follows in list.wgsl.
 @compute @workgroup_size(8, 8)
 fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let texel = id.xy;
@@ -158,7 +175,8 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let who = load_words(gbuffer_identity, texel).xy;
     let distance_then = select(distance_before(texel, position), distance, frame.orthographic != 0u);
     let expected = Expected(s.normal, distance_then, who.x & SEEN_INSTANCE, own.level);
-    let places = select(4u, 0u, history.reset != 0u || has_changed(position));
+    // Without `||`, which would branch on a uniform alone.
+    let places = select(4u, 0u, (told.reset != 0u) | has_changed(position));
     let memory = remember(pixel - unpack2x16float(who.y), texel, expected, places);
 
     let sample = sample_texel(own.block, own.level, 0u);
@@ -178,20 +196,10 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
     textureStore(seen, texel, vec4u((who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes));
 
-    var is_listed = is_shaded;
-    if is_bare {
-        bare[atomicAdd(&listed[BARE].count, 1u)] = sample_entry(texel, 0u);
-        is_listed = is_first_to_want(sample);
-    }
-    if is_listed {
-        let level = select(own.level, 0u, is_shaded);
+    if is_shaded || is_bare {
         let known_from = select(EXPECTED_AROUND, EXPECTED_OWN, was_own);
-        let told = vec2f(min(luminance(shown), 65504.0), known_from);
-        let nothing = vec2f(0.0, EXPECTED_NOTHING);
-        atomicAdd(&listed[SAMPLES].of_level[level], 1u);
-        samples_listed[atomicAdd(&listed[SAMPLES].count, 1u)] = vec2u(
-            sample_entry(select(sample, texel, is_shaded), level),
-            pack2x16float(select(nothing, told, is_shaded && memory.is_known)),
-        );
+        let itself = CHOSEN_ITSELF + u32(select(EXPECTED_NOTHING, known_from, memory.is_known));
+        let entry = sample_entry(texel, select(own.level, itself, is_shaded));
+        chosen[atomicAdd(&listed[CHOSEN].count, 1u)] = entry;
     }
 }

@@ -44,6 +44,8 @@ pub(crate) struct HistoryStage {
     pub(super) lit: Lit,
     /// What the last frame's passes were told.
     pub(crate) told: HistoryParameters,
+    /// Where they were told that light has changed.
+    pub(crate) changed_places: Vec<Place>,
 }
 
 impl HistoryStage {
@@ -68,6 +70,7 @@ impl HistoryStage {
             again: false,
             lit: Lit::default(),
             told: HistoryParameters::default(),
+            changed_places: Vec::new(),
         })
     }
 
@@ -134,16 +137,20 @@ impl HistoryStage {
             turn: self.rested.checked_sub(1),
         };
         let changed = std::mem::take(&mut self.now_changed);
-        self.told = self.parameters(settings, reset, &changed);
-        self.passes.write(gpu, &self.told);
+        self.told = self.parameters(settings, reset);
+        self.changed_places = match changed {
+            Changed::Within(places) => places,
+            Changed::Nowhere | Changed::Everywhere => Vec::new(),
+        };
+        self.passes.write(gpu, &self.told, &self.changed_places);
     }
 
     /// What the frame's passes are told.
-    fn parameters(&self, settings: &Settings, reset: bool, changed: &Changed) -> HistoryParameters {
+    fn parameters(&self, settings: &Settings, reset: bool) -> HistoryParameters {
         // What a block's renewal and tolerance are at a quality of 9.5; a step of one JOD is a
         // factor of 4. Found by measurement.
         let finer = 4.0_f32.powf(settings.eye.quality_jod - 9.5);
-        let mut parameters = HistoryParameters {
+        HistoryParameters {
             rounding: rounding(self.frame),
             phase: match self.lit.turn {
                 Some(turn) => turn,
@@ -155,13 +162,8 @@ impl HistoryStage {
             renewal: (finer / 12.0).clamp(1.0 / 64.0, 1.0),
             tolerance: (0.07 / finer).clamp(0.01, 1.0),
             change: 0.5,
-            ..HistoryParameters::default()
-        };
-        if let Changed::Within(places) = changed {
-            parameters.changed_count = places.len() as u32;
-            parameters.changed[..places.len()].copy_from_slice(places);
+            reserved: 0.0,
         }
-        parameters
     }
 
     /// Whether the frame's rates matter: at rest pixels are shaded in turn, whatever their rate.

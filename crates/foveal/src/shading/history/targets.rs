@@ -9,6 +9,8 @@ use crate::{Settings, composite::LIGHT_FORMAT};
 
 /// What a pixel keeps besides its light: `layout.wgsl`.
 pub(super) const SEEN_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::R32Uint;
+/// What is known of a tile: `TileHistory` there.
+pub(super) const TILE_FORMAT: wgpu::TextureFormat = wgpu::TextureFormat::Rg32Float;
 /// Bytes of `Listed` in `layout.wgsl`.
 pub(super) const LISTED_BYTES: u64 = 40;
 /// Bytes of `Dispatch` there: the step between bindings.
@@ -20,7 +22,11 @@ pub(super) enum List {
     Samples = 0,
     Bare = 1,
     Unlit = 2,
+    Chosen = 3,
 }
+
+/// Lists of a frame.
+const LISTS: u64 = 4;
 
 impl List {
     /// Where its `Dispatch` begins.
@@ -44,6 +50,8 @@ pub(crate) struct HistoryTargets {
     pub(super) dispatches: wgpu::Buffer,
     /// Samples to be shaded: first those that are chosen, then those of unlit pixels.
     pub(super) samples: wgpu::Buffer,
+    /// Pixels that ask for a sample.
+    pub(super) chosen: wgpu::Buffer,
     /// Pixels that have no history.
     pub(super) bare: wgpu::Buffer,
     /// A bit for each pixel that is a block's sample.
@@ -52,8 +60,8 @@ pub(crate) struct HistoryTargets {
     pub(super) measured: wgpu::Buffer,
     /// What they said of late.
     pub(super) kept: wgpu::Buffer,
-    /// What follows from it.
-    pub(super) tiles: wgpu::Buffer,
+    /// What follows from it: a texel for each tile.
+    pub(super) tiles: wgpu::TextureView,
 }
 
 impl HistoryTargets {
@@ -63,7 +71,7 @@ impl HistoryTargets {
             return None;
         }
         let size = EyeLayout::of(settings).target_size();
-        let target = |label, format| {
+        let target_of = |label, size, format| {
             gpu::target(
                 gpu,
                 label,
@@ -72,6 +80,7 @@ impl HistoryTargets {
                 wgpu::TextureUsages::STORAGE_BINDING,
             )
         };
+        let target = |label, format| target_of(label, size, format);
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -85,23 +94,25 @@ impl HistoryTargets {
         };
         let none = wgpu::BufferUsages::empty();
         let pixels = u64::from(size.0) * u64::from(size.1);
-        let tiles = u64::from(size.0.div_ceil(8)) * u64::from(size.1.div_ceil(8));
+        let across_and_down = (size.0.div_ceil(8), size.1.div_ceil(8));
+        let tiles = u64::from(across_and_down.0) * u64::from(across_and_down.1);
         Some(Self {
             light: ["light, even", "light, odd"].map(|label| target(label, LIGHT_FORMAT)),
             seen: ["seen, even", "seen, odd"].map(|label| target(label, SEEN_FORMAT)),
             radiance: target("radiance of solid surfaces", RADIANCE_FORMAT),
-            listed: buffer("lists", 3 * LISTED_BYTES, none),
+            listed: buffer("lists", LISTS * LISTED_BYTES, none),
             dispatches: buffer(
                 "list dispatches",
-                3 * LIST_STEP,
+                LISTS * LIST_STEP,
                 wgpu::BufferUsages::INDIRECT,
             ),
             samples: buffer("samples", pixels * SAMPLE_BYTES, none),
+            chosen: buffer("chosen pixels", pixels * 4, none),
             bare: buffer("bare pixels", pixels * 4, none),
             wanted: buffer("wanted samples", pixels.div_ceil(32) * 4, none),
             measured: buffer("measured tiles", tiles * 8, none),
             kept: buffer("kept tiles", tiles * 8, none),
-            tiles: buffer("tiles", tiles * 8, none),
+            tiles: target_of("tiles", across_and_down, TILE_FORMAT),
         })
     }
 
@@ -112,13 +123,14 @@ impl HistoryTargets {
             &self.listed,
             &self.dispatches,
             &self.samples,
+            &self.chosen,
             &self.bare,
             &self.wanted,
             &self.measured,
             &self.kept,
-            &self.tiles,
         ];
         u64::from(size.width) * u64::from(size.height) * (2 * 16 + 2 * 4 + 8)
+            + self.kept.size()
             + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
     }
 

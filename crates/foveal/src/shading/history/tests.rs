@@ -8,7 +8,7 @@ use glam::UVec2;
 use super::lit::ROUND;
 use super::targets::HistoryTargets;
 use super::twin::{Before, Fate, Seen};
-use crate::gpu::{read_buffer, read_level};
+use crate::gpu::read_level;
 use crate::stereo::EyeLayout;
 use crate::testing::{Film, f32_of_half, gpu, rendered, shifted, small, texels};
 use crate::{FrameStats, Geometry, RateSource, Renderer, Settings, Shading, Stereo};
@@ -279,11 +279,6 @@ fn kept_targets(film: &Film) -> &HistoryTargets {
     history.expect("light is kept")
 }
 
-fn words<T: bytemuck::Pod>(buffer: &wgpu::Buffer) -> Vec<T> {
-    let bytes = pollster::block_on(read_buffer(gpu(), buffer)).expect("read-back works");
-    bytemuck::pod_collect_to_vec(&bytes)
-}
-
 #[test]
 fn what_is_carried_and_what_is_shaded_equal_their_twin() {
     let scene = scene();
@@ -304,7 +299,7 @@ fn what_is_carried_and_what_is_shaded_equal_their_twin() {
         let before = Before {
             light,
             seen,
-            tiles: words(&kept.tiles),
+            tiles: texels(&kept.tiles),
         };
         let targets = film.renderer.targets();
         let owner = &targets.coarse.as_ref().expect("coarse shading").rate.owner;

@@ -2,12 +2,14 @@
 
 #import shading/history/measured.wgsl
 #import shading/history/layout.wgsl
+#import shading/history/told.wgsl
 
-@group(1) @binding(0) var<storage, read> history: History;
+@group(1) @binding(0) var<uniform> told: Told;
 @group(1) @binding(1) var<storage, read_write> measured: array<Measured>;
 // Errors that were measured of late, tile by tile.
 @group(1) @binding(2) var<storage, read_write> kept: array<vec2f>;
-@group(1) @binding(3) var<storage, read_write> tiles: array<TileHistory>;
+// A texel for each tile: `TileHistory`.
+@group(1) @binding(3) var tiles: texture_storage_2d<rg32float, write>;
 
 // Part of an error that is kept from frame to frame.
 const KEPT: f32 = 0.85;
@@ -22,13 +24,10 @@ fn keep(@builtin(global_invocation_id) id: vec3u) {
     if tile >= tiles_across() * tiles_down() {
         return;
     }
-    if history.reset != 0u {
-        kept[tile] = vec2f(0.0);
-        return;
-    }
     let error = bitcast<f32>(atomicLoad(&measured[tile].error));
     let change = bitcast<f32>(atomicLoad(&measured[tile].change));
-    kept[tile] = max(kept[tile] * vec2f(KEPT, KEPT_CHANGE), vec2f(error, change));
+    let largest = max(kept[tile] * vec2f(KEPT, KEPT_CHANGE), vec2f(error, change));
+    kept[tile] = select(largest, vec2f(0.0), told.reset != 0u);
 }
 
 @compute @workgroup_size(64)
@@ -48,5 +47,5 @@ fn spread(@builtin(global_invocation_id) id: vec3u) {
             most = max(most, weight * kept[u32(other.y) * across + u32(other.x)]);
         }
     }
-    tiles[tile] = TileHistory(most.x, most.y);
+    textureStore(tiles, at, vec4f(most, 0.0, 0.0));
 }
