@@ -25,7 +25,8 @@ pub(crate) struct Batch {
 pub(crate) struct DrawList {
     /// Instance numbers in draw order.
     pub(crate) drawn: Vec<u32>,
-    /// Opaque and masked surfaces: front to back by [`Nearness`], then with the fewest state changes.
+    /// Opaque and masked surfaces: front to back by [`Nearness`], within it with the fewest state
+    /// changes.
     pub(crate) solid: Vec<Batch>,
     /// Those of `solid` that have lobes, which are shaded in a pass over what the G-buffer shows.
     pub(crate) lobed: Vec<Batch>,

@@ -18,8 +18,8 @@
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
 @group(1) @binding(3) var gbuffer_identity: texture_2d_array<u32>;
 @group(1) @binding(4) var<uniform> told: Told;
-// Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing is
-// kept there. A negative radius ends them.
+// Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing
+// is kept there. A negative radius ends them.
 #ifdef TABLES
 @group(1) @binding(13) var changed_table: texture_2d<u32>;
 #else
