@@ -79,7 +79,7 @@ fn has_changed(position: vec3f) -> bool {
     loop {
         let lamp = changed_light(i);
         let away = position - lamp.xyz;
-        found = found || lamp.w > 0.0 && dot(away, away) < lamp.w * lamp.w;
+        found = found || (lamp.w > 0.0 && dot(away, away) < lamp.w * lamp.w);
         i++;
         continuing {
             break if lamp.w < 0.0;
