@@ -129,8 +129,10 @@ impl HistoryTargets {
             &self.measured,
             &self.kept,
         ];
+        // A tile's texel takes what is kept of it in a buffer.
+        let tiles = self.kept.size();
         u64::from(size.width) * u64::from(size.height) * (2 * 16 + 2 * 4 + 8)
-            + self.kept.size()
+            + tiles
             + buffers.map(wgpu::Buffer::size).iter().sum::<u64>()
     }
 
