@@ -1,4 +1,4 @@
-//! Each file imports what it uses, and nothing else.
+//! Each file imports what it uses, and nothing else; and what browsers refuse where naga does not.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -200,6 +200,59 @@ fn no_file_imports_itself_by_way_of_others() {
                     !reaches(file, file, &variant, &mut BTreeSet::new()),
                     "{file} imports itself in {root} {variant:?}"
                 );
+            }
+        }
+    }
+}
+
+/// The first statement that has `&&` and `||` side by side, without parentheses between them.
+fn without_parentheses(code: &str) -> Option<String> {
+    let code: Vec<_> = code
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect();
+    let code = code.join("\n");
+    // What stands at each depth of parentheses.
+    let mut depths = vec![None];
+    let mut start = 0;
+    for (i, c) in code.char_indices() {
+        match c {
+            '(' | '[' => depths.push(None),
+            ')' | ']' => drop(depths.pop()),
+            ';' | '{' | '}' | ',' => {
+                *depths.last_mut()? = None;
+                start = i + 1;
+            }
+            '&' | '|' if code[i..].starts_with(&format!("{c}{c}")) => {
+                if depths
+                    .last_mut()?
+                    .replace(c)
+                    .is_some_and(|other| other != c)
+                {
+                    let end = code[i..].find(';').map_or(code.len(), |n| i + n);
+                    return Some(code[start..end].trim().to_owned());
+                }
+            }
+            _ => {}
+        }
+    }
+    None
+}
+
+/// WGSL's grammar wants parentheses, and browsers insist; naga takes it without.
+#[test]
+fn and_and_or_do_not_meet_without_parentheses() {
+    assert!(without_parentheses("x = a || b && c;").is_some());
+    assert!(
+        without_parentheses("x = f(a && b, c) || (a && b);\nif a || b { y = c && d; }").is_none()
+    );
+    for root in ROOTS {
+        for variant in definitions(root) {
+            let mut module = Module::default();
+            module.take_in(root, &variant);
+            for file in &module.files {
+                let found = without_parentheses(&code_of(file, &variant));
+                assert_eq!(found, None, "{file}");
             }
         }
     }
