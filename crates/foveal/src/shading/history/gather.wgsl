@@ -39,7 +39,7 @@ fn unit_or(direction: vec3f, other: vec3f) -> vec3f {
 
 @compute @workgroup_size(64)
 fn gather_light(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    let index = list_index(group, local, dispatch.groups.x);
     if index >= dispatch.count {
         return;
     }

@@ -74,6 +74,11 @@ struct Dispatch {
     reserved: array<vec4u, 15>,
 }
 
+// A thread's place in a list; workgroups have 64 threads, and `across` of them lie in a row.
+fn list_index(group: vec3u, local: u32, across: u32) -> u32 {
+    return (group.y * across + group.x) * 64u + local;
+}
+
 // The lists: samples; pixels that have no history; of these the ones that no sample speaks for;
 // pixels that ask for a sample.
 const SAMPLES: u32 = 0u;

@@ -26,7 +26,7 @@ fn is_first_to_want(sample: vec2u) -> bool {
 
 @compute @workgroup_size(64)
 fn list_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    let index = list_index(group, local, dispatch.groups.x);
     if index >= dispatch.count {
         return;
     }

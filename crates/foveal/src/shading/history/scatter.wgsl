@@ -9,7 +9,7 @@
 
 @compute @workgroup_size(64)
 fn scatter(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    let index = list_index(group, local, dispatch.groups.x);
     if index < dispatch.count {
         let texel = entry_texel(bare[index]);
         textureStore(light, texel, textureLoad(gathered, texel, 0));

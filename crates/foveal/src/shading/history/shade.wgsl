@@ -14,7 +14,7 @@
 
 @compute @workgroup_size(64)
 fn shade_samples(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
-    let index = (group.y * dispatch.groups.x + group.x) * 64u + local;
+    let index = list_index(group, local, dispatch.groups.x);
     if index >= dispatch.count {
         return;
     }
