@@ -224,11 +224,8 @@ fn without_parentheses(code: &str) -> Option<String> {
                 start = i + 1;
             }
             '&' | '|' if code[i..].starts_with(&format!("{c}{c}")) => {
-                if depths
-                    .last_mut()?
-                    .replace(c)
-                    .is_some_and(|other| other != c)
-                {
+                let before = depths.last_mut()?.replace(c);
+                if before.is_some_and(|before| before != c) {
                     let end = code[i..].find(';').map_or(code.len(), |n| i + n);
                     return Some(code[start..end].trim().to_owned());
                 }
