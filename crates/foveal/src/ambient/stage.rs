@@ -74,8 +74,8 @@ impl Pass {
         types: &[wgpu::BindingType],
     ) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
-        let layout = bind_group_layout(&gpu.device, label, compute, types);
-        let module = shader::module(gpu, label, shader);
+        let layout = bind_group_layout(gpu, label, compute, types);
+        let module = gpu.module(label, shader);
         let pipeline = shader::compute(gpu, label, &module, entry, &[frame, &layout], &[]);
         Self { pipeline, layout }
     }
@@ -215,7 +215,7 @@ impl CoarsePasses {
         };
         let compute = wgpu::ShaderStages::COMPUTE;
         let sizes = [storage_read(), storage_write()];
-        let size_layout = bind_group_layout(&gpu.device, "ambient dispatch", compute, &sizes);
+        let size_layout = bind_group_layout(gpu, "ambient dispatch", compute, &sizes);
         let sizing = shader::SHADING_COARSE_DISPATCH;
         Self {
             mark: pass(
@@ -245,7 +245,7 @@ impl CoarsePasses {
             size: shader::compute(
                 gpu,
                 "ambient dispatch",
-                &shader::module(gpu, "ambient dispatch", sizing),
+                &gpu.module("ambient dispatch", sizing),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

@@ -52,8 +52,8 @@ impl BlendedStage {
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let types = [uniform(), float];
-        let layout = bind_group_layout(&gpu.device, "blended", fragment, &types);
-        let module = shader::module(gpu, "blended", shader::ANTIALIAS_BLENDED);
+        let layout = bind_group_layout(gpu, "blended", fragment, &types);
+        let module = gpu.module("blended", shader::ANTIALIAS_BLENDED);
         let pipeline = |entry, blend| {
             shader::screen(
                 gpu,

@@ -59,8 +59,7 @@ impl AntialiasPipelines {
         let [count, side] = Pattern::of(settings).constants();
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
-        let layout =
-            |label, stages, types: &[_]| bind_group_layout(&gpu.device, label, stages, types);
+        let layout = |label, stages, types: &[_]| bind_group_layout(gpu, label, stages, types);
         let compute = wgpu::ShaderStages::COMPUTE;
         let fragment = wgpu::ShaderStages::FRAGMENT;
 
@@ -83,7 +82,7 @@ impl AntialiasPipelines {
             compute,
             &[read, read, write, radiance],
         );
-        let combination = shader::module(gpu, "combination", shader::ANTIALIAS_COMBINE);
+        let combination = gpu.module("combination", shader::ANTIALIAS_COMBINE);
 
         let lighting = lighting_constants(gpu, settings);
         // Views of the G-buffer show averages.
@@ -104,7 +103,7 @@ impl AntialiasPipelines {
             shade: shader::compute(
                 gpu,
                 "edge shading",
-                &shader::module(gpu, "edge shading", shader::ANTIALIAS_SHADE),
+                &gpu.module("edge shading", shader::ANTIALIAS_SHADE),
                 "shade_entries",
                 &[frame, shading_input, &shade_layout],
                 &[&lighting[..], &[count, side, mirror, ("ALL", all)]].concat(),
@@ -120,7 +119,7 @@ impl AntialiasPipelines {
             store: shader::compute(
                 gpu,
                 "combination, store",
-                &shader::module(gpu, "combination, store", shader::ANTIALIAS_STORE),
+                &gpu.module("combination, store", shader::ANTIALIAS_STORE),
                 "store",
                 &[frame, &store_layout],
                 &[],
@@ -138,38 +137,37 @@ fn merge(
     groups: &[&wgpu::BindGroupLayout],
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
-    let module = shader::module(gpu, "merge", shader::ANTIALIAS_MERGE);
+    let module = gpu.module("merge", shader::ANTIALIAS_MERGE);
     let compilation_options = wgpu::PipelineCompilationOptions {
         constants,
         ..Default::default()
     };
     let targets = [SURFACE_FORMAT, IDENTITY_FORMAT, TALLY_FORMAT].map(|f| Some(f.into()));
-    gpu.device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("merge"),
-            layout: Some(&shader::pipeline_layout(gpu, "merge", groups)),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some("full_screen"),
-                compilation_options: compilation_options.clone(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH_FORMAT,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Always),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("merge"),
-                compilation_options,
-                targets: &targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("merge"),
+        layout: Some(&gpu.pipeline_layout("merge", groups)),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some("full_screen"),
+            compilation_options: compilation_options.clone(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH_FORMAT,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Always),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("merge"),
+            compilation_options,
+            targets: &targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }

@@ -290,12 +290,12 @@ fn view_pipeline(
 ) -> (wgpu::RenderPipeline, wgpu::BindGroupLayout) {
     let uint = crate::gpu::sampled(wgpu::TextureSampleType::Uint);
     let fragment = wgpu::ShaderStages::FRAGMENT;
-    let layout = crate::gpu::bind_group_layout(&gpu.device, "tally", fragment, &[uint]);
+    let layout = crate::gpu::bind_group_layout(gpu, "tally", fragment, &[uint]);
     let count = f64::from(Pattern::of(settings).count());
     let pipeline = shader::full_screen(
         gpu,
         "tally",
-        &shader::module(gpu, "tally", shader::ANTIALIAS_VIEW),
+        &gpu.module("tally", shader::ANTIALIAS_VIEW),
         "view",
         &[frame, &layout],
         PICTURE_FORMAT,

@@ -52,8 +52,7 @@ impl TriangleStage {
             format,
             view_dimension: wgpu::TextureViewDimension::D2,
         };
-        let layout =
-            |label, stage, types: &[_]| bind_group_layout(&gpu.device, label, stage, types);
+        let layout = |label, stage, types: &[_]| bind_group_layout(gpu, label, stage, types);
         let (fragment, compute) = (wgpu::ShaderStages::FRAGMENT, wgpu::ShaderStages::COMPUTE);
         let samples_layout = layout(
             "sub-samples' triangles",
@@ -88,14 +87,14 @@ impl TriangleStage {
             shader::compute(
                 gpu,
                 label,
-                &shader::module(gpu, label, shader),
+                &gpu.module(label, shader),
                 entry,
                 &[frame, &samples_layout, &geometry, group],
                 &[count, side],
             )
         };
         let targets = [IDENTITY_FORMAT, TRIANGLE_FORMAT, TALLY_FORMAT].map(|f| Some(f.into()));
-        let classification = shader::module(gpu, "classification", shader::ANTIALIAS_CLASSIFY);
+        let classification = gpu.module("classification", shader::ANTIALIAS_CLASSIFY);
         Self {
             candidates: sorting(
                 "candidates",
@@ -128,7 +127,7 @@ impl TriangleStage {
             shade: shader::compute(
                 gpu,
                 "further shading",
-                &shader::module(gpu, "further shading", shader::ANTIALIAS_SHADE_FURTHER),
+                &gpu.module("further shading", shader::ANTIALIAS_SHADE_FURTHER),
                 "shade_further",
                 &[frame, shading_input, &shade_layout],
                 &[&lighting[..], &[count, ("COARSE", coarse)]].concat(),

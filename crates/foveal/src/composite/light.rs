@@ -35,7 +35,7 @@ impl LightComposite {
     ) -> Self {
         let words = wgpu::TextureSampleType::Uint;
         let layout = |label, types: &[wgpu::BindingType]| {
-            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
+            bind_group_layout(gpu, label, wgpu::ShaderStages::COMPUTE, types)
         };
         let join_layout = layout(
             "light composite",
@@ -56,7 +56,7 @@ impl LightComposite {
             join: shader::compute(
                 gpu,
                 "light composite",
-                &shader::module(gpu, "light composite", shader::COMPOSITE_LIGHT),
+                &gpu.module("light composite", shader::COMPOSITE_LIGHT),
                 "join",
                 &[frame_layout, &join_layout],
                 &[
@@ -68,7 +68,7 @@ impl LightComposite {
             size: shader::compute(
                 gpu,
                 "unlit dispatch",
-                &shader::module(gpu, "unlit dispatch", shader::SHADING_COARSE_DISPATCH),
+                &gpu.module("unlit dispatch", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

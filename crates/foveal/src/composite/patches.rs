@@ -33,9 +33,8 @@ impl PatchPass {
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let depth = sampled_layers(wgpu::TextureSampleType::Depth);
-        let layout = |label, types: &[_]| {
-            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
-        };
+        let layout =
+            |label, types: &[_]| bind_group_layout(gpu, label, wgpu::ShaderStages::COMPUTE, types);
         let input_layout = layout("patch input", &[uint, float, words, words, depth]);
         let output_layout = layout(
             "patch output",
@@ -53,7 +52,7 @@ impl PatchPass {
             fit: shader::compute(
                 gpu,
                 "patches",
-                &shader::module(gpu, "patches", shader::COMPOSITE_FIT),
+                &gpu.module("patches", shader::COMPOSITE_FIT),
                 "fit_patches",
                 &[frame_layout, &input_layout, &output_layout],
                 &[("QUAD_LEVEL", f64::from(QUAD_LEVEL))],

@@ -41,7 +41,7 @@ impl SmoothComposite {
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
         let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "smooth composite",
             wgpu::ShaderStages::VERTEX_FRAGMENT,
             &[
@@ -60,7 +60,7 @@ impl SmoothComposite {
         } else {
             shader::COMPOSITE_SMOOTH
         };
-        let module = shader::module(gpu, "smooth composite", shader);
+        let module = gpu.module("smooth composite", shader);
         let target = |write_mask| wgpu::ColorTargetState {
             format: RADIANCE_FORMAT,
             blend: None,

@@ -21,7 +21,7 @@ impl TapComposite {
         entry_point: &str,
     ) -> Self {
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "composite",
             wgpu::ShaderStages::FRAGMENT,
             &[
@@ -29,7 +29,7 @@ impl TapComposite {
                 sampled(wgpu::TextureSampleType::Float { filterable: false }),
             ],
         );
-        let module = shader::module(gpu, "composite", shader);
+        let module = gpu.module("composite", shader);
         let pipeline = shader::screen(
             gpu,
             &Screen {

@@ -106,7 +106,7 @@ impl Recipes {
             open_frame: open_frame.clone(),
             material: material.clone(),
             lights: bind_group_layout(
-                &gpu.device,
+                gpu,
                 "forward lights",
                 wgpu::ShaderStages::FRAGMENT,
                 &SceneLights::binding_types(gpu),
@@ -153,8 +153,8 @@ impl Recipes {
         let shader = shader::FORWARD_FORWARD.variant(kind.variant(gpu, submission));
         Pipelines::new(PipelineRecipe {
             label: "forward",
-            module: shader::module(gpu, "forward", shader),
-            layout: shader::pipeline_layout(gpu, "forward", &layouts),
+            module: gpu.module("forward", shader),
+            layout: gpu.pipeline_layout("forward", &layouts),
             vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",
             targets: vec![(!depth_alone).then_some(wgpu::ColorTargetState {

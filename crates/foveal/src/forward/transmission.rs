@@ -22,10 +22,10 @@ impl BehindPass {
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let float = |filterable| sampled(wgpu::TextureSampleType::Float { filterable });
         let level = [float(false)];
-        let level_layout = bind_group_layout(&gpu.device, "picture behind", fragment, &level);
+        let level_layout = bind_group_layout(gpu, "picture behind", fragment, &level);
         let whole = [float(true)];
-        let layout = bind_group_layout(&gpu.device, "picture behind", fragment, &whole);
-        let module = shader::module(gpu, "picture behind", shader::FORWARD_HALVE);
+        let layout = bind_group_layout(gpu, "picture behind", fragment, &whole);
+        let module = gpu.module("picture behind", shader::FORWARD_HALVE);
         let halve = shader::screen(
             gpu,
             &Screen {

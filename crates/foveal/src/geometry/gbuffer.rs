@@ -97,8 +97,8 @@ impl GeometryPass {
         };
         Pipelines::new(PipelineRecipe {
             label: "geometry",
-            module: shader::module(gpu, "geometry", shader),
-            layout: shader::pipeline_layout(gpu, "geometry", &[frame_layout, material_layout]),
+            module: gpu.module("geometry", shader),
+            layout: gpu.pipeline_layout("geometry", &[frame_layout, material_layout]),
             vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",
             targets: vec![Some(SURFACE_FORMAT.into()), Some(IDENTITY_FORMAT.into())],

@@ -121,44 +121,43 @@ fn make(gpu: &Gpu, recipe: &PipelineRecipe, key: PipelineKey) -> wgpu::RenderPip
         constants: &constants,
         ..Default::default()
     };
-    gpu.device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(recipe.label),
-            layout: Some(&recipe.layout),
-            vertex: wgpu::VertexState {
-                module: &recipe.module,
-                entry_point: Some(vertex),
-                compilation_options: compilation_options.clone(),
-                buffers,
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(recipe.label),
+        layout: Some(&recipe.layout),
+        vertex: wgpu::VertexState {
+            module: &recipe.module,
+            entry_point: Some(vertex),
+            compilation_options: compilation_options.clone(),
+            buffers,
+        },
+        primitive: wgpu::PrimitiveState {
+            front_face: if key.mirrored {
+                wgpu::FrontFace::Cw
+            } else {
+                wgpu::FrontFace::Ccw
             },
-            primitive: wgpu::PrimitiveState {
-                front_face: if key.mirrored {
-                    wgpu::FrontFace::Cw
-                } else {
-                    wgpu::FrontFace::Ccw
-                },
-                cull_mode: match key.faces {
-                    Faces::Front => Some(wgpu::Face::Back),
-                    Faces::Back => Some(wgpu::Face::Front),
-                    Faces::Both => None,
-                },
-                ..Default::default()
+            cull_mode: match key.faces {
+                Faces::Front => Some(wgpu::Face::Back),
+                Faces::Back => Some(wgpu::Face::Front),
+                Faces::Both => None,
             },
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: crate::formats::DEPTH_FORMAT,
-                depth_write_enabled: Some(recipe.writes_depth),
-                depth_compare: Some(recipe.depth_compare),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &recipe.module,
-                entry_point: Some(recipe.fragment),
-                compilation_options,
-                targets: &recipe.targets,
-            }),
-            multiview_mask: recipe.multiview_mask,
-            cache: None,
-        })
+            ..Default::default()
+        },
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: crate::formats::DEPTH_FORMAT,
+            depth_write_enabled: Some(recipe.writes_depth),
+            depth_compare: Some(recipe.depth_compare),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &recipe.module,
+            entry_point: Some(recipe.fragment),
+            compilation_options,
+            targets: &recipe.targets,
+        }),
+        multiview_mask: recipe.multiview_mask,
+        cache: None,
+    })
 }

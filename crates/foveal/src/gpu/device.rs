@@ -1,5 +1,6 @@
 //! An open graphics device.
 
+use super::compiled::Compiled;
 use crate::{AdapterStats, Error};
 use std::sync::{Arc, Mutex};
 
@@ -20,6 +21,7 @@ pub struct Gpu {
     lost: Arc<Mutex<Option<String>>>,
     /// An error that no scope caught.
     stray: Arc<Mutex<Option<String>>>,
+    pub(super) compiled: Arc<Compiled>,
 }
 
 /// Sampled textures of a stage where tables are among them: more than the web's default. A host's
@@ -114,6 +116,7 @@ impl Gpu {
             queue,
             lost: Arc::new(Mutex::new(None)),
             stray: Arc::new(Mutex::new(None)),
+            compiled: Arc::default(),
         }
     }
 

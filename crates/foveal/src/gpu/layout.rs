@@ -2,11 +2,12 @@
 
 use wgpu::{BindGroupLayoutEntry, BindingType, BufferBindingType, ShaderStages, TextureSampleType};
 
+use super::Gpu;
 use super::device::Device;
 
 /// A layout whose bindings are `types` in order, each seen by `stages`.
 pub(crate) fn bind_group_layout(
-    device: &Device,
+    gpu: &Gpu,
     label: &str,
     stages: ShaderStages,
     types: &[BindingType],
@@ -20,10 +21,7 @@ pub(crate) fn bind_group_layout(
             count: None,
         })
         .collect();
-    device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-        label: Some(label),
-        entries: &entries,
-    })
+    gpu.bind_group_layout(label, &entries)
 }
 
 /// A bind group whose bindings are `resources` in order.

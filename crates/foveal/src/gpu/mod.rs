@@ -1,6 +1,7 @@
 //! The device: choosing an adapter, opening it, turning its failures into our errors, reading back.
 
 mod adapter;
+mod compiled;
 mod device;
 #[cfg(test)]
 pub(crate) mod faults;
@@ -18,6 +19,7 @@ mod trap;
 #[cfg(not(feature = "profiler"))]
 mod unprofiled;
 
+pub(crate) use compiled::Moment;
 pub use device::Gpu;
 pub(crate) use device::is_reduced;
 pub(crate) use layout::{

@@ -1,6 +1,6 @@
 //! Failures of the graphics interface as our errors.
 
-use super::Gpu;
+use super::{Gpu, Moment};
 use crate::Error;
 
 /// Catches what the device reports on this thread between its creation and [`ErrorTrap::finish`].
@@ -11,6 +11,7 @@ use crate::Error;
 pub(crate) struct ErrorTrap {
     gpu: Gpu,
     doing: &'static str,
+    since: Moment,
     // Dropped in this order, the reverse of their opening: any other is a panic.
     internal: wgpu::ErrorScopeGuard,
     validation: wgpu::ErrorScopeGuard,
@@ -22,6 +23,7 @@ impl ErrorTrap {
         Self {
             gpu: gpu.clone(),
             doing,
+            since: Moment::now(),
             memory: gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory),
             validation: gpu.device.push_error_scope(wgpu::ErrorFilter::Validation),
             internal: gpu.device.push_error_scope(wgpu::ErrorFilter::Internal),
@@ -37,7 +39,7 @@ impl ErrorTrap {
             self.validation.pop(),
             self.memory.pop(),
         );
-        let (gpu, doing) = (self.gpu, self.doing);
+        let (gpu, doing, since) = (self.gpu, self.doing, self.since);
         async move {
             let (internal, validation, memory) = reports;
             let (internal, validation, memory) = (internal.await, validation.await, memory.await);
@@ -52,6 +54,9 @@ impl ErrorTrap {
             #[cfg(test)]
             let is_full = gpu.device.faults.take_out_of_memory() || memory.is_some();
             let stray = gpu.take_stray();
+            if is_full || validation.is_some() || internal.is_some() || stray.is_some() {
+                gpu.forget_compiled(since);
+            }
             if is_full {
                 return Err(Error::OutOfMemory {
                     doing: doing.to_owned(),

@@ -80,12 +80,12 @@ impl LightAssigner {
             };
         }
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "light assignment",
             wgpu::ShaderStages::COMPUTE,
             &[Table::binding_type(gpu), storage_write()],
         );
-        let module = shader::module(gpu, "clusters", shader::LIGHTS_CLUSTERS);
+        let module = gpu.module("clusters", shader::LIGHTS_CLUSTERS);
         let pipeline = shader::compute(
             gpu,
             "light assignment",

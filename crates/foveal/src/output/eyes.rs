@@ -58,7 +58,7 @@ impl EyesPass {
             Output::Headset => 5,
         };
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "eyes",
             wgpu::ShaderStages::FRAGMENT,
             &[
@@ -70,7 +70,7 @@ impl EyesPass {
             pipeline: shader::full_screen(
                 gpu,
                 "eyes",
-                &shader::module(gpu, "eyes", shader::OUTPUT_EYES),
+                &gpu.module("eyes", shader::OUTPUT_EYES),
                 "show_eyes",
                 &[frame_layout, &layout],
                 PICTURE_FORMAT,

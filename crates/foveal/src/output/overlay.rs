@@ -28,7 +28,7 @@ impl OverlayPass {
             _ => return None,
         };
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "overlay",
             wgpu::ShaderStages::FRAGMENT,
             &[
@@ -36,7 +36,7 @@ impl OverlayPass {
                 sampled(wgpu::TextureSampleType::Float { filterable: false }),
             ],
         );
-        let module = shader::module(gpu, "overlay", shader::OUTPUT_OVERLAY);
+        let module = gpu.module("overlay", shader::OUTPUT_OVERLAY);
         let pipeline = shader::screen(
             gpu,
             &Screen {

@@ -16,7 +16,7 @@ pub(crate) struct PresentPass {
 impl PresentPass {
     pub(crate) fn new(gpu: &Gpu) -> Self {
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "present",
             wgpu::ShaderStages::FRAGMENT,
             &[
@@ -50,7 +50,7 @@ impl PresentPass {
             let pipeline = shader::full_screen(
                 gpu,
                 "present",
-                &shader::module(gpu, "present", shader::OUTPUT_PRESENT),
+                &gpu.module("present", shader::OUTPUT_PRESENT),
                 "present",
                 &[recorder.frame.layout(), &self.layout],
                 format,

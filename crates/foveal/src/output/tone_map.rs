@@ -19,14 +19,14 @@ impl ToneMapPass {
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "tone map",
             wgpu::ShaderStages::FRAGMENT,
             &[sampled(wgpu::TextureSampleType::Float {
                 filterable: false,
             })],
         );
-        let module = shader::module(gpu, "tone map", shader::OUTPUT_TONE_MAP);
+        let module = gpu.module("tone map", shader::OUTPUT_TONE_MAP);
         let pipeline = shader::full_screen(
             gpu,
             "tone map",

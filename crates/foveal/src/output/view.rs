@@ -33,7 +33,7 @@ impl ViewPass {
             DebugView::Bins => 6,
         };
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "view",
             wgpu::ShaderStages::FRAGMENT,
             &[
@@ -43,7 +43,7 @@ impl ViewPass {
                 Table::binding_type(gpu),
             ],
         );
-        let module = shader::module(gpu, "view", shader::OUTPUT_VIEW);
+        let module = gpu.module("view", shader::OUTPUT_VIEW);
         let constants = [("VIEW", f64::from(number))];
         let pipeline = shader::full_screen(
             gpu,

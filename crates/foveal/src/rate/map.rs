@@ -32,12 +32,12 @@ impl RateMapPass {
         let depth = sampled_layers(wgpu::TextureSampleType::Depth);
         let stage = wgpu::ShaderStages::FRAGMENT;
         let request_layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "requested levels",
             stage,
             &[uniform(), cells, words, words, depth],
         );
-        let cells_layout = bind_group_layout(&gpu.device, "rate cells", stage, &[cells]);
+        let cells_layout = bind_group_layout(gpu, "rate cells", stage, &[cells]);
         let pipeline = |label, shader, entry, layout, constant: &[(&str, f64)]| {
             shader::screen(
                 gpu,
@@ -45,7 +45,7 @@ impl RateMapPass {
                     groups: &[frame_layout, layout],
                     targets: &[Some(CELL_FORMAT.into())],
                     constants: constant,
-                    ..Screen::of_level(label, &shader::module(gpu, label, shader), entry)
+                    ..Screen::of_level(label, &gpu.module(label, shader), entry)
                 },
             )
         };

@@ -5,6 +5,8 @@
 //! the same renderer, or where the device is gone a new one, draws what one draws that never failed.
 //! `FOVEAL_FAULTS=all` strikes at every call, not at some of each.
 
+use std::sync::LazyLock;
+
 use foveal_generate as generate;
 use foveal_scene::Scene;
 use pollster::block_on;
@@ -51,15 +53,21 @@ fn host_gpu_with(limits: impl Fn(&wgpu::Limits) -> wgpu::Limits) -> Gpu {
 }
 
 fn scene() -> Scene {
-    let mut scene = generate::by_name("alpha").expect("it is generated");
-    scene.light_by_default();
-    generate::add_point_lights(&mut scene, 5, 1);
-    scene
+    static SCENE: LazyLock<Scene> = LazyLock::new(|| {
+        let mut scene = generate::by_name("alpha").expect("it is generated");
+        scene.light_by_default();
+        generate::add_point_lights(&mut scene, 5, 1);
+        scene
+    });
+    SCENE.clone()
 }
 
 fn map() -> EnvironmentMap {
-    let (width, height, rgb) = generate::surroundings(16);
-    EnvironmentMap::new(width, height, &rgb).expect("it is a map")
+    static MAP: LazyLock<EnvironmentMap> = LazyLock::new(|| {
+        let (width, height, rgb) = generate::surroundings(16);
+        EnvironmentMap::new(width, height, &rgb).expect("it is a map")
+    });
+    MAP.clone()
 }
 
 /// Settings that between them run every stage.
@@ -158,10 +166,14 @@ fn expected(gpu: &Gpu, settings: &Settings) -> Vec<u8> {
     picture(&renderer)
 }
 
+fn strikes_everywhere() -> bool {
+    std::env::var("FOVEAL_FAULTS").is_ok_and(|text| text == "all")
+}
+
 /// Where to strike among `calls`, and how: everywhere by both, or at some places by either.
 fn strikes(calls: u64, some: u64) -> Vec<(u64, Fault)> {
     const FAULTS: [Fault; 2] = [Fault::OutOfMemory, Fault::Invalid];
-    if std::env::var("FOVEAL_FAULTS").is_ok_and(|text| text == "all") {
+    if strikes_everywhere() {
         return (0..calls)
             .flat_map(|place| FAULTS.map(|fault| (place, fault)))
             .collect();
@@ -362,9 +374,12 @@ fn a_renderer_whose_making_fails_anywhere_is_an_error() {
     let (name, settings) = cases().swap_remove(4);
     let expected = expected(&gpu, &settings);
     let make = || block_on(ready(&gpu, &settings));
+    // With nothing compiled, so that a pipeline, too, may be what fails.
+    gpu.forget_all_compiled();
     let calls = calls(&gpu, || drop(make().expect("nothing fails")));
     for (place, fault) in strikes(calls, 6) {
         let what = format!("{name}, call {place} of {calls}");
+        gpu.forget_all_compiled();
         gpu.device.faults.arm(place, fault);
         let failed = make().map(drop);
         assert!(gpu.device.faults.disarm(), "{what}");
@@ -377,7 +392,9 @@ fn a_renderer_whose_making_fails_anywhere_is_an_error() {
 
 #[test]
 fn a_device_that_is_lost_anywhere_is_an_error_and_a_new_one_draws_the_same() {
-    for (name, settings) in cases() {
+    // Each device compiles anew.
+    let step = if strikes_everywhere() { 1 } else { 4 };
+    for (name, settings) in cases().into_iter().step_by(step) {
         let gpu = host_gpu();
         let (mut in_making, mut in_frame) = (0, 0);
         let expected = {

@@ -61,12 +61,12 @@ impl FrameBindings {
         let [cube, reflectances, sampler] = EnvironmentBinding::TYPES;
         let mut types = vec![uniform(), table, table, cube, reflectances, sampler];
         let stages = wgpu::ShaderStages::VERTEX_FRAGMENT | wgpu::ShaderStages::COMPUTE;
-        let open_layout = bind_group_layout(&gpu.device, "open frame", stages, &types);
+        let open_layout = bind_group_layout(gpu, "open frame", stages, &types);
         if !gpu.is_reduced() {
             let float = wgpu::TextureSampleType::Float { filterable: false };
             types.push(sampled(float));
         }
-        let layout = bind_group_layout(&gpu.device, "frame", stages, &types);
+        let layout = bind_group_layout(gpu, "frame", stages, &types);
         let frame = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("frame"),
             size: size_of::<FrameUniform>() as u64,

@@ -153,7 +153,7 @@ pub(crate) fn family_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
         ));
     }
     let compute = wgpu::ShaderStages::COMPUTE;
-    bind_group_layout(&gpu.device, "material family", compute, &types)
+    bind_group_layout(gpu, "material family", compute, &types)
 }
 
 /// Families as passes bind them.

@@ -97,11 +97,7 @@ pub(crate) fn geometry_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
         ty: Table::binding_type(gpu),
         count: None,
     });
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-            label: Some("geometry"),
-            entries: &entries,
-        })
+    gpu.bind_group_layout("geometry", &entries)
 }
 
 /// The scene's vertices and indices.

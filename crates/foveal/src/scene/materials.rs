@@ -23,14 +23,14 @@ fn types(textures: usize) -> Vec<wgpu::BindingType> {
 /// The layout of bind group 1.
 pub(crate) fn material_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let stages = wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE;
-    bind_group_layout(&gpu.device, "material", stages, &types(SLOTS))
+    bind_group_layout(gpu, "material", stages, &types(SLOTS))
 }
 
 /// The layout of bind group 1 where lobes are shaded: the same, and theirs.
 pub(crate) fn lobes_layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     let all: Vec<_> = types(SLOTS).into_iter().chain(types(BOUND)).collect();
     let stages = wgpu::ShaderStages::FRAGMENT;
-    bind_group_layout(&gpu.device, "lobes", stages, &all)
+    bind_group_layout(gpu, "lobes", stages, &all)
 }
 
 /// A material's lobes.

@@ -14,7 +14,7 @@
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
 /// A shader file that nothing else imports, in one of its variants.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct Shader {
     file: &'static str,
     /// Names that are defined.

@@ -7,30 +7,6 @@ pub(crate) use compose::*;
 
 use crate::gpu::Gpu;
 
-/// Compiles a shader.
-pub(crate) fn module(gpu: &Gpu, label: &str, shader: Shader) -> wgpu::ShaderModule {
-    gpu.device
-        .create_shader_module(wgpu::ShaderModuleDescriptor {
-            label: Some(label),
-            source: wgpu::ShaderSource::Wgsl(shader.source(gpu.has_texture_tables()).into()),
-        })
-}
-
-/// The layout of a pipeline whose bind groups are `groups` in order.
-pub(crate) fn pipeline_layout(
-    gpu: &Gpu,
-    label: &str,
-    groups: &[&wgpu::BindGroupLayout],
-) -> wgpu::PipelineLayout {
-    let groups: Vec<_> = groups.iter().map(|&g| Some(g)).collect();
-    gpu.device
-        .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: Some(label),
-            bind_group_layouts: &groups,
-            immediate_size: 0,
-        })
-}
-
 /// A compute pipeline; `constants` sets the module's overrides.
 pub(crate) fn compute(
     gpu: &Gpu,
@@ -40,18 +16,17 @@ pub(crate) fn compute(
     groups: &[&wgpu::BindGroupLayout],
     constants: &[(&str, f64)],
 ) -> wgpu::ComputePipeline {
-    gpu.device
-        .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(label),
-            layout: Some(&pipeline_layout(gpu, label, groups)),
-            module,
-            entry_point: Some(entry_point),
-            compilation_options: wgpu::PipelineCompilationOptions {
-                constants,
-                ..Default::default()
-            },
-            cache: None,
-        })
+    gpu.compute_pipeline(&wgpu::ComputePipelineDescriptor {
+        label: Some(label),
+        layout: Some(&gpu.pipeline_layout(label, groups)),
+        module,
+        entry_point: Some(entry_point),
+        compilation_options: wgpu::PipelineCompilationOptions {
+            constants,
+            ..Default::default()
+        },
+        cache: None,
+    })
 }
 
 /// A pipeline that draws one full-screen triangle into one target.
@@ -124,31 +99,30 @@ pub(crate) fn screen(gpu: &Gpu, recipe: &Screen<'_>) -> wgpu::RenderPipeline {
         constants: recipe.constants,
         ..Default::default()
     };
-    gpu.device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some(recipe.label),
-            layout: Some(&pipeline_layout(gpu, recipe.label, recipe.groups)),
-            vertex: wgpu::VertexState {
-                module: recipe.module,
-                entry_point: Some(recipe.vertex),
-                compilation_options: compilation_options.clone(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState {
-                topology: recipe.topology,
-                ..Default::default()
-            },
-            depth_stencil: recipe.depth_stencil.clone(),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: recipe.module,
-                entry_point: Some(recipe.fragment),
-                compilation_options,
-                targets: recipe.targets,
-            }),
-            multiview_mask: None,
-            cache: None,
-        })
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some(recipe.label),
+        layout: Some(&gpu.pipeline_layout(recipe.label, recipe.groups)),
+        vertex: wgpu::VertexState {
+            module: recipe.module,
+            entry_point: Some(recipe.vertex),
+            compilation_options: compilation_options.clone(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState {
+            topology: recipe.topology,
+            ..Default::default()
+        },
+        depth_stencil: recipe.depth_stencil.clone(),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: recipe.module,
+            entry_point: Some(recipe.fragment),
+            compilation_options,
+            targets: recipe.targets,
+        }),
+        multiview_mask: None,
+        cache: None,
+    })
 }
 
 #[cfg(test)]

@@ -61,7 +61,7 @@ impl ShadingPass {
         let mut types = vec![read(wgpu::TextureSampleType::Uint), read(depth_type)];
         types.extend(SceneLights::binding_types(gpu));
         let input_layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "shading input",
             wgpu::ShaderStages::FRAGMENT | wgpu::ShaderStages::COMPUTE,
             &types,
@@ -76,7 +76,7 @@ impl ShadingPass {
             },
         ];
         let list_layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "sample list",
             wgpu::ShaderStages::COMPUTE,
             if gpu.is_reduced() { &[] } else { &listed },
@@ -90,7 +90,7 @@ impl ShadingPass {
         let every_pixel = shader::full_screen(
             gpu,
             "shading",
-            &shader::module(gpu, "shading, every pixel", every_pixel_shader),
+            &gpu.module("shading, every pixel", every_pixel_shader),
             "shade_pixel",
             &[frame_layout, &input_layout],
             RADIANCE_FORMAT,
@@ -100,7 +100,7 @@ impl ShadingPass {
             shader::compute(
                 gpu,
                 "shading list",
-                &shader::module(gpu, "shading, list", shader::SHADING_LIST),
+                &gpu.module("shading, list", shader::SHADING_LIST),
                 "shade_list",
                 &[frame_layout, &input_layout, &list_layout],
                 &constants,

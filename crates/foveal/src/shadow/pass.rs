@@ -50,7 +50,7 @@ impl CasterPass {
         material_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "shadow tile",
             wgpu::ShaderStages::VERTEX,
             &[wgpu::BindingType::Buffer {
@@ -61,12 +61,9 @@ impl CasterPass {
         );
         let casters = Pipelines::new(PipelineRecipe {
             label: "shadow casters",
-            module: shader::module(gpu, "shadow casters", shader::SHADOW_CASTER),
-            layout: shader::pipeline_layout(
-                gpu,
-                "shadow casters",
-                &[frame_layout, material_layout, &layout],
-            ),
+            module: gpu.module("shadow casters", shader::SHADOW_CASTER),
+            layout: gpu
+                .pipeline_layout("shadow casters", &[frame_layout, material_layout, &layout]),
             vertex: VertexSource::Buffers("vertex_of_caster"),
             fragment: "cast_shadow",
             targets: Vec::new(),
@@ -76,7 +73,7 @@ impl CasterPass {
             has_mask: true,
             multiview_mask: None,
         });
-        let clear = shader::module(gpu, "shadow tiles, empty", shader::SHADOW_CLEAR);
+        let clear = gpu.module("shadow tiles, empty", shader::SHADOW_CLEAR);
         let clear = shader::screen(
             gpu,
             &Screen {

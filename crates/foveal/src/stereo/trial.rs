@@ -205,33 +205,32 @@ fn pipeline(
     shader: shader::Shader,
     vertex: &str,
 ) -> wgpu::RenderPipeline {
-    let module = shader::module(gpu, "stereo trial", shader);
-    gpu.device
-        .create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: Some("stereo trial"),
-            layout: Some(&shader::pipeline_layout(gpu, "stereo trial", &[])),
-            vertex: wgpu::VertexState {
-                module: &module,
-                entry_point: Some(vertex),
-                compilation_options: Default::default(),
-                buffers: &[],
-            },
-            primitive: wgpu::PrimitiveState::default(),
-            depth_stencil: Some(wgpu::DepthStencilState {
-                format: DEPTH,
-                depth_write_enabled: Some(true),
-                depth_compare: Some(wgpu::CompareFunction::Greater),
-                stencil: wgpu::StencilState::default(),
-                bias: wgpu::DepthBiasState::default(),
-            }),
-            multisample: wgpu::MultisampleState::default(),
-            fragment: Some(wgpu::FragmentState {
-                module: &module,
-                entry_point: Some("number"),
-                compilation_options: Default::default(),
-                targets: &[Some(COLOR.into())],
-            }),
-            multiview_mask: way.multiview_mask(),
-            cache: None,
-        })
+    let module = gpu.module("stereo trial", shader);
+    gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
+        label: Some("stereo trial"),
+        layout: Some(&gpu.pipeline_layout("stereo trial", &[])),
+        vertex: wgpu::VertexState {
+            module: &module,
+            entry_point: Some(vertex),
+            compilation_options: Default::default(),
+            buffers: &[],
+        },
+        primitive: wgpu::PrimitiveState::default(),
+        depth_stencil: Some(wgpu::DepthStencilState {
+            format: DEPTH,
+            depth_write_enabled: Some(true),
+            depth_compare: Some(wgpu::CompareFunction::Greater),
+            stencil: wgpu::StencilState::default(),
+            bias: wgpu::DepthBiasState::default(),
+        }),
+        multisample: wgpu::MultisampleState::default(),
+        fragment: Some(wgpu::FragmentState {
+            module: &module,
+            entry_point: Some("number"),
+            compilation_options: Default::default(),
+            targets: &[Some(COLOR.into())],
+        }),
+        multiview_mask: way.multiview_mask(),
+        cache: None,
+    })
 }

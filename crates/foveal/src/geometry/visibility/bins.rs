@@ -83,7 +83,7 @@ impl BinPass {
             types.push(uint);
         }
         let compute = wgpu::ShaderStages::COMPUTE;
-        let layout = bind_group_layout(&gpu.device, "binning", compute, &types);
+        let layout = bind_group_layout(gpu, "binning", compute, &types);
         let shader = if subgroups {
             shader::GEOMETRY_VISIBILITY_BINS_SUBGROUPS
         } else {
@@ -94,7 +94,7 @@ impl BinPass {
             Some(Rates::Samples) => &["RATED"],
             Some(Rates::Tiles(_)) => &["TILED"],
         });
-        let module = shader::module(gpu, "binning", shader);
+        let module = gpu.module("binning", shader);
         let constant = rates.and_then(Rates::constant);
         let pipeline = |entry, constants: &[_]| {
             let groups = [frame_layout, &layout];

@@ -56,8 +56,8 @@ impl VisiblePass {
         };
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "visibility",
-            module: shader::module(gpu, "visibility", shader),
-            layout: shader::pipeline_layout(gpu, "visibility", layouts),
+            module: gpu.module("visibility", shader),
+            layout: gpu.pipeline_layout("visibility", layouts),
             vertex,
             fragment,
             targets: vec![Some(IDENTITY_FORMAT.into()), Some(TRIANGLE_FORMAT.into())],

@@ -86,16 +86,15 @@ impl ResolvePass {
             types.push(uint);
         }
         let group_layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "materials of triangles",
             wgpu::ShaderStages::COMPUTE,
             &types,
         );
         let written = u8::from(face_normals == FaceNormals::Written);
         Self {
-            module: shader::module(gpu, "materials of triangles", shader_of(listed, by)),
-            layout: shader::pipeline_layout(
-                gpu,
+            module: gpu.module("materials of triangles", shader_of(listed, by)),
+            layout: gpu.pipeline_layout(
                 "materials of triangles",
                 &[frame, material, geometry, &group_layout],
             ),
@@ -119,18 +118,17 @@ impl ResolvePass {
         self.pipelines.entry(class).or_insert_with(|| {
             let mut constants = self.constants.clone();
             constants.push(("MATERIAL_CLASS", f64::from(class)));
-            gpu.device
-                .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                    label: Some("materials of triangles"),
-                    layout: Some(&self.layout),
-                    module: &self.module,
-                    entry_point: Some("resolve"),
-                    compilation_options: wgpu::PipelineCompilationOptions {
-                        constants: &constants,
-                        ..Default::default()
-                    },
-                    cache: None,
-                })
+            gpu.compute_pipeline(&wgpu::ComputePipelineDescriptor {
+                label: Some("materials of triangles"),
+                layout: Some(&self.layout),
+                module: &self.module,
+                entry_point: Some("resolve"),
+                compilation_options: wgpu::PipelineCompilationOptions {
+                    constants: &constants,
+                    ..Default::default()
+                },
+                cache: None,
+            })
         });
     }
 

@@ -32,7 +32,7 @@ impl ComputeBackend {
             written(LIGHT_FORMAT),
         ];
         let shade_layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "tile shading",
             wgpu::ShaderStages::COMPUTE,
             if has_light { &types } else { &types[..4] },
@@ -41,7 +41,7 @@ impl ComputeBackend {
             shade: shader::compute(
                 gpu,
                 "coarse shading, list",
-                &shader::module(gpu, "coarse shading, list", shader),
+                &gpu.module("coarse shading, list", shader),
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
                 &shading_constants(gpu, settings),

@@ -24,7 +24,7 @@ impl CountPass {
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "tile counting",
             wgpu::ShaderStages::COMPUTE,
             &[
@@ -36,7 +36,7 @@ impl CountPass {
         let pipeline = shader::compute(
             gpu,
             "tile counting",
-            &shader::module(gpu, "tile counting", shader::SHADING_COARSE_LIST),
+            &gpu.module("tile counting", shader::SHADING_COARSE_LIST),
             "count_tiles",
             &[frame_layout, &layout],
             &[("COARSEST", f64::from(settings.coarse.coarsest_level))],

@@ -60,7 +60,7 @@ impl TileListing {
         frame_layout: &wgpu::BindGroupLayout,
     ) -> Self {
         let layout = |label, types: &[wgpu::BindingType]| {
-            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
+            bind_group_layout(gpu, label, wgpu::ShaderStages::COMPUTE, types)
         };
         let list_layout = layout(
             "tile listing",
@@ -76,7 +76,7 @@ impl TileListing {
             list: shader::compute(
                 gpu,
                 "tile listing",
-                &shader::module(gpu, "tile listing", shader::SHADING_COARSE_LIST),
+                &gpu.module("tile listing", shader::SHADING_COARSE_LIST),
                 "list_tiles",
                 &[frame_layout, &list_layout],
                 &[("COARSEST", f64::from(settings.coarse.coarsest_level))],
@@ -84,7 +84,7 @@ impl TileListing {
             size: shader::compute(
                 gpu,
                 "tile dispatches",
-                &shader::module(gpu, "tile dispatches", shader::SHADING_COARSE_DISPATCH),
+                &gpu.module("tile dispatches", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

@@ -74,7 +74,7 @@ impl HistoryPasses {
         let light = written(LIGHT_FORMAT);
         let radiance = written(RADIANCE_FORMAT);
         let pass = |label, shader, entry, more: Option<&_>, types: &[_], constants: &[_]| {
-            let layout = bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types);
+            let layout = bind_group_layout(gpu, label, wgpu::ShaderStages::COMPUTE, types);
             let mut groups = vec![frame];
             groups.extend(more);
             groups.push(&layout);
@@ -82,7 +82,7 @@ impl HistoryPasses {
                 pipeline: shader::compute(
                     gpu,
                     label,
-                    &shader::module(gpu, label, shader),
+                    &gpu.module(label, shader),
                     entry,
                     &groups,
                     constants,

@@ -76,9 +76,8 @@ impl RatePasses {
         frame: &wgpu::BindGroupLayout,
         input: &wgpu::BindGroupLayout,
     ) -> Self {
-        let layout = |label, types: &[_]| {
-            bind_group_layout(&gpu.device, label, wgpu::ShaderStages::COMPUTE, types)
-        };
+        let layout =
+            |label, types: &[_]| bind_group_layout(gpu, label, wgpu::ShaderStages::COMPUTE, types);
         let uint = sampled(wgpu::TextureSampleType::Uint);
         let float = sampled(wgpu::TextureSampleType::Float { filterable: false });
         let words = sampled_layers(wgpu::TextureSampleType::Uint);
@@ -107,7 +106,7 @@ impl RatePasses {
         let shade_layout = layout("rate samples", &[read, read, radiance]);
         let pipeline =
             |label, shader, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
-                let module = shader::module(gpu, label, shader);
+                let module = gpu.module(label, shader);
                 shader::compute(gpu, label, &module, entry, groups, constants)
             };
         let buffer = |label, size: usize| {

@@ -27,7 +27,7 @@ impl RateView {
             _ => return None,
         };
         let layout = bind_group_layout(
-            &gpu.device,
+            gpu,
             "rate view",
             wgpu::ShaderStages::FRAGMENT,
             &[
@@ -38,7 +38,7 @@ impl RateView {
         let pipeline = shader::full_screen(
             gpu,
             "rate view",
-            &shader::module(gpu, "rate view", shader::SHADING_VARIABLE_VIEW),
+            &gpu.module("rate view", shader::SHADING_VARIABLE_VIEW),
             "show",
             &[frame_layout, &layout],
             PICTURE_FORMAT,
