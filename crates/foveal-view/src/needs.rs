@@ -67,6 +67,10 @@ pub(crate) fn missing(
             s.lighting.shadows == Shadows::Contact,
             "Needs Shadows: contact",
         ),
+        "shadow-atlas" | "shadow-bias" | "shadow-budget" => unless(
+            s.lighting.shadows != Shadows::Off,
+            "Needs Shadows: other than off",
+        ),
         "shadow-sizes" => unless(
             s.lighting.shadows != Shadows::Off,
             "Needs Shadows: other than off",

@@ -161,6 +161,10 @@ pub struct ShadowStats {
     pub triangles: u64,
     /// Texels of the tiles that the frame may look into.
     pub texels: u64,
+    /// Tiles that the budget left for a later frame: they show what they held, or nothing yet.
+    pub tiles_waiting: u64,
+    /// Frames for which the one of them has waited that waits longest.
+    pub longest_wait: u64,
     /// Bytes of the atlas.
     pub atlas_bytes: u64,
     /// Lights that the atlas has no room for: they shine through everything, in part or wholly.

@@ -14,26 +14,28 @@ use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use super::Gpu;
 use crate::shader::Shader;
 
-/// A shelf with more than this is emptied: constants come from settings, which may take any value.
-const MOST: usize = 512;
+/// Beyond this number what was asked for longest ago is forgotten: constants come from settings,
+/// which may take any value.
+const MOST: usize = 256;
 
-/// Counts what is made, so that what was made since a moment can be told.
-static MADE: AtomicU64 = AtomicU64::new(0);
+/// Counts requests, so that what was made since a moment can be told.
+static REQUESTS: AtomicU64 = AtomicU64::new(0);
 
-/// A moment among those at which something is made.
+/// A moment among requests.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moment(u64);
 
 impl Moment {
     pub(crate) fn now() -> Self {
-        Self(MADE.load(Ordering::Relaxed))
+        Self(REQUESTS.load(Ordering::Relaxed))
     }
 }
 
 /// Two threads that ask for the same thing at once make it once.
 #[derive(Debug)]
 struct Place<V> {
-    number: u64,
+    /// The first and the last request for it.
+    asked: [u64; 2],
     thing: Arc<OnceLock<V>>,
 }
 
@@ -52,12 +54,15 @@ impl<K: Hash + Eq, V: Clone> Shelf<K, V> {
         let place = {
             let mut places = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             if places.len() >= MOST && !places.contains_key(&key) {
-                places.clear();
+                let oldest = places.values().map(|place| place.asked[1]).min();
+                places.retain(|_, place| Some(place.asked[1]) != oldest);
             }
+            let request = REQUESTS.fetch_add(1, Ordering::Relaxed);
             let place = places.entry(key).or_insert_with(|| Place {
-                number: MADE.fetch_add(1, Ordering::Relaxed),
+                asked: [request; 2],
                 thing: Arc::default(),
             });
+            place.asked[1] = request;
             Arc::clone(&place.thing)
         };
         place.get_or_init(make).clone()
@@ -66,7 +71,7 @@ impl<K: Hash + Eq, V: Clone> Shelf<K, V> {
     fn forget(&self, since: Moment) {
         (self.0.lock())
             .unwrap_or_else(PoisonError::into_inner)
-            .retain(|_, place| place.number < since.0);
+            .retain(|_, place| place.asked[0] < since.0);
     }
 }
 
@@ -169,9 +174,9 @@ impl Gpu {
         compiled.render.forget(since);
     }
 
-    /// Forgets all that is compiled.
-    #[cfg(test)]
-    pub(crate) fn forget_all_compiled(&self) {
+    /// Lets go of compiled pipelines that no renderer uses. A device keeps some hundreds of the last
+    /// ones, so that settings that come back and further renderers need not compile them again.
+    pub fn trim(&self) {
         self.forget_compiled(Moment(0));
     }
 
@@ -272,7 +277,7 @@ mod tests {
         assert!(made.iter().all(|&n| n > 5), "{made:?}");
         assert!(picture(&draw()) == first);
         assert_eq!(sizes(&gpu.compiled), made);
-        gpu.forget_all_compiled();
+        gpu.trim();
         assert_eq!(sizes(&gpu.compiled), [0; 5]);
         assert!(picture(&draw()) == first);
         assert_eq!(sizes(&gpu.compiled), made);
@@ -292,19 +297,20 @@ mod tests {
     }
 
     #[test]
-    fn a_full_shelf_is_emptied_and_equal_requests_are_made_once() {
+    fn a_full_shelf_forgets_what_was_asked_for_longest_ago() {
         let shelf = Shelf::default();
         for key in 0..MOST {
             assert_eq!(shelf.take(key, || key + 1), key + 1);
         }
         assert_eq!(shelf.take(3, || unreachable!("it is there")), 4);
-        assert_eq!(shelf.take(MOST, || 0), 0);
-        assert_eq!(shelf.take(3, || 7), 7);
-        assert_eq!(shelf.take(MOST, || unreachable!("it is there")), 0);
         let moment = Moment::now();
-        assert_eq!(shelf.take(5, || 1), 1);
+        assert_eq!(shelf.take(MOST, || 0), 0);
+        assert_eq!(shelf.take(MOST, || unreachable!("it is there")), 0);
+        assert_eq!(shelf.take(3, || unreachable!("it is newer than others")), 4);
+        assert_eq!(shelf.take(0, || 7), 7);
         shelf.forget(moment);
-        assert_eq!(shelf.take(5, || 2), 2);
-        assert_eq!(shelf.take(3, || unreachable!("it is older")), 7);
+        assert_eq!(shelf.take(MOST, || 2), 2);
+        assert_eq!(shelf.take(3, || unreachable!("it is older")), 4);
+        assert_eq!(shelf.0.lock().expect("no test panicked").len(), MOST - 1);
     }
 }

@@ -375,11 +375,11 @@ fn a_renderer_whose_making_fails_anywhere_is_an_error() {
     let expected = expected(&gpu, &settings);
     let make = || block_on(ready(&gpu, &settings));
     // With nothing compiled, so that a pipeline, too, may be what fails.
-    gpu.forget_all_compiled();
+    gpu.trim();
     let calls = calls(&gpu, || drop(make().expect("nothing fails")));
     for (place, fault) in strikes(calls, 6) {
         let what = format!("{name}, call {place} of {calls}");
-        gpu.forget_all_compiled();
+        gpu.trim();
         gpu.device.faults.arm(place, fault);
         let failed = make().map(drop);
         assert!(gpu.device.faults.disarm(), "{what}");

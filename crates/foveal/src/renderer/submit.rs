@@ -164,7 +164,17 @@ impl Renderer {
         } else {
             None
         };
-        shadows.prepare(&self.gpu, settings, scene, &seen.eyes, rates);
+        let changed = shadows.prepare(&self.gpu, settings, scene, &seen.eyes, rates);
+        if changed.is_empty() {
+            return;
+        }
+        // What is kept of the frames before lacks those shadows.
+        if let Some(variable) = &mut self.stages.variable {
+            variable.scene_moved();
+        }
+        if let Some(history) = self.stages.history() {
+            history.light_changed(&changed);
+        }
     }
 
     /// Encodes and submits the frame's passes.

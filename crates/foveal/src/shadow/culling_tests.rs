@@ -53,7 +53,7 @@ fn assert_same(
     with.into_iter().map(|(_, stats)| stats).collect()
 }
 
-fn market() -> Scene {
+pub(super) fn market() -> Scene {
     let options = generate::DemoOptions {
         instances: 1_000,
         lights: 60,
@@ -62,7 +62,7 @@ fn market() -> Scene {
     generate::demo(&options).unwrap()
 }
 
-fn walked(scene: &Scene, step: usize) -> Camera {
+pub(super) fn walked(scene: &Scene, step: usize) -> Camera {
     let mut camera = scene.cameras[0].clone();
     camera.world_from_view *= Mat4::from_rotation_y(0.35 * step as f32);
     camera.world_from_view.w_axis.x += 0.4 * step as f32;
@@ -86,7 +86,7 @@ fn a_walk_shows_the_same_with_casters_left_out() {
 }
 
 /// Moves some instances.
-fn shift(scene: &mut Scene, instances: impl Iterator<Item = usize>, by: Vec3) {
+pub(super) fn shift(scene: &mut Scene, instances: impl Iterator<Item = usize>, by: Vec3) {
     let shift = Mat4::from_translation(by);
     for number in instances {
         let instance = &mut scene.instances[number];

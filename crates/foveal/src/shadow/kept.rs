@@ -16,6 +16,12 @@ pub(super) struct Kept {
     pub(super) volume: Volume,
     /// It holds the shadows of the pose, but for those of what is left out.
     pub(super) is_drawn: bool,
+    /// What it was drawn for last.
+    held: Option<Volume>,
+    /// The first frame that has to draw it, where it is not drawn.
+    missing_since: u64,
+    /// A frame's budget has left it for a later one.
+    pub(super) waits: bool,
     /// Casters that it was drawn without, as nobody has seen their shadows yet: instances, ascending.
     pub(super) left_out: Vec<u32>,
     /// What it has been drawn for: shadows of what is left out fall on none of it.
@@ -33,7 +39,9 @@ pub(super) struct Kept {
 impl Kept {
     /// What it holds is wrong from the frame after this one on.
     fn disturb(&mut self, frame: u64) {
-        self.is_drawn = false;
+        if std::mem::replace(&mut self.is_drawn, false) {
+            self.missing_since = frame + 1;
+        }
         self.is_restless = self.disturbed_in.is_some_and(|before| before + 1 >= frame);
         self.light_moves = false;
         self.disturbed_in = Some(frame);
@@ -68,7 +76,21 @@ pub(super) struct KeptTiles {
     /// By slot and level.
     tiles: BTreeMap<(u32, u32), Kept>,
     frame: u64,
+    /// Nothing has been drawn since all tiles were placed anew.
+    is_new: bool,
 }
+
+/// How urgently a tile is to be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Urgency {
+    /// After so many frames more, where something is there to look into meanwhile.
+    Waits(u64),
+    /// What it holds is wrong everywhere.
+    Now,
+}
+
+/// Frames that a tile which holds nothing is ahead of one that holds something.
+const AHEAD: u64 = 8;
 
 fn key(want: &Wanted) -> (u32, u32) {
     (want.slot, want.level)
@@ -81,6 +103,7 @@ impl KeptTiles {
             atlas: Atlas::new(atlas_level),
             tiles: BTreeMap::new(),
             frame: 0,
+            is_new: true,
         }
     }
 
@@ -110,8 +133,57 @@ impl KeptTiles {
     pub(super) fn drawn(&mut self, want: &Wanted, left_out: Vec<u32>) {
         if let Some(kept) = self.tiles.get_mut(&key(want)) {
             kept.is_drawn = true;
+            kept.held = Some(kept.volume);
+            kept.waits = false;
             kept.left_out = left_out;
         }
+    }
+
+    /// Whether all tiles have been placed anew since this was asked last.
+    pub(super) fn take_is_new(&mut self) -> bool {
+        std::mem::take(&mut self.is_new)
+    }
+
+    /// Frames for which a tile that is not drawn has been waiting.
+    pub(super) fn waited(&self, want: &Wanted) -> u64 {
+        let since = self.get(want).map_or(self.frame, |k| k.missing_since);
+        self.frame.saturating_sub(since)
+    }
+
+    /// How urgently a tile that is not drawn is to be drawn.
+    pub(super) fn urgency(&self, want: &Wanted) -> Urgency {
+        let held = self.get(want).and_then(|kept| kept.held);
+        if held.is_some_and(|held| !want.volume.can_look_into(&held)) {
+            return Urgency::Now;
+        }
+        let ahead = if self.stand_in(want).is_some() {
+            0
+        } else {
+            AHEAD
+        };
+        Urgency::Waits(self.waited(want) + ahead)
+    }
+
+    /// Where shaders look for a wanted tile, and what is there: the tile, or while it waits what it
+    /// held before or what one of another size holds.
+    pub(super) fn shown(&self, want: &Wanted) -> Option<(Tile, Volume)> {
+        let kept = self.get(want)?;
+        if kept.is_drawn {
+            return Some((kept.tile, kept.volume));
+        }
+        self.stand_in(want).filter(|_| kept.waits)
+    }
+
+    /// What can be looked into in place of a tile that is not drawn.
+    fn stand_in(&self, want: &Wanted) -> Option<(Tile, Volume)> {
+        let sizes = self.tiles.range((want.slot, 0)..(want.slot + 1, 0));
+        sizes
+            .filter_map(|(&(_, level), kept)| {
+                let held = kept.held.filter(|held| want.volume.can_look_into(held))?;
+                Some((level, (kept.tile, held)))
+            })
+            .min_by_key(|&(level, _)| (level.abs_diff(want.level), level))
+            .map(|(_, shown)| shown)
     }
 
     /// Tiles that were drawn without some casters must be drawn again: nobody says any more what is
@@ -119,7 +191,9 @@ impl KeptTiles {
     pub(super) fn draw_in_full(&mut self) {
         for kept in self.tiles.values_mut().filter(|k| !k.left_out.is_empty()) {
             kept.left_out.clear();
-            kept.is_drawn = false;
+            if std::mem::replace(&mut kept.is_drawn, false) {
+                kept.missing_since = self.frame;
+            }
         }
     }
 
@@ -138,7 +212,7 @@ impl KeptTiles {
     /// does not fit, all are placed anew.
     ///
     /// `keeps_sizes`: a tile of another size stays too until its place is needed, for a frame that
-    /// wants that size again.
+    /// wants that size again, or for one that looks into it while the tile of the right size waits.
     pub(super) fn place(&mut self, wanted: &[Wanted], keeps_sizes: bool) {
         self.frame += 1;
         let mut missing = Vec::new();
@@ -201,6 +275,9 @@ impl KeptTiles {
             tile,
             volume: want.volume,
             is_drawn: false,
+            held: None,
+            missing_since: self.frame,
+            waits: false,
             left_out: Vec::new(),
             received: None,
             wanted_in: self.frame,
@@ -372,5 +449,65 @@ mod tests {
         kept.draw_in_full();
         assert!(!get(&kept, 0).unwrap().is_drawn && get(&kept, 0).unwrap().left_out.is_empty());
         assert!(get(&kept, 1).unwrap().is_drawn);
+    }
+
+    #[test]
+    fn a_tile_that_waits_shows_what_it_held_or_what_another_size_holds() {
+        let mut kept = KeptTiles::new(8);
+        assert!(kept.take_is_new() && !kept.take_is_new());
+        let (small, large) = (want(0, 4), want(0, 6));
+        kept.place(&[small, want(1, 5)], true);
+        assert_eq!(kept.urgency(&small), Urgency::Waits(AHEAD));
+        kept.drawn(&small, Vec::new());
+        kept.place(&[large, want(1, 5)], true);
+        assert_eq!(kept.urgency(&large), Urgency::Waits(0));
+        assert_eq!(kept.urgency(&want(1, 5)), Urgency::Waits(AHEAD + 1));
+        // Nobody looks into it, unless it waits.
+        assert_eq!(kept.shown(&large), None);
+        kept.get_mut(&large).unwrap().waits = true;
+        kept.get_mut(&want(1, 5)).unwrap().waits = true;
+        let of_small = Some((kept.get(&small).unwrap().tile, small.volume));
+        assert_eq!(kept.shown(&large), of_small);
+        assert_eq!(kept.shown(&want(1, 5)), None);
+        kept.drawn(&large, Vec::new());
+        let of_large = Some((kept.get(&large).unwrap().tile, large.volume));
+        assert_eq!(kept.shown(&large), of_large);
+        // What it held stands in for it, although another size is drawn.
+        kept.get_mut(&large).unwrap().disturb(2);
+        kept.place(&[large], true);
+        kept.place(&[large], true);
+        assert_eq!(kept.urgency(&large), Urgency::Waits(1));
+        kept.get_mut(&large).unwrap().waits = true;
+        assert_eq!(kept.shown(&large), of_large);
+        // Of another light's place nothing can be shown.
+        let moved = Wanted {
+            volume: want(6, 6).volume,
+            ..large
+        };
+        kept.place(&[moved], true);
+        assert_eq!(kept.urgency(&moved), Urgency::Now);
+        assert_eq!(kept.shown(&moved), None);
+    }
+
+    #[test]
+    fn a_cascade_that_has_moved_with_the_eye_can_be_looked_into() {
+        let [x, y, z] = cube_axes(0);
+        let column = |center, radius, span| Volume::Column {
+            axes: [x, y, z],
+            center,
+            radius,
+            span,
+        };
+        let here = column([0.0, 1.0], 2.0, [0.0, 8.0]);
+        assert!(column([0.5, 1.0], 2.0, [0.0, 8.0]).can_look_into(&here));
+        assert!(!column([0.0, 1.0], 4.0, [0.0, 8.0]).can_look_into(&here));
+        assert!(!column([0.0, 1.0], 2.0, [0.0, 9.0]).can_look_into(&here));
+        assert!(!want(0, 4).volume.can_look_into(&here));
+        let [cx, cy, cz, r] = here.sphere();
+        let middle = Vec3::new(cx, cy, cz);
+        for (s, t, u) in [(-2.0, -2.0, 0.0), (2.0, 2.0, 8.0), (-2.0, 2.0, 8.0)] {
+            let corner = x * s + y * (1.0 + t) + z * u;
+            assert!((corner.distance(middle) - r).abs() < 1e-4, "{corner}");
+        }
     }
 }

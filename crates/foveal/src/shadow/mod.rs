@@ -9,6 +9,8 @@
 //! (`shadow/lookup.wgsl`).
 
 mod atlas;
+#[cfg(test)]
+mod budget_tests;
 mod changed;
 #[cfg(test)]
 mod contact_tests;

@@ -93,19 +93,19 @@ pub(super) fn rows(
     for want in &plan.wanted {
         let number = want.slot as usize / TILES_PER_LIGHT;
         let tile = want.slot as usize % TILES_PER_LIGHT;
-        let Some(kept) = kept.get(want).filter(|kept| kept.is_drawn) else {
-            // Nobody sees what it would shade.
+        let Some((place, held)) = kept.shown(want) else {
+            // Nobody sees what it would shade, or it waits and nothing stands in for it.
             continue;
         };
         let first = first_row(number);
         rows[first + tile / 4][tile % 4] =
-            kept.tile.word() | u32::from(want.follows_rate) << NARROW_BIT;
+            place.word() | u32::from(want.follows_rate) << NARROW_BIT;
         let Volume::Column {
             center,
             radius,
             span: [begin, end],
             ..
-        } = want.volume
+        } = held
         else {
             continue;
         };

@@ -1,12 +1,14 @@
 //! All of shadows that outlives a frame.
 
+use std::cmp::Reverse;
+
 use foveal_scene::{Aabb, AlphaMode};
 use glam::Vec3;
 
 use super::atlas::Tile;
 use super::changed::{Place, changed_places};
 use super::hidden::HiddenCasters;
-use super::kept::{KeptTiles, Received};
+use super::kept::{KeptTiles, Received, Urgency};
 use super::pass::{CasterPass, TileDraw};
 use super::plan::{Plan, TILES_PER_LIGHT, ViewOfPlan, Wanted};
 use super::receivers::{NearCells, Reach, Receivers, SeenCells, SeenSince};
@@ -46,6 +48,10 @@ struct Drawing {
     /// What the frame draws, and counts.
     draws: Vec<TileDraw>,
     counts: Counts,
+    /// Triangles that a frame draws; 0 for as many as it takes.
+    budget: u64,
+    /// Spheres within which tiles that had waited have been drawn.
+    changed: Vec<Place>,
     /// What the last frame's tiles followed from; they stand while it is the same.
     settled: Option<Settled>,
 }
@@ -56,13 +62,17 @@ struct Counts {
     in_reach: u64,
     hidden: u64,
     unneeded: u64,
+    triangles: u64,
+    waiting: u64,
+    longest_wait: u64,
 }
 
 /// A frame after which the next one of the same needs nothing.
 #[derive(Debug, PartialEq)]
 struct Settled {
     view: ViewOfPlan,
-    /// Whether tiles of another size stay until their place is needed: rates may come and go.
+    /// Whether tiles of another size stay until their place is needed: rates may come and go, and
+    /// tiles may wait.
     keeps_sizes: bool,
     receivers: Receivers,
 }
@@ -117,6 +127,8 @@ impl ShadowStage {
                     frame: 0,
                     draws: Vec::new(),
                     counts: Counts::default(),
+                    budget: u64::from(lighting.shadow_budget),
+                    changed: Vec::new(),
                     settled: None,
                 })
             }),
@@ -178,7 +190,8 @@ impl ShadowStage {
     }
 
     /// Decides what the frame draws, and tells shaders where tiles lie. `receivers`: what
-    /// is seen. `rates`: how finely it is shaded, where tiles are to be as coarse.
+    /// is seen. `rates`: how finely it is shaded, where tiles are to be as coarse. Gives the places
+    /// where light changes because tiles are drawn late.
     pub(crate) fn prepare(
         &mut self,
         gpu: &Gpu,
@@ -186,13 +199,13 @@ impl ShadowStage {
         (scene, receivers): (&SceneOnGpu, Receivers),
         eyes: &[Eye; 2],
         rates: Option<FinestRate>,
-    ) {
+    ) -> Vec<Place> {
         let Some(drawing) = &mut self.drawing else {
-            return;
+            return Vec::new();
         };
         let now = Settled {
             view: ViewOfPlan::new(eyes, settings.picture.height, rates),
-            keeps_sizes: settings.lighting.shadow_sizes == ShadowSizes::Rate,
+            keeps_sizes: settings.lighting.shadow_sizes == ShadowSizes::Rate || drawing.budget > 0,
             receivers,
         };
         drawing.draws.clear();
@@ -204,9 +217,10 @@ impl ShadowStage {
                 self.rows.write(gpu, bytemuck::cast_slice(&rows));
                 self.written = rows;
             }
-            drawing.settled = Some(now);
+            drawing.settled = Some(now).filter(|_| drawing.counts.waiting == 0);
         }
         self.stats = Some(drawing.stats());
+        std::mem::take(&mut drawing.changed)
     }
 
     /// Encodes the tiles' drawing.
@@ -325,8 +339,21 @@ impl Drawing {
         };
         let missing = |want: &&Wanted| self.kept.get(want).is_some_and(|k| !k.is_drawn);
         let missing: Vec<Wanted> = self.plan.wanted.iter().filter(missing).copied().collect();
-        for of_light in missing.chunk_by(|a, b| light_of(a) == light_of(b)) {
-            self.list_draws(scene, receivers, of_light);
+        let mut lights: Vec<&[Wanted]> = missing
+            .chunk_by(|a, b| light_of(a) == light_of(b))
+            .collect();
+        let is_new = self.kept.take_is_new();
+        let most = match self.budget {
+            0 => u64::MAX,
+            _ if is_new => u64::MAX,
+            most => {
+                let urgency = |want: &Wanted| (self.kept.urgency(want), want.level);
+                lights.sort_by_cached_key(|tiles| Reverse(tiles.iter().map(urgency).max()));
+                most
+            }
+        };
+        for of_light in lights {
+            self.list_draws(scene, receivers, of_light, most);
         }
         self.seen = seen;
     }
@@ -352,10 +379,12 @@ impl Drawing {
                     kept.left_out.iter().partition(|&&i| shown(i));
                 kept.left_out = still;
                 if !shown.is_empty() {
+                    let casters = DrawList::of_casters(scene, shown.into_iter(), CasterPass::key);
+                    self.counts.triangles += casters.triangles;
                     self.draws.push(TileDraw {
                         tile: kept.tile,
                         clip_from_world: volume.clip_from_world(side),
-                        casters: DrawList::of_casters(scene, shown.into_iter(), CasterPass::key),
+                        casters,
                         is_new: false,
                     });
                 }
@@ -363,13 +392,23 @@ impl Drawing {
         }
     }
 
-    /// Lists the draws of one light's tiles.
-    fn list_draws(&mut self, scene: &SceneOnGpu, receivers: Seen<'_>, wanted: &[Wanted]) {
+    /// Lists the draws of one light's tiles, while the frame draws fewer triangles than `most`. What
+    /// is left waits, but for tiles that hold what is wrong everywhere.
+    fn list_draws(
+        &mut self,
+        scene: &SceneOnGpu,
+        receivers: Seen<'_>,
+        wanted: &[Wanted],
+        most: u64,
+    ) {
         let reach = Reach::of(wanted);
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
         let near = receivers.near(scene, reach);
         let mut casters: Option<Vec<u32>> = None;
         for want in wanted {
+            let may_wait = self.counts.triangles >= most
+                && matches!(self.kept.urgency(want), Urgency::Waits(_));
+            let waited = self.kept.waited(want);
             let Some(kept) = self.kept.get_mut(want) else {
                 continue;
             };
@@ -377,6 +416,15 @@ impl Drawing {
             let side = tile.side() as f32;
             if !near.meets(volume, side) {
                 continue;
+            }
+            if may_wait {
+                kept.waits = true;
+                self.counts.waiting += 1;
+                self.counts.longest_wait = self.counts.longest_wait.max(waited + 1);
+                continue;
+            }
+            if kept.waits {
+                self.changed.push(volume.sphere());
             }
             let casters = casters.get_or_insert_with(|| {
                 (0..)
@@ -415,10 +463,12 @@ impl Drawing {
                     kept.received = Some(received);
                 }
             }
+            let casters = DrawList::of_casters(scene, casters.into_iter(), CasterPass::key);
+            self.counts.triangles += casters.triangles;
             self.draws.push(TileDraw {
                 tile,
                 clip_from_world: volume.clip_from_world(side),
-                casters: DrawList::of_casters(scene, casters.into_iter(), CasterPass::key),
+                casters,
                 is_new: true,
             });
             self.kept.drawn(want, left_out);
@@ -426,8 +476,8 @@ impl Drawing {
     }
 
     fn stats(&self) -> ShadowStats {
-        let in_use = self.plan.wanted.iter().filter_map(|w| self.kept.get(w));
-        let in_use: Vec<Tile> = in_use.filter(|k| k.is_drawn).map(|k| k.tile).collect();
+        let in_use = self.plan.wanted.iter().filter_map(|w| self.kept.shown(w));
+        let in_use: Vec<Tile> = in_use.map(|(tile, _)| tile).collect();
         let casters = self.draws.iter().map(|d| d.casters.drawn.len() as u64);
         ShadowStats {
             tiles: in_use.len() as u64,
@@ -437,8 +487,10 @@ impl Drawing {
             casters_in_reach: self.counts.in_reach,
             casters_hidden: self.counts.hidden,
             casters_unneeded: self.counts.unneeded,
-            triangles: self.draws.iter().map(|d| d.casters.triangles).sum(),
+            triangles: self.counts.triangles,
             texels: in_use.iter().map(|t| u64::from(t.side()).pow(2)).sum(),
+            tiles_waiting: self.counts.waiting,
+            longest_wait: self.counts.longest_wait,
             atlas_bytes: 4 << (2 * self.atlas_level),
             lights_left_out: u64::from(self.plan.lights_left_out),
             shrunk_by: self.plan.shrunk_by,

@@ -41,6 +41,42 @@ pub(super) fn widening(side: f32) -> f32 {
 }
 
 impl Volume {
+    /// Whether depths that were drawn for `held` can be looked up for this one: the light is as it
+    /// was. A cascade may have moved with the eye.
+    pub(super) fn can_look_into(&self, held: &Self) -> bool {
+        match (*self, *held) {
+            (
+                Self::Column {
+                    axes, radius, span, ..
+                },
+                Self::Column {
+                    axes: axes_held,
+                    radius: radius_held,
+                    span: span_held,
+                    ..
+                },
+            ) => axes == axes_held && radius == radius_held && span == span_held,
+            (now, held) => now == held,
+        }
+    }
+
+    /// A sphere around it: centre and radius in metres, world space.
+    pub(super) fn sphere(&self) -> [f32; 4] {
+        match *self {
+            Self::Pyramid { apex, range, .. } => apex.extend(range).to_array(),
+            Self::Column {
+                axes: [x, y, z],
+                center,
+                radius,
+                span: [begin, end],
+            } => {
+                let middle = x * center[0] + y * center[1] + z * (0.5 * (begin + end));
+                let around = (radius * std::f32::consts::SQRT_2).hypot(0.5 * (end - begin));
+                middle.extend(around).to_array()
+            }
+        }
+    }
+
     /// Clip space from world space for a tile of this side; reversed depth.
     pub(super) fn clip_from_world(&self, side: f32) -> Mat4 {
         match *self {

@@ -178,6 +178,8 @@ fn at_rest(gpu: &Gpu, renderer: &mut Renderer, first: &State) -> u64 {
         Ok::<(), Error>(())
     })
     .unwrap();
+    // Pipelines of other settings.
+    gpu.trim();
     gpu.device
         .poll(wgpu::PollType::wait_indefinitely())
         .unwrap();

@@ -15,7 +15,7 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 11] = [
+const MISSING_KEYS: [&str; 12] = [
     "view",
     "geometry",
     "material-dispatch",
@@ -23,6 +23,7 @@ const MISSING_KEYS: [&str; 11] = [
     "shadow-atlas",
     "shadow-bias",
     "shadow-sizes",
+    "shadow-budget",
     "light-radius",
     "sun-angle",
     "ambient-occlusion",
