@@ -75,7 +75,7 @@ impl Pass {
     ) -> Self {
         let compute = wgpu::ShaderStages::COMPUTE;
         let layout = bind_group_layout(gpu, label, compute, types);
-        let module = gpu.module(label, shader);
+        let module = shader::module(gpu, label, shader);
         let pipeline = shader::compute(gpu, label, &module, entry, &[frame, &layout], &[]);
         Self { pipeline, layout }
     }
@@ -245,7 +245,7 @@ impl CoarsePasses {
             size: shader::compute(
                 gpu,
                 "ambient dispatch",
-                &gpu.module("ambient dispatch", sizing),
+                &shader::module(gpu, "ambient dispatch", sizing),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

@@ -53,7 +53,7 @@ impl BlendedStage {
         let fragment = wgpu::ShaderStages::FRAGMENT;
         let types = [uniform(), float];
         let layout = bind_group_layout(gpu, "blended", fragment, &types);
-        let module = gpu.module("blended", shader::ANTIALIAS_BLENDED);
+        let module = shader::module(gpu, "blended", shader::ANTIALIAS_BLENDED);
         let pipeline = |entry, blend| {
             shader::screen(
                 gpu,

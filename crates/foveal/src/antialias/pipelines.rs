@@ -82,7 +82,7 @@ impl AntialiasPipelines {
             compute,
             &[read, read, write, radiance],
         );
-        let combination = gpu.module("combination", shader::ANTIALIAS_COMBINE);
+        let combination = shader::module(gpu, "combination", shader::ANTIALIAS_COMBINE);
 
         let lighting = lighting_constants(gpu, settings);
         // Views of the G-buffer show averages.
@@ -103,7 +103,7 @@ impl AntialiasPipelines {
             shade: shader::compute(
                 gpu,
                 "edge shading",
-                &gpu.module("edge shading", shader::ANTIALIAS_SHADE),
+                &shader::module(gpu, "edge shading", shader::ANTIALIAS_SHADE),
                 "shade_entries",
                 &[frame, shading_input, &shade_layout],
                 &[&lighting[..], &[count, side, mirror, ("ALL", all)]].concat(),
@@ -119,7 +119,7 @@ impl AntialiasPipelines {
             store: shader::compute(
                 gpu,
                 "combination, store",
-                &gpu.module("combination, store", shader::ANTIALIAS_STORE),
+                &shader::module(gpu, "combination, store", shader::ANTIALIAS_STORE),
                 "store",
                 &[frame, &store_layout],
                 &[],
@@ -137,7 +137,7 @@ fn merge(
     groups: &[&wgpu::BindGroupLayout],
     constants: &[(&str, f64)],
 ) -> wgpu::RenderPipeline {
-    let module = gpu.module("merge", shader::ANTIALIAS_MERGE);
+    let module = shader::module(gpu, "merge", shader::ANTIALIAS_MERGE);
     let compilation_options = wgpu::PipelineCompilationOptions {
         constants,
         ..Default::default()

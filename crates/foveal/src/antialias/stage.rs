@@ -295,7 +295,7 @@ fn view_pipeline(
     let pipeline = shader::full_screen(
         gpu,
         "tally",
-        &gpu.module("tally", shader::ANTIALIAS_VIEW),
+        &shader::module(gpu, "tally", shader::ANTIALIAS_VIEW),
         "view",
         &[frame, &layout],
         PICTURE_FORMAT,

@@ -87,14 +87,14 @@ impl TriangleStage {
             shader::compute(
                 gpu,
                 label,
-                &gpu.module(label, shader),
+                &shader::module(gpu, label, shader),
                 entry,
                 &[frame, &samples_layout, &geometry, group],
                 &[count, side],
             )
         };
         let targets = [IDENTITY_FORMAT, TRIANGLE_FORMAT, TALLY_FORMAT].map(|f| Some(f.into()));
-        let classification = gpu.module("classification", shader::ANTIALIAS_CLASSIFY);
+        let classification = shader::module(gpu, "classification", shader::ANTIALIAS_CLASSIFY);
         Self {
             candidates: sorting(
                 "candidates",
@@ -127,7 +127,7 @@ impl TriangleStage {
             shade: shader::compute(
                 gpu,
                 "further shading",
-                &gpu.module("further shading", shader::ANTIALIAS_SHADE_FURTHER),
+                &shader::module(gpu, "further shading", shader::ANTIALIAS_SHADE_FURTHER),
                 "shade_further",
                 &[frame, shading_input, &shade_layout],
                 &[&lighting[..], &[count, ("COARSE", coarse)]].concat(),

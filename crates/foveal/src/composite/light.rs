@@ -56,7 +56,7 @@ impl LightComposite {
             join: shader::compute(
                 gpu,
                 "light composite",
-                &gpu.module("light composite", shader::COMPOSITE_LIGHT),
+                &shader::module(gpu, "light composite", shader::COMPOSITE_LIGHT),
                 "join",
                 &[frame_layout, &join_layout],
                 &[
@@ -68,7 +68,7 @@ impl LightComposite {
             size: shader::compute(
                 gpu,
                 "unlit dispatch",
-                &gpu.module("unlit dispatch", shader::SHADING_COARSE_DISPATCH),
+                &shader::module(gpu, "unlit dispatch", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

@@ -52,7 +52,7 @@ impl PatchPass {
             fit: shader::compute(
                 gpu,
                 "patches",
-                &gpu.module("patches", shader::COMPOSITE_FIT),
+                &shader::module(gpu, "patches", shader::COMPOSITE_FIT),
                 "fit_patches",
                 &[frame_layout, &input_layout, &output_layout],
                 &[("QUAD_LEVEL", f64::from(QUAD_LEVEL))],

@@ -60,7 +60,7 @@ impl SmoothComposite {
         } else {
             shader::COMPOSITE_SMOOTH
         };
-        let module = gpu.module("smooth composite", shader);
+        let module = shader::module(gpu, "smooth composite", shader);
         let target = |write_mask| wgpu::ColorTargetState {
             format: RADIANCE_FORMAT,
             blend: None,

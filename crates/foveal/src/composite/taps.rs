@@ -29,7 +29,7 @@ impl TapComposite {
                 sampled(wgpu::TextureSampleType::Float { filterable: false }),
             ],
         );
-        let module = gpu.module("composite", shader);
+        let module = shader::module(gpu, "composite", shader);
         let pipeline = shader::screen(
             gpu,
             &Screen {

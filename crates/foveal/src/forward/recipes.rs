@@ -153,7 +153,7 @@ impl Recipes {
         let shader = shader::FORWARD_FORWARD.variant(kind.variant(gpu, submission));
         Pipelines::new(PipelineRecipe {
             label: "forward",
-            module: gpu.module("forward", shader),
+            module: shader::module(gpu, "forward", shader),
             layout: gpu.pipeline_layout("forward", &layouts),
             vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",

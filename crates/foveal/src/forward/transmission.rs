@@ -25,7 +25,7 @@ impl BehindPass {
         let level_layout = bind_group_layout(gpu, "picture behind", fragment, &level);
         let whole = [float(true)];
         let layout = bind_group_layout(gpu, "picture behind", fragment, &whole);
-        let module = gpu.module("picture behind", shader::FORWARD_HALVE);
+        let module = shader::module(gpu, "picture behind", shader::FORWARD_HALVE);
         let halve = shader::screen(
             gpu,
             &Screen {

@@ -97,7 +97,7 @@ impl GeometryPass {
         };
         Pipelines::new(PipelineRecipe {
             label: "geometry",
-            module: gpu.module("geometry", shader),
+            module: shader::module(gpu, "geometry", shader),
             layout: gpu.pipeline_layout("geometry", &[frame_layout, material_layout]),
             vertex: VertexSource::Buffers(submission.vertex_entry()),
             fragment: "fragment",

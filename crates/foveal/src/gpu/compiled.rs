@@ -11,9 +11,6 @@ use std::num::NonZeroU32;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
-use super::Gpu;
-use crate::shader::Shader;
-
 /// Beyond this number what was asked for longest ago is forgotten: constants come from settings,
 /// which may take any value.
 const MOST: usize = 256;
@@ -26,6 +23,9 @@ static REQUESTS: AtomicU64 = AtomicU64::new(0);
 pub(crate) struct Moment(u64);
 
 impl Moment {
+    /// Before all requests.
+    pub(super) const FIRST: Self = Self(0);
+
     pub(crate) fn now() -> Self {
         Self(REQUESTS.load(Ordering::Relaxed))
     }
@@ -73,13 +73,21 @@ impl<K: Hash + Eq, V: Clone> Shelf<K, V> {
             .unwrap_or_else(PoisonError::into_inner)
             .retain(|_, place| place.asked[0] < since.0);
     }
+
+    #[cfg(test)]
+    fn len(&self) -> usize {
+        self.0.lock().expect("no test panicked").len()
+    }
 }
+
+/// A shader's file, and the names that its variant defines.
+pub(crate) type ShaderName = (&'static str, &'static [&'static str]);
 
 #[derive(Debug, Default)]
 pub(super) struct Compiled {
     group_layouts: Shelf<(String, Vec<wgpu::BindGroupLayoutEntry>), wgpu::BindGroupLayout>,
     layouts: Shelf<(String, Vec<wgpu::BindGroupLayout>), wgpu::PipelineLayout>,
-    modules: Shelf<(String, Shader), wgpu::ShaderModule>,
+    modules: Shelf<(String, ShaderName), wgpu::ShaderModule>,
     compute: Shelf<ComputeKey, wgpu::ComputePipeline>,
     render: Shelf<Box<RenderKey>, wgpu::RenderPipeline>,
 }
@@ -116,6 +124,20 @@ struct ComputeKey {
     label: Option<String>,
     layout: Option<wgpu::PipelineLayout>,
     stage: Stage,
+}
+
+impl ComputeKey {
+    fn new(wanted: &wgpu::ComputePipelineDescriptor<'_>) -> Self {
+        Self {
+            label: wanted.label.map(str::to_owned),
+            layout: wanted.layout.cloned(),
+            stage: Stage::new(
+                wanted.module,
+                wanted.entry_point,
+                &wanted.compilation_options,
+            ),
+        }
+    }
 }
 
 type BufferKey = (u64, wgpu::VertexStepMode, Vec<wgpu::VertexAttribute>);
@@ -163,138 +185,77 @@ impl RenderKey {
     }
 }
 
-impl Gpu {
-    /// Forgets what was compiled since then: something that could not be made may be among it.
-    pub(crate) fn forget_compiled(&self, since: Moment) {
-        let compiled = &self.compiled;
-        compiled.group_layouts.forget(since);
-        compiled.layouts.forget(since);
-        compiled.modules.forget(since);
-        compiled.compute.forget(since);
-        compiled.render.forget(since);
+impl Compiled {
+    /// Forgets what was made since then.
+    pub(super) fn forget(&self, since: Moment) {
+        self.group_layouts.forget(since);
+        self.layouts.forget(since);
+        self.modules.forget(since);
+        self.compute.forget(since);
+        self.render.forget(since);
     }
 
-    /// Lets go of compiled pipelines that no renderer uses. A device keeps some hundreds of the last
-    /// ones, so that settings that come back and further renderers need not compile them again.
-    pub fn trim(&self) {
-        self.forget_compiled(Moment(0));
-    }
-
-    pub(crate) fn bind_group_layout(
+    pub(super) fn group_layout(
         &self,
         label: &str,
         entries: &[wgpu::BindGroupLayoutEntry],
+        make: impl FnOnce() -> wgpu::BindGroupLayout,
     ) -> wgpu::BindGroupLayout {
         let key = (label.to_owned(), entries.to_vec());
-        self.compiled.group_layouts.take(key, || {
-            self.device
-                .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor {
-                    label: Some(label),
-                    entries,
-                })
-        })
+        self.group_layouts.take(key, make)
     }
 
-    /// The layout of a pipeline whose bind groups are `groups` in order.
-    pub(crate) fn pipeline_layout(
+    pub(super) fn layout(
         &self,
         label: &str,
         groups: &[&wgpu::BindGroupLayout],
+        make: impl FnOnce() -> wgpu::PipelineLayout,
     ) -> wgpu::PipelineLayout {
-        let key = (
-            label.to_owned(),
-            groups.iter().map(|&g| g.clone()).collect(),
-        );
-        self.compiled.layouts.take(key, || {
-            let groups: Vec<_> = groups.iter().map(|&g| Some(g)).collect();
-            self.device
-                .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-                    label: Some(label),
-                    bind_group_layouts: &groups,
-                    immediate_size: 0,
-                })
-        })
+        let groups = groups.iter().map(|&g| g.clone()).collect();
+        self.layouts.take((label.to_owned(), groups), make)
     }
 
-    /// A shader's module.
-    pub(crate) fn module(&self, label: &str, shader: Shader) -> wgpu::ShaderModule {
-        self.compiled.modules.take((label.to_owned(), shader), || {
-            self.device
-                .create_shader_module(wgpu::ShaderModuleDescriptor {
-                    label: Some(label),
-                    source: wgpu::ShaderSource::Wgsl(
-                        shader.source(self.has_texture_tables()).into(),
-                    ),
-                })
-        })
+    pub(super) fn module(
+        &self,
+        label: &str,
+        name: ShaderName,
+        make: impl FnOnce() -> wgpu::ShaderModule,
+    ) -> wgpu::ShaderModule {
+        self.modules.take((label.to_owned(), name), make)
     }
 
-    pub(crate) fn compute_pipeline(
+    pub(super) fn compute(
         &self,
         wanted: &wgpu::ComputePipelineDescriptor<'_>,
+        make: impl FnOnce() -> wgpu::ComputePipeline,
     ) -> wgpu::ComputePipeline {
-        let key = ComputeKey {
-            label: wanted.label.map(str::to_owned),
-            layout: wanted.layout.cloned(),
-            stage: Stage::new(
-                wanted.module,
-                wanted.entry_point,
-                &wanted.compilation_options,
-            ),
-        };
-        let make = || self.device.create_compute_pipeline(wanted);
-        self.compiled.compute.take(key, make)
+        self.compute.take(ComputeKey::new(wanted), make)
     }
 
-    pub(crate) fn render_pipeline(
+    pub(super) fn render(
         &self,
         wanted: &wgpu::RenderPipelineDescriptor<'_>,
+        make: impl FnOnce() -> wgpu::RenderPipeline,
     ) -> wgpu::RenderPipeline {
-        let key = Box::new(RenderKey::new(wanted));
-        let make = || self.device.create_render_pipeline(wanted);
-        self.compiled.render.take(key, make)
+        self.render.take(Box::new(RenderKey::new(wanted)), make)
+    }
+
+    /// How many things of each kind are kept.
+    #[cfg(test)]
+    pub(super) fn sizes(&self) -> [usize; 5] {
+        [
+            self.group_layouts.len(),
+            self.layouts.len(),
+            self.modules.len(),
+            self.compute.len(),
+            self.render.len(),
+        ]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{picture, rendered_on, small};
-    use crate::{Shading, Shadows};
-
-    #[test]
-    fn a_second_renderer_compiles_nothing_and_draws_the_same() {
-        let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
-        let scene = foveal_generate::by_name("alpha").expect("it is generated");
-        let settings = small(48, 32).with(|s| {
-            s.shading.mode = Shading::Coarse;
-            s.lighting.shadows = Shadows::Soft;
-            s.lighting.shadow_atlas = 256;
-        });
-        let draw = || rendered_on(&gpu, &scene, &scene.cameras[0], &settings);
-        let first = picture(&draw());
-        let made = sizes(&gpu.compiled);
-        assert!(made.iter().all(|&n| n > 5), "{made:?}");
-        assert!(picture(&draw()) == first);
-        assert_eq!(sizes(&gpu.compiled), made);
-        gpu.trim();
-        assert_eq!(sizes(&gpu.compiled), [0; 5]);
-        assert!(picture(&draw()) == first);
-        assert_eq!(sizes(&gpu.compiled), made);
-    }
-
-    fn sizes(compiled: &Compiled) -> [usize; 5] {
-        fn size<K, V>(shelf: &Shelf<K, V>) -> usize {
-            shelf.0.lock().expect("no test panicked").len()
-        }
-        [
-            size(&compiled.group_layouts),
-            size(&compiled.layouts),
-            size(&compiled.modules),
-            size(&compiled.compute),
-            size(&compiled.render),
-        ]
-    }
 
     #[test]
     fn a_full_shelf_forgets_what_was_asked_for_longest_ago() {
@@ -311,6 +272,6 @@ mod tests {
         shelf.forget(moment);
         assert_eq!(shelf.take(MOST, || 2), 2);
         assert_eq!(shelf.take(3, || unreachable!("it is older")), 4);
-        assert_eq!(shelf.0.lock().expect("no test panicked").len(), MOST - 1);
+        assert_eq!(shelf.len(), MOST - 1);
     }
 }

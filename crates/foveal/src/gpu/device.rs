@@ -1,6 +1,6 @@
 //! An open graphics device.
 
-use super::compiled::Compiled;
+use super::compiled::{Compiled, Moment, ShaderName};
 use crate::{AdapterStats, Error};
 use std::sync::{Arc, Mutex};
 
@@ -263,5 +263,81 @@ impl Gpu {
             },
             Err(_) => Ok(()),
         }
+    }
+}
+
+/// What is compiled once ([`Compiled`]).
+impl Gpu {
+    /// Forgets what was compiled since then: something that could not be made may be among it.
+    pub(super) fn forget_compiled(&self, since: Moment) {
+        self.compiled.forget(since);
+    }
+
+    /// Lets go of compiled pipelines that no renderer uses. A device keeps some hundreds of the last
+    /// ones, so that settings that come back and further renderers need not compile them again.
+    pub fn trim(&self) {
+        self.compiled.forget(Moment::FIRST);
+    }
+
+    pub(crate) fn bind_group_layout(
+        &self,
+        label: &str,
+        entries: &[wgpu::BindGroupLayoutEntry],
+    ) -> wgpu::BindGroupLayout {
+        let wanted = wgpu::BindGroupLayoutDescriptor {
+            label: Some(label),
+            entries,
+        };
+        let make = || self.device.create_bind_group_layout(&wanted);
+        self.compiled.group_layout(label, entries, make)
+    }
+
+    /// The layout of a pipeline whose bind groups are `groups` in order.
+    pub(crate) fn pipeline_layout(
+        &self,
+        label: &str,
+        groups: &[&wgpu::BindGroupLayout],
+    ) -> wgpu::PipelineLayout {
+        self.compiled.layout(label, groups, || {
+            let groups: Vec<_> = groups.iter().map(|&g| Some(g)).collect();
+            self.device
+                .create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+                    label: Some(label),
+                    bind_group_layouts: &groups,
+                    immediate_size: 0,
+                })
+        })
+    }
+
+    /// The module of a shader with this source.
+    pub(crate) fn module(
+        &self,
+        label: &str,
+        name: ShaderName,
+        source: impl FnOnce() -> String,
+    ) -> wgpu::ShaderModule {
+        self.compiled.module(label, name, || {
+            self.device
+                .create_shader_module(wgpu::ShaderModuleDescriptor {
+                    label: Some(label),
+                    source: wgpu::ShaderSource::Wgsl(source().into()),
+                })
+        })
+    }
+
+    pub(crate) fn compute_pipeline(
+        &self,
+        wanted: &wgpu::ComputePipelineDescriptor<'_>,
+    ) -> wgpu::ComputePipeline {
+        let make = || self.device.create_compute_pipeline(wanted);
+        self.compiled.compute(wanted, make)
+    }
+
+    pub(crate) fn render_pipeline(
+        &self,
+        wanted: &wgpu::RenderPipelineDescriptor<'_>,
+    ) -> wgpu::RenderPipeline {
+        let make = || self.device.create_render_pipeline(wanted);
+        self.compiled.render(wanted, make)
     }
 }

@@ -2,6 +2,8 @@
 
 mod adapter;
 mod compiled;
+#[cfg(test)]
+mod compiled_tests;
 mod device;
 #[cfg(test)]
 pub(crate) mod faults;
@@ -19,7 +21,6 @@ mod trap;
 #[cfg(not(feature = "profiler"))]
 mod unprofiled;
 
-pub(crate) use compiled::Moment;
 pub use device::Gpu;
 pub(crate) use device::is_reduced;
 pub(crate) use layout::{

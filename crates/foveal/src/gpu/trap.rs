@@ -1,6 +1,7 @@
 //! Failures of the graphics interface as our errors.
 
-use super::{Gpu, Moment};
+use super::Gpu;
+use super::compiled::Moment;
 use crate::Error;
 
 /// Catches what the device reports on this thread between its creation and [`ErrorTrap::finish`].

@@ -85,7 +85,7 @@ impl LightAssigner {
             wgpu::ShaderStages::COMPUTE,
             &[Table::binding_type(gpu), storage_write()],
         );
-        let module = gpu.module("clusters", shader::LIGHTS_CLUSTERS);
+        let module = shader::module(gpu, "clusters", shader::LIGHTS_CLUSTERS);
         let pipeline = shader::compute(
             gpu,
             "light assignment",

@@ -70,7 +70,7 @@ impl EyesPass {
             pipeline: shader::full_screen(
                 gpu,
                 "eyes",
-                &gpu.module("eyes", shader::OUTPUT_EYES),
+                &shader::module(gpu, "eyes", shader::OUTPUT_EYES),
                 "show_eyes",
                 &[frame_layout, &layout],
                 PICTURE_FORMAT,

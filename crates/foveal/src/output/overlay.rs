@@ -36,7 +36,7 @@ impl OverlayPass {
                 sampled(wgpu::TextureSampleType::Float { filterable: false }),
             ],
         );
-        let module = gpu.module("overlay", shader::OUTPUT_OVERLAY);
+        let module = shader::module(gpu, "overlay", shader::OUTPUT_OVERLAY);
         let pipeline = shader::screen(
             gpu,
             &Screen {

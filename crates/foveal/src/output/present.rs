@@ -50,7 +50,7 @@ impl PresentPass {
             let pipeline = shader::full_screen(
                 gpu,
                 "present",
-                &gpu.module("present", shader::OUTPUT_PRESENT),
+                &shader::module(gpu, "present", shader::OUTPUT_PRESENT),
                 "present",
                 &[recorder.frame.layout(), &self.layout],
                 format,

@@ -26,7 +26,7 @@ impl ToneMapPass {
                 filterable: false,
             })],
         );
-        let module = gpu.module("tone map", shader::OUTPUT_TONE_MAP);
+        let module = shader::module(gpu, "tone map", shader::OUTPUT_TONE_MAP);
         let pipeline = shader::full_screen(
             gpu,
             "tone map",

@@ -43,7 +43,7 @@ impl ViewPass {
                 Table::binding_type(gpu),
             ],
         );
-        let module = gpu.module("view", shader::OUTPUT_VIEW);
+        let module = shader::module(gpu, "view", shader::OUTPUT_VIEW);
         let constants = [("VIEW", f64::from(number))];
         let pipeline = shader::full_screen(
             gpu,

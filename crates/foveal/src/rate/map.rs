@@ -45,7 +45,7 @@ impl RateMapPass {
                     groups: &[frame_layout, layout],
                     targets: &[Some(CELL_FORMAT.into())],
                     constants: constant,
-                    ..Screen::of_level(label, &gpu.module(label, shader), entry)
+                    ..Screen::of_level(label, &shader::module(gpu, label, shader), entry)
                 },
             )
         };

@@ -14,7 +14,7 @@
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
 /// A shader file that nothing else imports, in one of its variants.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Shader {
     file: &'static str,
     /// Names that are defined.
@@ -29,6 +29,11 @@ impl Shader {
     /// The same file with these names defined, which are those of one of its `#variant` lines.
     pub(crate) const fn variant(self, variant: &'static [&'static str]) -> Self {
         Self { variant, ..self }
+    }
+
+    /// What tells it from others.
+    pub(crate) const fn name(self) -> (&'static str, &'static [&'static str]) {
+        (self.file, self.variant)
     }
 
     /// A file in each of its variants.

@@ -7,6 +7,13 @@ pub(crate) use compose::*;
 
 use crate::gpu::Gpu;
 
+/// A shader's module.
+pub(crate) fn module(gpu: &Gpu, label: &str, shader: Shader) -> wgpu::ShaderModule {
+    gpu.module(label, shader.name(), || {
+        shader.source(gpu.has_texture_tables())
+    })
+}
+
 /// A compute pipeline; `constants` sets the module's overrides.
 pub(crate) fn compute(
     gpu: &Gpu,

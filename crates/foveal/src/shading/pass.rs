@@ -90,7 +90,7 @@ impl ShadingPass {
         let every_pixel = shader::full_screen(
             gpu,
             "shading",
-            &gpu.module("shading, every pixel", every_pixel_shader),
+            &shader::module(gpu, "shading, every pixel", every_pixel_shader),
             "shade_pixel",
             &[frame_layout, &input_layout],
             RADIANCE_FORMAT,
@@ -100,7 +100,7 @@ impl ShadingPass {
             shader::compute(
                 gpu,
                 "shading list",
-                &gpu.module("shading, list", shader::SHADING_LIST),
+                &shader::module(gpu, "shading, list", shader::SHADING_LIST),
                 "shade_list",
                 &[frame_layout, &input_layout, &list_layout],
                 &constants,

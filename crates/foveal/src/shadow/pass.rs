@@ -61,7 +61,7 @@ impl CasterPass {
         );
         let casters = Pipelines::new(PipelineRecipe {
             label: "shadow casters",
-            module: gpu.module("shadow casters", shader::SHADOW_CASTER),
+            module: shader::module(gpu, "shadow casters", shader::SHADOW_CASTER),
             layout: gpu
                 .pipeline_layout("shadow casters", &[frame_layout, material_layout, &layout]),
             vertex: VertexSource::Buffers("vertex_of_caster"),
@@ -73,7 +73,7 @@ impl CasterPass {
             has_mask: true,
             multiview_mask: None,
         });
-        let clear = gpu.module("shadow tiles, empty", shader::SHADOW_CLEAR);
+        let clear = shader::module(gpu, "shadow tiles, empty", shader::SHADOW_CLEAR);
         let clear = shader::screen(
             gpu,
             &Screen {

@@ -205,7 +205,7 @@ fn pipeline(
     shader: shader::Shader,
     vertex: &str,
 ) -> wgpu::RenderPipeline {
-    let module = gpu.module("stereo trial", shader);
+    let module = shader::module(gpu, "stereo trial", shader);
     gpu.render_pipeline(&wgpu::RenderPipelineDescriptor {
         label: Some("stereo trial"),
         layout: Some(&gpu.pipeline_layout("stereo trial", &[])),

@@ -94,7 +94,7 @@ impl BinPass {
             Some(Rates::Samples) => &["RATED"],
             Some(Rates::Tiles(_)) => &["TILED"],
         });
-        let module = gpu.module("binning", shader);
+        let module = shader::module(gpu, "binning", shader);
         let constant = rates.and_then(Rates::constant);
         let pipeline = |entry, constants: &[_]| {
             let groups = [frame_layout, &layout];

@@ -56,7 +56,7 @@ impl VisiblePass {
         };
         let pipelines = Pipelines::new(PipelineRecipe {
             label: "visibility",
-            module: gpu.module("visibility", shader),
+            module: shader::module(gpu, "visibility", shader),
             layout: gpu.pipeline_layout("visibility", layouts),
             vertex,
             fragment,

@@ -93,7 +93,7 @@ impl ResolvePass {
         );
         let written = u8::from(face_normals == FaceNormals::Written);
         Self {
-            module: gpu.module("materials of triangles", shader_of(listed, by)),
+            module: shader::module(gpu, "materials of triangles", shader_of(listed, by)),
             layout: gpu.pipeline_layout(
                 "materials of triangles",
                 &[frame, material, geometry, &group_layout],

@@ -41,7 +41,7 @@ impl ComputeBackend {
             shade: shader::compute(
                 gpu,
                 "coarse shading, list",
-                &gpu.module("coarse shading, list", shader),
+                &shader::module(gpu, "coarse shading, list", shader),
                 "shade_tiles",
                 &[frame_layout, input_layout, &shade_layout],
                 &shading_constants(gpu, settings),

@@ -36,7 +36,7 @@ impl CountPass {
         let pipeline = shader::compute(
             gpu,
             "tile counting",
-            &gpu.module("tile counting", shader::SHADING_COARSE_LIST),
+            &shader::module(gpu, "tile counting", shader::SHADING_COARSE_LIST),
             "count_tiles",
             &[frame_layout, &layout],
             &[("COARSEST", f64::from(settings.coarse.coarsest_level))],

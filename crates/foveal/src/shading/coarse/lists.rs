@@ -76,7 +76,7 @@ impl TileListing {
             list: shader::compute(
                 gpu,
                 "tile listing",
-                &gpu.module("tile listing", shader::SHADING_COARSE_LIST),
+                &shader::module(gpu, "tile listing", shader::SHADING_COARSE_LIST),
                 "list_tiles",
                 &[frame_layout, &list_layout],
                 &[("COARSEST", f64::from(settings.coarse.coarsest_level))],
@@ -84,7 +84,7 @@ impl TileListing {
             size: shader::compute(
                 gpu,
                 "tile dispatches",
-                &gpu.module("tile dispatches", shader::SHADING_COARSE_DISPATCH),
+                &shader::module(gpu, "tile dispatches", shader::SHADING_COARSE_DISPATCH),
                 "size_dispatches",
                 &[&size_layout],
                 &[],

@@ -79,7 +79,7 @@ impl StencilBackend {
             };
             formats.iter().map(target).collect()
         };
-        let marks = gpu.module("tile marks", shader::SHADING_COARSE_MARK);
+        let marks = shader::module(gpu, "tile marks", shader::SHADING_COARSE_MARK);
         let mark = shader::screen(
             gpu,
             &Screen {
@@ -95,7 +95,7 @@ impl StencilBackend {
             },
         );
         let constants = shading_constants(gpu, settings);
-        let blocks = gpu.module("coarse shading, draw", shader);
+        let blocks = shader::module(gpu, "coarse shading, draw", shader);
         let shade = shader::screen(
             gpu,
             &Screen {

@@ -82,7 +82,7 @@ impl HistoryPasses {
                 pipeline: shader::compute(
                     gpu,
                     label,
-                    &gpu.module(label, shader),
+                    &shader::module(gpu, label, shader),
                     entry,
                     &groups,
                     constants,

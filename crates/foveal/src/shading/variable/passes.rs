@@ -106,7 +106,7 @@ impl RatePasses {
         let shade_layout = layout("rate samples", &[read, read, radiance]);
         let pipeline =
             |label, shader, entry, groups: &[&wgpu::BindGroupLayout], constants: &[_]| {
-                let module = gpu.module(label, shader);
+                let module = shader::module(gpu, label, shader);
                 shader::compute(gpu, label, &module, entry, groups, constants)
             };
         let buffer = |label, size: usize| {

@@ -38,7 +38,7 @@ impl RateView {
         let pipeline = shader::full_screen(
             gpu,
             "rate view",
-            &gpu.module("rate view", shader::SHADING_VARIABLE_VIEW),
+            &shader::module(gpu, "rate view", shader::SHADING_VARIABLE_VIEW),
             "show",
             &[frame_layout, &layout],
             PICTURE_FORMAT,
