@@ -38,11 +38,15 @@ impl VariableStage {
         frame_layout: &wgpu::BindGroupLayout,
         input_layout: &wgpu::BindGroupLayout,
     ) -> Self {
+        let forced = settings.rate.force;
+        // As with coarse shading: what is forced has no use for comparisons, and benches would time
+        // them.
+        let compares = gpu.tells_times() && !forced;
         Self {
             passes: RatePasses::new(gpu, settings, frame_layout, input_layout),
             view: RateView::new(gpu, settings.picture.view, frame_layout),
             probes: Probes::default(),
-            balance: Balance::new(settings.rate.force, UNCOMPARED, gpu.tells_times()),
+            balance: Balance::new(forced, UNCOMPARED, compares),
             costs: VariableStats::default(),
             last: None,
             frame: 0,
