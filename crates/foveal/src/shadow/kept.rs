@@ -18,10 +18,8 @@ pub(super) struct Kept {
     pub(super) is_drawn: bool,
     /// What it was drawn for last.
     held: Option<Volume>,
-    /// The first frame that has to draw it, where it is not drawn.
-    missing_since: u64,
-    /// A frame's budget has left it for a later one.
-    pub(super) waits: bool,
+    /// The first frame whose budget left it for a later one, where it still is.
+    waits_since: Option<u64>,
     /// Casters that it was drawn without, as nobody has seen their shadows yet: instances, ascending.
     pub(super) left_out: Vec<u32>,
     /// What it has been drawn for: shadows of what is left out fall on none of it.
@@ -39,9 +37,7 @@ pub(super) struct Kept {
 impl Kept {
     /// What it holds is wrong from the frame after this one on.
     fn disturb(&mut self, frame: u64) {
-        if std::mem::replace(&mut self.is_drawn, false) {
-            self.missing_since = frame + 1;
-        }
+        self.is_drawn = false;
         self.is_restless = self.disturbed_in.is_some_and(|before| before + 1 >= frame);
         self.light_moves = false;
         self.disturbed_in = Some(frame);
@@ -134,7 +130,7 @@ impl KeptTiles {
         if let Some(kept) = self.tiles.get_mut(&key(want)) {
             kept.is_drawn = true;
             kept.held = Some(kept.volume);
-            kept.waits = false;
+            kept.waits_since = None;
             kept.left_out = left_out;
         }
     }
@@ -144,10 +140,18 @@ impl KeptTiles {
         std::mem::take(&mut self.is_new)
     }
 
-    /// Frames for which a tile that is not drawn has been waiting.
+    /// A tile has to wait in this frame.
+    pub(super) fn wait(&mut self, want: &Wanted) {
+        let frame = self.frame;
+        if let Some(kept) = self.get_mut(want) {
+            kept.waits_since.get_or_insert(frame);
+        }
+    }
+
+    /// Frames since the first one in which a tile had to wait.
     pub(super) fn waited(&self, want: &Wanted) -> u64 {
-        let since = self.get(want).map_or(self.frame, |k| k.missing_since);
-        self.frame.saturating_sub(since)
+        let since = self.get(want).and_then(|kept| kept.waits_since);
+        since.map_or(0, |since| self.frame - since)
     }
 
     /// How urgently a tile that is not drawn is to be drawn.
@@ -171,7 +175,7 @@ impl KeptTiles {
         if kept.is_drawn {
             return Some((kept.tile, kept.volume));
         }
-        self.stand_in(want).filter(|_| kept.waits)
+        self.stand_in(want).filter(|_| kept.waits_since.is_some())
     }
 
     /// What can be looked into in place of a tile that is not drawn.
@@ -191,9 +195,7 @@ impl KeptTiles {
     pub(super) fn draw_in_full(&mut self) {
         for kept in self.tiles.values_mut().filter(|k| !k.left_out.is_empty()) {
             kept.left_out.clear();
-            if std::mem::replace(&mut kept.is_drawn, false) {
-                kept.missing_since = self.frame;
-            }
+            kept.is_drawn = false;
         }
     }
 
@@ -276,8 +278,7 @@ impl KeptTiles {
             volume: want.volume,
             is_drawn: false,
             held: None,
-            missing_since: self.frame,
-            waits: false,
+            waits_since: None,
             left_out: Vec::new(),
             received: None,
             wanted_in: self.frame,
@@ -461,11 +462,15 @@ mod tests {
         kept.drawn(&small, Vec::new());
         kept.place(&[large, want(1, 5)], true);
         assert_eq!(kept.urgency(&large), Urgency::Waits(0));
-        assert_eq!(kept.urgency(&want(1, 5)), Urgency::Waits(AHEAD + 1));
         // Nobody looks into it, unless it waits.
         assert_eq!(kept.shown(&large), None);
-        kept.get_mut(&large).unwrap().waits = true;
-        kept.get_mut(&want(1, 5)).unwrap().waits = true;
+        kept.wait(&large);
+        kept.wait(&want(1, 5));
+        kept.place(&[large, want(1, 5)], true);
+        kept.wait(&want(1, 5));
+        kept.place(&[large, want(1, 5)], true);
+        assert_eq!(kept.urgency(&large), Urgency::Waits(2));
+        assert_eq!(kept.urgency(&want(1, 5)), Urgency::Waits(AHEAD + 2));
         let of_small = Some((kept.get(&small).unwrap().tile, small.volume));
         assert_eq!(kept.shown(&large), of_small);
         assert_eq!(kept.shown(&want(1, 5)), None);
@@ -475,9 +480,8 @@ mod tests {
         // What it held stands in for it, although another size is drawn.
         kept.get_mut(&large).unwrap().disturb(2);
         kept.place(&[large], true);
-        kept.place(&[large], true);
-        assert_eq!(kept.urgency(&large), Urgency::Waits(1));
-        kept.get_mut(&large).unwrap().waits = true;
+        assert_eq!(kept.urgency(&large), Urgency::Waits(0));
+        kept.wait(&large);
         assert_eq!(kept.shown(&large), of_large);
         // Of another light's place nothing can be shown.
         let moved = Wanted {

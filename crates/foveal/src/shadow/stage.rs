@@ -418,12 +418,12 @@ impl Drawing {
                 continue;
             }
             if may_wait {
-                kept.waits = true;
+                self.kept.wait(want);
                 self.counts.waiting += 1;
                 self.counts.longest_wait = self.counts.longest_wait.max(waited + 1);
                 continue;
             }
-            if kept.waits {
+            if waited > 0 {
                 self.changed.push(volume.sphere());
             }
             let casters = casters.get_or_insert_with(|| {
