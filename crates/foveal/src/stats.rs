@@ -113,7 +113,8 @@ pub struct VariableStats {
     pub reproject_ms: f64,
     /// Sorting pixels by material; 0 without a visibility buffer.
     pub binning_ms: f64,
-    /// The stages that run at the rate, in full; as of the last comparison.
+    /// The stages that run at the rate, in full; as of the last comparison, of
+    /// which there is none where `force-rate` is set.
     pub full_ms: f64,
     /// The same at the rate, in the same frame.
     pub variable_ms: f64,
@@ -161,7 +162,7 @@ pub struct ShadowStats {
     pub triangles: u64,
     /// Texels of the tiles that the frame may look into.
     pub texels: u64,
-    /// Tiles that the budget left for a later frame: they show what they held, or nothing yet.
+    /// Tiles that the budget left for a later frame: they show older shadows, or none yet.
     pub tiles_waiting: u64,
     /// Frames for which the one of them has waited that waits longest.
     pub longest_wait: u64,

@@ -34,9 +34,10 @@ impl Moment {
 /// Two threads that ask for the same thing at once make it once.
 #[derive(Debug)]
 struct Place<V> {
-    /// The first and the last request for it.
-    asked: [u64; 2],
-    thing: Arc<OnceLock<V>>,
+    /// The last request for it.
+    asked: u64,
+    /// With the number of requests when its making began.
+    thing: Arc<OnceLock<(u64, V)>>,
 }
 
 /// Things by what they were asked for as.
@@ -54,24 +55,28 @@ impl<K: Hash + Eq, V: Clone> Shelf<K, V> {
         let place = {
             let mut places = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             if places.len() >= MOST && !places.contains_key(&key) {
-                let oldest = places.values().map(|place| place.asked[1]).min();
-                places.retain(|_, place| Some(place.asked[1]) != oldest);
+                let oldest = places.values().map(|place| place.asked).min();
+                places.retain(|_, place| Some(place.asked) != oldest);
             }
             let request = REQUESTS.fetch_add(1, Ordering::Relaxed);
             let place = places.entry(key).or_insert_with(|| Place {
-                asked: [request; 2],
+                asked: request,
                 thing: Arc::default(),
             });
-            place.asked[1] = request;
+            place.asked = request;
             Arc::clone(&place.thing)
         };
-        place.get_or_init(make).clone()
+        let made = || {
+            let number = REQUESTS.fetch_add(1, Ordering::Relaxed);
+            (number, make())
+        };
+        place.get_or_init(made).1.clone()
     }
 
     fn forget(&self, since: Moment) {
         (self.0.lock())
             .unwrap_or_else(PoisonError::into_inner)
-            .retain(|_, place| place.asked[0] < since.0);
+            .retain(|_, place| place.thing.get().is_none_or(|made| made.0 < since.0));
     }
 
     #[cfg(test)]
@@ -83,7 +88,7 @@ impl<K: Hash + Eq, V: Clone> Shelf<K, V> {
 /// A shader's file, and the names that its variant defines.
 pub(crate) type ShaderName = (&'static str, &'static [&'static str]);
 
-#[derive(Debug, Default)]
+#[derive(Default)]
 pub(super) struct Compiled {
     group_layouts: Shelf<(String, Vec<wgpu::BindGroupLayoutEntry>), wgpu::BindGroupLayout>,
     layouts: Shelf<(String, Vec<wgpu::BindGroupLayout>), wgpu::PipelineLayout>,
@@ -182,6 +187,12 @@ impl RenderKey {
             fragment,
             multiview_mask: wanted.multiview_mask,
         }
+    }
+}
+
+impl std::fmt::Debug for Compiled {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Compiled").finish_non_exhaustive()
     }
 }
 

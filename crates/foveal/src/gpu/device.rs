@@ -273,7 +273,7 @@ impl Gpu {
         self.compiled.forget(since);
     }
 
-    /// Lets go of compiled pipelines that no renderer uses. A device keeps some hundreds of the last
+    /// Lets go of compiled pipelines; renderers keep theirs. A device keeps some hundreds of the last
     /// ones, so that settings that come back and further renderers need not compile them again.
     pub fn trim(&self) {
         self.compiled.forget(Moment::FIRST);

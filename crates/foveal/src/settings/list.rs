@@ -113,9 +113,9 @@ settings! {
         /// small atlas for what is seen sharply. Other ways of shading always take view.
         shadow_sizes => shadow_sizes: ShadowSizes = ShadowSizes::default(), "Shadow sizes", Kind::choice::<ShadowSizes>();
         /// Triangles that a frame draws into shadow tiles; 0 sets no limit. A frame stops after the
-        /// tile that reaches it. What waits shows its shadows of some frames before, or in other
-        /// sizes. A scene's first frame draws all tiles, and tiles of a light that has moved do not
-        /// wait.
+        /// tile by which it has drawn so many. Tiles that wait show shadows of some frames before, or
+        /// of another size, or none yet. A scene's first frame draws all tiles, and tiles of a light
+        /// that has moved do not wait.
         shadow_budget => shadow_budget: u32 = 0, "Shadow budget", Kind::Integer { least: 0, most: 100_000_000 };
         /// Radius of point and spot lamps in metres, by which contact shadows fade.
         light_radius => light_radius_m: f32 = 0.05, "Lamp radius", Kind::Number { least: 0.0, most: 0.5 };

@@ -23,7 +23,7 @@ fn limited(triangles: u32) -> Settings {
 fn stalls() -> Scene {
     let options = generate::DemoOptions {
         instances: 1_000,
-        lights: 14,
+        lights: 5,
         ..Default::default()
     };
     generate::demo(&options).expect("it is generated")
@@ -103,33 +103,31 @@ fn tiles_that_see_a_thing_move_show_what_they_held_and_each_has_its_turn() {
     let camera = scene.cameras[0].clone();
     let mut film = Film::new(&scene, &limited(1));
     let mut unlimited = Film::new(&scene, &limited(0));
-    let (before, _) = draw(&mut film, &camera);
+    let (before, stats) = draw(&mut film, &camera);
+    let tiles = stats.tiles;
     draw(&mut unlimited, &camera);
-    let mut longest = 0;
+    let (mut longest, mut busiest, mut expected) = (0, 0, Vec::new());
     let instances = scene.instances.len();
-    let mut expected = Vec::new();
-    for _ in 0..16 {
+    for _ in 0..2 * tiles + 10 {
         shift(
             &mut scene,
-            (0..instances).step_by(97),
-            Vec3::new(0.02, 0.0, 0.01),
+            (0..instances).step_by(13),
+            Vec3::new(0.004, 0.0, 0.002),
         );
         let (_, stats) = draw_pose(&mut film, &scene, &camera);
-        assert!(
-            stats.tiles_drawn <= 1 && stats.tiles_waiting > 3,
-            "{stats:?}"
-        );
+        assert!(stats.tiles_drawn == 1, "{stats:?}");
         longest = longest.max(stats.longest_wait);
         let all = draw_pose(&mut unlimited, &scene, &camera);
         expected = all.0;
-        assert!(all.1.tiles_waiting == 0 && all.1.tiles_drawn > 3);
+        assert_eq!(all.1.tiles_waiting, 0);
+        busiest = busiest.max(all.1.tiles_drawn);
     }
-    let (_, tiles) = draw_pose(&mut film, &scene, &camera);
+    // One after the other, so that none waits for longer than all others take.
     assert!(
-        longest <= tiles.tiles,
-        "{longest} frames, {} tiles",
-        tiles.tiles
+        busiest > 5 && longest + 1 >= busiest,
+        "{longest} frames, {busiest} tiles"
     );
+    assert!(longest <= tiles, "{longest} frames, {tiles} tiles");
     let (shown, _) = settle(&mut film, &camera);
     assert!(before != shown);
     assert_eq!(off(&shown, &expected), (0, 0));
@@ -143,14 +141,17 @@ fn tiles_of_a_light_that_has_moved_do_not_wait() {
     let mut unlimited = Film::new(&scene, &limited(0));
     draw(&mut film, &camera);
     draw(&mut unlimited, &camera);
-    for _ in 0..3 {
+    for step in 0..6 {
         for light in &mut scene.lights {
             light.position.x += 0.05;
             light.direction = (light.direction + Vec3::new(0.02, 0.0, 0.0)).normalize();
         }
         let (shown, stats) = draw_pose(&mut film, &scene, &camera);
         let (expected, all) = draw_pose(&mut unlimited, &scene, &camera);
-        assert!(stats.tiles_drawn > 20 && stats.tiles_drawn == all.tiles_drawn);
+        assert!(
+            stats.tiles_drawn > 5 && stats.tiles_drawn == all.tiles_drawn,
+            "{step}"
+        );
         assert_eq!(off(&shown, &expected), (0, 0));
     }
 }

@@ -18,8 +18,6 @@ pub(super) struct Kept {
     pub(super) is_drawn: bool,
     /// What it was drawn for last.
     held: Option<Volume>,
-    /// The first frame whose budget left it for a later one, where it still is.
-    waits_since: Option<u64>,
     /// Casters that it was drawn without, as nobody has seen their shadows yet: instances, ascending.
     pub(super) left_out: Vec<u32>,
     /// What it has been drawn for: shadows of what is left out fall on none of it.
@@ -74,6 +72,16 @@ pub(super) struct KeptTiles {
     frame: u64,
     /// Nothing has been drawn since all tiles were placed anew.
     is_new: bool,
+    /// By slot: tiles that a frame's budget has left for a later one, and that are not drawn yet.
+    waits: BTreeMap<u32, Wait>,
+}
+
+/// Frames that had to wait for a slot's tile, of whatever size: the first without a break, and the
+/// last.
+#[derive(Clone, Copy, Debug)]
+struct Wait {
+    first: u64,
+    last: u64,
 }
 
 /// How urgently a tile is to be drawn.
@@ -100,6 +108,7 @@ impl KeptTiles {
             tiles: BTreeMap::new(),
             frame: 0,
             is_new: true,
+            waits: BTreeMap::new(),
         }
     }
 
@@ -125,14 +134,14 @@ impl KeptTiles {
         tiles.next().is_some()
     }
 
-    /// The tile has been drawn, without some casters.
-    pub(super) fn drawn(&mut self, want: &Wanted, left_out: Vec<u32>) {
+    /// The tile has been drawn, without some casters. Whether a frame had to wait for it.
+    pub(super) fn drawn(&mut self, want: &Wanted, left_out: Vec<u32>) -> bool {
         if let Some(kept) = self.tiles.get_mut(&key(want)) {
             kept.is_drawn = true;
             kept.held = Some(kept.volume);
-            kept.waits_since = None;
             kept.left_out = left_out;
         }
+        self.waits.remove(&want.slot).is_some()
     }
 
     /// Whether all tiles have been placed anew since this was asked last.
@@ -143,51 +152,61 @@ impl KeptTiles {
     /// A tile has to wait in this frame.
     pub(super) fn wait(&mut self, want: &Wanted) {
         let frame = self.frame;
-        if let Some(kept) = self.get_mut(want) {
-            kept.waits_since.get_or_insert(frame);
+        let first = frame - self.waited(want);
+        (self.waits).insert(want.slot, Wait { first, last: frame });
+        // What is looked into meanwhile keeps its place.
+        if let Some((level, _)) = self.stand_in(want)
+            && let Some(kept) = self.tiles.get_mut(&(want.slot, level))
+        {
+            kept.wanted_in = frame;
         }
     }
 
-    /// Frames since the first one in which a tile had to wait.
+    /// Frames before this one that had to wait for a tile without a break.
     pub(super) fn waited(&self, want: &Wanted) -> u64 {
-        let since = self.get(want).and_then(|kept| kept.waits_since);
-        since.map_or(0, |since| self.frame - since)
+        let wait = self.waits.get(&want.slot);
+        let wait = wait.filter(|wait| wait.last + 1 >= self.frame);
+        wait.map_or(0, |wait| self.frame - wait.first)
     }
 
     /// How urgently a tile that is not drawn is to be drawn.
     pub(super) fn urgency(&self, want: &Wanted) -> Urgency {
-        let held = self.get(want).and_then(|kept| kept.held);
-        if held.is_some_and(|held| !want.volume.can_look_into(&held)) {
+        let waited = self.waited(want);
+        if self.stand_in(want).is_some() {
+            return Urgency::Waits(waited);
+        }
+        let mut sizes = self.sizes_of(want.slot);
+        if sizes.any(|(_, kept)| kept.held.is_some()) {
             return Urgency::Now;
         }
-        let ahead = if self.stand_in(want).is_some() {
-            0
-        } else {
-            AHEAD
-        };
-        Urgency::Waits(self.waited(want) + ahead)
+        Urgency::Waits(waited + AHEAD)
     }
 
-    /// Where shaders look for a wanted tile, and what is there: the tile, or while it waits what it
-    /// held before or what one of another size holds.
+    /// Where shaders look for a wanted tile, and what is there: the tile, or in a frame in which it
+    /// has to wait what it held before or what one of another size holds.
     pub(super) fn shown(&self, want: &Wanted) -> Option<(Tile, Volume)> {
         let kept = self.get(want)?;
         if kept.is_drawn {
             return Some((kept.tile, kept.volume));
         }
-        self.stand_in(want).filter(|_| kept.waits_since.is_some())
+        let wait = self.waits.get(&want.slot);
+        wait.filter(|wait| wait.last == self.frame)?;
+        self.stand_in(want).map(|(_, shown)| shown)
+    }
+
+    /// A slot's tiles by their levels.
+    fn sizes_of(&self, slot: u32) -> impl Iterator<Item = (u32, &Kept)> {
+        let sizes = self.tiles.range((slot, 0)..(slot + 1, 0));
+        sizes.map(|(&(_, level), kept)| (level, kept))
     }
 
     /// What can be looked into in place of a tile that is not drawn.
-    fn stand_in(&self, want: &Wanted) -> Option<(Tile, Volume)> {
-        let sizes = self.tiles.range((want.slot, 0)..(want.slot + 1, 0));
-        sizes
-            .filter_map(|(&(_, level), kept)| {
-                let held = kept.held.filter(|held| want.volume.can_look_into(held))?;
-                Some((level, (kept.tile, held)))
-            })
-            .min_by_key(|&(level, _)| (level.abs_diff(want.level), level))
-            .map(|(_, shown)| shown)
+    fn stand_in(&self, want: &Wanted) -> Option<(u32, (Tile, Volume))> {
+        let usable = self.sizes_of(want.slot).filter_map(|(level, kept)| {
+            let held = kept.held.filter(|held| want.volume.can_look_into(held))?;
+            Some((level, (kept.tile, held)))
+        });
+        usable.min_by_key(|&(level, _)| (level.abs_diff(want.level), level))
     }
 
     /// Tiles that were drawn without some casters must be drawn again: nobody says any more what is
@@ -278,7 +297,6 @@ impl KeptTiles {
             volume: want.volume,
             is_drawn: false,
             held: None,
-            waits_since: None,
             left_out: Vec::new(),
             received: None,
             wanted_in: self.frame,
@@ -291,7 +309,9 @@ impl KeptTiles {
 
     /// From the largest to the smallest all fit.
     fn place_anew(&mut self, wanted: &[Wanted]) {
+        let waits = std::mem::take(&mut self.waits);
         self.forget();
+        self.waits = waits;
         let mut wanted = wanted.to_vec();
         wanted.sort_by_key(|want| (std::cmp::Reverse(want.level), want.slot));
         for want in &wanted {
@@ -456,25 +476,26 @@ mod tests {
     fn a_tile_that_waits_shows_what_it_held_or_what_another_size_holds() {
         let mut kept = KeptTiles::new(8);
         assert!(kept.take_is_new() && !kept.take_is_new());
-        let (small, large) = (want(0, 4), want(0, 6));
-        kept.place(&[small, want(1, 5)], true);
+        let (small, large, other) = (want(0, 4), want(0, 6), want(1, 5));
+        kept.place(&[small, other], true);
         assert_eq!(kept.urgency(&small), Urgency::Waits(AHEAD));
-        kept.drawn(&small, Vec::new());
-        kept.place(&[large, want(1, 5)], true);
-        assert_eq!(kept.urgency(&large), Urgency::Waits(0));
+        assert!(!kept.drawn(&small, Vec::new()));
+        kept.place(&[large, other], true);
         // Nobody looks into it, unless it waits.
         assert_eq!(kept.shown(&large), None);
-        kept.wait(&large);
-        kept.wait(&want(1, 5));
-        kept.place(&[large, want(1, 5)], true);
-        kept.wait(&want(1, 5));
-        kept.place(&[large, want(1, 5)], true);
-        assert_eq!(kept.urgency(&large), Urgency::Waits(2));
-        assert_eq!(kept.urgency(&want(1, 5)), Urgency::Waits(AHEAD + 2));
-        let of_small = Some((kept.get(&small).unwrap().tile, small.volume));
-        assert_eq!(kept.shown(&large), of_small);
-        assert_eq!(kept.shown(&want(1, 5)), None);
-        kept.drawn(&large, Vec::new());
+        for frame in 0..3 {
+            assert_eq!(kept.urgency(&large), Urgency::Waits(frame));
+            assert_eq!(kept.urgency(&other), Urgency::Waits(AHEAD + frame));
+            kept.wait(&large);
+            kept.wait(&other);
+            let of_small = Some((kept.get(&small).unwrap().tile, small.volume));
+            assert_eq!(kept.shown(&large), of_small);
+            assert_eq!(kept.shown(&other), None);
+            kept.place(&[large, other], true);
+        }
+        // Another size of the slot has waited as long.
+        assert_eq!(kept.waited(&want(0, 5)), 3);
+        assert!(kept.drawn(&large, Vec::new()));
         let of_large = Some((kept.get(&large).unwrap().tile, large.volume));
         assert_eq!(kept.shown(&large), of_large);
         // What it held stands in for it, although another size is drawn.
@@ -483,14 +504,45 @@ mod tests {
         assert_eq!(kept.urgency(&large), Urgency::Waits(0));
         kept.wait(&large);
         assert_eq!(kept.shown(&large), of_large);
-        // Of another light's place nothing can be shown.
-        let moved = Wanted {
-            volume: want(6, 6).volume,
-            ..large
-        };
-        kept.place(&[moved], true);
-        assert_eq!(kept.urgency(&moved), Urgency::Now);
-        assert_eq!(kept.shown(&moved), None);
+        // Frames that do not see it end its wait.
+        kept.place(&[large], true);
+        kept.place(&[large], true);
+        assert_eq!((kept.waited(&large), kept.shown(&large)), (0, None));
+        assert!(kept.drawn(&large, Vec::new()), "what was lit meanwhile");
+    }
+
+    #[test]
+    fn a_tile_of_a_light_that_has_moved_is_drawn_now_whatever_its_size() {
+        let mut kept = KeptTiles::new(8);
+        kept.place(&[want(0, 5)], true);
+        kept.drawn(&want(0, 5), Vec::new());
+        for level in [5, 6] {
+            let moved = Wanted {
+                volume: want(6, level).volume,
+                ..want(0, level)
+            };
+            kept.place(&[moved], true);
+            assert_eq!(kept.urgency(&moved), Urgency::Now);
+            assert_eq!(kept.shown(&moved), None);
+        }
+    }
+
+    #[test]
+    fn what_stands_in_keeps_its_place_while_it_does() {
+        let mut kept = KeptTiles::new(6);
+        let (small, large) = (want(0, 4), want(0, 5));
+        kept.place(&[small, want(1, 5)], true);
+        kept.drawn(&small, Vec::new());
+        kept.drawn(&want(1, 5), Vec::new());
+        kept.place(&[large], true);
+        kept.wait(&large);
+        kept.place(&[large], true);
+        kept.wait(&large);
+        // One of the other two must go: what nobody has looked at for longer.
+        kept.place(&[large, want(2, 5), want(3, 5)], true);
+        kept.wait(&large);
+        assert!(kept.get(&want(1, 5)).is_none());
+        assert!(kept.shown(&large).is_some());
     }
 
     #[test]

@@ -294,6 +294,26 @@ impl<'a> Seen<'a> {
     }
 }
 
+/// A light of which tiles are missing.
+struct NearLight<'a> {
+    reach: Reach,
+    near: Near<'a>,
+    /// Instances within its reach, once they are asked for.
+    casters: Option<Vec<u32>>,
+}
+
+impl<'a> NearLight<'a> {
+    /// The light of these tiles.
+    fn new(scene: &'a SceneOnGpu, receivers: Seen<'a>, wanted: &[Wanted]) -> Self {
+        let reach = Reach::of(wanted);
+        Self {
+            reach,
+            near: receivers.near(scene, reach),
+            casters: None,
+        }
+    }
+}
+
 impl Near<'_> {
     /// Whether a tile of `side` texels sees any of it.
     fn meets(&self, volume: &Volume, side: f32) -> bool {
@@ -339,21 +359,35 @@ impl Drawing {
         };
         let missing = |want: &&Wanted| self.kept.get(want).is_some_and(|k| !k.is_drawn);
         let missing: Vec<Wanted> = self.plan.wanted.iter().filter(missing).copied().collect();
-        let mut lights: Vec<&[Wanted]> = missing
-            .chunk_by(|a, b| light_of(a) == light_of(b))
-            .collect();
-        let is_new = self.kept.take_is_new();
-        let most = match self.budget {
-            0 => u64::MAX,
-            _ if is_new => u64::MAX,
-            most => {
-                let urgency = |want: &Wanted| (self.kept.urgency(want), want.level);
-                lights.sort_by_cached_key(|tiles| Reverse(tiles.iter().map(urgency).max()));
-                most
+        let mut lights: Vec<NearLight<'_>> = Vec::new();
+        let mut tiles: Vec<(Wanted, usize)> = Vec::new();
+        for of_light in missing.chunk_by(|a, b| light_of(a) == light_of(b)) {
+            let light = NearLight::new(scene, receivers, of_light);
+            let seen = |want: &&Wanted| {
+                let kept = self.kept.get(want);
+                kept.is_some_and(|k| light.near.meets(&want.volume, k.tile.side() as f32))
+            };
+            let seen = of_light.iter().filter(seen);
+            tiles.extend(seen.map(|&want| (want, lights.len())));
+            lights.push(light);
+        }
+        let is_limited = self.budget > 0 && !self.kept.take_is_new();
+        if is_limited {
+            tiles.sort_by_cached_key(|(want, _)| Reverse((self.kept.urgency(want), want.level)));
+        }
+        // Of tiles that may wait.
+        let mut triangles = 0;
+        for (want, light) in tiles {
+            let may_wait = is_limited && matches!(self.kept.urgency(&want), Urgency::Waits(_));
+            if may_wait && triangles >= self.budget {
+                let waited = self.kept.waited(&want) + 1;
+                self.kept.wait(&want);
+                self.counts.waiting += 1;
+                self.counts.longest_wait = self.counts.longest_wait.max(waited);
+                continue;
             }
-        };
-        for of_light in lights {
-            self.list_draws(scene, receivers, of_light, most);
+            let drawn = self.list_draw(scene, &mut lights[light], &want);
+            triangles += if may_wait { drawn } else { 0 };
         }
         self.seen = seen;
     }
@@ -392,87 +426,64 @@ impl Drawing {
         }
     }
 
-    /// Lists the draws of one light's tiles, while the frame draws fewer triangles than `most`. What
-    /// is left waits, but for tiles that hold what is wrong everywhere.
-    fn list_draws(
-        &mut self,
-        scene: &SceneOnGpu,
-        receivers: Seen<'_>,
-        wanted: &[Wanted],
-        most: u64,
-    ) {
-        let reach = Reach::of(wanted);
+    /// Lists the draws of a tile of a light; their triangles.
+    fn list_draw(&mut self, scene: &SceneOnGpu, light: &mut NearLight<'_>, want: &Wanted) -> u64 {
         let bounds = |i: u32| &scene.instances[i as usize].bounds;
-        let near = receivers.near(scene, reach);
-        let mut casters: Option<Vec<u32>> = None;
-        for want in wanted {
-            let may_wait = self.counts.triangles >= most
-                && matches!(self.kept.urgency(want), Urgency::Waits(_));
-            let waited = self.kept.waited(want);
-            let Some(kept) = self.kept.get_mut(want) else {
-                continue;
-            };
-            let (tile, volume) = (kept.tile, &want.volume);
-            let side = tile.side() as f32;
-            if !near.meets(volume, side) {
-                continue;
+        let Some(kept) = self.kept.get_mut(want) else {
+            return 0;
+        };
+        let (tile, volume) = (kept.tile, &want.volume);
+        let side = tile.side() as f32;
+        let reach = light.reach;
+        let casters = light.casters.get_or_insert_with(|| {
+            (0..)
+                .zip(&scene.instances)
+                .filter(|(_, i)| casts(scene, i, reach.sphere) && reach.meets(&i.bounds))
+                .map(|(number, _)| number)
+                .collect()
+        });
+        let is_cast = |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
+        let mut casters: Vec<u32> = casters.iter().copied().filter(is_cast).collect();
+        self.counts.in_reach += casters.len() as u64;
+        let mut left_out = Vec::new();
+        // A light that moves asks anew of all that is seen, for one frame: that takes longer than
+        // drawing what it would leave out.
+        if let Near::Cells(near) = &light.near
+            && !kept.light_moves
+        {
+            let all = casters.len();
+            // What changes in each frame is drawn sooner than it is searched.
+            if !kept.is_restless {
+                self.hidden
+                    .take_out(scene, volume, tile.side(), &mut casters);
             }
-            if may_wait {
-                self.kept.wait(want);
-                self.counts.waiting += 1;
-                self.counts.longest_wait = self.counts.longest_wait.max(waited + 1);
-                continue;
+            self.counts.hidden += (all - casters.len()) as u64;
+            let received =
+                (kept.received.take()).filter(|received| received.first + MOST_FRAMES > self.frame);
+            let mut received =
+                received.unwrap_or_else(|| Box::new(Received::new(side, self.frame)));
+            near.add_to(&mut received, volume, side);
+            (casters, left_out) = casters
+                .iter()
+                .partition(|&&i| received.mask.shows(volume, bounds(i)));
+            self.counts.unneeded += left_out.len() as u64;
+            if kept.is_restless || !left_out.is_empty() {
+                kept.received = Some(received);
             }
-            if waited > 0 {
-                self.changed.push(volume.sphere());
-            }
-            let casters = casters.get_or_insert_with(|| {
-                (0..)
-                    .zip(&scene.instances)
-                    .filter(|(_, i)| casts(scene, i, reach.sphere) && reach.meets(&i.bounds))
-                    .map(|(number, _)| number)
-                    .collect()
-            });
-            let is_cast =
-                |i: &u32| volume.resolves(bounds(*i), side) && volume.meets(bounds(*i), side);
-            let mut casters: Vec<u32> = casters.iter().copied().filter(is_cast).collect();
-            self.counts.in_reach += casters.len() as u64;
-            let mut left_out = Vec::new();
-            // A light that moves asks anew of all that is seen, for one frame: that takes longer than
-            // drawing what it would leave out.
-            if let Near::Cells(near) = &near
-                && !kept.light_moves
-            {
-                let all = casters.len();
-                // What changes in each frame is drawn sooner than it is searched.
-                if !kept.is_restless {
-                    self.hidden
-                        .take_out(scene, volume, tile.side(), &mut casters);
-                }
-                self.counts.hidden += (all - casters.len()) as u64;
-                let received = (kept.received.take())
-                    .filter(|received| received.first + MOST_FRAMES > self.frame);
-                let mut received =
-                    received.unwrap_or_else(|| Box::new(Received::new(side, self.frame)));
-                near.add_to(&mut received, volume, side);
-                (casters, left_out) = casters
-                    .iter()
-                    .partition(|&&i| received.mask.shows(volume, bounds(i)));
-                self.counts.unneeded += left_out.len() as u64;
-                if kept.is_restless || !left_out.is_empty() {
-                    kept.received = Some(received);
-                }
-            }
-            let casters = DrawList::of_casters(scene, casters.into_iter(), CasterPass::key);
-            self.counts.triangles += casters.triangles;
-            self.draws.push(TileDraw {
-                tile,
-                clip_from_world: volume.clip_from_world(side),
-                casters,
-                is_new: true,
-            });
-            self.kept.drawn(want, left_out);
         }
+        let casters = DrawList::of_casters(scene, casters.into_iter(), CasterPass::key);
+        let triangles = casters.triangles;
+        self.counts.triangles += triangles;
+        self.draws.push(TileDraw {
+            tile,
+            clip_from_world: volume.clip_from_world(side),
+            casters,
+            is_new: true,
+        });
+        if self.kept.drawn(want, left_out) {
+            self.changed.push(volume.sphere());
+        }
+        triangles
     }
 
     fn stats(&self) -> ShadowStats {
