@@ -266,7 +266,7 @@ impl Gpu {
     }
 }
 
-/// What is compiled once ([`Compiled`]).
+// What is compiled once.
 impl Gpu {
     /// Forgets what was compiled since then: something that could not be made may be among it.
     pub(super) fn forget_compiled(&self, since: Moment) {
