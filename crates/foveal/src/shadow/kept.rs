@@ -87,7 +87,7 @@ struct Wait {
 /// How urgently a tile is to be drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Urgency {
-    /// After so many frames more, where something is there to look into meanwhile.
+    /// It may wait, and has for so many frames; more where nothing stands in for it.
     Waits(u64),
     /// What it holds is wrong everywhere.
     Now,

@@ -48,7 +48,7 @@ struct Drawing {
     /// What the frame draws, and counts.
     draws: Vec<TileDraw>,
     counts: Counts,
-    /// Triangles that a frame draws; 0 for as many as it takes.
+    /// Triangles that a frame draws into tiles that may wait; 0 for as many as it takes.
     budget: u64,
     /// Spheres within which tiles that had waited have been drawn.
     changed: Vec<Place>,
