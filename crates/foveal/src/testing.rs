@@ -15,6 +15,37 @@ pub(crate) fn gpu() -> &'static Gpu {
     })
 }
 
+/// A device of one's own on the tests' adapter.
+pub(crate) fn gpu_with(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
+    pollster::block_on(async {
+        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
+            backends: wgpu::Backends::PRIMARY,
+            ..wgpu::InstanceDescriptor::new_without_display_handle()
+        });
+        let adapter = instance.request_adapter(&Default::default()).await;
+        let (device, queue) = (adapter.expect("the tests need a graphics adapter"))
+            .request_device(&wgpu::DeviceDescriptor {
+                required_features: features,
+                required_limits: limits,
+                ..Default::default()
+            })
+            .await
+            .expect("the adapter has what was asked for");
+        Gpu::from_device(device, queue)
+    })
+}
+
+/// A device that differs from the tests' own in the number of textures that a stage may read: tables
+/// lie in buffers, and triangles are numbered by the device.
+pub(crate) fn gpu_with_buffers() -> Gpu {
+    let limits = wgpu::Limits {
+        max_sampled_textures_per_shader_stage: Gpu::required_limits()
+            .max_sampled_textures_per_shader_stage,
+        ..gpu().device.limits()
+    };
+    gpu_with(gpu().device.features(), limits)
+}
+
 /// A renderer that has drawn `scene` once from `camera`.
 pub(crate) fn rendered(scene: &Scene, camera: &Camera, settings: &Settings) -> Renderer {
     rendered_on(gpu(), scene, camera, settings)

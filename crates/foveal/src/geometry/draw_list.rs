@@ -311,7 +311,7 @@ impl DrawList {
     }
 
     /// As [`DrawList::issue`], with the pipeline that each key gets; `pulled`: the shader fetches
-    /// the vertices.
+    /// the vertices, by indices that name them among all of the scene.
     pub(crate) fn issue_with<'p>(
         batches: &[Batch],
         pass: &mut wgpu::RenderPass<'_>,
@@ -339,11 +339,8 @@ impl DrawList {
             let mesh = scene.geometry.mesh(batch.mesh);
             let indices = mesh.indices(batch.key.shape != Shape::Triangles);
             let instances = drawn.range(batch.first, batch.count);
-            if pulled {
-                pass.draw(indices, instances);
-            } else {
-                pass.draw_indexed(indices, mesh.index_base, instances);
-            }
+            let base = if pulled { 0 } else { mesh.index_base };
+            pass.draw_indexed(indices, base, instances);
         }
     }
 

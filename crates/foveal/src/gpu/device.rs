@@ -245,6 +245,13 @@ impl Gpu {
         self.is_reduced() || most >= TEXTURES_WITH_TABLES && self.is_lavapipe()
     }
 
+    /// Whether fragment shaders get their triangle's number from the device, and soon: lavapipe takes
+    /// longer for it than for fetching vertices in the shader.
+    pub(crate) fn numbers_triangles(&self) -> bool {
+        let numbered = wgpu::Features::PRIMITIVE_INDEX;
+        self.device.features().contains(numbered) && !self.has_texture_tables()
+    }
+
     /// Whether a pass can draw to two layers at once; what comes of it is for a trial to find out.
     pub(crate) fn has_multiview(&self) -> bool {
         !self.is_reduced()

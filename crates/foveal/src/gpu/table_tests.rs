@@ -2,30 +2,9 @@
 
 use foveal_generate as generate;
 
-use super::{Gpu, is_reduced};
-use crate::testing::{gpu, picture, rendered_on, small};
+use super::is_reduced;
+use crate::testing::{gpu, gpu_with_buffers, picture, rendered_on, small};
 use crate::{Antialiasing, Geometry, LightAssignment, Settings, Shading, Shadows, Stereo};
-
-/// A device that differs from the tests' own in the number of textures that a stage may read: tables
-/// lie in buffers.
-fn gpu_with_buffers() -> Gpu {
-    pollster::block_on(async {
-        let adapter = super::adapter::choose(None).await.unwrap();
-        let (device, queue) = adapter
-            .request_device(&wgpu::DeviceDescriptor {
-                required_features: gpu().device.features(),
-                required_limits: wgpu::Limits {
-                    max_sampled_textures_per_shader_stage: Gpu::required_limits()
-                        .max_sampled_textures_per_shader_stage,
-                    ..gpu().device.limits()
-                },
-                ..Default::default()
-            })
-            .await
-            .unwrap();
-        Gpu::from_device(device, queue)
-    })
-}
 
 /// A scene, and how it is drawn.
 type Way = (&'static str, fn(&mut Settings));

@@ -3,6 +3,7 @@
 use bytemuck::{Pod, Zeroable};
 use foveal_scene::{Mesh, Scene, Vertex};
 
+use super::provoking::provoking_indices;
 use super::strokes;
 use super::uploads::Uploads;
 use crate::gpu::{Gpu, Table, bind_group};
@@ -73,7 +74,7 @@ fn vertex_counts(mesh: &Mesh) -> [u64; 2] {
 
 fn index_counts(mesh: &Mesh) -> [u64; 2] {
     let of_quads = mesh.stroke_count() * strokes::INDICES.len();
-    [mesh.indices.len(), of_quads].map(|count| count as u64)
+    [3 * mesh.triangle_count(), of_quads].map(|count| count as u64)
 }
 
 /// Where shaders find an instance's triangles: mirrors `Place` in `shared/attributes.wgsl`.
@@ -107,6 +108,9 @@ pub(crate) struct SceneGeometry {
     /// The pose of the frame before; the same buffer where nothing deforms.
     previous_vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
+    /// In the places of `indices`, those by which a vertex knows its triangle; `None` where the
+    /// device numbers triangles.
+    provoking: Option<wgpu::Buffer>,
     pub(super) meshes: Vec<MeshRange>,
     deforms: bool,
     places: Table,
@@ -164,6 +168,10 @@ impl SceneGeometry {
                 wgpu::BufferUsages::INDEX | wgpu::BufferUsages::STORAGE
             },
         );
+        let provoking = (!gpu.is_reduced() && !gpu.numbers_triangles()).then(|| {
+            let usage = wgpu::BufferUsages::INDEX;
+            buffer(gpu, "provoking indices", index_count * 4, usage)
+        });
         let mut uploads = Uploads::new(gpu);
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let (mut base_vertex, mut first_index) = (0u64, 0u64);
@@ -176,7 +184,7 @@ impl SceneGeometry {
             };
             let range = MeshRange {
                 first_index: first_index as u32,
-                index_count: mesh.indices.len() as u32,
+                index_count: index_counts(mesh)[0] as u32,
                 base_vertex: base_vertex as i32,
                 index_base,
                 stroke_index_count: index_counts(mesh)[1] as u32,
@@ -184,19 +192,26 @@ impl SceneGeometry {
                 first_stroke_vertex: (base_vertex + vertices_of_triangles) as u32,
             };
             write_vertices(&mut uploads, &vertices, mesh, range);
+            let corners = &mesh.indices[..range.index_count as usize];
+            if let Some(provoking) = &provoking {
+                let mut at = first_index * 4;
+                let first_triangle = range.first_index / 3;
+                let numbers = provoking_indices(corners, first_triangle, base_vertex as u32);
+                in_pieces(numbers, INDICES_AT_A_TIME, |some| {
+                    uploads.write(provoking, at, bytemuck::cast_slice(some));
+                    at += 4 * some.len() as u64;
+                });
+            }
             let mut write = |some: &[u32]| {
                 uploads.write(&indices, first_index * 4, bytemuck::cast_slice(some));
                 first_index += some.len() as u64;
             };
             if gpu.is_reduced() {
                 // WebGL 2 has no base vertex: there it is in the indices.
-                let shifted = mesh
-                    .indices
-                    .iter()
-                    .map(|i| i.wrapping_add(base_vertex as u32));
+                let shifted = corners.iter().map(|i| i.wrapping_add(base_vertex as u32));
                 in_pieces(shifted, INDICES_AT_A_TIME, &mut write);
             } else {
-                write(&mesh.indices);
+                write(corners);
             }
             let first = range.first_stroke_vertex - index_base as u32;
             let quads = (0..mesh.stroke_count() as u32)
@@ -225,6 +240,7 @@ impl SceneGeometry {
             vertices,
             previous_vertices,
             indices,
+            provoking,
             meshes,
             deforms,
             places,
@@ -336,6 +352,13 @@ impl SceneGeometry {
 
     pub(crate) fn mesh(&self, mesh: u32) -> MeshRange {
         self.meshes[mesh as usize]
+    }
+
+    /// Binds to a pass whose shader fetches vertices what tells it which.
+    pub(crate) fn bind_provoking(&self, pass: &mut wgpu::RenderPass<'_>) {
+        if let Some(provoking) = &self.provoking {
+            pass.set_index_buffer(provoking.slice(..), wgpu::IndexFormat::Uint32);
+        }
     }
 
     /// Binds the buffers to a pass.

@@ -11,6 +11,7 @@ mod material_uniform;
 mod materials;
 #[cfg(test)]
 mod posed_tests;
+mod provoking;
 mod samplers;
 mod strokes;
 mod textures;

@@ -1,5 +1,5 @@
-// For devices that do not number triangles: drawn without an index buffer, so that a vertex knows
-// its own.
+// For devices that do not number triangles: an index names a triangle's first corner, or a vertex.
+// Rust: `scene/provoking.rs`.
 
 #variant
 #variant LAYERED
@@ -16,11 +16,13 @@ fn vertex_pulled(@builtin(instance_index) drawn_index: u32, @builtin(vertex_inde
 
 fn pulled_vertex(d: Drawn, at: u32) -> VisibleVertex {
     let place = place_of(d.instance);
-    let vertex = place.base_vertex + index_at(at);
+    let number = at >> 1u;
+    let vertex = select(place.base_vertex + index_at(number * 3u), number, (at & 1u) != 0u);
     let corner = corner_at(vertex);
     let previous = bitcast<vec3f>(previous_vertex_row(vertex * 4u).xyz);
     var out = visible_vertex(d, corner.position, previous, corner.uv, corner.color.a);
-    out.triangle = (at - place.first_index) / 3u;
+    // Counts only at a triangle's first corner, where it is taken from.
+    out.triangle = number - place.first_index / 3u;
     return out;
 }
 

@@ -16,7 +16,7 @@ use crate::stereo::{EyeLayout, Submission};
 #[derive(Debug)]
 pub(super) struct VisiblePass {
     pipelines: Pipelines,
-    /// Vertices are fetched by the shader, because the device does not number triangles.
+    /// Vertices are fetched by the shader, by indices that tell it the triangle.
     pulled: bool,
     eyes: (Submission, EyeLayout),
 }
@@ -29,10 +29,7 @@ impl VisiblePass {
         geometry_layout: &wgpu::BindGroupLayout,
         eyes: (Submission, EyeLayout),
     ) -> Self {
-        let numbered = gpu
-            .device
-            .features()
-            .contains(wgpu::Features::PRIMITIVE_INDEX);
+        let numbered = gpu.numbers_triangles();
         let layouts = [frame_layout, material_layout, geometry_layout];
         let layered = eyes.0 == Submission::Multiview;
         let (shader, vertex) = match (numbered, layered) {
@@ -124,6 +121,7 @@ impl VisiblePass {
         let mut pass = recorder.layered_pass("geometry", &colors, Some(depth), mask);
         if self.pulled {
             pass.set_bind_group(2, scene.geometry.group(), &[]);
+            scene.geometry.bind_provoking(&mut pass);
         } else {
             scene.geometry.bind(&mut pass);
         }

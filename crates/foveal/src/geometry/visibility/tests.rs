@@ -2,7 +2,7 @@
 
 use foveal_generate as generate;
 use foveal_scene::{
-    AlphaMode, Camera, ColorSpace, Filter, Material, Projection, Sampler, Scene, Texture,
+    AlphaMode, Camera, ColorSpace, Filter, Material, Mesh, Projection, Sampler, Scene, Texture,
     TextureRef,
 };
 
@@ -11,8 +11,10 @@ use glam::{Mat3, Mat4, Vec2, Vec3};
 use crate::forward::twin::quads;
 use crate::gpu::read_texture;
 use crate::shading::twin::unpack_surface;
-use crate::testing::{gpu, picture, rendered, small, texels};
-use crate::{Antialiasing, EdgeTest, Frame, Geometry, Gpu, Renderer, SamplePattern, Settings};
+use crate::testing::{
+    gpu, gpu_with, gpu_with_buffers, picture, rendered, rendered_on, small, texels,
+};
+use crate::{Antialiasing, EdgeTest, Frame, Geometry, Gpu, SamplePattern, Settings};
 
 fn by_triangles(settings: &Settings) -> Settings {
     settings
@@ -254,32 +256,28 @@ fn motion_is_the_rasterizers() {
     assert!(motions[0].iter().any(|m| m[1] != 0));
 }
 
-/// A device that does not number triangles.
-fn plain_gpu() -> Gpu {
-    pollster::block_on(async {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::PRIMARY,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapter = instance.request_adapter(&Default::default()).await.unwrap();
-        let (device, queue) = adapter.request_device(&Default::default()).await.unwrap();
-        Gpu::from_device(device, queue)
-    })
-}
-
 #[test]
 fn pulled_vertices_give_the_same_gbuffer_as_numbered_triangles() {
-    let plain = plain_gpu();
-    for name in ["demo:1000", "alpha"] {
-        let scene = generate::by_name(name).unwrap();
+    let plain = gpu_with(wgpu::Features::empty(), Gpu::required_limits());
+    let numbering = gpu_with_buffers();
+    assert!(numbering.numbers_triangles() && !plain.numbers_triangles());
+    // Meshes that begin after a point's quad, and at another vertex.
+    let mut after_point = generate::by_name("alpha").unwrap();
+    let point = Mesh {
+        vertices: after_point.meshes[0].vertices[..1].to_vec(),
+        points: vec![0],
+        ..Mesh::default()
+    };
+    after_point.meshes.insert(0, point);
+    for instance in &mut after_point.instances {
+        instance.mesh += 1;
+    }
+    let demo = generate::by_name("demo:1000").unwrap();
+    for scene in [demo, after_point] {
         let settings = by_triangles(&small(157, 101));
-        let [numbered, pulled] = [gpu(), &plain].map(|gpu| {
+        let [numbered, by_textures, by_buffers] = [&numbering, gpu(), &plain].map(|gpu| {
             pollster::block_on(async {
-                let mut renderer = Renderer::new(gpu, &settings, crate::RendererOptions::default())
-                    .await
-                    .unwrap();
-                renderer.set_scene(&scene).await.unwrap();
-                renderer.redraw(&scene.cameras[0]);
+                let renderer = rendered_on(gpu, &scene, &scene.cameras[0], &settings);
                 let g = &renderer.targets().gbuffer;
                 let triangles = &g.visibility.as_ref().unwrap().triangle_view;
                 let mut bytes = Vec::new();
@@ -289,7 +287,9 @@ fn pulled_vertices_give_the_same_gbuffer_as_numbered_triangles() {
                 bytes
             })
         });
-        assert!(numbered == pulled, "{name}");
+        assert!(numbered == by_textures, "{}: textures", scene.name);
+        assert!(numbered == by_buffers, "{}: buffers", scene.name);
+        assert!(numbered[3].iter().any(|&byte| byte != 0));
     }
 }
 
