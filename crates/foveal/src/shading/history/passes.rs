@@ -12,7 +12,7 @@ use crate::gpu::{
 };
 
 use crate::rate::RateTargets;
-use crate::recorder::Recorder;
+use crate::recorder::{Recorder, overwritten};
 use crate::shading::{RADIANCE_FORMAT, lighting_constants};
 use crate::shadow::Place;
 use crate::targets::Targets;
@@ -41,12 +41,62 @@ struct Pass {
     layout: wgpu::BindGroupLayout,
 }
 
+/// The pass that writes what each pixel keeps: by drawing, because lavapipe takes much longer for a
+/// texture that a compute shader writes.
+#[derive(Debug)]
+struct Reprojection {
+    pipeline: wgpu::RenderPipeline,
+    layout: wgpu::BindGroupLayout,
+}
+
+impl Reprojection {
+    fn new(gpu: &Gpu, settings: &Settings, frame: &wgpu::BindGroupLayout) -> Self {
+        let label = "reprojection of light";
+        let uint = sampled(wgpu::TextureSampleType::Uint);
+        let words = sampled_layers(wgpu::TextureSampleType::Uint);
+        let number = sampled(wgpu::TextureSampleType::Float { filterable: false });
+        let layout = bind_group_layout(
+            gpu,
+            label,
+            wgpu::ShaderStages::FRAGMENT,
+            &[
+                uint,
+                words,
+                sampled_layers(wgpu::TextureSampleType::Depth),
+                words,
+                uniform(),
+                uint,
+                uint,
+                number,
+                storage_write(),
+                storage_write(),
+                Table::binding_type(gpu),
+            ],
+        );
+        let targets = [LIGHT_FORMAT, SEEN_FORMAT, RADIANCE_FORMAT];
+        let pipeline = shader::screen(
+            gpu,
+            &shader::Screen {
+                groups: &[frame, &layout],
+                targets: &targets.map(|format| Some(format.into())),
+                constants: &environment_constants(settings),
+                ..shader::Screen::of(
+                    label,
+                    &shader::module(gpu, label, shader::SHADING_HISTORY_REPROJECT),
+                    "reproject",
+                )
+            },
+        );
+        Self { pipeline, layout }
+    }
+}
+
 /// All passes.
 #[derive(Debug)]
 pub(super) struct HistoryPasses {
     keep: Pass,
     spread: Pass,
-    reproject: Pass,
+    reproject: Reprojection,
     list: Pass,
     size: Pass,
     shade: Pass,
@@ -110,29 +160,7 @@ impl HistoryPasses {
                 &tiles,
                 &[],
             ),
-            reproject: pass(
-                "reprojection of light",
-                shader::SHADING_HISTORY_REPROJECT,
-                "reproject",
-                None,
-                &[
-                    uint,
-                    words,
-                    depth,
-                    words,
-                    told,
-                    uint,
-                    uint,
-                    number,
-                    light,
-                    written(SEEN_FORMAT),
-                    radiance,
-                    write,
-                    write,
-                    Table::binding_type(gpu),
-                ],
-                &environment,
-            ),
+            reproject: Reprojection::new(gpu, settings, frame),
             list: pass(
                 "lists of samples",
                 shader::SHADING_HISTORY_LIST,
@@ -315,9 +343,10 @@ impl HistoryPasses {
                 view(&h.tiles),
             ],
         );
-        let reproject = frame.group(
-            &self.reproject,
+        let reproject = bind_group(
+            &recorder.gpu.device,
             "reprojection of light",
+            &self.reproject.layout,
             &[
                 view(&frame.rate.owner.whole),
                 view(&gbuffer.surface_layers),
@@ -327,9 +356,6 @@ impl HistoryPasses {
                 frame.light(frame.before),
                 view(&h.seen[frame.before]),
                 view(&h.tiles),
-                frame.light(frame.now),
-                view(&h.seen[frame.now]),
-                view(&h.radiance),
                 h.listed.as_entire_binding(),
                 h.chosen.as_entire_binding(),
                 self.changed.resource(),
@@ -356,9 +382,15 @@ impl HistoryPasses {
         pass.dispatch_workgroups(of_tiles, 1, 1);
         pass.set_pipeline(&self.spread.pipeline);
         pass.dispatch_workgroups(of_tiles, 1, 1);
+        drop(pass);
+        let written = [&h.light[frame.now], &h.seen[frame.now], &h.radiance];
+        let mut pass =
+            recorder.render_pass("reprojection of light", &written.map(overwritten), None);
         pass.set_pipeline(&self.reproject.pipeline);
         pass.set_bind_group(1, &reproject, &[]);
-        pass.dispatch_workgroups(across, down, 1);
+        pass.draw(0..3, 0..1);
+        drop(pass);
+        let mut pass = recorder.compute_pass("reprojection of light");
         self.size_lists(&mut pass, frame);
         pass.set_pipeline(&self.list.pipeline);
         pass.set_bind_group(1, &list, &[]);

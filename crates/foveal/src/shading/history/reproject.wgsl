@@ -13,6 +13,7 @@
 #import shared/layers.wgsl
 #import shared/surface.wgsl
 #import shared/environment.wgsl
+#import shared/full_screen.wgsl
 
 @group(1) @binding(1) var gbuffer_surface: texture_2d_array<u32>;
 @group(1) @binding(2) var gbuffer_depth: texture_depth_2d_array;
@@ -21,21 +22,18 @@
 // Where changed lights reach, now or in the frame before: centre and radius, world space. Nothing
 // is kept there. A negative radius ends them.
 #ifdef TABLES
-@group(1) @binding(13) var changed_table: texture_2d<u32>;
+@group(1) @binding(10) var changed_table: texture_2d<u32>;
 #else
-@group(1) @binding(13) var<storage, read> changed: array<vec4f>;
+@group(1) @binding(10) var<storage, read> changed: array<vec4f>;
 #endif
 // Of the frame before: pixels' light, and what else they keep.
 @group(1) @binding(5) var light_before: texture_2d<u32>;
 @group(1) @binding(6) var seen_before: texture_2d<u32>;
 // A texel for each tile: `TileHistory`.
 @group(1) @binding(7) var tiles: texture_2d<f32>;
-@group(1) @binding(8) var light: texture_storage_2d<rgba32uint, write>;
-@group(1) @binding(9) var seen: texture_storage_2d<r32uint, write>;
-@group(1) @binding(10) var radiance: texture_storage_2d<rgba16float, write>;
-@group(1) @binding(11) var<storage, read_write> listed: array<Listed, LISTS>;
+@group(1) @binding(8) var<storage, read_write> listed: array<Listed, LISTS>;
 // Pixels that ask for a sample, as entries with a choice in place of a level.
-@group(1) @binding(12) var<storage, read_write> chosen: array<u32>;
+@group(1) @binding(9) var<storage, read_write> chosen: array<u32>;
 
 // Least cosine between normals that count as the same surface.
 const SAME_NORMAL: f32 = 0.95;
@@ -151,24 +149,28 @@ fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
     return f32(order_of(texel) + told.phase) < share * 4294967296.0;
 }
 
-// But for the backdrop the list and each texture is written at one place: devices that run all
-// branches pay for each place, whether or not anything is written there. What few pixels need
-// follows in list.wgsl.
-@compute @workgroup_size(8, 8)
-fn reproject(@builtin(global_invocation_id) id: vec3u) {
-    let texel = id.xy;
-    if any(texel >= vec2u(frame.target_size)) || is_padding(texel, 0u) {
-        return;
+// What a pixel keeps, and what it shows.
+struct Reprojected {
+    @location(0) light: vec4u,
+    @location(1) seen: u32,
+    @location(2) radiance: vec4f,
+}
+
+// The list is written at one place: devices that run all branches pay for each place, whether or not
+// anything is written there. What few pixels need follows in list.wgsl.
+@fragment
+fn reproject(@builtin(position) pixel_center: vec4f) -> Reprojected {
+    let pixel = pixel_center.xy;
+    let texel = vec2u(pixel);
+    if is_padding(texel, 0u) {
+        return Reprojected();
     }
-    let pixel = vec2f(texel) + 0.5;
     let depth = load_depth(gbuffer_depth, texel);
     let distance = select(view_distance(depth), 1.0, depth == 0.0);
     let position = world_position(pixel, distance);
     let v = direction_to_eye(view_at(pixel), position);
     if depth == 0.0 {
-        textureStore(seen, texel, vec4u(0u));
-        textureStore(radiance, texel, vec4f(background(-v), 1.0));
-        return;
+        return Reprojected(vec4u(0u), 0u, vec4f(background(-v), 1.0));
     }
     let own = tile_at(texel);
     let s = unpack_surface(load_words(gbuffer_surface, texel), position);
@@ -187,19 +189,17 @@ fn reproject(@builtin(global_invocation_id) id: vec3u) {
     let is_shaded = !is_reprojected && !(is_coarse && (!memory.is_known || all(texel == sample)));
     let is_bare = !is_reprojected && !is_shaded;
 
-    let shown = radiance_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance));
-    textureStore(radiance, texel, vec4f(shown, 1.0));
-    textureStore(light, texel, memory.light);
     let was_own = (memory.seen & SEEN_OWN) != 0u;
-    var notes = memory.seen & (SEEN_OWN | (SEEN_LEVEL << SEEN_LEVEL_SHIFT));
-    notes = select(notes, SEEN_OWN, is_shaded);
-    notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
-    textureStore(seen, texel, vec4u((who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes));
-
     if is_shaded || is_bare {
         let known_from = select(EXPECTED_AROUND, EXPECTED_OWN, was_own);
         let itself = CHOSEN_ITSELF + u32(select(EXPECTED_NOTHING, known_from, memory.is_known));
         let entry = sample_entry(texel, select(own.level, itself, is_shaded));
         chosen[atomicAdd(&listed[CHOSEN].count, 1u)] = entry;
     }
+    var notes = memory.seen & (SEEN_OWN | (SEEN_LEVEL << SEEN_LEVEL_SHIFT));
+    notes = select(notes, SEEN_OWN, is_shaded);
+    notes = select(notes, min(own.level, SEEN_LEVEL) << SEEN_LEVEL_SHIFT, is_bare);
+    let seen = (who.x & SEEN_INSTANCE) | SEEN_AT_ALL | distance_bits(distance) | notes;
+    let shown = radiance_of(unpack_light(memory.light), s, v, environment_seen(pixel, distance));
+    return Reprojected(memory.light, seen, vec4f(shown, 1.0));
 }

@@ -71,16 +71,10 @@ impl HistoryTargets {
             return None;
         }
         let size = EyeLayout::of(settings).target_size();
-        let target_of = |label, size, format| {
-            gpu::target(
-                gpu,
-                label,
-                size,
-                format,
-                wgpu::TextureUsages::STORAGE_BINDING,
-            )
-        };
-        let target = |label, format| target_of(label, size, format);
+        let stored = wgpu::TextureUsages::STORAGE_BINDING;
+        let target = |label, format| gpu::target(gpu, label, size, format, stored);
+        let drawn = wgpu::TextureUsages::empty();
+        let seen = |label| gpu::target(gpu, label, size, SEEN_FORMAT, drawn);
         let buffer = |label, size, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
@@ -98,7 +92,7 @@ impl HistoryTargets {
         let tiles = u64::from(across_and_down.0) * u64::from(across_and_down.1);
         Some(Self {
             light: ["light, even", "light, odd"].map(|label| target(label, LIGHT_FORMAT)),
-            seen: ["seen, even", "seen, odd"].map(|label| target(label, SEEN_FORMAT)),
+            seen: ["seen, even", "seen, odd"].map(seen),
             radiance: target("radiance of solid surfaces", RADIANCE_FORMAT),
             listed: buffer("lists", LISTS * LISTED_BYTES, none),
             dispatches: buffer(
@@ -112,7 +106,7 @@ impl HistoryTargets {
             wanted: buffer("wanted samples", pixels.div_ceil(32) * 4, none),
             measured: buffer("measured tiles", tiles * 8, none),
             kept: buffer("kept tiles", tiles * 8, none),
-            tiles: target_of("tiles", across_and_down, TILE_FORMAT),
+            tiles: gpu::target(gpu, "tiles", across_and_down, TILE_FORMAT, stored),
         })
     }
 
