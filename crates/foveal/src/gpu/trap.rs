@@ -10,21 +10,39 @@ use crate::Error;
 /// their opening, whatever is polled meanwhile. It cannot happen unnoticed, since a future that
 /// holds one is not `Send`, and tests check that the renderer's are.
 pub(crate) struct ErrorTrap {
-    gpu: Gpu,
+    made: Made,
     doing: &'static str,
-    since: Moment,
     // Dropped in this order, the reverse of their opening: any other is a panic.
     internal: wgpu::ErrorScopeGuard,
     validation: wgpu::ErrorScopeGuard,
     memory: wgpu::ErrorScopeGuard,
 }
 
+/// What was compiled since a moment. Kept only where nothing is wrong with it: who gives up before
+/// that is known lets go of it.
+struct Made {
+    gpu: Gpu,
+    since: Moment,
+    is_sound: bool,
+}
+
+impl Drop for Made {
+    fn drop(&mut self) {
+        if !self.is_sound {
+            self.gpu.forget_compiled(self.since);
+        }
+    }
+}
+
 impl ErrorTrap {
     pub(crate) fn new(gpu: &Gpu, doing: &'static str) -> Self {
         Self {
-            gpu: gpu.clone(),
+            made: Made {
+                gpu: gpu.clone(),
+                since: Moment::now(),
+                is_sound: false,
+            },
             doing,
-            since: Moment::now(),
             memory: gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory),
             validation: gpu.device.push_error_scope(wgpu::ErrorFilter::Validation),
             internal: gpu.device.push_error_scope(wgpu::ErrorFilter::Internal),
@@ -40,8 +58,9 @@ impl ErrorTrap {
             self.validation.pop(),
             self.memory.pop(),
         );
-        let (gpu, doing, since) = (self.gpu, self.doing, self.since);
+        let (mut made, doing) = (self.made, self.doing);
         async move {
+            let gpu = made.gpu.clone();
             let (internal, validation, memory) = reports;
             let (internal, validation, memory) = (internal.await, validation.await, memory.await);
             // A loss is told when the device is asked, and makes errors of all else.
@@ -55,9 +74,6 @@ impl ErrorTrap {
             #[cfg(test)]
             let is_full = gpu.device.faults.take_out_of_memory() || memory.is_some();
             let stray = gpu.take_stray();
-            if is_full || validation.is_some() || internal.is_some() || stray.is_some() {
-                gpu.forget_compiled(since);
-            }
             if is_full {
                 return Err(Error::OutOfMemory {
                     doing: doing.to_owned(),
@@ -68,7 +84,10 @@ impl ErrorTrap {
                     doing: doing.to_owned(),
                     cause,
                 }),
-                None => Ok(()),
+                None => {
+                    made.is_sound = true;
+                    Ok(())
+                }
             }
         }
     }
@@ -77,6 +96,23 @@ impl ErrorTrap {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_compiled_is_kept_once_a_trap_has_found_nothing() {
+        let gpu = pollster::block_on(Gpu::open(None)).expect("the tests need a graphics adapter");
+        let kept = || gpu.compiled.sizes()[0];
+        let compile = || gpu.bind_group_layout("tried", &[]);
+        let before = kept();
+        let trap = ErrorTrap::new(&gpu, "giving up");
+        compile();
+        assert_eq!(kept(), before + 1);
+        drop(trap);
+        assert_eq!(kept(), before);
+        let trap = ErrorTrap::new(&gpu, "trying again");
+        compile();
+        pollster::block_on(trap.finish()).expect("nothing happened");
+        assert_eq!(kept(), before + 1);
+    }
 
     #[test]
     fn a_trap_that_is_left_early_closes_its_scopes_in_order() {
