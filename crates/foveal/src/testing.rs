@@ -18,11 +18,7 @@ pub(crate) fn gpu() -> &'static Gpu {
 /// A device of one's own on the tests' adapter.
 pub(crate) fn gpu_with(features: wgpu::Features, limits: wgpu::Limits) -> Gpu {
     pollster::block_on(async {
-        let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
-            backends: wgpu::Backends::PRIMARY,
-            ..wgpu::InstanceDescriptor::new_without_display_handle()
-        });
-        let adapter = instance.request_adapter(&Default::default()).await;
+        let adapter = crate::gpu::choose_adapter(None).await;
         let (device, queue) = (adapter.expect("the tests need a graphics adapter"))
             .request_device(&wgpu::DeviceDescriptor {
                 required_features: features,

@@ -311,7 +311,7 @@ impl DrawList {
     }
 
     /// As [`DrawList::issue`], with the pipeline that each key gets; `pulled`: the shader fetches
-    /// the vertices, by indices that name them among all of the scene.
+    /// the vertices, by provoking indices.
     pub(crate) fn issue_with<'p>(
         batches: &[Batch],
         pass: &mut wgpu::RenderPass<'_>,
@@ -337,10 +337,13 @@ impl DrawList {
                 pass.set_bind_group(1, group, &[]);
             }
             let mesh = scene.geometry.mesh(batch.mesh);
-            let indices = mesh.indices(batch.key.shape != Shape::Triangles);
             let instances = drawn.range(batch.first, batch.count);
-            let base = if pulled { 0 } else { mesh.index_base };
-            pass.draw_indexed(indices, base, instances);
+            if pulled {
+                pass.draw_indexed(mesh.provoking_indices(), 0, instances);
+            } else {
+                let indices = mesh.indices(batch.key.shape != Shape::Triangles);
+                pass.draw_indexed(indices, mesh.index_base, instances);
+            }
         }
     }
 

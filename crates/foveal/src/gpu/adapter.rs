@@ -46,7 +46,7 @@ fn rank(info: &wgpu::AdapterInfo) -> (u8, u8) {
     (reduced, kind)
 }
 
-pub(super) async fn choose(wanted: Option<&str>) -> Result<wgpu::Adapter, Error> {
+pub(crate) async fn choose(wanted: Option<&str>) -> Result<wgpu::Adapter, Error> {
     let adapters = if wanted.is_some() {
         all().await
     } else {

@@ -245,8 +245,8 @@ impl Gpu {
         self.is_reduced() || most >= TEXTURES_WITH_TABLES && self.is_lavapipe()
     }
 
-    /// Whether fragment shaders get their triangle's number from the device, and soon: lavapipe takes
-    /// longer for it than for fetching vertices in the shader.
+    /// Whether fragment shaders get their triangle's number from the device. Not on lavapipe, where its
+    /// tables are textures: fetching vertices in the shader takes less time there.
     pub(crate) fn numbers_triangles(&self) -> bool {
         let numbered = wgpu::Features::PRIMITIVE_INDEX;
         self.device.features().contains(numbered) && !self.has_texture_tables()

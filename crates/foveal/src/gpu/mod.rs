@@ -21,6 +21,8 @@ mod trap;
 #[cfg(not(feature = "profiler"))]
 mod unprofiled;
 
+#[cfg(test)]
+pub(crate) use adapter::choose as choose_adapter;
 pub use device::Gpu;
 pub(crate) use device::is_reduced;
 pub(crate) use layout::{

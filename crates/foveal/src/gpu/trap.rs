@@ -22,14 +22,14 @@ pub(crate) struct ErrorTrap {
 /// that is known lets go of it.
 struct Made {
     gpu: Gpu,
-    since: Moment,
-    is_sound: bool,
+    /// `None` once it is kept.
+    since: Option<Moment>,
 }
 
 impl Drop for Made {
     fn drop(&mut self) {
-        if !self.is_sound {
-            self.gpu.forget_compiled(self.since);
+        if let Some(since) = self.since {
+            self.gpu.forget_compiled(since);
         }
     }
 }
@@ -39,8 +39,7 @@ impl ErrorTrap {
         Self {
             made: Made {
                 gpu: gpu.clone(),
-                since: Moment::now(),
-                is_sound: false,
+                since: Some(Moment::now()),
             },
             doing,
             memory: gpu.device.push_error_scope(wgpu::ErrorFilter::OutOfMemory),
@@ -85,7 +84,7 @@ impl ErrorTrap {
                     cause,
                 }),
                 None => {
-                    made.is_sound = true;
+                    made.since.take();
                     Ok(())
                 }
             }

@@ -36,6 +36,8 @@ pub(crate) struct MeshRange {
     pub(crate) base_vertex: i32,
     /// What its indices count from: the base vertex, or 0 where they hold it already.
     pub(crate) index_base: i32,
+    /// Of its triangles among the provoking indices.
+    first_provoking: u32,
     /// Of the quads of its points and lines, which follow its triangles.
     pub(crate) stroke_index_count: u32,
     /// Points and lines have normals.
@@ -53,6 +55,11 @@ impl MeshRange {
             self.first_index..between
         }
     }
+
+    /// Provoking indices of its triangles.
+    pub(crate) fn provoking_indices(&self) -> std::ops::Range<u32> {
+        self.first_provoking..self.first_provoking + self.index_count
+    }
 }
 
 /// Quads that are made and written to the device at a time: 4 MiB of vertices.
@@ -63,7 +70,7 @@ const INDICES_AT_A_TIME: usize = 1 << 18;
 
 /// Vertices that a mesh takes on the device: those of its triangles, and its quads.
 fn vertex_counts(mesh: &Mesh) -> [u64; 2] {
-    let of_triangles = if mesh.indices.is_empty() {
+    let of_triangles = if mesh.triangle_count() == 0 {
         0
     } else {
         mesh.vertices.len()
@@ -108,8 +115,8 @@ pub(crate) struct SceneGeometry {
     /// The pose of the frame before; the same buffer where nothing deforms.
     previous_vertices: wgpu::Buffer,
     indices: wgpu::Buffer,
-    /// In the places of `indices`, those by which a vertex knows its triangle; `None` where the
-    /// device numbers triangles.
+    /// Those of triangles by which a vertex knows its triangle; `None` where the device numbers
+    /// triangles.
     provoking: Option<wgpu::Buffer>,
     pub(super) meshes: Vec<MeshRange>,
     deforms: bool,
@@ -169,9 +176,11 @@ impl SceneGeometry {
             },
         );
         let provoking = (!gpu.is_reduced() && !gpu.numbers_triangles()).then(|| {
+            let count: u64 = (scene.meshes.iter()).map(|m| index_counts(m)[0]).sum();
             let usage = wgpu::BufferUsages::INDEX;
-            buffer(gpu, "provoking indices", index_count * 4, usage)
+            buffer(gpu, "provoking indices", count * 4, usage)
         });
+        let mut first_provoking = 0u64;
         let mut uploads = Uploads::new(gpu);
         let mut meshes = Vec::with_capacity(scene.meshes.len());
         let (mut base_vertex, mut first_index) = (0u64, 0u64);
@@ -187,6 +196,7 @@ impl SceneGeometry {
                 index_count: index_counts(mesh)[0] as u32,
                 base_vertex: base_vertex as i32,
                 index_base,
+                first_provoking: first_provoking as u32,
                 stroke_index_count: index_counts(mesh)[1] as u32,
                 lights_strokes: mesh.lights_strokes(),
                 first_stroke_vertex: (base_vertex + vertices_of_triangles) as u32,
@@ -194,12 +204,11 @@ impl SceneGeometry {
             write_vertices(&mut uploads, &vertices, mesh, range);
             let corners = &mesh.indices[..range.index_count as usize];
             if let Some(provoking) = &provoking {
-                let mut at = first_index * 4;
-                let first_triangle = range.first_index / 3;
-                let numbers = provoking_indices(corners, first_triangle, base_vertex as u32);
+                let vertices = (base_vertex as u32, mesh.vertices.len());
+                let numbers = provoking_indices(corners, range.first_index / 3, vertices);
                 in_pieces(numbers, INDICES_AT_A_TIME, |some| {
-                    uploads.write(provoking, at, bytemuck::cast_slice(some));
-                    at += 4 * some.len() as u64;
+                    uploads.write(provoking, first_provoking * 4, bytemuck::cast_slice(some));
+                    first_provoking += some.len() as u64;
                 });
             }
             let mut write = |some: &[u32]| {

@@ -4,32 +4,32 @@
 //! A triangle's first vertex provokes it: values that are not interpolated are taken from there. So
 //! that each triangle has a first vertex of its own, indices name either a triangle's first corner or
 //! a vertex: `2 t` is the first corner of triangle t, `2 v + 1` is vertex v. A corner that is the
-//! first of some triangle is always named as that one's, so that it is computed only once. Shader:
-//! `geometry/visibility/pulled.wgsl`.
+//! first of some triangle is always named as one of those, and not computed once more as a vertex.
+//! Shader: `geometry/visibility/pulled.wgsl`.
 
 /// What draws of a mesh's triangles take in place of its `indices`. `first_triangle`: the number of
-/// its first triangle among all of the scene; `base_vertex`: that of its first vertex.
+/// its first triangle among all of the scene; `base_vertex`: that of its first vertex of
+/// `vertex_count`. Indices beyond these give what is not there, as they do on the device.
 pub(super) fn provoking_indices(
     indices: &[u32],
     first_triangle: u32,
-    base_vertex: u32,
+    (base_vertex, vertex_count): (u32, usize),
 ) -> impl Iterator<Item = u32> + '_ {
-    const NONE: u32 = u32::MAX;
-    let most = indices.iter().max().map_or(0, |&most| most as usize + 1);
-    let mut provoked = vec![NONE; most];
+    let mut provoked = vec![None; vertex_count];
     for (triangle, corners) in (first_triangle..).zip(indices.chunks_exact(3)) {
-        provoked[corners[0] as usize] = triangle;
+        if let Some(slot) = provoked.get_mut(corners[0] as usize) {
+            *slot = Some(triangle);
+        }
     }
     (0..).zip(indices).map(move |(i, &vertex)| {
         let triangle = if i % 3 == 0 {
-            first_triangle + i / 3
+            Some(first_triangle + i / 3)
         } else {
-            provoked[vertex as usize]
+            provoked.get(vertex as usize).copied().flatten()
         };
-        if triangle == NONE {
-            2 * (base_vertex + vertex) + 1
-        } else {
-            2 * triangle
+        match triangle {
+            Some(triangle) => 2 * triangle,
+            None => base_vertex.wrapping_add(vertex).wrapping_mul(2) | 1,
         }
     })
 }
@@ -44,7 +44,7 @@ mod tests {
 
     /// What the shader makes of an index: a vertex, and the triangle that it provokes.
     fn decoded(index: u32, indices: &[u32], first: u32, base: u32) -> (u32, Option<u32>) {
-        if index % 2 == 0 {
+        if index & 1 == 0 {
             let triangle = index / 2 - first;
             (indices[3 * triangle as usize], Some(triangle))
         } else {
@@ -60,7 +60,7 @@ mod tests {
             base in 0..1000_u32,
         ) {
             let indices = triangles.as_flattened();
-            let provoking: Vec<_> = provoking_indices(indices, first, base).collect();
+            let provoking: Vec<_> = provoking_indices(indices, first, (base, 40)).collect();
             prop_assert_eq!(provoking.len(), indices.len());
             for (i, (&index, &vertex)) in provoking.iter().zip(indices).enumerate() {
                 let (named, triangle) = decoded(index, indices, first, base);
@@ -74,6 +74,16 @@ mod tests {
             let other: BTreeSet<_> = indices.iter().filter(|v| !own.contains(v)).collect();
             let computed: BTreeSet<_> = provoking.iter().collect();
             prop_assert_eq!(computed.len(), triangles.len() + other.len());
+        }
+    }
+
+    #[test]
+    fn an_index_beyond_the_vertices_is_no_panic() {
+        for wrong in [3, u32::MAX / 2, u32::MAX] {
+            let indices = [wrong, 1, 2, 0, wrong, 1];
+            let found: Vec<_> = provoking_indices(&indices, 7, (5, 3)).collect();
+            assert_eq!([found[0], found[3]], [14, 16]);
+            assert_eq!(found[4] & 1, 1);
         }
     }
 }

@@ -1,4 +1,4 @@
-// For devices that do not number triangles: an index names a triangle's first corner, or a vertex.
+// For devices that do not number triangles, or take long to: an index names a triangle's first corner, or a vertex.
 // Rust: `scene/provoking.rs`.
 
 #variant
