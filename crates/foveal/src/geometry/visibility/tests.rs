@@ -305,11 +305,8 @@ fn both_eyes_look_the_same_whoever_numbers_triangles() {
         return;
     }
     let scene = generate::by_name("demo:1000").unwrap();
-    let mut ways = vec![Stereo::Instanced, Stereo::TwoPass];
-    if numbering.has_multiview() {
-        ways.push(Stereo::Multiview);
-    }
-    for stereo in ways {
+    // Multiview, which lavapipe draws wrong: stereo/tests/multiview.rs.
+    for stereo in [Stereo::Instanced, Stereo::TwoPass] {
         let settings = by_triangles(&small(61, 48)).with(|s| s.stereo.mode = stereo);
         let [numbered, pulled] = [&numbering, gpu()]
             .map(|gpu| picture(&rendered_on(gpu, &scene, &scene.cameras[0], &settings)));
