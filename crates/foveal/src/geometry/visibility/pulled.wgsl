@@ -1,5 +1,5 @@
-// For devices that do not number triangles, or take long to: an index names a triangle's first corner, or a vertex.
-// Rust: `scene/provoking.rs`.
+// For devices that do not number triangles, or take long to: an index names a triangle's first
+// corner, or a vertex. Rust: `scene/provoking.rs`.
 
 #variant
 #variant LAYERED

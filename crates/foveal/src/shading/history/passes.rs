@@ -36,59 +36,55 @@ pub(crate) struct HistoryParameters {
 
 /// A pipeline and the layout of its own bind group.
 #[derive(Debug)]
-struct Pass {
-    pipeline: wgpu::ComputePipeline,
+struct Pass<P = wgpu::ComputePipeline> {
+    pipeline: P,
     layout: wgpu::BindGroupLayout,
 }
 
 /// The pass that writes what each pixel keeps: by drawing, because lavapipe takes much longer for a
 /// texture that a compute shader writes.
-#[derive(Debug)]
-struct Reprojection {
-    pipeline: wgpu::RenderPipeline,
-    layout: wgpu::BindGroupLayout,
-}
-
-impl Reprojection {
-    fn new(gpu: &Gpu, settings: &Settings, frame: &wgpu::BindGroupLayout) -> Self {
-        let label = "reprojection of light";
-        let uint = sampled(wgpu::TextureSampleType::Uint);
-        let words = sampled_layers(wgpu::TextureSampleType::Uint);
-        let number = sampled(wgpu::TextureSampleType::Float { filterable: false });
-        let layout = bind_group_layout(
-            gpu,
-            label,
-            wgpu::ShaderStages::FRAGMENT,
-            &[
-                uint,
-                words,
-                sampled_layers(wgpu::TextureSampleType::Depth),
-                words,
-                uniform(),
-                uint,
-                uint,
-                number,
-                storage_write(),
-                storage_write(),
-                Table::binding_type(gpu),
-            ],
-        );
-        let targets = [LIGHT_FORMAT, SEEN_FORMAT, RADIANCE_FORMAT];
-        let pipeline = shader::screen(
-            gpu,
-            &shader::Screen {
-                groups: &[frame, &layout],
-                targets: &targets.map(|format| Some(format.into())),
-                constants: &environment_constants(settings),
-                ..shader::Screen::of(
-                    label,
-                    &shader::module(gpu, label, shader::SHADING_HISTORY_REPROJECT),
-                    "reproject",
-                )
-            },
-        );
-        Self { pipeline, layout }
-    }
+fn reprojection(
+    gpu: &Gpu,
+    settings: &Settings,
+    frame: &wgpu::BindGroupLayout,
+) -> Pass<wgpu::RenderPipeline> {
+    let label = "reprojection of light";
+    let uint = sampled(wgpu::TextureSampleType::Uint);
+    let words = sampled_layers(wgpu::TextureSampleType::Uint);
+    let number = sampled(wgpu::TextureSampleType::Float { filterable: false });
+    let layout = bind_group_layout(
+        gpu,
+        label,
+        wgpu::ShaderStages::FRAGMENT,
+        &[
+            uint,
+            words,
+            sampled_layers(wgpu::TextureSampleType::Depth),
+            words,
+            uniform(),
+            uint,
+            uint,
+            number,
+            storage_write(),
+            storage_write(),
+            Table::binding_type(gpu),
+        ],
+    );
+    let targets = [LIGHT_FORMAT, SEEN_FORMAT, RADIANCE_FORMAT];
+    let pipeline = shader::screen(
+        gpu,
+        &shader::Screen {
+            groups: &[frame, &layout],
+            targets: &targets.map(|format| Some(format.into())),
+            constants: &environment_constants(settings),
+            ..shader::Screen::of(
+                label,
+                &shader::module(gpu, label, shader::SHADING_HISTORY_REPROJECT),
+                "reproject",
+            )
+        },
+    );
+    Pass { pipeline, layout }
 }
 
 /// All passes.
@@ -96,7 +92,7 @@ impl Reprojection {
 pub(super) struct HistoryPasses {
     keep: Pass,
     spread: Pass,
-    reproject: Reprojection,
+    reproject: Pass<wgpu::RenderPipeline>,
     list: Pass,
     size: Pass,
     shade: Pass,
@@ -160,7 +156,7 @@ impl HistoryPasses {
                 &tiles,
                 &[],
             ),
-            reproject: Reprojection::new(gpu, settings, frame),
+            reproject: reprojection(gpu, settings, frame),
             list: pass(
                 "lists of samples",
                 shader::SHADING_HISTORY_LIST,
@@ -256,9 +252,9 @@ impl Frame<'_> {
         view(&self.history.light[which])
     }
 
-    fn group(
+    fn group<P>(
         &self,
-        pass: &Pass,
+        pass: &Pass<P>,
         label: &str,
         resources: &[wgpu::BindingResource<'_>],
     ) -> wgpu::BindGroup {
@@ -343,10 +339,9 @@ impl HistoryPasses {
                 view(&h.tiles),
             ],
         );
-        let reproject = bind_group(
-            &recorder.gpu.device,
+        let reproject = frame.group(
+            &self.reproject,
             "reprojection of light",
-            &self.reproject.layout,
             &[
                 view(&frame.rate.owner.whole),
                 view(&gbuffer.surface_layers),
