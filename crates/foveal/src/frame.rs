@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3};
 use crate::Settings;
 use crate::environment::EnvironmentTerms;
 use crate::lights::ClusterGrid;
+use crate::shadow::LookupSettings;
 use crate::stereo::{Eye, EyeLayout};
 
 /// First column of a right eye that there is not: beyond every target.
@@ -66,6 +67,10 @@ pub(crate) struct FrameUniform {
     pub(crate) point_size: f32,
     pub(crate) environment_levels: [f32; 3],
     pub(crate) line_width: f32,
+    pub(crate) shadow_bias: f32,
+    pub(crate) light_radius: f32,
+    pub(crate) sun_tangent: f32,
+    pub(crate) reserved: f32,
 }
 
 impl FrameUniform {
@@ -82,6 +87,7 @@ impl FrameUniform {
         let view = |i: usize| ViewUniform::new(&eyes[i], &previous[i], clusters.shifts[i]);
         let EnvironmentTerms { sky, map } = environment;
         let intensity = settings.lighting.environment_intensity;
+        let shadows = LookupSettings::new(&settings.lighting);
         let turn = settings.lighting.environment_rotation_deg.to_radians();
         let irradiance = map.map_or([Vec3::ZERO; 9], |map| *map.irradiance());
         let (orthographic, near, depth_range) = match camera.projection {
@@ -117,6 +123,10 @@ impl FrameUniform {
                 [levels.last, levels.per_doubling, levels.sharpness]
             }),
             line_width: settings.geometry.line_width_px,
+            shadow_bias: shadows.texels_moved,
+            light_radius: shadows.light_radius_m,
+            sun_tangent: shadows.sun_tangent,
+            reserved: 0.0,
         }
     }
 }

@@ -284,20 +284,10 @@ fn below_coat_reflected(s: LobedSurface, v: vec3f, l: vec3f, n_dot_l: f32) -> ve
     return base;
 }
 
-// A light's part in the radiance of a lobed surface; `left` is what the coat leaves.
-fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
-    let light = light_at(index);
-    let a = incident(light, s.base.position);
+// What a lobed surface sends to the eye of light from one direction.
+fn lobes_reflected(s: LobedSurface, v: vec3f, left: f32, a: IncidentLight) -> vec3f {
     let n_dot_l = dot(s.base.normal, a.direction);
     let coat_n_dot_l = dot(s.coat.normal, a.direction);
-    if max(n_dot_l, coat_n_dot_l) <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
-        return vec3f(0.0);
-    }
-    var irradiance = a.irradiance;
-    if SHADOWS != 0u {
-        let cosine = max(n_dot_l, 1e-3);
-        irradiance *= light_passing(index, light, s.base.position, s.base.normal, cosine);
-    }
     var sum = vec3f(0.0);
     if n_dot_l > 0.0 {
         sum = left * n_dot_l * below_coat_reflected(s, v, a.direction, n_dot_l);
@@ -306,7 +296,46 @@ fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
         let coat = reflect_ggx(s.coat, s.coat_mirror, v, a.direction, coat_n_dot_l);
         sum += s.clearcoat * coat_n_dot_l * coat.specular;
     }
-    return sum * irradiance;
+    return sum * a.irradiance;
+}
+
+// Whether the surface or its coat faces a light that sends anything.
+fn lobes_face(s: LobedSurface, a: IncidentLight) -> bool {
+    let cosine = max(dot(s.base.normal, a.direction), dot(s.coat.normal, a.direction));
+    return cosine > 0.0 && any(a.irradiance > vec3f(0.0));
+}
+
+// Cosine with which shadows are looked up, at least 0.001: a coat may be lit where its base is not.
+fn shadowed_cosine(s: LobedSurface, a: IncidentLight) -> f32 {
+    return max(dot(s.base.normal, a.direction), 1e-3);
+}
+
+// A directional light's part in the radiance of a lobed surface; `left` is what the coat leaves.
+fn lobes_lit_from_afar(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
+    let light = light_at(index);
+    var a = incident_from_afar(light);
+    if !lobes_face(s, a) {
+        return vec3f(0.0);
+    }
+    if SHADOWS != 0u {
+        let cosine = shadowed_cosine(s, a);
+        a.irradiance *= directional_passing(index, light, s.base.position, s.base.normal, cosine);
+    }
+    return lobes_reflected(s, v, left, a);
+}
+
+// The same of a light that shines from a point.
+fn lobes_lit_by(s: LobedSurface, v: vec3f, left: f32, index: u32) -> vec3f {
+    let light = light_at(index);
+    var a = incident(light, s.base.position);
+    if !lobes_face(s, a) {
+        return vec3f(0.0);
+    }
+    if SHADOWS != 0u {
+        let cosine = shadowed_cosine(s, a);
+        a.irradiance *= light_passing(index, light, s.base.position, s.base.normal, cosine);
+    }
+    return lobes_reflected(s, v, left, a);
 }
 
 // The environment's light on a lobed surface.
@@ -354,12 +383,18 @@ fn lit_with_lobes(lobed: LobedSurface, pixel: vec2f, distance: f32) -> vec3f {
     }
     let left = below_coat(s, v);
     var sum = s.base.emissive * left + lobes_ambient(s, v, left, environment_seen(pixel, distance));
-    var walk = first_light(pixel, distance);
+    let directional = directional_lights();
+    for (var i = 0u; i < directional; i++) {
+        sum += lobes_lit_from_afar(s, v, left, i);
+    }
+    // A coat may face a light that its base does not face.
+    let facing = select(s.base.normal, vec3f(0.0), (MATERIAL_CLASS & HAS_CLEARCOAT) != 0u);
+    var walk = first_light(pixel, distance, s.base.position, facing);
     loop {
         if walk.bits != 0u {
             sum += lobes_lit_by(s, v, left, light_number(walk));
         }
-        walk = next_light(walk);
+        walk = next_light(walk, s.base.position, facing);
         continuing {
             break if walk.bits == 0u;
         }

@@ -15,7 +15,7 @@ use crate::shadow::ShadowStage;
 pub(crate) struct LightAssigner {
     means: Means,
     eyes: u32,
-    /// One bit per cluster and light; grows when it must.
+    /// One bit per cluster and light that shines from a point; grows when it must.
     bits: wgpu::Buffer,
 }
 

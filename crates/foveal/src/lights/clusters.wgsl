@@ -1,5 +1,5 @@
 // Light assignment: which lights reach which cluster (froxel), one bit each. One workgroup per
-// light walks the clusters around the light's sphere.
+// light that shines from a point walks the clusters around the light's sphere.
 
 #import shared/frame.wgsl
 #import shared/light.wgsl
@@ -61,33 +61,29 @@ fn center_in(view: u32, position: vec3f) -> vec3f {
 @compute @workgroup_size(64)
 fn assign(@builtin(workgroup_id) group: vec3u, @builtin(local_invocation_index) local: u32) {
     let index = group.x;
+    if index < directional_lights() {
+        return;
+    }
     let light = light_at(index);
-    let everywhere = light.kind == LIGHT_DIRECTIONAL;
     // A little more than the range: rounding may err, but never to the small side.
     let radius = light.range * 1.0001 + 1e-4;
     // The eyes look the same way and stand side by side, so the distance is the same for both.
     let center = center_in(0u, light.position);
     let nearest = -center.z - radius;
     let farthest = -center.z + radius;
-    if !everywhere && farthest < 0.0 && frame.orthographic == 0u {
+    if farthest < 0.0 && frame.orthographic == 0u {
         return;
     }
-    var first = 0u;
-    var last = frame.cluster_counts.z - 1u;
-    if !everywhere {
-        first = cluster_slice(nearest);
-        last = cluster_slice(farthest);
-        // The slice is a rounded logarithm: one more on either side holds what rounding may have
-        // moved.
-        first -= min(first, 1u);
-        last = min(last + 1u, frame.cluster_counts.z - 1u);
-    }
+    // The slice is a rounded logarithm: one more on either side holds what rounding may have moved.
+    var first = cluster_slice(nearest);
+    first -= min(first, 1u);
+    let last = min(cluster_slice(farthest) + 1u, frame.cluster_counts.z - 1u);
     let per_slice = frame.cluster_counts.x * frame.cluster_counts.y;
     let count = per_slice * (last - first + 1u);
     for (var i = local; i < count; i += 64u) {
         let in_slice = i % per_slice;
         let cluster = vec3u(in_slice % frame.cluster_counts.x, in_slice / frame.cluster_counts.x, first + i / per_slice);
-        var touches = everywhere;
+        var touches = false;
         for (var view = 0u; view < VIEWS && !touches; view++) {
             let begin = select(max(nearest, 0.0), nearest, frame.orthographic != 0u);
             let b = cluster_box(view, cluster, begin, farthest);

@@ -2,7 +2,8 @@
 //!
 //! The grid has square tiles on the screen and slices that grow geometrically with the distance
 //! (Olsson, Billeter, Assarsson 2012, 'Clustered Deferred and Forward Shading'). A cluster holds
-//! one bit per light: nothing overflows, and lights come out in ascending order.
+//! one bit per light that shines from a point: nothing overflows, and lights come out in ascending
+//! order. Directional ones light everything, and come first.
 
 mod clusters;
 mod grid;

@@ -6,13 +6,16 @@ use glam::{Mat4, Vec2, Vec3, Vec4};
 use super::LightUniform;
 use crate::frame::{FrameUniform, ViewUniform};
 
-/// One bit per cluster and light, `light_words` words per cluster: as `assign` in `clusters.wgsl`.
+/// One bit per cluster and light that shines from a point, `light_words` words per cluster: as
+/// `assign` in `clusters.wgsl`.
 pub(crate) fn cluster_bits(frame: &FrameUniform, eyes: usize, lights: &[LightUniform]) -> Vec<u32> {
     let [across, down, slices] = frame.cluster_counts;
     let words = lights.len().div_ceil(32);
     let mut bits = vec![0u32; (across * down * slices) as usize * words];
     for (index, light) in lights.iter().enumerate() {
-        let everywhere = light.kind == 0;
+        if light.is_directional() {
+            continue;
+        }
         let radius = light.range * 1.0001 + 1e-4;
         let centers: Vec<Vec3> = frame.views[..eyes]
             .iter()
@@ -20,17 +23,11 @@ pub(crate) fn cluster_bits(frame: &FrameUniform, eyes: usize, lights: &[LightUni
             .collect();
         let nearest = -centers[0].z - radius;
         let farthest = -centers[0].z + radius;
-        if !everywhere && farthest < 0.0 && frame.orthographic == 0 {
+        if farthest < 0.0 && frame.orthographic == 0 {
             continue;
         }
-        let (first, last) = if everywhere {
-            (0, slices - 1)
-        } else {
-            (
-                slice_of(frame, nearest).saturating_sub(1),
-                (slice_of(frame, farthest) + 1).min(slices - 1),
-            )
-        };
+        let first = slice_of(frame, nearest).saturating_sub(1);
+        let last = (slice_of(frame, farthest) + 1).min(slices - 1);
         let begin = if frame.orthographic != 0 {
             nearest
         } else {
@@ -41,15 +38,12 @@ pub(crate) fn cluster_bits(frame: &FrameUniform, eyes: usize, lights: &[LightUni
             let z = [span[0].max(begin), span[1].min(farthest)];
             for row in 0..down {
                 for column in 0..across {
-                    let touches = everywhere
-                        || frame.views[..eyes]
-                            .iter()
-                            .zip(&centers)
-                            .any(|(view, &seen)| {
-                                let (low, high) = cluster_box(frame, view, [column, row], z);
-                                let gap = (low - seen).max(seen - high).max(Vec3::ZERO);
-                                gap.length_squared() <= radius * radius
-                            });
+                    let mut views = frame.views[..eyes].iter().zip(&centers);
+                    let touches = views.any(|(view, &seen)| {
+                        let (low, high) = cluster_box(frame, view, [column, row], z);
+                        let gap = (low - seen).max(seen - high).max(Vec3::ZERO);
+                        gap.length_squared() <= radius * radius
+                    });
                     if touches {
                         let cluster = (column + across * (row + down * slice)) as usize;
                         bits[cluster * words + index / 32] |= 1 << (index % 32);

@@ -23,7 +23,8 @@ fn bit(bits: &[u32], grid: &ClusterGrid, cluster: u32, light: u32) -> bool {
     bits[(cluster * grid.light_words() + light / 32) as usize] >> (light % 32) & 1 == 1
 }
 
-/// Every point that a light reaches lies in a cluster that has the light; most clusters have not.
+/// Every place that a light reaches lies in a cluster that has the light; most clusters have not.
+/// Directional lights are in none.
 fn assert_assignment(scene: &Scene, camera: &Camera) {
     let settings = small(320, 200);
     let renderer = rendered(scene, camera, &settings);
@@ -52,8 +53,10 @@ fn assert_assignment(scene: &Scene, camera: &Camera) {
                 let position = position_at(camera, size, pixel, depth);
                 let cluster = cluster_at(&grid, pixel, distance);
                 for (index, light) in (0..).zip(lights) {
-                    if light.kind == 0
-                        || Vec3::from(light.position).distance(position) < light.range
+                    // What lights everything has no bits.
+                    assert!(light.kind != 0 || !bit(&bits, &grid, cluster, index));
+                    if light.kind != 0
+                        && Vec3::from(light.position).distance(position) < light.range
                     {
                         assert!(
                             bit(&bits, &grid, cluster, index),

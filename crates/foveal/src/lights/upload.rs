@@ -31,22 +31,35 @@ pub(crate) struct LightUniform {
 pub(crate) struct LightsHeader {
     count: u32,
     words: u32,
-    reserved: [u32; 2],
+    directional: u32,
+    reserved: u32,
 }
 
 impl LightsHeader {
-    pub(crate) fn new(lights: usize) -> Self {
-        let count = lights as u32;
+    pub(crate) fn new(lights: &[LightUniform]) -> Self {
+        let count = lights.len() as u32;
         Self {
             count,
             words: count.div_ceil(32),
-            reserved: [0; 2],
+            directional: lights.iter().take_while(|l| l.is_directional()).count() as u32,
+            reserved: 0,
         }
     }
 }
 
 impl LightUniform {
-    pub(crate) fn new(light: &Light) -> Self {
+    /// All lights of a scene, directional ones first.
+    pub(crate) fn all(lights: &[Light]) -> Vec<Self> {
+        let mut all: Vec<_> = lights.iter().map(Self::new).collect();
+        all.sort_by_key(|light| !light.is_directional());
+        all
+    }
+
+    pub(crate) fn is_directional(&self) -> bool {
+        self.kind == 0
+    }
+
+    fn new(light: &Light) -> Self {
         let radiant = light.color * light.intensity;
         // An infinite light would be in every cluster: it ends where it has become invisible.
         let range = light

@@ -114,7 +114,7 @@ impl SceneOnGpu {
                 hint: String::new(),
             });
         }
-        let lights: Vec<_> = scene.lights.iter().map(LightUniform::new).collect();
+        let lights = LightUniform::all(&scene.lights);
         let mut light_table = Table::new(gpu, "lights");
         write_lights(gpu, &mut light_table, &lights);
         let materials =
@@ -195,7 +195,7 @@ impl SceneOnGpu {
         }
         self.bounds = shadowed_bounds(scene, &self.geometry.meshes);
         self.instances = instances;
-        let lights = scene.lights.iter().map(LightUniform::new).collect();
+        let lights = LightUniform::all(&scene.lights);
         let lights_before = std::mem::replace(&mut self.lights, lights);
         write_lights(gpu, &mut self.light_table, &self.lights);
         self.geometry.update_pose(gpu, scene);
@@ -228,7 +228,7 @@ impl SceneOnGpu {
 }
 
 fn write_lights(gpu: &Gpu, table: &mut Table, lights: &[LightUniform]) {
-    let header = LightsHeader::new(lights.len());
+    let header = LightsHeader::new(lights);
     let mut bytes = bytemuck::bytes_of(&header).to_vec();
     // A binding must hold one light, even where there is none.
     let none = [LightUniform::default()];

@@ -2,7 +2,7 @@
 //! Rust.
 
 use foveal_generate as generate;
-use foveal_scene::{Camera, Projection, Scene};
+use foveal_scene::{Camera, Light, LightKind, Projection, Scene};
 use glam::{IVec2, UVec2, Vec2, Vec2Swizzles, Vec3, Vec4};
 
 use super::dielectric::{dielectric_of, normal_of};
@@ -454,6 +454,32 @@ fn clustered_and_brute_lighting_give_the_same_bytes() {
             texels::<[u16; 4]>(&brute.targets().radiance_view)
         );
         assert_eq!(picture(&clustered), picture(&brute));
+    }
+}
+
+#[test]
+fn directional_lights_behind_others_light_as_their_twin() {
+    let mut scene = generate::cornell();
+    generate::add_point_lights(&mut scene, 20, 7);
+    let sun = scene
+        .lights
+        .iter()
+        .find(|l| l.kind == LightKind::Directional);
+    let sun = sun.expect("the room has one").clone();
+    // More than a word of the clusters' bits holds.
+    for i in 0..45_u8 {
+        let direction = Vec3::new(f32::from(i) * 0.02 - 0.5, -1.0, 0.3).normalize();
+        let intensity = sun.intensity * 0.02;
+        scene.lights.push(Light {
+            direction,
+            intensity,
+            ..sun.clone()
+        });
+    }
+    let camera = &scene.cameras[0];
+    for assignment in [LightAssignment::Clustered, LightAssignment::Brute] {
+        let settings = small(WIDTH, HEIGHT).with(|s| s.lighting.assignment = assignment);
+        assert_equals_twin(&scene, camera, &settings);
     }
 }
 

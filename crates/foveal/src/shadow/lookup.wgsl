@@ -1,6 +1,7 @@
 // Whether a light's rays reach a place: a look into the light's tiles of the atlas. CPU twin:
 // `shadow/twin.rs`.
 
+#import shared/frame.wgsl
 #import shared/light.wgsl
 #import shadow/contact.wgsl
 #import shadow/tile.wgsl
@@ -43,7 +44,7 @@ fn shadow_passing(tile: ShadowTile, at: vec2f, depth: f32, softness: f32) -> f32
 // not shade itself: a texel's width, times what the filter and the slope ask for.
 fn shadow_offset(tile: ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
     let slope = sqrt(max(1.0 - n_dot_l * n_dot_l, 0.0));
-    return texel_m * shadow_row(0u).x * (0.4 + slope) * select(1.0, 0.5, tile.is_narrow && SHADOWS != SHADOWS_CONTACT);
+    return texel_m * frame.shadow_bias * (0.4 + slope) * select(1.0, 0.5, tile.is_narrow && SHADOWS != SHADOWS_CONTACT);
 }
 
 // The side of a cube that a direction from its centre points to.
@@ -71,6 +72,19 @@ fn side_axes(side: u32) -> mat3x3f {
     );
 }
 
+// Unit vectors across, up and along a unit vector (Duff et al. 2017, 'Building an Orthonormal
+// Basis, Revisited'). Rust: `axes_along` in `shadow/volume.rs`, which tells -0 from 0 too.
+fn axes_along(z: vec3f) -> mat3x3f {
+    let sign = select(1.0, -1.0, (bitcast<u32>(z.z) >> 31u) != 0u);
+    let a = -1.0 / (sign + z.z);
+    let b = z.x * z.y * a;
+    return mat3x3f(
+        vec3f(1.0 + sign * z.x * z.x * a, sign * b, -sign * z.x),
+        vec3f(b, sign + z.y * z.y * a, -z.y),
+        z,
+    );
+}
+
 // A position in a pyramid, across, up and along, in texels of its tile.
 fn pyramid_texel(at: vec3f, tangent: f32, side: f32) -> vec2f {
     let half_inner = 0.5 * side - SHADOW_BORDER;
@@ -82,7 +96,7 @@ fn pyramid_texel(at: vec3f, tangent: f32, side: f32) -> vec2f {
 // z of the place) at distance 1. A lamp counts as at most half as large as it stands high above the
 // surface: a part of a larger one would be behind the surface, which would keep its own light away.
 fn pyramid_softness(near: f32, tangent: f32, side: f32, height: f32) -> f32 {
-    let lamp = min(shadow_row(0u).y, 0.5 * height);
+    let lamp = min(frame.light_radius, 0.5 * height);
     return lamp * (0.5 * side - SHADOW_BORDER) / (tangent * near);
 }
 
@@ -110,9 +124,10 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
         return UNSHADOWED;
     }
     let of_cube = side_axes(side);
-    let across = select(shadow_row(first + 2u).xyz, of_cube[0], is_cube);
-    let up = select(shadow_row(first + 3u).xyz, of_cube[1], is_cube);
-    let along = select(light.direction, of_cube[2], is_cube);
+    let of_cone = axes_along(light.direction);
+    let across = select(of_cone[0], of_cube[0], is_cube);
+    let up = select(of_cone[1], of_cube[1], is_cube);
+    let along = select(of_cone[2], of_cube[2], is_cube);
     let near = lens.x;
     let tangent = select(lens.y, 1.0, is_cube);
     let texel_m = 2.0 * tangent * dot(along, from_light) / (tile.side - 2.0 * SHADOW_BORDER);
@@ -127,15 +142,14 @@ fn place_from_point(first: u32, light: Light, position: vec3f, normal: vec3f, n_
 
 // Of a directional light: in the finest cascade that holds the place.
 fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> ShadowPlace {
-    let across = shadow_row(first + 2u).xyz;
-    let up = shadow_row(first + 3u).xyz;
+    let axes = axes_along(light.direction);
     let words = shadow_words(first);
     let cascades = shadow_words(first + 1u).x;
     for (var i = 0u; i < 4u; i++) {
         let tile = shadow_tile(words[i]);
         // Centre across and up, half the width.
         let cascade = shadow_row(cascades + i);
-        let away = abs(vec2f(dot(across, position), dot(up, position)) - cascade.xy);
+        let away = abs(vec2f(dot(axes[0], position), dot(axes[1], position)) - cascade.xy);
         let texel_m = 2.0 * cascade.z / max(tile.side, 1.0);
         // The last one holds the scene: there is none to go on to.
         let reach = select(SHADOW_BORDER, CONTACT_REACH + 2.0, SHADOWS == SHADOWS_CONTACT);
@@ -144,29 +158,31 @@ fn place_from_sun(first: u32, light: Light, position: vec3f, normal: vec3f, n_do
             continue;
         }
         let moved = position + normal * shadow_offset(tile, texel_m, n_dot_l);
-        let at = (vec2f(dot(across, moved), dot(up, moved)) - cascade.xy) / texel_m;
+        let at = (vec2f(dot(axes[0], moved), dot(axes[1], moved)) - cascade.xy) / texel_m;
         // End along the rays, and one by the length.
         let span = shadow_row(first + 1u).zw;
         let depth = (span.x - dot(light.direction, moved)) * span.y;
         // Metres between two depths, times the tangent of half the angle that the light fills.
-        let softness = shadow_row(0u).z / (span.y * texel_m);
+        let softness = frame.sun_tangent / (span.y * texel_m);
         return ShadowPlace(tile, 0.5 * tile.side + vec2f(at.x, -at.y), depth, softness);
     }
     return UNSHADOWED;
 }
 
-// Part of a light's rays that reach a surface, 0 to 1. All kinds of lights are looked up at one
-// place: a device that runs all branches would look all of them up.
-fn light_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
-    let first = 1u + index * SHADOW_ROWS;
-    var place: ShadowPlace;
-    if light.kind == LIGHT_DIRECTIONAL {
-        place = place_from_sun(first, light, position, normal, n_dot_l);
-    } else {
-        place = place_from_point(first, light, position, normal, n_dot_l);
-    }
+// Part of a light's rays that reach a place.
+fn place_passing(place: ShadowPlace) -> f32 {
     if place.tile.side == 0.0 {
         return 1.0;
     }
     return shadow_passing(place.tile, place.at, place.depth, place.softness);
+}
+
+// Part of a directional light's rays that reach a surface, 0 to 1.
+fn directional_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+    return place_passing(place_from_sun(index * SHADOW_ROWS, light, position, normal, n_dot_l));
+}
+
+// The same of a light that shines from a point.
+fn light_passing(index: u32, light: Light, position: vec3f, normal: vec3f, n_dot_l: f32) -> f32 {
+    return place_passing(place_from_point(index * SHADOW_ROWS, light, position, normal, n_dot_l));
 }

@@ -40,4 +40,5 @@ pub(crate) use changed::{Place, add_place};
 #[cfg(test)]
 pub(crate) use pass::TileUniform;
 pub(crate) use receivers::Receivers;
+pub(crate) use records::LookupSettings;
 pub(crate) use stage::ShadowStage;

@@ -1,22 +1,18 @@
 //! What shaders know of tiles: `shadow_words` in `shadow/tile.wgsl`.
 //!
-//! Row 0: texels by which places are moved along their normals; lamps' radius in metres; tangent of
-//! half the angle that directional lights fill. Then four rows per light: the words of tiles 0 to 3;
-//! words 4 and 5, the near distance and the cone's tangent (0 for a cube); the axis across; the axis
-//! up. A directional light has in place of words 4 and 5 the number of its first cascade's row, and
-//! then the end of its rays and one by their length. After all lights a row per cascade: centre across
-//! and up, and half the width.
-
-use glam::Vec3;
+//! Two rows per light: the words of tiles 0 to 3; words 4 and 5, the near distance and the cone's
+//! tangent (0 for a cube). A directional light has in place of words 4 and 5 the number of its
+//! first cascade's row, and then the end of its rays and one by their length. After all lights a
+//! row per cascade: centre across and up, and half the width.
 
 use super::kept::KeptTiles;
 use super::plan::{CASCADES, Plan, TILES_PER_LIGHT, near_of, spot_tangent};
-use super::volume::{Volume, axes_along};
+use super::volume::Volume;
 use crate::lights::LightUniform;
 use crate::{LightingSettings, Shadows};
 
 /// Rows of a light: `SHADOW_ROWS` in the shader.
-const ROWS: usize = 4;
+pub(super) const ROWS: usize = 2;
 /// Bit of a tile's word: its filter is a texel wide instead of three.
 const NARROW_BIT: u32 = 25;
 const DIRECTIONAL: u32 = 0;
@@ -26,18 +22,18 @@ pub(super) type Row = [u32; 4];
 
 /// Settings that lookups follow.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct LookupSettings {
+pub(crate) struct LookupSettings {
     /// Texels by which places are moved along their normals.
-    pub(super) texels_moved: f32,
+    pub(crate) texels_moved: f32,
     /// Of point and spot lights.
-    pub(super) light_radius_m: f32,
+    pub(crate) light_radius_m: f32,
     /// Of half the angle that directional lights fill.
-    pub(super) sun_tangent: f32,
+    pub(crate) sun_tangent: f32,
     pub(super) shadows: Shadows,
 }
 
 impl LookupSettings {
-    pub(super) fn new(lighting: &LightingSettings) -> Self {
+    pub(crate) fn new(lighting: &LightingSettings) -> Self {
         Self {
             texels_moved: lighting.shadow_bias,
             light_radius_m: lighting.light_radius_m,
@@ -69,26 +65,12 @@ const SOFT_REACH: f32 = 3.0;
 pub(super) const CONTACT_REACH: f32 = 12.0;
 
 /// The rows of a frame.
-pub(super) fn rows(
-    lights: &[LightUniform],
-    plan: &Plan,
-    kept: &KeptTiles,
-    lookup: &LookupSettings,
-) -> Vec<Row> {
-    let mut rows = vec![[0; 4]; 1 + lights.len() * ROWS];
-    rows[0] = words(Vec3::new(
-        lookup.texels_moved,
-        lookup.light_radius_m,
-        lookup.sun_tangent,
-    ));
-    let first_row = |light: usize| 1 + light * ROWS;
+pub(super) fn rows(lights: &[LightUniform], plan: &Plan, kept: &KeptTiles) -> Vec<Row> {
+    // A binding must hold a row, even where there is no light.
+    let mut rows = vec![[0; 4]; (lights.len() * ROWS).max(1)];
     for (number, light) in lights.iter().enumerate() {
-        let first = first_row(number);
-        let [across, up, _] = axes_along(light.direction.into());
-        rows[first + 1][2] = near_of(light).to_bits();
-        rows[first + 1][3] = spot_tangent(light).unwrap_or(0.0).to_bits();
-        rows[first + 2] = words(across);
-        rows[first + 3] = words(up);
+        rows[number * ROWS + 1][2] = near_of(light).to_bits();
+        rows[number * ROWS + 1][3] = spot_tangent(light).unwrap_or(0.0).to_bits();
     }
     for want in &plan.wanted {
         let number = want.slot as usize / TILES_PER_LIGHT;
@@ -97,7 +79,7 @@ pub(super) fn rows(
             // Nobody sees what it would shade, or it waits and nothing stands in for it.
             continue;
         };
-        let first = first_row(number);
+        let first = number * ROWS;
         rows[first + tile / 4][tile % 4] =
             place.word() | u32::from(want.follows_rate) << NARROW_BIT;
         let Volume::Column {
@@ -123,8 +105,4 @@ pub(super) fn rows(
         rows[cascades + tile] = [center[0], center[1], radius, 0.0].map(f32::to_bits);
     }
     rows
-}
-
-fn words(axis: Vec3) -> Row {
-    axis.extend(0.0).to_array().map(f32::to_bits)
 }

@@ -212,7 +212,7 @@ impl ShadowStage {
         drawing.counts = Counts::default();
         if drawing.settled.as_ref() != Some(&now) {
             drawing.find_tiles(scene, &now);
-            let rows = rows(&scene.lights, &drawing.plan, &drawing.kept, &drawing.lookup);
+            let rows = rows(&scene.lights, &drawing.plan, &drawing.kept);
             if rows != self.written {
                 self.rows.write(gpu, bytemuck::cast_slice(&rows));
                 self.written = rows;

@@ -14,7 +14,7 @@ override SHADOWS: u32 = 0u;
 const SHADOWS_SOFT: u32 = 2u;
 const SHADOWS_CONTACT: u32 = 3u;
 // Rows of a light's record. Rust: `shadow/records.rs`.
-const SHADOW_ROWS: u32 = 4u;
+const SHADOW_ROWS: u32 = 2u;
 // As `BORDER` in `shadow/volume.rs`.
 const SHADOW_BORDER: f32 = 4.0;
 

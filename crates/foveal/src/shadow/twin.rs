@@ -2,8 +2,8 @@
 
 use glam::{Vec2, Vec3};
 
-use super::records::{CONTACT_REACH, Row};
-use super::volume::BORDER;
+use super::records::{CONTACT_REACH, LookupSettings, ROWS, Row};
+use super::volume::{BORDER, axes_along};
 use crate::Shadows;
 use crate::lights::LightUniform;
 
@@ -14,6 +14,7 @@ pub(crate) struct Lookup {
     pub(crate) atlas: Vec<f32>,
     pub(crate) side: u32,
     pub(crate) shadows: Shadows,
+    pub(super) settings: LookupSettings,
 }
 
 pub(super) struct ShadowTile {
@@ -43,11 +44,6 @@ fn golden_spiral() -> impl Iterator<Item = Vec2> {
 impl Lookup {
     fn row(&self, row: usize) -> [f32; 4] {
         self.rows[row].map(f32::from_bits)
-    }
-
-    fn axis(&self, row: usize) -> Vec3 {
-        let [x, y, z, _] = self.row(row);
-        Vec3::new(x, y, z)
     }
 
     fn passes(&self, tile: &ShadowTile, x: u32, y: u32, depth: f32) -> f32 {
@@ -137,7 +133,7 @@ impl Lookup {
     }
 
     fn pyramid_softness(&self, near: f32, tangent: f32, inner: f32, height: f32) -> f32 {
-        self.row(0)[1].min(0.5 * height) * (0.5 * inner) / (tangent * near)
+        self.settings.light_radius_m.min(0.5 * height) * (0.5 * inner) / (tangent * near)
     }
 
     fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
@@ -147,17 +143,17 @@ impl Lookup {
         } else {
             1.0
         };
-        texel_m * self.row(0)[0] * (0.4 + slope) * filter
+        texel_m * self.settings.texels_moved * (0.4 + slope) * filter
     }
 
-    /// `light_passing` in the shader.
+    /// `directional_passing` and `light_passing` in the shader.
     pub(crate) fn light_passing(
         &self,
         index: usize,
         light: &LightUniform,
         (position, normal, n_dot_l): (Vec3, Vec3, f32),
     ) -> f32 {
-        let first = 1 + index * 4;
+        let first = index * ROWS;
         let direction = Vec3::from(light.direction);
         if light.kind == 0 {
             return self.sun_passing(first, direction, (position, normal, n_dot_l));
@@ -165,7 +161,7 @@ impl Lookup {
         let from_light = position - Vec3::from(light.position);
         let [_, _, near, spot] = self.row(first + 1);
         let axes = if spot > 0.0 {
-            [self.axis(first + 2), self.axis(first + 3), direction]
+            axes_along(direction)
         } else {
             let away = from_light.abs();
             let axis = if away.x >= away.y && away.x >= away.z {
@@ -209,28 +205,23 @@ impl Lookup {
         direction: Vec3,
         (position, normal, n_dot_l): (Vec3, Vec3, f32),
     ) -> f32 {
-        let Some((tile, center, texel_m)) = self.cascade_at(first, position) else {
+        let Some((tile, center, texel_m)) = self.cascade_at(first, direction, position) else {
             return 1.0;
         };
         let [_, _, end, per_length] = self.row(first + 1);
         let moved = position + normal * self.offset(&tile, texel_m, n_dot_l);
-        let at = (self.on_plane(first, moved) - center) / texel_m;
+        let at = (on_plane(direction, moved) - center) / texel_m;
         let depth = (end - direction.dot(moved)) * per_length;
         let place = Vec2::new(at.x, -at.y) + 0.5 * tile.side as f32;
-        let softness = self.row(0)[2] / (per_length * texel_m);
+        let softness = self.settings.sun_tangent / (per_length * texel_m);
         self.passing(&tile, place, depth, softness)
-    }
-
-    /// Across and up, seen along a directional light's rays.
-    fn on_plane(&self, first: usize, p: Vec3) -> Vec2 {
-        let (across, up) = (self.axis(first + 2), self.axis(first + 3));
-        Vec2::new(across.dot(p), up.dot(p))
     }
 
     /// The finest cascade that holds a place: its tile, its centre, and metres per texel.
     pub(super) fn cascade_at(
         &self,
         first: usize,
+        direction: Vec3,
         position: Vec3,
     ) -> Option<(ShadowTile, Vec2, f32)> {
         (0..4).find_map(|cascade| {
@@ -238,7 +229,7 @@ impl Lookup {
             let [u, v, radius, _] = self.row(self.rows[first + 1][0] as usize + cascade);
             let center = Vec2::new(u, v);
             let texel_m = 2.0 * radius / tile.side as f32;
-            let away = (self.on_plane(first, position) - center).abs();
+            let away = (on_plane(direction, position) - center).abs();
             let reach = match self.shadows {
                 Shadows::Contact => CONTACT_REACH + 2.0,
                 _ => BORDER,
@@ -247,4 +238,10 @@ impl Lookup {
             (away.max_element() <= radius - margin).then_some((tile, center, texel_m))
         })
     }
+}
+
+/// Across and up, seen along a directional light's rays.
+fn on_plane(direction: Vec3, p: Vec3) -> Vec2 {
+    let [across, up, _] = axes_along(direction);
+    Vec2::new(across.dot(p), up.dot(p))
 }

@@ -209,7 +209,7 @@ impl Volume {
     }
 }
 
-/// The six sides of a cube around a light: axes across, up and along. Mirrored by `in_cube_side` in
+/// The six sides of a cube around a light: axes across, up and along. Mirrored by `side_axes` in
 /// `shadow/lookup.wgsl`.
 pub(super) fn cube_axes(side: u32) -> [Vec3; 3] {
     const AXES: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
@@ -222,7 +222,7 @@ pub(super) fn cube_axes(side: u32) -> [Vec3; 3] {
     ]
 }
 
-/// Unit axes across, up and along a direction, the same for the same direction.
+/// Unit axes across, up and along a direction: as `axes_along` in `shadow/lookup.wgsl`.
 pub(super) fn axes_along(direction: Vec3) -> [Vec3; 3] {
     let z = direction.normalize_or(Vec3::NEG_Y);
     let (x, y) = z.any_orthonormal_pair();

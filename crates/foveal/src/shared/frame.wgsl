@@ -60,6 +60,13 @@ struct Frame {
     environment_levels: vec3f,
     // Width of a line, in pixels; at least 1.
     line_width: f32,
+    // Texels by which places are moved along their normals before shadows are looked up.
+    shadow_bias: f32,
+    // Of lamps that shine from a point, in metres.
+    light_radius: f32,
+    // Tangent of half the angle that directional lights fill.
+    sun_tangent: f32,
+    reserved: f32,
 }
 
 @group(0) @binding(0) var<uniform> frame: Frame;

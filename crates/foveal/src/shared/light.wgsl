@@ -2,7 +2,6 @@
 
 #import shared/frame.wgsl
 
-const LIGHT_DIRECTIONAL: u32 = 0u;
 const LIGHT_SPOT: u32 = 2u;
 
 struct Light {
@@ -28,7 +27,9 @@ struct Lights {
     count: u32,
     // 32-light words per cluster.
     words: u32,
-    reserved: vec2u,
+    // Directional ones, which come first. They are in no cluster's words.
+    directional: u32,
+    reserved: u32,
     items: array<Light>,
 }
 

@@ -21,9 +21,19 @@ fn light_words() -> u32 {
     return light_row(0u).y;
 }
 
+// How many lights are directional; they come first.
+fn directional_lights() -> u32 {
+    return light_row(0u).z;
+}
+
+// A light's position, and its range in w.
+fn light_sphere(index: u32) -> vec4f {
+    return bitcast<vec4f>(light_row(index * 4u + 1u));
+}
+
 fn light_at(index: u32) -> Light {
     let first = index * 4u + 1u;
-    let position = bitcast<vec4f>(light_row(first));
+    let position = light_sphere(index);
     let radiant = light_row(first + 1u);
     let direction = bitcast<vec4f>(light_row(first + 2u));
     let cone = bitcast<vec4f>(light_row(first + 3u));
@@ -48,6 +58,16 @@ fn light_count() -> u32 {
 // 32-light words per cluster.
 fn light_words() -> u32 {
     return lights.words;
+}
+
+// How many lights are directional; they come first.
+fn directional_lights() -> u32 {
+    return lights.directional;
+}
+
+// A light's position, and its range in w.
+fn light_sphere(index: u32) -> vec4f {
+    return vec4f(lights.items[index].position, lights.items[index].range);
 }
 
 fn light_at(index: u32) -> Light {

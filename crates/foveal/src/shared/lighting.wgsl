@@ -14,7 +14,7 @@
 
 // Blinn-Phong as in the techniques' sources, else metallic-roughness GGX.
 override BLINN_PHONG: bool = false;
-// Every light at every sample, else those of the sample's cluster.
+// Every light at every sample, else of those that shine from a point the ones of its cluster.
 override BRUTE: bool = false;
 
 // Light incident at a position: unit direction to the light, and irradiance on a facing surface.
@@ -36,10 +36,13 @@ struct Lit {
     specular_direction: vec3f,
 }
 
+// Of a directional light.
+fn incident_from_afar(light: Light) -> IncidentLight {
+    return IncidentLight(-light.direction, light.radiant);
+}
+
+// Of a light that shines from a point.
 fn incident(light: Light, position: vec3f) -> IncidentLight {
-    if light.kind == LIGHT_DIRECTIONAL {
-        return IncidentLight(-light.direction, light.radiant);
-    }
     let to_light = light.position - position;
     let squared = max(dot(to_light, to_light), 1e-4);
     let direction = to_light * inverseSqrt(squared);
@@ -91,7 +94,46 @@ fn reflect_blinn_phong(s: Surface, mirror: Mirror, v: vec3f, l: vec3f) -> Reflec
     return Reflection(1.0, mirror.at_normal * highlight);
 }
 
-// A light's part in the radiance of a surface, and in the light that falls on it.
+// Adds what light from one direction makes of a surface's radiance, and its part in the light that
+// falls on it.
+fn add_incident(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, a: IncidentLight, n_dot_l: f32) -> Lit {
+    var r: Reflection;
+    if BLINN_PHONG {
+        r = reflect_blinn_phong(s, mirror, v, a.direction);
+    } else {
+        r = reflect_ggx(s, mirror, v, a.direction, n_dot_l);
+    }
+    let reflected = r.diffuse_weight * (1.0 - s.metallic) * s.base_color / PI + r.specular;
+    return Lit(
+        sum.radiance + reflected * a.irradiance * n_dot_l,
+        sum.diffuse + r.diffuse_weight * a.irradiance * n_dot_l,
+        sum.specular + r.specular * a.irradiance * n_dot_l,
+        sum.direction + a.direction * luminance(a.irradiance),
+        sum.specular_direction + a.direction * (luminance(r.specular * a.irradiance) * n_dot_l),
+    );
+}
+
+// Adds a directional light's part.
+fn add_directional(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit {
+    let light = light_at(index);
+    var a = incident_from_afar(light);
+    let n_dot_l = dot(s.normal, a.direction);
+    if n_dot_l <= 0.0 || all(a.irradiance <= vec3f(0.0)) {
+        return sum;
+    }
+#ifndef REDUCED
+    if SHADOWS != 0u {
+        let passing = directional_passing(index, light, s.position, s.normal, n_dot_l);
+        if passing <= 0.0 {
+            return sum;
+        }
+        a.irradiance *= passing;
+    }
+#endif
+    return add_incident(sum, s, mirror, v, a, n_dot_l);
+}
+
+// Adds the part of a light that shines from a point.
 fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit {
     let light = light_at(index);
     var a = incident(light, s.position);
@@ -108,20 +150,7 @@ fn add_light(sum: Lit, s: Surface, mirror: Mirror, v: vec3f, index: u32) -> Lit 
         a.irradiance *= passing;
     }
 #endif
-    var r: Reflection;
-    if BLINN_PHONG {
-        r = reflect_blinn_phong(s, mirror, v, a.direction);
-    } else {
-        r = reflect_ggx(s, mirror, v, a.direction, n_dot_l);
-    }
-    let reflected = r.diffuse_weight * (1.0 - s.metallic) * s.base_color / PI + r.specular;
-    return Lit(
-        sum.radiance + reflected * a.irradiance * n_dot_l,
-        sum.diffuse + r.diffuse_weight * a.irradiance * n_dot_l,
-        sum.specular + r.specular * a.irradiance * n_dot_l,
-        sum.direction + a.direction * luminance(a.irradiance),
-        sum.specular_direction + a.direction * (luminance(r.specular * a.irradiance) * n_dot_l),
-    );
+    return add_incident(sum, s, mirror, v, a, n_dot_l);
 }
 
 // Index of the first light word of the cluster at a position in pixels of the target and a distance
@@ -143,35 +172,70 @@ struct LightWalk {
     bits: u32,
 }
 
-// The lights of one word, `first` being the cluster's first.
+// The lowest `count` bits; all from 32 on.
+fn lowest_bits(count: u32) -> u32 {
+    return select((1u << count) - 1u, 0xffffffffu, count >= 32u);
+}
+
+// The lights of one word that shine from a point, `first` being the cluster's first word.
 fn light_bits(first: u32, word: u32) -> u32 {
     if BRUTE {
-        let valid = min(light_count() - word * 32u, 32u);
-        return select((1u << valid) - 1u, 0xffffffffu, valid == 32u);
+        let before = word * 32u;
+        let directional = directional_lights();
+        let afar = directional - min(directional, before);
+        return lowest_bits(light_count() - before) & ~lowest_bits(afar);
     }
     return cluster_word(first + word);
 }
 
-// The same place, or the next one that has lights.
-fn with_lights(walk: LightWalk) -> LightWalk {
+// Whether a light may send anything to a place with this normal; a normal of 0 faces every light.
+// Where shadows are looked up this is asked first: pixels of a cluster then look up their own
+// lights, and need not wait for those of others.
+fn may_reach(index: u32, position: vec3f, normal: vec3f) -> bool {
+#ifndef REDUCED
+    if SHADOWS != 0u {
+        let sphere = light_sphere(index);
+        let to_light = sphere.xyz - position;
+        // Rounding of the product may err, but never to the small side.
+        let faces = dot(normal, to_light) > -1e-6 * sphere.w;
+        return faces && dot(to_light, to_light) < sphere.w * sphere.w;
+    }
+#endif
+    return true;
+}
+
+// The same place, or the next one whose light may reach the surface.
+fn with_lights(walk: LightWalk, position: vec3f, normal: vec3f) -> LightWalk {
     var w = walk;
-    while w.bits == 0u && w.word + 1u < w.words {
-        w.word++;
-        w.bits = light_bits(w.first, w.word);
+    var found = false;
+    loop {
+        if w.bits == 0u && w.word + 1u < w.words {
+            w.word++;
+            w.bits = light_bits(w.first, w.word);
+        }
+        if w.bits != 0u {
+            found = may_reach(light_number(w), position, normal);
+            w.bits = select(w.bits & (w.bits - 1u), w.bits, found);
+        }
+        continuing {
+            break if found || (w.bits == 0u && w.word + 1u >= w.words);
+        }
     }
     return w;
 }
 
-// At the first light of the cluster at a position in pixels of the target and a distance along the
-// view axis.
-fn first_light(pixel: vec2f, distance: f32) -> LightWalk {
+// At the first light that may reach a surface, of the cluster at a position in pixels of the target
+// and a distance along the view axis.
+fn first_light(pixel: vec2f, distance: f32, position: vec3f, normal: vec3f) -> LightWalk {
     let words = light_words();
     let first = cluster_words_at(pixel, distance, words);
-    return with_lights(LightWalk(first, words, 0u, select(0u, light_bits(first, 0u), words > 0u)));
+    let bits = select(0u, light_bits(first, 0u), words > 0u);
+    return with_lights(LightWalk(first, words, 0u, bits), position, normal);
 }
 
-fn next_light(walk: LightWalk) -> LightWalk {
-    return with_lights(LightWalk(walk.first, walk.words, walk.word, walk.bits & (walk.bits - 1u)));
+fn next_light(walk: LightWalk, position: vec3f, normal: vec3f) -> LightWalk {
+    let left = walk.bits & (walk.bits - 1u);
+    return with_lights(LightWalk(walk.first, walk.words, walk.word, left), position, normal);
 }
 
 fn light_number(walk: LightWalk) -> u32 {
@@ -180,8 +244,9 @@ fn light_number(walk: LightWalk) -> u32 {
 
 // Radiance that leaves a surface towards the eye, and the lights' light that it comes from. Lights
 // are summed in ascending order whichever way they are found, so that clustered and brute agree to
-// the bit. The loop over them is a single one that asks at its end: a device that runs all branches
-// runs the body of a loop once for its last question, too.
+// the bit. Directional ones have a loop of their own: a device that runs all branches would look up
+// both kinds' shadows for each light. The loop over the others asks at its end: such a device runs
+// the body of a loop once for its last question, too.
 fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     let v = direction_to_eye(view_at(pixel), s.position);
     let seen = environment_seen(pixel, distance);
@@ -190,12 +255,16 @@ fn light_surface(s: Surface, pixel: vec2f, distance: f32) -> Lit {
     if MULTIPLE_SCATTERING {
         mirror.gain = further_bounces(s, v);
     }
-    var walk = first_light(pixel, distance);
+    let directional = directional_lights();
+    for (var i = 0u; i < directional; i++) {
+        sum = add_directional(sum, s, mirror, v, i);
+    }
+    var walk = first_light(pixel, distance, s.position, s.normal);
     loop {
         if walk.bits != 0u {
             sum = add_light(sum, s, mirror, v, light_number(walk));
         }
-        walk = next_light(walk);
+        walk = next_light(walk, s.position, s.normal);
         continuing {
             break if walk.bits == 0u;
         }

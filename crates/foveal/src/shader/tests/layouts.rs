@@ -70,6 +70,10 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             point_size,
             environment_levels,
             line_width,
+            shadow_bias,
+            light_radius,
+            sun_tangent,
+            reserved,
         ]
     );
     assert_same_layout!(
