@@ -7,7 +7,7 @@ use crate::shadow::{Place, add_place};
 const MOST: usize = 16;
 /// Most places for which it is worth finding out which lie together.
 const MOST_ADDED: usize = 256;
-/// As `LIGHT_DIRECTIONAL` in `shared/light.wgsl`.
+/// As `kind` of `Light` in `shared/light.wgsl`.
 const DIRECTIONAL: u32 = 0;
 
 /// Where light differs from the frame before.
