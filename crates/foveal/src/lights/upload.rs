@@ -55,6 +55,7 @@ impl LightUniform {
         all
     }
 
+    /// By `kind` of `Light` in `shared/light.wgsl`.
     pub(crate) fn is_directional(&self) -> bool {
         self.kind == 0
     }

@@ -199,7 +199,7 @@ pub(crate) type Passing<'a> = &'a dyn Fn((usize, &LightUniform), &Surface, f32) 
 /// Unit direction to a light, and irradiance on a surface at a position that faces it.
 pub(crate) fn incident(light: &LightUniform, position: Vec3) -> (Vec3, Vec3) {
     let radiant = Vec3::from(light.radiant);
-    if light.kind == 0 {
+    if light.is_directional() {
         (-Vec3::from(light.direction), radiant)
     } else {
         let to_light = Vec3::from(light.position) - position;

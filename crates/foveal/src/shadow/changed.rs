@@ -7,7 +7,6 @@ use crate::lights::LightUniform;
 
 /// Most places that are told apart; nearer ones are put together.
 const MOST: usize = 12;
-const DIRECTIONAL: u32 = 0;
 /// A place that something farther makes fade far sees what is nearer fade this much farther than by
 /// itself: 1 over the shaders' `CONTACT_SLACK`.
 const AMONG_OTHERS: f32 = 2.0;
@@ -52,14 +51,14 @@ pub(crate) fn add_place(places: &mut Vec<Place>, place: Place, most: usize) {
 
 fn reaches(light: &LightUniform, b: &Aabb) -> bool {
     let at = Vec3::from(light.position);
-    light.kind == DIRECTIONAL
+    light.is_directional()
         || at.clamp(b.min, b.max).distance_squared(at) < light.range * light.range
 }
 
 /// A sphere around a box and its shadow.
 fn shadow_of(light: &LightUniform, [lamp, sun]: [f32; 2], b: &Aabb, scene: &Aabb) -> Place {
     let (center, radius) = (b.center(), b.half_extent().length());
-    if light.kind == DIRECTIONAL {
+    if light.is_directional() {
         // The ray ends where the scene does.
         let along = Vec3::from(light.direction);
         let beyond = scene.center() - center;

@@ -47,7 +47,7 @@ impl Lit {
         });
         let renderer = rendered(scene, &camera, &settings);
         Self {
-            lookup: lookup(&renderer, Shadows::Contact),
+            lookup: lookup(&renderer),
             light: renderer.lights().1[0],
         }
     }

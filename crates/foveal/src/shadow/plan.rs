@@ -130,7 +130,7 @@ impl Plan {
         let mut requests = Vec::new();
         for (number, light) in (0..).zip(lights) {
             let slot = number * TILES_PER_LIGHT as u32;
-            if light.kind == 0 {
+            if light.is_directional() {
                 cascades(light, view, scene, slot, &mut requests);
             } else {
                 sides(light, view, &planes, slot, &mut requests);

@@ -50,7 +50,7 @@ fn shadows_are_those_of_rays() {
         s.picture.height = 480;
     });
     let renderer = rendered(&scene, camera, &settings);
-    let lookup = lookup(&renderer, Shadows::Hard);
+    let lookup = lookup(&renderer);
     let triangles = triangles(&scene);
     let lights = renderer.lights().1;
     let (mut looked, mut wrong, mut blocked) = (0, 0, 0);

@@ -15,7 +15,6 @@ use crate::{LightingSettings, Shadows};
 pub(super) const ROWS: usize = 2;
 /// Bit of a tile's word: its filter is a texel wide instead of three.
 const NARROW_BIT: u32 = 25;
-const DIRECTIONAL: u32 = 0;
 
 /// One row.
 pub(super) type Row = [u32; 4];
@@ -100,7 +99,7 @@ pub(super) fn rows(lights: &[LightUniform], plan: &Plan, kept: &KeptTiles) -> Ve
             ];
             rows.resize(rows.len() + CASCADES, [0; 4]);
         }
-        debug_assert_eq!(lights[number].kind, DIRECTIONAL);
+        debug_assert!(lights[number].is_directional());
         let cascades = rows[first + 1][0] as usize;
         rows[cascades + tile] = [center[0], center[1], radius, 0.0].map(f32::to_bits);
     }

@@ -41,13 +41,12 @@ pub(super) fn room() -> Scene {
     scene
 }
 
-pub(super) fn lookup(renderer: &Renderer, shadows: Shadows) -> Lookup {
+pub(super) fn lookup(renderer: &Renderer) -> Lookup {
     let stage = renderer.shadows();
     Lookup {
         rows: stage.rows().to_vec(),
         atlas: texels(stage.atlas()),
         side: stage.atlas().texture().width(),
-        shadows,
         settings: LookupSettings::new(&renderer.settings().lighting),
     }
 }
@@ -92,7 +91,7 @@ pub(super) fn compared_with_twin(
 ) -> (Renderer, [usize; 3]) {
     let camera = &scene.cameras[0];
     let renderer = rendered(scene, camera, settings);
-    let lookup = lookup(&renderer, settings.lighting.shadows);
+    let lookup = lookup(&renderer);
     let lights = renderer.lights().1.to_vec();
     let pixels = seen(&renderer, camera);
     let (mut compared, mut off, mut dark) = (0, 0, 0);
@@ -141,7 +140,7 @@ fn the_last_cascade_holds_the_scene_however_small_its_tile() {
     for _ in 0..6 {
         // Cascades move in steps: the scene lies elsewhere in them each time.
         camera.world_from_view.w_axis.z += 0.31;
-        let lookup = lookup(&rendered(&scene, &camera, &settings), Shadows::Hard);
+        let lookup = lookup(&rendered(&scene, &camera, &settings));
         for corner in scene.bounds().corners() {
             assert!(lookup.cascade_at(0, sun, corner).is_some(), "{corner}");
         }

@@ -13,7 +13,6 @@ pub(crate) struct Lookup {
     /// Texels of the atlas, row by row.
     pub(crate) atlas: Vec<f32>,
     pub(crate) side: u32,
-    pub(crate) shadows: Shadows,
     pub(super) settings: LookupSettings,
 }
 
@@ -54,10 +53,10 @@ impl Lookup {
 
     fn passing(&self, tile: &ShadowTile, at: Vec2, depth: f32, softness: f32) -> f32 {
         let side = tile.side as f32;
-        if self.shadows == Shadows::Contact {
+        if self.settings.shadows == Shadows::Contact {
             return self.contact_passing(tile, at, depth, softness);
         }
-        if self.shadows == Shadows::Hard {
+        if self.settings.shadows == Shadows::Hard {
             let inside = at.floor().clamp(Vec2::ZERO, Vec2::splat(side - 1.0));
             return self.passes(tile, inside.x as u32, inside.y as u32, depth);
         }
@@ -138,7 +137,7 @@ impl Lookup {
 
     fn offset(&self, tile: &ShadowTile, texel_m: f32, n_dot_l: f32) -> f32 {
         let slope = (1.0 - n_dot_l * n_dot_l).max(0.0).sqrt();
-        let filter = if tile.is_narrow && self.shadows != Shadows::Contact {
+        let filter = if tile.is_narrow && self.settings.shadows != Shadows::Contact {
             0.5
         } else {
             1.0
@@ -155,7 +154,7 @@ impl Lookup {
     ) -> f32 {
         let first = index * ROWS;
         let direction = Vec3::from(light.direction);
-        if light.kind == 0 {
+        if light.is_directional() {
             return self.sun_passing(first, direction, (position, normal, n_dot_l));
         }
         let from_light = position - Vec3::from(light.position);
@@ -230,7 +229,7 @@ impl Lookup {
             let center = Vec2::new(u, v);
             let texel_m = 2.0 * radius / tile.side as f32;
             let away = (on_plane(direction, position) - center).abs();
-            let reach = match self.shadows {
+            let reach = match self.settings.shadows {
                 Shadows::Contact => CONTACT_REACH + 2.0,
                 _ => BORDER,
             };

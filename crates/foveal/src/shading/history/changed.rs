@@ -7,8 +7,6 @@ use crate::shadow::{Place, add_place};
 const MOST: usize = 16;
 /// Most places for which it is worth finding out which lie together.
 const MOST_ADDED: usize = 256;
-/// As `kind` of `Light` in `shared/light.wgsl`.
-const DIRECTIONAL: u32 = 0;
 
 /// Where light differs from the frame before.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -38,7 +36,7 @@ impl Changed {
         let shared = before.len().min(now.len());
         different.extend(&before[shared..]);
         different.extend(&now[shared..]);
-        if different.iter().any(|lamp| lamp.kind == DIRECTIONAL) {
+        if different.iter().any(|lamp| lamp.is_directional()) {
             *self = Self::Everywhere;
             return;
         }
@@ -120,7 +118,7 @@ mod tests {
         assert!(matches!(changed(&some(16), &[]), Changed::Within(p) if p.len() == 16));
         assert_eq!(changed(&some(17), &[]), Changed::Everywhere);
         let sun = LightUniform {
-            kind: DIRECTIONAL,
+            kind: 0,
             ..lamp(0.0, 0.0)
         };
         let dim = LightUniform {
