@@ -25,16 +25,16 @@ pub(crate) fn missing(
     let shading = s.shading.mode;
     let (coarse, variable) = (shading == Shading::Coarse, shading == Shading::Variable);
     let stereo = s.is_stereo();
-    let occlusion = s.culling.mode == Culling::Occlusion;
+    let occlusion = s.culling.mode.has_occluders();
     match key {
         "occluder-size" | "occlusion-scale" | "culling-threads" | "culling-budget" => {
-            unless(occlusion, "Needs Culling: occlusion")
+            unless(occlusion, "Needs Culling: auto or occlusion")
         }
         "occludee-size" | "culling-radius" => unless(
             s.culling.mode != Culling::Off,
-            "Needs Culling: frustum or occlusion",
+            "Needs Culling: auto, frustum or occlusion",
         ),
-        "culling-eyes" => unless(occlusion, "Needs Culling: occlusion")
+        "culling-eyes" => unless(occlusion, "Needs Culling: auto or occlusion")
             .or(unless(stereo, "Needs Stereo, Eyes: other than off")),
         "environment-image" => unless(
             s.lighting.environment == EnvironmentSource::Image,
@@ -216,9 +216,12 @@ pub(crate) fn checked(draft: &Table) -> Result<Settings, String> {
 pub(crate) fn of_culling(switch: Switch, s: &Settings) -> Option<&'static str> {
     match (switch, s.culling.mode) {
         (Switch::Boxes | Switch::Freeze, Culling::Off) => {
-            Some("Needs Culling: frustum or occlusion")
+            Some("Needs Culling: auto, frustum or occlusion")
         }
-        (Switch::Depth, Culling::Off | Culling::Frustum) => Some("Needs Culling: occlusion"),
+        // Frames of auto need not have one.
+        (Switch::Depth, Culling::Auto | Culling::Off | Culling::Frustum) => {
+            Some("Needs Culling: occlusion")
+        }
         _ => None,
     }
 }
@@ -331,9 +334,11 @@ mod tests {
     #[test]
     fn depth_needs_occlusion_culling_and_boxes_any() {
         let s = Settings::default();
-        assert_eq!(s.culling.mode, Culling::Frustum);
+        assert_eq!(s.culling.mode, Culling::Auto);
         assert!(of_culling(Switch::Depth, &s).is_some());
         assert_eq!(of_culling(Switch::Boxes, &s), None);
+        let occlusion = s.clone().with(|s| s.culling.mode = Culling::Occlusion);
+        assert_eq!(of_culling(Switch::Depth, &occlusion), None);
         let off = s.with(|s| s.culling.mode = Culling::Off);
         assert!(of_culling(Switch::Boxes, &off).is_some());
         assert!(of_culling(Switch::Freeze, &off).is_some());

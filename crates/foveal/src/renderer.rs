@@ -218,11 +218,12 @@ impl Renderer {
     /// Takes over other settings. A change of gaze alone makes nothing anew and keeps the light
     /// history, so that a host with an eye tracker calls this before each frame. A change of the
     /// environment's intensity and rotation, and of the radius of ambient occlusion, with or without
-    /// one of gaze, gives up the light history alone. A change of size alone rebuilds the targets alone; any other makes all pipelines anew.
-    /// A change of [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and one to
-    /// [`Culling::Occlusion`](crate::Culling::Occlusion), whose occluders are baked with the scene,
-    /// takes effect with the next [`Renderer::set_scene`]; so does leaving out casters where shadows
-    /// were off.
+    /// one of gaze, gives up the light history alone. A change of size alone rebuilds the targets
+    /// alone; any other makes all pipelines anew. Some changes take effect with the next
+    /// [`Renderer::set_scene`] ([`Settings::needs_scene_again`]): of
+    /// [`LightingSettings::anisotropy`](crate::LightingSettings::anisotropy), and to a culling that
+    /// has occluders ([`Culling::has_occluders`](crate::Culling::has_occluders)), which are baked
+    /// with the scene. So does leaving out casters where shadows were off.
     ///
     /// # Errors
     /// As [`Renderer::new`]; the renderer keeps its old settings then.

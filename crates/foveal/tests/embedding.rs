@@ -92,6 +92,7 @@ fn the_hosts_texture_gets_the_picture_and_the_figures_follow() {
             // Each frame is the first one's equal.
             s.coarse.history = false;
             s.rate.force = true;
+            s.culling.mode = foveal::Culling::Frustum;
         });
         pollster::block_on(async {
             let mut renderer = Renderer::new(

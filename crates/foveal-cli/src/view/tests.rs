@@ -37,7 +37,7 @@ impl Lot {
 fn settings(lot: &mut Lot) -> Settings {
     let choices: [(&str, &[&str]); 16] = [
         ("view", &["final", "final", "final", "motion", "normals"]),
-        ("culling", &["off", "frustum", "occlusion"]),
+        ("culling", &["off", "auto", "frustum", "occlusion"]),
         ("geometry", &["gbuffer", "visibility"]),
         ("lighting", &["ggx", "blinn-phong"]),
         ("lights", &["clustered", "brute"]),

@@ -3,6 +3,9 @@
 use foveal_cull::Eye;
 use glam::DAffine3;
 
+/// Cosine of the angle, 26 degrees, by which eyes may turn and still look about the same way.
+const LIKE: f64 = 0.9;
+
 /// What a result holds for: a pose of the scene, and eyes.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FoundFor {
@@ -24,5 +27,21 @@ impl FoundFor {
             _ => false,
         };
         self.pose == other.pose && self.eyes.iter().zip(&other.eyes).all(near)
+    }
+
+    /// Whether as much may be hidden from the other's eyes: they look about the same way, by the same
+    /// projection.
+    pub(super) fn is_like(&self, other: &Self) -> bool {
+        let alike = |(a, b): (&Option<Eye>, &Option<Eye>)| match (a, b) {
+            (Some(a), Some(b)) => {
+                let [p, q] = [a, b].map(|eye| DAffine3::from(eye.world_from_eye));
+                let ahead = p.matrix3.z_axis.normalize_or_zero();
+                a.projection == b.projection
+                    && ahead.dot(q.matrix3.z_axis.normalize_or_zero()) > LIKE
+            }
+            (None, None) => true,
+            _ => false,
+        };
+        self.eyes.iter().zip(&other.eyes).all(alike)
     }
 }

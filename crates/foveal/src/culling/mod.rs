@@ -3,14 +3,19 @@
 //! The occlusion buffer has by default a quarter of the picture's size per axis, and its frustum is
 //! the picture's, widened to whole buffer pixels: the 4x4 coverage samples in each of its pixels
 //! then lie on the picture's own pixel centres, so that what is culled could not have changed a
-//! single pixel.
+//! single pixel. Where the picture shows what lies between the centres too (anti-aliasing), and where
+//! the buffer has another size, views ask for every point of the picture.
 
 mod cells;
 mod found_for;
+mod pace;
 mod scene;
 mod surface;
+#[cfg(test)]
+mod tests;
 mod workers;
 
+pub(crate) use pace::has_receivers;
 pub(crate) use scene::{CullingScene, affine};
 
 use foveal_cull::{Budget, CullStats, Culler, Eye, FrameOptions, Projection, View, Visibility};
@@ -18,9 +23,10 @@ use foveal_scene::Camera;
 use glam::Mat4;
 
 use crate::clock::{self, ms_between};
-use crate::{Antialiasing, Clock, Culling, CullingEyes, Error, Settings, Shading, Shadows};
+use crate::{Antialiasing, Clock, CullingEyes, Error, Settings, Shading};
 use cells::Cells;
 use found_for::FoundFor;
+use pace::{Pace, hidden};
 use workers::Workers;
 
 /// What the culler found in a frame, as Intel's occlusion culling sample shows it.
@@ -60,7 +66,8 @@ pub(crate) struct CullingCounts {
 /// Decides what is seen.
 #[derive(Debug)]
 pub(crate) struct CullingStage {
-    occlusion: bool,
+    /// Frames that rasterize occluders.
+    occlusion: Pace,
     occluder_size: f32,
     occludee_size: f32,
     /// Picture pixels per buffer pixel and axis.
@@ -69,9 +76,8 @@ pub(crate) struct CullingStage {
     culler: Culler,
     results: Vec<Visibility>,
     of_eye: Vec<Visibility>,
-    /// Whether shadows ask for the scene's cells, and whether they are tested too.
+    /// Whether shadows ask for the scene's cells, so that they are tested too.
     has_cells: bool,
-    tests_cells: bool,
     /// What became of each of the scene's cells.
     cells: Vec<Visibility>,
     cells_of_eye: Vec<Visibility>,
@@ -80,11 +86,15 @@ pub(crate) struct CullingStage {
     receivers_ms: f64,
     /// Metres that eyes may move while the result holds.
     radius_m: f64,
+    /// The same, as views are told: above 0 where the picture shows more than its pixel centres.
+    view_radius_m: f64,
     eyes: CullingEyes,
     /// 0: none.
     budget_ms: f64,
     /// What the result was found for.
     found_for: Option<FoundFor>,
+    /// For what occluders were rasterized last.
+    tried_for: Option<FoundFor>,
     reused: bool,
     over_budget: u64,
 }
@@ -97,11 +107,10 @@ impl CullingStage {
     pub(crate) fn new(settings: &Settings) -> Result<Option<Self>, Error> {
         let (width, height) = (settings.picture.width, settings.picture.height);
         let scale = u32::from(settings.culling.buffer_scale);
-        let occlusion = match settings.culling.mode {
-            Culling::Off => return Ok(None),
-            Culling::Frustum => false,
-            Culling::Occlusion => true,
+        let Some(occlusion) = Pace::new(settings) else {
+            return Ok(None);
         };
+        let has_cells = occlusion.is_every_frame() && has_cells(settings);
         let culler = Culler::new(width.div_ceil(scale), height.div_ceil(scale)).map_err(|_| {
             Error::Limit {
                 what: "the larger side of a picture with occlusion culling".to_owned(),
@@ -119,25 +128,31 @@ impl CullingStage {
             culler,
             results: Vec::new(),
             of_eye: Vec::new(),
-            has_cells: occlusion && has_cells(settings),
-            tests_cells: occlusion && has_cells(settings) && answers_for_parts(settings),
+            has_cells,
             cells: Vec::new(),
             cells_of_eye: Vec::new(),
             rasterize_ms: 0.0,
             test_ms: 0.0,
             receivers_ms: 0.0,
             radius_m: settings.culling.radius_m.into(),
+            view_radius_m: view_radius_m(settings),
             eyes: settings.culling.eyes,
             budget_ms: settings.culling.budget_ms.into(),
             found_for: None,
+            tried_for: None,
             reused: false,
             over_budget: 0,
         }))
     }
 
+    /// The next frame shows another scene.
+    pub(crate) fn forget(&mut self) {
+        self.occlusion.wake();
+    }
+
     /// Wakes the threads that will soon have to rasterize.
     pub(crate) fn wake(&self) {
-        if self.occlusion {
+        if self.occlusion.is_next() {
             self.threads.threads().wake();
         }
     }
@@ -174,11 +189,19 @@ impl CullingStage {
                 }),
             },
         };
-        self.reused = self
-            .found_for
-            .is_some_and(|found| found.holds_for(&wanted, self.radius_m));
+        self.reused = self.occlusion.may_keep()
+            && self
+                .found_for
+                .is_some_and(|found| found.holds_for(&wanted, self.radius_m));
         if self.reused {
+            self.occlusion.keep();
             return self.counts();
+        }
+        if !self.tried_for.is_some_and(|tried| tried.is_like(&wanted)) {
+            self.occlusion.wake();
+        }
+        if self.occlusion.is_next() {
+            self.tried_for = Some(wanted);
         }
         self.results.clear();
         self.cells.clear();
@@ -191,6 +214,8 @@ impl CullingStage {
         };
         // Eyes that look too far apart have no centre.
         if !both.is_some_and(|view| self.cull_for(scene, view, clock)) {
+            self.results.clear();
+            self.cells.clear();
             // The figures that are shown are the first eye's.
             for eye in wanted.eyes.into_iter().flatten().rev() {
                 self.cull_for(scene, View::mono(eye), clock);
@@ -198,18 +223,28 @@ impl CullingStage {
         }
         self.found_for = Some(wanted);
         self.culler.count(&self.results, Some(&scene.triangles));
+        // Occluders are the first eye's: the other one's are about as many.
+        let rasterized = self.culler.stats().occluder_triangles_rasterized;
+        let is_shown = |object| scene.is_shown(object);
+        let hidden = hidden(&self.results, &scene.triangles, is_shown);
+        self.occlusion.advance(hidden, rasterized);
         self.counts()
     }
 
     /// Adds what is seen in a view to the results: all of it if the view makes no sense, which is
     /// false then.
     fn cull_for(&mut self, scene: &CullingScene, view: View, clock: Option<Clock>) -> bool {
-        let view = view.with_validity_radius(self.radius_m);
+        let radius_m = if self.occlusion.is_next() {
+            self.view_radius_m
+        } else {
+            self.radius_m
+        };
+        let view = view.with_validity_radius(radius_m);
         let budget = clock.as_ref().filter(|_| self.budget_ms > 0.0);
         let budget =
             budget.map(|clock| Budget::new(clock, clock() + (self.budget_ms * 1e6) as u64));
         let options = FrameOptions::default()
-            .with_occlusion(self.occlusion)
+            .with_occlusion(self.occlusion.is_next())
             .with_occluder_size_threshold(self.occluder_size)
             .with_occludee_size_threshold(self.occludee_size)
             .with_budget(budget);
@@ -235,7 +270,7 @@ impl CullingStage {
         self.rasterize_ms += ms_between(start, rasterized_at);
         self.test_ms += ms_between(rasterized_at, tested_at);
         join(&mut self.results, &self.of_eye);
-        if let Some(cells) = scene.cells.as_ref().filter(|_| self.tests_cells) {
+        if let Some(cells) = scene.cells.as_ref().filter(|_| self.has_cells) {
             self.test_cells(cells, rasterized.is_ok());
             self.receivers_ms += ms_between(tested_at, now());
         }
@@ -296,7 +331,6 @@ impl CullingStage {
     /// the culler has looked at.
     pub(crate) fn cells_seen(&self, scene: &CullingScene, by_object: bool) -> Option<Vec<u32>> {
         let cells = scene.cells.as_ref().filter(|_| self.has_cells)?;
-        let by_object = by_object || !self.tests_cells;
         if !by_object && self.cells.len() != cells.boxes().len() {
             return None;
         }
@@ -328,11 +362,6 @@ impl CullingStage {
     }
 }
 
-/// Whether frames of these settings ask where shadows fall.
-pub(crate) fn has_receivers(settings: &Settings) -> bool {
-    settings.lighting.shadows != Shadows::Off && settings.picture.view.is_lit()
-}
-
 /// Whether frames of these settings ask on which parts of things shadows fall. Variable shading and
 /// anti-aliasing light the mean of several places, which need not be on any surface.
 pub(crate) fn has_cells(settings: &Settings) -> bool {
@@ -341,11 +370,18 @@ pub(crate) fn has_cells(settings: &Settings) -> bool {
         && settings.antialiasing.mode == Antialiasing::None
 }
 
-/// Whether no pixel of the picture shows what the culler calls hidden, of parts of objects too: its
-/// samples are the picture's pixel centres, or any within a radius.
-fn answers_for_parts(settings: &Settings) -> bool {
-    let culling = &settings.culling;
-    matches!(culling.buffer_scale, 1 | 4) || culling.radius_m > 0.0
+/// A radius that answers for every point of the picture, in metres.
+const EVERY_POINT_M: f64 = 1e-6;
+
+/// Metres that views are asked to hold for: above 0 where the buffer's samples are not all that the
+/// picture shows.
+fn view_radius_m(settings: &Settings) -> f64 {
+    let radius_m = f64::from(settings.culling.radius_m);
+    let at_centres = matches!(settings.culling.buffer_scale, 1 | 4);
+    if at_centres && settings.antialiasing.mode == Antialiasing::None {
+        return radius_m;
+    }
+    radius_m.max(EVERY_POINT_M)
 }
 
 /// Adds what is seen in one more view.

@@ -1,15 +1,16 @@
 //! What is culled and what hides it: a scene's boxes and its occluders.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use foveal_cull::{BakeOptions, OccludeeTree, OccluderId, OccluderMesh, OccluderSet};
-use foveal_scene::{Aabb, Scene};
+use foveal_scene::{Aabb, Instance, Scene};
 use glam::{DAffine3, DVec3, Mat4, Vec3};
+use rayon::prelude::*;
 
 use super::cells::Cells;
-use crate::{Culling, Settings, Shadows};
+use crate::{Settings, Shadows};
 
 /// A scene's occluders and boxes.
 #[derive(Debug, Default)]
@@ -54,7 +55,7 @@ impl CullingScene {
             pose: new_pose(),
             ..Self::default()
         };
-        if settings.culling.mode == Culling::Occlusion {
+        if settings.culling.mode.has_occluders() {
             this.bake(scene);
             let has_shadows = settings.lighting.shadows != Shadows::Off;
             this.cells = has_shadows.then(|| Cells::new(scene)).flatten();
@@ -73,26 +74,24 @@ impl CullingScene {
 
     fn bake(&mut self, scene: &Scene) {
         let marked = scene.marks_occluders();
-        let mut baked: HashMap<(u32, bool), Option<Arc<OccluderMesh>>> = HashMap::new();
-        for (index, instance) in (0..).zip(&scene.instances) {
-            let material = &scene.materials[instance.material as usize];
-            let mesh = &scene.meshes[instance.mesh as usize];
+        let occludes = |instance: &Instance| {
             let wanted = !marked || scene.objects[instance.object as usize].occluder == Some(true);
-            if !wanted || !scene.can_occlude(instance) {
-                continue;
-            }
-            let two_sided = material.double_sided;
-            let occluder = baked.entry((instance.mesh, two_sided)).or_insert_with(|| {
-                let positions: Vec<Vec3> =
-                    mesh.vertices.iter().map(|v| v.position.into()).collect();
-                // A mesh that cannot be baked only hides nothing.
-                let options = BakeOptions::default().with_two_sided(two_sided);
-                OccluderMesh::bake(&positions, &mesh.indices, options)
-                    .ok()
-                    .map(Arc::new)
-            });
+            wanted && scene.can_occlude(instance)
+        };
+        let shape = |instance: &Instance| {
+            let material = &scene.materials[instance.material as usize];
+            (instance.mesh, material.double_sided)
+        };
+        let occluding = scene.instances.iter().filter(|i| occludes(i));
+        let shapes: BTreeSet<(u32, bool)> = occluding.map(shape).collect();
+        // A mesh that cannot be baked only hides nothing.
+        let baked: HashMap<(u32, bool), Arc<OccluderMesh>> = (shapes.into_par_iter())
+            .filter_map(|shape| Some((shape, Arc::new(bake(scene, shape)?))))
+            .collect();
+        for (index, instance) in (0..).zip(&scene.instances) {
             let world_from_mesh = affine(instance.world_from_object);
-            if let Some(mesh) = occluder
+            if occludes(instance)
+                && let Some(mesh) = baked.get(&shape(instance))
                 && let Ok(id) = self.occluders.add(Arc::clone(mesh), world_from_mesh)
             {
                 let _ = self.occluders.set_enabled(id, scene.is_visible(instance));
@@ -163,6 +162,14 @@ impl CullingScene {
         self.hidden.clear();
         self.hidden.extend(scene.objects.iter().map(|o| !o.visible));
     }
+}
+
+/// The occluder that a mesh is, seen from one side or both.
+fn bake(scene: &Scene, (mesh, two_sided): (u32, bool)) -> Option<OccluderMesh> {
+    let mesh = &scene.meshes[mesh as usize];
+    let positions: Vec<Vec3> = mesh.vertices.iter().map(|v| v.position.into()).collect();
+    let options = BakeOptions::default().with_two_sided(two_sided);
+    OccluderMesh::bake(&positions, &mesh.indices, options).ok()
 }
 
 pub(crate) fn affine(m: Mat4) -> DAffine3 {

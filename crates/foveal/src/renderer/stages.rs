@@ -52,6 +52,7 @@ impl Stages {
     /// The next frame follows none: what is known belongs to another scene or size.
     pub(super) fn forget(&mut self) {
         self.shadows.forget();
+        self.culling.iter_mut().for_each(CullingStage::forget);
         if let Some(coarse) = &mut self.coarse {
             coarse.weigh_again();
         }

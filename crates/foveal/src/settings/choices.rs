@@ -11,13 +11,26 @@ use serde::{Deserialize, Serialize};
     serde(rename_all = "kebab-case")
 )]
 pub enum Culling {
-    /// Objects in the camera's frustum.
+    /// As [`Self::Occlusion`] while that hides at least ten times as many triangles as it
+    /// rasterizes, a hidden object counting for a hundred more. After a frame in which it does not,
+    /// 30 frames are culled as by [`Self::Frustum`], unless the eye turns by 26 degrees before. With
+    /// shadows, always as [`Self::Occlusion`].
     #[default]
+    Auto,
+    /// Objects in the camera's frustum.
     Frustum,
     /// Objects in the camera's frustum that no nearer surface hides.
     Occlusion,
     /// All objects: the reference.
     Off,
+}
+
+impl Culling {
+    /// Whether scenes get occluders.
+    #[must_use]
+    pub const fn has_occluders(self) -> bool {
+        matches!(self, Self::Auto | Self::Occlusion)
+    }
 }
 
 /// Sharing of one occlusion test between two eyes.

@@ -36,7 +36,8 @@ settings! {
     "Culling" culling: CullingSettings {
         /// Objects that are submitted: frustum takes those in view, occlusion only those in
         /// view that nothing hides, and leaves out shadow casters that nobody would miss; off takes
-        /// all (the reference). The picture is the same.
+        /// all (the reference). auto is occlusion while that hides ten times as many triangles as it
+        /// rasterizes, or shadows are on, else frustum. The picture is the same.
         culling => mode: Culling = Culling::default(), "Culling", Kind::choice::<Culling>();
         /// Smallest apparent size of an occluder. Smaller objects hide nothing: culling is then
         /// faster and finds less. An object is too small if radius^2 < distance * size^2 *
@@ -47,9 +48,9 @@ settings! {
         /// occluder-size. Above 0 small objects disappear from the picture; Intel's sample uses
         /// 0.01. 0 draws every visible object.
         occludee_size => occludee_size: f32 = 0.0, "Object size", Kind::Number { least: 0.0, most: 1.0 };
-        /// Picture pixels per occlusion buffer pixel, on each axis. 4 tests at the picture's
-        /// own pixel centres, so the picture stays the same to the bit. Larger values may close
-        /// gaps as thin as a pixel.
+        /// Picture pixels per occlusion buffer pixel, on each axis. 4 and 1 test at the picture's
+        /// own pixel centres, other values at every point of the picture, which hides less. The
+        /// picture is the same.
         occlusion_scale => buffer_scale: u8 = 4, "Buffer scale", Kind::Integer { least: 1, most: 16 };
         /// Worker threads that rasterize occluders. 0 takes as many as the machine has.
         culling_threads => threads: u8 = 0, "Threads", Kind::Integer { least: 0, most: 32 };
@@ -308,7 +309,7 @@ impl Settings {
     /// occlusion culling and shadows on: a scene that was set without shadows draws all casters.
     #[must_use]
     pub fn needs_scene_again(&self, before: &Self) -> bool {
-        let occludes = |s: &Self| s.culling.mode == Culling::Occlusion;
+        let occludes = |s: &Self| s.culling.mode.has_occluders();
         self.lighting.anisotropy != before.lighting.anisotropy
             || occludes(self) && !occludes(before)
     }

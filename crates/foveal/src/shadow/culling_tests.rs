@@ -437,23 +437,19 @@ fn cells_are_placed_and_tested_where_shadows_ask_for_them_alone() {
     // These light the mean of several places.
     assert_eq!(cells(|s| s.antialiasing.mode = Antialiasing::Msaa), (0, 0));
     assert_eq!(cells(|s| s.shading.mode = Shading::Variable), (0, 0));
-    // Pixels may show what the culler's samples do not.
-    assert_eq!(cells(|s| s.culling.buffer_scale = 2), (placed, 0));
-    assert_eq!(cells(|s| s.culling.buffer_scale = 1), (placed, placed));
-    let (_, tested) = cells(|s| {
-        s.culling.buffer_scale = 8;
-        s.culling.radius_m = 0.1;
-    });
-    assert_eq!(tested, placed);
+    for scale in [1, 2, 8] {
+        let settings = shadowed(Shadows::Hard).with(|s| s.culling.buffer_scale = scale);
+        let of_auto = rendered(&scene, camera, &settings).cells_placed_and_tested();
+        assert_eq!(of_auto, (placed, placed), "{scale}");
+    }
 }
 
 #[test]
 fn what_has_no_triangles_is_no_caster() {
     let (mut scene, cameras) = yard();
     let of = |scene: &Scene| {
-        film(scene, &shadowed(Shadows::Hard), 1, |_, _| {
-            cameras[0].clone()
-        })
+        let settings = shadowed(Shadows::Hard).with(|s| s.culling.mode = Culling::Frustum);
+        film(scene, &settings, 1, |_, _| cameras[0].clone())
     };
     let before = of(&scene)[0].1;
     add(

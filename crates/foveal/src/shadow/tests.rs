@@ -335,6 +335,7 @@ fn culling_changes_no_shadow() {
     let all = drawn(Culling::Off);
     assert_eq!(drawn(Culling::Frustum), all);
     assert_eq!(drawn(Culling::Occlusion), all);
+    assert_eq!(drawn(Culling::Auto), all);
 }
 
 #[test]

@@ -115,7 +115,12 @@ fn settings(dice: &mut Dice, before: &Settings) -> Settings {
             }
             10 => {
                 s.geometry.path = dice.of(&[Geometry::Gbuffer, Geometry::Visibility]);
-                s.culling.mode = dice.of(&[Culling::Off, Culling::Frustum, Culling::Occlusion]);
+                s.culling.mode = dice.of(&[
+                    Culling::Off,
+                    Culling::Auto,
+                    Culling::Frustum,
+                    Culling::Occlusion,
+                ]);
             }
             _ => {
                 s.picture.view = dice.of(&[DebugView::Final, DebugView::Final, DebugView::Normals]);

@@ -323,7 +323,7 @@ fn culling_changes_no_picture_of_two_eyes() {
             })
         };
         let expected = halves(&scene, &camera, &settings(Culling::Off));
-        for culling in [Culling::Frustum, Culling::Occlusion] {
+        for culling in [Culling::Auto, Culling::Frustum, Culling::Occlusion] {
             let settings = settings(culling);
             assert!(
                 expected == halves(&scene, &camera, &settings),
