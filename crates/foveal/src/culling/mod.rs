@@ -124,7 +124,11 @@ impl CullingStage {
             occluder_size: settings.culling.occluder_size,
             occludee_size: settings.culling.occludee_size,
             scale,
-            threads: Workers::new(settings.culling.threads),
+            threads: if occlusion == Pace::Never {
+                Workers::One
+            } else {
+                Workers::new(settings.culling.threads)
+            },
             culler,
             results: Vec::new(),
             of_eye: Vec::new(),

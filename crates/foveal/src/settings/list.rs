@@ -52,7 +52,7 @@ settings! {
         /// own pixel centres, other values at every point of the picture, which hides less. The
         /// picture is the same.
         occlusion_scale => buffer_scale: u8 = 4, "Buffer scale", Kind::Integer { least: 1, most: 16 };
-        /// Worker threads that rasterize occluders. 0 takes as many as the machine has.
+        /// Threads that rasterize occluders. 0 takes as many as the machine has, up to 8.
         culling_threads => threads: u8 = 0, "Threads", Kind::Integer { least: 0, most: 32 };
         /// Distance in metres that the eye may move, without turning, before culling runs
         /// again. Larger values hide slightly less. 0 runs culling in every frame.
