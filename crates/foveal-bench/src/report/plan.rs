@@ -43,7 +43,7 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "baseline",
         title: "Baseline",
-        about: "The plain frame, with which everything else is compared: every pixel is shaded once, without anti-aliasing; objects outside the frustum are left out, and where many are hidden, those too.",
+        about: "The plain frame, with which everything else is compared: every pixel is shaded once, without anti-aliasing; objects outside the frustum are left out, and hidden ones where there are many.",
         subcommand: &["render"],
         quick: &[THE_SCENE, "--warmup", "2", "--frames", "3"],
         full: &[THE_SCENE, "--warmup", "3", "--frames", "9"],

@@ -36,7 +36,7 @@ const fn faster(name: &'static str, family: &'static str, changes: Changes) -> C
 
 /// In the order of the frame.
 pub(super) const ALL: &[Candidate] = &[
-    // The plain picture has occlusion culling where it is worth its time.
+    // The plain picture has occlusion culling where that is worth its time, and with shadows.
     faster(
         "Culling by the frustum alone",
         "culling",

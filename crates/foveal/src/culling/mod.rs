@@ -86,7 +86,7 @@ pub(crate) struct CullingStage {
     receivers_ms: f64,
     /// Metres that eyes may move while the result holds.
     radius_m: f64,
-    /// The same, as views are told: above 0 where the picture shows more than its pixel centres.
+    /// The same, as views are told: above 0 where the picture shows more than the buffer's samples.
     view_radius_m: f64,
     eyes: CullingEyes,
     /// 0: none.
@@ -152,6 +152,9 @@ impl CullingStage {
     /// The next frame shows another scene.
     pub(crate) fn forget(&mut self) {
         self.occlusion.wake();
+        self.results.clear();
+        self.cells.clear();
+        self.found_for = None;
     }
 
     /// Wakes the threads that will soon have to rasterize.

@@ -13,8 +13,9 @@ use serde::{Deserialize, Serialize};
 pub enum Culling {
     /// As [`Self::Occlusion`] while that hides at least ten times as many triangles as it
     /// rasterizes, a hidden object counting for a hundred more. After a frame in which it does not,
-    /// 30 frames are culled as by [`Self::Frustum`], unless the eye turns by 26 degrees before. With
-    /// shadows, always as [`Self::Occlusion`].
+    /// 30 frames are culled as by [`Self::Frustum`], unless the eye turns by 26 degrees, its
+    /// projection changes or another scene is set before. With shadows, always as
+    /// [`Self::Occlusion`].
     #[default]
     Auto,
     /// Objects in the camera's frustum.
