@@ -26,7 +26,7 @@ use crate::clock::{self, ms_between};
 use crate::{Antialiasing, Clock, CullingEyes, Error, Settings, Shading};
 use cells::Cells;
 use found_for::FoundFor;
-use pace::{Pace, hidden};
+use pace::{Pace, hidden_triangles};
 use workers::Workers;
 
 /// What the culler found in a frame, as Intel's occlusion culling sample shows it.
@@ -233,7 +233,7 @@ impl CullingStage {
         // Occluders are the first eye's: the other one's are about as many.
         let rasterized = self.culler.stats().occluder_triangles_rasterized;
         let is_shown = |object| scene.is_shown(object);
-        let hidden = hidden(&self.results, &scene.triangles, is_shown);
+        let hidden = hidden_triangles(&self.results, &scene.triangles, is_shown);
         self.occlusion.advance(hidden, rasterized);
         self.counts()
     }

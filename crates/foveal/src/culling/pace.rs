@@ -84,8 +84,8 @@ impl Pace {
     }
 }
 
-/// What hidden objects are worth: of each, its triangles, where it would be drawn.
-pub(super) fn hidden<'a>(
+/// Triangles of each object that is hidden and would be drawn.
+pub(super) fn hidden_triangles<'a>(
     results: &'a [Visibility],
     triangles: &'a [u32],
     is_shown: impl Fn(u32) -> bool + 'a,

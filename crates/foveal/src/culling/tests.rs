@@ -1,13 +1,11 @@
 //! Culling in frames: when occluders are rasterized, and what sub-samples show.
 
-use foveal_scene::{Camera, Material, Scene};
+use foveal_scene::{Material, Scene};
 use glam::{Mat4, Vec3};
 
 use crate::forward::twin::{front, quads};
-use crate::testing::{gpu, picture, rendered, small};
-use crate::{
-    Antialiasing, Culling, Frame, FrameStats, Renderer, RendererOptions, Settings, Shadows,
-};
+use crate::testing::{Film, picture, rendered, small};
+use crate::{Antialiasing, Culling, Settings, Shadows};
 
 fn unlit(color: Vec3) -> Material {
     Material {
@@ -24,21 +22,6 @@ fn place(scene: &mut Scene, quad: usize, at: Vec3, half: f32) {
     scene.instances[quad].world_from_object = matrix;
     scene.instances[quad].bounds = bounds;
     scene.objects[quad].bounds = bounds;
-}
-
-/// What frames from these cameras say.
-fn stats(scene: &Scene, cameras: &[Camera], settings: &Settings) -> Vec<FrameStats> {
-    pollster::block_on(async {
-        let mut renderer = Renderer::new(gpu(), settings, RendererOptions::default())
-            .await
-            .expect("settings fit");
-        renderer.set_scene(scene).await.expect("scene fits");
-        let mut stats = Vec::new();
-        for camera in cameras {
-            stats.push(renderer.render(&Frame::new(camera)).await.expect("drawn"));
-        }
-        stats
-    })
 }
 
 /// Two walls with a slit between the middle columns of pixels, 0.3 of a pixel wide, and a bright thing
@@ -89,7 +72,6 @@ fn what_shows_between_pixel_centres_stays_in_anti_aliased_pictures() {
 #[test]
 fn what_pixel_centres_show_stays_at_every_scale_of_the_buffer() {
     // A slit on a column of pixel centres, at each place among the buffer's samples.
-    let mut hidden = 0;
     for scale in [1, 2, 3, 4, 8, 16] {
         for moved in 0..4 {
             let width = 33 + 2 * moved;
@@ -102,94 +84,85 @@ fn what_pixel_centres_show_stays_at_every_scale_of_the_buffer() {
             let off = settings.clone().with(|s| s.culling.mode = Culling::Off);
             let expected = picture(&rendered(&scene, &front(), &off));
             assert!(expected.chunks_exact(4).any(|p| p[0] > 100), "{width}");
-            let renderer = rendered(&scene, &front(), &settings);
-            assert!(picture(&renderer) == expected, "{scale}, {width}");
-            hidden += renderer.culling().unwrap().stats.occludees_occluded;
+            let culled = picture(&rendered(&scene, &front(), &settings));
+            assert!(culled == expected, "{scale}, {width}");
         }
     }
-    assert_eq!(hidden, 0);
 }
 
-/// A wall, and behind it, or beside each other where it is `open`, three quads.
-fn room(open: bool) -> (Scene, Camera) {
+/// A wall before three quads.
+fn room() -> Scene {
     let colors = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE];
     let mut scene = quads(colors.map(unlit).to_vec(), &[1.0, 0.0, 0.0, 0.0]);
     for (quad, x) in [(1, -0.5), (2, 0.0), (3, 0.5)] {
-        let z = if open { 1.0 } else { 0.0 };
-        place(&mut scene, quad, Vec3::new(x, 0.0, z), 0.2);
+        place(&mut scene, quad, Vec3::new(x, 0.0, 0.0), 0.2);
     }
-    if open {
-        place(&mut scene, 0, Vec3::new(0.0, 0.6, 1.0), 0.2);
-    }
-    (scene, front())
+    scene
 }
 
-/// Whether each of some frames from one place rasterized occluders.
-fn rasterized(open: bool, frames: usize, shadows: Shadows) -> Vec<bool> {
-    let (scene, camera) = room(open);
-    let settings = small(128, 128).with(|s| s.lighting.shadows = shadows);
+/// 16 quads side by side that hide one: 32 triangles for one of 2.
+fn wide() -> Scene {
+    let mut scene = quads(vec![unlit(Vec3::Y); 17], &[0.0; 17]);
+    for quad in 0..16 {
+        let [x, y] = [quad % 4, quad / 4].map(|i| 0.5 * i as f32 - 0.75);
+        place(&mut scene, quad, Vec3::new(x, y, 1.0), 0.2);
+    }
+    place(&mut scene, 16, Vec3::new(-0.875, -0.875, 0.5), 0.05);
+    scene
+}
+
+/// Settings of pictures in which no quad is too small to be an occluder.
+fn auto() -> Settings {
+    let settings = small(128, 128);
     assert_eq!(settings.culling.mode, Culling::Auto);
-    let stats = stats(&scene, &vec![camera; frames], &settings);
-    stats.iter().map(|s| s.occluder_triangles > 0).collect()
+    settings
+}
+
+/// How many objects each of some frames from the front finds hidden.
+fn hidden(scene: &Scene, settings: &Settings, frames: usize) -> Vec<u64> {
+    let mut film = Film::new(scene, settings);
+    let frame = |_| film.draw(&front()).objects_occluded;
+    (0..frames).map(frame).collect()
 }
 
 #[test]
 fn auto_rasterizes_occluders_while_they_hide_enough() {
-    assert_eq!(rasterized(false, 5, Shadows::Off), [true; 5]);
-    let open = rasterized(true, 64, Shadows::Off);
-    let expected: Vec<bool> = (0..64).map(|i| i % 31 == 0).collect();
-    assert_eq!(open, expected);
+    assert_eq!(hidden(&room(), &auto(), 5), [3; 5]);
+    let one_in_31: Vec<u64> = (0..64).map(|i| u64::from(i % 31 == 0)).collect();
+    assert_eq!(hidden(&wide(), &auto(), 64), one_in_31);
 }
 
 #[test]
 fn auto_rasterizes_occluders_in_every_frame_with_shadows() {
-    assert_eq!(rasterized(true, 5, Shadows::Hard), [true; 5]);
+    let settings = auto().with(|s| s.lighting.shadows = Shadows::Hard);
+    assert_eq!(hidden(&wide(), &settings, 5), [1; 5]);
 }
 
 #[test]
 fn auto_leaves_pictures_as_they_are_while_it_tries_and_rests() {
-    let (scene, camera) = room(true);
-    pollster::block_on(async {
-        let settings = small(128, 128);
-        let off = settings.clone().with(|s| s.culling.mode = Culling::Off);
-        let expected = picture(&rendered(&scene, &camera, &off));
-        let mut renderer = Renderer::new(gpu(), &settings, RendererOptions::default())
-            .await
-            .expect("settings fit");
-        renderer.set_scene(&scene).await.expect("scene fits");
-        for frame in 0..33 {
-            renderer.render(&Frame::new(&camera)).await.expect("drawn");
-            assert!(picture(&renderer) == expected, "{frame}");
-        }
-    });
+    let off = auto().with(|s| s.culling.mode = Culling::Off);
+    let expected = picture(&rendered(&wide(), &front(), &off));
+    let mut film = Film::new(&wide(), &auto());
+    for frame in 0..33 {
+        film.draw(&front());
+        assert!(picture(&film.renderer) == expected, "{frame}");
+    }
 }
 
 #[test]
 fn auto_looks_again_in_another_scene_and_where_the_eye_turns() {
-    pollster::block_on(async {
-        let (scene, camera) = room(true);
-        let mut renderer = Renderer::new(gpu(), &small(128, 128), RendererOptions::default())
-            .await
-            .expect("settings fit");
-        renderer.set_scene(&scene).await.expect("scene fits");
-        let away = |degrees: f32| {
-            let mut camera = camera.clone();
-            camera.world_from_view *= Mat4::from_rotation_y(degrees.to_radians());
-            camera
-        };
-        let mut rasterizes = async |camera: &Camera| {
-            let frame = renderer.render(&Frame::new(camera)).await;
-            frame.expect("drawn").occluder_triangles > 0
-        };
-        assert!(rasterizes(&camera).await);
-        assert!(!rasterizes(&away(10.0)).await);
-        assert!(rasterizes(&away(30.0)).await);
-        assert!(!rasterizes(&away(20.0)).await);
-        let (scene, camera) = room(false);
-        renderer.set_scene(&scene).await.expect("scene fits");
-        let frame = renderer.render(&Frame::new(&camera)).await;
-        assert!(frame.expect("drawn").occluder_triangles > 0);
-    });
+    let mut film = Film::new(&wide(), &auto());
+    let turned = |degrees: f32| {
+        let mut camera = front();
+        camera.world_from_view *= Mat4::from_rotation_y(degrees.to_radians());
+        camera
+    };
+    for (degrees, looks) in [(0.0, true), (-10.0, false), (-30.0, true), (-20.0, false)] {
+        let stats = film.draw(&turned(degrees));
+        assert_eq!(stats.occluder_triangles > 0, looks, "{degrees}");
+    }
+    pollster::block_on(film.renderer.set_scene(&room())).expect("scene fits");
+    assert!(film.draw(&turned(-20.0)).occluder_triangles > 0);
 }
 
 #[test]
