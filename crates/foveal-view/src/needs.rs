@@ -67,7 +67,7 @@ pub(crate) fn missing(
             s.lighting.shadows == Shadows::Contact,
             "Needs Shadows: contact",
         ),
-        "shadow-atlas" | "shadow-bias" | "shadow-budget" => unless(
+        "shadow-atlas" | "shadow-texel" | "shadow-bias" | "shadow-budget" => unless(
             s.lighting.shadows != Shadows::Off,
             "Needs Shadows: other than off",
         ),

@@ -12,8 +12,12 @@ use foveal_scene::{AlphaMode, Material, Scene};
 use glam::Vec3;
 use trace::{Around, Reference};
 
-const WIDTH: u32 = 192;
-const HEIGHT: u32 = 108;
+/// Width and height of the pictures; `FOVEAL_TRACED_HEIGHT` is another height, for measuring.
+fn size() -> (u32, u32) {
+    let asked = std::env::var("FOVEAL_TRACED_HEIGHT").ok();
+    let height = asked.map_or(108, |height| height.parse().expect("a height in pixels"));
+    (height * 16 / 9, height)
+}
 
 fn srgb(linear: f32) -> u8 {
     let v = linear.clamp(0.0, 1.0);
@@ -27,7 +31,8 @@ fn srgb(linear: f32) -> u8 {
 
 fn flip_image(radiance: impl Iterator<Item = Vec3>) -> nv_flip::FlipImageRgb8 {
     let rgb: Vec<u8> = radiance.flat_map(|p| p.to_array().map(srgb)).collect();
-    nv_flip::FlipImageRgb8::with_data(WIDTH, HEIGHT, &rgb)
+    let (width, height) = size();
+    nv_flip::FlipImageRgb8::with_data(width, height, &rgb)
 }
 
 /// A court, no brighter than `most`.
@@ -40,7 +45,8 @@ fn surroundings(most: f32) -> (u32, u32, Vec<[f32; 3]>) {
 /// Mean FLIP error between the renderer's picture, with the court no brighter than `most`, and the
 /// reference's.
 fn flip(scene: &Scene, settings: Settings, most: f32, reference: &Reference<'_>) -> f32 {
-    let traced = reference.picture(&scene.cameras[0], WIDTH, HEIGHT);
+    let (width, height) = size();
+    let traced = reference.picture(&scene.cameras[0], width, height);
     flip_to(scene, settings, most, (reference.occludes, &traced))
 }
 
@@ -52,9 +58,9 @@ fn flip_to(
     (occludes, traced): (bool, &[Vec3]),
 ) -> f32 {
     let camera = &scene.cameras[0];
+    let (width, height) = size();
     let settings = settings.with(|s| {
-        s.picture.width = WIDTH;
-        s.picture.height = HEIGHT;
+        (s.picture.width, s.picture.height) = (width, height);
         s.picture.tone_map = ToneMap::Linear;
         s.lighting.background = Background::None;
     });
@@ -88,7 +94,7 @@ fn flip_to(
         let name = std::path::Path::new(&folder).join(name);
         let both = drawn.clone().chain(traced.iter().copied());
         let bytes: Vec<u8> = both.flat_map(|p| p.to_array().map(srgb)).collect();
-        image::save_buffer(name, &bytes, WIDTH, 2 * HEIGHT, image::ColorType::Rgb8)
+        image::save_buffer(name, &bytes, width, 2 * height, image::ColorType::Rgb8)
             .expect("written");
     }
     let map = nv_flip::flip(
@@ -175,10 +181,13 @@ fn shadows_of_lights_are_nearly_as_traced() {
         });
         let reference = Reference::new(&scene);
         let error = flip(&scene, settings.clone(), 0.0, &reference);
+        let finer = (settings.clone()).with(|s| s.lighting.shadow_texel_px = 1.0);
+        let finer = flip(&scene, finer, 0.0, &reference);
         let off = settings.with(|s| s.lighting.shadows = Shadows::Off);
         let off = flip(&scene, off, 0.0, &reference);
-        println!("{name}: FLIP {error:.4}; {off:.4} without shadows");
+        println!("{name}: FLIP {error:.4}; {finer:.4} by finer texels; {off:.4} without shadows");
         assert!(error <= most, "{name}: {error}");
+        assert!(finer < error, "{name}: {finer}, {error}");
         assert!(off > 2.0 * error, "{name}: {off}");
     }
 }
@@ -219,7 +228,8 @@ fn ambient_occlusion_brings_the_environments_light_nearer_to_what_is_traced() {
         let mut reference = Reference::new(&scene);
         reference.around = Some(&around);
         reference.occludes = true;
-        let traced = reference.picture(&scene.cameras[0], WIDTH, HEIGHT);
+        let (wide, high) = size();
+        let traced = reference.picture(&scene.cameras[0], wide, high);
         let error = |occlusion, radius| {
             let settings = Settings::default().with(|s| {
                 s.lighting.environment = EnvironmentSource::Image;

@@ -105,6 +105,10 @@ settings! {
         /// Side of the shadow atlas in texels, rounded down to a power of two. It takes 4 bytes a
         /// texel: 4096 takes 64 MiB. Where it is full, all shadows become coarser alike.
         shadow_atlas => shadow_atlas: u32 = 4096, "Shadow atlas", Kind::Integer { least: 256, most: 8192 };
+        /// Pixels of the picture that a texel covers where most of a point or spot light's shadows are
+        /// seen. Lower it for sharper shadows, as far as the atlas has room: half of it takes four
+        /// times the texels. The default leaves most of 4096 x 4096 free at 1280x720.
+        shadow_texel => shadow_texel_px: f32 = 2.0, "Shadow texel (px)", Kind::Number { least: 0.5, most: 8.0 };
         /// Offset of surfaces along their normals before they are compared with the atlas, in
         /// texels. Raise it where surfaces show stripes, lower it where shadows begin away from
         /// what casts them.

@@ -1,5 +1,6 @@
 //! Tiles that are kept from frame to frame: where they lie, and whether what they hold is right.
 
+use std::cmp::Reverse;
 use std::collections::BTreeMap;
 
 use foveal_scene::Aabb;
@@ -70,7 +71,7 @@ pub(super) struct KeptTiles {
     /// By slot and level.
     tiles: BTreeMap<(u32, u32), Kept>,
     frame: u64,
-    /// Nothing has been drawn since all tiles were placed anew.
+    /// Nothing has been drawn since all was forgotten.
     is_new: bool,
     /// By slot: tiles that a frame's budget has left for a later one, and that are not drawn yet.
     waits: BTreeMap<u32, Wait>,
@@ -144,7 +145,7 @@ impl KeptTiles {
         self.waits.remove(&want.slot).is_some()
     }
 
-    /// Whether all tiles have been placed anew since this was asked last.
+    /// Whether all has been forgotten since this was asked last.
     pub(super) fn take_is_new(&mut self) -> bool {
         std::mem::take(&mut self.is_new)
     }
@@ -230,13 +231,15 @@ impl KeptTiles {
 
     /// Gives each wanted tile a place. A tile stays where it is while its size is right; tiles that
     /// no frame has wanted for the longest time make room; where squares are scattered so that one
-    /// does not fit, all are placed anew.
+    /// does not fit, smaller ones move out of its way. All find a place where they fit by their area.
     ///
     /// `keeps_sizes`: a tile of another size stays too until its place is needed, for a frame that
     /// wants that size again, or for one that looks into it while the tile of the right size waits.
     pub(super) fn place(&mut self, wanted: &[Wanted], keeps_sizes: bool) {
         self.frame += 1;
-        let mut missing = Vec::new();
+        // From the largest to the smallest: `None` for those that have to move.
+        let mut missing = BTreeMap::new();
+        let order = |(slot, level): (u32, u32)| (Reverse(level), slot);
         for want in wanted {
             if !keeps_sizes {
                 self.give_other_sizes(want);
@@ -251,15 +254,34 @@ impl KeptTiles {
                         kept.light_moves = kept.is_restless;
                     }
                 }
-                None => missing.push(*want),
+                None => _ = missing.insert(order(key(want)), *want),
             }
         }
-        missing.sort_by_key(|want| (std::cmp::Reverse(want.level), want.slot));
-        for want in &missing {
-            if !self.fit(want) {
-                return self.place_anew(wanted);
+        while let Some((_, want)) = missing.pop_first() {
+            if !self.fit(&want) {
+                let moved = self.take_out_smaller(want.level);
+                self.fit(&want);
+                let moved = wanted.iter().filter(|want| moved.contains(&key(want)));
+                missing.extend(moved.map(|want| (order(key(want)), *want)));
             }
         }
+    }
+
+    /// Takes the tiles out of a square of `2^level` texels a side that holds smaller ones alone: of
+    /// these squares the one with the fewest. There is one where all wanted tiles fit by their area,
+    /// since tiles as large as the square or larger fill whole ones.
+    fn take_out_smaller(&mut self, level: u32) -> Vec<(u32, u32)> {
+        let mut squares: BTreeMap<(u32, u32), Vec<(u32, u32)>> = BTreeMap::new();
+        for (&key, kept) in self.tiles.iter().filter(|(_, k)| k.tile.level < level) {
+            let corner = (kept.tile.y >> level, kept.tile.x >> level);
+            squares.entry(corner).or_default().push(key);
+        }
+        let fewest = squares.into_values().min_by_key(Vec::len);
+        let keys = fewest.unwrap_or_default();
+        for kept in keys.iter().filter_map(|key| self.tiles.remove(key)) {
+            self.atlas.give(kept.tile);
+        }
+        keys
     }
 
     fn give_other_sizes(&mut self, want: &Wanted) {
@@ -305,20 +327,6 @@ impl KeptTiles {
             light_moves: false,
         };
         self.tiles.insert(key(want), kept);
-    }
-
-    /// From the largest to the smallest all fit.
-    fn place_anew(&mut self, wanted: &[Wanted]) {
-        let waits = std::mem::take(&mut self.waits);
-        self.forget();
-        self.waits = waits;
-        let mut wanted = wanted.to_vec();
-        wanted.sort_by_key(|want| (std::cmp::Reverse(want.level), want.slot));
-        for want in &wanted {
-            if let Some(tile) = self.atlas.take(want.level) {
-                self.insert(want, tile);
-            }
-        }
     }
 }
 
@@ -408,16 +416,60 @@ mod tests {
     #[test]
     fn scattered_squares_are_put_together() {
         let mut kept = KeptTiles::new(6);
-        kept.place(
-            &(0..16).map(|slot| want(slot, 4)).collect::<Vec<_>>(),
-            false,
-        );
+        let all: Vec<_> = (0..16).map(|slot| want(slot, 4)).collect();
+        kept.place(&all, false);
+        for want in &all {
+            kept.drawn(want, Vec::new());
+        }
         // Four small ones stay, one in each quarter: no large one fits beside them.
-        let stay: Vec<_> = [0, 4, 8, 12].map(|slot| want(slot, 4)).to_vec();
-        let mut more = stay.clone();
-        more.extend([20, 21, 22].map(|slot| want(slot, 5)));
-        kept.place(&more, false);
-        assert!(more.iter().all(|w| kept.get(w).is_some()));
+        let stay = [0, 4, 8, 12].map(|slot| want(slot, 4));
+        let drawn = |kept: &KeptTiles| {
+            let is_drawn = |w: &&Wanted| kept.get(w).is_some_and(|k| k.is_drawn);
+            stay.iter().filter(is_drawn).count()
+        };
+        let mut more = stay.to_vec();
+        for (slots, left) in [(20..21, 3), (20..22, 2), (20..23, 1)] {
+            more.truncate(4);
+            more.extend(slots.map(|slot| want(slot, 5)));
+            kept.place(&more, false);
+            assert!(more.iter().all(|w| kept.get(w).is_some()));
+            assert_eq!(drawn(&kept), left, "as few as possible are drawn again");
+        }
+    }
+
+    proptest::proptest! {
+        /// Whatever the frames want, all of it is placed without overlap where it fits by its area,
+        /// and not all of it is placed anew.
+        #[test]
+        fn tiles_always_fit_and_most_stay(frames in proptest::collection::vec(
+            proptest::collection::vec((0u32..60, 4u32..=7), 0..60), 1..20,
+        )) {
+            let mut kept = KeptTiles::new(8);
+            kept.take_is_new();
+            for wants in frames {
+                let mut room = 1 << 16;
+                let mut levels = BTreeMap::new();
+                for (slot, level) in wants {
+                    let area = 1 << (2 * level);
+                    if area <= room && !levels.contains_key(&slot) {
+                        room -= area;
+                        levels.insert(slot, level);
+                    }
+                }
+                let wanted: Vec<_> = levels.iter().map(|(&slot, &level)| want(slot, level)).collect();
+                kept.place(&wanted, false);
+                let mut taken = std::collections::BTreeSet::new();
+                for want in &wanted {
+                    let tile = kept.get(want).expect("placed").tile;
+                    proptest::prop_assert_eq!(tile.level, want.level);
+                    let cells = |at: u32| at / 16..(at + tile.side()) / 16;
+                    for cell in cells(tile.y).flat_map(|y| cells(tile.x).map(move |x| (x, y))) {
+                        proptest::prop_assert!(taken.insert(cell));
+                    }
+                }
+                proptest::prop_assert!(!kept.take_is_new());
+            }
+        }
     }
 
     #[test]

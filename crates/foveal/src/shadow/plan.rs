@@ -7,6 +7,7 @@ use glam::{Mat4, Vec3, Vec4};
 use super::atlas::LEAST_LEVEL;
 use super::part::part_of_picture;
 use super::volume::{BORDER, Volume, axes_along, cube_axes, frustum_planes};
+use crate::Settings;
 use crate::lights::LightUniform;
 use crate::rate::FinestRate;
 use crate::stereo::Eye;
@@ -24,14 +25,18 @@ const CASCADE_MOVE: f32 = 0.25;
 const LARGEST_SIDE: u32 = 9;
 const LARGEST_SPOT: u32 = 10;
 const LARGEST_CASCADE: u32 = 10;
+/// Powers of two by which other tiles have shrunk before cascades do: directional lights shine on
+/// everything.
+const CASCADES_LAST: f32 = 1.0;
 /// Cones wider than this have a cube's sides (tangent of the half angle).
 const WIDEST_SPOT: f32 = 2.0;
-/// Picture pixels that a texel may cover where most of a light's shadows are seen.
-const PIXELS_PER_TEXEL: f32 = 2.0;
 /// Distance from the light, as part of its range, where most of its shadows are seen.
 const TYPICAL_DISTANCE: f32 = 0.3;
-/// Sizes shrink by a quarter of a power of two until all fit.
-const SHRINK_STEP: f32 = 0.25;
+/// Sizes shrink by the least of so many parts of a power of two at which all fit: from one to the next
+/// few tiles change their size.
+const SHRINK_PARTS: u32 = 32;
+/// Most powers of two by which they shrink: to the least size.
+const MOST_SHRUNK: u32 = 16;
 
 /// A tile that a frame wants.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,8 +55,9 @@ pub(super) struct ViewOfPlan {
     clip_from_world: [Mat4; 2],
     /// Between the eyes.
     center: Vec3,
-    /// Metres per pixel at a distance of one metre, or at any where rays are parallel.
-    pixel: f32,
+    /// Metres that a texel is to cover where most of a light's shadows are seen, at a distance of
+    /// one metre from the eye, or at any where rays are parallel.
+    texel: f32,
     orthographic: bool,
     eyes: [Eye; 2],
     /// How finely parts of the picture are shaded, where tiles are to be as coarse.
@@ -59,11 +65,12 @@ pub(super) struct ViewOfPlan {
 }
 
 impl ViewOfPlan {
-    pub(super) fn new(eyes: &[Eye; 2], height: u32, rates: Option<FinestRate>) -> Self {
+    pub(super) fn new(eyes: &[Eye; 2], settings: &Settings, rates: Option<FinestRate>) -> Self {
+        let pixel = 2.0 * eyes[0].view_from_ndc()[1].abs() / settings.picture.height as f32;
         Self {
             clip_from_world: [eyes[0].clip_from_world(), eyes[1].clip_from_world()],
             center: 0.5 * (eyes[0].position() + eyes[1].position()),
-            pixel: 2.0 * eyes[0].view_from_ndc()[1].abs() / height as f32,
+            texel: pixel * settings.lighting.shadow_texel_px,
             orthographic: eyes[0].orthographic,
             eyes: *eyes,
             rates,
@@ -87,11 +94,11 @@ impl ViewOfPlan {
         finest.unwrap_or(rates.coarsest()) as f32
     }
 
-    fn pixel_at(&self, distance: f32) -> f32 {
+    fn texel_at(&self, distance: f32) -> f32 {
         if self.orthographic {
-            self.pixel
+            self.texel
         } else {
-            self.pixel * distance
+            self.texel * distance
         }
     }
 }
@@ -161,10 +168,19 @@ fn settle(mut requests: Vec<Request>, atlas_level: u32) -> Plan {
             .map(|r| unit_area(level_of(r, shrunk)))
             .sum()
     };
-    let mut shrunk_by = 0.0;
-    while area(&requests, shrunk_by) > room && shrunk_by < 16.0 {
-        shrunk_by += SHRINK_STEP;
+    let shrunk = |parts: u32| parts as f32 / SHRINK_PARTS as f32;
+    let fits = |parts: u32| area(&requests, shrunk(parts)) <= room;
+    // More than `low`, at most `high`; where all fits there is nothing to find.
+    let (mut low, mut high) = (0, MOST_SHRUNK * SHRINK_PARTS);
+    while low < high && !fits(0) {
+        let middle = low.midpoint(high);
+        (low, high) = if fits(middle) {
+            (low, middle)
+        } else {
+            (middle + 1, high)
+        };
     }
+    let shrunk_by = shrunk(low);
     let mut left_out = Vec::new();
     if area(&requests, shrunk_by) > room {
         requests.sort_by(|a, b| b.level.total_cmp(&a.level).then(a.slot.cmp(&b.slot)));
@@ -219,7 +235,7 @@ fn sides(
     // Where most of its shadows are seen, seen from as near as they may be.
     let typical = TYPICAL_DISTANCE * light.range;
     let away = (apex.distance(view.center) - typical).max(0.5 * typical);
-    let wanted_texel = view.pixel_at(away) * PIXELS_PER_TEXEL;
+    let wanted_texel = view.texel_at(away);
     let spot = spot_tangent(light);
     let tangent = spot.unwrap_or(1.0);
     // Texels without the border.
@@ -291,8 +307,8 @@ fn cascades(
         let snapped = |axis: Vec3| (axis.dot(view.center) / step).round() * step;
         requests.push(Request {
             slot: slot + cascade as u32,
-            level: LARGEST_CASCADE as f32,
-            level_by_view: LARGEST_CASCADE as f32,
+            level: LARGEST_CASCADE as f32 + CASCADES_LAST,
+            level_by_view: LARGEST_CASCADE as f32 + CASCADES_LAST,
             largest: LARGEST_CASCADE,
             volume: Volume::Column {
                 axes,
@@ -324,7 +340,7 @@ mod tests {
         let camera = Camera::look_at(Vec3::new(x, y, z), Vec3::ZERO, Vec3::Y, 1.0);
         let settings = crate::testing::small(1280, 720);
         let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
-        ViewOfPlan::new(&eyes, 720, None)
+        ViewOfPlan::new(&eyes, &settings, None)
     }
 
     fn room() -> Aabb {
@@ -371,6 +387,48 @@ mod tests {
         assert!(plan.shrunk_by > 0.0);
     }
 
+    #[test]
+    fn in_a_full_atlas_a_step_changes_few_sizes() {
+        let lights: Vec<_> = (0..400)
+            .map(|i| lamp(0.05 * i as f32 - 10.0, 1.0 + 0.01 * i as f32))
+            .collect();
+        let levels = |z| {
+            let plan = Plan::new(&lights, &view_from(0.0, 0.0, z), &room(), 11);
+            assert!(plan.shrunk_by > 0.5);
+            let levels = plan.wanted.iter().map(|w| (w.slot, w.level));
+            levels.collect::<std::collections::BTreeSet<_>>()
+        };
+        let mut before = levels(6.0);
+        for step in 1..40 {
+            let now = levels(6.0 + 0.1 * step as f32);
+            let new = now.difference(&before).count();
+            assert!(new * 5 < now.len(), "{new} of {}", now.len());
+            before = now;
+        }
+    }
+
+    #[test]
+    fn cascades_shrink_after_the_tiles_of_lamps() {
+        let sun = LightUniform {
+            kind: 0,
+            direction: [0.0, -1.0, 0.0],
+            radiant: [1.0; 3],
+            ..LightUniform::default()
+        };
+        let plan = |count: usize| {
+            let lamps = (0..count).map(|i| lamp(i as f32 * 1e-3, 6.0));
+            let lights: Vec<_> = std::iter::once(sun).chain(lamps).collect();
+            Plan::new(&lights, &view_from(0.0, 0.0, 5.0), &room(), 12)
+        };
+        let sizes = |plan: &Plan| [0, 4].map(|tile| plan.wanted[tile].level);
+        let halved = plan(40);
+        assert!(halved.shrunk_by >= CASCADES_LAST);
+        let [cascade, side] = sizes(&halved);
+        assert!(cascade == LARGEST_CASCADE && side < LARGEST_SIDE);
+        let much = plan(800);
+        assert!(sizes(&much)[0] < LARGEST_CASCADE);
+    }
+
     /// Wants of 40 lights in a wall, seen with the gaze at a place of the picture.
     fn wanted_at(gaze: [f32; 2], sizes: ShadowSizes) -> Vec<Wanted> {
         let lights: Vec<_> = (0..40)
@@ -383,7 +441,7 @@ mod tests {
         });
         let eyes = crate::stereo::eyes(&settings, &camera).expect("a camera that makes sense");
         let rates = FinestRate::new(&settings, &eyes).filter(|_| sizes == ShadowSizes::Rate);
-        let view = ViewOfPlan::new(&eyes, 720, rates);
+        let view = ViewOfPlan::new(&eyes, &settings, rates);
         Plan::new(&lights, &view, &room(), 12).wanted
     }
 

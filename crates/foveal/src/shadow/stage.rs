@@ -204,7 +204,7 @@ impl ShadowStage {
             return Vec::new();
         };
         let now = Settled {
-            view: ViewOfPlan::new(eyes, settings.picture.height, rates),
+            view: ViewOfPlan::new(eyes, settings, rates),
             keeps_sizes: settings.lighting.shadow_sizes == ShadowSizes::Rate || drawing.budget > 0,
             receivers,
         };

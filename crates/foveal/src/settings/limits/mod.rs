@@ -88,6 +88,13 @@ impl Settings {
                 hint: String::new(),
             });
         }
+        if !(0.125..=64.0).contains(&self.lighting.shadow_texel_px) {
+            return Err(Error::Setting {
+                name: "shadow-texel",
+                value: self.lighting.shadow_texel_px.to_string(),
+                expected: "between 0.125 and 64",
+            });
+        }
         if !(0.0..=8.0).contains(&self.lighting.shadow_bias) {
             return Err(Error::Setting {
                 name: "shadow-bias",

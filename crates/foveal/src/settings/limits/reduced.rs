@@ -15,12 +15,13 @@ const MISSING_STAGES: [&str; 4] = [
 ];
 
 /// Single settings that are missing there.
-const MISSING_KEYS: [&str; 12] = [
+const MISSING_KEYS: [&str; 13] = [
     "view",
     "geometry",
     "material-dispatch",
     "shadows",
     "shadow-atlas",
+    "shadow-texel",
     "shadow-bias",
     "shadow-sizes",
     "shadow-budget",
