@@ -26,8 +26,6 @@ pub struct Drawing {
     pub viewpoint: Rc<Viewpoint>,
     /// Time of the renderer's current pose; `None` where it is not known, or does not matter.
     posed_s: Option<f32>,
-    /// Whether the pose before was the same: nothing moves.
-    is_at_rest: bool,
 }
 
 impl Drawing {
@@ -38,20 +36,19 @@ impl Drawing {
             scene,
             viewpoint,
             posed_s: Some(0.0),
-            is_at_rest: false,
         }
     }
 
     /// Draws a moment, with motion since another. Its picture depends on the two alone, not on the
     /// frames drawn before.
     pub fn draw_moment(&mut self, time_s: f32, previous_time_s: f32) -> anyhow::Result<FrameStats> {
-        if self.posed_s != Some(previous_time_s) {
+        let is_elsewhere = self.posed_s != Some(previous_time_s);
+        if is_elsewhere {
             self.pose(previous_time_s)?;
         }
         let previous_camera = self.viewpoint.at(&self.scene, previous_time_s);
-        // What is at rest is left there: another pose, though the same, would be taken for a
-        // movement.
-        if !(self.is_at_rest && self.posed_s == Some(time_s)) {
+        // A pose that the last frame has shown rests without another.
+        if is_elsewhere || time_s != previous_time_s {
             self.pose(time_s)?;
         }
         let camera = self.viewpoint.at(&self.scene, time_s);
@@ -72,10 +69,9 @@ impl Drawing {
 
     fn pose(&mut self, time_s: f32) -> anyhow::Result<()> {
         if self.scene.is_animated() {
-            let before_s = self.posed_s.take();
+            self.posed_s = None;
             self.scene.pose(time_s);
             block_on(self.renderer.update_pose(&self.scene))?;
-            self.is_at_rest = before_s == Some(time_s);
             self.posed_s = Some(time_s);
         }
         Ok(())

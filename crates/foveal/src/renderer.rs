@@ -17,9 +17,9 @@ use crate::lights::LightAssigner;
 use crate::output::{EyesPass, PresentPass, ToneMapPass, Upscale, ViewPass};
 use crate::rate::RateImage;
 use crate::scene::{ArrayLimits, FrameBindings, SceneOnGpu, material_layout};
-use crate::shading::{ShadingPass, VariableStage};
+use crate::shading::{HistoryStage, ShadingPass, VariableStage};
 use crate::shadow::ShadowStage;
-use crate::stereo::{Eye, LensFit, Submission, Trials};
+use crate::stereo::{Eye, EyeLayout, LensFit, Submission, Trials};
 use crate::targets::Targets;
 use crate::{Error, FrameStats, Settings};
 use coarse::CoarseStages;
@@ -34,6 +34,8 @@ mod in_flight;
 mod mend;
 mod plan;
 mod results;
+#[cfg(test)]
+mod settings_tests;
 mod stages;
 mod submit;
 #[cfg(test)]
@@ -278,7 +280,9 @@ impl Renderer {
             s.eye.gaze = settings.eye.gaze;
             s.stereo.gaze_shift = settings.stereo.gaze_shift;
         });
-        if looking == *settings {
+        // With a gaze of its own each eye has a picture of its own.
+        let is_laid_out = EyeLayout::of(old) == EyeLayout::of(settings);
+        if looking == *settings && is_laid_out {
             self.stages.settings = settings.clone();
             return Ok(());
         }
@@ -288,28 +292,31 @@ impl Renderer {
             s.lighting.environment_image = settings.lighting.environment_image.clone();
             s.lighting.ambient_occlusion_radius_m = settings.lighting.ambient_occlusion_radius_m;
         });
-        if lit == *settings {
+        if lit == *settings && is_laid_out {
             self.stages.settings = settings.clone();
             self.stages.forget_light();
             return Ok(());
         }
         // Its counts are read from targets that go.
         self.in_flight = None;
-        if sized == *settings {
-            let culling = CullingStage::new(settings)?;
+        let keeps_light = |s: &Settings| HistoryStage::is_used(&self.gpu, s);
+        if sized == *settings && keeps_light(old) == keeps_light(settings) {
+            let mut culling = CullingStage::new(settings)?;
             let trap = ErrorTrap::new(&self.gpu, "resizing the targets");
             let submission = self.stages.submission.0;
             let targets = Targets::new(&self.gpu, settings, submission);
             trap.finish().await?;
-            self.stages.culling = culling;
             self.stages.targets = targets;
             self.stages.geometry.resize(settings);
             self.stages.forward.resize(settings);
+            self.keep_frozen(culling.as_mut());
             self.stages.forget();
+            self.stages.culling = culling;
             self.stages.settings = settings.clone();
             return Ok(());
         }
-        let stages = self.new_stages(settings, None).await?;
+        let mut stages = self.new_stages(settings, None).await?;
+        self.keep_frozen(stages.culling.as_mut());
         let around = (&self.scene.environment, self.scene.image_light.as_ref());
         let environment = self.upload_environment(settings, around, None).await?;
         self.stages = stages;
@@ -318,11 +325,33 @@ impl Renderer {
         Ok(())
     }
 
+    /// Where culling is frozen, what it found last goes to the stage that takes its place.
+    fn keep_frozen(&self, culling: Option<&mut CullingStage>) {
+        if let (true, Some(now), Some(before)) = (self.frozen, culling, &self.stages.culling) {
+            now.keep(before, &self.scene.culling);
+        }
+    }
+
     /// Takes over the picture of [`crate::RateSource::Image`]; until there is one, that source
     /// requests every pixel.
-    pub fn set_rate_image(&mut self, image: RateImage) {
+    ///
+    /// # Errors
+    /// [`Error::Limit`] where a side exceeds the device's textures; the renderer keeps the picture
+    /// that it has then.
+    pub fn set_rate_image(&mut self, image: RateImage) -> Result<(), Error> {
+        let (width, height) = image.size();
+        let limit = self.gpu.device.limits().max_texture_dimension_2d;
+        if width.max(height) > limit {
+            return Err(Error::Limit {
+                what: "the larger side of the picture of rates in pixels".to_owned(),
+                value: u64::from(width.max(height)),
+                limit: u64::from(limit),
+                hint: String::new(),
+            });
+        }
         self.rate_image = Some(image);
         self.rate_image_is_new = true;
+        Ok(())
     }
 
     /// Uploads a scene in place of the last one.
@@ -421,7 +450,8 @@ impl Renderer {
     /// Takes over a new pose of the same scene (after [`Scene::pose`]): places and shapes, lights,
     /// which objects are visible, and the numbers of materials. Their textures and alpha modes, and
     /// what kinds of reflection they have, stay as [`Renderer::set_scene`] found them. The pose
-    /// before it becomes the previous one, from which motion vectors are taken.
+    /// before it becomes the previous one, from which motion vectors are taken; a frame that follows
+    /// another without a new pose shows nothing in motion.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`]. Call it again then: until it succeeds, objects and lights have the

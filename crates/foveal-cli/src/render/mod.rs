@@ -56,6 +56,12 @@ pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
     atomic_file::remove_abandoned(jobs.iter().filter_map(|job| job.file.as_deref()));
     if jobs.is_empty() {
         if !args.quiet {
+            if let Some(file) = &args.stats {
+                console::warn(&format!(
+                    "no frame is drawn: there are no figures, and '{}' is not written",
+                    file.display()
+                ));
+            }
             match total {
                 0 => console::note("this part of the range has no frames; nothing to draw\n"),
                 _ => console::note(&format!(
@@ -221,7 +227,7 @@ fn prepare(
     })?;
 
     if let Some(image) = rate_image {
-        renderer.set_rate_image(image);
+        renderer.set_rate_image(image)?;
     }
     if let Some(environment) = environment {
         block_on(renderer.set_environment(environment))?;

@@ -44,8 +44,6 @@ struct Side {
     before: Option<Camera>,
     /// The moment of its pose; `None` until it has one.
     posed_s: Option<f32>,
-    /// Whether the pose before was the same: nothing moves.
-    is_at_rest: bool,
 }
 
 impl Drawing {
@@ -334,12 +332,11 @@ impl Side {
                     environment: held,
                     before: None,
                     posed_s: None,
-                    is_at_rest: false,
                 })
             }
         };
         if let Some(image) = image {
-            side.renderer.set_rate_image(image);
+            side.renderer.set_rate_image(image)?;
         }
         let needs_scene = |before: &Settings| settings.needs_scene_again(before);
         if before.as_ref().is_none_or(needs_scene) {
@@ -358,13 +355,10 @@ impl Side {
         is_afresh: bool,
     ) -> anyhow::Result<(Rgba, FrameStats)> {
         let Request { camera, time_s, .. } = request;
-        let is_posed = self.posed_s == Some(*time_s);
-        if scene.is_animated() && !(is_posed && self.is_at_rest) {
-            // Once more for the same moment: what does not move any more has no motion.
+        if scene.is_animated() && self.posed_s != Some(*time_s) {
             scene.pose(*time_s);
             block_on(self.renderer.update_pose(scene))?;
             self.posed_s = Some(*time_s);
-            self.is_at_rest = is_posed;
         }
         let mut before = self.before.replace(camera.clone());
         if is_afresh {

@@ -60,8 +60,11 @@ impl AmbientTargets {
 
 impl Listed {
     fn fits(gpu: &Gpu, (width, height): (u32, u32)) -> bool {
-        u64::from(width) * u64::from(height) * 4
-            <= gpu.device.limits().max_storage_buffer_binding_size
+        // Places are listed by two numbers of 14 bits.
+        let can_be_named = width.max(height) <= 1 << 14;
+        can_be_named
+            && u64::from(width) * u64::from(height) * 4
+                <= gpu.device.limits().max_storage_buffer_binding_size
     }
 
     fn new(gpu: &Gpu, (width, height): (u32, u32)) -> Self {

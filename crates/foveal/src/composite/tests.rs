@@ -41,7 +41,7 @@ fn affine_error(
         let mut renderer = Renderer::new(gpu(), settings, crate::RendererOptions::default())
             .await
             .unwrap();
-        renderer.set_rate_image(map);
+        renderer.set_rate_image(map).unwrap();
         renderer.set_scene(scene).await.unwrap();
         renderer.shade_affine();
         let frame = Frame::new(camera);

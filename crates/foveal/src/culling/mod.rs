@@ -157,6 +157,13 @@ impl CullingStage {
         self.found_for = None;
     }
 
+    /// Takes over what another stage found of the same scene.
+    pub(crate) fn keep(&mut self, found: &Self, scene: &CullingScene) {
+        self.results.clone_from(&found.results);
+        self.cells.clone_from(&found.cells);
+        self.culler.count(&self.results, Some(&scene.triangles));
+    }
+
     /// Wakes the threads that will soon have to rasterize.
     pub(crate) fn wake(&self) {
         if self.occlusion.is_next() {

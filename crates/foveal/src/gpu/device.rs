@@ -2,6 +2,7 @@
 
 use super::compiled::{Compiled, Moment, ShaderName};
 use crate::{AdapterStats, Error};
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 
 #[cfg(test)]
@@ -257,6 +258,25 @@ impl Gpu {
         !self.is_reduced()
             && self.device.features().contains(wgpu::Features::MULTIVIEW)
             && self.device.limits().max_multiview_view_count >= 2
+    }
+
+    /// Drives the device, and calls back those who wait for it.
+    ///
+    /// wgpu panics where the driver reports a loss while it is asked; the device is gone then.
+    pub(crate) fn poll(&self, how: wgpu::PollType) -> Result<(), Error> {
+        let polled = catch_unwind(AssertUnwindSafe(|| self.device.poll(how)));
+        let reason = match polled {
+            Ok(Ok(_)) => return Ok(()),
+            Ok(Err(cause)) => cause.to_string(),
+            Err(panic) => {
+                let text = panic.downcast_ref::<String>().map(String::as_str);
+                let text = text.or_else(|| panic.downcast_ref().copied());
+                let reason = text.unwrap_or("the driver failed").to_owned();
+                self.note_loss(reason.as_str());
+                reason
+            }
+        };
+        Err(Error::DeviceLost { reason })
     }
 
     /// [`Error::DeviceLost`] once the device is gone.

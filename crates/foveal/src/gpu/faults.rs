@@ -17,6 +17,8 @@ pub enum Fault {
     Invalid,
     /// The device is gone from here on.
     Lost,
+    /// The driver has lost the device, and reports it when it is asked: wgpu panics then.
+    LostByDriver,
 }
 
 /// Which call fails.
@@ -26,6 +28,8 @@ pub struct Plan {
     calls: u64,
     at: Option<(u64, Fault)>,
     has_struck: bool,
+    /// The driver has lost the device.
+    is_lost: bool,
     /// Out of memory, and no error scope has told of it.
     out_of_memory: bool,
 }
@@ -68,6 +72,7 @@ impl Faults {
         let fault = plan.at.filter(|(at, _)| *at == call)?.1;
         plan.has_struck = true;
         plan.out_of_memory |= fault == Fault::OutOfMemory;
+        plan.is_lost |= fault == Fault::LostByDriver;
         Some(fault)
     }
 }
@@ -96,13 +101,19 @@ impl Device {
     /// Whether this call is given something invalid in place of what it was asked for.
     fn fails(&self) -> bool {
         match self.faults.next() {
-            None => false,
+            None | Some(Fault::LostByDriver) => false,
             Some(Fault::Lost) => {
                 self.device.destroy();
                 false
             }
             Some(Fault::OutOfMemory | Fault::Invalid) => true,
         }
+    }
+
+    pub(crate) fn poll(&self, how: wgpu::PollType) -> Result<wgpu::PollStatus, wgpu::PollError> {
+        let is_lost = self.faults.0.lock().expect("no test panicked").is_lost;
+        assert!(!is_lost, "Error in Device::poll: the device is lost");
+        self.device.poll(how)
     }
 
     pub(crate) fn create_buffer(&self, wanted: &wgpu::BufferDescriptor<'_>) -> wgpu::Buffer {

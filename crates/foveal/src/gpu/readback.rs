@@ -42,11 +42,7 @@ impl<T> Handover<T> {
     /// Natively someone must drive the device; a browser does it by itself.
     pub(crate) async fn take(self, gpu: &Gpu) -> Result<T, Error> {
         #[cfg(not(target_arch = "wasm32"))]
-        if let Err(cause) = gpu.device.poll(wgpu::PollType::wait_indefinitely()) {
-            return Err(Error::DeviceLost {
-                reason: cause.to_string(),
-            });
-        }
+        gpu.poll(wgpu::PollType::wait_indefinitely())?;
         gpu.check_alive()?;
         std::future::poll_fn(|context| match self.0.lock() {
             Ok(mut slot) => match slot.0.take() {

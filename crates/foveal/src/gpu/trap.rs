@@ -65,7 +65,7 @@ impl ErrorTrap {
             // A loss is told when the device is asked, and makes errors of all else.
             #[cfg(not(target_arch = "wasm32"))]
             if internal.is_some() || validation.is_some() || memory.is_some() {
-                let _ = gpu.device.poll(wgpu::PollType::Poll);
+                let _ = gpu.poll(wgpu::PollType::Poll);
             }
             gpu.check_alive()?;
             #[cfg(not(test))]

@@ -142,7 +142,9 @@ fn cases() -> Vec<(&'static str, Settings)> {
 /// A renderer that has been given everything and has drawn nothing.
 async fn ready(gpu: &Gpu, settings: &Settings) -> Result<Renderer, Error> {
     let mut renderer = Renderer::new(gpu, settings, RendererOptions::default()).await?;
-    renderer.set_rate_image(RateImage::new(2, 1, vec![0, 128]).expect("two pixels"));
+    renderer
+        .set_rate_image(RateImage::new(2, 1, vec![0, 128]).expect("two pixels"))
+        .unwrap();
     renderer.set_environment(map()).await?;
     renderer.set_scene(&scene()).await?;
     Ok(renderer)
@@ -187,7 +189,10 @@ fn assert_told(what: &str, fault: Fault, failed: Result<(), Error>) {
         (&failed, fault),
         (Err(Error::OutOfMemory { .. }), Fault::OutOfMemory)
             | (Err(Error::Validation { .. }), Fault::Invalid)
-            | (Err(Error::DeviceLost { .. }), Fault::Lost)
+            | (
+                Err(Error::DeviceLost { .. }),
+                Fault::Lost | Fault::LostByDriver
+            )
     );
     assert!(told, "{what}, {fault:?}: {failed:?}");
     let sentence = failed.expect_err("it failed").to_string();
@@ -444,6 +449,26 @@ fn a_device_that_is_lost_anywhere_is_an_error_and_a_new_one_draws_the_same() {
         let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
         block_on(draw(&mut renderer)).expect("drawn");
         assert!(picture(&renderer) == expected, "{name}");
+    }
+}
+
+#[test]
+fn a_device_that_the_driver_loses_is_an_error() {
+    let settings = small(48, 32);
+    let gpu = host_gpu();
+    let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
+    block_on(draw(&mut renderer)).expect("drawn");
+    let in_frame = calls(&gpu, || block_on(draw(&mut renderer)).expect("drawn"));
+    for place in [0, in_frame - 1] {
+        let gpu = host_gpu();
+        let mut renderer = block_on(ready(&gpu, &settings)).expect("nothing fails");
+        block_on(draw(&mut renderer)).expect("drawn");
+        gpu.device.faults.arm(place, Fault::LostByDriver);
+        let lost = |failed| assert_told("frame", Fault::LostByDriver, failed);
+        lost(block_on(draw(&mut renderer)));
+        lost(block_on(draw(&mut renderer)));
+        lost(block_on(renderer.set_scene(&scene())));
+        lost(block_on(renderer.read_picture()).map(drop));
     }
 }
 

@@ -82,11 +82,7 @@ impl Renderer {
     /// The frame in flight, once all of its figures are there.
     pub(super) fn finished(&mut self) -> Result<Option<FrameStats>, Error> {
         #[cfg(not(target_arch = "wasm32"))]
-        if let Err(cause) = self.gpu.device.poll(wgpu::PollType::Poll) {
-            return Err(Error::DeviceLost {
-                reason: cause.to_string(),
-            });
-        }
+        self.gpu.poll(wgpu::PollType::Poll)?;
         self.gpu.check_alive()?;
         let Some(in_flight) = &mut self.in_flight else {
             return Ok(None);

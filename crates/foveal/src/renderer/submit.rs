@@ -29,6 +29,7 @@ impl Renderer {
         cpu: &mut CpuTimer,
     ) -> FrameStats {
         self.take_rate_image();
+        self.end_motion();
         let culled = self.cull(frame, seen);
         cpu.stage("culling");
         self.list_draws(frame);
@@ -40,7 +41,23 @@ impl Renderer {
         self.find_shadows(seen, &plan);
         cpu.stage("shadows");
         self.encode_frame((frame, &plan), seen, target, &clusters, cpu);
+        self.scene.is_shown = true;
         self.submitted(culled, cpu)
+    }
+
+    /// What has moved with a pose that a frame has shown rests in the next.
+    fn end_motion(&mut self) {
+        if !self.scene.end_motion(&self.gpu) {
+            return;
+        }
+        if let Some(variable) = &mut self.stages.variable {
+            variable.scene_moved();
+        }
+        if let Some(history) = self.stages.history() {
+            history.scene_moved();
+        }
+        let uniforms = self.scene.instance_uniforms();
+        (self.frame_bindings).write_instances(&self.gpu, uniforms);
     }
 
     /// Gives the stages a rate image that is new.

@@ -328,11 +328,8 @@ impl SceneGeometry {
         self.deforms
     }
 
-    /// Uploads the deformed meshes; the vertices so far become the previous ones.
-    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) {
-        if !self.deforms {
-            return;
-        }
+    /// The vertices become the previous ones.
+    fn keep_vertices(&self, gpu: &Gpu) {
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.copy_buffer_to_buffer(
             &self.vertices,
@@ -342,6 +339,28 @@ impl SceneGeometry {
             self.vertices.size(),
         );
         gpu.queue.submit([encoder.finish()]);
+    }
+
+    /// No mesh changes its shape any more.
+    pub(crate) fn end_motion(&mut self, gpu: &Gpu) {
+        if !self.deforms {
+            return;
+        }
+        self.keep_vertices(gpu);
+        if let Some(readable) = &self.readable {
+            let mut encoder = gpu.device.create_command_encoder(&Default::default());
+            let previous = (&readable.previous_vertices, &self.previous_vertices);
+            previous.0.copy(&mut encoder, previous.1);
+            gpu.queue.submit([encoder.finish()]);
+        }
+    }
+
+    /// Uploads the deformed meshes; the vertices so far become the previous ones.
+    pub(crate) fn update_pose(&mut self, gpu: &Gpu, scene: &Scene) {
+        if !self.deforms {
+            return;
+        }
+        self.keep_vertices(gpu);
         let mut uploads = Uploads::new(gpu);
         for (mesh, range) in scene.meshes.iter().zip(&self.meshes) {
             if mesh.deforms {

@@ -80,6 +80,10 @@ pub(crate) struct SceneOnGpu {
     pub(crate) stats: SceneStats,
     pub(crate) culling: CullingScene,
     uniforms: Vec<InstanceUniform>,
+    /// Whether anything may have moved with the last pose.
+    in_motion: bool,
+    /// Whether a frame has shown the pose.
+    pub(crate) is_shown: bool,
 }
 
 /// What a new pose differs in from the one before.
@@ -152,6 +156,8 @@ impl SceneOnGpu {
                 .iter()
                 .map(|i| InstanceUniform::still(i.world_from_object))
                 .collect(),
+            in_motion: false,
+            is_shown: false,
         })
     }
 
@@ -160,7 +166,11 @@ impl SceneOnGpu {
         let changes = self.materials.update(gpu, &scene.materials);
         let mut moves = self.geometry.deforms() || changes.iter().any(|c| c.is_other);
         let (mut boxes, mut places) = (Vec::new(), Vec::new());
-        let instances = drawn_instances(scene, &self.materials);
+        let mut instances = drawn_instances(scene, &self.materials);
+        for (now, before) in instances.iter_mut().zip(&self.instances) {
+            now.alpha_mode = before.alpha_mode;
+            now.double_sided = before.double_sided;
+        }
         let pairs = self.uniforms.iter_mut().zip(&scene.instances);
         let drawn = self.instances.iter().zip(&instances);
         for ((uniform, instance), (before, now)) in pairs.zip(drawn) {
@@ -200,12 +210,28 @@ impl SceneOnGpu {
         write_lights(gpu, &mut self.light_table, &self.lights);
         self.geometry.update_pose(gpu, scene);
         self.culling.update_pose(scene);
+        self.in_motion =
+            self.geometry.deforms() || self.uniforms.iter().any(InstanceUniform::is_elsewhere);
+        self.is_shown = false;
         PoseChange {
             moves,
             boxes,
             places,
             lights_before,
         }
+    }
+
+    /// The next frame shows the pose again that a frame has shown: nothing moves any more. Whether
+    /// anything did.
+    pub(crate) fn end_motion(&mut self, gpu: &Gpu) -> bool {
+        if !(self.is_shown && std::mem::take(&mut self.in_motion)) {
+            return false;
+        }
+        for uniform in &mut self.uniforms {
+            *uniform = uniform.at_rest();
+        }
+        self.geometry.end_motion(gpu);
+        true
     }
 
     /// Brings the cells that may receive shadows to the pose.

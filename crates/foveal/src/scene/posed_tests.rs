@@ -6,7 +6,7 @@ use foveal_seeds::File;
 use foveal_seeds::pointers::{MOVES, Moved, animate, hold, movable};
 use pollster::block_on;
 
-use crate::testing::{Film, picture, small};
+use crate::testing::{Film, picture, small, texels};
 use crate::{
     Antialiasing, Culling, Geometry, MaterialDispatch, RateSource, Settings, Shading, Shadows,
 };
@@ -229,4 +229,94 @@ fn generated_tangents_turn_with_the_normal_map() {
     // Where u and v do not meet at right angles on the surface, turned tangents are not quite new ones.
     let is_near = turned < 0.15 * unturned;
     assert!(unturned > 1000.0 && is_near, "{turned} {unturned}");
+}
+
+/// A scene of which one thing moves by a pose, and the camera that sees it.
+fn slid(scene: &Scene, by: f32) -> Scene {
+    let mut scene = scene.clone();
+    let instance = scene.instances.last_mut().expect("an instance");
+    instance.world_from_object =
+        glam::Mat4::from_translation(glam::Vec3::new(by, 0.0, 0.0)) * instance.world_from_object;
+    let moved = instance
+        .bounds
+        .transformed(glam::Mat4::from_translation(glam::Vec3::X * by));
+    instance.bounds = moved;
+    let object = instance.object as usize;
+    scene.objects[object].bounds = scene.objects[object].bounds.union(moved);
+    scene
+}
+
+/// Motion ends with the pose: the next frame without one shows what stands still.
+#[test]
+fn a_frame_without_a_new_pose_shows_no_motion() {
+    let room = foveal_generate::cornell();
+    let camera = room.cameras[0].clone();
+    for path in [Geometry::Gbuffer, Geometry::Visibility] {
+        let settings = small(96, 64).with(|s| {
+            s.geometry.path = path;
+            s.shading.mode = Shading::Variable;
+        });
+        let mut film = Film::new(&room, &settings);
+        film.draw(&camera);
+        assert_eq!(in_motion(&film), 0);
+        let posed = slid(&room, 0.2);
+        block_on(film.renderer.update_pose(&posed)).expect("it fits");
+        film.draw(&camera);
+        assert!(in_motion(&film) > 20, "{path:?}: {}", in_motion(&film));
+        for _ in 0..ROUND {
+            film.draw(&camera);
+            assert_eq!(in_motion(&film), 0, "{path:?}");
+        }
+        assert!(picture(&film.renderer) == fresh(&posed, &settings));
+    }
+}
+
+/// Pixels that something in motion shows.
+fn in_motion(film: &Film) -> usize {
+    let identity: Vec<[u32; 2]> = texels(&film.renderer.targets().gbuffer.identity_view);
+    let moves = |[_, motion]: &&[u32; 2]| *motion & 0x7fff_7fff != 0;
+    identity.iter().filter(moves).count()
+}
+
+/// A mesh that deforms rests too.
+#[test]
+fn a_frame_without_a_new_shape_shows_no_motion() {
+    let mut scene = foveal_generate::cornell();
+    let mesh = scene.instances.last().expect("an instance").mesh as usize;
+    scene.meshes[mesh].deforms = true;
+    let camera = scene.cameras[0].clone();
+    for path in [Geometry::Gbuffer, Geometry::Visibility] {
+        let settings = small(96, 64).with(|s| s.geometry.path = path);
+        let mut film = Film::new(&scene, &settings);
+        let mut bent = scene.clone();
+        for vertex in &mut bent.meshes[mesh].vertices {
+            vertex.position[0] += 0.1;
+        }
+        block_on(film.renderer.update_pose(&bent)).expect("it fits");
+        film.draw(&camera);
+        assert!(in_motion(&film) > 20, "{path:?}: {}", in_motion(&film));
+        film.draw(&camera);
+        assert_eq!(in_motion(&film), 0, "{path:?}");
+    }
+}
+
+/// Alpha modes and sides are those of the scene as it was set, whatever a pose's materials say.
+#[test]
+fn a_pose_changes_no_alpha_modes_and_no_sides() {
+    let room = foveal_generate::cornell();
+    let camera = room.cameras[0].clone();
+    let settings = settings().with(|s| {
+        s.culling.mode = Culling::Occlusion;
+        s.shading.mode = Shading::Coarse;
+        s.coarse.history = true;
+    });
+    let mut film = Film::new(&room, &settings);
+    let before = at_rest(&mut film, &camera, &settings);
+    let mut posed = room.clone();
+    for material in &mut posed.materials {
+        material.alpha_mode = foveal_scene::AlphaMode::Blend;
+        material.double_sided = !material.double_sided;
+    }
+    block_on(film.renderer.update_pose(&posed)).expect("it fits");
+    assert!(at_rest(&mut film, &camera, &settings) == before);
 }

@@ -30,7 +30,7 @@ impl<'a> Uploads<'a> {
                 wgpu::PollType::wait_indefinitely()
             };
             // What fails is found again by the next frame.
-            let _ = self.gpu.device.poll(poll);
+            let _ = self.gpu.poll(poll);
             self.waiting = 0;
         }
     }

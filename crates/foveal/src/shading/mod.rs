@@ -13,6 +13,8 @@ mod pass;
 mod samples;
 #[cfg(test)]
 pub(crate) mod twin;
+#[cfg(test)]
+mod unlit_tests;
 mod variable;
 #[cfg(test)]
 pub(crate) use variable::twin::extent as sample_extent;

@@ -4,7 +4,7 @@
 
 // With a triangle's own normal in the upper half of the last word. Where that holds bits of a
 // dielectric, these go to the emissive as what emission never gives, the largest exponent with
-// small numbers; a surface that glows keeps no dielectric.
+// small numbers; a surface that glows keeps no dielectric, unless it is unlit: see below.
 fn with_face_normal(words: vec4u, face: vec3f) -> vec4u {
     let bits = dielectric_of(words);
     let moves = (words.w & OWN_DIELECTRIC) != 0u && words.z == 0u;
@@ -13,12 +13,19 @@ fn with_face_normal(words: vec4u, face: vec3f) -> vec4u {
     return vec4u(words.xy, select(words.z, moved, moves), (words.w & 0xffffu) | upper);
 }
 
-// The surface without it.
+// The packed colour, occlusion, metallic and roughness of an unlit surface: none, none, none, full.
+const UNLIT_COLOR: u32 = 0u;
+const UNLIT_LOWER: u32 = 0xff00u;
+
+// The surface without it. What glows and has all else of an unlit surface is one: it reflects
+// nothing.
 fn without_face_normal(words: vec4u) -> vec4u {
     let lower = words.w & 0xffffu;
     let bits = (words.z & 255u) | (((words.z >> 9u) & 63u) << 8u);
     let upper = ((bits & 0xfffu) << 16u) | ((bits >> 12u) << 30u) | OWN_DIELECTRIC;
     let moved = vec4u(words.xy, 0u, lower | upper);
+    let unlit = words.x == UNLIT_COLOR && lower == UNLIT_LOWER;
+    let kept = vec4u(words.xyz, lower | select(0u, OWN_DIELECTRIC, unlit));
     // Exponent 31, and each channel's highest bit 0.
-    return select(vec4u(words.xyz, lower), moved, (words.z & 0xfc020100u) == 0xf8000000u);
+    return select(kept, moved, (words.z & 0xfc020100u) == 0xf8000000u);
 }

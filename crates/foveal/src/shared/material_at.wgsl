@@ -75,8 +75,8 @@ fn material_at(position: vec3f, normal: vec3f, tangent: vec4f, uv: vec4f, color:
         dielectric = vec4f(min(tint, vec3f(1.0)), 1.0) * strength;
     }
     if (MATERIAL_CLASS & IS_UNLIT) != 0u {
-        // Black to all light: what is left is the colour itself.
-        return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb, PLAIN_DIELECTRIC), base.a);
+        // Black to all light, at all angles: what is left is the colour itself.
+        return Shaded(Surface(position, n, vec3f(0.0), 0.0, 1.0, 0.0, base.rgb, vec4f(0.0)), base.a);
     }
     let s = Surface(position, n, base.rgb, saturate(metallic), saturate(roughness), occlusion, emissive, dielectric);
     return Shaded(s, base.a);

@@ -135,7 +135,9 @@ fn settings(dice: &mut Dice, before: &Settings) -> Settings {
 
 async fn renderer(gpu: &Gpu, state: &State) -> Result<Renderer, Error> {
     let mut renderer = Renderer::new(gpu, &state.settings, RendererOptions::default()).await?;
-    renderer.set_rate_image(RateImage::new(2, 1, vec![0, 128]).unwrap());
+    renderer
+        .set_rate_image(RateImage::new(2, 1, vec![0, 128]).unwrap())
+        .unwrap();
     renderer.set_environment(state.map.clone()).await?;
     renderer.set_scene(&state.scene).await?;
     Ok(renderer)

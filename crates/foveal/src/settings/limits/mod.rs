@@ -6,8 +6,9 @@ mod reduced;
 mod stereo;
 mod variable;
 
-use super::{Composite, Settings, Shading, Shadows};
+use super::{Composite, Geometry, Settings, Shading, Shadows};
 use crate::Error;
+use crate::stereo::EyeLayout;
 
 impl Settings {
     /// Checks that the settings make sense and that a device with these limits can draw them.
@@ -181,9 +182,31 @@ impl Settings {
         eye::validate(self)?;
         variable::validate(self)?;
         stereo::validate(self, limits)?;
+        self.check_lists(limits)?;
         if self.shading.mode == Shading::Coarse && self.coarse.composite == Composite::Smooth {
             crate::composite::check_limits(self, limits)?;
         }
         crate::antialias::validate(self, limits)
+    }
+
+    /// Whether a buffer holds a number for each pixel, where pixels are listed.
+    fn check_lists(&self, limits: &wgpu::Limits) -> Result<(), Error> {
+        let lists_pixels =
+            self.shading.mode != Shading::Full || self.geometry.path == Geometry::Visibility;
+        let (width, height) = EyeLayout::of(&self.drawn()).target_size();
+        let pixels = u64::from(width) * u64::from(height);
+        let most = limits.max_storage_buffer_binding_size / 4;
+        if lists_pixels && pixels > most && !crate::gpu::is_reduced(limits) {
+            return Err(Error::Limit {
+                what:
+                    "the pixels of a picture with a visibility buffer, or with coarse or variable \
+                       shading"
+                        .to_owned(),
+                value: pixels,
+                limit: most,
+                hint: String::new(),
+            });
+        }
+        Ok(())
     }
 }

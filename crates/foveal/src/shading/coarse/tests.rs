@@ -49,7 +49,7 @@ fn draw_with_image(settings: &Settings, image: RateImage) -> Renderer {
         let mut renderer = Renderer::new(gpu(), settings, crate::RendererOptions::default())
             .await
             .unwrap();
-        renderer.set_rate_image(image);
+        renderer.set_rate_image(image).unwrap();
         renderer.set_scene(&scene).await.unwrap();
         let frame = Frame::new(&scene.cameras[0]);
         renderer.render(&frame).await.unwrap();

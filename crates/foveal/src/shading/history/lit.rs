@@ -29,12 +29,17 @@ pub(super) struct Lit {
     pub(super) turn: Option<u32>,
 }
 
+/// Texels that a listed sample can name along each side.
+const LARGEST_SIDE: u32 = 1 << 14;
 /// Bytes of a listed sample.
 pub(super) const SAMPLE_BYTES: u64 = 8;
 
 /// Whether the lists of a frame of this size can be bound.
 pub(super) fn fits(gpu: &Gpu, settings: &Settings) -> bool {
     let (width, height) = EyeLayout::of(settings).target_size();
+    if width.max(height) > LARGEST_SIDE {
+        return false;
+    }
     let bytes = u64::from(width) * u64::from(height) * SAMPLE_BYTES;
     bytes <= gpu.device.limits().max_storage_buffer_binding_size
 }

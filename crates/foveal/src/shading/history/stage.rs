@@ -49,6 +49,11 @@ pub(crate) struct HistoryStage {
 }
 
 impl HistoryStage {
+    /// Whether light is reprojected.
+    pub(crate) fn is_used(gpu: &Gpu, settings: &Settings) -> bool {
+        is_used(gpu, settings)
+    }
+
     /// `None` where light is not reprojected.
     pub(crate) fn new(
         gpu: &Gpu,
