@@ -488,7 +488,7 @@ impl Renderer {
     /// [`Error::DeviceLost`], [`Error::OutOfMemory`], [`Error::Validation`].
     pub async fn render(&mut self, frame: &Frame<'_>) -> Result<FrameStats, Error> {
         self.mend().await?;
-        self.stages.culling.iter().for_each(CullingStage::wake);
+        self.wake_culler();
         let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let mut cpu = CpuTimer::start(self.clock);
@@ -519,7 +519,7 @@ impl Renderer {
         target: Target<'_>,
     ) -> Result<Option<FrameStats>, Error> {
         self.mend().await?;
-        self.stages.culling.iter().for_each(CullingStage::wake);
+        self.wake_culler();
         let seen = Seen::new(&self.stages.settings, frame)?;
         let trap = ErrorTrap::new(&self.gpu, "drawing the frame");
         let finished = self.finished()?;
@@ -531,6 +531,13 @@ impl Renderer {
         // What a frame that failed has left in the targets is not carried on to the next one.
         let drawn = trap.finish().await;
         self.torn(drawn.map(|()| finished))
+    }
+
+    /// Wakes the threads that will soon have to rasterize occluders.
+    fn wake_culler(&self) {
+        if let Some(culling) = self.stages.culling.as_ref().filter(|_| !self.frozen) {
+            culling.wake();
+        }
     }
 
     /// Whether frames draw what culling found last, whatever their camera sees: to look at a result
