@@ -148,7 +148,11 @@ int main() try {
             if (!rebuild.built()) {
                 throw std::logic_error("what was built is not");
             }
-            carts.adopt(std::move(rebuild));
+            carts.adopt(rebuild);
+            // It stays until the builder, which could be another thread's to wait for, has returned.
+            if (!rebuild.built()) {
+                throw std::logic_error("what was adopted is gone");
+            }
         }
         for (std::size_t i = 0; i < ids.size(); ++i) {
             places[i] = cart(static_cast<int>(i), frame);

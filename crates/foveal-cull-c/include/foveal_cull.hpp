@@ -265,10 +265,12 @@ private:
     detail::Handle<FovealCullTree, foveal_cull_tree_destroy> tree_;
 };
 
-/// The hierarchy of a set of occludees, built again: snapshot it, build it on any thread, adopt it.
+/// The hierarchy of a set of occludees, built again: snapshot it, build it on any thread, adopt it. It may
+/// only be destroyed, moved or assigned to when `build` has returned on the thread that calls it: that it is
+/// built, or adopted, is not enough.
 class Rebuild {
 public:
-    /// Builds the hierarchy. May only be destroyed or moved when this has returned.
+    /// Builds the hierarchy.
     void build() { expect_ok(foveal_cull_rebuild_build(rebuild_.get())); }
     /// Whether it can be adopted. May be asked while another thread builds it. Building that failed is an error.
     bool built() const {
@@ -370,10 +372,11 @@ public:
         expect_ok(foveal_cull_occludees_snapshot(set_.get(), &rebuild));
         return Rebuild(rebuild);
     }
-    /// Takes over a hierarchy that was built from a snapshot of this set. After an error it stays with `rebuild`.
-    void adopt(Rebuild &&rebuild) {
+    /// Takes over a hierarchy that was built from a snapshot of this set. `rebuild` stays, empty, until the
+    /// caller destroys it: the thread that built it may not have returned yet. After an error it has the
+    /// hierarchy still.
+    void adopt(const Rebuild &rebuild) {
         expect_ok(foveal_cull_occludees_adopt(set_.get(), rebuild.rebuild_.get()));
-        rebuild.rebuild_.reset();
     }
     const FovealCullOccludees *get() const noexcept { return set_.get(); }
 

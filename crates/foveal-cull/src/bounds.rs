@@ -58,19 +58,43 @@ impl Aabb {
         }
     }
 
-    /// The smallest box around `points`; [`Aabb::EMPTY`] when there are none.
+    /// The smallest box around `points`; [`Aabb::EMPTY`] when there are none. With a NaN or
+    /// infinity among their coordinates the box is invalid.
     #[must_use]
     pub fn of_points<P: Into<[f32; 3]>>(points: impl IntoIterator<Item = P>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |all, p| {
+        let (mut all, mut has_nan) = (Self::EMPTY, false);
+        for p in points {
             let p = p.into();
-            all.union(Self { min: p, max: p })
-        })
+            has_nan |= p.iter().any(|v| v.is_nan());
+            all = all.around(Self { min: p, max: p });
+        }
+        if has_nan {
+            return Self::new([f32::NAN; 3], [f32::NAN; 3]);
+        }
+        all
     }
 
-    /// The smallest box around both.
+    /// The smallest box around both. [`Aabb::EMPTY`] changes nothing; the union with any other
+    /// invalid box is invalid too, since nothing can be proved about what it stands for.
     #[inline]
     #[must_use]
     pub fn union(self, other: Self) -> Self {
+        if self == Self::EMPTY {
+            return other;
+        }
+        if other == Self::EMPTY {
+            return self;
+        }
+        let both = self.around(other);
+        [self, other]
+            .into_iter()
+            .find(|one| !one.is_valid() && both.is_valid())
+            .unwrap_or(both)
+    }
+
+    /// The smallest box around the numbers of both that are not NaN.
+    #[inline]
+    fn around(self, other: Self) -> Self {
         Self {
             min: core::array::from_fn(|k| self.min[k].min(other.min[k])),
             max: core::array::from_fn(|k| self.max[k].max(other.max[k])),
@@ -120,5 +144,32 @@ mod tests {
             assert!(!Aabb::new([0.0; 3], [1.0, bad, 1.0]).is_valid(), "{bad}");
         }
         assert!(!Aabb::new([f32::NAN; 3], [0.0; 3]).is_valid());
+    }
+
+    #[test]
+    fn what_cannot_be_proved_stays_so_in_unions() {
+        let one = Aabb::new([-1.0; 3], [1.0, 2.0, 3.0]);
+        for axis in 0..3 {
+            for bad in [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1e30, -1e30] {
+                let (mut low, mut high) = (one, one);
+                low.min[axis] = bad;
+                high.max[axis] = bad;
+                for wrong in [low, high].into_iter().filter(|b| !b.is_valid()) {
+                    for all in [wrong.union(one), one.union(wrong), wrong.union(wrong)] {
+                        assert!(!all.is_valid(), "{wrong:?}: {all:?}");
+                    }
+                    for all in [wrong.union(Aabb::EMPTY), Aabb::EMPTY.union(wrong)] {
+                        assert_eq!(format!("{all:?}"), format!("{wrong:?}"));
+                    }
+                }
+                let mut point = [0.5; 3];
+                point[axis] = bad;
+                for points in [[point, [0.0; 3]], [[0.0; 3], point], [point; 2]] {
+                    let is_finite = bad.is_finite();
+                    assert_eq!(Aabb::of_points(points).is_valid(), is_finite, "{points:?}");
+                }
+            }
+        }
+        assert_eq!(Aabb::EMPTY.union(Aabb::EMPTY), Aabb::EMPTY);
     }
 }

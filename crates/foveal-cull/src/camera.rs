@@ -5,6 +5,11 @@ use crate::transform::Affine;
 use crate::view::{Eye, Projection, View};
 use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
+/// Least radius around two eyes that differ, as a part of the near distance. Any radius makes
+/// results hold at every point of the picture. This one shifts things at the near plane by some
+/// thousandths of a sample, and is more than the rounding of the joined frustum.
+const LEAST_RADIUS: f64 = 1e-6;
+
 /// A checked view, reduced to one centre, one frustum and one radius.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Camera {
@@ -49,6 +54,14 @@ impl Camera {
             }
         };
         let radius = to_eye.length() + view.validity_radius_m;
+        // Samples of the joined frustum are neither eye's own, so that results must hold between
+        // them.
+        let radius = match view.second_eye {
+            Some(second) if second != view.eye => {
+                radius.max(LEAST_RADIUS * eye.projection.near_far_m()[0])
+            }
+            _ => radius,
+        };
         let (projection, clamp_depth) = if radius > 0.0 {
             widen(eye.projection, radius)
         } else {

@@ -468,10 +468,32 @@ impl Culler {
         open.unwrap_or(tree.len())
     }
 
-    /// Adds results to the stats of the frame, with the triangles of each occludee if given.
+    /// Adds results to the stats of the frame, with the triangles of each occludee if given. Every
+    /// result counts; [`count_set`](Self::count_set) is for those of a set.
     pub fn count(&mut self, results: &[Visibility], triangles: Option<&[u32]>) {
+        self.count_where(results, triangles, |_| true);
+    }
+
+    /// Adds the results of [`query_set`](Self::query_set) to the stats of the frame, with the
+    /// triangles by [`OccludeeId::index`](crate::OccludeeId::index) if given. Places that no object
+    /// has are left out.
+    pub fn count_set(
+        &mut self,
+        set: &OccludeeSet,
+        results: &[Visibility],
+        triangles: Option<&[u32]>,
+    ) {
+        self.count_where(results, triangles, |i| set.has_object(i));
+    }
+
+    fn count_where(
+        &mut self,
+        results: &[Visibility],
+        triangles: Option<&[u32]>,
+        counts: impl Fn(usize) -> bool,
+    ) {
         let s = &mut self.stats;
-        for (i, r) in results.iter().enumerate() {
+        for (i, r) in results.iter().enumerate().filter(|(i, _)| counts(*i)) {
             s.occludees += 1;
             match r {
                 Visibility::Visible => s.occludees_visible += 1,

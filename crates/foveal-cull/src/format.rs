@@ -23,6 +23,10 @@ const ONE_BITS: i32 = 0x3f800;
 /// Difference between the shifted bits of a float and its code.
 pub(crate) const CODE_OFFSET: i32 = ONE_BITS - i16::MAX as i32;
 
+/// The least depth that has a code of its own, that of a pixel without depth. What is farther is
+/// taken to be there, so that it is not behind empty pixels.
+pub(crate) const LEAST_DEPTH: f32 = f32::from_bits(((EMPTY as i32 + CODE_OFFSET) as u32) << 12);
+
 /// The code of a depth, rounded away from the eye.
 #[inline]
 pub(crate) fn encode(depth: f32) -> i16 {

@@ -196,7 +196,8 @@ impl Kernel for LayOver<'_> {
         let start = observed.turns[call] % boxes.len();
         let mut hidden = (start..boxes.len())
             .chain(0..start)
-            .filter(|&i| results[i] == Visibility::Occluded)
+            // Invalid boxes are the free places of a set: results there mean nothing.
+            .filter(|&i| results[i] == Visibility::Occluded && boxes[i].is_valid())
             .take(MOST_BOXES);
         let mut seen = 0;
         loop {

@@ -139,6 +139,10 @@ impl Projection {
     }
 }
 
+/// Sine of the angle between `up` and the view direction up to which they count as parallel. The
+/// axes of a pose are perpendicular to some 1e-16 over the sine.
+const LEAST_SINE: f64 = 1e-8;
+
 /// One eye: a rigid pose and a projection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Eye {
@@ -160,7 +164,8 @@ impl Eye {
     }
 
     /// An eye at `position` that looks at `target`, both world metres. `up` need not be
-    /// perpendicular to the view direction; if it is parallel to it, another axis is taken.
+    /// perpendicular to the view direction; if it is parallel to it, within rounding, another axis
+    /// is taken.
     #[must_use]
     pub fn look_at(
         position: impl Into<[f64; 3]>,
@@ -170,10 +175,12 @@ impl Eye {
     ) -> Self {
         let [position, target, up] = [position.into(), target.into(), up.into()].map(DVec3::from);
         let back = (position - target).try_normalize().unwrap_or(DVec3::Z);
-        let right = up
-            .cross(back)
+        let right = up.cross(back);
+        // The product of parallel vectors is rounding alone.
+        let is_known = right.length_squared() > LEAST_SINE * LEAST_SINE * up.length_squared();
+        let right = right
             .try_normalize()
-            .filter(|r| r.is_finite())
+            .filter(|r| is_known && r.is_finite())
             .unwrap_or_else(|| back.any_orthonormal_vector());
         let rotation = DMat3::from_cols(right, back.cross(right), back);
         Self {
@@ -211,9 +218,9 @@ impl Eye {
 
 /// The camera view of a frame: one eye or two, and how far they may move while the results hold.
 ///
-/// Two eyes, or a validity radius above zero, make a *view region*: a box is culled only if it is
-/// hidden from every eye position in the region. Such results are conservative and hide less than
-/// those of one eye at its exact position. They are best with meshes baked with
+/// Two eyes that differ, or a validity radius above zero, make a *view region*: a box is culled
+/// only if it is hidden from every eye position in the region. Such results are conservative and
+/// hide less than those of one eye at its exact position. They are best with meshes baked with
 /// [`BakeOptions::adjacency`](crate::BakeOptions::adjacency). Source: Wonka, Wimmer and Schmalstieg
 /// 2000, *Visibility preprocessing with occluder fusion*, extended to connected surfaces.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,8 @@
 
 use foveal_cull::*;
 use glam::{DAffine3, DVec3, Vec3};
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
 use std::sync::Arc;
 
 fn wall() -> Arc<OccluderMesh> {
@@ -225,6 +227,42 @@ fn a_box_that_crosses_the_near_plane_beside_the_picture_can_be_occluded() {
     let mut results = [Visibility::Outside];
     culler.query(&[beside], DVec3::ZERO, &mut results).unwrap();
     assert_eq!(results, [Visibility::Occluded]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, rng_seed: RngSeed::Fixed(7), ..ProptestConfig::default() })]
+
+    #[test]
+    fn up_along_the_view_gives_a_pose(
+        direction in prop::array::uniform3(-1.0..1.0f64),
+        along in prop_oneof![Just(1.0), Just(-1.0), -1e6..1e6f64, -1e-6..1e-6f64],
+        off in prop_oneof![Just(0.0), -1e-3..1e-3f64, -1e-14..1e-14f64],
+        far in any::<bool>(),
+    ) {
+        let direction = DVec3::from(direction);
+        prop_assume!(direction.length() > 1e-3);
+        let position = DVec3::splat(if far { 1e4 } else { 0.0 });
+        let up = along * (direction + off * DVec3::new(1.0, -2.0, 0.5));
+        let view = View::perspective(position, position + direction, up, 1.0, 1.0, 0.1);
+        let drawn = Culler::new(8, 8).unwrap().rasterize(
+            &view,
+            &OccluderSet::new(),
+            &FrameOptions::default(),
+            &SingleThread,
+        );
+        prop_assert_eq!(drawn, Ok(()));
+    }
+}
+
+#[test]
+fn an_up_that_is_the_view_direction_gives_a_pose() {
+    let along = [5.0, 3.0, 1.0];
+    let view = View::perspective([0.0; 3], along, along, 1.0, 1.0, 0.1);
+    let mut culler = Culler::new(8, 8).unwrap();
+    let (set, options) = (OccluderSet::new(), FrameOptions::default());
+    culler
+        .rasterize(&view, &set, &options, &SingleThread)
+        .unwrap();
 }
 
 #[test]

@@ -9,12 +9,13 @@ use common::promise::{
 };
 use common::{Random, answers, eye, occluders, scene, wrongly_culled};
 use foveal_cull::{
-    Culler, FrameOptions, InstructionSet, OccludeeTree, SingleThread, View, Visibility,
-    WorkerThreads,
+    Aabb, Culler, Eye, FrameOptions, InstructionSet, OccludeeTree, OccluderMesh, OccluderSet,
+    Projection, SingleThread, View, Visibility, WorkerThreads,
 };
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
+use std::sync::Arc;
 
 proptest! {
     // The same scenes every time; other ones are for the fuzzers.
@@ -176,6 +177,113 @@ fn random_scenes_do_hide_something() {
         .map(|seed| culls_nothing_that_either_eye_sees(seed).unwrap())
         .fold([0; 2], |[a, b], [c, d]| [a + c, b + d]);
     assert!(both > 100 && both > one / 2, "{both} of {one}");
+}
+
+/// The codes of depths end at 2^-32 of the near distance. What is farther had been behind pixels
+/// that nothing covers.
+#[test]
+fn what_is_very_far_away_is_not_behind_nothing() {
+    let mut culler = Culler::new(64, 64).unwrap();
+    // Up to 1e9 m, as far as positions are exact.
+    let places = [
+        (1e-9, 4e9),
+        (1e-9, 5e9),
+        (1e-9, 1e15),
+        (1e-3, 4e9),
+        (1e-3, 1e12),
+        (0.1, 5e9),
+    ];
+    for (near, times) in places {
+        let eye = Projection::perspective(1.0, 1.0, near, f64::INFINITY);
+        let view = View::mono(Eye::new(DAffine3::IDENTITY, eye));
+        let far = (near * times) as f32;
+        let at = |x: f32| {
+            Aabb::new(
+                [(x - 0.1) * far, 0.0, -1.1 * far],
+                [x * far, 0.1 * far, -far],
+            )
+        };
+        let boxes: Vec<Aabb> = (0..40).map(|i| at([-0.2, 0.3][i % 2])).collect();
+        // A wall before every other one.
+        let size = (near * 10.0) as f32;
+        let wall = Aabb::new([-size, -size, -1.1 * size], [0.0, size, -size]);
+        let mut set = OccluderSet::new();
+        let mesh = Arc::new(OccluderMesh::from_box(wall).unwrap());
+        set.add(mesh, DAffine3::IDENTITY).unwrap();
+        let tree = OccludeeTree::build(&boxes, DVec3::ZERO);
+        for isa in InstructionSet::available() {
+            culler.set_instruction_set(isa);
+            for radius in [0.0, 1e-3 * near] {
+                let view = view.with_validity_radius(radius);
+                let options = FrameOptions::default();
+                culler
+                    .rasterize(&view, &set, &options, &SingleThread)
+                    .unwrap();
+                let mut results = [[Visibility::Outside; 40]; 2];
+                let [list, by_tree] = &mut results;
+                culler.query(&boxes, DVec3::ZERO, list).unwrap();
+                culler.query_tree(&tree, by_tree).unwrap();
+                for results in results {
+                    for pair in results.chunks(2) {
+                        let expected = [Visibility::Occluded, Visibility::Visible];
+                        assert_eq!(pair, expected, "{near} {times} {radius}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A slit between two boxes, which holds a sample of the left eye and none of the frustum around
+/// both eyes.
+#[test]
+fn two_frusta_at_one_place_have_the_samples_of_either() {
+    let wall = |x0: f32, x1: f32| Aabb::new([x0, -4.0, -1.1], [x1, 4.0, -1.0]);
+    let mut set = OccluderSet::new();
+    for wall in [wall(-4.0, -0.0225), wall(-0.0165, 4.0)] {
+        let mesh = Arc::new(OccluderMesh::from_box(wall).unwrap());
+        set.add(mesh, DAffine3::IDENTITY).unwrap();
+    }
+    let boxes = [
+        Aabb::new([-0.2, -0.2, -6.0], [0.2, 0.2, -5.0]),
+        Aabb::new([0.5, -0.2, -6.0], [0.9, 0.2, -5.0]),
+    ];
+    let mut culler = Culler::new(64, 64).unwrap();
+    let mut results_of = |view: &View| {
+        let options = FrameOptions::default();
+        culler
+            .rasterize(view, &set, &options, &SingleThread)
+            .unwrap();
+        let mut results = [Visibility::Outside; 2];
+        culler.query(&boxes, DVec3::ZERO, &mut results).unwrap();
+        results
+    };
+    let seen = [Visibility::Visible, Visibility::Occluded];
+    for near in [1e-9, 1e-3, 0.1, 0.9] {
+        let eye = |left: f64| {
+            let projection = Projection::Perspective {
+                left,
+                right: 1.0,
+                bottom: -1.0,
+                top: 1.0,
+                near_m: near,
+                far_m: f64::INFINITY,
+            };
+            Eye::new(DAffine3::IDENTITY, projection)
+        };
+        let (left, right) = (eye(-1.0), eye(-1.25));
+        assert_eq!(results_of(&View::mono(left)), seen, "{near}");
+        for both in [View::stereo(left, right), View::stereo(right, left)] {
+            assert_eq!(results_of(&both), seen, "{near}");
+            let far = both.with_validity_radius(1e-12 * near);
+            assert_eq!(results_of(&far), seen, "{near}");
+        }
+        // Two eyes that are the same are one.
+        for eye in [left, right] {
+            let one = results_of(&View::mono(eye));
+            assert_eq!(results_of(&View::stereo(eye, eye)), one, "{near}");
+        }
+    }
 }
 
 /// Where no sample of the buffer lies: pictures of three and seven times its size. A view of one

@@ -6,7 +6,7 @@ mod common;
 use common::{Random, answers, eye, occluders, scene};
 use core::sync::atomic::{AtomicBool, AtomicU32, AtomicUsize, Ordering};
 use foveal_cull::{
-    Affine, BakeOptions, Culler, Eye, FrameOptions, OccludeeTree, OccluderMesh, OccluderSet,
+    Aabb, Affine, BakeOptions, Culler, Eye, FrameOptions, OccludeeTree, OccluderMesh, OccluderSet,
     Projection, SingleThread, Threads, ThreadsFn, View, Visibility, WorkerThreads,
 };
 use glam::DVec3;
@@ -249,4 +249,54 @@ fn a_triangle_that_is_nearly_endless_is_drawn_where_it_is() {
     }
     let first = first.unwrap();
     assert!(first.iter().any(|d| *d > 0.0), "it is seen");
+}
+
+/// A job system that leaves out a task had drawn what the task found in the frame before, where it
+/// was then.
+#[test]
+fn a_task_that_is_left_out_hides_nothing_visible() {
+    // A wall that moves and a plate of many clusters, in several parts of the selection.
+    let n = 120u32;
+    let positions: Vec<[f32; 3]> = (0..=n)
+        .flat_map(|y| (0..=n).map(move |x| [x, y].map(|v| 2.0 * v as f32 / n as f32 - 1.0)))
+        .map(|[x, y]| [x, y, 0.01 * (40.0 * x).sin()])
+        .collect();
+    let indices: Vec<u32> = (0..n)
+        .flat_map(|y| (0..n).map(move |x| y * (n + 1) + x))
+        .flat_map(|i| [i, i + 1, i + n + 2, i, i + n + 2, i + n + 1])
+        .collect();
+    let plate = OccluderMesh::bake(&positions, &indices, BakeOptions::default()).unwrap();
+    let plate = Arc::new(plate);
+    let view = View::perspective([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], 1.2, 1.5, 0.1);
+    let at = |x: f64| Affine::from_translation([x, 0.0, -3.0]);
+    let behind = |x: f32| Aabb::new([x - 0.2, -0.2, -4.2], [x + 0.2, 0.2, -4.0]);
+    let boxes = [behind(-1.8), behind(1.8)];
+    let (frame, run) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    for (left_out_run, left_out) in [(0, 0), (0, 1), (0, 2), (1, 0), (1, 1)] {
+        let threads = ThreadsFn::new(2, |tasks, task| {
+            let leaves_out = frame.load(Ordering::Relaxed) % 2 == 1
+                && run.fetch_add(1, Ordering::Relaxed) == left_out_run;
+            (0..tasks)
+                .filter(|i| !(leaves_out && *i == left_out))
+                .for_each(task);
+        });
+        let mut set = OccluderSet::new();
+        let id = set.add(plate.clone(), at(-1.35)).unwrap();
+        let mut culler = Culler::new(150, 100).unwrap();
+        let mut hidden = 0;
+        for n in 0..8 {
+            frame.store(n, Ordering::Relaxed);
+            run.store(0, Ordering::Relaxed);
+            // It is on the other side in the frames of which a task is left out.
+            let side = n % 2;
+            set.set_transform(id, at([-1.35, 1.35][side])).unwrap();
+            let all = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
+            culler.rasterize(&view, &set, &all, &threads).unwrap();
+            let mut results = [Visibility::Outside; 2];
+            culler.query(&boxes, DVec3::ZERO, &mut results).unwrap();
+            assert_eq!(results[1 - side], Visibility::Visible, "{left_out}: {n}");
+            hidden += usize::from(results[side] == Visibility::Occluded);
+        }
+        assert!(hidden >= 4, "{hidden}");
+    }
 }

@@ -316,3 +316,41 @@ fn a_set_of_occludees_teaches_as_a_list_does() {
     }
     assert_eq!(culler.stats().occluder_models_rasterized, 1);
 }
+
+/// Free places of a set have results too, which mean nothing. They had taken the turns of the box
+/// that the wall hides.
+#[test]
+fn places_of_removed_occludees_teach_nothing() {
+    let set = walls(&[[-2.5, 0.0, -5.0], [2.5, 0.0, -5.0]]);
+    let mut objects = OccludeeSet::new([0.0; 3]);
+    let ids: Vec<_> = (0..10_000).map(|_| objects.insert(behind(-2.5))).collect();
+    for id in &ids[..8000] {
+        objects.remove(*id).unwrap();
+    }
+    objects.rebuild();
+    objects.prefer_tree();
+    let mut culler = Culler::new(320, 180).unwrap();
+    let mut usefulness = OccluderUsefulness::new();
+    let mut results = vec![Visibility::Visible; objects.result_count()];
+    for frame in 0..60 {
+        let options = FrameOptions::default().with_usefulness(Some(&usefulness));
+        culler
+            .rasterize(&view(), &set, &options, &SingleThread)
+            .unwrap();
+        objects.refit();
+        culler.query_set(&objects, &mut results).unwrap();
+        let hidden = results[8000..].iter();
+        let hidden = hidden.filter(|r| **r == Visibility::Occluded).count();
+        assert_eq!(hidden, 2000, "frame {frame}");
+        usefulness.observe_set(&culler, &objects, &results).unwrap();
+        usefulness.learn(&culler, &set);
+        // Stats have the objects that there are.
+        culler.count_set(&objects, &results, None);
+        let stats = culler.stats();
+        assert_eq!(
+            (stats.occludees, stats.occludees_occluded),
+            (2000, 2000),
+            "frame {frame}"
+        );
+    }
+}

@@ -3,7 +3,7 @@
 use super::boxes::Boxes8;
 use super::points::{Corners8, pixel_index};
 use super::screen::Screen;
-use crate::format::SAMPLES;
+use crate::format::{LEAST_DEPTH, SAMPLES};
 use crate::simd::{F8, Lanes, four};
 
 /// Eight boxes on the screen. Rectangles are in samples, already dilated.
@@ -125,7 +125,7 @@ pub(crate) fn outline<L: Lanes>(
     for (v, to) in clamped.iter().zip(&mut p.pixels) {
         (*v).store(to);
     }
-    let code = depth.max(zero).codes();
+    let code = depth.max(l.splat(LEAST_DEPTH)).codes();
     code.store(&mut p.code);
     let Some(hiz) = s.hiz else {
         return p;

@@ -9,7 +9,7 @@
 use crate::bounds::Aabb;
 use crate::depth::hiz::{Hiz, farthest_code};
 use crate::depth::hiz_layout::hiz_index;
-use crate::format::{BLOCK, BLOCK_SAMPLES};
+use crate::format::{BLOCK, BLOCK_SAMPLES, LEAST_DEPTH};
 use crate::projection::boxes::{Boxes8, ROUNDING};
 use crate::projection::points::pixel_index;
 use crate::projection::screen::Screen;
@@ -207,7 +207,8 @@ impl<'a> CoarseTest<'a> {
         });
         let mut coarse = Coarse16::NONE;
         self.place(w, blocks).store(&mut coarse.at);
-        depth.max(zero).codes().store(&mut coarse.code);
+        let depth = depth.max(w.splat(LEAST_DEPTH));
+        depth.codes().store(&mut coarse.code);
         coarse.outside = (behind | off).bits();
         coarse.beyond = beyond.bits();
         (coarse, center)

@@ -14,6 +14,10 @@ use crate::simd::{InstructionSet, Kernel, Lanes};
 /// No place: eight times a node, plus the lane, is less.
 pub(super) const NOWHERE: u32 = u32::MAX;
 
+/// Part of its greatest value below which the sum of surfaces is added up anew: differences alone
+/// would keep the rounding of a surface that was very large.
+const MUCH_SMALLER: f64 = 1e-5;
+
 /// A tree that is fitted to the boxes of its objects.
 #[derive(Clone, Debug, Default)]
 pub(super) struct FittedTree {
@@ -32,6 +36,8 @@ pub(super) struct FittedTree {
     /// Their sum, now and when the tree was built.
     area: f64,
     area_built: f64,
+    /// The greatest sum after a fit since all were added up, whose rounding the sum has.
+    area_most: f64,
 }
 
 impl FittedTree {
@@ -49,6 +55,7 @@ impl FittedTree {
             areas: vec![0.0; nodes],
             area: 0.0,
             area_built: 0.0,
+            area_most: 0.0,
         };
         for n in 0..nodes {
             let node = fitted.tree.nodes()[n];
@@ -103,6 +110,11 @@ impl FittedTree {
     pub(super) fn refit(&mut self) {
         if core::mem::take(&mut self.any_marked) {
             InstructionSet::detect().run(Refit(self));
+            self.area_most = self.area_most.max(self.area);
+            if self.area < self.area_most * MUCH_SMALLER {
+                self.area = self.areas.iter().sum();
+                self.area_most = self.area;
+            }
         }
     }
 
@@ -250,6 +262,23 @@ mod tests {
             "{} {again}",
             moved.area
         );
+    }
+
+    #[test]
+    fn a_box_that_was_very_large_for_a_frame_leaves_no_trace_in_the_sum_of_surfaces() {
+        let (boxes, mut places) = (lattice(700), Vec::new());
+        let mut moved = fitted(&boxes, &mut places);
+        for size in [1e5, 1e10, 1e15, 1e18] {
+            for (place, bounds) in places.iter().zip(&boxes).step_by(111) {
+                moved.set(*place, Aabb::new([-size; 3], [size; 3]));
+                moved.refit();
+                assert!(moved.has_grown(2.0), "{size}");
+                moved.set(*place, *bounds);
+                moved.refit();
+                let off = (moved.area / moved.area_built - 1.0).abs();
+                assert!(off < 1e-6, "{size}: {off}");
+            }
+        }
     }
 
     #[test]

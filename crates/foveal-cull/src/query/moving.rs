@@ -284,6 +284,11 @@ impl OccludeeSet {
         self.tree.has_grown(GROWTH)
     }
 
+    /// Whether a slot has an object.
+    pub(crate) fn has_object(&self, slot: usize) -> bool {
+        self.slots.get(slot).is_some_and(|s| s.place != NOWHERE)
+    }
+
     /// Slots of objects outside the tree.
     pub(crate) fn loose(&self) -> &[u32] {
         &self.loose

@@ -51,6 +51,16 @@ pub(crate) struct Part {
     pub(super) stats: CullStats,
 }
 
+impl Part {
+    /// Empties the lists.
+    pub(super) fn clear(&mut self) {
+        self.candidates.clear();
+        self.order.clear();
+        self.near.clear();
+        self.stats = CullStats::default();
+    }
+}
+
 impl Candidate {
     pub(crate) fn place(&self) -> (u32, u32) {
         (self.instance, self.cluster)

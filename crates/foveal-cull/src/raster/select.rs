@@ -92,6 +92,13 @@ impl FrameScratch {
             let (last_groups, begun) = (wanted - done, usize::from(first_group > 0));
             let cut = usize::from(last_groups > 0);
             let (here, after) = rows.split_at_mut(end + cut - first - begun);
+            // A part whose task the caller's threads leave out selects nothing, and no other part
+            // depends on it: it has no list of the frame before, and the instance that the next
+            // part continues has its rows.
+            part.clear();
+            if let Some(rows) = here.last_mut().filter(|_| cut > 0) {
+                *rows = choice.camera.exact_rows(&instances[end].world_from_mesh);
+            }
             *job = Mutex::new(Some(Select {
                 choice: *choice,
                 instances: &instances[first..end + cut],
@@ -241,9 +248,6 @@ impl Kernel for Select<'_> {
             ..
         } = choice;
         let samples_per_quad = pixels_per_quad * (SAMPLES * SAMPLES) as f32;
-        part.candidates.clear();
-        part.order.clear();
-        part.stats = CullStats::default();
         let stats = &mut part.stats;
         let planes = instance_planes(camera, f64::from(width), f64::from(height));
         let small = f64::from(size_threshold) * f64::from(size_threshold) * camera.tan_half_fov_y;
@@ -251,7 +255,6 @@ impl Kernel for Select<'_> {
         // Meshes lie anywhere in memory: only those that may be on the screen are fetched, before
         // their turn comes.
         let near = &mut part.near;
-        near.clear();
         for (index, instance) in instances.iter().enumerate() {
             if instance.mesh.is_none() | !instance.enabled {
                 continue;
