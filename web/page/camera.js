@@ -9,13 +9,14 @@ export class Camera {
     this.keys = new Set();
     this.pointers = new Map();
     this.moved = moved;
-    this.reset({ eye: [0, 0, 1], target: [0, 0, 0], fov_y_deg: 50 }, 1);
+    this.reset({ eye: [0, 0, 1], target: [0, 0, 0], fov_y_deg: 50, near_m: 0.05 }, 1);
     this.listen(canvas);
   }
 
   reset(place, radius) {
     this.eye = [...place.eye];
     this.fov = place.fov_y_deg;
+    this.near = place.near_m;
     const forward = place.target.map((t, i) => t - place.eye[i]);
     this.distance = Math.hypot(...forward) || 1;
     this.yaw = Math.atan2(forward[0], -forward[2]);
@@ -30,7 +31,7 @@ export class Camera {
 
   place() {
     const target = this.eye.map((e, i) => e + this.forward[i] * this.distance);
-    return { eye: this.eye, target, fov_y_deg: this.fov };
+    return { eye: this.eye, target, fov_y_deg: this.fov, near_m: this.near };
   }
 
   turn(right, up) {

@@ -7,6 +7,9 @@ import { hasStopped, orStopped, rehearse } from './renderer.js';
 
 const SCENES = ['demo', 'cornell', 'materials-grid', 'alpha', 'demo:1000'];
 
+/** The user's files that have been shown, by name. Their bytes are read anew each time. */
+const files = new Map();
+
 export async function showScene(scene, place) {
   wait(`Loading ${printable(scene.name)}…`);
   // Let the words appear before the thread is taken.
@@ -52,13 +55,26 @@ function showAlone(scene) {
 }
 
 async function showFile(file) {
-  const bytes = await file.arrayBuffer();
-  await showAlone({ name: file.name, bytes });
+  let bytes;
+  try {
+    bytes = await file.arrayBuffer();
+  } catch (cause) {
+    say(`${file.name} cannot be read: ${cause.message}`);
+    $('scene').value = page.scene.name;
+    return;
+  }
+  if (await showAlone({ name: file.name, bytes })) files.set(file.name, file);
+}
+
+/** Shows what the list names: a file, or else a generated scene. */
+function showNamed(name) {
+  const file = files.get(name);
+  return file ? showFile(file) : showAlone({ name, bytes: null });
 }
 
 export function wireScenes() {
   for (const scene of SCENES) $('scene').add(new Option(scene, scene));
-  $('scene').addEventListener('change', (event) => showAlone({ name: event.target.value, bytes: null }));
+  $('scene').addEventListener('change', (event) => showNamed(event.target.value));
   $('file').addEventListener('change', (event) => {
     const [file] = event.target.files;
     if (file) showFile(file);

@@ -236,6 +236,11 @@ test('a dropped .glb is shown; a broken one is named, and the page goes on', asy
   await page.waitForFunction(() => window.foveal.scene.name === 'cornell');
   await settled(page);
   assert.equal(await page.locator('.message').count(), 0);
+  await page.locator('#scene').selectOption('triangle.glb');
+  await page.waitForFunction(() => window.foveal.scene.name === 'triangle.glb');
+  const again = redPixels(await picture(page, false));
+  assert.equal(again, red);
+  assert.equal(await page.locator('.message').count(), 0);
   assert.deepEqual(said, []);
   await page.context().close();
 });

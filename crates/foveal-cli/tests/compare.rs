@@ -201,6 +201,11 @@ fn a_display_adds_the_quality_at_the_gaze() {
         "jod",
     );
     assert!(near < far && far < 10.0, "{near} {far}");
+    // A gaze is an eye at the default display.
+    assert_eq!(
+        at("b.png", &["--gaze", "0.17,0.27"]),
+        at("b.png", &["--display", "h60", "--gaze", "0.17,0.27"])
+    );
     let wide = value(at("b.png", &["--display", "1.2x0.5"]), "pixels_per_degree");
     let narrow = value(at("b.png", &["--display", "20"]), "pixels_per_degree");
     assert!(wide < narrow);

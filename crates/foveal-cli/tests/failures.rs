@@ -26,6 +26,11 @@ fn what_is_wrong_with_the_scene_is_named() {
         &["folder", "directory"],
     );
     fail(here, &["render", "demo:7", "-o", "a.png"], &["1000"]);
+    fail(
+        here,
+        &["render", "cornell", "-o", "a.png", "--clip", "7"],
+        &["cornell", "clips"],
+    );
     fail(here, &["scene", "info", "broken.glb"], &["broken.glb"]);
     assert_eq!(names(here), ["broken.glb", "folder"]);
 }

@@ -76,6 +76,19 @@ fn words_that_contradict_each_other_are_usage_errors() {
         ("render -o a.png --light-seed 4", "--point-lights"),
         ("render -o a.jpg", ".png"),
         ("render -o a.png --stats a.png", "same file"),
+        (
+            "render -o a_#.png --frames 0..3 --share --stats s.json",
+            "--share",
+        ),
+        ("compare a.png b.png --fps 24", "--fps"),
+        (
+            "compare a.png b.png --diff x.png --heat-map ./x.png",
+            "same file",
+        ),
+        ("compare a.png b.png --diff ./a.png", "is compared"),
+        ("compare a.png b.png --heat-map b.png", "is compared"),
+        ("cull --depth a.png --overlay ./a.png", "same file"),
+        ("cull --depth a.png --json ./a.png", "same file"),
     ];
     let folder = folder();
     for (line, cause) in lines {

@@ -37,6 +37,15 @@ pub fn check_writable(path: &Path) -> anyhow::Result<()> {
         .with_context(|| format!("cannot write '{}'", path.display()))
 }
 
+/// Whether two of these paths are the same file, however they are written: `a.png` is `./a.png`.
+pub fn any_twice<'a>(paths: impl IntoIterator<Item = &'a Path>) -> bool {
+    let mut seen = HashSet::new();
+    paths.into_iter().any(|path| {
+        let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+        !seen.insert(path)
+    })
+}
+
 /// Writes `bytes` to `path`, replacing a regular file that is there.
 ///
 /// # Errors

@@ -8,7 +8,7 @@ use anyhow::{Context, bail};
 use foveal::Timing;
 use foveal_generate as generate;
 use foveal_generate::{DemoOptions, GenerateError};
-use foveal_scene::{Camera, Clip, LoadOptions, LoadTimings, Scene, TextureCompression};
+use foveal_scene::{Camera, LoadOptions, LoadTimings, Scene, TextureCompression};
 
 use crate::import_args::{self, NoSuchScene};
 
@@ -36,10 +36,10 @@ pub fn load_timed(
         return from_stdin(options, load_ms);
     }
     match generate::by_name(name) {
-        Ok(_) if options.variant.is_some() || matches!(options.clip, Clip::Named(_)) => {
-            bail!("the generated scene '{name}' has neither clips nor variants")
-        }
         Ok(mut scene) => {
+            if options.variant.is_some() || !scene.play(&options.clip) {
+                bail!("the generated scene '{name}' has neither clips nor variants");
+            }
             load_ms.push(timing("generate", start.elapsed().as_secs_f64() * 1e3));
             if options.texture_compression != TextureCompression::Off {
                 let start = Instant::now();
@@ -159,6 +159,8 @@ fn timing(name: &str, ms: f64) -> Timing {
 
 #[cfg(test)]
 mod tests {
+    use foveal_scene::Clip;
+
     use super::*;
 
     #[test]
@@ -178,12 +180,15 @@ mod tests {
 
     #[test]
     fn a_generated_scene_has_no_clips_to_name() {
-        let options = LoadOptions {
-            clip: Clip::Named("Run".to_owned()),
+        let with = |clip| LoadOptions {
+            clip,
             ..LoadOptions::default()
         };
-        let error = load_with("cornell", &options).unwrap_err().to_string();
-        assert!(error.contains("'cornell'"), "{error}");
+        for clip in [Clip::Named("Run".to_owned()), Clip::Number(7)] {
+            let error = load_with("cornell", &with(clip)).unwrap_err().to_string();
+            assert!(error.contains("'cornell'"), "{error}");
+        }
+        assert!(load_with("cornell", &with(Clip::All)).is_ok());
     }
 
     #[test]

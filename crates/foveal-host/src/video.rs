@@ -161,6 +161,22 @@ fn extension(path: &Path) -> anyhow::Result<String> {
     }
 }
 
+/// From RGB to BT.709's Y'CbCr of limited range, which players take HD for. Colour of half
+/// resolution, which every player shows, needs even sizes.
+const YUV: &str = "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv";
+
+/// What the file says of its colours: the frames are sRGB.
+const COLORS: [&str; 8] = [
+    "-colorspace",
+    "bt709",
+    "-color_primaries",
+    "bt709",
+    "-color_trc",
+    "iec61966-2-1",
+    "-color_range",
+    "tv",
+];
+
 /// What ffmpeg is told before the file's name: raw RGB rows on its standard input.
 fn arguments((width, height): (u32, u32), fps: f32, ending: &str, has_x264: bool) -> Vec<OsString> {
     let size = format!("{width}x{height}");
@@ -182,13 +198,15 @@ fn arguments((width, height): (u32, u32), fps: f32, ending: &str, has_x264: bool
         "-i",
         "pipe:0",
     ];
-    if matches!(ending, "mp4" | "mkv" | "mov") {
-        // Colour of half resolution, which every player shows, needs even sizes.
-        words.extend(["-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"]);
-        if has_x264 {
+    if matches!(ending, "mp4" | "mkv" | "mov" | "webm") {
+        words.extend(["-vf", YUV, "-pix_fmt", "yuv420p"]);
+        words.extend(COLORS);
+        if has_x264 && ending != "webm" {
             words.extend(["-c:v", "libx264", "-crf", "16"]);
         }
-        words.extend(["-pix_fmt", "yuv420p", "-movflags", "+faststart"]);
+        if ending != "webm" {
+            words.extend(["-movflags", "+faststart"]);
+        }
     }
     words.into_iter().map(OsString::from).collect()
 }
@@ -219,6 +237,62 @@ mod tests {
         for (ending, has_x264) in [("webm", true), ("mp4", false)] {
             let words = arguments((3, 2), 30.0, ending, has_x264);
             assert!(!words.iter().any(|word| word == "libx264"), "{ending}");
+        }
+    }
+
+    #[test]
+    fn colours_are_converted_as_the_file_says_that_they_are() {
+        for (ending, has_x264) in [("mp4", true), ("mov", false), ("mkv", true), ("webm", true)] {
+            let words = arguments((3, 2), 30.0, ending, has_x264);
+            let after = |flag: &str| {
+                let at = words.iter().position(|word| word == flag).unwrap();
+                words[at + 1].to_str().unwrap()
+            };
+            let matrix = "scale=out_color_matrix=bt709:out_range=tv";
+            assert!(after("-vf").ends_with(matrix), "{ending}");
+            assert_eq!(after("-pix_fmt"), "yuv420p");
+            assert_eq!(after("-colorspace"), "bt709");
+            assert_eq!(after("-color_primaries"), "bt709");
+            assert_eq!(after("-color_trc"), "iec61966-2-1");
+            assert_eq!(after("-color_range"), "tv");
+        }
+        let gif = arguments((3, 2), 30.0, "gif", true);
+        assert!(!gif.iter().any(|word| word == "-vf"), "it has a palette");
+    }
+
+    #[test]
+    fn saturated_colours_come_back_as_players_read_hd() {
+        if !is_available() {
+            println!("skipped: no ffmpeg");
+            return;
+        }
+        let folder = tempfile::tempdir().unwrap();
+        let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [220, 40, 120]];
+        let bytes = (0..64 * 64).flat_map(|i| {
+            let [r, g, b] = colors[i % 64 / 16];
+            [r, g, b, 255]
+        });
+        let picture = Picture::from_rgba(64, 64, bytes.collect()).unwrap();
+        let film = folder.path().join("film.mkv");
+        let mut video = Video::create(&film, (64, 64), 30.0).unwrap();
+        for _ in 0..3 {
+            video.push(&picture).unwrap();
+        }
+        video.finish().unwrap();
+        let decoded = Command::new(FFMPEG)
+            .args(["-v", "error", "-nostdin", "-i"])
+            .arg(&film)
+            .args(["-frames:v", "1", "-vf"])
+            .arg("scale=in_color_matrix=bt709:in_range=tv:flags=accurate_rnd,format=rgb24")
+            .args(["-f", "rawvideo", "-"])
+            .output()
+            .unwrap();
+        for (i, color) in colors.iter().enumerate() {
+            let at = 3 * (32 * 64 + 16 * i + 8);
+            let found = &decoded.stdout[at..at + 3];
+            for (a, b) in found.iter().zip(color) {
+                assert!(a.abs_diff(*b) <= 8, "{found:?} instead of {color:?}");
+            }
         }
     }
 

@@ -44,7 +44,8 @@ pub struct Mesh {
     pub bounds: Aabb,
     /// Morph targets or a skin change its vertices from pose to pose. Such a mesh belongs to one
     /// node; the vertices of a skinned one are in world space, and its instances' matrices the
-    /// identity.
+    /// identity. Where its joints mirror it, the vertices have x negated, and so have the matrices:
+    /// triangles are clockwise in world space then, as in any mirrored instance.
     pub deforms: bool,
 }
 

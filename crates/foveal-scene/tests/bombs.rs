@@ -274,8 +274,29 @@ fn small_files_that_ask_for_much_are_refused_before_anything_is_allocated() {
     let mut bomb = Bomb::new();
     bomb.json["accessors"][0] =
         json!({ "componentType": 5126, "count": 16_000_000, "type": "VEC3" });
-    bomb.refused(None);
+    bomb.refused(Some(Limit::Expansion));
     assert_small("vertices without values");
+
+    // Morph targets that nothing stores, of three vertices that are drawn.
+    for sparse in [false, true] {
+        let mut bomb = Bomb::new();
+        let at = bomb.view(&[0; 4]);
+        let value = bomb.view(&[0; 12]);
+        let mut zeros = json!({ "componentType": 5126, "count": 20_000_000, "type": "VEC3" });
+        if sparse {
+            zeros["sparse"] = json!({
+                "count": 1,
+                "indices": { "bufferView": at, "componentType": 5123 },
+                "values": { "bufferView": value },
+            });
+        }
+        bomb.json["accessors"].as_array_mut().unwrap().push(zeros);
+        let targets = json!([{ "POSITION": 1 }]);
+        bomb.json["meshes"][0]["primitives"][0]["targets"] = targets;
+        let text = bomb.refused(Some(Limit::Expansion));
+        assert!(text.contains("elements without stored values"), "{text}");
+        assert_small("morph targets without values");
+    }
 
     // One vertex, named so often that its points take gigabytes where they are drawn; then lines, a
     // strip of which names each vertex twice.

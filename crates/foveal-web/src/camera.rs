@@ -13,7 +13,16 @@ pub(crate) struct Place {
     target: [f32; 3],
     /// Full vertical field of view in degrees.
     fov_y_deg: f32,
+    /// Distance of the near plane in metres.
+    near_m: f32,
 }
+
+/// Fields of view that the page draws, in degrees.
+const FOV_Y_DEG: std::ops::RangeInclusive<f32> = 1.0..=170.0;
+
+/// The near plane's distance where the camera of the scene has none for a perspective, by the
+/// distance of what it looks at; as that of the overview camera.
+const NEAR_BY_DISTANCE: f32 = 0.002;
 
 impl Place {
     /// The camera, or why there is none.
@@ -22,28 +31,118 @@ impl Place {
         if !numbers.copied().all(f32::is_finite) {
             return Err("the camera's place is not finite".to_owned());
         }
-        if !(1.0..=170.0).contains(&self.fov_y_deg) {
+        if !FOV_Y_DEG.contains(&self.fov_y_deg) {
             return Err(format!("a field of view of {} degrees", self.fov_y_deg));
         }
-        Ok(Camera::look_at(
-            self.eye.into(),
-            self.target.into(),
-            Vec3::Y,
-            self.fov_y_deg.to_radians(),
-        ))
+        if !(self.near_m > 0.0 && self.near_m.is_finite()) {
+            return Err(format!("a near plane at {} m", self.near_m));
+        }
+        let fov_y_rad = self.fov_y_deg.to_radians();
+        let camera = Camera::look_at(self.eye.into(), self.target.into(), Vec3::Y, fov_y_rad);
+        Ok(Camera {
+            projection: Projection::Perspective {
+                fov_y_rad,
+                near_m: self.near_m,
+            },
+            ..camera
+        })
     }
 
-    /// Where `camera` stands; it looks at a point `distance_m` ahead.
+    /// Where `camera` stands; it looks at a point `distance_m` ahead. Its field of view becomes one
+    /// that the page draws.
     pub(crate) fn of(camera: &Camera, distance_m: f32) -> Self {
         let forward = -camera.world_from_view.z_axis.truncate();
-        let fov_y_rad = match camera.projection {
-            Projection::Perspective { fov_y_rad, .. } => fov_y_rad,
-            Projection::Orthographic { .. } => std::f32::consts::FRAC_PI_4,
+        let (fov_y_rad, near_m) = match camera.projection {
+            Projection::Perspective { fov_y_rad, near_m } => (fov_y_rad, near_m),
+            Projection::Orthographic { .. } => {
+                let near_m = NEAR_BY_DISTANCE * distance_m;
+                (std::f32::consts::FRAC_PI_4, near_m)
+            }
         };
         Self {
             eye: camera.eye().to_array(),
             target: (camera.eye() + distance_m * forward).to_array(),
-            fov_y_deg: fov_y_rad.to_degrees(),
+            fov_y_deg: fov_y_rad
+                .to_degrees()
+                .clamp(*FOV_Y_DEG.start(), *FOV_Y_DEG.end()),
+            near_m,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What the page draws of a scene's camera that looks at the origin.
+    fn drawn(projection: Projection) -> Camera {
+        let eye = Vec3::new(0.0, 0.0, 0.04);
+        let of_scene = Camera {
+            projection,
+            ..Camera::look_at(eye, Vec3::ZERO, Vec3::Y, 1.0)
+        };
+        let text = serde_json::to_string(&Place::of(&of_scene, 0.04)).unwrap();
+        let place: Place = serde_json::from_str(&text).unwrap();
+        let camera = place.camera().unwrap();
+        assert!(
+            (camera.world_from_view - of_scene.world_from_view).abs_diff_eq(glam::Mat4::ZERO, 1e-6)
+        );
+        camera
+    }
+
+    #[test]
+    fn small_things_lie_behind_the_near_plane() {
+        for projection in [
+            Projection::Perspective {
+                fov_y_rad: 0.9,
+                near_m: 8e-5,
+            },
+            Projection::Orthographic {
+                height_m: 0.02,
+                near_m: 0.01,
+                far_m: 0.1,
+            },
+        ] {
+            let clip_from_world = drawn(projection).clip_from_world(1.0);
+            // The front of an object of 2 cm.
+            let depth = clip_from_world.project_point3(Vec3::Z * 0.01).z;
+            assert!((0.0..1.0).contains(&depth), "{projection:?}: {depth}");
+        }
+    }
+
+    #[test]
+    fn any_field_of_view_of_a_file_is_drawn_nearly_so() {
+        for (of_file, most_near) in [(0.1f32, 1.0f32), (60.0, 60.0), (179.0, 170.0)] {
+            let Projection::Perspective { fov_y_rad, near_m } = drawn(Projection::Perspective {
+                fov_y_rad: of_file.to_radians(),
+                near_m: 0.3,
+            })
+            .projection
+            else {
+                panic!("the page draws perspectives")
+            };
+            assert!((fov_y_rad.to_degrees() - most_near).abs() < 1e-3);
+            assert_eq!(near_m, 0.3);
+        }
+    }
+
+    #[test]
+    fn a_place_that_cannot_be_drawn_is_refused() {
+        let place = Place {
+            eye: [0.0; 3],
+            target: [0.0, 0.0, -1.0],
+            fov_y_deg: 60.0,
+            near_m: 0.1,
+        };
+        assert!(place.camera().is_ok());
+        for near_m in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            assert!(Place { near_m, ..place }.camera().is_err(), "{near_m}");
+        }
+        for fov_y_deg in [0.0, 180.0, f32::NAN] {
+            assert!(
+                Place { fov_y_deg, ..place }.camera().is_err(),
+                "{fov_y_deg}"
+            );
         }
     }
 }

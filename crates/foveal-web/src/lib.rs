@@ -4,10 +4,11 @@
 //! The page (`web/page`) holds the controls, the camera and the clock of frames; this crate holds
 //! what must be Rust. Settings and figures cross as JSON, in the words of the native program. Built
 //! by `./run web`, once for WebGPU and once, with the feature `webgl`, for browsers that have WebGL
-//! 2 alone; on anything but `wasm32` the crate is empty.
+//! 2 alone; on anything but `wasm32` the crate is empty, but for tests.
 #![forbid(unsafe_code)]
+#![cfg_attr(test, allow(clippy::unwrap_used, reason = "a test may stop at once"))]
 
-#[cfg(target_arch = "wasm32")]
+#[cfg(any(target_arch = "wasm32", test))]
 mod camera;
 #[cfg(target_arch = "wasm32")]
 mod present;

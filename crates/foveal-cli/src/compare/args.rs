@@ -3,7 +3,8 @@
 use std::path::PathBuf;
 
 use anyhow::bail;
-use foveal_host::{console, values};
+use foveal_host::failure::usage;
+use foveal_host::{atomic_file, console, values};
 use serde::Serialize;
 
 use super::eye::EyeArgs;
@@ -64,6 +65,21 @@ pub(super) trait Findings: Serialize {
 }
 
 impl Args {
+    /// Finds what clap cannot: files that would replace each other or what is compared.
+    pub(super) fn check(&self) -> anyhow::Result<()> {
+        let (diff, heat_map) = (self.diff.as_deref(), self.eye.heat_map());
+        for (flag, file) in [("--diff", diff), ("--heat-map", heat_map)] {
+            let replaces = |input| file.is_some_and(|file| atomic_file::any_twice([file, input]));
+            if replaces(&self.a) || replaces(&self.b) {
+                return usage(format!("{flag} names a picture that is compared"));
+            }
+        }
+        if atomic_file::any_twice(diff.into_iter().chain(heat_map)) {
+            return usage("--diff and --heat-map name the same file");
+        }
+        Ok(())
+    }
+
     /// The thresholds that are not met.
     fn failures(&self, measured: &Measured) -> Vec<String> {
         let mut failures = Vec::new();

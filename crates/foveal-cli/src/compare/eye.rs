@@ -29,13 +29,13 @@ pub(super) struct EyeArgs {
     #[arg(long, value_name = "LUX", value_parser = values::non_negative, help_heading = "Eye")]
     ambient: Option<f32>,
 
-    /// Gaze as fractions of the picture from its top left corner
-    #[arg(long, value_name = "X,Y", value_parser = values::vec2, default_value = "0.5,0.5", help_heading = "Eye")]
-    gaze: [f32; 2],
+    /// Gaze as fractions of the picture from its top left corner [default: 0.5,0.5]
+    #[arg(long, value_name = "X,Y", value_parser = values::vec2, help_heading = "Eye")]
+    gaze: Option<[f32; 2]>,
 
-    /// Frames per second of a video, which is a folder
-    #[arg(long, value_name = "N", value_parser = values::positive, default_value_t = 30.0, help_heading = "Eye")]
-    pub(super) fps: f32,
+    /// Frames per second of a video, which is a folder [default: 30]
+    #[arg(long, value_name = "N", value_parser = values::positive, help_heading = "Eye")]
+    pub(super) fps: Option<f32>,
 
     /// Write a map of visible differences: black for none, through magenta to yellow for 8 JOD lost
     /// and more
@@ -58,7 +58,10 @@ pub(super) struct Verdict {
 impl EyeArgs {
     /// The display that was asked for; `wanted` asks for `h60` where none was named.
     pub(super) fn display(&self, wanted: bool) -> Option<Display> {
-        let changed = self.peak.is_some() || self.ambient.is_some() || self.heat_map.is_some();
+        let changed = self.peak.is_some()
+            || self.ambient.is_some()
+            || self.gaze.is_some()
+            || self.heat_map.is_some();
         let base = self
             .display
             .or_else(|| (wanted || changed).then_some(Display::DEGREES_60))?;
@@ -69,14 +72,19 @@ impl EyeArgs {
         })
     }
 
+    /// Where the eye looks.
+    fn gaze(&self) -> [f32; 2] {
+        self.gaze.unwrap_or([0.5, 0.5])
+    }
+
     /// The file for the heat map.
-    pub(super) fn heat_map(&self) -> Option<&PathBuf> {
-        self.heat_map.as_ref()
+    pub(super) fn heat_map(&self) -> Option<&Path> {
+        self.heat_map.as_deref()
     }
 
     /// The metric for pictures of one size.
     pub(super) fn metric(&self, display: &Display, picture: &Picture) -> anyhow::Result<Metric> {
-        let [x, y] = self.gaze;
+        let [x, y] = self.gaze();
         let (width, height) = (picture.width as usize, picture.height as usize);
         Ok(Metric::new(display, width, height, Gaze { x, y })?)
     }
@@ -86,7 +94,7 @@ impl EyeArgs {
         Verdict {
             jod,
             pixels_per_degree: metric.pixels_per_degree(),
-            gaze: self.gaze,
+            gaze: self.gaze(),
         }
     }
 

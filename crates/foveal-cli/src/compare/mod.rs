@@ -14,6 +14,7 @@ use serde::Serialize;
 pub(crate) use args::Args;
 use args::{Findings, Measured};
 use foveal_host::difference::ErrorMap;
+use foveal_host::failure::usage;
 use foveal_host::picture::Picture;
 use foveal_host::{atomic_file, picture};
 
@@ -39,10 +40,15 @@ struct Comparison {
 
 /// Compares, prints, and fails where a threshold is not met.
 pub(crate) fn run(args: &Args) -> anyhow::Result<()> {
-    for file in args.diff.iter().chain(args.eye.heat_map()) {
+    args.check()?;
+    let is_video = args.a.is_dir() && args.b.is_dir();
+    if args.eye.fps.is_some() && !is_video {
+        return usage("--fps is for folders, the frames of a video, not for pictures");
+    }
+    for file in args.diff.as_deref().into_iter().chain(args.eye.heat_map()) {
         atomic_file::check_writable(file)?;
     }
-    if args.a.is_dir() && args.b.is_dir() {
+    if is_video {
         return sequence::run(args);
     }
     let (a, b) = (Picture::read(&args.a)?, Picture::read(&args.b)?);

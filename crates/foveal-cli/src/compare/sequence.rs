@@ -13,6 +13,9 @@ use foveal_host::difference::{ErrorMap, pixels};
 use foveal_host::failure::usage;
 use foveal_host::picture::Picture;
 
+/// Frames per second without `--fps`.
+const DEFAULT_FPS: f32 = 30.0;
+
 /// The JSON's fields; docs/program.md describes them.
 #[derive(Debug, PartialEq, Serialize)]
 struct Comparison {
@@ -53,7 +56,8 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
     let size = Picture::read(&args.a.join(first))?;
     let display = args.eye.display(true).context("videos have a display")?;
     let metric = args.eye.metric(&display, &size)?;
-    let mut video = metric.video(args.eye.fps)?;
+    let fps = args.eye.fps.unwrap_or(DEFAULT_FPS);
+    let mut video = metric.video(fps)?;
     let mut flip = 0.0;
     for name in &names {
         let read = |folder: &Path| {
@@ -80,7 +84,7 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
         width: size.width,
         height: size.height,
         frames: result.frames,
-        fps: args.eye.fps,
+        fps,
         eye: args.eye.verdict(&metric, result.jod),
         flicker: result.flicker,
         flip: flip / result.frames as f64,

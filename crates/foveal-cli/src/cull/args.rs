@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use foveal_host::atomic_file;
 use foveal_host::culling::{CullingArgs, ViewArgs};
 use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
@@ -77,8 +78,9 @@ impl Args {
                 ));
             }
         }
-        if self.depth.is_some() && self.depth == self.overlay {
-            return usage("--depth and --overlay name the same file");
+        let written = self.depth.iter().chain(&self.overlay).chain(&self.json);
+        if atomic_file::any_twice(written.map(PathBuf::as_path)) {
+            return usage("--depth, --overlay and --json name the same file");
         }
         if is_recording(&self.scene) && self.views.is_given() {
             return usage("recorded draws have their own view: no camera can be chosen");

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use foveal::Settings;
+use foveal_host::atomic_file;
 use foveal_host::camera::CameraArgs;
 use foveal_host::failure::usage;
 use foveal_host::import_args::ImportArgs;
@@ -72,8 +73,9 @@ pub(crate) struct Args {
     #[arg(long, value_name = "NAME|NUMBER")]
     pub(super) adapter: Option<String>,
 
-    /// Write times and counts as JSON (see docs/stats.schema.json)
-    #[arg(long, value_name = "FILE.json")]
+    /// Write times and counts as JSON (see docs/stats.schema.json). Not with --share, whose jobs
+    /// would replace each other's file
+    #[arg(long, value_name = "FILE.json", conflicts_with = "share")]
     pub(super) stats: Option<PathBuf>,
 
     /// Number of times that the first frame is drawn before it is measured and written
@@ -212,12 +214,8 @@ impl Args {
         }
         self.camera.check()?;
         let written = [file, self.video.as_deref(), self.stats.as_deref()];
-        // However they are written: a.png is ./a.png.
-        let written = written.map(|file| file.and_then(|file| std::path::absolute(file).ok()));
-        for (index, one) in written.iter().enumerate() {
-            if one.is_some() && written[index + 1..].contains(one) {
-                return usage("--output, --video and --stats name the same file");
-            }
+        if atomic_file::any_twice(written.into_iter().flatten()) {
+            return usage("--output, --video and --stats name the same file");
         }
         Ok(())
     }

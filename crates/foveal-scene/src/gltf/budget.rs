@@ -30,6 +30,11 @@ impl Budget {
         }
     }
 
+    /// Memory that the files may ask for in all.
+    pub(crate) fn allowed(&self) -> u64 {
+        self.allowed
+    }
+
     /// Memory that is left.
     pub(crate) fn left(&self) -> u64 {
         self.left.load(Ordering::Relaxed)

@@ -11,16 +11,17 @@ use super::document::{BufferDef, Document};
 use super::draco::DracoDef;
 use super::meshopt::Coded;
 use super::uri::{self, Uri};
-use crate::error::{Flaw, Parsed};
+use crate::error::{Flaw, Limit, Parsed};
 use crate::{Code, LoadOptions, threads};
 
-/// Numbers that all accessors together may yield, and how many more for each byte of the files:
-/// overlapping accessors can make many out of few bytes.
+/// Numbers that all accessors together may yield, beside one for each [`NUMBER_BYTES`] of memory
+/// that the files may ask for by their size: overlapping accessors can make many out of few bytes.
 const FREE_NUMBERS: u64 = 64 << 20;
-const NUMBERS_PER_BYTE: u64 = 64;
+const NUMBER_BYTES: u64 = 4;
 
-/// Elements without stored values that all accessors together may have.
-pub(crate) const MAX_UNBACKED: u64 = 2 << 20;
+/// Of the memory that the files may ask for, so much allows an element without stored values: what
+/// is made of it takes more than itself.
+const UNBACKED_BYTES: u64 = 80;
 
 /// Where a buffer's bytes are.
 enum Source {
@@ -75,15 +76,17 @@ impl<'a> Buffers<'a> {
             .iter()
             .map(|b| b.len())
             .chain(store.read.iter().copied());
-        let input = files.chain([json]).map(|len| len as u64).sum();
+        let input: u64 = files.chain([json]).map(|len| len as u64).sum();
+        let numbers = input.saturating_mul(options.max_expansion) / NUMBER_BYTES;
+        let budget = Budget::new(input, options);
         Self {
             bin: bin.unwrap_or_default(),
             stored: store.stored,
             sources,
             fallback: defs.iter().map(|def| def.fallback).collect(),
-            unbacked: Count::new(MAX_UNBACKED),
-            numbers: Count::new(FREE_NUMBERS.saturating_add(NUMBERS_PER_BYTE * input)),
-            budget: Budget::new(input, options),
+            unbacked: Count::new(budget.allowed() / UNBACKED_BYTES),
+            numbers: Count::new(FREE_NUMBERS.saturating_add(numbers)),
+            budget,
             plain: HashMap::new(),
             dense: HashMap::new(),
         }
@@ -224,7 +227,7 @@ impl<'a> Buffers<'a> {
     }
 }
 
-/// Something that runs out.
+/// Something that runs out, of which `--max-expansion` gives more.
 struct Count {
     limit: u64,
     left: AtomicU64,
@@ -244,10 +247,13 @@ impl Count {
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, rest)
             .map(|_| ())
             .map_err(|_| {
-                Flaw::too_large(format!(
-                    "has {amount} {what}, more than the limit of {} in all leaves",
-                    self.limit
-                ))
+                Flaw::beyond(
+                    Limit::Expansion,
+                    format!(
+                        "has {amount} {what}, more than the limit of {} in all leaves",
+                        self.limit
+                    ),
+                )
             })
     }
 }

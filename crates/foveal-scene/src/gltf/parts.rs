@@ -4,7 +4,6 @@ use std::collections::HashMap;
 
 use glam::Mat4;
 
-use super::buffers::MAX_UNBACKED;
 use super::document::Document;
 use super::geometry::{self, Built, Request};
 use super::materials::{DEFAULT_UV_SETS, MaterialDef, UvSets};
@@ -132,8 +131,7 @@ impl Geometry {
 
     /// Adds up the vertices and corners that will come of it before anything is allocated.
     fn check_size(&self, reader: Reader<'_>, options: &LoadOptions) -> Parsed<()> {
-        let (mut vertices, mut corners, mut unbacked) = (0u64, 0u64, 0u64);
-        let mut bytes = 0u64;
+        let (mut vertices, mut corners, mut bytes) = (0u64, 0u64, 0u64);
         for (request, place) in &self.requests {
             let def = &request.primitive;
             let count = |a: u32| reader.accessor(a).count as u64;
@@ -156,15 +154,6 @@ impl Geometry {
                 .saturating_add(made.saturating_mul(vertex_bytes(def)))
                 .saturating_add(made_corners.saturating_mul(INDEX_BYTES))
                 .saturating_add(stroke_bytes(def, made_corners));
-            if positions_are_unbacked(reader, def) {
-                unbacked = unbacked.saturating_add(made);
-            }
-            if unbacked > MAX_UNBACKED {
-                return Err(Flaw::too_large(format!(
-                    "{unbacked} vertices without stored positions, the limit is {MAX_UNBACKED}"
-                ))
-                .under(place));
-            }
             let (limit, most) = (options.max_vertices, vertices.max(corners / 6));
             if most > limit {
                 return Err(Flaw::beyond(
@@ -220,11 +209,6 @@ fn vertex_bytes(def: &PrimitiveDef) -> u64 {
         0
     };
     vertex + 28 + deforms + 48 * joints + targets.sum::<u64>()
-}
-
-fn positions_are_unbacked(reader: Reader<'_>, def: &PrimitiveDef) -> bool {
-    let position = def.attributes.position;
-    position.is_some_and(|a| reader.accessor(a).unbacked() > 0)
 }
 
 /// Forgets empty meshes: they have been noted, and there is nothing to draw.

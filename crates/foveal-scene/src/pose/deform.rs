@@ -56,15 +56,21 @@ pub(crate) struct Deformer {
     pub(crate) skin: Option<u32>,
 }
 
+/// The mirror image of world space that skinned vertices are in where their joints mirror them.
+pub(crate) const MIRROR: Mat4 = Mat4::from_cols(Vec4::NEG_X, Vec4::Y, Vec4::Z, Vec4::W);
+
 impl Shape {
     /// Writes the vertices deformed by morph `weights` and then by `joint_matrices` (world from
     /// object). Without joint matrices the result is in object space, else in world space.
+    ///
+    /// True where the joints mirror most of the vertices: the result is then in [`MIRROR`]'s image
+    /// of world space, in which triangles keep their winding.
     pub(crate) fn deform(
         &self,
         weights: &[f32],
         joint_matrices: Option<&[Mat4]>,
         out: &mut [Vertex],
-    ) {
+    ) -> bool {
         let active: Vec<(&MorphTarget, f32)> = self
             .targets
             .iter()
@@ -76,6 +82,7 @@ impl Shape {
             .any(|(t, _)| t.uvs.iter().any(|list| !list.is_empty()));
         let moves_colors = active.iter().any(|(t, _)| !t.colors.is_empty());
         let skinning = joint_matrices.zip(self.influences.as_ref());
+        let mut mirrored_vertices = 0;
         for (i, (vertex, rest)) in out.iter_mut().zip(&self.rest).enumerate() {
             let mut position = Vec3::from(rest.position);
             let mut normal = Vec3::from(rest.normal);
@@ -89,10 +96,14 @@ impl Shape {
             if let Some((matrices, influences)) = skinning {
                 let matrix = blend(matrices, influences, i);
                 position = matrix.transform_point3(position);
-                normal = cofactor(matrix) * normal;
+                let cofactor = cofactor(matrix);
+                let determinant = matrix.x_axis.truncate().dot(cofactor.x_axis);
+                let handedness = if determinant < 0.0 { -1.0 } else { 1.0 };
+                mirrored_vertices += usize::from(determinant < 0.0);
+                normal = cofactor * (handedness * normal);
                 tangent = matrix
                     .transform_vector3(tangent.truncate())
-                    .extend(tangent.w);
+                    .extend(handedness * tangent.w);
             }
             if moves_uvs {
                 vertex.uv = morphed_uvs(rest, &active, i);
@@ -112,6 +123,10 @@ impl Shape {
                 .try_normalize()
                 .map_or(rest.tangent, |t| t.extend(tangent.w).to_array());
         }
+        let is_mirrored = 2 * mirrored_vertices > self.rest.len();
+        if is_mirrored {
+            out.iter_mut().for_each(mirror);
+        }
         if self.flat {
             for triangle in out.chunks_exact_mut(3) {
                 let normal = crate::gltf::plane_normal(
@@ -122,7 +137,17 @@ impl Shape {
                 triangle.iter_mut().for_each(|v| v.normal = normal);
             }
         }
+        is_mirrored
     }
+}
+
+/// Takes a vertex to or from [`MIRROR`]'s image.
+fn mirror(vertex: &mut Vertex) {
+    vertex.position[0] *= -1.0;
+    vertex.normal[0] *= -1.0;
+    let [x, _, _, w] = &mut vertex.tangent;
+    *x *= -1.0;
+    *w *= -1.0;
 }
 
 fn morphed_uvs(rest: &Vertex, active: &[(&MorphTarget, f32)], vertex: usize) -> [[f32; 2]; 2] {
@@ -180,8 +205,8 @@ fn blend(matrices: &[Mat4], influences: &Influences, vertex: usize) -> Mat4 {
     sum
 }
 
-/// The matrix that carries normals: the inverse transpose up to a factor, but safe for singular
-/// ones.
+/// The inverse transpose times the determinant, whose sign normals do not take; safe for singular
+/// matrices.
 fn cofactor(matrix: Mat4) -> Mat3 {
     let [x, y, z] = [matrix.x_axis, matrix.y_axis, matrix.z_axis].map(Vec4::truncate);
     Mat3::from_cols(y.cross(z), z.cross(x), x.cross(y))

@@ -1,11 +1,12 @@
 //! The rig of a scene and how it poses it.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::ops::Range;
 use std::sync::Arc;
 
 use glam::{Mat4, Vec4};
 
+use super::deform::MIRROR;
 use super::properties::{finish_light, is_usable, set_light, set_projection};
 use super::{Animation, Channel, Clip, Deformer, Local, MaterialState, Skin, Target};
 use crate::cloud::Cloud;
@@ -156,8 +157,8 @@ impl RigData {
     fn pose(&self, scene: &mut Scene, time_s: f32) {
         let (locals, weights) = self.sample(scene.rig.played.clone(), time_s);
         let world = world_from_nodes(|i| self.nodes[i].parent, &self.order, &locals);
-        self.deform(scene, &world, &weights);
-        self.place_objects(scene, &world);
+        let mirrored = self.deform(scene, &world, &weights);
+        self.place_objects(scene, &world, &mirrored);
         for &(camera, node) in &self.cameras {
             if let Some(camera) = scene.cameras.get_mut(camera as usize) {
                 camera.world_from_view = gltf::rigid(world[node as usize]);
@@ -245,7 +246,13 @@ impl RigData {
         }
     }
 
-    fn deform(&self, scene: &mut Scene, world: &[Mat4], weights: &HashMap<u32, Vec<f32>>) {
+    /// Deforms the vertices of all deforming meshes; gives the meshes that their joints mirror.
+    fn deform(
+        &self,
+        scene: &mut Scene,
+        world: &[Mat4],
+        weights: &HashMap<u32, Vec<f32>>,
+    ) -> HashSet<u32> {
         let joints: Vec<Vec<Mat4>> = self
             .skins
             .iter()
@@ -254,29 +261,36 @@ impl RigData {
                 joints.map(|(&j, bind)| world[j as usize] * *bind).collect()
             })
             .collect();
-        let posed: Vec<(Vec<Vertex>, Aabb)> =
+        let posed: Vec<(Vec<Vertex>, Aabb, bool)> =
             threads::map(self.parallel, &self.deformers, |deformer| {
                 let mut vertices = deformer.shape.rest.clone();
                 let weights = weights
                     .get(&deformer.node)
                     .unwrap_or(&self.nodes[deformer.node as usize].weights);
                 let matrices = deformer.skin.map(|s| joints[s as usize].as_slice());
-                deformer.shape.deform(weights, matrices, &mut vertices);
+                let is_mirrored = deformer.shape.deform(weights, matrices, &mut vertices);
                 let bounds = match scene.meshes.get(deformer.mesh as usize) {
                     Some(mesh) => mesh.bounds_of(&vertices),
                     None => Aabb::EMPTY,
                 };
-                (vertices, bounds)
+                (vertices, bounds, is_mirrored)
             });
-        for (deformer, (vertices, bounds)) in self.deformers.iter().zip(posed) {
+        let mut mirrored = HashSet::new();
+        for (deformer, (vertices, bounds, is_mirrored)) in self.deformers.iter().zip(posed) {
+            if is_mirrored {
+                mirrored.insert(deformer.mesh);
+            }
             if let Some(mesh) = scene.meshes.get_mut(deformer.mesh as usize) {
                 mesh.vertices = vertices;
                 mesh.bounds = bounds;
             }
         }
+        mirrored
     }
 
-    fn place_objects(&self, scene: &mut Scene, world: &[Mat4]) {
+    /// Places the instances of all objects that move. The vertices of `mirrored` meshes are in
+    /// [`MIRROR`]'s image of world space.
+    fn place_objects(&self, scene: &mut Scene, world: &[Mat4], mirrored: &HashSet<u32>) {
         let shown: &Scene = scene;
         let placed = threads::map(self.parallel, &self.bindings, |binding| {
             let matrix = if binding.skinned {
@@ -288,34 +302,40 @@ impl RigData {
                 .objects
                 .get(binding.object as usize)
                 .map_or(0..0, |o| o.instances.clone());
-            let boxes: Vec<Aabb> = instances
-                .map(|i| {
-                    let Some(instance) = shown.instances.get(i as usize) else {
-                        return Aabb::EMPTY;
-                    };
-                    match (
-                        self.clouds.get(&instance.mesh),
-                        shown.meshes.get(instance.mesh as usize),
-                    ) {
-                        (Some(cloud), _) => cloud.bounds(matrix),
-                        (None, Some(mesh)) => Cloud::of(mesh, 1).bounds(matrix),
-                        (None, None) => Aabb::EMPTY,
-                    }
-                })
-                .collect();
-            (matrix, boxes)
+            let of_instance = |i: u32| {
+                let Some(instance) = shown.instances.get(i as usize) else {
+                    return (matrix, Aabb::EMPTY);
+                };
+                let matrix = if mirrored.contains(&instance.mesh) {
+                    matrix * MIRROR
+                } else {
+                    matrix
+                };
+                let bounds = match (
+                    self.clouds.get(&instance.mesh),
+                    shown.meshes.get(instance.mesh as usize),
+                ) {
+                    (Some(cloud), _) => cloud.bounds(matrix),
+                    (None, Some(mesh)) => Cloud::of(mesh, 1).bounds(matrix),
+                    (None, None) => Aabb::EMPTY,
+                };
+                (matrix, bounds)
+            };
+            instances.map(of_instance).collect::<Vec<_>>()
         });
-        for (binding, (matrix, boxes)) in self.bindings.iter().zip(placed) {
+        for (binding, placed) in self.bindings.iter().zip(placed) {
             // Key frames may lead beyond the range of numbers; what goes there stays where it was.
-            let finite = |b: &Aabb| b.is_empty() || (b.min.is_finite() && b.max.is_finite());
-            if !matrix.is_finite() || !boxes.iter().all(finite) {
+            let finite = |(matrix, b): &(Mat4, Aabb)| {
+                matrix.is_finite() && (b.is_empty() || (b.min.is_finite() && b.max.is_finite()))
+            };
+            if !placed.iter().all(finite) {
                 continue;
             }
             let Some(object) = scene.objects.get_mut(binding.object as usize) else {
                 continue;
             };
-            object.bounds = boxes.iter().fold(Aabb::EMPTY, |all, b| all.union(*b));
-            for (i, bounds) in object.instances.clone().zip(boxes) {
+            object.bounds = placed.iter().fold(Aabb::EMPTY, |all, (_, b)| all.union(*b));
+            for (i, (matrix, bounds)) in object.instances.clone().zip(placed) {
                 if let Some(instance) = scene.instances.get_mut(i as usize) {
                     instance.world_from_object = matrix;
                     instance.bounds = bounds;

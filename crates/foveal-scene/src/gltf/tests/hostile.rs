@@ -5,7 +5,7 @@ use proptest::prelude::*;
 use serde_json::json;
 
 use super::{File, Loads, warnings};
-use crate::{LoadOptions, SceneError, load_bytes};
+use crate::{Limit, LoadOptions, SceneError, load_bytes};
 
 fn ask(bytes: &[u8]) -> Result<crate::Scene, SceneError> {
     let options = LoadOptions {
@@ -232,39 +232,69 @@ fn extensions_without_effect_on_the_picture_make_no_noise() {
     assert_eq!(warnings(&file.load()), "");
 }
 
-#[test]
-fn sparse_morph_targets_without_a_base_are_cheap_to_declare() {
+/// A mesh of so many vertices, of which `drawn` are drawn, with sparse morph targets that have no
+/// base: each moves vertex 7 by (1, 2, 3) and turns its normal.
+fn with_sparse_targets(vertices: usize, drawn: u16, targets: usize) -> File {
     let mut file = File::with_mesh();
-    let count = 50_000;
-    let positions: Vec<f32> = (0..count * 3).map(|i| (i % 7) as f32).collect();
+    let positions: Vec<f32> = (0..vertices * 3).map(|i| (i % 7) as f32).collect();
     file.attribute("POSITION", &positions, "VEC3");
-    file.attribute("NORMAL", &[0., 0., 1.].repeat(count), "VEC3");
+    file.attribute("NORMAL", &[0., 0., 1.].repeat(vertices), "VEC3");
+    file.indices(&(0..drawn).collect::<Vec<_>>());
     let at = file.view(&7u16.to_le_bytes());
     let value: Vec<u8> = [1f32, 2., 3.]
         .iter()
         .flat_map(|v| v.to_le_bytes())
         .collect();
     let value = file.view(&value);
-    let targets: Vec<_> = (0..60)
-        .map(|_| {
-            let sparse = json!({
-                "count": 1,
-                "indices": { "bufferView": at, "componentType": 5123 },
-                "values": { "bufferView": value },
-            });
-            let target = file.push(
-                "accessors",
-                json!({ "componentType": 5126, "type": "VEC3", "count": count, "sparse": sparse }),
-            );
-            json!({ "POSITION": target })
-        })
+    let mut differences = || {
+        let sparse = json!({
+            "count": 1,
+            "indices": { "bufferView": at, "componentType": 5123 },
+            "values": { "bufferView": value },
+        });
+        file.push(
+            "accessors",
+            json!({ "componentType": 5126, "type": "VEC3", "count": vertices, "sparse": sparse }),
+        )
+    };
+    let targets: Vec<_> = (0..targets)
+        .map(|_| json!({ "POSITION": differences(), "NORMAL": differences() }))
         .collect();
     file.primitive()["targets"] = json!(targets);
     file.json["meshes"][0]["weights"] = json!([2]);
-    let scene = file.load();
-    let [x, y, z] = scene.meshes[0].vertices[7].position;
-    let rest = &positions[21..24];
-    assert_eq!([x - rest[0], y - rest[1], z - rest[2]], [2., 4., 6.]);
+    file
+}
+
+#[test]
+fn sparse_morph_targets_without_a_base_are_cheap_to_declare() {
+    // The first draws all its vertices; the second declares what a face with 400 shapes has.
+    for (vertices, drawn, targets) in [(50_000, 49_998, 30), (24_000, 9, 400)] {
+        let scene = with_sparse_targets(vertices, drawn, targets).load();
+        let vertex = &scene.meshes[0].vertices[7];
+        let rest = [21, 22, 23].map(|i| (i % 7) as f32);
+        let [x, y, z] = vertex.position;
+        assert_eq!([x - rest[0], y - rest[1], z - rest[2]], [2., 4., 6.]);
+    }
+}
+
+#[test]
+fn the_flag_that_an_error_names_allows_what_no_file_stores() {
+    // Beyond the limits of elements without stored values and of numbers.
+    for targets in [20, 30] {
+        let mut file = with_sparse_targets(100, 9, targets);
+        for accessor in file.json["accessors"].as_array_mut().unwrap() {
+            if accessor.get("sparse").is_some() {
+                accessor["count"] = json!(450_000);
+            }
+        }
+        let error = file.load_with(&LoadOptions::default()).unwrap_err();
+        assert_eq!(error.limit(), Some(Limit::Expansion), "{error}");
+        let options = LoadOptions {
+            max_expansion: 1 << 14,
+            ..LoadOptions::default()
+        };
+        assert!(file.load_with(&options).is_ok());
+    }
 }
 
 #[test]

@@ -240,3 +240,127 @@ fn morph_targets_move_colours_and_texture_coordinates() {
     let text = "targets[0] morphs texture coordinates or colours that the primitive does not have";
     assert!(warnings(&file.load()).contains(text));
 }
+
+/// A cube under a node 1 with this transform, by joint 2 or rigid; with its own normals and
+/// tangents, or with flat normals that are made for it.
+fn cube(root: &Value, skinned: bool, own_normals: bool) -> File {
+    let mut file = File::with_mesh();
+    let (mut positions, mut normals, mut tangents) = (Vec::new(), Vec::new(), Vec::new());
+    for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
+        for normal in [axis, -axis] {
+            let along = normal.any_orthonormal_vector();
+            let across = normal.cross(along);
+            let corner = |a: f32, b: f32| 0.5 * (normal + a * along + b * across);
+            let corners = [
+                corner(-1., -1.),
+                corner(1., -1.),
+                corner(1., 1.),
+                corner(-1., 1.),
+            ];
+            for i in [0, 1, 2, 0, 2, 3] {
+                positions.extend(corners[i].to_array());
+                normals.extend(normal.to_array());
+                tangents.extend(along.extend(1.).to_array());
+            }
+        }
+    }
+    file.attribute("POSITION", &positions, "VEC3");
+    if own_normals {
+        file.attribute("NORMAL", &normals, "VEC3");
+        file.attribute("TANGENT", &tangents, "VEC4");
+    }
+    *file.node() = json!({});
+    file.push("nodes", root.clone());
+    if skinned {
+        let corners = positions.len() / 3;
+        let joints = file.accessor(&vec![0; 4 * corners], 5121, "VEC4", corners);
+        file.primitive()["attributes"]["JOINTS_0"] = json!(joints);
+        file.attribute("WEIGHTS_0", &[1., 0., 0., 0.].repeat(corners), "VEC4");
+        file.push("nodes", json!({ "translation": [0.5, 2, 0] }));
+        file.push("skins", json!({ "joints": [2] }));
+        // The node with the mesh has a transform of its own, which a skin ignores.
+        *file.node() = json!({ "mesh": 0, "skin": 0, "scale": [3, 3, 3] });
+    } else {
+        file.push("nodes", json!({ "mesh": 0, "translation": [0.5, 2, 0] }));
+    }
+    file.json["nodes"][1]["children"] = json!([2]);
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    file
+}
+
+/// Position, normal and tangent of each vertex as renderers place them: normals by the inverse
+/// transpose, the bitangent's sign by the determinant. Each triangle's front, by its winding in a
+/// mirrored or plain instance, must face as its normals do.
+fn in_world(scene: &crate::Scene) -> Vec<[f32; 10]> {
+    let [instance] = &scene.instances[..] else {
+        panic!("{} instances", scene.instances.len())
+    };
+    let mesh = &scene.meshes[instance.mesh as usize];
+    let matrix = instance.world_from_object;
+    let normal_matrix = matrix.inverse().transpose();
+    let handedness = matrix.determinant().signum();
+    let placed = mesh.indices.iter().map(|&i| {
+        let v = &mesh.vertices[i as usize];
+        let [x, y, z, w] = v.tangent;
+        let position = matrix.transform_point3(v.position.into()).to_array();
+        let normal = normal_matrix.transform_vector3(v.normal.into());
+        let tangent = matrix.transform_vector3(Vec3::new(x, y, z));
+        let (normal, tangent) = (normal.normalize(), tangent.normalize_or_zero());
+        let mut all = [0.; 10];
+        all[..3].copy_from_slice(&position);
+        all[3..6].copy_from_slice(&normal.to_array());
+        all[6..].copy_from_slice(&tangent.extend(w * handedness).to_array());
+        all
+    });
+    let placed: Vec<[f32; 10]> = placed.collect();
+    for triangle in placed.chunks(3) {
+        let [a, b, c] = [0, 1, 2].map(|i| Vec3::from_slice(&triangle[i]));
+        let front = handedness * (b - a).cross(c - a);
+        let normal = Vec3::from_slice(&triangle[0][3..6]);
+        assert!(front.dot(normal) > 0., "{front} and {normal}");
+    }
+    placed
+}
+
+#[test]
+fn a_skin_under_a_mirrored_node_looks_as_the_rigid_mesh_does() {
+    let turn = Quat::from_rotation_z(0.7) * Quat::from_rotation_x(-0.4);
+    for root in [
+        json!({ "scale": [-1, 1, 1] }),
+        json!({ "scale": [-1, -1, -1] }),
+        json!({ "scale": [2, -1, 0.5], "rotation": turn.to_array(), "translation": [1, 2, 3] }),
+        json!({ "scale": [-1, -2, 1] }),
+    ] {
+        for own_normals in [true, false] {
+            let [skinned, rigid] =
+                [true, false].map(|skinned| cube(&root, skinned, own_normals).load());
+            let (found, expected) = (in_world(&skinned), in_world(&rigid));
+            assert_eq!(found.len(), 36);
+            for (a, b) in found.iter().zip(&expected) {
+                assert!(near(a, b), "{root}: {a:?} not {b:?}");
+            }
+            assert!(skinned.bounds().min.abs_diff_eq(rigid.bounds().min, 1e-5));
+            assert!(skinned.bounds().max.abs_diff_eq(rigid.bounds().max, 1e-5));
+        }
+    }
+}
+
+#[test]
+fn a_skin_that_an_animation_mirrors_turns_its_winding_around() {
+    let [mut skinned, mut rigid] = [true, false].map(|skinned| {
+        let mut file = cube(&json!({}), skinned, true);
+        let target = json!({ "node": 1, "path": "scale" });
+        let scales = [1., 1., 1., -1., 1., 1.];
+        animate(&mut file, target, "STEP", &[0., 1.], &scales, "VEC3");
+        file.load()
+    });
+    for time_s in [0., 1., 0.5] {
+        skinned.pose(time_s);
+        rigid.pose(time_s);
+        let mirrored = skinned.instances[0].world_from_object.determinant() < 0.;
+        assert_eq!(mirrored, time_s == 1.);
+        for (a, b) in in_world(&skinned).iter().zip(&in_world(&rigid)) {
+            assert!(near(a, b), "at {time_s}: {a:?} not {b:?}");
+        }
+    }
+}
