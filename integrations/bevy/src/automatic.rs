@@ -4,13 +4,14 @@ use crate::components::{NoOcclusionCulling, Occluder};
 use crate::materials::{Verdict, verdict};
 use bevy_asset::Assets;
 use bevy_camera::primitives::Aabb;
-use bevy_camera::visibility::VisibilityRange;
-use bevy_ecs::change_detection::{DetectChanges, Res};
+use bevy_camera::visibility::{NoCpuCulling, VisibilityRange};
+use bevy_ecs::change_detection::{DetectChanges, Ref, Res};
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::{Entity, EntityHashMap};
+use bevy_ecs::lifecycle::RemovedComponents;
 use bevy_ecs::query::{Changed, Or, With, Without};
 use bevy_ecs::resource::Resource;
-use bevy_ecs::system::{Commands, Local, Query};
+use bevy_ecs::system::{Commands, Local, Query, SystemParam};
 use bevy_mesh::morph::MeshMorphWeights;
 use bevy_mesh::skinning::SkinnedMesh;
 use bevy_mesh::{Mesh, Mesh3d};
@@ -20,9 +21,11 @@ use bevy_transform::components::GlobalTransform;
 /// Makes large, opaque meshes with `StandardMaterial` that stand still into occluders. Without this
 /// resource only entities with an [`Occluder`] of yours occlude.
 ///
-/// Chosen entities get an [`Occluder`] and [`AutomaticOccluder`]; they lose both when they move,
-/// or when their mesh or material changes, and get them again once they stand still. Entities with [`NoOcclusionCulling`] are not chosen. What
-/// was chosen stays when the resource is removed.
+/// Chosen entities get an [`Occluder`] and [`AutomaticOccluder`]; they lose both when they move, or
+/// when their mesh or material changes, and get them again once they stand still. Entities with
+/// [`NoOcclusionCulling`] are not chosen. An [`Occluder`] of yours is left as it is, also on what
+/// was chosen, which then loses [`AutomaticOccluder`]. What was chosen stays when the resource is
+/// removed.
 #[derive(Resource, Clone, Copy, Debug, PartialEq)]
 pub struct AutomaticOccluders {
     /// Least length of the second longest side of the entity's box; 1.5 by default.
@@ -50,10 +53,42 @@ pub struct AutomaticOccluder;
 type Candidate = (
     Without<Occluder>,
     Without<NoOcclusionCulling>,
+    Without<NoCpuCulling>,
     Without<SkinnedMesh>,
     Without<MeshMorphWeights>,
     Without<VisibilityRange>,
 );
+
+/// What an entity gets that is chosen. Whether it is one-sided is for the material to say, in every
+/// frame anew.
+fn chosen() -> Occluder {
+    Occluder::two_sided()
+}
+
+/// Whether an `Occluder` on what was chosen is a user's: another one, or written since.
+fn is_theirs(occluder: &Ref<'_, Occluder>, mark: &Ref<'_, AutomaticOccluder>) -> bool {
+    **occluder != chosen() || occluder.last_changed() != mark.last_changed()
+}
+
+/// What has lost something that kept it from being chosen.
+#[derive(SystemParam)]
+pub(crate) struct Freed<'w, 's> {
+    occluder: RemovedComponents<'w, 's, Occluder>,
+    not_culled: RemovedComponents<'w, 's, NoOcclusionCulling>,
+    not_listed: RemovedComponents<'w, 's, NoCpuCulling>,
+    skinned: RemovedComponents<'w, 's, SkinnedMesh>,
+    morphing: RemovedComponents<'w, 's, MeshMorphWeights>,
+    range: RemovedComponents<'w, 's, VisibilityRange>,
+}
+
+impl Freed<'_, '_> {
+    fn read(&mut self) -> impl Iterator<Item = Entity> {
+        let moves = self.skinned.read().chain(self.morphing.read());
+        let marks = self.not_culled.read().chain(self.not_listed.read());
+        let others = self.occluder.read().chain(self.range.read());
+        moves.chain(marks).chain(others)
+    }
+}
 
 pub(crate) fn choose(
     mut commands: Commands,
@@ -84,17 +119,20 @@ pub(crate) fn choose(
         ),
         Candidate,
     >,
+    mut freed: Freed,
+    taken_over: Query<(Entity, Ref<Occluder>, Ref<AutomaticOccluder>), Changed<Occluder>>,
     no_longer: Query<
-        Entity,
+        (Entity, Option<Ref<Occluder>>, Ref<AutomaticOccluder>),
         (
-            With<AutomaticOccluder>,
             Or<(
                 Changed<GlobalTransform>,
                 Changed<Mesh3d>,
                 Changed<MeshMaterial3d<StandardMaterial>>,
+                Without<Occluder>,
                 Without<Mesh3d>,
                 Without<MeshMaterial3d<StandardMaterial>>,
                 With<NoOcclusionCulling>,
+                With<NoCpuCulling>,
                 With<SkinnedMesh>,
                 With<MeshMorphWeights>,
                 With<VisibilityRange>,
@@ -103,11 +141,21 @@ pub(crate) fn choose(
     >,
 ) {
     // Also without the settings: what was chosen stays only as long as it holds.
-    for entity in &no_longer {
-        commands
-            .entity(entity)
-            .try_remove::<(Occluder, AutomaticOccluder)>();
-        waiting.insert(entity, 0);
+    for (entity, occluder, mark) in &no_longer {
+        if !occluder.is_some_and(|occluder| is_theirs(&occluder, &mark)) {
+            commands
+                .entity(entity)
+                .try_remove::<(Occluder, AutomaticOccluder)>();
+            waiting.insert(entity, 0);
+        }
+    }
+    for (entity, occluder, mark) in &taken_over {
+        if is_theirs(&occluder, &mark) {
+            commands.entity(entity).try_remove::<AutomaticOccluder>();
+        }
+    }
+    for entity in freed.read() {
+        waiting.entry(entity).or_insert(0);
     }
     let (Some(settings), Some(materials)) = (settings, materials) else {
         waiting.clear();
@@ -132,10 +180,10 @@ pub(crate) fn choose(
         let small = second_side(bounds, transform) < settings.min_side;
         let detailed = corners(mesh).is_none_or(|corners| corners > settings.max_corners);
         if !(small || detailed || verdict(material, Some(material)).contains(Verdict::NEVER)) {
-            // Whether it is one-sided is for the material to say, in every frame anew.
+            // One that a user puts there in this very frame stays.
             commands
                 .entity(entity)
-                .try_insert((Occluder::two_sided(), AutomaticOccluder));
+                .try_insert_if_new((chosen(), AutomaticOccluder));
         }
         false
     });

@@ -6,7 +6,7 @@ use crate::occluders::{Occluders, Range};
 use crate::ready::{ListedByView, Looks, Pipelines};
 use crate::stats::CpuOcclusionStats;
 use crate::tasks::ComputeTasks;
-use crate::view::{Fit, ObliquePlanes, clip_from_world};
+use crate::view::{Fit, NearSpace, ObliquePlanes, clip_from_world};
 use bevy_camera::Camera;
 use bevy_camera::visibility::{RenderLayers, VisibleEntities, VisibleEntityRanges};
 use bevy_ecs::change_detection::{Res, ResMut};
@@ -95,12 +95,14 @@ pub(crate) fn cull(
             Some((planes, matrix)) => (Some(planes), matrix),
             None => (None, matrix),
         };
+        let near = NearSpace::of(matrix);
         let layers = layers.unwrap_or_default();
         let on = occluders.enable(|occluder, entry| {
             layers.intersects(&entry.layers)
                 && (!entry.listed || listed.settled(occluder))
                 && !(entry.not_inverted && camera.invert_culling)
                 && oblique.is_none_or(|planes| planes.spare(&entry.bounds))
+                && entry.is_closed(&near)
                 && match entry.range {
                     Range::None => true,
                     Range::Abrupt => ranges

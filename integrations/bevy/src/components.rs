@@ -1,16 +1,18 @@
 //! What a user puts on entities.
 
 use bevy_asset::Handle;
+use bevy_camera::visibility::Visibility;
 use bevy_ecs::component::Component;
 use bevy_math::{UVec2, Vec3};
 use bevy_mesh::Mesh;
+use bevy_transform::components::Transform;
 
 /// Makes an entity hide what is behind it.
 ///
-/// Only what is drawn opaque may occlude: see the crate's documentation for when an occluder is left
-/// out. It follows the entity's `GlobalTransform`, `Mesh3d` and mesh asset. A mesh is baked in the
-/// frame in which it first occludes, about one microsecond per triangle; large detailed meshes are
-/// better given a [proxy](OccluderShape::Proxy) or a [box](OccluderShape::Box).
+/// Only what is drawn opaque may occlude: see the crate's documentation for when an occluder is
+/// left out. It follows the entity's `GlobalTransform`, `Visibility`, `Mesh3d` and mesh asset. A
+/// mesh is baked in the frame in which it first occludes, about one microsecond per triangle; large
+/// detailed meshes are better given a [proxy](OccluderShape::Proxy) or a [box](OccluderShape::Box).
 ///
 /// ```
 /// use bevy_foveal_cull::Occluder;
@@ -21,6 +23,7 @@ use bevy_mesh::Mesh;
 /// # let _ = (wall, house);
 /// ```
 #[derive(Component, Clone, Debug, Default, PartialEq)]
+#[require(Transform, Visibility)]
 pub struct Occluder {
     /// What occludes; the entity's own mesh by default.
     pub shape: OccluderShape,
@@ -34,17 +37,21 @@ pub struct Occluder {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum OccluderShape {
     /// The mesh of the entity's `Mesh3d`. Its vertices must be in the main world: a mesh that is
-    /// loaded for the render world alone occludes only if it had an `Occluder` in its first frame.
+    /// loaded for the render world alone never occludes.
     #[default]
     Mesh,
-    /// A box that must lie wholly inside what is drawn.
+    /// A box that must lie wholly inside what is drawn. On an entity with a mesh it hides nothing
+    /// from a camera or light whose near plane may cut that mesh, and nothing where the mesh's
+    /// bounds are unknown. On an entity without a mesh nothing is known of what is drawn around it:
+    /// it hides wherever the camera or the light is.
     Box {
         /// The corner with the smallest coordinates.
         min: Vec3,
         /// The corner with the largest coordinates.
         max: Vec3,
     },
-    /// Another mesh, which must lie wholly inside what is drawn.
+    /// Another mesh, which must lie wholly inside what is drawn. Near planes and unknown bounds
+    /// count as for a [box](OccluderShape::Box).
     Proxy(Handle<Mesh>),
 }
 

@@ -24,6 +24,41 @@ use tracing::warn;
 /// More than the relative rounding of a vertex on its way to the world, in `f32`.
 const ROUNDING: f32 = 1e-6;
 
+/// What tells whether bounds of skinned meshes are known.
+#[derive(SystemParam)]
+pub(crate) struct Skins<'w, 's> {
+    joints: Query<'w, 's, &'static GlobalTransform>,
+    meshes: Res<'w, Assets<Mesh>>,
+    bindposes: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
+}
+
+impl Skins<'_, '_> {
+    /// Whether the `Aabb` of an entity is that of its joints. Where Bevy cannot find the bounds of
+    /// the joints it leaves old ones.
+    pub(crate) fn bound(
+        &self,
+        skinned: &SkinnedMesh,
+        mesh: &Mesh3d,
+        follows_joints: bool,
+        transform: &GlobalTransform,
+    ) -> bool {
+        let bindposes = self.bindposes.as_ref();
+        let bindposes = bindposes.and_then(|all| all.get(&skinned.inverse_bindposes));
+        let (Some(bindposes), Some(mesh)) = (bindposes, self.meshes.get(&mesh.0)) else {
+            return false;
+        };
+        follows_joints
+            && entity_aabb_from_skinned_mesh_bounds(
+                &self.joints,
+                mesh,
+                skinned,
+                bindposes,
+                Some(transform),
+            )
+            .is_ok()
+    }
+}
+
 /// The boxes of entities that may be hidden.
 #[derive(SystemParam)]
 pub(crate) struct Boxes<'w, 's> {
@@ -46,9 +81,7 @@ pub(crate) struct Boxes<'w, 's> {
             NotDrawnOnTop,
         ),
     >,
-    joints: Query<'w, 's, &'static GlobalTransform>,
-    meshes: Res<'w, Assets<Mesh>>,
-    bindposes: Option<Res<'w, Assets<SkinnedMeshInverseBindposes>>>,
+    skins: Skins<'w, 's>,
     verdicts: Res<'w, MaterialVerdicts>,
     #[cfg(feature = "bevy_pbr")]
     materials: Option<Res<'w, Assets<bevy_pbr::StandardMaterial>>>,
@@ -75,22 +108,10 @@ impl Boxes<'_, '_> {
     pub(crate) fn of(&self, entity: Entity) -> Option<Aabb> {
         let (bounds, transform, mesh, skinned, follows_joints, material) =
             self.entities.get(entity).ok()?;
-        if let Some(skinned) = skinned {
-            // Where Bevy cannot find the bounds of the joints it leaves old ones.
-            let bindposes = self.bindposes.as_ref()?.get(&skinned.inverse_bindposes)?;
-            let mesh = self.meshes.get(&mesh?.0)?;
-            if !follows_joints
-                || entity_aabb_from_skinned_mesh_bounds(
-                    &self.joints,
-                    mesh,
-                    skinned,
-                    bindposes,
-                    Some(transform),
-                )
-                .is_err()
-            {
-                return None;
-            }
+        if let Some(skinned) = skinned
+            && !self.skins.bound(skinned, mesh?, follows_joints, transform)
+        {
+            return None;
         }
         // A depth bias draws it in front of what is nearer.
         if self.verdicts.in_front.contains(&entity) || self.in_front(material) {

@@ -58,11 +58,13 @@
 //!   such entities [`NoOcclusionCulling`].
 //!
 //! # What occludes
-//! Entities with [`Occluder`] that are visible, in the list of the view, neither skinned nor morphing,
-//! and, where the feature `bevy_pbr` is on, of an opaque material whose textures are loaded. Materials
-//! of your own need an `OccluderMaterialPlugin`. Occluders may move, come and go. Where a light looks,
-//! they must be shadow casters. Materials that discard pixels in a shader of their own must not be
-//! given to occluders. With the feature `bevy_pbr`, `AutomaticOccluders` finds occluders by itself.
+//! Entities with [`Occluder`] that are visible, in the list of the view, neither skinned nor
+//! morphing, without `NoCpuCulling`, and, where the feature `bevy_pbr` is on, of an opaque material
+//! whose textures are loaded. Materials of your own need an `OccluderMaterialPlugin`. Occluders may
+//! move, come and go. Where a light looks, they must be shadow casters. A box or a proxy on an
+//! entity with a mesh hides nothing from a view that is inside the mesh's `Aabb`, or whose near
+//! plane may cut the mesh. Materials that discard pixels in a shader of their own must not be given
+//! to occluders. With the feature `bevy_pbr`, `AutomaticOccluders` finds occluders by itself.
 //!
 //! # What is not drawn yet
 //! Bevy draws a mesh only when its pipeline is compiled, and compiles pipelines only for what a view
@@ -131,6 +133,6 @@ pub use components::{
 #[cfg(feature = "bevy_pbr")]
 pub use materials::OccluderMaterialPlugin;
 #[cfg(feature = "overlay")]
-pub use overlay::{CpuOcclusionGizmos, CpuOcclusionOverlay};
+pub use overlay::{CpuOcclusionGizmos, CpuOcclusionOverlay, CpuOcclusionOverlayCamera};
 pub use plugin::{CpuOcclusionPlugin, CpuOcclusionSystems};
 pub use stats::CpuOcclusionStats;

@@ -14,10 +14,10 @@ use crate::ready::{Listed, ListedByView, Looks, Pipelines};
 use crate::receivers::Receivers;
 use crate::stats::CpuOcclusionStats;
 use crate::tasks::for_each;
-use crate::view::{Fit, clip_from_world};
+use crate::view::{Fit, NearSpace, clip_from_world};
 use bevy_camera::primitives::CUBE_MAP_FACES;
 use bevy_camera::visibility::{
-    CascadesVisibleEntities, CubemapVisibleEntities, RenderLayers, ViewVisibility,
+    CascadesVisibleEntities, CubemapVisibleEntities, NoCpuCulling, RenderLayers, ViewVisibility,
     VisibleMeshEntities,
 };
 use bevy_ecs::change_detection::{Res, ResMut};
@@ -128,11 +128,17 @@ impl Frame<'_, '_, '_> {
         let listed = self.listed.of(light.entity);
         listed.note(faces.iter().map(|face| &*face.list), self.looks);
         let layers = light.layers.unwrap_or_default();
+        // Where casters before the near plane are drawn, it cuts nothing.
+        let cutting = faces.iter().filter(|face| !face.casters_before_near);
+        let near: Vec<NearSpace> = cutting
+            .map(|face| NearSpace::of(face.clip_from_world))
+            .collect();
         let on = self.occluders.enable(|entity, entry| {
             layers.intersects(&entry.layers)
                 && (!entry.listed || listed.settled(entity))
                 && entry.range == Range::None
                 && entry.shadows
+                && near.iter().all(|near| entry.is_closed(near))
                 && !self.not_casters.contains(entity)
         });
         for face in &mut *faces {
@@ -234,16 +240,21 @@ pub(crate) fn cull(
         Option<Res<PointLightShadowMap>>,
         Option<Res<DirectionalLightShadowMap>>,
     ),
-    mut point_lights: Query<(
-        Entity,
-        &PointLight,
-        &GlobalTransform,
-        &mut ViewVisibility,
-        &CpuOcclusionCulling,
-        &mut CubemapVisibleEntities,
-        Option<&RenderLayers>,
-        Has<VolumetricLight>,
-    )>,
+    // Of lights with `NoCpuCulling` Bevy fills no lists, and does not show them again once they are
+    // hidden. It fills those of the sun.
+    mut point_lights: Query<
+        (
+            Entity,
+            &PointLight,
+            &GlobalTransform,
+            &mut ViewVisibility,
+            &CpuOcclusionCulling,
+            &mut CubemapVisibleEntities,
+            Option<&RenderLayers>,
+            Has<VolumetricLight>,
+        ),
+        Without<NoCpuCulling>,
+    >,
     mut spot_lights: Query<
         (
             Entity,
@@ -255,7 +266,7 @@ pub(crate) fn cull(
             Option<&RenderLayers>,
             Has<VolumetricLight>,
         ),
-        Without<PointLight>,
+        (Without<PointLight>, Without<NoCpuCulling>),
     >,
     mut directional_lights: Query<
         (

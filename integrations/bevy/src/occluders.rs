@@ -5,13 +5,17 @@
 //! something has changed.
 
 use crate::components::{Occluder, OccluderShape};
-use crate::cull::world_box;
+use crate::cull::{Skins, world_box};
 use crate::materials::{MaterialVerdicts, Verdict};
 use crate::ready::SETTLED;
 use crate::stats::CpuOcclusionStats;
+use crate::view::NearSpace;
 use bevy_asset::{AssetEvent, AssetId, Assets};
 use bevy_camera::primitives::Aabb as MeshBounds;
-use bevy_camera::visibility::{InheritedVisibility, NoCpuCulling, RenderLayers, VisibilityRange};
+use bevy_camera::visibility::{
+    DynamicSkinnedMeshBounds, InheritedVisibility, NoCpuCulling, NoFrustumCulling, RenderLayers,
+    VisibilityRange,
+};
 use bevy_ecs::change_detection::{DetectChanges, Ref, Res, ResMut};
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::message::MessageReader;
@@ -46,8 +50,10 @@ pub(crate) struct Entry {
     /// `None` where there is nothing to place: the mesh is not loaded, or cannot be baked.
     id: Option<OccluderId>,
     shape: Shape,
-    /// The box in the world of what is drawn of it.
+    /// The box in the world of what is drawn of it; `EMPTY` where that is not known.
     pub(crate) bounds: Aabb,
+    /// Whether it is a box or a proxy inside a mesh that is drawn.
+    inside: bool,
     /// Whether it is switched on in the set.
     enabled: bool,
     /// Whether it is drawn, for what does not depend on the view.
@@ -90,6 +96,15 @@ enum Shape {
     Mesh(AssetId<Mesh>, Sides),
     Box(Vec3, Vec3),
     Nothing,
+}
+
+impl Entry {
+    /// Whether the mesh around a box or a proxy is closed for a view with this space before its
+    /// near plane. A mesh that the plane cuts, or that the eye is in, does not cover what is inside
+    /// it.
+    pub(crate) fn is_closed(&self, near: &NearSpace) -> bool {
+        !self.inside || near.spares(&self.bounds)
+    }
 }
 
 impl Occluders {
@@ -171,11 +186,17 @@ pub(crate) fn update(
         Ref<GlobalTransform>,
         Option<&Mesh3d>,
         Option<&MeshBounds>,
-        Option<&InheritedVisibility>,
+        &InheritedVisibility,
         Option<&RenderLayers>,
         Option<&VisibilityRange>,
-        (Has<SkinnedMesh>, Has<MeshMorphWeights>, Has<NoCpuCulling>),
+        (
+            Option<&SkinnedMesh>,
+            Has<DynamicSkinnedMeshBounds>,
+            Has<MeshMorphWeights>,
+        ),
+        (Has<NoCpuCulling>, Has<NoFrustumCulling>),
     )>,
+    skins: Skins,
 ) {
     let begin = Instant::now();
     let occluders = &mut *occluders;
@@ -195,10 +216,19 @@ pub(crate) fn update(
     let frame = occluders.frame;
     let mut drawn_ones = 0;
     let mut reshaped = false;
-    for (entity, occluder, transform, mesh, drawn_bounds, visibility, layers, range, moves) in
-        &entities
+    for (
+        entity,
+        occluder,
+        transform,
+        mesh,
+        drawn_bounds,
+        visibility,
+        layers,
+        range,
+        (skinned, follows_joints, morphing),
+        (unlisted, not_bounded),
+    ) in &entities
     {
-        let (skinned, morphing, gpu) = moves;
         let judgment = verdicts.of(entity);
         // Without a material Bevy draws no mesh, and of an unknown one nothing is known.
         let unknown = cfg!(feature = "bevy_pbr") && mesh.is_some() && judgment.is_none();
@@ -218,17 +248,20 @@ pub(crate) fn update(
         let mirrored = transform.affine().matrix3.determinant() < 0.0;
         let outside_drawn =
             sides == Sides::Both || mirrored == verdict.contains(Verdict::FRONT_CULLED);
-        let drawn = visibility.is_none_or(|v| v.get())
+        // A mesh with `NoCpuCulling` is in no view's list: whether a view draws it is not known.
+        let drawn = visibility.get()
             && outside_drawn
             && !unknown
             && !verdict.contains(Verdict::NEVER)
-            && !(own_mesh && (skinned || morphing));
+            && !(mesh.is_some() && unlisted)
+            && !(own_mesh && (skinned.is_some() || morphing));
         let look = (mesh.map(|m| m.id()), judgment.look);
 
         let entry = occluders.entries.entry(entity).or_insert_with(|| Entry {
             id: None,
             shape: Shape::Nothing,
             bounds: Aabb::EMPTY,
+            inside: false,
             enabled: true,
             drawn,
             layers: RenderLayers::default(),
@@ -259,7 +292,8 @@ pub(crate) fn update(
         drawn_ones += usize::from(drawn);
         entry.frame = frame;
         entry.drawn = drawn;
-        entry.listed = mesh.is_some() && !gpu;
+        entry.listed = mesh.is_some();
+        entry.inside = mesh.is_some() && !own_mesh;
         entry.not_inverted = verdict.contains(Verdict::NOT_INVERTED);
         entry.shadows = !verdict.contains(Verdict::NO_SHADOW);
         entry.range = match range {
@@ -314,9 +348,16 @@ pub(crate) fn update(
             entry.enabled = true;
         }
         if !own_mesh {
-            // What is drawn around a box or a proxy; `EMPTY` where that is not known.
+            // What is drawn around a box or a proxy. With `NoFrustumCulling` Bevy keeps no bounds.
             entry.bounds = match (mesh, drawn_bounds) {
-                (Some(_), Some(bounds)) => world_box(bounds, &transform),
+                (Some(mesh), Some(bounds))
+                    if !(not_bounded || morphing)
+                        && skinned.is_none_or(|skinned| {
+                            skins.bound(skinned, mesh, follows_joints, &transform)
+                        }) =>
+                {
+                    world_box(bounds, &transform)
+                }
                 _ => Aabb::EMPTY,
             };
         } else if let Some(id) = entry.id.filter(|_| moved || !was_placed || changed_mesh)

@@ -15,6 +15,7 @@ use bevy_camera::{
 use bevy_color::Color;
 use bevy_core_pipeline::tonemapping::Tonemapping;
 use bevy_ecs::change_detection::{Res, ResMut};
+use bevy_ecs::component::Component;
 use bevy_ecs::entity::{Entity, EntityHashMap};
 use bevy_ecs::query::Has;
 use bevy_ecs::resource::Resource;
@@ -36,8 +37,11 @@ use bevy_transform::components::{GlobalTransform, Transform};
 
 /// Shows what the culler does in the pictures of culled cameras, for as long as this resource exists.
 ///
-/// Boxes are gizmos of the group [`CpuOcclusionGizmos`] and need Bevy's feature `bevy_gizmos_render`.
-/// The depth is drawn by a camera of its own, which sees nothing but `layer`.
+/// Boxes are gizmos of the group [`CpuOcclusionGizmos`] and need Bevy's feature
+/// `bevy_gizmos_render`. The depth is drawn by a camera of its own, which sees nothing but `layer`
+/// and has the component [`CpuOcclusionOverlayCamera`]. It draws last, so Bevy's UI goes to it
+/// unless a camera of yours has `IsDefaultUiCamera`, or the UI's roots name theirs by
+/// `UiTargetCamera`.
 ///
 /// ```
 /// # use bevy_app::App;
@@ -75,6 +79,24 @@ impl Default for CpuOcclusionOverlay {
 /// The gizmos of [`CpuOcclusionOverlay`]: by default they are drawn in front of everything.
 #[derive(Default, Reflect, GizmoConfigGroup)]
 pub struct CpuOcclusionGizmos;
+
+/// On the cameras with which [`CpuOcclusionOverlay`] draws depth. Systems that look for a camera of
+/// yours leave them out by it.
+///
+/// ```
+/// # use bevy_camera::Camera3d;
+/// # use bevy_ecs::query::{With, Without};
+/// # use bevy_ecs::system::Single;
+/// # use bevy_foveal_cull::CpuOcclusionOverlayCamera;
+/// # use bevy_transform::components::Transform;
+/// fn walk(camera: Single<&mut Transform, (With<Camera3d>, Without<CpuOcclusionOverlayCamera>)>) {
+/// #   let _ = camera;
+///     // ...
+/// }
+/// # bevy_ecs::system::assert_is_system(walk);
+/// ```
+#[derive(Component, Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CpuOcclusionOverlayCamera;
 
 const OCCLUDER: Color = Color::srgba(0.1, 0.9, 0.3, 0.6);
 const HIDDEN: Color = Color::srgba(1.0, 0.25, 0.15, 0.6);
@@ -229,6 +251,7 @@ fn show_depth(
             };
             let mut overlay_camera = commands.spawn((
                 Camera3d::default(),
+                CpuOcclusionOverlayCamera,
                 of_overlay.clone(),
                 Projection::Orthographic(projection),
                 Tonemapping::None,

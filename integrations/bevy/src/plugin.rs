@@ -60,6 +60,7 @@ impl Plugin for CpuOcclusionPlugin {
                 UpdateOccluders
                     .after(TransformSystems::Propagate)
                     .after(AssetEventSystems)
+                    .after(VisibilitySystems::CalculateBounds)
                     .after(VisibilitySystems::VisibilityPropagate),
             )
             .configure_sets(

@@ -126,22 +126,88 @@ impl ObliquePlanes {
 
     /// Whether they leave a box as it is.
     pub(crate) fn spare(&self, bounds: &Aabb) -> bool {
-        let corner = |corner: [f32; 3]| DVec3::from(corner.map(f64::from));
-        let (min, max) = (corner(bounds.min), corner(bounds.max));
-        let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
-        [Some(self.near), self.far].iter().flatten().all(|plane| {
-            let normal = plane.truncate();
-            let (middle, reach) = (normal.dot(center) + plane.w, normal.abs().dot(half));
-            // More than the rounding of matrices in `f32`.
-            middle - reach >= 1e-5 * (normal.abs().dot(center.abs()) + plane.w.abs())
-        })
+        let mut planes = [Some(self.near), self.far].into_iter().flatten();
+        planes.all(|plane| is_beyond(plane, bounds))
     }
+}
+
+/// The space before a view's near plane, in which nothing is drawn: from the eye to the near
+/// rectangle. A mesh that reaches into it is open there, and shows what is behind a box inside it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct NearSpace {
+    near: DVec4,
+    /// The box around it.
+    min: DVec3,
+    max: DVec3,
+}
+
+impl NearSpace {
+    /// Of a matrix of reversed depth whose near plane is not oblique.
+    pub(crate) fn of(clip_from_world: DMat4) -> Self {
+        let (z, w) = (clip_from_world.row(2), clip_from_world.row(3));
+        let world_from_clip = clip_from_world.inverse();
+        let point = |x, y, w| {
+            let point = world_from_clip * DVec4::new(x, y, 1.0, w);
+            point.truncate() / point.w
+        };
+        let (mut min, mut max) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut add = |point: DVec3| {
+            if point.is_finite() {
+                min = min.min(point);
+                max = max.max(point);
+            } else {
+                // Nothing lies beside it then.
+                (min, max) = (DVec3::NEG_INFINITY, DVec3::INFINITY);
+            }
+        };
+        for (x, y) in [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)] {
+            add(point(x, y, 1.0));
+        }
+        // An orthographic view has no eye: its rays begin at the rectangle.
+        if w.truncate() != DVec3::ZERO {
+            add(point(0.0, 0.0, 0.0));
+        }
+        // More than the rounding of matrices in `f32`.
+        let rounding = 1e-5 * (max - min) + 1e-6 * min.abs().max(max.abs());
+        Self {
+            near: w - z,
+            min: min - rounding,
+            max: max + rounding,
+        }
+    }
+
+    /// Whether a box lies wholly outside it. Unknown where the box is not valid.
+    pub(crate) fn spares(&self, bounds: &Aabb) -> bool {
+        let [min, max] = corners(bounds);
+        let beside = min.cmpgt(self.max).any() || max.cmplt(self.min).any();
+        bounds.is_valid() && (beside || is_beyond(self.near, bounds))
+    }
+}
+
+fn corners(bounds: &Aabb) -> [DVec3; 2] {
+    [bounds.min, bounds.max].map(|corner| DVec3::from(corner.map(f64::from)))
+}
+
+/// Whether a box lies wholly on the drawn side of a plane.
+fn is_beyond(plane: DVec4, bounds: &Aabb) -> bool {
+    let [min, max] = corners(bounds);
+    let (center, half) = ((min + max) * 0.5, (max - min) * 0.5);
+    let normal = plane.truncate();
+    let (middle, reach) = (normal.dot(center) + plane.w, normal.abs().dot(half));
+    // More than the rounding of matrices in `f32`.
+    middle - reach > 1e-5 * (normal.abs().dot(center.abs()) + plane.w.abs())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use bevy_math::{Vec3, Vec4};
+    use core::f32::consts::FRAC_PI_2;
+
+    fn around(x: f32, z: f32, half: f32) -> Aabb {
+        let at = Vec3::new(x, 0.0, z);
+        Aabb::new(at - half, at + half)
+    }
 
     #[test]
     fn a_picture_of_odd_size_keeps_its_pixel_centres() {
@@ -208,14 +274,46 @@ mod tests {
         let [a, b] = [left_view, plain_view].map(|p| p.extents());
         assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6));
         assert!(left_view.near_far_m()[0] < 3.0);
-        let around = |x: f32, z: f32, half: f32| {
-            let at = Vec3::new(x, 0.0, z);
-            Aabb::new(at - half, at + half)
-        };
         assert!(planes.spare(&around(0.0, -4.0, 0.1)));
         assert!(!planes.spare(&around(0.0, -2.0, 0.1)), "before it");
         assert!(!planes.spare(&around(0.0, -3.0, 0.5)), "on it");
         assert!(planes.spare(&around(2.0, -3.0, 0.1)), "it is turned");
         assert!(!planes.spare(&around(-2.0, -3.0, 0.1)));
+    }
+
+    #[test]
+    fn the_space_before_a_near_plane_reaches_from_the_eye_to_the_corners_of_its_rectangle() {
+        // A right angle, from (5, 0, 5) towards -z.
+        let pose = Affine3A::from_translation(Vec3::new(5.0, 0.0, 5.0));
+        let of = |projection| NearSpace::of(clip_from_world(projection, pose));
+        let near = of(Mat4::perspective_infinite_reverse_rh(FRAC_PI_2, 1.0, 1.0));
+        assert!((near.min - DVec3::new(4.0, -1.0, 4.0)).length() < 1e-3);
+        assert!((near.max - DVec3::new(6.0, 1.0, 5.0)).length() < 1e-3);
+        assert!(near.spares(&around(5.0, 2.0, 1.9)), "beyond it");
+        assert!(!near.spares(&around(5.0, 2.0, 2.1)), "cut by the plane");
+        assert!(!near.spares(&around(5.0, 5.0, 0.1)), "around the eye");
+        assert!(!near.spares(&around(5.0, 0.0, 50.0)), "around all of it");
+        assert!(near.spares(&around(5.0, 6.0, 0.9)), "behind the eye");
+        assert!(near.spares(&around(8.0, 4.5, 1.9)), "beside it");
+        assert!(!near.spares(&Aabb::EMPTY));
+        let finite = of(Mat4::perspective_rh(FRAC_PI_2, 1.0, 100.0, 1.0));
+        assert!((finite.min - near.min).length() < 1e-3 && (finite.max - near.max).length() < 1e-3);
+        assert!(!NearSpace::of(DMat4::ZERO).spares(&around(0.0, 0.0, 1.0)));
+    }
+
+    #[test]
+    fn orthographic_views_have_no_space_between_an_eye_and_the_near_plane() {
+        // From above and aside, 20 m wide: the box around the rectangle holds much of the scene.
+        let pose = Affine3A::look_at_rh(Vec3::splat(5.0), Vec3::ZERO, Vec3::Y).inverse();
+        let projection = Mat4::orthographic_rh(-10.0, 10.0, -10.0, 10.0, 100.0, 0.0);
+        let near = NearSpace::of(clip_from_world(projection, pose));
+        assert!(near.spares(&around(0.0, 0.0, 1.0)), "beyond the plane");
+        assert!(!near.spares(&around(5.0, 5.0, 6.0)), "cut by it");
+        assert!(!near.spares(&around(15.0, 0.0, 1.0)), "on it");
+        assert!(near.spares(&around(40.0, 40.0, 1.0)), "far before it");
+        // With the near plane far before the eye, the eye is as any other place.
+        let projection = Mat4::orthographic_rh(-10.0, 10.0, -10.0, 10.0, 100.0, -50.0);
+        let near = NearSpace::of(clip_from_world(projection, pose));
+        assert!(near.spares(&around(5.0, 5.0, 6.0)));
     }
 }

@@ -4,6 +4,7 @@
 
 mod world;
 
+use bevy::camera::visibility::{NoCpuCulling, VisibilityRange};
 use bevy::prelude::*;
 use bevy_foveal_cull::{AutomaticOccluder, AutomaticOccluders, NoOcclusionCulling, Occluder};
 use world::TestWorld;
@@ -108,4 +109,116 @@ fn what_was_found_hides_by_the_sides_that_its_material_draws_now() {
         t.app.update();
         assert!(t.sees(ball), "its back is not drawn any more");
     }
+}
+
+/// A wall that is found after two frames, and a ball behind it.
+fn wall_and_ball() -> (TestWorld, Entity, Entity) {
+    let mut t = TestWorld::new();
+    t.app.insert_resource(AutomaticOccluders {
+        still_frames: 2,
+        ..default()
+    });
+    let wall = t.wall(Occluder::default());
+    t.app.world_mut().entity_mut(wall).remove::<Occluder>();
+    let ball = t.ball(-9.0);
+    (t, wall, ball)
+}
+
+fn is_chosen(t: &TestWorld, wall: Entity) -> bool {
+    t.app.world().get::<AutomaticOccluder>(wall).is_some()
+}
+
+#[test]
+fn what_loses_what_kept_it_from_being_chosen_is_chosen_without_a_move() {
+    fn check<C: Component>(mark: C) {
+        let (mut t, wall, ball) = wall_and_ball();
+        t.app.world_mut().entity_mut(wall).insert(mark);
+        for _ in 0..6 {
+            t.update();
+        }
+        assert!(t.sees(ball) && !is_chosen(&t, wall));
+        t.app.world_mut().entity_mut(wall).remove::<C>();
+        for _ in 0..6 {
+            t.update();
+        }
+        assert!(!t.sees(ball) && is_chosen(&t, wall));
+    }
+    check(NoOcclusionCulling);
+    check(NoCpuCulling);
+    check(VisibilityRange::abrupt(0.0, 50.0));
+    check(Occluder::from_box(Vec3::splat(-0.05), Vec3::splat(0.05)));
+}
+
+#[test]
+fn what_was_chosen_is_so_no_more_where_bevy_does_not_cull_it_on_the_processor() {
+    let (mut t, wall, ball) = wall_and_ball();
+    for _ in 0..6 {
+        t.update();
+    }
+    assert!(!t.sees(ball) && is_chosen(&t, wall));
+    t.app.world_mut().entity_mut(wall).insert(NoCpuCulling);
+    t.app.update();
+    assert!(t.sees(ball) && !is_chosen(&t, wall));
+}
+
+#[test]
+fn an_occluder_of_the_users_on_what_was_chosen_stays_theirs() {
+    let half = Vec3::new(3.5, 3.5, 0.05);
+    for theirs in [Occluder::from_box(-half, half), Occluder::two_sided()] {
+        let (mut t, wall, ball) = wall_and_ball();
+        for _ in 0..6 {
+            t.update();
+        }
+        assert!(is_chosen(&t, wall));
+        t.app.world_mut().entity_mut(wall).insert(theirs.clone());
+        t.app.update();
+        assert!(!is_chosen(&t, wall));
+        for _ in 0..6 {
+            t.get_mut::<Transform>(wall).translation.y += 0.1;
+            t.app.update();
+            assert_eq!(t.app.world().get::<Occluder>(wall), Some(&theirs));
+        }
+        assert!(!t.sees(ball));
+
+        // Without it the wall is found again, and moves with what was found.
+        t.app.world_mut().entity_mut(wall).remove::<Occluder>();
+        for _ in 0..6 {
+            t.update();
+        }
+        assert!(!t.sees(ball) && is_chosen(&t, wall));
+        t.get_mut::<Transform>(wall).translation.y += 0.1;
+        t.app.update();
+        assert!(t.app.world().get::<Occluder>(wall).is_none());
+    }
+}
+
+#[test]
+fn an_occluder_of_the_users_that_comes_with_a_move_stays_theirs() {
+    let half = Vec3::new(3.5, 3.5, 0.05);
+    let theirs = Occluder::from_box(-half, half);
+    let (mut t, wall, _) = wall_and_ball();
+    for _ in 0..6 {
+        t.update();
+    }
+    assert!(is_chosen(&t, wall));
+    t.app.world_mut().entity_mut(wall).insert(theirs.clone());
+    t.get_mut::<Transform>(wall).translation.y += 0.1;
+    t.app.update();
+    assert!(!is_chosen(&t, wall));
+    assert_eq!(t.app.world().get::<Occluder>(wall), Some(&theirs));
+}
+
+#[test]
+fn what_need_not_stand_still_is_chosen_again_after_each_move() {
+    let (mut t, wall, ball) = wall_and_ball();
+    t.app
+        .world_mut()
+        .resource_mut::<AutomaticOccluders>()
+        .still_frames = 0;
+    t.update();
+    assert!(is_chosen(&t, wall));
+    t.get_mut::<Transform>(wall).translation.y += 0.1;
+    t.update();
+    t.update();
+    assert!(!t.sees(ball) && is_chosen(&t, wall));
 }

@@ -4,8 +4,10 @@
 
 mod world;
 
-use bevy::camera::visibility::{VisibilitySystems, VisibleEntities};
-use bevy::mesh::skinning::SkinnedMesh;
+use bevy::camera::visibility::{DynamicSkinnedMeshBounds, VisibilitySystems, VisibleEntities};
+use bevy::mesh::skinning::{
+    JointAabb, JointIndex, SkinnedMesh, SkinnedMeshBounds, SkinnedMeshInverseBindposes,
+};
 use bevy::pbr::decal::{ForwardDecal, ForwardDecalPlugin};
 use bevy::pbr::wireframe::{Wireframe, WireframeConfig};
 use bevy::pbr::{ExtendedMaterial, MaterialExtension};
@@ -102,20 +104,35 @@ fn skinned_and_morphing_meshes_do_not_occlude() {
     let mut t = TestWorld::new();
     let wall = t.wall(Occluder::default());
     let ball = t.ball(-9.0);
-    t.app
-        .world_mut()
-        .entity_mut(wall)
-        .insert(SkinnedMesh::default());
+    let half = Vec3::new(4.0, 4.0, 0.1);
+    let bounds = SkinnedMeshBounds {
+        aabbs: vec![JointAabb {
+            center: Vec3::ZERO,
+            half_size: half,
+        }],
+        aabb_index_to_joint_index: vec![JointIndex(0)],
+    };
+    let bounded = Mesh::from(Cuboid::from_size(2.0 * half)).with_skinned_mesh_bounds(Some(bounds));
+    let bounded = t.add_mesh(bounded);
+    t.get_mut::<Mesh3d>(wall).0 = bounded;
+    let place = *t.get_mut::<Transform>(wall);
+    let world = t.app.world_mut();
+    let inverse_bindposes = world
+        .resource_mut::<Assets<SkinnedMeshInverseBindposes>>()
+        .add(vec![Mat4::IDENTITY]);
+    let skin = SkinnedMesh {
+        inverse_bindposes,
+        joints: vec![world.spawn(place).id()],
+    };
+    world.entity_mut(wall).insert(skin);
     t.update();
     assert!(t.sees(ball));
-    // A box inside it does.
-    t.app
-        .world_mut()
-        .entity_mut(wall)
-        .insert(Occluder::from_box(
-            Vec3::new(-4.0, -4.0, -0.1),
-            Vec3::new(4.0, 4.0, 0.1),
-        ));
+    let occluder = Occluder::from_box(-half, half);
+    t.app.world_mut().entity_mut(wall).insert(occluder);
+    t.update();
+    assert!(t.sees(ball), "where the mesh is around the box is unknown");
+    let world = t.app.world_mut();
+    world.entity_mut(wall).insert(DynamicSkinnedMeshBounds);
     t.update();
     assert!(!t.sees(ball));
 }

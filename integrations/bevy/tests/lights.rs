@@ -107,6 +107,55 @@ fn casters_behind_casters_leave_the_faces_of_a_point_light() {
 }
 
 #[test]
+fn boxes_hide_nothing_from_lights_whose_near_plane_may_cut_the_mesh_around_them() {
+    let mut t = TestWorld::new();
+    let half = Vec3::new(3.9, 3.9, 1.0);
+    let block = t.wall(Occluder::from_box(-half, half));
+    let mesh = t.add_mesh(Cuboid::new(8.0, 8.0, 4.0));
+    t.get_mut::<Mesh3d>(block).0 = mesh;
+    let ball = t.ball(-20.0);
+    let point = t.app.world_mut().spawn((point_light(), CULL)).id();
+    let spot = SpotLight {
+        shadow_maps_enabled: true,
+        range: 30.0,
+        ..default()
+    };
+    let spot = t.app.world_mut().spawn((spot, CULL)).id();
+    // The block begins at -3, and near planes lie 0.1 before the lights.
+    for (z, hides) in [(0.0, true), (-2.95, false), (-3.5, false), (-2.8, true)] {
+        for light in [point, spot] {
+            t.get_mut::<Transform>(light).translation.z = z;
+        }
+        t.update();
+        let of_spot = t.app.world().get::<VisibleMeshEntities>(spot).unwrap();
+        let seen_by_spot = of_spot.entities.contains(&ball);
+        let seen = (faces(&t, point, ball) == [FORWARD], seen_by_spot);
+        assert_eq!(seen, (!hides, !hides), "from {z}");
+    }
+}
+
+#[test]
+fn boxes_hide_from_the_sun_wherever_its_near_plane_lies() {
+    let mut t = TestWorld::new();
+    let half = Vec3::new(3.9, 3.9, 1.0);
+    let block = t.wall(Occluder::from_box(-half, half));
+    let mesh = t.add_mesh(Cuboid::new(8.0, 8.0, 4.0));
+    t.get_mut::<Mesh3d>(block).0 = mesh;
+    // Casters before the near plane are drawn onto it.
+    t.get_mut::<Transform>(block).translation.z = 40.0;
+    let ball = t.ball(30.0);
+    let sun = DirectionalLight {
+        shadow_maps_enabled: true,
+        ..default()
+    };
+    let sun = t.app.world_mut().spawn((sun, CULL)).id();
+    t.update();
+    let casters = t.app.world().get::<CascadesVisibleEntities>(sun).unwrap();
+    let mut lists = casters.entities[&t.camera].iter();
+    assert!(!lists.any(|list| list.entities.contains(&ball)));
+}
+
+#[test]
 fn casters_are_relied_on_after_some_frames() {
     let mut t = TestWorld::new();
     let wall = t.wall(Occluder::default());

@@ -8,7 +8,7 @@
 mod shared;
 
 use bevy::prelude::*;
-use bevy_foveal_cull::CpuOcclusionOverlay;
+use bevy_foveal_cull::{CpuOcclusionOverlay, CpuOcclusionOverlayCamera};
 use shared::headless::Headless;
 use shared::house::House;
 use shared::modes::Mode;
@@ -77,6 +77,10 @@ fn the_overlay_shows_boxes_and_depth_while_its_resource_exists() {
         world.query::<&Camera>().iter(world).count()
     };
     assert_eq!(cameras(&mut app), 2);
+    let world = app.world();
+    let mut theirs =
+        world.query_filtered::<Entity, (With<Camera3d>, Without<CpuOcclusionOverlayCamera>)>();
+    assert_eq!(theirs.single(world).unwrap(), camera);
     let differs = |x: usize, y: usize| {
         let at = (y * size.x as usize + x) * 4;
         plain[at..at + 4] != shown[at..at + 4]

@@ -110,6 +110,26 @@ fn lights_that_light_nothing_that_is_seen_are_not_drawn() {
 }
 
 #[test]
+fn lights_that_bevy_does_not_cull_on_the_processor_stay() {
+    let mut t = TestWorld::new();
+    t.spawn_ball(SEEN, ());
+    let behind = Transform::from_xyz(0.0, 0.0, 20.0);
+    let spot = SpotLight {
+        shadow_maps_enabled: true,
+        range: 3.0,
+        ..default()
+    };
+    for light in [t.light(point_light(3.0), behind), t.light(spot, behind)] {
+        t.update();
+        assert!(!t.is_drawn(light));
+        // Bevy shows it now, and would not show it again.
+        t.app.world_mut().entity_mut(light).insert(NoCpuCulling);
+        t.update();
+        assert!(t.is_drawn(light));
+    }
+}
+
+#[test]
 fn lights_whose_light_ends_at_occluders_are_not_drawn_and_those_beyond_are() {
     let mut t = TestWorld::new();
     let wall = t.wall(Occluder::default());

@@ -5,7 +5,8 @@
 mod world;
 
 use bevy::camera::visibility::{
-    DynamicSkinnedMeshBounds, NoFrustumCulling, RenderLayers, VisibilityRange, VisibleEntities,
+    DynamicSkinnedMeshBounds, NoAutoAabb, NoCpuCulling, NoFrustumCulling, RenderLayers,
+    VisibilityRange, VisibleEntities,
 };
 use bevy::diagnostic::DiagnosticsStore;
 use bevy::mesh::VertexAttributeValues;
@@ -101,6 +102,31 @@ fn children_of_hidden_and_moved_parents_occlude_as_they_are_drawn() {
     assert!(t.sees(ball));
     *t.get_mut::<Visibility>(parent) = Visibility::Inherited;
     *t.get_mut::<Transform>(parent) = Transform::from_xyz(30.0, 0.0, 0.0);
+    t.update();
+    assert!(t.sees(ball));
+}
+
+#[test]
+fn boxes_without_a_mesh_follow_the_visibility_of_their_parents() {
+    let mut t = TestWorld::new();
+    let ball = t.ball(-9.0);
+    let half = Vec3::new(4.0, 4.0, 0.1);
+    let world = t.app.world_mut();
+    let child = world.spawn((Transform::default(), Occluder::from_box(-half, half)));
+    let child = child.id();
+    let place = Transform::from_xyz(0.0, 0.0, -5.0);
+    let parent = world.spawn((place, Visibility::default()));
+    let parent = parent.id();
+    world.entity_mut(parent).add_child(child);
+    t.update();
+    assert!(!t.sees(ball));
+    *t.get_mut::<Visibility>(parent) = Visibility::Hidden;
+    t.update();
+    assert!(t.sees(ball));
+    *t.get_mut::<Visibility>(parent) = Visibility::Inherited;
+    t.update();
+    assert!(!t.sees(ball));
+    *t.get_mut::<Visibility>(child) = Visibility::Hidden;
     t.update();
     assert!(t.sees(ball));
 }
@@ -422,6 +448,76 @@ fn oblique_near_planes_leave_occluders_that_lie_wholly_beyond_them() {
     t.look_through(behind(2.0));
     t.update();
     assert!(!t.sees(ball));
+}
+
+#[test]
+fn boxes_and_proxies_hide_nothing_where_the_near_plane_may_cut_the_mesh_around_them() {
+    let mut t = TestWorld::new();
+    let half = Vec3::new(3.9, 3.9, 1.0);
+    let block = t.wall(Occluder::default());
+    let mesh = t.add_mesh(Cuboid::new(8.0, 8.0, 4.0));
+    t.get_mut::<Mesh3d>(block).0 = mesh;
+    let proxy = t.add_mesh(Cuboid::from_size(2.0 * half));
+    let ball = t.ball(-20.0);
+    for occluder in [Occluder::from_box(-half, half), Occluder::from_proxy(proxy)] {
+        t.app.world_mut().entity_mut(block).insert(occluder);
+        // The block begins at -3, what is in it at -4, and the near plane lies 0.1 before the eye.
+        for (z, hides) in [(0.0, true), (-2.95, false), (-3.5, false), (-2.8, true)] {
+            t.get_mut::<Transform>(t.camera).translation.z = z;
+            t.update();
+            assert_eq!(!t.sees(ball), hides, "from {z}");
+        }
+    }
+    // The own mesh is cut as it is drawn.
+    t.app
+        .world_mut()
+        .entity_mut(block)
+        .insert(Occluder::default());
+    t.update();
+    assert!(!t.sees(ball));
+}
+
+#[test]
+fn boxes_in_meshes_whose_bounds_are_unknown_hide_nothing() {
+    let half = Vec3::new(3.9, 3.9, 0.05);
+    let hides = |change: fn(&mut EntityWorldMut)| {
+        let mut t = TestWorld::new();
+        let wall = t.wall(Occluder::from_box(-half, half));
+        let ball = t.ball(-9.0);
+        change(&mut t.app.world_mut().entity_mut(wall));
+        t.update();
+        !t.sees(ball)
+    };
+    assert!(hides(|_| ()));
+    assert!(!hides(|wall| {
+        wall.insert(NoFrustumCulling);
+    }));
+    assert!(!hides(|wall| {
+        wall.insert(NoAutoAabb);
+    }));
+    assert!(!hides(|wall| {
+        wall.insert(SkinnedMesh::default());
+    }));
+    assert!(!hides(|wall| {
+        wall.insert(MeshMorphWeights::Value { weights: vec![] });
+    }));
+}
+
+#[test]
+fn what_bevy_does_not_cull_on_the_processor_hides_nothing() {
+    let mut t = TestWorld::new();
+    let half = Vec3::new(3.9, 3.9, 0.05);
+    let wall = t.wall(Occluder::default());
+    let ball = t.ball(-9.0);
+    for occluder in [Occluder::default(), Occluder::from_box(-half, half)] {
+        t.app.world_mut().entity_mut(wall).insert(occluder);
+        t.update();
+        assert!(!t.sees(ball));
+        t.app.world_mut().entity_mut(wall).insert(NoCpuCulling);
+        t.update();
+        assert!(t.sees(ball));
+        t.app.world_mut().entity_mut(wall).remove::<NoCpuCulling>();
+    }
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use bevy::core_pipeline::prepass::DepthPrepass;
 use bevy::prelude::*;
 use bevy::render::occlusion_culling::OcclusionCulling;
-use bevy_foveal_cull::CpuOcclusionCulling;
+use bevy_foveal_cull::{CpuOcclusionCulling, CpuOcclusionOverlayCamera};
 
 /// A way of culling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,7 +56,7 @@ impl Mode {
     /// Switches a world's cameras and lights to it.
     pub fn set(self, world: &mut World) {
         let cameras: Vec<Entity> = world
-            .query_filtered::<Entity, With<Camera3d>>()
+            .query_filtered::<Entity, (With<Camera3d>, Without<CpuOcclusionOverlayCamera>)>()
             .iter(world)
             .collect();
         for camera in cameras {

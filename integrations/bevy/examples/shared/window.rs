@@ -8,7 +8,9 @@ use bevy::asset::{AssetPlugin, UnapprovedPathMode};
 use bevy::core_pipeline::tonemapping::Tonemapping;
 use bevy::diagnostic::{DiagnosticsStore, FrameTimeDiagnosticsPlugin};
 use bevy::prelude::*;
-use bevy_foveal_cull::{CpuOcclusionOverlay, CpuOcclusionPlugin, CpuOcclusionStats};
+use bevy_foveal_cull::{
+    CpuOcclusionOverlay, CpuOcclusionOverlayCamera, CpuOcclusionPlugin, CpuOcclusionStats,
+};
 
 /// Opens the window: 1, 2, 3 and 4 switch the way of culling, O the overlay, space stops the walk.
 pub fn run(name: &str, place: impl Place, picture: &Picture) {
@@ -98,7 +100,7 @@ fn keys(world: &mut World) {
 fn walk(
     time: Res<Time>,
     mut walk: ResMut<Walk>,
-    mut camera: Single<&mut Transform, With<Camera3d>>,
+    mut camera: Single<&mut Transform, (With<Camera3d>, Without<CpuOcclusionOverlayCamera>)>,
 ) {
     if !walk.ready {
         return;
