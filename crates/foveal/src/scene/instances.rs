@@ -39,16 +39,6 @@ impl InstanceUniform {
         }
     }
 
-    /// The same instance, where it does not move any more.
-    pub(crate) fn at_rest(self) -> Self {
-        Self {
-            previous_x: self.world_x,
-            previous_y: self.world_y,
-            previous_z: self.world_z,
-            ..self
-        }
-    }
-
     /// Its place.
     pub(crate) fn world_from_object(&self) -> Mat4 {
         let rows = [

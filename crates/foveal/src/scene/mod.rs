@@ -228,7 +228,7 @@ impl SceneOnGpu {
             return false;
         }
         for uniform in &mut self.uniforms {
-            *uniform = uniform.at_rest();
+            *uniform = InstanceUniform::still(uniform.world_from_object());
         }
         self.geometry.end_motion(gpu);
         true
