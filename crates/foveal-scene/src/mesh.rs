@@ -17,11 +17,9 @@ pub struct Vertex {
     pub tangent: [f32; 4],
     /// The two UV sets that the material uses, (0, 0) top left.
     pub uv: [[f32; 2]; 2],
-    /// Linear RGBA, 8 bits each (vertex colours are linear in glTF); opaque white when the file
-    /// gives none.
-    pub color: [u8; 4],
-    /// Zero. Keeps the vertex at 64 bytes.
-    pub reserved: u32,
+    /// Linear RGBA (vertex colours are linear in glTF), 65,535 for 1, so that dark colours stay
+    /// apart; opaque white when the file gives none.
+    pub color: [u16; 4],
 }
 
 /// Vertices, and what they make: triangles, lines or points, or several of these in a mesh that a

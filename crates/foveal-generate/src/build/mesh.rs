@@ -13,7 +13,7 @@ pub(crate) struct MeshBuilder {
     indices: Vec<u32>,
     place: Mat4,
     normal_place: Mat3,
-    color: [u8; 4],
+    color: [u16; 4],
     pub(super) grain: bool,
 }
 
@@ -25,7 +25,7 @@ impl MeshBuilder {
             indices: Vec::new(),
             place: Mat4::IDENTITY,
             normal_place: Mat3::IDENTITY,
-            color: [255; 4],
+            color: [u16::MAX; 4],
             grain: false,
         }
     }
@@ -37,9 +37,10 @@ impl MeshBuilder {
         self
     }
 
-    /// Gives what follows this linear vertex colour.
+    /// Gives what follows this linear vertex colour, 255 for 1.
     pub(crate) fn tint(&mut self, color: [u8; 3]) -> &mut Self {
-        self.color = [color[0], color[1], color[2], 255];
+        let [r, g, b] = color.map(|c| 257 * u16::from(c));
+        self.color = [r, g, b, u16::MAX];
         self
     }
 
@@ -61,7 +62,6 @@ impl MeshBuilder {
             tangent: [0.0; 4],
             uv: [uv.to_array(), [0.0; 2]],
             color: self.color,
-            reserved: 0,
         });
         index
     }

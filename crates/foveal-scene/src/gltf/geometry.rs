@@ -176,7 +176,7 @@ fn assemble(
         .iter()
         .map(|&i| Vertex {
             position: positions[i as usize],
-            color: [255; 4],
+            color: [u16::MAX; 4],
             ..Vertex::zeroed()
         })
         .collect();
@@ -254,7 +254,7 @@ impl Fill<'_> {
 }
 
 /// Linear RGBA in 8 bits from any of glTF's colour formats.
-fn colors(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[u8; 4]>> {
+fn colors(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[u16; 4]>> {
     let found = reader.accessor(accessor);
     // Integers that forgot to say so are meant as fractions: colours have no other use for them.
     let unit = match found.component {
@@ -263,19 +263,19 @@ fn colors(reader: Reader<'_>, accessor: u32) -> Parsed<Vec<[u8; 4]>> {
         Component::U16 => 1.0 / 65535.0,
         _ => 1.0,
     };
-    let byte = |x: f32| (x * unit * 255.0).round().clamp(0.0, 255.0) as u8;
+    let whole = |x: f32| (x * unit * 65535.0).round() as u16;
     if found.width == 3 {
         let list = reader.floats::<3>(accessor)?;
         Ok(list
             .into_iter()
             .map(|c| {
-                let [r, g, b] = c.map(byte);
-                [r, g, b, 255]
+                let [r, g, b] = c.map(whole);
+                [r, g, b, u16::MAX]
             })
             .collect())
     } else {
         let list = reader.floats::<4>(accessor)?;
-        Ok(list.into_iter().map(|c| c.map(byte)).collect())
+        Ok(list.into_iter().map(|c| c.map(whole)).collect())
     }
 }
 

@@ -124,10 +124,10 @@ fn colours_count_where_all_vertices_have_one() {
         scene.meshes[0].vertices[0].color
     };
     let [r, g, b, _] = with("1 0 0.5");
-    assert_eq!((r, g), (255, 0));
+    assert_eq!((r, g), (u16::MAX, 0));
     // As displays show it: half is a fifth of the light.
-    assert!(b.abs_diff(55) <= 1, "{b}");
-    assert_eq!(with(""), [255; 4]);
+    assert!(b.abs_diff(14027) <= 2, "{b}");
+    assert_eq!(with(""), [u16::MAX; 4]);
 }
 
 #[test]
@@ -288,11 +288,35 @@ fn a_ply_file_is_read_with_colours_and_texture_coordinates() {
     assert_eq!(corner.uv[0], [1.0, 0.0]);
     assert_eq!(corner.normal, [0.0, 0.0, 1.0]);
     let [red, green, blue, _] = corner.color;
-    assert_eq!((red, green), (255, 0));
-    // IEC 61966-2-1: 188 of 255 is half of the light.
-    assert!(blue.abs_diff(128) <= 1, "{blue}");
+    assert_eq!((red, green), (u16::MAX, 0));
+    // IEC 61966-2-1: 188 of 255 is 0.5029 of the light.
+    assert!(blue.abs_diff(32_957) <= 2, "{blue}");
     let text = "1 of 2 faces have fewer than three corners or name vertices that do not exist, and are left out";
     assert_eq!(scene.warnings[0].text, text);
+}
+
+#[test]
+fn dark_colours_stay_apart() {
+    let mut text = String::from("ply\nformat ascii 1.0\nelement vertex 30\n");
+    for axis in ["x", "y", "z"] {
+        text += &format!("property float {axis}\n");
+    }
+    for channel in ["red", "green", "blue"] {
+        text += &format!("property uchar {channel}\n");
+    }
+    text += "element face 10\nproperty list uchar int vertex_indices\nend_header\n";
+    for i in 0..30 {
+        text += &format!("{i} {} 0 {i} {i} {i}\n", i * i);
+    }
+    for i in 0..10 {
+        text += &format!("3 {} {} {}\n", 3 * i, 3 * i + 1, 3 * i + 2);
+    }
+    let scene = load("scan.ply", text.as_bytes(), &[]).unwrap();
+    let colors = scene.meshes[0].vertices.iter().map(|v| v.color[0]);
+    let apart: std::collections::BTreeSet<u16> = colors.collect();
+    assert_eq!(apart.len(), 30);
+    // IEC 61966-2-1: 1 of 255 is 0.000304 of the light.
+    assert_eq!(apart.iter().nth(1), Some(&20));
 }
 
 /// The square without colours in binary.
@@ -380,7 +404,7 @@ fn a_ply_file_without_faces_is_points_or_lines() {
     assert_eq!(scene.warnings, []);
     let mesh = &scene.meshes[0];
     assert_eq!(mesh.points, [0, 1]);
-    assert_eq!(mesh.vertices[0].color, [255, 0, 0, 255]);
+    assert_eq!(mesh.vertices[0].color, [u16::MAX, 0, 0, u16::MAX]);
     assert!(!mesh.lights_strokes() && scene.triangle_count() == 0);
 
     let text = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float nx\n\

@@ -167,17 +167,17 @@ fn morphed_uvs(rest: &Vertex, active: &[(&MorphTarget, f32)], vertex: usize) -> 
 }
 
 /// Clamped to what colours can be, as the specification says (section 3.7.2.2).
-fn morphed_color(rest: &Vertex, active: &[(&MorphTarget, f32)], vertex: usize) -> [u8; 4] {
-    let at_rest = Vec4::from(rest.color.map(f32::from)) / 255.0;
+fn morphed_color(rest: &Vertex, active: &[(&MorphTarget, f32)], vertex: usize) -> [u16; 4] {
+    let at_rest = Vec4::from(rest.color.map(f32::from)) / 65535.0;
     let moved = active.iter().fold(at_rest, |color, (t, weight)| {
         let delta = t.colors.get(vertex).copied();
         color + delta.unwrap_or(Vec4::ZERO) * *weight
     });
     if moved.is_finite() {
-        (moved.clamp(Vec4::ZERO, Vec4::ONE) * 255.0)
+        (moved.clamp(Vec4::ZERO, Vec4::ONE) * 65535.0)
             .round()
             .to_array()
-            .map(|x| x as u8)
+            .map(|x| x as u16)
     } else {
         rest.color
     }

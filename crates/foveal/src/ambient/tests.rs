@@ -46,8 +46,7 @@ fn corner(sides: usize) -> Scene {
                 normal: normal.into(),
                 tangent: [0.0; 4],
                 uv: [[0.0; 2]; 2],
-                color: [255; 4],
-                reserved: 0,
+                color: [u16::MAX; 4],
             });
             Mesh {
                 name: format!("side {i}"),

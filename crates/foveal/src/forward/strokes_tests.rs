@@ -25,10 +25,10 @@ fn camera() -> Camera {
 }
 
 pub(super) fn vertex(position: Vec3, color: [u8; 3]) -> Vertex {
-    let [r, g, b] = color;
+    let [r, g, b] = color.map(|c| 257 * u16::from(c));
     Vertex {
         position: position.to_array(),
-        color: [r, g, b, 255],
+        color: [r, g, b, u16::MAX],
         ..bytemuck::Zeroable::zeroed()
     }
 }

@@ -13,8 +13,7 @@ fn quad() -> Mesh {
             normal: [0.0, 0.0, 1.0],
             tangent: [1.0, 0.0, 0.0, 1.0],
             uv: [[0.5 + 0.5 * x, 0.5 - 0.5 * y]; 2],
-            color: [255; 4],
-            reserved: 0,
+            color: [u16::MAX; 4],
         })
         .to_vec();
     let bounds = foveal_scene::Aabb::of_points(vertices.iter().map(|v| v.position.into()));

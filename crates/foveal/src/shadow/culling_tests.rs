@@ -250,7 +250,7 @@ fn vertex(position: Vec3, normal: [f32; 3]) -> Vertex {
     Vertex {
         position: position.to_array(),
         normal,
-        color: [255; 4],
+        color: [u16::MAX; 4],
         ..bytemuck::Zeroable::zeroed()
     }
 }

@@ -76,7 +76,7 @@ fn corner_at(vertex: u32) -> Corner {
         bitcast<vec3f>(vec3u(a.w, b.xy)),
         bitcast<vec4f>(vec4u(b.zw, c.xy)),
         bitcast<vec4f>(vec4u(c.zw, d.xy)),
-        unpack4x8unorm(d.z),
+        vec4f(unpack2x16unorm(d.z), unpack2x16unorm(d.w)),
     );
 }
 

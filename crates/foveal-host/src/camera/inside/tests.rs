@@ -16,8 +16,7 @@ fn hollow_box(world_from_object: Mat4) -> Scene {
         normal: [0.0; 3],
         tangent: [0.0; 4],
         uv: [[0.0; 2]; 2],
-        color: [255; 4],
-        reserved: 0,
+        color: [u16::MAX; 4],
     };
     let quads = [
         [0, 4, 6, 2],

@@ -20,7 +20,7 @@ fn flat_normals_give_each_triangle_its_own_vertices() {
     assert!(
         mesh.vertices
             .iter()
-            .all(|v| v.tangent == [0.; 4] && v.color == [255; 4])
+            .all(|v| v.tangent == [0.; 4] && v.color == [u16::MAX; 4])
     );
 
     let options = LoadOptions {
@@ -67,7 +67,11 @@ fn points_and_lines_keep_the_attributes_of_their_vertices() {
         assert_eq!(mesh.lines, *lines);
         assert_eq!(mesh.points.len(), if mode == 0 { 4 } else { 0 });
         assert!(mesh.indices.is_empty() && !mesh.lights_strokes());
-        assert!(mesh.vertices.iter().all(|v| v.color == [0, 255, 0, 255]));
+        assert!(
+            mesh.vertices
+                .iter()
+                .all(|v| v.color == [0, u16::MAX, 0, u16::MAX])
+        );
         assert!(mesh.vertices.iter().all(|v| v.tangent == [0.; 4]));
         let bounds = Aabb {
             min: Vec3::ZERO,
@@ -231,9 +235,9 @@ fn vertex_colours_come_in_every_format() {
         let accessor = file.accessor(bytes, code, kind, 3);
         file.json["accessors"][accessor]["normalized"] = json!(normalized);
         file.primitive()["attributes"]["COLOR_0"] = json!(accessor);
-        let alpha = if kind == "VEC3" { 255 } else { 0 };
+        let alpha = if kind == "VEC3" { u16::MAX } else { 0 };
         let color = file.load().meshes[0].vertices[1].color;
-        assert_eq!(color, [255, 0, 51, alpha], "{code} {kind}");
+        assert_eq!(color, [u16::MAX, 0, 13107, alpha], "{code} {kind}");
     }
 }
 

@@ -220,8 +220,8 @@ fn morph_targets_move_colours_and_texture_coordinates() {
     assert_eq!(scene.warnings, []);
     let vertices = &scene.meshes[scene.instances[0].mesh as usize].vertices;
     // 0.2 + 0.4, and 0.6 - 1.6, which is clamped.
-    assert_eq!(vertices[0].color, [153, 102, 0, 255]);
-    assert_eq!(vertices[1].color, [51, 102, 153, 255]);
+    assert_eq!(vertices[0].color, [39321, 26214, 0, 65535]);
+    assert_eq!(vertices[1].color, [13107, 26214, 39321, 65535]);
     let material = &scene.materials[scene.instances[0].material as usize];
     let set = |slot: Option<crate::TextureRef>| slot.unwrap().uv_set as usize;
     let (base, emissive) = (

@@ -229,12 +229,13 @@ fn extreme_perspective_keeps_every_attribute() {
         vertex.normal = Vec3::new(i as f32 - 1.5, (i % 2) as f32, 1.0)
             .normalize()
             .to_array();
-        vertex.color = [
+        let color: [u16; 4] = [
             [255, 0, 90, 255],
             [0, 200, 40, 255],
             [90, 90, 255, 255],
             [10, 70, 0, 255],
         ][i];
+        vertex.color = color.map(|c| 257 * c);
     }
     assert_same_gbuffer(&scene, &camera, 0.01);
 }

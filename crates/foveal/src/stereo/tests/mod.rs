@@ -46,7 +46,7 @@ fn shape(corners: &[Vec3]) -> Scene {
     let vertex = |p: &Vec3| Vertex {
         position: p.to_array(),
         normal: [0.0, 0.0, 1.0],
-        color: [255; 4],
+        color: [u16::MAX; 4],
         ..bytemuck::Zeroable::zeroed()
     };
     let bounds = corners
