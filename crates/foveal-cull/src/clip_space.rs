@@ -263,7 +263,7 @@ fn orthographic(rows: [DVec4; 4], depth: ClipDepth) -> Result<Eye, ViewError> {
             bottom,
             top,
             near_m: 0.0,
-            far_m: (far - near).abs() / per_metre,
+            far_m: ((far - near).abs() + ROUNDING * (1.0 + z.w.abs())) / per_metre,
         },
     })
 }

@@ -251,11 +251,8 @@ fn a_triangle_that_is_nearly_endless_is_drawn_where_it_is() {
     assert!(first.iter().any(|d| *d > 0.0), "it is seen");
 }
 
-/// A job system that leaves out a task had drawn what the task found in the frame before, where it
-/// was then.
-#[test]
-fn a_task_that_is_left_out_hides_nothing_visible() {
-    // A wall that moves and a plate of many clusters, in several parts of the selection.
+/// A wavy plate of 2 by 2 metres, across z.
+fn plate() -> Arc<OccluderMesh> {
     let n = 120u32;
     let positions: Vec<[f32; 3]> = (0..=n)
         .flat_map(|y| (0..=n).map(move |x| [x, y].map(|v| 2.0 * v as f32 / n as f32 - 1.0)))
@@ -265,8 +262,15 @@ fn a_task_that_is_left_out_hides_nothing_visible() {
         .flat_map(|y| (0..n).map(move |x| y * (n + 1) + x))
         .flat_map(|i| [i, i + 1, i + n + 2, i, i + n + 2, i + n + 1])
         .collect();
-    let plate = OccluderMesh::bake(&positions, &indices, BakeOptions::default()).unwrap();
-    let plate = Arc::new(plate);
+    Arc::new(OccluderMesh::bake(&positions, &indices, BakeOptions::default()).unwrap())
+}
+
+/// A job system that leaves out a task had drawn what the task found in the frame before, where it
+/// was then.
+#[test]
+fn a_task_that_is_left_out_hides_nothing_visible() {
+    // Many clusters, in several parts of the selection.
+    let plate = plate();
     let view = View::perspective([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], 1.2, 1.5, 0.1);
     let at = |x: f64| Affine::from_translation([x, 0.0, -3.0]);
     let behind = |x: f32| Aabb::new([x - 0.2, -0.2, -4.2], [x + 0.2, 0.2, -4.0]);
@@ -299,4 +303,39 @@ fn a_task_that_is_left_out_hides_nothing_visible() {
         }
         assert!(hidden >= 4, "{hidden}");
     }
+}
+
+/// A panic after the tasks of a frame had left depth that the frame after took for its own.
+#[test]
+fn a_frame_that_panics_hides_nothing_in_the_next() {
+    let mut walls = OccluderSet::new();
+    let at = Affine::from_translation([0.0, 0.0, -3.0]);
+    walls.add(plate(), at).unwrap();
+    let view = View::perspective([0.0; 3], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0], 1.2, 1.5, 0.1);
+    let boxes = [Aabb::new([-0.2, -0.2, -4.2], [0.2, 0.2, -4.0])];
+    let run = AtomicUsize::new(0);
+    let threads = ThreadsFn::new(2, |tasks, task| {
+        (0..tasks).for_each(task);
+        // The second run of a frame draws.
+        assert_eq!(run.fetch_add(1, Ordering::Relaxed), 0, "as it should");
+    });
+    let options = FrameOptions::default().with_occluder_pixels_per_quad(0.0);
+    let mut culler = Culler::new(150, 100).unwrap();
+    let asked = |culler: &mut Culler| {
+        let mut result = [Visibility::Outside];
+        culler.query(&boxes, DVec3::ZERO, &mut result).unwrap();
+        result[0]
+    };
+    culler
+        .rasterize(&view, &walls, &options, &SingleThread)
+        .unwrap();
+    assert_eq!(asked(&mut culler), Visibility::Occluded);
+    let mut culler = Culler::new(150, 100).unwrap();
+    let frame = || culler.rasterize(&view, &walls, &options, &threads);
+    assert!(std::panic::catch_unwind(std::panic::AssertUnwindSafe(frame)).is_err());
+    assert_eq!(asked(&mut culler), Visibility::Visible);
+    culler
+        .rasterize(&view, &OccluderSet::new(), &options, &SingleThread)
+        .unwrap();
+    assert_eq!(asked(&mut culler), Visibility::Visible);
 }

@@ -63,6 +63,10 @@ impl OcclusionBuffer {
     }
 
     pub(crate) fn clear(&mut self) {
+        // A frame that a panic ended has not noted which blocks it drew.
+        for (used, state) in self.used.iter_mut().zip(&self.states) {
+            *used |= u8::from(state.kind() != KIND_EMPTY);
+        }
         self.min.fill(EMPTY);
         self.states.fill(BlockState::EMPTY);
     }
@@ -162,6 +166,10 @@ mod tests {
             for b in (0..buffer.states.len()).filter(|&b| holds(b)) {
                 buffer.states[b] = BlockState::DEPTH;
                 buffer.depth[b].0.fill(code);
+            }
+            // A frame that a panic ends.
+            if code == 2 {
+                continue;
             }
             buffer.empty_stale();
             for b in 0..buffer.states.len() {

@@ -33,7 +33,8 @@ impl<L: Lanes> Polygon<L> {
     pub(crate) fn shrink(&mut self, l: L, by: f32) {
         self.edges.shrink(l, by.into());
         if let Some((after, last)) = &mut self.rows {
-            *after += by;
+            // It was rounded down to a half step, which `by` is not.
+            *after += by + 0.5;
             *last -= by;
         }
     }
@@ -111,6 +112,53 @@ pub(crate) fn draw<L: Lanes>(l: L, band: &mut Band<'_>, polygon: &Polygon<L>) {
             && let Some(record) = &mut band.record
         {
             record.add(by, [first, last], work);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DepthPlane, Edges, Polygon};
+    use crate::simd::Lanes;
+    use crate::simd::portable::Portable;
+
+    /// Samples lie on half steps; a horizontal edge that moves inwards leaves none beyond it.
+    #[test]
+    fn shrinking_moves_horizontal_edges_by_all_of_it() {
+        let l = Portable;
+        for i in 0..400 {
+            let (top, by) = (10.0 + f64::from(i) * 0.0173, 0.72 + i as f32 * 0.0031);
+            let bottom = top + 20.0;
+            let x = l.load_doubles(&[0.0, 0.0, 30.0, 30.0]);
+            let y = l.load_doubles(&[top, bottom, bottom, top]);
+            let (edges, rows) = Edges::of(l, x, y).unwrap();
+            let plane = DepthPlane {
+                x: 0.0,
+                y: 0.0,
+                depth: 1.0,
+                dx: 0.0,
+                dy: 0.0,
+                min: 1.0,
+                min_code: 1,
+                max_code: 1,
+            };
+            let blocks = [0; 4];
+            let mut polygon = Polygon {
+                edges,
+                rows,
+                plane,
+                blocks,
+            };
+            polygon.shrink(l, by);
+            let (after, last) = polygon.rows.unwrap();
+            assert!(
+                f64::from(after) >= top + f64::from(by) - 1e-5,
+                "{top}, {by}: {after}"
+            );
+            assert!(
+                f64::from(last) <= bottom - f64::from(by) + 1e-5,
+                "{bottom}, {by}: {last}"
+            );
         }
     }
 }
