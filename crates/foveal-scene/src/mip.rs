@@ -4,16 +4,22 @@
 //! weights that follow the texel borders). Colours are averaged as light, not as sRGB code values;
 //! intermediate levels keep 16 bits so that rounding does not add up.
 
+mod coverage;
+
 use std::ops::Range;
+
+use coverage::Mask;
 
 /// What the channels mean for filtering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Content {
     /// sRGB colour; alpha is ignored by the material or not there.
     Color,
-    /// sRGB colour with a meaningful alpha: transparent texels give no colour. With a threshold,
-    /// the share of texels that pass it is kept the same on every level (Castaño 2010, 'Computing
-    /// alpha mipmaps').
+    /// sRGB colour with a meaningful alpha: transparent texels give no colour, and those of further
+    /// levels have the colour around them. With a threshold above 0, the share of texels that pass
+    /// it is kept the same on every level, by a factor on alpha (Castaño 2010, 'Computing alpha
+    /// mipmaps') and, where many texels share an alpha, by dithering: as near as whole texels can
+    /// come, but at least one.
     Cutout {
         /// Alpha threshold in 0 … 1 of an alpha mask; `None` for blending.
         threshold: Option<f32>,
@@ -38,10 +44,17 @@ pub fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<
     if count == 1 {
         return levels;
     }
-    let threshold = match content {
+    let content = match content {
+        // Everything passes, so every colour is seen.
         Content::Cutout {
             threshold: Some(threshold),
-        } => Some((threshold, coverage(&levels[0], threshold))),
+        } if threshold <= 0.0 => Content::Color,
+        other => other,
+    };
+    let mask = match content {
+        Content::Cutout {
+            threshold: Some(threshold),
+        } => Some(Mask::of(&levels[0], threshold)),
         _ => None,
     };
     let mut wide = Wide::new();
@@ -61,12 +74,35 @@ pub fn chain(pixels: Vec<u8>, width: u32, height: u32, content: Content) -> Vec<
             })
         };
         (w, h) = ((w / 2).max(1), (h / 2).max(1));
-        let scale = threshold.map_or(1.0, |(threshold, wanted)| {
-            alpha_scale(&wide, threshold, wanted)
-        });
-        levels.push(narrow(&wide, content, scale));
+        let kept = mask.map(|mask| (mask, mask.keep(&wide)));
+        let scale = kept.as_ref().map_or(1.0, |(_, kept)| kept.scale);
+        let mut narrowed = narrow(&wide, content, scale);
+        if let Some((mask, kept)) = kept {
+            mask.part(&kept, &wide, w, &mut narrowed);
+        }
+        levels.push(narrowed);
+    }
+    if matches!(content, Content::Cutout { .. }) {
+        color_transparent(&mut levels, width as usize, height as usize);
     }
     levels
+}
+
+/// Gives texels of alpha 0 the colour around them, as the next level has it: a renderer
+/// interpolates between them and their neighbours. Level 0 stays as given.
+fn color_transparent(levels: &mut [Vec<u8>], width: usize, height: usize) {
+    let side = |size: usize, level: usize| (size >> level).max(1);
+    for level in (1..levels.len() - 1).rev() {
+        let (finer, coarser) = levels.split_at_mut(level + 1);
+        let w = side(width, level);
+        let (next_w, next_h) = (side(width, level + 1), side(height, level + 1));
+        let texels = finer[level].as_chunks_mut::<4>().0;
+        for (i, texel) in texels.iter_mut().enumerate().filter(|(_, t)| t[3] == 0) {
+            let (x, y) = ((i % w / 2).min(next_w - 1), (i / w / 2).min(next_h - 1));
+            let from = (y * next_w + x) * 4;
+            texel[..3].copy_from_slice(&coarser[0][from..from + 3]);
+        }
+    }
 }
 
 /// Texels as 16-bit numbers in the space where they may be averaged. Normals are offset by one
@@ -234,47 +270,6 @@ impl Taps {
     }
 }
 
-/// The smallest 16-bit alpha that is stored as a code which passes the threshold.
-fn least_passing(threshold: f32) -> f32 {
-    let code = (threshold * 255.0 - 1e-3).ceil().max(0.0);
-    code * 257.0 - 128.0
-}
-
-/// Share of texels that pass the threshold.
-fn coverage(pixels: &[u8], threshold: f32) -> f32 {
-    let least = least_passing(threshold);
-    let texels = pixels.as_chunks::<4>().0;
-    let passes = |t: &&[u8; 4]| f32::from(u16::from(t[3]) * 257) >= least;
-    texels.iter().filter(passes).count() as f32 / texels.len() as f32
-}
-
-/// The factor on alpha that brings the coverage as near to `wanted` as it can come.
-fn alpha_scale(wide: &[[u16; 4]], threshold: f32, wanted: f32) -> f32 {
-    if threshold <= 0.0 || wanted <= 0.0 || wanted >= 1.0 {
-        return 1.0;
-    }
-    let mut alphas: Vec<u16> = wide.iter().map(|t| t[3]).collect();
-    alphas.sort_unstable_by(|a, b| b.cmp(a));
-    let passing = ((wanted * alphas.len() as f32).round() as usize).max(1);
-    // The smallest alpha that is to pass. Where many texels share it, all of them pass or none
-    // does: whichever is nearer, but never nothing at all.
-    let mut least = alphas[passing - 1];
-    let above = alphas.partition_point(|&a| a > least);
-    let with_ties = alphas.partition_point(|&a| a >= least);
-    if above > 0 && with_ties - passing > passing - above {
-        least = alphas[above - 1];
-    }
-    // The threshold goes midway between the last that passes and the first that does not: a
-    // renderer interpolates between texels, and with the threshold at either of them every edge
-    // would move.
-    let failing = alphas[alphas.partition_point(|&a| a >= least)..]
-        .first()
-        .copied();
-    let middle = 0.5 * (f32::from(least) + f32::from(failing.unwrap_or(least)));
-    let scale = (least_passing(threshold) + 1.0) / middle.max(1.0);
-    scale.clamp(0.25, 4.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -351,6 +346,26 @@ mod tests {
     }
 
     #[test]
+    fn transparent_texels_have_the_colour_around_them() {
+        let cutout = |threshold| Content::Cutout { threshold };
+        for content in [cutout(None), cutout(Some(0.5)), cutout(Some(0.0))] {
+            for (w, h) in [(8, 1), (1, 8), (7, 1)] {
+                let texel = |i| [0, 160, 0, if i < 4 { 0 } else { 255 }];
+                let levels = chain((0..w * h).flat_map(texel).collect(), w, h, content);
+                for level in levels {
+                    let colors = level.as_chunks::<4>().0.iter().map(|t| [t[0], t[1], t[2]]);
+                    assert!(colors.into_iter().all(|c| c == [0, 160, 0]), "{level:?}");
+                }
+            }
+        }
+        // Black under full transparency does not come back further up.
+        let texel = |i: u32| if i < 4 { [0; 4] } else { [0, 160, 0, 255] };
+        let pixels = (0..8).flat_map(texel).collect();
+        let levels = chain(pixels, 8, 1, cutout(None));
+        assert_eq!(levels[1][..4], [0, 160, 0, 0]);
+    }
+
+    #[test]
     fn normals_stay_unit_vectors() {
         // Straight up and 90 degrees to the side give 45 degrees.
         let pixels = vec![128, 128, 255, 255, 255, 128, 128, 255];
@@ -359,36 +374,5 @@ mod tests {
         let [x, y, z] = [level[0], level[1], level[2]].map(decode);
         assert!((x * x + y * y + z * z - 1.0).abs() < 0.02);
         assert!((x - z).abs() < 0.02 && y.abs() < 0.02);
-    }
-
-    #[test]
-    fn alpha_masks_keep_their_coverage() {
-        // Noise that passes a threshold of 0.7 on 30 % of the picture.
-        let side = 64u32;
-        let noise =
-            |i: u32| (i.wrapping_mul(0x9E37_79B1) ^ i.rotate_left(16)).wrapping_mul(0x85EB_CA6B);
-        let pixels: Vec<u8> = (0..side * side)
-            .flat_map(|i| [80, 160, 40, (noise(i) >> 24) as u8])
-            .collect();
-        let share = |level: &[u8]| {
-            let passed = level.iter().skip(3).step_by(4).filter(|a| **a >= 179);
-            passed.count() as f32 / (level.len() / 4) as f32
-        };
-        let content = |threshold| Content::Cutout { threshold };
-        let kept = chain(pixels.clone(), side, side, content(Some(0.7)));
-        let lost = chain(pixels, side, side, content(None));
-        let wanted = share(&kept[0]);
-        assert!((wanted - 0.3).abs() < 0.02, "{wanted}");
-        assert!(share(&lost[3]) < 0.02, "{}", share(&lost[3]));
-        for (level, tolerance) in kept.iter().zip([0.0, 0.02, 0.02, 0.03, 0.05]) {
-            assert!(
-                (share(level) - wanted).abs() <= tolerance,
-                "{}",
-                share(level)
-            );
-        }
-        // A whole picture of one alpha does not vanish.
-        let even = chain([9, 9, 9, 180].repeat(16), 4, 4, content(Some(0.7)));
-        assert!(even.iter().all(|l| share(l) == 1.0));
     }
 }
