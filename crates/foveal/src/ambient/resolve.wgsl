@@ -73,7 +73,7 @@ fn resolve(@builtin(global_invocation_id) id: vec3u) {
         let offset = vec2f(at) - vec2f(texel);
         let expected = view_distance(max(depth + dot(slope, offset), 1e-20));
         let pixel_side = 2.0 * abs(to_view.x) / frame.size.x * select(there, 1.0, is_flat);
-        let allowed = dot(OFF_PLANE, vec2f(occlusion.radius, length(offset) * pixel_side)) + 1e-5 * there;
+        let allowed = dot(OFF_PLANE, vec2f(occlusion.radius, length(offset) * pixel_side)) + 1e-5 * abs(there);
         // Two blocks wide for blocks, three pixels for pixels.
         let wide = select(saturate(1.0 - abs(vec2f(step)) * 0.5 + vec2f(step) * past), vec2f(1.0), level == 0u);
         let off = abs(there - expected) / allowed;

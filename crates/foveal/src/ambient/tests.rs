@@ -7,7 +7,7 @@ use glam::{Mat4, UVec2, Vec3};
 
 use super::OcclusionUniform;
 use super::twin::Twin;
-use crate::testing::{Film, picture, rendered, shifted, small, texels};
+use crate::testing::{Film, f32_of_half, picture, rendered, shifted, small, texels};
 use crate::{
     AmbientOcclusion, Antialiasing, Composite, EnvironmentSource, Geometry, Renderer, Settings,
     Shading, Stereo,
@@ -369,10 +369,7 @@ fn every_way_of_shading_dims_alike() {
     let light = |settings: &Settings| {
         let renderer = rendered(&scene, camera, settings);
         let texels: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);
-        let sum: f32 = texels
-            .iter()
-            .map(|t| crate::testing::f32_of_half(t[1]))
-            .sum();
+        let sum: f32 = texels.iter().map(|t| f32_of_half(t[1])).sum();
         sum / texels.len() as f32
     };
     let plain = occluded(96, 64).with(|s| {
@@ -436,7 +433,7 @@ fn surfaces_with_lobes_are_dimmed_and_glass_is_drawn_as_before() {
             });
             let renderer = rendered(&scene, camera, &settings);
             let texels: Vec<[u16; 4]> = texels(&renderer.targets().radiance_view);
-            let green = texels.iter().map(|t| crate::testing::f32_of_half(t[1]));
+            let green = texels.iter().map(|t| f32_of_half(t[1]));
             green.sum::<f32>()
         };
         let [off, screen] = [AmbientOcclusion::Off, AmbientOcclusion::Screen].map(light);
@@ -445,4 +442,37 @@ fn surfaces_with_lobes_are_dimmed_and_glass_is_drawn_as_before() {
             "{screen}, {off}"
         );
     }
+}
+
+#[test]
+fn what_lies_behind_the_eye_of_a_parallel_camera_is_dimmed_alike() {
+    let scene = corner(3);
+    let camera = flat(&look([3.0, 2.5, 3.5], [0.0; 3], 50.0));
+    let settings = occluded(WIDTH, HEIGHT);
+    let green = |camera: &Camera, settings: &Settings| -> Vec<f32> {
+        let drawn = rendered(&scene, camera, settings);
+        let texels = texels::<[u16; 4]>(&drawn.targets().radiance_view);
+        texels.into_iter().map(|t| f32_of_half(t[1])).collect()
+    };
+    let before = green(&camera, &settings);
+    // Past the room.
+    let mut moved = camera.clone();
+    let by = 20.0;
+    moved.world_from_view.w_axis -= by * camera.world_from_view.z_axis;
+    moved.projection = Projection::Orthographic {
+        height_m: 5.0,
+        near_m: 0.1 - by,
+        far_m: 40.0 - by,
+    };
+    let after = green(&moved, &settings);
+    let off = |other: &[f32]| {
+        let pairs = before.iter().zip(other);
+        let off = pairs.filter(|(a, b)| (*a - *b).abs() > 0.02 * a.max(0.01));
+        off.count() as f32 / before.len() as f32
+    };
+    assert!(off(&after) < 0.02, "{}", off(&after));
+    // The test can tell.
+    let open = settings.with(|s| s.lighting.ambient_occlusion = AmbientOcclusion::Off);
+    let open = green(&camera, &open);
+    assert!(off(&open) > 0.1, "{}", off(&open));
 }

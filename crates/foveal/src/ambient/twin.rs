@@ -213,7 +213,7 @@ impl Twin<'_> {
             let wide = if self.is_flat() { 1.0 } else { there };
             let pixel_side = 2.0 * self.to_view().x / self.size.x as f32 * wide;
             let allowed = OFF_PLANE.dot(Vec2::new(self.reach.radius, offset.length() * pixel_side))
-                + 1e-5 * there;
+                + 1e-5 * there.abs();
             let tent = if level == 0 {
                 Vec2::ONE
             } else {

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use foveal_scene::{Aabb, AlphaMode};
+use foveal_scene::{Aabb, AlphaMode, Camera, Projection};
 use glam::Vec3;
 
 use super::{Faces, PipelineKey, Shape};
@@ -72,6 +72,16 @@ impl Nearness {
     }
 }
 
+/// What blended things are sorted by, from large to small: the depth of a box's centre in a parallel
+/// projection, its squared distance from the eye in a perspective.
+fn farness(bounds: &Aabb, camera: &Camera) -> f32 {
+    let away = bounds.center() - camera.eye();
+    match camera.projection {
+        Projection::Perspective { .. } => away.length_squared(),
+        Projection::Orthographic { .. } => -away.dot(camera.world_from_view.z_axis.truncate()),
+    }
+}
+
 /// A scene and what a frame draws of it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Draws<'a> {
@@ -80,12 +90,12 @@ pub(crate) struct Draws<'a> {
 }
 
 impl DrawList {
-    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen from `eye`;
+    /// Lists the draws of the instances of `scene` whose object `is_visible`, seen by `camera`;
     /// where they `merge`, equal ones become instances of one draw.
     pub(crate) fn build(
         &mut self,
         scene: &SceneOnGpu,
-        eye: Vec3,
+        camera: &Camera,
         merge: bool,
         is_visible: impl Fn(u32) -> bool,
     ) {
@@ -103,12 +113,12 @@ impl DrawList {
         let all = (0..).zip(&scene.instances);
         for (index, instance) in all.filter(|(_, instance)| instance.visible) {
             let mesh = scene.geometry.mesh(instance.mesh);
-            let distance = || instance.bounds.center().distance_squared(eye);
+            let farness = || farness(&instance.bounds, camera);
             // They reach beyond their boxes by half their width, so culling does not judge them.
             if mesh.stroke_index_count > 0 {
                 let key = key_of_strokes(instance, mesh.lights_strokes);
                 if instance.alpha_mode == AlphaMode::Blend {
-                    blended.push((distance(), index, key.shape));
+                    blended.push((farness(), index, key.shape));
                 } else {
                     strokes.push((key, instance.material, instance.mesh, index));
                 }
@@ -130,10 +140,10 @@ impl DrawList {
                         lobes: LobeClass::default(),
                         shape: Shape::Triangles,
                     };
-                    let nearness = Nearness::of(&instance.bounds, eye);
+                    let nearness = Nearness::of(&instance.bounds, camera.eye());
                     solid.push((nearness, key, instance.material, instance.mesh, index));
                 }
-                AlphaMode::Blend => blended.push((distance(), index, Shape::Triangles)),
+                AlphaMode::Blend => blended.push((farness(), index, Shape::Triangles)),
             }
         }
         solid.sort_unstable();
@@ -392,7 +402,7 @@ mod tests {
         let scene_on_gpu = renderer.scene();
         let order = |is_visible: &dyn Fn(u32) -> bool| {
             let mut list = DrawList::default();
-            list.build(scene_on_gpu, scene.cameras[0].eye(), true, is_visible);
+            list.build(scene_on_gpu, &scene.cameras[0], true, is_visible);
             list.drawn
         };
         let all = order(&|_| true);
@@ -400,5 +410,39 @@ mod tests {
         let expected: Vec<u32> = all.iter().copied().filter(|i| some.contains(i)).collect();
         assert!(some.len() < all.len() && !some.is_empty());
         assert_eq!(some, expected);
+    }
+
+    #[test]
+    fn parallel_cameras_sort_what_is_blended_by_its_depth() {
+        use glam::{Mat4, Vec4};
+        let pane = |color| foveal_scene::Material {
+            base_color: color,
+            alpha_mode: AlphaMode::Blend,
+            unlit: true,
+            ..foveal_scene::Material::default()
+        };
+        let (red, green) = (Vec4::new(1.0, 0.0, 0.0, 0.5), Vec4::new(0.0, 1.0, 0.0, 0.5));
+        let mut scene = crate::forward::twin::quads(vec![pane(red), pane(green)], &[0.0, -1.0]);
+        // The nearer one is to the side, so that its centre is farther from the eye.
+        let places = [(Vec3::X * 8.0, 4.0), (-Vec3::Z, 6.0)];
+        for (instance, (at, scale)) in scene.instances.iter_mut().zip(places) {
+            let scaled = Mat4::from_scale(Vec3::splat(scale));
+            instance.world_from_object = Mat4::from_translation(at) * scaled;
+            instance.bounds = (scene.meshes[0].bounds).transformed(instance.world_from_object);
+            scene.objects[instance.object as usize].bounds = instance.bounds;
+        }
+        let mut camera = Camera::look_at(Vec3::Z * 10.0, Vec3::ZERO, Vec3::Y, 1.0);
+        camera.projection = Projection::Orthographic {
+            height_m: 20.0,
+            near_m: 0.1,
+            far_m: 40.0,
+        };
+        let settings =
+            crate::testing::small(40, 40).with(|s| s.lighting.background = crate::Background::None);
+        let renderer = crate::testing::rendered(&scene, &camera, &settings);
+        let radiance = crate::testing::texels::<[u16; 4]>(&renderer.targets().radiance_view);
+        // Both are seen at x = 5, y = 0: red over green.
+        let [r, g, ..] = radiance[20 * 40 + 30].map(crate::testing::f32_of_half);
+        assert_eq!([r, g], [0.5, 0.25]);
     }
 }

@@ -107,7 +107,7 @@ impl Renderer {
         let is_visible = |object| culling.as_ref().is_none_or(|c| c.is_visible(object));
         list.build(
             scene,
-            frame.camera.eye(),
+            frame.camera,
             settings.geometry.merge_draws,
             is_visible,
         );

@@ -39,8 +39,9 @@ const PI: f32 = 3.14159265;
 #endif
 #endif
 
-// Relative difference of distances up to which a pixel's visibility is taken as it is, and the one
-// beyond which no pixel around speaks for a surface: nothing occludes it then.
+// Difference of distances up to which a pixel's visibility is taken as it is, and the one beyond
+// which no pixel around speaks for a surface: nothing occludes it then. As parts of the distance, or
+// of half the height that a parallel projection shows.
 const SAME_SURFACE: f32 = 0.005;
 const OTHER_SURFACE: f32 = 0.05;
 
@@ -272,14 +273,16 @@ fn environment_seen(pixel: vec2f, distance: f32) -> f32 {
     let last = vec2i(picture.end) - 1;
     let at = clamp(vec2i(pixel), first, last);
     var found = textureLoad(ambient_visibility, at, 0).xy;
-    if abs(found.y - distance) > SAME_SURFACE * distance {
+    let half_height = abs(frame.views[view_at(pixel)].view_from_ndc.y);
+    let scale = select(distance, half_height, frame.orthographic != 0u);
+    if abs(found.y - distance) > SAME_SURFACE * scale {
         for (var i = 0; i < 9; i++) {
             let beside = clamp(at + vec2i(i % 3, i / 3) - 1, first, last);
             let other = textureLoad(ambient_visibility, beside, 0).xy;
             found = select(found, other, abs(other.y - distance) < abs(found.y - distance));
         }
     }
-    return select(1.0, found.x, abs(found.y - distance) <= OTHER_SURFACE * distance);
+    return select(1.0, found.x, abs(found.y - distance) <= OTHER_SURFACE * scale);
 #endif
 #endif
 }
