@@ -9,6 +9,8 @@ mod clusters;
 mod grid;
 mod on_cpu;
 #[cfg(test)]
+mod tests;
+#[cfg(test)]
 mod twin;
 mod upload;
 

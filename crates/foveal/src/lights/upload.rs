@@ -6,8 +6,11 @@ use foveal_scene::{Light, LightKind};
 /// More lights would need more workgroups in one dispatch than devices give, many times over.
 pub(crate) const MAX_LIGHTS: usize = 16_384;
 
-/// Irradiance at which a light without a range of its own ends.
-const FAINTEST: f32 = 1.0 / 256.0;
+/// Irradiance at which a light without a range of its own ends, at an exposure in stops: less than
+/// a picture shows. Half-precision radiance holds no more than 16 stops.
+fn faintest(exposure_stops: f32) -> f32 {
+    (-8.0 - exposure_stops.clamp(0.0, 16.0)).exp2()
+}
 
 /// Mirrors `Light` in `shared/light.wgsl`, where the fields are explained.
 #[repr(C)]
@@ -48,9 +51,10 @@ impl LightsHeader {
 }
 
 impl LightUniform {
-    /// All lights of a scene, directional ones first.
-    pub(crate) fn all(lights: &[Light]) -> Vec<Self> {
-        let mut all: Vec<_> = lights.iter().map(Self::new).collect();
+    /// All lights of a scene that is seen at an exposure in stops, directional ones first.
+    pub(crate) fn all(lights: &[Light], exposure_stops: f32) -> Vec<Self> {
+        let faintest = faintest(exposure_stops);
+        let mut all: Vec<_> = lights.iter().map(|l| Self::new(l, faintest)).collect();
         all.sort_by_key(|light| !light.is_directional());
         all
     }
@@ -60,12 +64,12 @@ impl LightUniform {
         self.kind == 0
     }
 
-    fn new(light: &Light) -> Self {
+    fn new(light: &Light, faintest: f32) -> Self {
         let radiant = light.color * light.intensity;
         // An infinite light would be in every cluster: it ends where it has become invisible.
         let range = light
             .range_m
-            .unwrap_or_else(|| (radiant.max_element() / FAINTEST).max(0.0).sqrt());
+            .unwrap_or_else(|| (radiant.max_element() / faintest).max(0.0).sqrt());
         let (kind, spot_scale, spot_offset, cone) = match light.kind {
             LightKind::Directional => (0, 0.0, 1.0, (-1.0, 0.0)),
             LightKind::Point => (1, 0.0, 1.0, (-1.0, 0.0)),

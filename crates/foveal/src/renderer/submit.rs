@@ -125,10 +125,11 @@ impl Renderer {
 
     /// Writes the frame's uniform block and the list of drawn instances.
     fn upload(&mut self, frame: &Frame<'_>, seen: &Seen) -> ClusterGrid {
-        let (gpu, scene) = (&self.gpu, &self.scene);
         let Stages {
             settings, lights, ..
         } = &mut self.stages;
+        (self.scene).expose(&self.gpu, settings.picture.exposure_stops);
+        let (gpu, scene) = (&self.gpu, &self.scene);
         let layout = EyeLayout::of(settings);
         let clusters = ClusterGrid::new(&layout, &seen.eyes, frame.camera, &scene.lights);
         lights.reserve(gpu, &clusters);

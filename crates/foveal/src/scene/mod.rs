@@ -35,7 +35,7 @@ pub(crate) use textures::ArrayLimits;
 
 use std::borrow::Cow;
 
-use foveal_scene::{Aabb, AlphaMode, Environment, ImageLight, Scene, Texture};
+use foveal_scene::{Aabb, AlphaMode, Environment, ImageLight, Light, Scene, Texture};
 use glam::Mat4;
 
 use crate::culling::CullingScene;
@@ -68,7 +68,11 @@ pub(crate) struct SceneOnGpu {
     pub(crate) geometry: SceneGeometry,
     pub(crate) materials: SceneMaterials,
     pub(crate) instances: Vec<DrawnInstance>,
+    /// At the exposure that they are seen at.
     pub(crate) lights: Vec<LightUniform>,
+    /// As the scene has them.
+    lights_of_scene: Vec<Light>,
+    exposure_stops: f32,
     pub(crate) light_table: Table,
     pub(crate) environment: Environment,
     /// Its own, where it has one.
@@ -118,7 +122,8 @@ impl SceneOnGpu {
                 hint: String::new(),
             });
         }
-        let lights = LightUniform::all(&scene.lights);
+        let exposure_stops = settings.picture.exposure_stops;
+        let lights = LightUniform::all(&scene.lights, exposure_stops);
         let mut light_table = Table::new(gpu, "lights");
         write_lights(gpu, &mut light_table, &lights);
         let materials =
@@ -134,6 +139,8 @@ impl SceneOnGpu {
             instances: drawn_instances(scene, &materials),
             materials,
             lights,
+            lights_of_scene: scene.lights.clone(),
+            exposure_stops,
             light_table,
             environment: scene.environment,
             image_light: scene.image_light.clone(),
@@ -205,9 +212,9 @@ impl SceneOnGpu {
         }
         self.bounds = shadowed_bounds(scene, &self.geometry.meshes);
         self.instances = instances;
-        let lights = LightUniform::all(&scene.lights);
-        let lights_before = std::mem::replace(&mut self.lights, lights);
-        write_lights(gpu, &mut self.light_table, &self.lights);
+        self.lights_of_scene.clone_from(&scene.lights);
+        let lights_before = std::mem::take(&mut self.lights);
+        self.upload_lights(gpu);
         self.geometry.update_pose(gpu, scene);
         self.culling.update_pose(scene);
         self.in_motion =
@@ -219,6 +226,19 @@ impl SceneOnGpu {
             places,
             lights_before,
         }
+    }
+
+    /// Lights the scene for an exposure in stops: more shows where lights without a range end.
+    pub(crate) fn expose(&mut self, gpu: &Gpu, exposure_stops: f32) {
+        if exposure_stops != self.exposure_stops {
+            self.exposure_stops = exposure_stops;
+            self.upload_lights(gpu);
+        }
+    }
+
+    fn upload_lights(&mut self, gpu: &Gpu) {
+        self.lights = LightUniform::all(&self.lights_of_scene, self.exposure_stops);
+        write_lights(gpu, &mut self.light_table, &self.lights);
     }
 
     /// The next frame shows the pose again that a frame has shown: nothing moves any more. Whether

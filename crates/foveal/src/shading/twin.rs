@@ -203,8 +203,8 @@ pub(crate) fn incident(light: &LightUniform, position: Vec3) -> (Vec3, Vec3) {
         (-Vec3::from(light.direction), radiant)
     } else {
         let to_light = Vec3::from(light.position) - position;
-        let squared = to_light.length_squared().max(1e-4);
-        let direction = to_light / squared.sqrt();
+        let squared = to_light.length_squared().max(1e-8);
+        let direction = to_light / to_light.length_squared().max(1e-20).sqrt();
         let ratio = squared / (light.range * light.range);
         let mut attenuation = (1.0 - ratio * ratio).clamp(0.0, 1.0) / squared;
         if light.kind == 2 {

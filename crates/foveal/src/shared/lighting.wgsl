@@ -41,11 +41,11 @@ fn incident_from_afar(light: Light) -> IncidentLight {
     return IncidentLight(-light.direction, light.radiant);
 }
 
-// Of a light that shines from a point.
+// Of a light that shines from a point: no nearer than a tenth of a millimetre.
 fn incident(light: Light, position: vec3f) -> IncidentLight {
     let to_light = light.position - position;
-    let squared = max(dot(to_light, to_light), 1e-4);
-    let direction = to_light * inverseSqrt(squared);
+    let squared = max(dot(to_light, to_light), 1e-8);
+    let direction = to_light * inverseSqrt(max(dot(to_light, to_light), 1e-20));
     // KHR_lights_punctual's recommended window: 1 - (d/range)^4.
     let ratio = squared / (light.range * light.range);
     var attenuation = saturate(1.0 - ratio * ratio) / squared;

@@ -12,9 +12,6 @@ use bvh::Bvh;
 use foveal_scene::{Camera, Light, LightKind, Material, Scene};
 use glam::Vec3;
 
-/// Irradiance at which a light without a range of its own ends, as in the renderer.
-const FAINTEST: f32 = 1.0 / 256.0;
-
 /// Samples of a pixel's environment light: by GGX, by the cosine, by the environment.
 const SAMPLES: [u32; 3] = [256, 64, 512];
 
@@ -151,8 +148,7 @@ impl<'a> Reference<'a> {
             LightKind::Point | LightKind::Spot { .. } => {
                 let to_light = light.position - s.position;
                 let distance = to_light.length();
-                let ends = (radiant.max_element() / FAINTEST).max(0.0).sqrt();
-                let range = light.range_m.unwrap_or(ends);
+                let range = light.range_m.unwrap_or(f32::INFINITY);
                 let ratio = (distance / range).powi(4);
                 let mut attenuation = (1.0 - ratio).clamp(0.0, 1.0) / distance.powi(2);
                 if let LightKind::Spot {
