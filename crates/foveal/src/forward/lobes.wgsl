@@ -229,9 +229,10 @@ fn below_sheen(s: LobedSurface, cosine: f32) -> f32 {
 }
 
 // What the coat leaves for everything below it: Fresnel's reflectance at the cosine between normal
-// and view, as KHR_materials_clearcoat has it, would darken the rim of rough coats.
+// and view, as KHR_materials_clearcoat has it, would darken the rim of rough coats. The fit of
+// `environment_reflectance` exceeds 1 where smooth coats are seen from the side.
 fn below_coat(s: LobedSurface, v: vec3f) -> f32 {
-    return 1.0 - s.clearcoat * environment_reflectance(s.coat, v).x;
+    return 1.0 - s.clearcoat * saturate(environment_reflectance(s.coat, v).x);
 }
 
 // As `ggx_lobe`, longer along than across (Burley 2012; Heitz 2014).

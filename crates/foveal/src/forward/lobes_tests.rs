@@ -374,3 +374,35 @@ fn textures_of_lobes_are_read_where_their_places_say() {
     let other = drawn(coat(0.2, None, 0.9, None));
     assert_ne!(by_factors, other);
 }
+
+#[test]
+fn a_smooth_coat_seen_from_the_side_takes_away_no_more_than_all() {
+    let material = Material {
+        emissive: Vec3::splat(100.0),
+        clearcoat: faint().materials[0].clearcoat.map(|coat| Clearcoat {
+            factor: 1.0,
+            roughness: 0.0,
+            ..coat
+        }),
+        ..Material::default()
+    };
+    let lobed = Lobed {
+        base: Surface {
+            emissive: material.emissive,
+            ..flat(0.0, 0.5)
+        },
+        material: &material,
+        along: Vec3::X,
+    };
+    let dark = Scene::default();
+    assert!(lobed.lit(&dark, &[], Vec3::Y).min_element() >= 0.0);
+    let mut scene = super::twin::quads(vec![material], &[0.0]);
+    for vertex in &mut scene.meshes[0].vertices {
+        vertex.normal = [1.0, 0.0, 0.0];
+    }
+    let settings = small(33, 33).with(|s| s.lighting.environment = crate::EnvironmentSource::None);
+    let drawn = rendered(&scene, &super::twin::front(), &settings);
+    let all = radiance(&drawn);
+    assert!(all.iter().any(|r| r.x > 0.0));
+    assert!(all.iter().all(|r| r.min_element() >= 0.0));
+}

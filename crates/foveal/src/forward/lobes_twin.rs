@@ -95,7 +95,7 @@ impl Lobed<'_> {
     }
 
     fn below_coat(&self, v: Vec3) -> f32 {
-        1.0 - self.clearcoat() * environment_reflectance(&self.coat(), v).x
+        1.0 - self.clearcoat() * environment_reflectance(&self.coat(), v).x.clamp(0.0, 1.0)
     }
 
     fn below_sheen(&self, table: &[f32], cosine: f32) -> f32 {
