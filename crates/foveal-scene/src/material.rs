@@ -59,7 +59,7 @@ pub struct Material {
     pub alpha_mode: AlphaMode,
     /// Back faces are drawn too, with the normal turned to the viewer.
     pub double_sided: bool,
-    /// KHR_materials_unlit: base colour straight to the screen.
+    /// KHR_materials_unlit: base colour as radiance, without light. Exposure and tone map apply.
     pub unlit: bool,
     /// A clear coat over it.
     pub clearcoat: Option<Clearcoat>,
