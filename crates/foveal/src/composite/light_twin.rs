@@ -24,6 +24,9 @@ const ON_PLANE: f32 = 0.2;
 const LEAST_ALIKE: f32 = 0.005;
 const LEAST_WEIGHT: f32 = 0.02;
 
+/// As in `shading/coarse/light.wgsl`.
+const LIGHT_UNIT: f32 = 16.0;
+
 /// A sample's light; directions are unit.
 struct SampleLight {
     diffuse: Vec3,
@@ -46,8 +49,8 @@ fn unpack_light(words: [u32; 4]) -> SampleLight {
     };
     let root = (words[2] >> 20 & 0xff) as f32 / 255.0;
     SampleLight {
-        diffuse: unpack_shared_exponent(words[0]),
-        specular: unpack_shared_exponent(words[1]),
+        diffuse: LIGHT_UNIT * unpack_shared_exponent(words[0]),
+        specular: LIGHT_UNIT * unpack_shared_exponent(words[1]),
         direction: unit(words[2], [0, 10], 511),
         specular_direction: unit(words[3], [0, 10], 511),
         spread: root * root,

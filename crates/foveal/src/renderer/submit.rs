@@ -66,6 +66,9 @@ impl Renderer {
             && let (Some(coarse), Some(image)) = (&mut self.stages.coarse, &self.rate_image)
         {
             coarse.rate_map.set_image(&self.gpu, image);
+            if let Some(history) = &mut coarse.history {
+                history.scene_moved();
+            }
         }
     }
 

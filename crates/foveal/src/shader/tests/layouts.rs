@@ -251,7 +251,15 @@ fn shared_structs_lie_the_same_in_rust_and_wgsl() {
             shader,
             "Told",
             crate::shading::HistoryParameters,
-            [rounding, phase, reset, renewal, tolerance, change, reserved]
+            [
+                rounding,
+                phase,
+                reset,
+                renewal,
+                tolerance,
+                change,
+                whole_round
+            ]
         );
     }
     assert_same_layout!(

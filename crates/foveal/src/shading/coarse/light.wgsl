@@ -13,6 +13,9 @@
 // of light on another.
 const LEAST_COSINE: f32 = 0.1;
 
+// Light is packed in this unit: daylight of 100,000 lux is beyond what a shared exponent holds.
+const LIGHT_UNIT: f32 = 16.0;
+
 struct SampleLight {
     // Irradiance on a surface that faces `direction`.
     diffuse: vec3f,
@@ -51,8 +54,8 @@ fn direction_from_bits(bits: u32) -> vec3f {
 fn pack_light(l: SampleLight) -> vec4u {
     let normal = snorm_bits(octahedral_from_unit(l.normal), 31.0);
     return vec4u(
-        pack_shared_exponent(l.diffuse),
-        pack_shared_exponent(l.specular),
+        pack_shared_exponent(l.diffuse / LIGHT_UNIT),
+        pack_shared_exponent(l.specular / LIGHT_UNIT),
         direction_bits(l.direction) | (u32(sqrt(saturate(l.spread)) * 255.0 + 0.5) << 20u),
         direction_bits(l.specular_direction) | (normal.x << 20u) | (normal.y << 26u),
     );
@@ -62,8 +65,8 @@ fn unpack_light(words: vec4u) -> SampleLight {
     let normal = vec2f(vec2u(words.w >> 20u, words.w >> 26u) & vec2u(0x3fu)) / 31.0 - 1.0;
     let root = f32((words.z >> 20u) & 0xffu) / 255.0;
     return SampleLight(
-        unpack_shared_exponent(words.x),
-        unpack_shared_exponent(words.y),
+        LIGHT_UNIT * unpack_shared_exponent(words.x),
+        LIGHT_UNIT * unpack_shared_exponent(words.y),
         direction_from_bits(words.z),
         direction_from_bits(words.w),
         root * root,

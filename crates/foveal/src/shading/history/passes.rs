@@ -31,7 +31,7 @@ pub(crate) struct HistoryParameters {
     pub(crate) renewal: f32,
     pub(crate) tolerance: f32,
     pub(crate) change: f32,
-    pub(crate) reserved: f32,
+    pub(crate) whole_round: u32,
 }
 
 /// A pipeline and the layout of its own bind group.

@@ -37,7 +37,7 @@
 
 // Least cosine between normals that count as the same surface.
 const SAME_NORMAL: f32 = 0.95;
-// Fewest samples a pixel and frame, so that change is noticed everywhere.
+// Fewest samples a pixel and frame, so that change is noticed everywhere; of larger blocks one each.
 const LEAST_RENEWAL: f32 = 1.0 / 512.0;
 // A coarse block is renewed at most by so many samples a frame.
 const MOST_A_BLOCK: f32 = 2.0;
@@ -96,7 +96,9 @@ struct Memory {
 fn history_at(place: vec2i, texel: vec2u, picture: Picture, expected: Expected) -> Memory {
     let inside = all(place >= vec2i(picture.low)) && all(place < vec2i(picture.end));
     let origin = select(texel, vec2u(place), inside);
-    let old = textureLoad(seen_before, origin, 0).x;
+    let noted = textureLoad(seen_before, origin, 0).x;
+    let by_itself = (noted | SEEN_OWN) & ~(SEEN_LEVEL << SEEN_LEVEL_SHIFT);
+    let old = select(noted, by_itself, told.whole_round != 0u);
     let words = textureLoad(light_before, origin, 0);
     let measured = textureLoad(tiles, origin / 8u, 0).xy;
     let tile = TileHistory(measured.x, measured.y);
@@ -145,7 +147,7 @@ fn radiance_of(light: SampleLight, s: Surface, v: vec3f, reaching: f32) -> vec3f
 fn is_due(texel: vec2u, level: u32, error: f32) -> bool {
     let block = exp2(-2.0 * f32(level));
     let haste = clamp(error / told.tolerance, 1.0, MOST_A_BLOCK / told.renewal);
-    let share = clamp(block * told.renewal * haste, LEAST_RENEWAL, 1.0);
+    let share = clamp(block * told.renewal * haste, min(LEAST_RENEWAL, block), 1.0);
     return f32(order_of(texel) + told.phase) < share * 4294967296.0;
 }
 

@@ -2,7 +2,7 @@
 
 use super::HistoryTargets;
 use super::changed::Changed;
-use super::lit::{Lit, is_used};
+use super::lit::{Lit, ROUND, is_used};
 use super::passes::HistoryParameters;
 use super::passes::HistoryPasses;
 use crate::gpu::Gpu;
@@ -17,6 +17,9 @@ use crate::targets::Targets;
 use crate::{CoarseStats, Settings};
 use foveal_scene::Camera;
 
+/// By how much a gaze may move while all is at rest, in parts of the picture's sides.
+const STEADY_GAZE: f32 = 0.01;
+
 /// All that outlives a frame.
 #[derive(Debug)]
 pub(crate) struct HistoryStage {
@@ -25,7 +28,7 @@ pub(crate) struct HistoryStage {
     last: Option<Camera>,
     /// The scene's pose has changed since.
     moved: bool,
-    /// Where the eyes looked: `EyeSettings::gaze` and `StereoSettings::gaze_shift`.
+    /// Where the eyes looked as the rest began: `EyeSettings::gaze` and `StereoSettings::gaze_shift`.
     gaze: [[f32; 2]; 2],
     /// Where lights have changed since.
     changed: Changed,
@@ -33,6 +36,8 @@ pub(crate) struct HistoryStage {
     frame: u32,
     /// Frames at rest.
     rested: u32,
+    /// The rest that this frame ends lasted a whole round: each pixel was shaded by itself.
+    whole_round: bool,
     /// Nothing that is kept can be used.
     reset: bool,
     /// What has changed, for the frame at hand.
@@ -69,6 +74,7 @@ impl HistoryStage {
             changed: Changed::default(),
             frame: 0,
             rested: 0,
+            whole_round: false,
             reset: true,
             now_changed: Changed::default(),
             in_full: false,
@@ -102,16 +108,20 @@ impl HistoryStage {
     /// Finds out what the next frame has in common with the last one.
     pub(crate) fn follow(&mut self, settings: &Settings, (camera, previous): (&Camera, &Camera)) {
         let gaze = [settings.eye.gaze, settings.stereo.gaze_shift];
+        let is_whole = self.rested >= ROUND;
+        // Once every pixel was shaded by itself it is all the same where the eyes look.
         let moved = std::mem::take(&mut self.moved)
             || self.changed != Changed::Nowhere
-            || std::mem::replace(&mut self.gaze, gaze) != gaze;
+            || (!is_whole && !is_steady(self.gaze, gaze));
         let changed = std::mem::take(&mut self.changed);
         self.reset = self.last.as_ref().is_none_or(|last| last != previous)
             || changed == Changed::Everywhere;
         let rests = !self.reset && !moved && camera == previous;
+        self.whole_round = is_whole && !rests;
         self.rested = if rests {
             self.rested.saturating_add(1)
         } else {
+            self.gaze = gaze;
             0
         };
         self.last = Some(camera.clone());
@@ -128,8 +138,21 @@ impl HistoryStage {
         self.again
     }
 
+    /// Takes in where shadows differ that the frame at hand has found since [`Self::follow`].
+    fn take_late_changes(&mut self) {
+        match std::mem::take(&mut self.changed) {
+            Changed::Nowhere => return,
+            Changed::Within(places) => self.now_changed.add_places(&places),
+            Changed::Everywhere => self.reset = true,
+        }
+        self.whole_round |= self.rested > ROUND;
+        self.rested = 0;
+        self.reset |= self.now_changed == Changed::Everywhere;
+    }
+
     /// Decides what the frame does: `active` keeps light, otherwise every pixel is shaded.
     pub(crate) fn begin(&mut self, gpu: &Gpu, settings: &Settings, active: bool) {
+        self.take_late_changes();
         self.again = !active && self.in_full && self.rests();
         if active && std::mem::take(&mut self.in_full) {
             (self.reset, self.rested) = (true, 0);
@@ -167,7 +190,7 @@ impl HistoryStage {
             renewal: (finer / 12.0).clamp(1.0 / 64.0, 1.0),
             tolerance: (0.07 / finer).clamp(0.01, 1.0),
             change: 0.5,
-            reserved: 0.0,
+            whole_round: u32::from(self.whole_round),
         }
     }
 
@@ -220,6 +243,12 @@ impl HistoryStage {
             ..CoarseStats::default()
         }
     }
+}
+
+/// Whether eyes look at about the same place: trackers tremble while an eye rests.
+fn is_steady(before: [[f32; 2]; 2], now: [[f32; 2]; 2]) -> bool {
+    let apart = |i: usize, k: usize| (before[i][k] - now[i][k]).abs();
+    (0..4).all(|i| apart(i / 2, i % 2) <= STEADY_GAZE)
 }
 
 /// What is added to places before they are rounded to whole pixels: so that what moves by a part of

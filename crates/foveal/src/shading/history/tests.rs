@@ -240,6 +240,94 @@ fn a_gaze_that_jumps_sees_every_pixel_in_the_next_frame() {
 }
 
 #[test]
+fn once_every_pixel_is_shaded_the_eyes_may_look_anywhere() {
+    let scene = scene();
+    let camera = &scene.cameras[0];
+    let looks = |x: f32| kept().with(|s| s.eye.gaze = [x, 0.5]);
+    let look = |film: &mut Film, x: f32| {
+        let there = looks(x);
+        pollster::block_on(film.renderer.set_settings(&there)).expect("a gaze is only a setting");
+    };
+    let mut film = Film::new(&scene, &looks(0.1));
+    film.draw(camera);
+    // Trackers tremble.
+    for frame in 0..ROUND {
+        look(&mut film, 0.1 + 0.004 * (frame % 3) as f32);
+        film.draw(camera);
+    }
+    let full = full(&scene, camera, &kept());
+    assert_eq!(differing(&seen(&film.renderer), &full), 0);
+    for x in [0.9, 0.2, 0.85] {
+        look(&mut film, x);
+        assert_eq!(shaded(&film.draw(camera)), 0.0);
+        assert_eq!(differing(&seen(&film.renderer), &full), 0, "gaze {x}");
+    }
+    // All light is a pixel's own, whatever blocks it lay in where the eyes looked before.
+    let stats = film.draw(&shifted(camera, 0.001));
+    assert!(shaded(&stats) < 0.1, "{}", shaded(&stats));
+}
+
+/// The sum of what all pixels show.
+fn total(picture: &[[u16; 4]]) -> f64 {
+    let channels = |texel: &[u16; 4]| texel.map(|bits| f64::from(f32_of_half(bits)));
+    let light = |[r, g, b, _]: [f64; 4]| r + g + b;
+    picture.iter().map(|texel| light(channels(texel))).sum()
+}
+
+#[test]
+fn daylight_in_lux_is_kept_whole() {
+    let mut scene = generate::cornell();
+    let sun = foveal_scene::Light {
+        kind: foveal_scene::LightKind::Directional,
+        color: glam::Vec3::ONE,
+        intensity: 1.2e5,
+        direction: glam::Vec3::new(0.3, -0.4, -1.0).normalize(),
+        ..scene.lights[0].clone()
+    };
+    scene.lights = vec![sun];
+    let camera = scene.cameras[0].clone();
+    let settings = kept().with(|s| {
+        s.picture.exposure_stops = -15.0;
+        s.coarse.fovea_inner = 0.0;
+        s.coarse.fovea_outer = 0.1;
+    });
+    let mut film = Film::new(&scene, &settings);
+    for frame in 0..4 {
+        let there = shifted(&camera, 0.01 * frame as f32);
+        film.draw(&there);
+        let full = total(&full(&scene, &there, &settings));
+        let ratio = total(&seen(&film.renderer)) / full;
+        assert!((ratio - 1.0).abs() < 0.03, "frame {frame}: {ratio}");
+    }
+}
+
+#[test]
+fn another_image_of_rates_counts_at_rest() {
+    let scene = generate::cornell();
+    let camera = &scene.cameras[0];
+    let settings = kept().with(|s| {
+        s.coarse.source = RateSource::Image;
+        s.antialiasing.mode = crate::Antialiasing::Msaa;
+    });
+    let image = |luma| crate::RateImage::new(1, 1, vec![luma]).expect("a pixel");
+    let mut film = Film::new(&scene, &settings);
+    let levels = |film: &Film| {
+        let targets = film.renderer.targets();
+        let owner = &targets.coarse.as_ref().expect("coarse shading").rate.owner;
+        let read = read_level(gpu(), &owner.texture, 0, owner.blocks(1));
+        pollster::block_on(read).expect("read-back works")
+    };
+    let mut found = Vec::new();
+    for luma in [255, 0] {
+        film.renderer.set_rate_image(image(luma)).expect("it fits");
+        film.draw(camera);
+        film.draw(camera);
+        found.push(levels(&film));
+    }
+    assert!(found[0] != found[1]);
+}
+
+#[test]
 fn frames_are_the_same_every_time() {
     let scene = scene();
     let camera = &scene.cameras[0];

@@ -16,5 +16,6 @@ struct Told {
     tolerance: f32,
     // Relative change of a pixel's light from which on what is kept around it counts no more.
     change: f32,
-    reserved: f32,
+    // 1: each pixel's light was sampled at its own place, whatever its notes say.
+    whole_round: u32,
 }

@@ -91,7 +91,10 @@ impl Seen {
             let place = place.as_ivec2();
             let inside = place.cmpge(IVec2::ZERO).all() && place.as_uvec2().cmplt(self.size).all();
             let from = inside.then(|| place.as_uvec2())?;
-            let old = before.seen[self.index(from)];
+            let mut old = before.seen[self.index(from)];
+            if told.whole_round != 0 {
+                old = (old | OWN) & !(7 << LEVEL_SHIFT);
+            }
             let across = self.size.x.div_ceil(8);
             let tile = before.tiles[(from.y / 8 * across + from.x / 8) as usize];
             let bits = before.light[self.index(from)][3] >> 20;
@@ -121,7 +124,7 @@ impl Seen {
         if let Some((old, [error, _])) = found {
             let block = 0.25_f32.powi(level as i32);
             let haste = (error / told.tolerance).clamp(1.0, MOST_A_BLOCK / told.renewal);
-            let share = (block * told.renewal * haste).clamp(LEAST_RENEWAL, 1.0);
+            let share = (block * told.renewal * haste).clamp(LEAST_RENEWAL.min(block), 1.0);
             let order = (texel.x.wrapping_mul(3_242_174_889))
                 .wrapping_add(texel.y.wrapping_mul(2_447_445_414));
             let is_renewed = (order.wrapping_add(told.phase) as f32) < share * 4_294_967_296.0;
