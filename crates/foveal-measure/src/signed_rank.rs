@@ -52,8 +52,8 @@ fn left_out(n: usize, tail: f64) -> Option<usize> {
         below += chance;
         below <= tail
     });
-    // The statistic may be 0, 1, ... left_out without the test refusing less than it promises.
-    refused.count().checked_sub(1).map(|last| last + 1)
+    // The largest statistic that is refused: 0 to it are as many as it and one.
+    refused.count().checked_sub(1)
 }
 
 /// The chance of each value of the statistic: the sum of the ranks 1 to n, each of which counts or
@@ -101,10 +101,25 @@ mod tests {
             (30, 0.99, 109),
         ] {
             let left_out = left_out(n, 0.5 * (1.0 - confidence));
-            assert_eq!(left_out, Some(refused + 1), "{n} {confidence}");
+            assert_eq!(left_out, Some(refused), "{n} {confidence}");
         }
         assert_eq!(left_out(5, 0.025), None);
         assert_eq!(left_out(7, 0.005), None);
+    }
+
+    /// The true median lies beyond an end where the statistic is at most what is left out there.
+    #[test]
+    fn each_end_is_missed_as_rarely_as_promised() {
+        let tail = 0.5 * (1.0 - crate::CONFIDENCE);
+        assert_eq!(left_out(crate::LEAST_PAIRS - 1, tail), None);
+        for n in crate::LEAST_PAIRS..=MOST_COUNTED + 40 {
+            let left_out = left_out(n, tail).unwrap();
+            let missed: f64 = chances(n)[..=left_out].iter().sum();
+            assert!(missed <= tail, "{n}: {missed}");
+            // What is counted out is no wider than it must be.
+            let next: f64 = chances(n)[..=left_out + 1].iter().sum();
+            assert!(n > MOST_COUNTED || next > tail, "{n}: {next}");
+        }
     }
 
     #[test]
