@@ -38,7 +38,7 @@ pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
                 continue;
             };
             for key in row.as_object().into_iter().flatten().map(|(key, _)| key) {
-                if !(key == "ms" || key.ends_with("_ms")) {
+                if !is_time(key) {
                     continue;
                 }
                 if let (Some(old_ms), Some(new_ms)) = (old_row[key].as_f64(), row[key].as_f64()) {
@@ -49,10 +49,7 @@ pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
                         figure: key.clone(),
                         old_ms,
                         new_ms,
-                        change: change(
-                            (old_ms, spread(old_row, key, old_ms)),
-                            (new_ms, spread(row, key, new_ms)),
-                        ),
+                        change: change([old_ms, new_ms], bounds([old_row, row], key)),
                     });
                 }
             }
@@ -61,16 +58,42 @@ pub(super) fn pairs(old: &Value, new: &Value) -> Vec<Pair> {
     pairs
 }
 
-/// Least and largest of the passes.
-fn spread(row: &Value, key: &str, median: f64) -> [f64; 2] {
-    let end = |i: usize| row["spread"][key][i].as_f64().unwrap_or(median);
-    [end(0), end(1)]
+/// Whether a figure is a time of which less is better. What is saved is none, nor are percentiles,
+/// which a few frames decide.
+fn is_time(key: &str) -> bool {
+    let is_gain = matches!(key, "saved_ms" | "net_ms");
+    let is_percentile = key.ends_with("_low_ms") || key.ends_with("_high_ms");
+    (key == "ms" || key.ends_with("_ms")) && !is_gain && !is_percentile
 }
 
-fn change((old, old_spread): (f64, [f64; 2]), (new, new_spread): (f64, [f64; 2])) -> Change {
-    if new > old * (1.0 + LEAST_CHANGE) && new_spread[0] > old_spread[1] {
+/// Between what a time lies in each of two rows: the least and the largest of the passes. Where there
+/// was one pass: the interval of the time by the plain frame's, which was drawn in turn with it.
+/// `None` where the rows have neither.
+fn bounds(rows: [&Value; 2], key: &str) -> Option<[[f64; 2]; 2]> {
+    let of_passes = |row: &Value| {
+        let spread = &row["spread"][key];
+        Some([spread[0].as_f64()?, spread[1].as_f64()?])
+    };
+    let of_ratio = |row: &Value| {
+        let [low, high] = match key {
+            "chosen_ms" => ["low", "high"],
+            "frame_ms" => ["frame_ratio_low", "frame_ratio_high"],
+            _ => return None,
+        };
+        // The ratio is the plain time by this one.
+        Some([1.0 / row[high].as_f64()?, 1.0 / row[low].as_f64()?])
+    };
+    let both = |of: &dyn Fn(&Value) -> Option<[f64; 2]>| Some([of(rows[0])?, of(rows[1])?]);
+    both(&of_passes).or_else(|| both(&of_ratio))
+}
+
+fn change([old, new]: [f64; 2], bounds: Option<[[f64; 2]; 2]>) -> Change {
+    let Some([old_bounds, new_bounds]) = bounds else {
+        return Change::Same;
+    };
+    if new > old * (1.0 + LEAST_CHANGE) && new_bounds[0] > old_bounds[1] {
         Change::Slower
-    } else if new < old / (1.0 + LEAST_CHANGE) && new_spread[1] < old_spread[0] {
+    } else if new < old / (1.0 + LEAST_CHANGE) && new_bounds[1] < old_bounds[0] {
         Change::Faster
     } else {
         Change::Same
@@ -99,6 +122,54 @@ mod tests {
         let (old, new) = (report(10.0, [9.0, 11.0]), report(12.0, [11.5, 13.0]));
         assert_eq!(only(&old, &new), Change::Slower);
         assert_eq!(only(&new, &old), Change::Faster);
+    }
+
+    /// Two reports with one row each.
+    fn reports(rows: [Value; 2]) -> [Value; 2] {
+        rows.map(|mut row| {
+            row["label"] = "r".into();
+            json!({ "benches": [{ "name": "a", "rows": [row] }] })
+        })
+    }
+
+    #[test]
+    fn what_is_saved_is_no_time() {
+        let row = |ms: f64| {
+            let spread = [ms - 1.0, ms + 1.0];
+            json!({
+                "net_ms": ms, "saved_ms": ms, "spread": { "net_ms": spread, "saved_ms": spread },
+            })
+        };
+        let [old, new] = reports([row(10.0), row(20.0)]);
+        assert!(pairs(&old, &new).is_empty());
+    }
+
+    #[test]
+    fn one_pass_without_an_interval_tells_no_change() {
+        let row = |ms: f64| json!({ "frame_ms": ms, "chosen_high_ms": 2.0 * ms, "spread": {} });
+        let [old, new] = reports([row(10.0), row(10.6)]);
+        assert_eq!(only(&old, &new), Change::Same);
+    }
+
+    #[test]
+    fn one_pass_tells_a_change_by_the_interval_of_its_ratio() {
+        let eye = |ms: f64, low: f64, high: f64| json!({ "frame_ms": ms, "frame_ratio_low": low, "frame_ratio_high": high, "spread": {} });
+        let verdict = |ms: f64, low: f64, high: f64| json!({ "chosen_ms": ms, "low": low, "high": high, "spread": {} });
+        for row in [&eye as &dyn Fn(f64, f64, f64) -> Value, &verdict] {
+            let before = || row(10.0, 1.9, 2.1);
+            // (milliseconds, least and largest ratio)
+            for (after, expected) in [
+                (row(12.0, 1.5, 1.8), Change::Slower),
+                (row(8.0, 2.2, 2.6), Change::Faster),
+                (row(12.0, 1.7, 2.0), Change::Same),
+                // The plain frame became faster, or the whole machine slower.
+                (row(10.0, 1.5, 1.8), Change::Same),
+                (row(20.0, 1.9, 2.1), Change::Same),
+            ] {
+                let [old, new] = reports([before(), after]);
+                assert_eq!(only(&old, &new), expected, "{new}");
+            }
+        }
     }
 
     #[test]
