@@ -11,7 +11,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{Header, Subject, SubjectArgs, timed_renderer};
-use super::table::{jod_text, text};
+use super::table::{jod_text, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -86,10 +86,10 @@ struct Row {
     edge_fraction: f64,
     shaded_samples: u64,
     target_bytes: u64,
-    /// All from triangles to one surface per pixel.
-    gbuffer_ms: f64,
+    /// All from triangles to one surface per pixel; `null`, as all of passes, without timestamps.
+    gbuffer_ms: Option<f64>,
     /// Shading, shading of edges, combination.
-    shade_ms: f64,
+    shade_ms: Option<f64>,
     frame_ms: f64,
     /// None / this: above 1 this takes less time; with the interval of the whole frame's, where
     /// there are rounds enough.
@@ -97,7 +97,7 @@ struct Row {
     frame_ratio_low: Option<f64>,
     frame_ratio_high: Option<f64>,
     finding: Finding,
-    shade_ratio: f64,
+    shade_ratio: Option<f64>,
     /// Mean FLIP error against SSAA on a 2 x 2 grid, and against the reference.
     flip_to_ssaa: f64,
     flip_to_reference: Option<f64>,
@@ -279,7 +279,6 @@ impl Mode {
         to_reference: Option<Nearness>,
     ) -> Row {
         let settings = self.renderer.settings();
-        let median_of = |figure: fn(&Times) -> f64| median(&self.times(figure));
         let frame = compared(|t| t.frame_ms);
         let interval = frame.as_ref().and_then(|frame| frame.interval);
         Row {
@@ -298,14 +297,14 @@ impl Mode {
             edge_fraction: self.last.edge_fraction,
             shaded_samples: self.last.shaded_samples,
             target_bytes: self.last.target_bytes,
-            gbuffer_ms: median_of(|t| t.gbuffer_ms),
-            shade_ms: median_of(|t| t.shade_ms),
-            frame_ms: median_of(|t| t.frame_ms),
+            gbuffer_ms: passes_ms(&self.times(|t| t.gbuffer_ms)),
+            shade_ms: passes_ms(&self.times(|t| t.shade_ms)),
+            frame_ms: median(&self.times(|t| t.frame_ms)),
             frame_ratio: frame.as_ref().map_or(1.0, |frame| frame.ratio),
             frame_ratio_low: interval.map(|ends| ends[0]),
             frame_ratio_high: interval.map(|ends| ends[1]),
             finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
-            shade_ratio: compared(|t| t.shade_ms).map_or(1.0, |shade| shade.ratio),
+            shade_ratio: compared(|t| t.shade_ms).map(|shade| shade.ratio),
             flip_to_ssaa: to_ssaa.flip,
             flip_to_reference: to_reference.map(|near| near.flip),
             jod_to_ssaa: to_ssaa.jod,
@@ -361,17 +360,16 @@ fn summary(report: &Report) -> String {
         lines.push(vec![
             row.name.clone(),
             format!("{:.2} %", row.edge_fraction * 100.0),
-            format!("{:.1}", row.gbuffer_ms),
-            format!("{:.1}", row.shade_ms),
+            number_text(row.gbuffer_ms, 1),
+            number_text(row.shade_ms, 1),
             format!("{:.1}", row.frame_ms),
             match row.finding {
                 Finding::NoDifference => format!("~ {:.3}", row.frame_ratio),
                 _ => format!("{:.3}", row.frame_ratio),
             },
-            format!("{:.3}", row.shade_ratio),
+            number_text(row.shade_ratio, 3),
             format!("{:.4}", row.flip_to_ssaa),
-            row.flip_to_reference
-                .map_or("-".to_owned(), |f| format!("{f:.4}")),
+            number_text(row.flip_to_reference, 4),
             jod_text(row.jod_to_reference),
             format!("{:.0}", row.target_bytes as f64 / 1e6),
             source.map_or(String::new(), |(_, fps)| (*fps).to_owned()),

@@ -17,7 +17,7 @@ use serde::Serialize;
 use side::{Side, fovea_differing, psnr};
 
 use super::subject::{Header, SubjectArgs};
-use super::table::{jod_text, text};
+use super::table::{jod_text, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::values::VariantParser;
 use foveal_host::{scene_source, values};
@@ -114,13 +114,14 @@ struct Row {
     frame_ratio_low: Option<f64>,
     frame_ratio_high: Option<f64>,
     finding: Finding,
-    full_ms: f64,
-    coarse_ms: f64,
+    /// `null`, as all times of passes, without timestamps.
+    full_ms: Option<f64>,
+    coarse_ms: Option<f64>,
     /// Full / coarse, lighting alone.
-    ratio: f64,
+    ratio: Option<f64>,
     /// Binning and evaluation of materials after the rasterizer; 0 where it does that itself.
-    full_material_ms: f64,
-    coarse_material_ms: f64,
+    full_material_ms: Option<f64>,
+    coarse_material_ms: Option<f64>,
     full_frame_ms: f64,
     coarse_frame_ms: f64,
     flip_mean: f64,
@@ -269,7 +270,9 @@ fn measure(
             let of_full = (0, full.frame_ms.as_slice());
             let frame = Comparison::of_rounds(count, of_full, (number, &coarse.frame_ms));
             let interval = frame.as_ref().and_then(|frame| frame.interval);
-            let (full_ms, coarse_ms) = (median(&full.lighting_ms), median(&coarse.lighting_ms));
+            let full_ms = passes_ms(&full.lighting_ms);
+            let coarse_ms = passes_ms(&coarse.lighting_ms);
+            let material_ms = |side: &Side<'_>| full_ms.map(|_| median(&side.material_ms));
             Ok(Row {
                 scene: args.subject.scene.clone(),
                 width: settings.picture.width,
@@ -291,9 +294,9 @@ fn measure(
                 finding: frame.map_or(Finding::TooFew, |frame| frame.finding),
                 full_ms,
                 coarse_ms,
-                ratio: full_ms / coarse_ms,
-                full_material_ms: median(&full.material_ms),
-                coarse_material_ms: median(&coarse.material_ms),
+                ratio: full_ms.zip(coarse_ms).map(|(full, coarse)| full / coarse),
+                full_material_ms: material_ms(&full),
+                coarse_material_ms: material_ms(coarse),
                 full_frame_ms: median(&full.frame_ms),
                 coarse_frame_ms: median(&coarse.frame_ms),
                 flip_mean: nearness.flip,
@@ -307,7 +310,7 @@ fn measure(
 
 fn print(row: &Row) {
     foveal_host::console::note(&format!(
-        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {:.1} -> {:.1} ms ({:.1}x), materials {:.1} -> {:.1} ms, FLIP {:.4}, {:.2} JOD, fovea {:.4}\n",
+        "{} {}x{}, {} lights, inner {}: {:?} + {:?}, {:.2} % shaded: frame {:.1} -> {:.1} ms ({:.2}x), lighting {} -> {} ms ({}), materials {} -> {} ms, FLIP {:.4}, {} JOD, fovea {:.4}\n",
         row.scene,
         row.width,
         row.height,
@@ -319,15 +322,20 @@ fn print(row: &Row) {
         row.full_frame_ms,
         row.coarse_frame_ms,
         row.frame_ratio,
-        row.full_ms,
-        row.coarse_ms,
-        row.ratio,
-        row.full_material_ms,
-        row.coarse_material_ms,
+        number_text(row.full_ms, 1),
+        number_text(row.coarse_ms, 1),
+        times_text(row.ratio),
+        number_text(row.full_material_ms, 1),
+        number_text(row.coarse_material_ms, 1),
         row.flip_mean,
-        row.jod.unwrap_or(f32::NAN),
+        jod_text(row.jod),
         row.fovea_differing,
     ));
+}
+
+/// How many times as fast, or a dash.
+fn times_text(ratio: Option<f64>) -> String {
+    ratio.map_or_else(|| "-".to_owned(), |ratio| format!("{ratio:.1}x"))
 }
 
 /// The source's table rebuilt: frames per second of whole frames and the gains over full shading,
@@ -385,7 +393,7 @@ fn beside_the_source(rows: &[Row]) -> String {
             name.to_owned(),
             format!("{fps:.2}"),
             gain(fps, full_fps),
-            format!("{:.1}x", row.ratio),
+            times_text(row.ratio),
             format!("{:.4}", row.flip_mean),
             jod_text(row.jod),
             source.map_or("-".to_owned(), |s| s.to_string()),

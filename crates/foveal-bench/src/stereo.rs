@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::figures::FigureArgs;
 use super::subject::timed_renderer;
-use super::table::text;
+use super::table::{number_text, passes_ms, text};
 use foveal_host::camera::{CameraArgs, Viewpoint};
 use foveal_host::{scene_source, values};
 
@@ -108,18 +108,18 @@ struct Row {
     triangles: u64,
     encode_ms: f64,
     submit_ms: f64,
-    /// The geometry pass, or all passes.
-    gpu_ms: f64,
+    /// The geometry pass, or all passes; `null`, as its ratio, without timestamps.
+    gpu_ms: Option<f64>,
     frame_ms: f64,
     /// Two passes / this, the whole frame; with its interval where there are rounds enough.
     ratio_frame: f64,
     ratio_frame_low: Option<f64>,
     ratio_frame_high: Option<f64>,
     /// Two passes / this: encode and submit, then the GPU.
-    ratio_cpu: f64,
-    ratio_gpu: f64,
+    ratio_cpu: Option<f64>,
+    ratio_gpu: Option<f64>,
     /// One eye's frame / this.
-    ratio_mono: f64,
+    ratio_mono: Option<f64>,
     /// The source's figures for instancing.
     source_ratio_cpu: Option<f64>,
     source_ratio_gpu: Option<f64>,
@@ -279,7 +279,7 @@ fn row(scene: &str, stages: &'static str, ways: &[Way], number: usize) -> Row {
         let (reference, ms) = (times(to, figure), times(number, figure));
         Comparison::of_rounds(ways.len(), (to, &reference), (number, &ms))
     };
-    let ratio = |to, figure| compared(to, figure).map_or(1.0, |found| found.ratio);
+    let ratio = |to, figure| compared(to, figure).map(|found| found.ratio);
     let frame = compared(REFERENCE, |t| t.frame_ms);
     let interval = frame.as_ref().and_then(|frame| frame.interval);
     let source = SOURCE_RATIOS
@@ -293,7 +293,7 @@ fn row(scene: &str, stages: &'static str, ways: &[Way], number: usize) -> Row {
         triangles: way.last.triangles,
         encode_ms: median_of(|t| t.encode_ms),
         submit_ms: median_of(|t| t.submit_ms),
-        gpu_ms: median_of(|t| t.gpu_ms),
+        gpu_ms: passes_ms(&times(number, |t| t.gpu_ms)),
         frame_ms: median_of(|t| t.frame_ms),
         ratio_frame: frame.as_ref().map_or(1.0, |frame| frame.ratio),
         ratio_frame_low: interval.map(|ends| ends[0]),
@@ -333,14 +333,14 @@ fn summary(report: &Report) -> String {
             row.draws.to_string(),
             format!("{:.3}", row.encode_ms),
             format!("{:.3}", row.submit_ms),
-            format!("{:.1}", row.gpu_ms),
+            number_text(row.gpu_ms, 1),
             format!("{:.1}", row.frame_ms),
             format!("{:.3}", row.ratio_frame),
-            format!("{:.3}", row.ratio_cpu),
+            number_text(row.ratio_cpu, 3),
             optional(row.source_ratio_cpu),
-            format!("{:.3}", row.ratio_gpu),
+            number_text(row.ratio_gpu, 3),
             optional(row.source_ratio_gpu),
-            format!("{:.3}", row.ratio_mono),
+            number_text(row.ratio_mono, 3),
         ]);
     }
     let notes: Vec<String> = report

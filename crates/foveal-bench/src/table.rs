@@ -1,5 +1,7 @@
 //! Figures as columns of text.
 
+use foveal_measure::median;
+
 /// Lines of cells, each column as wide as its widest cell, numbers (all but the first column) to
 /// the right.
 pub(super) fn text(lines: &[Vec<String>]) -> String {
@@ -22,14 +24,31 @@ pub(super) fn text(lines: &[Vec<String>]) -> String {
         .collect()
 }
 
+/// A number with so many digits, or a dash where none was measured.
+pub(super) fn number_text(number: Option<f64>, digits: usize) -> String {
+    number.map_or_else(|| "-".to_owned(), |number| format!("{number:.digits$}"))
+}
+
 /// A quality with two digits.
 pub(super) fn jod_text(jod: Option<f32>) -> String {
-    jod.map_or_else(|| "-".to_owned(), |jod| format!("{jod:.2}"))
+    number_text(jod.map(f64::from), 2)
+}
+
+/// The median time of passes; `None` where the device takes no times of them, which are 0 then.
+pub(super) fn passes_ms(ms: &[f64]) -> Option<f64> {
+    Some(median(ms)).filter(|&ms| ms > 0.0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_was_not_measured_is_a_dash() {
+        assert_eq!(passes_ms(&[0.0; 3]), None);
+        assert_eq!(number_text(passes_ms(&[1.0, 2.0, 3.0]), 1), "2.0");
+        assert_eq!(number_text(None, 1), "-");
+    }
 
     #[test]
     fn columns_line_up() {

@@ -11,7 +11,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{SubjectArgs, timed_renderer};
-use super::table::{jod_text, text};
+use super::table::{jod_text, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -72,9 +72,10 @@ struct Row {
     material_cost: &'static str,
     lights: u64,
     contrast_threshold: f32,
-    mask_ms: f64,
-    reproject_ms: f64,
-    binning_ms: f64,
+    /// `null`, as all times of passes, without timestamps.
+    mask_ms: Option<f64>,
+    reproject_ms: Option<f64>,
+    binning_ms: Option<f64>,
     full_frame_ms: f64,
     variable_frame_ms: f64,
     /// Full / variable, whole frames: above 1 variable is faster; with its interval where there are
@@ -83,12 +84,12 @@ struct Row {
     frame_ratio_low: Option<f64>,
     frame_ratio_high: Option<f64>,
     finding: Finding,
-    full_ms: f64,
-    variable_ms: f64,
-    saved_ms: f64,
-    net_ms: f64,
+    full_ms: Option<f64>,
+    variable_ms: Option<f64>,
+    saved_ms: Option<f64>,
+    net_ms: Option<f64>,
     /// Median of the ratios of `full_ms` to `variable_ms` within each frame.
-    ratio: f64,
+    ratio: Option<f64>,
     shaded_fraction: f64,
     /// Of the last frame.
     flip_mean: f64,
@@ -250,8 +251,9 @@ fn measure(
         }
         fraction = b.variable.map_or(1.0, |v| v.shaded_fraction);
     }
-    let median_of =
-        |figure: &dyn Fn(&[f64; 5]) -> f64| median(&frames.iter().map(figure).collect::<Vec<_>>());
+    let all = |figure: &dyn Fn(&[f64; 5]) -> f64| frames.iter().map(figure).collect::<Vec<_>>();
+    let has_times = passes_ms(&all(&|f| f[0])).is_some();
+    let median_of = |figure: &dyn Fn(&[f64; 5]) -> f64| has_times.then(|| median(&all(figure)));
     let frame = Comparison::of_rounds(2, (0, &full_frame_ms), (1, &variable_frame_ms));
     let interval = frame.as_ref().and_then(|frame| frame.interval);
     let nearness = Nearness::of(&full.picture()?, &variable.picture()?);
@@ -288,7 +290,7 @@ fn line(row: &Row) -> Vec<String> {
         Ok(serde_json::Value::String(name)) => name,
         _ => String::new(),
     };
-    let time = |ms: f64| format!("{ms:.1}");
+    let time = |ms: Option<f64>| number_text(ms, 1);
     vec![
         format!("{stage}, {}, {} lights", row.material_cost, row.lights),
         format!("{:.3}", row.contrast_threshold),
@@ -299,7 +301,7 @@ fn line(row: &Row) -> Vec<String> {
         time(row.saved_ms),
         time(row.net_ms),
         format!("{:.2}", row.frame_ratio),
-        format!("{:.2}", row.ratio),
+        number_text(row.ratio, 2),
         format!("{:.3}", row.shaded_fraction),
         format!("{:.4}", row.flip_mean),
         jod_text(row.jod),
