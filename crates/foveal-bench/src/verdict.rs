@@ -18,13 +18,16 @@ use serde::Serialize;
 
 use super::shared::SharedArgs;
 use super::subject::{Header, SubjectArgs};
-use super::table::{jod_text, text};
-use candidates::{ALL, Aim, Candidate, together};
+use super::table::{jod_text, number_text, text};
+use candidates::{Aim, Candidate, candidates_of, together};
 use decision::{Decision, Measured, decide};
 use sides::measure;
 
 /// Version of the JSON's shape.
 const SCHEMA_VERSION: u32 = 2;
+
+/// The row of all that is adopted, as one.
+pub(crate) const TOGETHER: &str = "These together";
 
 /// Arguments of `foveal bench verdict`.
 #[derive(Debug, clap::Args)]
@@ -84,6 +87,7 @@ struct Row {
     chosen_ms: Option<f64>,
     chosen_low_ms: Option<f64>,
     chosen_high_ms: Option<f64>,
+    /// `null`, as `jod`, where a technique turned itself off.
     flip_mean: Option<f64>,
     /// At 60 degrees across, gaze in the centre: 10 is no visible difference.
     jod: Option<f32>,
@@ -99,10 +103,7 @@ struct Row {
 pub(super) fn run(args: &Args) -> anyhow::Result<()> {
     let subject = args.subject.open(args.point_lights)?;
     let plain = args.shared.plain(args.size)?;
-    let candidates: Vec<(&Candidate, Settings)> = ALL
-        .iter()
-        .map(|candidate| Ok((candidate, candidate.settings(&plain)?)))
-        .collect::<anyhow::Result<_>>()?;
+    let candidates = candidates_of(&plain)?;
     let chosen: Vec<&Settings> = candidates.iter().map(|(_, settings)| settings).collect();
     let measured = measure(&subject, &plain, &chosen, args.rounds)?;
     let mut rows: Vec<Row> = candidates
@@ -113,17 +114,17 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
             row(args, name, (&plain, settings), measured)
         })
         .collect();
-    let adopted: Vec<(&Candidate, f64)> = ALL
+    let adopted: Vec<(&Candidate, f64)> = candidates
         .iter()
         .zip(&rows)
         .filter(|(_, row)| row.decision == Decision::Adopt)
-        .map(|(candidate, row)| (candidate, row.ratio.unwrap_or(1.0)))
+        .map(|((candidate, _), row)| (*candidate, row.ratio.unwrap_or(1.0)))
         .collect();
     if adopted.len() > 1 {
         let settings = together(&plain, &adopted)?;
         let mut measured = measure(&subject, &plain, &[&settings], args.rounds)?;
         if let Some(measured) = measured.pop() {
-            let name = ("These together", Aim::Faster);
+            let name = (TOGETHER, Aim::Faster);
             let row = row(args, name, (&plain, &settings), measured);
             rows.push(row);
         }
@@ -163,6 +164,7 @@ fn row(
     ];
     let found = measured.as_ref().ok().map(|found| &found.frame);
     let work = measured.as_ref().ok().and_then(|found| found.work.as_ref());
+    let nearness = (measured.as_ref().ok()).and_then(|found| found.nearness.as_ref().ok());
     let time = |side: fn(&Comparison) -> &Spread, part: fn(&Spread) -> f64| {
         found.map(|found| part(side(found)))
     };
@@ -185,8 +187,8 @@ fn row(
         chosen_ms: time(|c| &c.chosen, |s| s.median),
         chosen_low_ms: time(|c| &c.chosen, |s| s.low),
         chosen_high_ms: time(|c| &c.chosen, |s| s.high),
-        flip_mean: measured.as_ref().ok().map(|found| found.nearness.flip),
-        jod: (measured.as_ref().ok()).and_then(|found| found.nearness.jod),
+        flip_mean: nearness.map(|nearness| nearness.flip),
+        jod: nearness.and_then(|nearness| nearness.jod),
         flags: own.join(" "),
         command: command("picture.png", &all),
         made_by,
@@ -205,18 +207,15 @@ fn summary(report: &Report) -> String {
         "JOD",
     ];
     let mut lines = vec![head.map(str::to_owned).to_vec()];
-    let number = |number: Option<f64>, digits: usize| {
-        number.map_or_else(|| "-".to_owned(), |n| format!("{n:.digits$}"))
-    };
     for row in &report.rows {
         lines.push(vec![
             row.name.to_owned(),
             format!("{:?}", row.decision).to_lowercase(),
-            number(row.reference_ms, 1),
-            number(row.chosen_ms, 1),
+            number_text(row.reference_ms, 1),
+            number_text(row.chosen_ms, 1),
             row.gain.clone(),
             row.work_gain.clone().unwrap_or_default(),
-            number(row.flip_mean, 4),
+            number_text(row.flip_mean, 4),
             jod_text(row.jod),
         ]);
     }
@@ -230,4 +229,38 @@ fn summary(report: &Report) -> String {
         }
     }
     said
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::Parser;
+    use decision::Found;
+    use foveal_measure::Pair;
+
+    use super::*;
+
+    #[derive(Parser)]
+    struct Line {
+        #[command(flatten)]
+        args: Args,
+    }
+
+    #[test]
+    fn a_technique_that_turned_itself_off_has_no_error() {
+        let args = Line::parse_from(["verdict"]).args;
+        let pair = |frame: u32| Pair {
+            reference_ms: 20.0,
+            chosen_ms: 10.0,
+            reference_first: frame % 2 == 0,
+        };
+        let found = Found {
+            frame: Comparison::of(&(0..20).map(pair).collect::<Vec<_>>()).unwrap(),
+            work: None,
+            nearness: Err("coarse shading is off".to_owned()),
+        };
+        let plain = Settings::default();
+        let row = row(&args, ("a", Aim::Faster), (&plain, &plain), Ok(found));
+        assert_eq!(row.decision, Decision::Skip);
+        assert_eq!((row.flip_mean, row.jod), (None, None));
+    }
 }

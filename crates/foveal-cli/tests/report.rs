@@ -64,6 +64,7 @@ fn a_report_has_figures_pictures_and_what_was_left_out() {
                 "adopt",
                 "faster-but-visible",
                 "skip",
+                "better-as-fast",
                 "better-but-slower",
                 "impossible"
             ]

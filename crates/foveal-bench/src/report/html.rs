@@ -123,7 +123,7 @@ input[type=range] { width: 100%; margin: 8px 0 0; } figure { margin: 12px 0; } f
 svg .grid { stroke: var(--line); } svg .one { stroke: var(--faint); } svg .error { stroke-width: 1.5; opacity: 0.75; }
 svg .faster { color: var(--good); } svg .slower { color: var(--bad); } svg .no-difference, svg .too-few { color: var(--faint); }
 .verdicts p { display: grid; grid-template-columns: 6.5em 1fr; gap: 8px; margin: 8px 0; }
-.adopt > b { color: var(--good); } .faster-but-visible > b, .better-but-slower > b { color: var(--pay); } .skip > b, .impossible > b { color: var(--faint); }
+.adopt > b, .better-as-fast > b { color: var(--good); } .faster-but-visible > b, .better-but-slower > b { color: var(--pay); } .skip > b, .impossible > b { color: var(--faint); }
 .copy { display: flex; gap: 8px; align-items: flex-start; } .copy code { flex: 1; padding: 6px 8px; } button { font: inherit;
   color: var(--text); background: var(--back); border: 1px solid var(--line); border-radius: 6px; padding: 3px 12px; cursor: pointer; }
 summary { cursor: pointer; color: var(--accent); margin: 10px 0 4px; }

@@ -7,11 +7,13 @@ use super::html::Figures;
 use super::plan::BENCHES;
 use super::plots;
 use super::tables::{commands, table};
+use crate::verdict::TOGETHER;
 
 /// Decisions in the order in which the page tells them, and their headings.
-const DECISIONS: [(&str, &str); 5] = [
+const DECISIONS: [(&str, &str); 6] = [
     ("adopt", "Adopt"),
     ("faster-but-visible", "Faster, but visible"),
+    ("better-as-fast", "Better, as fast"),
     ("better-but-slower", "Better, but slower"),
     ("skip", "Skip"),
     ("impossible", "Not here"),
@@ -96,13 +98,22 @@ fn drawn_by(f: &Figures<'_>, at: &str) -> Markup {
     }
 }
 
-/// The line to copy: of what was adopted together, or alone.
+/// The row whose command is there to copy: what was adopted together, or else what is fastest alone.
+fn best(f: &Figures<'_>, at: &str) -> Option<usize> {
+    let of = |row: usize, key: &str| format!("{at}/rows/{row}/{key}");
+    let adopted: Vec<usize> = (0..f.len(&format!("{at}/rows")))
+        .filter(|&row| f.text(&of(row, "decision")) == "adopt")
+        .collect();
+    let ratio = |row: usize| f.number(&of(row, "ratio")).unwrap_or(0.0);
+    let together = |row: &usize| f.text(&of(*row, "name")) == TOGETHER;
+    let fastest = (adopted.iter().copied()).max_by(|&a, &b| ratio(a).total_cmp(&ratio(b)));
+    adopted.iter().copied().find(together).or(fastest)
+}
+
+/// The line to copy.
 fn command(f: &Figures<'_>, at: &str) -> Markup {
-    let is_adopted = |row: &usize| f.text(&format!("{at}/rows/{row}/decision")) == "adopt";
-    // What is put together comes last.
-    let adopted = (0..f.len(&format!("{at}/rows"))).rev().find(is_adopted);
     html! {
-        @match adopted {
+        @match best(f, at) {
             None => p { "Nothing made this scene measurably faster: keep the defaults." },
             Some(row) => {
                 h3 { "To draw it so" }
@@ -112,5 +123,29 @@ fn command(f: &Figures<'_>, at: &str) -> Markup {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn the_line_to_copy_is_of_all_together_or_of_the_fastest() {
+        let row = |name: &str, decision: &str, ratio: f64| json!({ "name": name, "decision": decision, "ratio": ratio });
+        let mut rows = vec![
+            row("a", "adopt", 1.2),
+            row("b", "adopt", 2.5),
+            row("c", "faster-but-visible", 4.0),
+            row("d", "adopt", 1.1),
+            row(TOGETHER, "faster-but-visible", 3.0),
+        ];
+        let best_of = |rows: &[serde_json::Value]| best(&Figures(&json!({ "rows": rows })), "");
+        assert_eq!(best_of(&rows), Some(1));
+        rows[4]["decision"] = "adopt".into();
+        rows[4]["ratio"] = 2.4.into();
+        assert_eq!(best_of(&rows), Some(4));
+        assert_eq!(best_of(&rows[2..3]), None);
     }
 }

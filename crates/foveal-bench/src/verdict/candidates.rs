@@ -35,7 +35,7 @@ const fn faster(name: &'static str, family: &'static str, changes: Changes) -> C
 }
 
 /// In the order of the frame.
-pub(super) const ALL: &[Candidate] = &[
+const ALL: &[Candidate] = &[
     // The plain picture has occlusion culling where that is worth its time, and with shadows.
     faster(
         "Culling by the frustum alone",
@@ -87,9 +87,23 @@ pub(super) const ALL: &[Candidate] = &[
 
 impl Candidate {
     /// The settings that are tried.
-    pub(super) fn settings(&self, plain: &Settings) -> anyhow::Result<Settings> {
+    fn settings(&self, plain: &Settings) -> anyhow::Result<Settings> {
         changed(plain, self.changes)
     }
+}
+
+/// The candidates and their settings, without those that change nothing in the plain ones.
+pub(super) fn candidates_of(
+    plain: &Settings,
+) -> anyhow::Result<Vec<(&'static Candidate, Settings)>> {
+    let mut candidates = Vec::new();
+    for candidate in ALL {
+        let settings = candidate.settings(plain)?;
+        if settings != *plain {
+            candidates.push((candidate, settings));
+        }
+    }
+    Ok(candidates)
 }
 
 /// The settings of these candidates as one: of each family the one with the largest ratio.
@@ -115,12 +129,20 @@ mod tests {
     #[test]
     fn each_candidate_changes_something_that_is_possible() {
         let plain = Settings::default();
-        for candidate in ALL {
-            let settings = candidate.settings(&plain).unwrap();
-            assert_ne!(settings, plain, "{}", candidate.name);
+        let candidates = candidates_of(&plain).unwrap();
+        assert_eq!(candidates.len(), ALL.len());
+        for (candidate, settings) in candidates {
             let checked = settings.validate(&wgpu::Limits::default());
             assert!(checked.is_ok(), "{}: {checked:?}", candidate.name);
         }
+    }
+
+    #[test]
+    fn what_the_plain_frame_has_is_no_candidate() {
+        let plain = changed(&Settings::default(), &[("aa", "msaa")]).unwrap();
+        let candidates = candidates_of(&plain).unwrap();
+        assert_eq!(candidates.len(), ALL.len() - 1);
+        assert!(candidates.iter().all(|(c, _)| c.aim == Aim::Faster));
     }
 
     #[test]

@@ -22,6 +22,8 @@ pub(super) enum Decision {
     FasterButVisible,
     /// No gain.
     Skip,
+    /// A better picture in the same time, as far as can be told.
+    BetterAsFast,
     /// A better picture that takes longer.
     BetterButSlower,
     /// The device cannot do it.
@@ -36,9 +38,9 @@ pub(super) struct Found {
     /// Whole frames by the processor's time, of all threads: where the processor draws, and other
     /// programs take their share of it, that is steadier.
     pub(super) work: Option<Comparison>,
-    pub(super) nearness: Nearness,
-    /// What the renderer said of a technique that turned itself off; empty where none did.
-    pub(super) notice: String,
+    /// How near the picture is to the plain one. `Err` is what the renderer said of a technique that
+    /// turned itself off: what was timed then is another frame than the one that its settings draw.
+    pub(super) nearness: Result<Nearness, String>,
 }
 
 impl Found {
@@ -66,42 +68,44 @@ pub(super) fn decide(aim: Aim, measured: &Measured) -> (Decision, String) {
         Err(cause) => return (Decision::Impossible, cause.clone()),
     };
     let (found, is_work) = measured.deciding();
-    let Nearness { flip, jod } = measured.nearness;
     let subject = if is_work {
         "whole frames by the processor's time"
     } else {
         "whole frames"
     };
+    let gain = found.text();
+    if found.finding == Finding::TooFew {
+        let why = "too few frames were drawn for a verdict";
+        return (Decision::Skip, why.to_owned());
+    }
+    let nearness = match &measured.nearness {
+        Ok(nearness) => *nearness,
+        Err(notice) => return (Decision::Skip, format!("{subject}: {gain}; {notice}")),
+    };
+    let Nearness { flip, jod } = nearness;
     let picture = if flip == 0.0 {
         "the picture is the same".to_owned()
     } else {
         let seen = jod.map_or_else(String::new, |jod| format!("{jod:.2} JOD, "));
         format!("{seen}mean FLIP error {flip:.4}")
     };
-    let gain = found.text();
     match (found.finding, aim) {
-        (Finding::TooFew, _) => (
-            Decision::Skip,
-            "too few frames were drawn for a verdict".to_owned(),
-        ),
-        (Finding::Faster, _) if is_near(measured.nearness) => {
+        (Finding::Faster, _) if is_near(nearness) => {
             (Decision::Adopt, format!("{subject}: {gain}; {picture}"))
         }
         (Finding::Faster, _) => (
             Decision::FasterButVisible,
             format!("{subject}: {gain}; but {picture}"),
         ),
-        (_, Aim::Better) => (
+        (Finding::Slower, Aim::Better) => (
             Decision::BetterButSlower,
             format!("smoother edges; {subject}: {gain}"),
         ),
-        (Finding::NoDifference | Finding::Slower, Aim::Faster) => {
-            let mut why = format!("{subject}: {gain}");
-            if !measured.notice.is_empty() {
-                why = format!("{why}; {}", measured.notice);
-            }
-            (Decision::Skip, why)
-        }
+        (_, Aim::Better) => (
+            Decision::BetterAsFast,
+            format!("smoother edges; {subject}: {gain}"),
+        ),
+        (_, Aim::Faster) => (Decision::Skip, format!("{subject}: {gain}")),
     }
 }
 
@@ -121,18 +125,20 @@ mod tests {
         Ok(Found {
             frame: Comparison::of(&pairs).unwrap(),
             work: None,
-            nearness: Nearness { flip, jod: None },
-            notice: String::new(),
+            nearness: Ok(Nearness { flip, jod: None }),
         })
     }
 
     #[test]
-    fn a_technique_that_turned_itself_off_is_named() {
-        let mut found = measured(20.0, 20.0, 0.0, 20);
-        found.as_mut().unwrap().notice = "coarse shading is off".to_owned();
-        let (decision, why) = decide(Aim::Faster, &found);
-        assert_eq!(decision, Decision::Skip);
-        assert!(why.ends_with("; coarse shading is off"), "{why}");
+    fn a_technique_that_turned_itself_off_is_named_and_not_adopted() {
+        // Though what is left of its settings is faster.
+        for plain_ms in [20.0, 40.0] {
+            let mut found = measured(plain_ms, 20.0, 0.0, 20);
+            found.as_mut().unwrap().nearness = Err("coarse shading is off".to_owned());
+            let (decision, why) = decide(Aim::Faster, &found);
+            assert_eq!(decision, Decision::Skip);
+            assert!(why.ends_with("; coarse shading is off"), "{why}");
+        }
     }
 
     #[test]
@@ -159,10 +165,11 @@ mod tests {
     fn what_the_eye_sees_is_looked_at_first() {
         for (jod, expected) in [(9.2, Decision::Adopt), (8.9, Decision::FasterButVisible)] {
             let mut found = measured(20.0, 10.0, 0.01, 20);
-            found.as_mut().unwrap().nearness.jod = Some(jod);
+            let jod = Some(jod);
+            found.as_mut().unwrap().nearness = Ok(Nearness { flip: 0.01, jod });
             let (decision, why) = decide(Aim::Faster, &found);
             assert_eq!(decision, expected, "{why}");
-            assert!(why.contains(&format!("{jod:.2} JOD")), "{why}");
+            assert!(why.contains(" JOD, mean FLIP error 0.0100"), "{why}");
         }
     }
 
@@ -182,6 +189,11 @@ mod tests {
                 measured(10.0, 20.0, 0.1, 20),
                 Aim::Better,
                 Decision::BetterButSlower,
+            ),
+            (
+                measured(20.0, 20.0, 0.1, 20),
+                Aim::Better,
+                Decision::BetterAsFast,
             ),
             (measured(20.0, 10.0, 0.0, 9), Aim::Faster, Decision::Skip),
             (Err("no".to_owned()), Aim::Faster, Decision::Impossible),

@@ -82,14 +82,14 @@ pub(super) fn measure(
             let Some(frame) = compared(&plain.frame_ms, &side.frame_ms) else {
                 return Ok(Err("no time could be taken".to_owned()));
             };
-            // The picture's own frames rest, and say nothing of those that were timed.
-            let notice = std::mem::take(&mut side.notice);
             let work = processor_draws.then(|| compared(&plain.work_ms, &side.work_ms));
             Ok(Ok(Found {
                 frame,
                 work: work.flatten(),
-                notice,
-                nearness: Nearness::of(&reference, &side.picture(camera)?),
+                nearness: match side.notice.as_str() {
+                    "" => Ok(Nearness::of(&reference, &side.picture(camera)?)),
+                    notice => Err(notice.to_owned()),
+                },
             }))
         })
         .collect()
@@ -123,8 +123,10 @@ impl Side {
         Ok(())
     }
 
-    /// The picture of the camera at rest, as the row's command makes it.
+    /// The picture of the camera at rest, as the row's command makes it: with all techniques on.
     fn picture(&mut self, camera: &Camera) -> anyhow::Result<Picture> {
+        let forced = self.settings.clone().with(|s| s.rate.force = true);
+        block_on(self.renderer.set_settings(&forced))?;
         // A frame that follows none: nothing of the frames before is in it.
         let none = Camera {
             name: format!("before {}", camera.name),
