@@ -323,3 +323,41 @@ fn folders_need_the_same_frames() {
     let output = foveal_in(folder.path(), &["compare", "a", "a", "--diff", "d.png"]);
     assert_eq!(output.status.code(), Some(2));
 }
+
+#[test]
+fn a_map_replaces_no_frame() {
+    let folder = folder();
+    frames(folder.path(), "a", 2, |_, x, y| pattern(x, y));
+    frames(folder.path(), "b", 2, |_, x, y| inverse(x, y));
+    for map in ["b/01.png", "./a/00.png", "a/../b/new.png"] {
+        let before = std::fs::read(folder.path().join("b/01.png")).unwrap();
+        let output = foveal_in(folder.path(), &["compare", "a", "b", "--heat-map", map]);
+        assert_eq!(output.status.code(), Some(2), "{map}: {}", stderr(&output));
+        assert!(
+            stderr(&output).contains("--heat-map"),
+            "{}",
+            stderr(&output)
+        );
+        assert_eq!(
+            std::fs::read(folder.path().join("b/01.png")).unwrap(),
+            before
+        );
+    }
+    succeed(
+        folder.path(),
+        &["compare", "a", "b", "--heat-map", "map.png"],
+    );
+    // A single picture's map may lie beside it.
+    let words = ["compare", "a/00.png", "b/00.png", "--diff", "a/diff.png"];
+    succeed(folder.path(), &words);
+}
+
+#[test]
+fn a_rate_that_the_metric_does_not_take_is_refused_at_once() {
+    let folder = folder();
+    for words in [["compare", "a", "b"], ["bench", "eye", "cornell"]] {
+        let output = foveal_in(folder.path(), &[&words[..], &["--fps", "2"]].concat());
+        assert_eq!(output.status.code(), Some(2), "{}", stderr(&output));
+        assert!(stderr(&output).contains("5 to 1000"), "{}", stderr(&output));
+    }
+}

@@ -6,6 +6,7 @@ mod variants;
 pub use variants::VariantParser;
 
 use foveal_scene::{Camera, Projection};
+use foveal_vdp::FRAME_RATES;
 use glam::{Mat4, Vec3};
 
 /// Width and height in pixels: `1920x1080`.
@@ -114,6 +115,18 @@ pub fn positive(text: &str) -> Result<f32, String> {
         value if value > 0.0 => Ok(value),
         _ => Err("the number must be greater than 0".to_owned()),
     }
+}
+
+/// Frames per second of a video whose quality is measured.
+pub fn metric_rate(text: &str) -> Result<f32, String> {
+    let rate = finite(text)?;
+    if FRAME_RATES.contains(&rate) {
+        return Ok(rate);
+    }
+    let (least, most) = (FRAME_RATES.start(), FRAME_RATES.end());
+    Err(format!(
+        "the rate must be {least} to {most} frames per second"
+    ))
 }
 
 /// A finite number of 0 or more.

@@ -35,4 +35,4 @@ mod temporal;
 pub use display::{Display, Extent};
 pub use error::VdpError;
 pub use eye::Gaze;
-pub use metric::{Comparison, HeatMap, Metric, Pixels, VideoComparison, VideoMetric};
+pub use metric::{Comparison, FRAME_RATES, HeatMap, Metric, Pixels, VideoComparison, VideoMetric};

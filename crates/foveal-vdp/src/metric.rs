@@ -1,6 +1,7 @@
 //! The metric from pixels to JOD: pictures at once, videos frame by frame.
 
 use std::collections::VecDeque;
+use std::ops::RangeInclusive;
 
 use crate::difference::{Channel, Pair, band, jod_lost, join_channels};
 use crate::display::Photometry;
@@ -10,6 +11,9 @@ use crate::levels::Level;
 use crate::pyramid::Plane;
 use crate::temporal::Filters;
 use crate::{Display, Gaze, VdpError};
+
+/// Frames per second of videos that can be compared.
+pub const FRAME_RATES: RangeInclusive<f32> = 5.0..=1000.0;
 
 /// 8-bit sRGB pixels, rows top to bottom.
 #[derive(Clone, Copy, Debug)]
@@ -150,7 +154,7 @@ impl Metric {
     /// # Errors
     /// [`VdpError::FrameRate`].
     pub fn video(&self, frames_per_second: f32) -> Result<VideoMetric<'_>, VdpError> {
-        if !(5.0..=1000.0).contains(&frames_per_second) {
+        if !FRAME_RATES.contains(&frames_per_second) {
             return Err(VdpError::FrameRate(frames_per_second));
         }
         let meter = || FlickerMeter::new(self.width, self.height, self.gaze);

@@ -42,8 +42,8 @@ pub struct Args {
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(0..=1000))]
     frames: Option<u32>,
 
-    /// Frames of the video per second
-    #[arg(long, value_name = "N", value_parser = values::positive, default_value_t = 30.0)]
+    /// Frames of the video per second, 5 to 1000
+    #[arg(long, value_name = "N", value_parser = values::metric_rate, default_value_t = 30.0)]
     pub(super) fps: f32,
 
     /// Smaller pictures, fewer frames

@@ -1,6 +1,6 @@
 //! Arguments of `foveal compare`, and what its thresholds say.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::bail;
 use foveal_host::failure::usage;
@@ -13,7 +13,7 @@ use super::eye::EyeArgs;
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
     /// The reference: a PNG file, or a folder of PNG files, the frames of a video in the order of
-    /// their names
+    /// their names, numbers in them by their value
     pub(super) a: PathBuf,
 
     /// The picture under test, a PNG file of the same size, or a folder with files of the same
@@ -64,6 +64,15 @@ pub(super) trait Findings: Serialize {
     fn text(&self) -> String;
 }
 
+/// Whether a file, whether it exists or not, lies in a folder itself, however both are written.
+fn is_in(folder: &Path, file: &Path) -> bool {
+    let file = file.canonicalize().or_else(|_| std::path::absolute(file));
+    let parent = file
+        .ok()
+        .and_then(|file| file.parent()?.canonicalize().ok());
+    parent.is_some() && parent == folder.canonicalize().ok()
+}
+
 impl Args {
     /// Finds what clap cannot: files that would replace each other or what is compared.
     pub(super) fn check(&self) -> anyhow::Result<()> {
@@ -72,6 +81,10 @@ impl Args {
             let replaces = |input| file.is_some_and(|file| atomic_file::any_twice([file, input]));
             if replaces(&self.a) || replaces(&self.b) {
                 return usage(format!("{flag} names a picture that is compared"));
+            }
+            let is_among = |folder| file.is_some_and(|file| is_in(folder, file));
+            if is_among(&self.a) || is_among(&self.b) {
+                return usage(format!("{flag} lies in a folder whose frames are compared"));
             }
         }
         if atomic_file::any_twice(diff.into_iter().chain(heat_map)) {

@@ -33,8 +33,8 @@ pub(super) struct EyeArgs {
     #[arg(long, value_name = "X,Y", value_parser = values::vec2, help_heading = "Eye")]
     gaze: Option<[f32; 2]>,
 
-    /// Frames per second of a video, which is a folder [default: 30]
-    #[arg(long, value_name = "N", value_parser = values::positive, help_heading = "Eye")]
+    /// Frames per second of a video, which is a folder, 5 to 1000 [default: 30]
+    #[arg(long, value_name = "N", value_parser = values::metric_rate, help_heading = "Eye")]
     pub(super) fps: Option<f32>,
 
     /// Write a map of visible differences: black for none, through magenta to yellow for 8 JOD lost

@@ -42,8 +42,9 @@ pub(super) fn run(args: &Args) -> anyhow::Result<()> {
 }
 
 fn compare(args: &Args) -> anyhow::Result<Comparison> {
-    let names = frames(&args.a)?;
-    if let Some(name) = names.symmetric_difference(&frames(&args.b)?).next() {
+    let (names, others) = (frames(&args.a)?, frames(&args.b)?);
+    let [a, b] = [&names, &others].map(|names| names.iter().collect::<BTreeSet<_>>());
+    if let Some(name) = a.symmetric_difference(&b).next() {
         bail!(
             "'{}' and '{}' hold different frames: '{name}' is in one of them alone",
             args.a.display(),
@@ -92,10 +93,10 @@ fn compare(args: &Args) -> anyhow::Result<Comparison> {
     })
 }
 
-/// Names of a folder's PNG files.
-fn frames(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
+/// Names of a folder's PNG files, in the order of the video.
+fn frames(folder: &Path) -> anyhow::Result<Vec<String>> {
     let cannot_read = || format!("cannot read the folder '{}'", folder.display());
-    let mut names = BTreeSet::new();
+    let mut names = Vec::new();
     for entry in folder.read_dir().with_context(cannot_read)? {
         let name = entry.with_context(cannot_read)?.file_name();
         if let Some(name) = name.to_str()
@@ -103,10 +104,28 @@ fn frames(folder: &Path) -> anyhow::Result<BTreeSet<String>> {
                 .extension()
                 .is_some_and(|e| e.eq_ignore_ascii_case("png"))
         {
-            names.insert(name.to_owned());
+            names.push(name.to_owned());
         }
     }
+    names.sort_by(|a, b| parts(a).cmp(&parts(b)).then_with(|| a.cmp(b)));
     Ok(names)
+}
+
+/// A name as it is ordered: pieces of text, each with the number after it, which is ordered by how
+/// many digits it has and then by them: `f_2.png` before `f_10.png`.
+fn parts(name: &str) -> Vec<(&str, usize, &str)> {
+    let mut parts = Vec::new();
+    let mut rest = name;
+    while !rest.is_empty() {
+        let start = rest.find(|c: char| c.is_ascii_digit());
+        let (text, after) = rest.split_at(start.unwrap_or(rest.len()));
+        let end = after.find(|c: char| !c.is_ascii_digit());
+        let (number, after) = after.split_at(end.unwrap_or(after.len()));
+        let number = number.trim_start_matches('0');
+        parts.push((text, number.len(), number));
+        rest = after;
+    }
+    parts
 }
 
 impl Findings for Comparison {
@@ -134,5 +153,31 @@ impl Findings for Comparison {
         };
         let _ = writeln!(text, "FLIP        {:.6} (mean)", self.flip);
         text
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn frames_are_in_the_order_of_their_numbers() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let expected = [
+            "f_0.png",
+            "f_1.png",
+            "f_2.PNG",
+            "f_10.png",
+            "f_010b.png",
+            "g_1.png",
+        ];
+        for name in expected.iter().rev().chain(&["notes.txt"]) {
+            std::fs::write(folder.path().join(name), "").expect("a file");
+        }
+        assert_eq!(frames(folder.path()).expect("names"), expected);
+        // Numbers that no integer holds.
+        let long = "9".repeat(60);
+        assert!(parts(&format!("{long}8")) < parts(&format!("{long}9")));
+        assert!(parts(&long) < parts(&format!("1{long}")));
     }
 }
