@@ -251,7 +251,7 @@ mod tests {
         let pair = |frame: u32| Pair {
             reference_ms: 20.0,
             chosen_ms: 10.0,
-            reference_first: frame % 2 == 0,
+            reference_first: frame.is_multiple_of(2),
         };
         let found = Found {
             frame: Comparison::of(&(0..20).map(pair).collect::<Vec<_>>()).unwrap(),
