@@ -11,7 +11,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{Header, Subject, SubjectArgs, timed_renderer};
-use super::table::{jod_text, number_text, passes_ms, text};
+use super::table::{jod_text, name_of, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -327,14 +327,6 @@ fn called(settings: &Settings) -> String {
             let test = name_of(settings.antialiasing.edge_test);
             format!("{mode} {pattern} {} {test}", settings.antialiasing.samples)
         }
-    }
-}
-
-/// A kebab-case name, as the settings file spells it.
-fn name_of(value: impl Serialize) -> String {
-    match serde_json::to_value(value) {
-        Ok(serde_json::Value::String(name)) => name,
-        _ => String::new(),
     }
 }
 

@@ -8,6 +8,7 @@ mod antialiasing;
 mod changes;
 mod coarse;
 mod culling;
+mod culling_frames;
 mod eye;
 mod figures;
 mod report;
@@ -31,6 +32,8 @@ pub enum BenchCommand {
     Verdict(Box<verdict::Args>),
     /// Occlusion culling on the CPU: rasterizing occluders, testing boxes
     Culling(Box<culling::Args>),
+    /// Whole frames by each way of culling, against all objects
+    CullingFrames(culling_frames::Args),
     /// Coarse shading against shading every pixel
     Coarse(coarse::Args),
     /// Anti-aliasing: none, MSAA and SSAA by time, edges, and distance from many samples
@@ -53,6 +56,7 @@ impl BenchCommand {
         match self {
             Self::Verdict(_) => "bench verdict",
             Self::Culling(_) => "bench culling",
+            Self::CullingFrames(_) => "bench culling-frames",
             Self::Coarse(_) => "bench coarse",
             Self::Eye(_) => "bench eye",
             Self::Antialiasing(_) => "bench antialiasing",
@@ -68,6 +72,7 @@ impl BenchCommand {
         match self {
             Self::Verdict(args) => verdict::run(args),
             Self::Culling(args) => culling::run(args),
+            Self::CullingFrames(args) => culling_frames::run(args),
             Self::Coarse(args) => coarse::run(args),
             Self::Eye(args) => eye::run(args),
             Self::Antialiasing(args) => antialiasing::run(args),

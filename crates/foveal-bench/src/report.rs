@@ -195,7 +195,7 @@ fn measure(
         "name": bench.name,
         "title": bench.title,
         "about": bench.about,
-        "commands": bench.command_lines(&words),
+        "commands": [bench.command_line(&words)],
         "published": published::of(bench.name),
         "status": "measured",
         "cause": null,
@@ -238,32 +238,8 @@ fn measure(
     result
 }
 
-/// One pass: the rows of each variant, or of the bench itself where it has none.
+/// One pass: runs the bench in a process of its own; the rows it wrote.
 fn pass(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
-    if bench.variants.is_empty() {
-        return once(bench, words);
-    }
-    let mut rows: Vec<Value> = Vec::new();
-    for variant in bench.variants {
-        let words: Vec<String> = (words.iter().cloned())
-            .chain(variant.iter().map(|&word| word.to_owned()))
-            .collect();
-        for mut row in once(bench, &words)? {
-            row["variant"] = variant.join(" ").into();
-            rows.push(row);
-        }
-    }
-    let first_ms = rows.first().and_then(|row| row[bench.cost].as_f64());
-    for row in &mut rows {
-        if let (Some(first), Some(ms)) = (first_ms, row[bench.cost].as_f64()) {
-            row["ratio_to_first"] = (first / ms).into();
-        }
-    }
-    Ok(rows)
-}
-
-/// Runs the bench in a process of its own; the rows it wrote.
-fn once(bench: &Bench, words: &[String]) -> anyhow::Result<Vec<Value>> {
     let folder = tempfile::tempdir()?;
     let file = folder.path().join("figures.json");
     let mut command = Command::new(std::env::current_exe()?);

@@ -45,6 +45,19 @@ pub(super) fn timed_renderer(
     Ok(renderer)
 }
 
+/// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within
+/// half a metre.
+pub(super) fn swayed(camera: &Camera, frame: u32) -> Camera {
+    const STEP_M: f32 = 0.02;
+    const STEPS: u32 = 24;
+    let turn = frame % (2 * STEPS);
+    let away = turn.min(2 * STEPS - turn) as f32 * STEP_M;
+    let mut camera = camera.clone();
+    let right = camera.world_from_view.x_axis;
+    camera.world_from_view.w_axis += right * away;
+    camera
+}
+
 /// What a bench's JSON begins with.
 #[derive(Debug, Serialize)]
 pub(super) struct Header {

@@ -1,6 +1,7 @@
 //! Figures as columns of text.
 
 use foveal_measure::median;
+use serde::Serialize;
 
 /// Lines of cells, each column as wide as its widest cell, numbers (all but the first column) to
 /// the right.
@@ -27,6 +28,14 @@ pub(super) fn text(lines: &[Vec<String>]) -> String {
 /// A number with so many digits, or a dash where none was measured.
 pub(super) fn number_text(number: Option<f64>, digits: usize) -> String {
     number.map_or_else(|| "-".to_owned(), |number| format!("{number:.digits$}"))
+}
+
+/// A kebab-case name, as the settings file spells it.
+pub(super) fn name_of(value: impl Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(serde_json::Value::String(name)) => name,
+        _ => String::new(),
+    }
 }
 
 /// A quality with two digits.

@@ -11,7 +11,7 @@ use pollster::block_on;
 use serde::Serialize;
 
 use super::subject::{SubjectArgs, timed_renderer};
-use super::table::{jod_text, number_text, passes_ms, text};
+use super::table::{jod_text, name_of, number_text, passes_ms, text};
 use foveal_host::difference::Nearness;
 use foveal_host::picture::Picture;
 use foveal_host::values;
@@ -286,10 +286,7 @@ fn measure(
 }
 
 fn line(row: &Row) -> Vec<String> {
-    let stage = match serde_json::to_value(row.stage) {
-        Ok(serde_json::Value::String(name)) => name,
-        _ => String::new(),
-    };
+    let stage = name_of(row.stage);
     let time = |ms: Option<f64>| number_text(ms, 1);
     vec![
         format!("{stage}, {}, {} lights", row.material_cost, row.lights),

@@ -87,8 +87,6 @@ pub(super) struct Bench {
     pub(super) full: &'static [&'static str],
     /// Whether it takes `--size`.
     pub(super) sized: bool,
-    /// Further words, one run and one row each; none: one run that gives all rows.
-    pub(super) variants: &'static [&'static [&'static str]],
     pub(super) rows: fn(&Value) -> Option<Vec<Value>>,
     /// What tells a row from the others; the row's label is made of these.
     pub(super) label: &'static [&'static str],
@@ -116,13 +114,6 @@ pub(super) fn stages(figures: &Value) -> Option<Vec<Value>> {
     }
     rows.push(json!({ "unit": "both", "stage": "frame", "ms": median["frame_ms"] }));
     Some(rows)
-}
-
-/// The frame of `foveal render --stats` as one row.
-pub(super) fn frame(figures: &Value) -> Option<Vec<Value>> {
-    let mut row = figures.get("median")?.as_object()?.clone();
-    row.retain(|_, value| value.is_number());
-    Some(vec![row.into()])
 }
 
 /// The rows of the first camera: one per scene where scenes are the load.
@@ -172,21 +163,14 @@ impl Bench {
         words
     }
 
-    /// The commands as a user types them: one for each variant, or one.
-    pub(super) fn command_lines(&self, words: &[String]) -> Vec<String> {
+    /// The command as a user types it.
+    pub(super) fn command_line(&self, words: &[String]) -> String {
         let output = match self.subcommand {
             ["render"] => " --output frame_#.png",
             _ => "",
         };
         let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-        let line = |variant: &[&str]| {
-            let variant: String = variant.iter().map(|word| format!(" {word}")).collect();
-            format!("foveal {}{output}{variant}", words.join(" "))
-        };
-        match self.variants {
-            [] => vec![line(&[])],
-            variants => variants.iter().map(|variant| line(variant)).collect(),
-        }
+        format!("foveal {}{output}", words.join(" "))
     }
 
     /// Adds where the figures go.

@@ -3,8 +3,7 @@
 use foveal_host::difference::BENCH_DISPLAY;
 
 use super::bench::{
-    Bench, Load, Pair, Quality, THE_SCENE, VERDICT, column, first_camera, frame, own_rows, percent,
-    stages,
+    Bench, Load, Pair, Quality, THE_SCENE, VERDICT, column, first_camera, own_rows, percent, stages,
 };
 
 const FLIP: &str = "FLIP error: low is better";
@@ -19,7 +18,6 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &[THE_SCENE, "--rounds", "40"],
         full: &[THE_SCENE, "--rounds", "60"],
         sized: true,
-        variants: &[],
         rows: own_rows,
         label: &["name"],
         columns: &[
@@ -48,7 +46,6 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &[THE_SCENE, "--warmup", "2", "--frames", "3"],
         full: &[THE_SCENE, "--warmup", "3", "--frames", "9"],
         sized: true,
-        variants: &[],
         rows: stages,
         label: &["unit", "stage"],
         columns: &[column("ms", "ms", 2)],
@@ -79,7 +76,6 @@ pub(super) const BENCHES: &[Bench] = &[
             "--quiet",
         ],
         sized: false,
-        variants: &[],
         rows: own_rows,
         label: &["camera", "width", "height", "threads"],
         columns: &[
@@ -131,7 +127,6 @@ pub(super) const BENCHES: &[Bench] = &[
             "--quiet",
         ],
         sized: false,
-        variants: &[],
         rows: first_camera,
         label: &["occluder_triangles"],
         columns: &[
@@ -156,24 +151,21 @@ pub(super) const BENCHES: &[Bench] = &[
     Bench {
         name: "culling-frames",
         title: "Whole frames with culling",
-        about: "The same picture drawn with all objects, with those in the frustum, and with those that are not hidden.",
-        subcommand: &["render"],
-        quick: &[THE_SCENE, "--warmup", "1", "--frames", "3"],
-        full: &[THE_SCENE, "--warmup", "2", "--frames", "9"],
+        about: "The same picture drawn with all objects (off), with those in the frustum, with those that are not hidden (occlusion), and as the program chooses (auto). All draw the same frames in turn, in random order.",
+        subcommand: &["bench", "culling-frames"],
+        quick: &[THE_SCENE, "--rounds", "20"],
+        full: &[THE_SCENE],
         sized: true,
-        variants: &[
-            &["--culling", "off"],
-            &["--culling", "frustum"],
-            &["--culling", "occlusion"],
-        ],
-        rows: frame,
-        label: &["variant"],
+        rows: own_rows,
+        label: &["culling"],
         columns: &[
             column("frame_ms", "frame ms", 2),
+            column("frame_ratio", "off / this", 2),
+            column("frame_ratio_low", "at least", 2),
+            column("frame_ratio_high", "at most", 2),
             column("objects_visible", "objects drawn", 0),
             column("draws", "draws", 0),
             column("triangles", "triangles", 0),
-            column("ratio_to_first", "first / this", 2),
         ],
         cost: "frame_ms",
         quality: None,
@@ -188,7 +180,6 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &["materials", THE_SCENE, "--rounds", "10"],
         full: &["materials", "materials2", THE_SCENE],
         sized: false,
-        variants: &[],
         rows: own_rows,
         label: &["scene", "stages", "mode"],
         columns: &[
@@ -233,7 +224,6 @@ pub(super) const BENCHES: &[Bench] = &[
             "--lights", "1000",
         ],
         sized: true,
-        variants: &[],
         rows: own_rows,
         label: &["composite", "backend", "lights"],
         columns: &[
@@ -290,7 +280,6 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &[THE_SCENE, "--quick", "--display", "h60"],
         full: &[THE_SCENE],
         sized: true,
-        variants: &[],
         rows: own_rows,
         label: &["display", "way"],
         columns: &[
@@ -350,7 +339,6 @@ pub(super) const BENCHES: &[Bench] = &[
             "0.08",
         ],
         sized: true,
-        variants: &[],
         rows: own_rows,
         label: &["stage", "material_cost", "lights", "contrast_threshold"],
         columns: &[
@@ -405,7 +393,6 @@ pub(super) const BENCHES: &[Bench] = &[
         quick: &[THE_SCENE, "--rounds", "10", "--reference", "16"],
         full: &[THE_SCENE, "--rounds", "15"],
         sized: true,
-        variants: &[],
         rows: own_rows,
         label: &["name"],
         columns: &[

@@ -8,7 +8,7 @@ use foveal_scene::{Camera, Scene};
 use pollster::block_on;
 
 use super::decision::{Found, Measured};
-use crate::subject::{Subject, WARM_UP, timed_renderer};
+use crate::subject::{Subject, WARM_UP, swayed, timed_renderer};
 
 /// One of those that are drawn in turn.
 struct Side {
@@ -140,19 +140,6 @@ impl Side {
         let (width, height) = self.settings.picture_size();
         Picture::from_rgba(width, height, bytes)
     }
-}
-
-/// Where a camera that sways sideways is in a frame: two centimetres a frame, to and fro within
-/// half a metre.
-fn swayed(camera: &Camera, frame: u32) -> Camera {
-    const STEP_M: f32 = 0.02;
-    const STEPS: u32 = 24;
-    let turn = frame % (2 * STEPS);
-    let away = turn.min(2 * STEPS - turn) as f32 * STEP_M;
-    let mut camera = camera.clone();
-    let right = camera.world_from_view.x_axis;
-    camera.world_from_view.w_axis += right * away;
-    camera
 }
 
 /// Milliseconds that this process has had of the processor, all threads together; 0 where nobody
