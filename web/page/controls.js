@@ -1,6 +1,6 @@
 // The divider, and the buttons that belong to the picture.
 
-import { writeLink } from './link.js';
+import { writeLink, writeLinkNow } from './link.js';
 import { $, alone, page, redraw } from './page.js';
 
 export function placeSplit() {
@@ -39,7 +39,7 @@ function goHome() {
 }
 
 async function share() {
-  writeLink();
+  writeLinkNow();
   try {
     await navigator.clipboard.writeText(location.href);
     $('share').textContent = 'Copied';

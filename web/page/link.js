@@ -2,7 +2,18 @@
 
 import { $, page, say } from './page.js';
 
+/** Least milliseconds between two changes of the address: browsers refuse more than 100 in half a minute. */
+const LEAST_WAIT_MS = 500;
+let waits = null;
+
+/** Writes the link soon, once for all changes until then. */
 export function writeLink() {
+  waits ??= setTimeout(writeLinkNow, LEAST_WAIT_MS);
+}
+
+export function writeLinkNow() {
+  clearTimeout(waits);
+  waits = null;
   const link = new URLSearchParams();
   if (page.reducedOnPurpose) link.set('backend', 'webgl2');
   if (!page.scene.bytes) link.set('scene', page.scene.name);
@@ -15,7 +26,11 @@ export function writeLink() {
     link.set('eye', eye.map((v) => v.toFixed(4)).join(','));
     link.set('target', target.map((v) => v.toFixed(4)).join(','));
   }
-  history.replaceState(null, '', `#${link}`);
+  try {
+    history.replaceState(null, '', `#${link}`);
+  } catch {
+    // Refused: the next change writes it.
+  }
 }
 
 /** Takes over the address's settings; tells which place it names for the camera. */

@@ -208,6 +208,8 @@ test('a link holds the settings, the place and the divider', async () => {
   await page.locator('#picture').focus();
   await page.keyboard.press('ArrowLeft');
   await settled(page);
+  // The address follows within half a second.
+  await page.waitForTimeout(1000);
   const hash = await page.evaluate(() => location.hash);
   const shown = await picture(page);
   const again = await site.visit(hash, SMALL);

@@ -118,6 +118,8 @@ test('a browser that has WebGPU draws with WebGL 2 where the link asks for it', 
   const { page } = await full.visit('#backend=webgl2&scene=cornell&scale=0.25', { width: 390, height: 844 });
   await settled(page);
   assert.match(await page.locator('#adapter').textContent(), /WebGL 2/);
+  // The address follows within half a second.
+  await page.waitForTimeout(1000);
   assert.match(await page.evaluate(() => location.hash), /backend=webgl2/);
   await shot(page, 'phone');
   await page.context().close();
