@@ -51,8 +51,7 @@ impl App {
         } = sorted(files);
         let name = |path: &Path| path.display().to_string();
         if let Some(file) = settings.last() {
-            self.settings_file = name(file);
-            self.load_settings(context);
+            self.load_settings(context, name(file));
         }
         for other in others {
             if self.host.files.is_folder(&other) {
@@ -131,6 +130,8 @@ mod tests {
     #[test]
     fn a_dropped_folder_is_listed_and_settings_are_read() {
         let mut app = app();
+        let host = std::sync::Arc::get_mut(&mut app.host).unwrap();
+        host.read_settings = |_| Ok(foveal::Settings::default());
         let context = egui::Context::default();
         app.take_files(&context, paths(&["/home/eva", "/quick.toml"]));
         let folder = app
@@ -139,5 +140,13 @@ mod tests {
             .map(|browser| browser.folder().to_owned());
         assert_eq!(folder, Some("/home/eva".into()));
         assert_eq!(app.settings_file, "/quick.toml");
+    }
+
+    #[test]
+    fn settings_are_not_saved_to_a_dropped_file_that_has_none() {
+        let mut app = app();
+        app.take_files(&egui::Context::default(), paths(&["/Cargo.toml"]));
+        assert_eq!(app.settings_file, "foveal.toml");
+        assert!(app.messages[0].is_error);
     }
 }

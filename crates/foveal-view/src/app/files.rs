@@ -1,6 +1,6 @@
 //! Screenshots, settings files, and the command that draws the same.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::App;
 use crate::command;
@@ -37,13 +37,15 @@ impl App {
         }
     }
 
-    pub(crate) fn load_settings(&mut self, context: &egui::Context) {
-        match (self.host.read_settings)(&PathBuf::from(&self.settings_file)) {
+    /// Reads settings from a file, which is the one that they are saved to then.
+    pub(crate) fn load_settings(&mut self, context: &egui::Context, file: String) {
+        match (self.host.read_settings)(Path::new(&file)) {
             Ok(settings) => {
                 // A file's size holds; what follows the window has none of its own.
                 self.display.fit = false;
                 self.use_settings(&settings);
-                self.say(context, format!("Settings loaded: {}", self.settings_file));
+                self.say(context, format!("Settings loaded: {file}"));
+                self.settings_file = file;
             }
             Err(error) => self.complain(format!("{error:#}")),
         }

@@ -186,7 +186,7 @@ fn file_buttons(app: &mut App, ui: &mut egui::Ui) {
         .on_hover_text("Reads the settings file")
         .clicked()
     {
-        app.load_settings(ui.ctx());
+        app.load_settings(ui.ctx(), app.settings_file.clone());
     }
     if ui
         .button("Save")
