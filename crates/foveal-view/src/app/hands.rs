@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use egui::{Key, Modifiers};
+use egui::{Event, Key, Modifiers};
 use foveal::Output;
 use foveal_scene::Camera;
 use glam::{Vec2, Vec3};
@@ -12,10 +12,18 @@ use crate::browser::Browser;
 use crate::navigator::{Hands, Mode, Side};
 use crate::pick::Ray;
 
+/// Whether a key goes down; it does not again while it is held.
+fn consume_press(input: &mut egui::InputState, modifiers: Modifiers, key: Key) -> bool {
+    let is_repeated =
+        |event: &Event| matches!(event, Event::Key { key: held, repeat: true, .. } if *held == key);
+    input.events.retain(|event| !is_repeated(event));
+    input.consume_key(modifiers, key)
+}
+
 impl App {
     /// Keys, unless a text field takes them.
     pub(super) fn take_keys(&mut self, context: &egui::Context) {
-        let with = |modifiers, key| context.input_mut(|i| i.consume_key(modifiers, key));
+        let with = |modifiers, key| context.input_mut(|i| consume_press(i, modifiers, key));
         if with(Modifiers::COMMAND, Key::O) {
             self.open_dialog();
         }
@@ -27,7 +35,8 @@ impl App {
             self.worker.lose_device();
             self.loses_devices = true;
         }
-        if pressed(Key::Escape) {
+        // An open menu takes it for itself.
+        if !egui::Popup::is_any_open(context) && pressed(Key::Escape) {
             self.escape();
         }
         for (key, side) in [
@@ -227,5 +236,53 @@ impl App {
             self.display.time_s = (self.display.time_s + hands.elapsed_s) % duration_s;
             context.request_repaint();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{Pass, SIZES, loaded};
+    use super::*;
+
+    #[test]
+    fn a_held_key_switches_once() {
+        let mut app = loaded();
+        let context = egui::Context::default();
+        let pass = Pass::new(&context, SIZES[0]);
+        let down = Event::Key {
+            key: Key::C,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        for _ in 0..4 {
+            pass.show(&mut app, vec![down.clone()]);
+            assert!(app.display.frozen);
+        }
+    }
+
+    #[test]
+    fn escape_closes_an_open_menu_before_all_else() {
+        let mut app = loaded();
+        app.capture.is_open = true;
+        let context = egui::Context::default();
+        let pass = Pass::new(&context, SIZES[0]);
+        pass.show(&mut app, Vec::new());
+        egui::Popup::open_id(&context, egui::Id::unique("menu"));
+        app.take_keys(&context);
+        let escape = Event::Key {
+            key: Key::Escape,
+            physical_key: None,
+            pressed: true,
+            repeat: false,
+            modifiers: Modifiers::NONE,
+        };
+        context.input_mut(|i| i.events.push(escape));
+        app.take_keys(&context);
+        assert!(app.capture.is_open);
+        egui::Popup::close_all(&context);
+        app.take_keys(&context);
+        assert!(!app.capture.is_open);
     }
 }

@@ -69,7 +69,7 @@ fn scene() -> LoadedScene {
 }
 
 /// An app with a scene and a frame with large figures.
-fn loaded() -> App {
+pub(super) fn loaded() -> App {
     let mut app = app();
     let context = egui::Context::default();
     app.adapter = Some(AdapterStats {
@@ -113,18 +113,18 @@ fn loaded() -> App {
 }
 
 /// A window's size in points, its scale, and the keys that are pressed.
-struct Pass<'a> {
+pub(super) struct Pass<'a> {
     context: &'a egui::Context,
     size: Vec2,
 }
 
 impl<'a> Pass<'a> {
-    fn new(context: &'a egui::Context, size: Vec2) -> Self {
+    pub(super) fn new(context: &'a egui::Context, size: Vec2) -> Self {
         crate::look::apply(context);
         Self { context, size }
     }
 
-    fn show(&self, app: &mut App, events: Vec<Event>) -> egui::FullOutput {
+    pub(super) fn show(&self, app: &mut App, events: Vec<Event>) -> egui::FullOutput {
         let input = RawInput {
             screen_rect: Some(Rect::from_min_size(Pos2::ZERO, self.size)),
             events,
@@ -136,7 +136,7 @@ impl<'a> Pass<'a> {
         output
     }
 
-    fn press(&self, app: &mut App, modifiers: Modifiers, key: Key) {
+    pub(super) fn press(&self, app: &mut App, modifiers: Modifiers, key: Key) {
         let event = |pressed| Event::Key {
             key,
             physical_key: None,
@@ -211,7 +211,7 @@ fn faults(output: &egui::FullOutput, size: Vec2) -> Vec<String> {
 
 /// Sizes in points: the smallest window, as wide with all that its panels scroll to, the usual one,
 /// a large screen at twice the size.
-const SIZES: [Vec2; 4] = [
+pub(super) const SIZES: [Vec2; 4] = [
     Vec2::new(960.0, 540.0),
     Vec2::new(960.0, 4000.0),
     Vec2::new(1280.0, 800.0),
