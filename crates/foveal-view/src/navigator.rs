@@ -70,6 +70,8 @@ pub(crate) struct Navigator {
     /// Metres per second.
     pub(crate) speed_m_s: f32,
     camera: Camera,
+    /// Extent of the scene.
+    bounds: Aabb,
     yaw_rad: f32,
     pitch_rad: f32,
     /// Distance of the point that is orbited.
@@ -84,25 +86,25 @@ impl Navigator {
         } else {
             bounds.size().length().max(1e-3)
         };
-        let towards = if bounds.is_empty() {
-            extent_m
-        } else {
-            camera.eye().distance(bounds.center())
-        };
         let mut this = Self {
             mode: Mode::Fly,
             speed_m_s: (extent_m * 0.08).clamp(1e-3, 50.0),
             yaw_rad: 0.0,
             pitch_rad: 0.0,
-            radius_m: towards.max(1e-3 * extent_m),
+            radius_m: extent_m,
             camera: camera.clone(),
+            bounds,
         };
         this.go_to(camera);
         this
     }
 
-    /// Jumps to a camera.
+    /// Jumps to a camera; what is orbited then is as far ahead as the centre of the scene is away.
     pub(crate) fn go_to(&mut self, camera: Camera) {
+        if !self.bounds.is_empty() {
+            let towards = camera.eye().distance(self.bounds.center());
+            self.radius_m = towards.max(1e-3 * self.bounds.size().length().max(1e-3));
+        }
         let forward = (-camera.world_from_view.z_axis.truncate()).normalize_or(Vec3::NEG_Z);
         self.yaw_rad = f32::atan2(-forward.x, -forward.z);
         self.pitch_rad = forward.y.clamp(-1.0, 1.0).asin();
@@ -122,10 +124,11 @@ impl Navigator {
         }
         let radius = (0.5 * bounds.size().length()).max(1e-4);
         match &mut self.camera.projection {
-            Projection::Perspective { fov_y_rad, .. } => {
+            Projection::Perspective { fov_y_rad, near_m } => {
                 let half = 0.5 * *fov_y_rad;
                 let half = half.min((half.tan() * aspect).atan());
                 self.radius_m = radius / half.sin();
+                *near_m = near_m.min(0.5 * (self.radius_m - radius));
             }
             Projection::Orthographic {
                 height_m,
@@ -365,6 +368,46 @@ mod tests {
             assert!(navigator.camera().eye().dot(looks) < -1.0);
             navigator.look_from(side, bounds, 1.5);
             assert!((forward(&navigator) + looks).length() < 1e-5, "{side:?}");
+        }
+    }
+
+    #[test]
+    fn from_the_start_the_scene_is_orbited_again() {
+        let mut navigator = navigator();
+        let start = navigator.camera().clone();
+        navigator.mode = Mode::Orbit;
+        let scroll = Hands {
+            scroll: 30.0,
+            ..Hands::default()
+        };
+        navigator.step(&scroll);
+        navigator.go_to(start.clone());
+        let turn = Hands {
+            turn: Vec2::new(200.0, 0.0),
+            ..Hands::default()
+        };
+        navigator.step(&turn);
+        let [distance, before] = [navigator.camera(), &start].map(|c| c.eye().length());
+        assert!((distance - before).abs() < 1e-2, "{distance}, {before}");
+    }
+
+    #[test]
+    fn what_is_small_is_framed_behind_the_near_plane() {
+        let mut navigator = navigator();
+        let bounds = Aabb {
+            min: Vec3::splat(1.0),
+            max: Vec3::splat(1.02),
+        };
+        navigator.frame(bounds, 1.5);
+        let Projection::Perspective { near_m, .. } = navigator.camera().projection else {
+            panic!("the projection is perspective");
+        };
+        let ahead = forward(&navigator);
+        for i in 0..8 {
+            let pick = |bit: usize| [bounds.min, bounds.max][i >> bit & 1][bit];
+            let corner = Vec3::new(pick(0), pick(1), pick(2));
+            let depth = (corner - navigator.camera().eye()).dot(ahead);
+            assert!(depth > near_m, "{depth}, {near_m}");
         }
     }
 
