@@ -1,6 +1,9 @@
 //! Device, scene and up to two renderers: the one that is asked about, and its reference.
 
-use foveal::{AdapterStats, EnvironmentSource, FrameStats, Gpu, RateSource, Renderer, Settings};
+use foveal::{
+    AdapterStats, EnvironmentSource, FrameStats, Gpu, RateCombine, RateSource, Renderer, Settings,
+    Shading,
+};
 use foveal_scene::{Camera, Clip, Scene, printable};
 use pollster::block_on;
 
@@ -277,14 +280,6 @@ impl Side {
         host: &Host,
         settings: &Settings,
     ) -> anyhow::Result<&'s mut Self> {
-        let new_image = |before: Option<&Settings>| {
-            let uses = |s: &Settings| {
-                s.coarse.source == RateSource::Image || s.coarse.other_source == RateSource::Image
-            };
-            uses(settings)
-                && !before
-                    .is_some_and(|b| uses(b) && b.coarse.image_name == settings.coarse.image_name)
-        };
         let named = |s: &Settings| {
             let lighting = &s.lighting;
             let is_image = lighting.environment == EnvironmentSource::Image;
@@ -301,7 +296,8 @@ impl Side {
             } else {
                 None
             };
-        let image = if new_image(before.as_ref()) {
+        let used = used_image(settings);
+        let image = if used.is_some() && used != before.as_ref().and_then(used_image) {
             (host.rate_image)(settings)?
         } else {
             None
@@ -380,6 +376,16 @@ impl Side {
     }
 }
 
+/// The image that gives rates; `None` where none does.
+fn used_image(settings: &Settings) -> Option<&str> {
+    let coarse = &settings.coarse;
+    let is_second =
+        coarse.combine != RateCombine::First && coarse.other_source == RateSource::Image;
+    let is_used =
+        settings.shading.mode != Shading::Full && (coarse.source == RateSource::Image || is_second);
+    is_used.then_some(coarse.image_name.as_str())
+}
+
 /// The scene's cameras with names that can be shown.
 fn shown_cameras(scene: &Scene) -> Vec<Camera> {
     let shown = |camera: &Camera| Camera {
@@ -405,4 +411,29 @@ fn mean_flip(reference: &Rgba, picture: &Rgba) -> Option<f32> {
         nv_flip::DEFAULT_PIXELS_PER_DEGREE,
     );
     Some(nv_flip::FlipPool::from_image(&map).mean())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rate_image_is_used_where_shading_asks_for_rates() {
+        let full = Settings::default().with(|s| {
+            s.shading.mode = Shading::Full;
+            s.coarse.source = RateSource::Image;
+            s.coarse.image_name = "rates.png".to_owned();
+        });
+        assert_eq!(used_image(&full), None);
+        let coarse = full.with(|s| s.shading.mode = Shading::Coarse);
+        assert_eq!(used_image(&coarse), Some("rates.png"));
+        let second = coarse.with(|s| {
+            s.coarse.source = RateSource::Radii;
+            s.coarse.other_source = RateSource::Image;
+            s.coarse.combine = RateCombine::First;
+        });
+        assert_eq!(used_image(&second), None);
+        let combined = second.with(|s| s.coarse.combine = RateCombine::Finer);
+        assert_eq!(used_image(&combined), Some("rates.png"));
+    }
 }
