@@ -167,18 +167,16 @@ impl DrawList {
                 Self::push(list, drawn, scene, merge, triangles, one);
             }
         }
-        for (_, mut key, material, mesh, index) in solid {
-            let Some(lobes) = lobes(material) else {
-                continue;
-            };
-            key.lobes = lobes;
-            let to = if lobes.transmits() {
-                &mut self.transmissive
-            } else {
-                &mut self.lobed
-            };
-            let one = batch((key, material, mesh, index));
-            Self::push(to, drawn, scene, merge, triangles, one);
+        // One list after the other: a draw's instances follow each other in `drawn`.
+        for (transmits, to) in [(false, &mut self.lobed), (true, &mut self.transmissive)] {
+            for &(_, key, material, mesh, index) in &solid {
+                if let Some(lobes) = lobes(material)
+                    && lobes.transmits() == transmits
+                {
+                    let one = batch((PipelineKey { lobes, ..key }, material, mesh, index));
+                    Self::push(to, drawn, scene, merge, triangles, one);
+                }
+            }
         }
         strokes.sort_unstable();
         for one in strokes {
@@ -294,6 +292,7 @@ impl DrawList {
         match list.last_mut() {
             Some(last)
                 if merge
+                    && last.first + last.count == drawn.len() as u32
                     && (last.key, last.material, last.mesh)
                         == (batch.key, batch.material, batch.mesh) =>
             {
@@ -410,6 +409,42 @@ mod tests {
         let expected: Vec<u32> = all.iter().copied().filter(|i| some.contains(i)).collect();
         assert!(some.len() < all.len() && !some.is_empty());
         assert_eq!(some, expected);
+    }
+
+    #[test]
+    fn merged_draws_hold_their_own_instances_where_glass_and_coats_alternate() {
+        let all = foveal_generate::lobes().materials;
+        let coated = all
+            .iter()
+            .find(|m| m.clearcoat.is_some() && m.transmission.is_none());
+        let glass = all.iter().find(|m| m.transmission.is_some());
+        let plain = |of: Option<&foveal_scene::Material>| foveal_scene::Material {
+            clearcoat: of.and_then(|m| m.clearcoat),
+            transmission: of.and_then(|m| m.transmission),
+            ..foveal_scene::Material::default()
+        };
+        let materials = vec![plain(coated), plain(glass)];
+        let depths = [-2.0, -4.0, -8.0, -16.0, -32.0, -64.0];
+        let mut scene = crate::forward::twin::quads(materials, &depths);
+        for (instance, material) in scene.instances.iter_mut().zip([0, 1].into_iter().cycle()) {
+            instance.material = material;
+        }
+        let camera = Camera::look_at(Vec3::Z, Vec3::ZERO, Vec3::Y, 1.0);
+        let settings = crate::testing::small(16, 16);
+        let renderer = crate::testing::rendered(&scene, &camera, &settings);
+        let mut list = DrawList::default();
+        list.build(renderer.scene(), &camera, true, |_| true);
+        for batches in [&list.lobed, &list.transmissive] {
+            let mut count = 0;
+            for batch in batches {
+                for i in batch.first..batch.first + batch.count {
+                    let instance = &scene.instances[list.drawn[i as usize] as usize];
+                    assert_eq!(instance.material, batch.material);
+                    count += 1;
+                }
+            }
+            assert_eq!(count, 3);
+        }
     }
 
     #[test]
