@@ -310,7 +310,8 @@ struct Carriers {
     lights: Vec<u32>,
 }
 
-/// Places what the shown nodes carry.
+/// Places the cameras of all nodes that the scene reaches, and the lights of those that are shown:
+/// KHR_node_visibility hides no camera.
 fn place_cameras_and_lights(
     scene: &mut Scene,
     document: &Document,
@@ -319,8 +320,8 @@ fn place_cameras_and_lights(
     warn: &mut Vec<Warning>,
 ) -> Carriers {
     let mut carriers = Carriers::default();
-    let visible = document.nodes.iter().enumerate();
-    for (i, node) in visible.filter(|(i, _)| hierarchy.shown[*i]) {
+    let nodes = document.nodes.iter().enumerate();
+    for (i, node) in nodes.filter(|(i, _)| hierarchy.reached[*i]) {
         if let Some(camera) = node.camera {
             let def = &document.cameras[camera as usize];
             match &def.projection {
@@ -337,7 +338,7 @@ fn place_cameras_and_lights(
                 ),
             }
         }
-        if let Some(light) = node.light {
+        if let Some(light) = node.light.filter(|_| hierarchy.shown[i]) {
             match &document.lights[light as usize].light {
                 Ok(found) => {
                     let mut placed = found.clone();

@@ -159,7 +159,9 @@ pub(crate) fn all_the_way_up(
 pub(crate) struct Hierarchy {
     pub(crate) parent: Vec<Option<u32>>,
     pub(crate) order: Vec<u32>,
-    /// Nodes that the shown scene reaches and no KHR_node_visibility hides in every pose.
+    /// Nodes that the shown scene reaches: their cameras can be used, whatever is hidden.
+    pub(crate) reached: Vec<bool>,
+    /// Of these, the nodes that no KHR_node_visibility hides in every pose.
     pub(crate) shown: Vec<bool>,
     /// Of these, whether none hides them at rest.
     pub(crate) visible: Vec<bool>,
@@ -213,6 +215,7 @@ impl Hierarchy {
             let above = parent[i as usize].is_some_and(|p| shown[p as usize]);
             shown[i as usize] |= above;
         }
+        let reached = shown.clone();
         // Hidden in a second pass: a root below a hidden node is hidden with it.
         let mut appears = vec![false; nodes.len()];
         let targets = document.animations.iter().flat_map(AnimationDef::targets);
@@ -228,6 +231,7 @@ impl Hierarchy {
             visible: all_the_way_up(&order, &parent, |i| nodes[i].visible),
             parent,
             order,
+            reached,
             shown,
         })
     }

@@ -171,6 +171,25 @@ fn only_the_default_scene_is_shown_and_hidden_nodes_are_not() {
 }
 
 #[test]
+fn cameras_of_hidden_nodes_can_be_used() {
+    let mut file = File::with_triangle();
+    file.json["cameras"] = json!([
+        { "type": "perspective", "perspective": { "yfov": 1, "znear": 0.5 } },
+    ]);
+    let hidden = json!({ "KHR_node_visibility": { "visible": false } });
+    file.push(
+        "nodes",
+        json!({ "mesh": 0, "children": [2], "extensions": hidden }),
+    );
+    file.push("nodes", json!({ "camera": 0, "name": "shot" }));
+    file.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let scene = file.load();
+    assert_eq!(scene.objects.len(), 1);
+    let names: Vec<_> = scene.cameras.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["shot"]);
+}
+
+#[test]
 fn what_lies_beyond_the_numbers_is_left_out() {
     let mut file = File::with_triangle();
     file.node()["scale"] = json!([3e38, 1, 1]);
